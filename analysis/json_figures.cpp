@@ -1,0 +1,24 @@
+#include "analysis/json_figures.hpp"
+
+namespace touchtrial {
+
+nlohmann::ordered_json figure_json(std::optional<double> figure) {
+  if (!figure) return nullptr;
+  return *figure;
+}
+
+nlohmann::ordered_json interval_json(const Interval& interval) {
+  return nlohmann::ordered_json::array({interval.low, interval.high});
+}
+
+void put_stamp(nlohmann::ordered_json& object, bool simulated) {
+  object["simulated"] = simulated;
+  if (simulated) object["stamp"] = "SIMULATED";
+}
+
+std::string json_text(const nlohmann::ordered_json& object) {
+  using ErrorHandler = nlohmann::ordered_json::error_handler_t;
+  return object.dump(2, ' ', false, ErrorHandler::replace) + '\n';
+}
+
+}  // namespace touchtrial

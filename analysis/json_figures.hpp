@@ -1,0 +1,30 @@
+/// \file How figures stand in JSON. Not for public headers: it shows the JSON library.
+#pragma once
+
+#include "analysis/proportion.hpp"
+#include "analysis/quality.hpp"
+#include "analysis/report.hpp"
+
+#include <optional>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+
+/// The number, or null where it does not exist.
+[[nodiscard]] nlohmann::ordered_json figure_json(std::optional<double> figure);
+
+/// [low, high]
+[[nodiscard]] nlohmann::ordered_json interval_json(const Interval& interval);
+
+/// Says whether the figures come from simulated participants; if so, twice.
+void put_stamp(nlohmann::ordered_json& object, bool simulated);
+
+/// Indented, ending with a line feed; bytes that are no UTF-8 become replacement characters.
+[[nodiscard]] std::string json_text(const nlohmann::ordered_json& object);
+
+[[nodiscard]] nlohmann::ordered_json report_object(const StudyReport& report);
+[[nodiscard]] nlohmann::ordered_json quality_object(const QualityReport& report);
+
+}  // namespace touchtrial

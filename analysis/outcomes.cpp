@@ -1,0 +1,111 @@
+#include "analysis/outcomes.hpp"
+
+#include "analysis/sealed_sessions.hpp"
+#include "analysis/session_rules.hpp"
+#include "core/errors.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include <fmt/format.h>
+
+namespace touchtrial {
+namespace {
+
+std::string shown(const TrialRow& row) {
+  return fmt::format("session {}, trial {}", row.session, row.trial);
+}
+
+/// File names without folders, unless two images of one class share theirs.
+std::vector<std::string> exemplar_names(const StudyClass& of) {
+  std::set<std::string> distinct;
+  for (const auto& image : of.images) distinct.insert(image.filename().string());
+  const bool unambiguous = distinct.size() == of.images.size();
+  std::vector<std::string> names;
+  for (const auto& image : of.images) {
+    names.push_back(unambiguous ? image.filename().string() : image.generic_string());
+  }
+  return names;
+}
+
+Outcomes labelled(const StudyStore& store, const Study& study) {
+  Outcomes outcomes;
+  const StudyCommitment& commitment = store.commitment();
+  outcomes.study = commitment.study;
+  outcomes.protocol = study.protocol;
+  outcomes.simulated = commitment.simulated;
+  outcomes.pilot = commitment.pilot;
+  outcomes.state = store.state();
+  for (const StudyClass& one : study.classes) {
+    outcomes.classes.push_back(one.label);
+    outcomes.exemplars.push_back(exemplar_names(one));
+  }
+  for (int i = 0; i < study.presented_methods(); ++i) {
+    outcomes.methods.emplace_back(name_of(study.methods[i].method));
+  }
+  return outcomes;
+}
+
+const Presentation& presentation_of(const TrialRow& row, const Schedule& schedule) {
+  const auto found = std::find_if(schedule.presentations.begin(), schedule.presentations.end(),
+                                  [&](const Presentation& one) { return one.trial == row.trial; });
+  if (found == schedule.presentations.end()) {
+    throw VerificationError(shown(row) +
+                            ": is not in the session's schedule; run `touchtrial verify`");
+  }
+  return *found;
+}
+
+std::optional<int> response_of(const TrialRow& row, const Schedule& schedule) {
+  if (!row.position) return std::nullopt;
+  if (*row.position < 0 || *row.position >= static_cast<int>(schedule.layout.size())) {
+    throw VerificationError(fmt::format("{}: answers position {} of {}; run `touchtrial verify`",
+                                        shown(row), *row.position, schedule.layout.size()));
+  }
+  return schedule.layout[*row.position];
+}
+
+TrialOutcome outcome_of(const TrialRow& row, const SessionOutcome& session,
+                        const Schedule& schedule) {
+  const Presentation& presentation = presentation_of(row, schedule);
+  const bool ended = row.state == TrialState::answered || row.state == TrialState::timed_out;
+  TrialOutcome trial;
+  trial.participant = session.row.participant;
+  trial.row = row;
+  trial.stimulus = presentation.stimulus;
+  trial.scored = presentation.kind == PresentationKind::scored;
+  trial.counted = session.counted && trial.scored && ended;
+  trial.response = response_of(row, schedule);
+  return trial;
+}
+
+}  // namespace
+
+Outcomes load_outcomes(const StudyStore& store, const StudyKey& key) {
+  require_key_of(store, key);
+  Outcomes outcomes = labelled(store, key.study);
+  if (!outcomes.state.unblinded) {
+    throw StoreError(
+        "the study has not been unblinded, so its outcomes are not shown; run `touchtrial close` "
+        "and `touchtrial unblind`");
+  }
+  std::map<int, SessionOutcome> sessions;
+  for (const SessionRow& row : store.sessions()) {
+    sessions[row.session] = {row, session_counts(row, store.commitment())};
+    outcomes.sessions.push_back(sessions[row.session]);
+  }
+  const auto schedules = open_schedules(store, key);
+  const auto measures = open_measures(store, key);
+  for (const TrialRow& row : store.trials()) {
+    const auto schedule = schedules.find(row.session);
+    if (schedule == schedules.end()) continue;  // withdrawn
+    TrialOutcome trial = outcome_of(row, sessions[row.session], schedule->second);
+    const auto measured = measures.find({row.session, row.trial});
+    if (measured != measures.end()) trial.measures = measured->second;
+    outcomes.trials.push_back(std::move(trial));
+  }
+  return outcomes;
+}
+
+}  // namespace touchtrial

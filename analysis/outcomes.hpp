@@ -1,0 +1,60 @@
+/// \file What participants answered to what they felt: a study after unblinding.
+#pragma once
+
+#include "protocols/design/study_key.hpp"
+#include "protocols/store/study_store.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+
+/// A session, and whether its trials enter accuracy.
+struct SessionOutcome {
+  SessionRow row;
+  bool counted = false;
+};
+
+/// One trial with its meaning.
+struct TrialOutcome {
+  std::string participant;
+  TrialRow row;
+  StimulusIndex stimulus;
+  bool scored = false;          ///< by the schedule: no practice, no lead-in
+  bool counted = false;         ///< enters accuracy
+  std::optional<int> response;  ///< class index of the answer; empty: no response
+  std::optional<TrialMeasures> measures;
+
+  /// A trial without a response is wrong.
+  [[nodiscard]] bool correct() const noexcept { return response == stimulus.class_index; }
+};
+
+/// A study's trials with the labels to read them by.
+struct Outcomes {
+  std::string study;
+  Protocol protocol = Protocol::classification;
+  bool simulated = false;
+  bool pilot = false;
+  StudyState state;
+  std::vector<std::string> classes;                 ///< labels
+  std::vector<std::vector<std::string>> exemplars;  ///< of each class: image file names
+  std::vector<std::string> methods;                 ///< those that the study presents
+  std::vector<SessionOutcome> sessions;             ///< by number, withdrawn ones too
+  std::vector<TrialOutcome> trials;  ///< by session and trial; of withdrawn ones none
+};
+
+/// Opens every sealed schedule and measure and holds answers against them.
+///
+/// A session counts if it was completed and is neither excluded nor withdrawn, and if it is a pilot
+/// or simulated session only when the whole study is. Of a counted session's scored trials those
+/// count that ended: with an answer, or without a response when time ran out. A trial that was
+/// interrupted and repeated keeps its number, and its last presentation with an answer counts; one
+/// never repeated does not count.
+///
+/// \throws StoreError if the study has not been unblinded
+/// \throws VerificationError if the key does not belong, or a session does not hold against its
+///   schedule; the message names the session
+[[nodiscard]] Outcomes load_outcomes(const StudyStore& store, const StudyKey& key);
+
+}  // namespace touchtrial

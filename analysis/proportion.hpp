@@ -1,0 +1,41 @@
+/// \file Proportions and how far they can be trusted. Source: docs/method.md, "Statistics"; Brown,
+/// Cai, DasGupta 2001, Statistical Science 16(2).
+#pragma once
+
+#include <optional>
+
+namespace touchtrial {
+
+inline constexpr double kConfidenceLevel = 0.95;
+
+/// A closed range of numbers, usually of probabilities.
+struct Interval {
+  double low = 0.0;
+  double high = 1.0;
+
+  friend bool operator==(const Interval&, const Interval&) = default;
+};
+
+/// `correct` of `n`; 0 <= correct <= n.
+struct Proportion {
+  int n = 0;
+  int correct = 0;
+
+  /// correct / n, or nothing if n is 0.
+  [[nodiscard]] std::optional<double> share() const noexcept;
+
+  friend bool operator==(const Proportion&, const Proportion&) = default;
+};
+
+/// Wilson's score interval: close to its level on average, for independent trials.
+/// \param level  in (0, 1)
+/// \return within [0, 1]; [0, 1] if n is 0
+/// \throws std::invalid_argument if not 0 <= correct <= n, or the level is not in (0, 1)
+[[nodiscard]] Interval wilson_interval(Proportion proportion, double level = kConfidenceLevel);
+
+/// Clopper and Pearson's exact interval: never below its level, for independent trials.
+/// Same arguments, result and errors as wilson_interval.
+[[nodiscard]] Interval clopper_pearson_interval(Proportion proportion,
+                                                double level = kConfidenceLevel);
+
+}  // namespace touchtrial

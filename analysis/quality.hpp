@@ -1,0 +1,62 @@
+/// \file How collection goes, without a word on outcomes: what may be seen before a study is
+/// unblinded. Made from what the database holds in clear; it takes no key.
+#pragma once
+
+#include "protocols/store/study_store.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+
+/// Sessions by how they stand; withdrawn and excluded ones are not in the first three.
+struct SessionCounts {
+  int completed = 0;
+  int open = 0;
+  int stopped = 0;
+  int excluded = 0;
+  int withdrawn = 0;
+  int pilot = 0;  ///< of all these, in a study that is no pilot
+};
+
+/// Of all sessions' trials but the withdrawn ones'.
+struct TrialQuality {
+  int presented = 0;
+  int answered = 0;
+  int no_response = 0;           ///< time ran out
+  int interrupted = 0;           ///< and not repeated yet
+  int changed = 0;               ///< answers changed before they were given
+  std::vector<int> by_position;  ///< answers, by the picture's place in the layout: bias of hand
+  int with_trace = 0;
+  int valid = 0;              ///< of those with a trace, by the study's rule
+  std::int64_t overruns = 0;  ///< servo ticks that came late
+  int with_overruns = 0;
+  std::optional<double> lowest_rate_hz;
+};
+
+struct QualityReport {
+  std::string study;
+  std::string protocol;
+  StudyState state;
+  bool simulated = false;
+  bool pilot = false;
+  int participants = 0;  ///< whose session is completed, not excluded, not withdrawn
+  int trials = 0;        ///< their scored trials
+  SessionCounts sessions;
+  TrialQuality quality;
+};
+
+/// "collecting", "closed" or "unblinded"
+[[nodiscard]] std::string name_of(const StudyState& state);
+
+[[nodiscard]] QualityReport make_quality(const StudyStore& store);
+
+/// One JSON object, indented, ending with a line feed.
+[[nodiscard]] std::string quality_json(const QualityReport& report);
+
+/// A page for a terminal, ending with a line feed.
+[[nodiscard]] std::string quality_text(const QualityReport& report);
+
+}  // namespace touchtrial

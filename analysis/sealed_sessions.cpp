@@ -1,0 +1,101 @@
+#include "analysis/sealed_sessions.hpp"
+
+#include "core/errors.hpp"
+#include "protocols/store/payload_json.hpp"
+
+#include <fmt/format.h>
+
+namespace touchtrial {
+namespace {
+
+std::string place_of(const Event& event) {
+  return fmt::format("session {}, event {}", event.session, event.sequence);
+}
+
+/// The keys of all sessions that can be read.
+std::map<int, SecretKey> participant_keys(const StudyStore& store, const StudyKey& key) {
+  std::map<int, SecretKey> keys;
+  for (const SessionRow& session : store.sessions()) {
+    if (const auto own = participant_key(store, key, session)) keys.emplace(session.session, *own);
+  }
+  return keys;
+}
+
+/// Calls `visit` with the secret text of each event of a kind whose session has a key.
+template <typename Visit>
+void for_each_secret(const StudyStore& store, const StudyKey& key, EventKind kind, Visit visit) {
+  const std::map<int, SecretKey> keys = participant_keys(store, key);
+  store.for_each(kind, [&](const Event& event) {
+    const auto own = keys.find(event.session);
+    if (own == keys.end()) return;
+    const auto secret = unsealed(event, own->second);
+    if (!secret) {
+      throw VerificationError(
+          place_of(event) +
+          ": the sealed part does not open with this key; run `touchtrial verify`");
+    }
+    try {
+      visit(event, *secret);
+    } catch (const StoreError& error) {
+      throw VerificationError(place_of(event) + ": " + error.what());
+    }
+  });
+}
+
+}  // namespace
+
+void require_key_of(const StudyStore& store, const StudyKey& key) {
+  const StudyCommitment& commitment = store.commitment();
+  if (key.study_id != commitment.study_id) {
+    throw VerificationError(
+        fmt::format("the key is of study {} and the database of study {}; give the key that was "
+                    "made with this database's pack",
+                    key.study_id, commitment.study_id));
+  }
+  if (study_seal(key) != commitment.seal) {
+    throw VerificationError(
+        fmt::format("the key does not match the seal of study {} ({}): key or study changed after "
+                    "the first session; give the key as it was then",
+                    one_line(commitment.study), to_hex(commitment.seal).substr(0, 16)));
+  }
+}
+
+std::optional<SecretKey> participant_key(const StudyStore& store, const StudyKey& key,
+                                         const SessionRow& session) {
+  if (session.withdrawn) return std::nullopt;
+  const std::optional<Bytes> wrapped = store.wrapped_key(session.session);
+  if (!wrapped) {
+    throw VerificationError(
+        fmt::format("session {}: the participant's key is missing although nobody withdrew; "
+                    "restore a backup of the database",
+                    session.session));
+  }
+  const auto own = unwrap_participant_key(key.master, session.session, *wrapped);
+  if (!own) {
+    throw VerificationError(
+        fmt::format("session {}: the participant's key does not open with this study key; run "
+                    "`touchtrial verify`",
+                    session.session));
+  }
+  return own;
+}
+
+std::map<int, Schedule> open_schedules(const StudyStore& store, const StudyKey& key) {
+  std::map<int, Schedule> schedules;
+  for_each_secret(store, key, EventKind::opened, [&](const Event& event, const std::string& text) {
+    schedules.insert_or_assign(event.session, schedule_from_json(text, key));
+  });
+  return schedules;
+}
+
+std::map<TrialPlace, TrialMeasures> open_measures(const StudyStore& store, const StudyKey& key) {
+  std::map<TrialPlace, TrialMeasures> measures;
+  const auto keep = [&](const Event& event, const std::string& text) {
+    const TraceBody body = trace_body_from_json(event.body);
+    measures.insert_or_assign({event.session, body.trial}, measures_from_json(text));
+  };
+  for_each_secret(store, key, EventKind::trace_stored, keep);
+  return measures;
+}
+
+}  // namespace touchtrial

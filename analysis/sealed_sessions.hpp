@@ -1,0 +1,36 @@
+/// \file What the study key opens in a database: participants' keys, schedules, measures.
+#pragma once
+
+#include "protocols/design/study_key.hpp"
+#include "protocols/store/study_store.hpp"
+
+#include <map>
+#include <optional>
+#include <utility>
+
+namespace touchtrial {
+
+/// \throws VerificationError that names what differs, if `key` is not the one that the database was
+///   sealed under
+void require_key_of(const StudyStore& store, const StudyKey& key);
+
+/// The key that a participant's payloads are encrypted under.
+/// \return nothing if the participant has withdrawn
+/// \throws VerificationError if the row is missing without a withdrawal, or does not open
+[[nodiscard]] std::optional<SecretKey> participant_key(const StudyStore& store, const StudyKey& key,
+                                                       const SessionRow& session);
+
+/// Schedules and layouts of all sessions that have not withdrawn, by session.
+/// \throws VerificationError, naming the session, if one does not open or is no schedule of this
+/// key
+[[nodiscard]] std::map<int, Schedule> open_schedules(const StudyStore& store, const StudyKey& key);
+
+/// A session and the number of a trial in it.
+using TrialPlace = std::pair<int, int>;
+
+/// Measures of all trials with a trace, of sessions that have not withdrawn. Of a repeated trial
+/// the last counts. \throws VerificationError, naming the session, if one does not open
+[[nodiscard]] std::map<TrialPlace, TrialMeasures> open_measures(const StudyStore& store,
+                                                                const StudyKey& key);
+
+}  // namespace touchtrial

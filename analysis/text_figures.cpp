@@ -1,0 +1,52 @@
+#include "analysis/text_figures.hpp"
+
+#include <fmt/format.h>
+
+namespace touchtrial {
+
+std::string percent(std::optional<double> percentage, int decimals) {
+  if (!percentage) return "-";
+  return fmt::format("{:.{}f}%", *percentage, decimals);
+}
+
+std::string percent_of_share(std::optional<double> share) {
+  if (!share) return "-";
+  return percent(100.0 * *share, 1);
+}
+
+std::string percent_of(const Proportion& proportion) {
+  return percent_of_share(proportion.share());
+}
+
+std::string percent_range(const Interval& interval) {
+  return fmt::format("[{:.1f}, {:.1f}]", 100.0 * interval.low, 100.0 * interval.high);
+}
+
+std::string points(double difference) {
+  return signed_figure(100.0 * difference, 1);
+}
+
+std::string signed_figure(std::optional<double> figure, int decimals) {
+  if (!figure) return "-";
+  const std::string text = fmt::format("{:+.{}f}", *figure, decimals);
+  // What rounds to zero has no sign.
+  return text.find_first_of("123456789") == std::string::npos ? text.substr(1) : text;
+}
+
+std::string p_value(double p) {
+  return fmt::format("{:.3g}", p);
+}
+
+std::string counted(std::int64_t n, const std::string& noun) {
+  return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
+}
+
+std::string heading(const std::string& title, bool simulated) {
+  return fmt::format("\n{}{}\n", title, simulated ? " [SIMULATED]" : "");
+}
+
+std::string simulated_line(bool simulated) {
+  return simulated ? "SIMULATED: these figures come from simulated participants.\n" : "";
+}
+
+}  // namespace touchtrial

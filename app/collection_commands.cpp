@@ -1,0 +1,66 @@
+// close, unblind: the end of collection and the recorded look at outcomes.
+#include "app/commands.hpp"
+#include "app/console.hpp"
+#include "core/errors.hpp"
+#include "protocols/design/study_key.hpp"
+#include "protocols/store/study_store.hpp"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace touchtrial {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct UnblindArguments {
+  fs::path database;
+  fs::path key;
+  std::string reason;
+  bool interim = false;
+};
+
+int close(const fs::path& database) {
+  StudyStore store = StudyStore::open(database, StudyStore::Access::read_write);
+  store.close_study(utc_now());
+  print(database.string() + ": collection is closed\n");
+  return 0;
+}
+
+int unblind(const UnblindArguments& arguments) {
+  StudyStore store = StudyStore::open(arguments.database, StudyStore::Access::read_write);
+  const fs::path key_path = key_path_for(arguments.database, arguments.key);
+  const StudyKey key = load_study_key(key_path);
+  if (study_seal(key) != store.commitment().seal) {
+    throw VerificationError(key_path.string() + ": is not the key that " +
+                            arguments.database.string() +
+                            " was sealed with; give the right one with --key");
+  }
+  store.unblind(utc_now(), arguments.reason, arguments.interim);
+  print(arguments.database.string() + ": unblinded" +
+        (arguments.interim ? " for an interim look\n" : "\n"));
+  return 0;
+}
+
+}  // namespace
+
+void add_close_command(CLI::App& program, Action& action) {
+  auto database = std::make_shared<fs::path>();
+  CLI::App* command = program.add_subcommand("close", "End collection: no session can be added");
+  command->add_option("DB", *database, "Database of the study")->required();
+  command->callback([=, &action] { action = [=] { return close(*database); }; });
+}
+
+void add_unblind_command(CLI::App& program, Action& action) {
+  auto arguments = std::make_shared<UnblindArguments>();
+  CLI::App* command =
+      program.add_subcommand("unblind", "Record the look at outcomes, which report then shows");
+  command->add_option("DB", arguments->database, "Database of the study")->required();
+  command->add_option("--reason", arguments->reason, "Why; recorded")->required();
+  command->add_flag("--interim", arguments->interim, "Look before collection is closed");
+  command->add_option("--key", arguments->key, "Key of the study (default: DB.key)");
+  command->callback([=, &action] { action = [=] { return unblind(*arguments); }; });
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,25 @@
+/// \file Every command adds itself to the parser; its action runs after parsing succeeded.
+/// Commands parse, call one layer below, and print; they compute nothing themselves.
+/// Private to app: it shows the parser's type.
+#pragma once
+
+#include <functional>
+
+#include <CLI/CLI.hpp>
+
+namespace touchtrial {
+
+/// What the chosen command does; returns the exit code. Throws touchtrial::Error.
+using Action = std::function<int()>;
+
+void add_extract_command(CLI::App& program, Action& action);
+void add_stimuli_command(CLI::App& program, Action& action);
+void add_prepare_command(CLI::App& program, Action& action);
+void add_simulate_command(CLI::App& program, Action& action);
+void add_close_command(CLI::App& program, Action& action);
+void add_unblind_command(CLI::App& program, Action& action);
+void add_verify_command(CLI::App& program, Action& action);
+void add_report_command(CLI::App& program, Action& action);
+void add_export_command(CLI::App& program, Action& action);
+
+}  // namespace touchtrial

@@ -1,0 +1,56 @@
+#include "app/console.hpp"
+
+#include "core/errors.hpp"
+
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace touchtrial {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr int kBarWidth = 30;
+
+void draw_bar(const std::string& what, int done, int of) {
+  const int filled = of > 0 ? kBarWidth * done / of : kBarWidth;
+  const std::string bar = std::string(static_cast<std::size_t>(filled), '#') +
+                          std::string(static_cast<std::size_t>(kBarWidth - filled), '.');
+  const std::string line = fmt::format("\r{} [{}] {}/{}", what, bar, done, of);
+  std::fputs(line.c_str(), stderr);
+  if (done >= of) std::fputs("\r\x1b[K", stderr);
+  std::fflush(stderr);
+}
+
+}  // namespace
+
+void print(const std::string& text) {
+  const bool written = std::fwrite(text.data(), 1, text.size(), stdout) == text.size();
+  if (!written || std::fflush(stdout) != 0) {
+    throw FileError("standard output: cannot be written; check the disk or the pipe");
+  }
+}
+
+std::function<void(int, int)> progress_bar(const std::string& what) {
+  if (::isatty(STDERR_FILENO) == 0) return [](int, int) {};
+  const auto shown_from = Clock::now() + std::chrono::seconds(1);
+  return [what, shown_from](int done, int of) {
+    if (Clock::now() >= shown_from) draw_bar(what, done, of);
+  };
+}
+
+std::chrono::nanoseconds utc_now() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(
+      std::chrono::system_clock::now().time_since_epoch());
+}
+
+std::filesystem::path key_path_for(const std::filesystem::path& database,
+                                   const std::filesystem::path& given) {
+  if (!given.empty()) return given;
+  std::filesystem::path beside = database;
+  beside += ".key";
+  return beside;
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,91 @@
+#include "app/commands.hpp"
+#include "app/console.hpp"
+#include "core/cipher.hpp"
+#include "protocols/design/prepare.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+namespace touchtrial {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct PrepareArguments {
+  fs::path study;
+  fs::path pack;
+};
+
+/// A study that was prepared before keeps its secrets, so that its codes and fields stay valid.
+StudyKey key_for(const Study& study, const fs::path& path) {
+  if (fs::exists(path)) return rekeyed(load_study_key(path), study);
+  SystemEntropy entropy;
+  return make_study_key(study, entropy, false);
+}
+
+std::string stimulus_row(const PreparedStimulus& stimulus) {
+  const FieldStatistics& figures = stimulus.statistics;
+  return fmt::format(
+      "{:<16} {:>8} {:<10} {:<7} {:>9.4f} {:>9.4f} {:>9.3f} {:>7.1f} % {:>6.1f} {:>6.1f} "
+      "{:>6.1f}\n",
+      stimulus.class_label, stimulus.exemplar + 1, stimulus.method,
+      stimulus.reused ? "reused" : "built", figures.tangential_rms_n, figures.tangential_p999_n,
+      figures.stiffness_p99_n_per_mm, 100 * figures.share_below_1_mm,
+      100 * figures.share_above_250_hz[0], 100 * figures.share_above_250_hz[1],
+      100 * figures.share_above_250_hz[2]);
+}
+
+std::string table_of(const PrepareReport& report) {
+  std::string text = fmt::format(
+      "{:<16} {:>8} {:<10} {:<7} {:>9} {:>9} {:>9} {:>9} {:>20}\n{:<16} {:>8} {:<10} {:<7} {:>9} "
+      "{:>9} {:>9} {:>9} {:>6} {:>6} {:>6}\n",
+      "", "", "", "", "rms", "99.9th", "stiffness", "under", "% over 250 Hz at", "class",
+      "exemplar", "method", "", "force N", "force N", "N/mm", "1 mm", "50", "100", "200 mm/s");
+  for (const PreparedStimulus& stimulus : report.stimuli) text += stimulus_row(stimulus);
+  return text;
+}
+
+std::string totals_of(const PrepareReport& report) {
+  const auto reused = std::count_if(report.stimuli.begin(), report.stimuli.end(),
+                                    [](const PreparedStimulus& s) { return s.reused; });
+  const auto total = static_cast<std::ptrdiff_t>(report.stimuli.size());
+  std::string text = fmt::format("built {}, reused {}", total - reused, reused);
+  for (const SkippedWork& skipped : report.skipped) {
+    text += fmt::format("\nskipped {}: {}", skipped.what, skipped.why);
+  }
+  return text + "\n";
+}
+
+int prepare(const PrepareArguments& arguments) {
+  const Study study = load_study(arguments.study);
+  const PackPlace place =
+      arguments.pack.empty() ? default_pack_place(arguments.study) : pack_place_at(arguments.pack);
+  StudyKey key = key_for(study, place.key);
+  key.pack_folder = place.pack;
+  save_study_key(place.key, key);
+  const PrepareReport report = prepare_pack(key, place.pack, progress_bar("preparing"));
+  for (const std::string& warning : report.warnings) spdlog::warn("{}", warning);
+  print(table_of(report) + totals_of(report) +
+        fmt::format("pack {}\nkey  {} (keep it to yourself)\n", place.pack.string(),
+                    place.key.string()));
+  return 0;
+}
+
+}  // namespace
+
+void add_prepare_command(CLI::App& program, Action& action) {
+  auto arguments = std::make_shared<PrepareArguments>();
+  CLI::App* command = program.add_subcommand(
+      "prepare", "Make a study's force fields and its key: only what is missing or changed");
+  command->add_option("STUDY", arguments->study, "Study file")->required();
+  command->add_option("--pack", arguments->pack,
+                      "Folder of the pack; the key lies beside it (default: <study>.pack)");
+  command->callback([=, &action] { action = [=] { return prepare(*arguments); }; });
+}
+
+}  // namespace touchtrial

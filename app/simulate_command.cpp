@@ -1,0 +1,133 @@
+#include "app/commands.hpp"
+#include "app/console.hpp"
+#include "app/default_subject.hpp"
+#include "core/cipher.hpp"
+#include "core/errors.hpp"
+#include "engine/pack/pack.hpp"
+#include "protocols/design/prepare.hpp"
+#include "protocols/session/commitment.hpp"
+#include "protocols/session/simulation.hpp"
+#include "protocols/session/subject_model.hpp"
+#include "protocols/store/study_store.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <thread>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+namespace touchtrial {
+namespace {
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+struct SimulateArguments {
+  fs::path study;
+  fs::path database;
+  fs::path subject;
+  SimulationOptions options;
+  bool keep_blind = false;
+  bool json = false;
+};
+
+SubjectModel subject_for(const SimulateArguments& arguments, const Study& study) {
+  SubjectModel subject =
+      arguments.subject.empty()
+          ? parse_subject_model(default_subject_json(), "the default subject model")
+          : load_subject_model(arguments.subject);
+  subject.check_labels(study);
+  return subject;
+}
+
+void refuse_existing(const fs::path& database) {
+  if (fs::exists(database)) {
+    throw StoreError(database.string() +
+                     ": exists already; give another --db, or move the old file away");
+  }
+}
+
+/// A simulated study has secrets of its own, from the study's seed, so that its databases belong
+/// together and can be made again.
+StudyKey simulated_key(const Study& study, const fs::path& study_file) {
+  SeededEntropy entropy(study.seed);
+  StudyKey key = make_study_key(study, entropy, true);
+  key.pack_folder = simulated_pack_place(study_file).pack;
+  return key;
+}
+
+std::string summary_of(const SimulateArguments& arguments, const SimulationReport& report) {
+  const fs::path key = key_path_for(arguments.database, {});
+  if (arguments.json) {
+    const nlohmann::json summary = {{"simulated", true},
+                                    {"sessions", report.sessions},
+                                    {"presentations", report.presentations},
+                                    {"invalid_trials", report.invalid_trials},
+                                    {"ticks", report.ticks},
+                                    {"blind", arguments.keep_blind},
+                                    {"database", arguments.database.string()},
+                                    {"key", key.string()}};
+    return summary.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  }
+  return fmt::format("SIMULATED: {} sessions, {} presentations, {}\ndatabase {}\nkey      {}\n",
+                     report.sessions, report.presentations,
+                     arguments.keep_blind ? "still blind" : "closed and unblinded",
+                     arguments.database.string(), key.string());
+}
+
+/// Nobody waits blind for a simulated study's end, unless that is what is being rehearsed.
+void end_collection(StudyStore& store) {
+  store.close_study(0ns);
+  store.unblind(0ns, "simulated study", false);
+}
+
+int simulate(const SimulateArguments& arguments) {
+  refuse_existing(arguments.database);
+  const Study study = load_study(arguments.study);
+  const SubjectModel subject = subject_for(arguments, study);
+  const StudyKey key = simulated_key(study, arguments.study);
+  const PrepareReport prepared = prepare_pack(key, key.pack_folder, progress_bar("preparing"));
+  for (const std::string& warning : prepared.warnings) spdlog::warn("{}", warning);
+
+  const Pack pack(key.pack_folder);
+  save_study_key(key_path_for(arguments.database, {}), key);
+  StudyStore store =
+      StudyStore::create(arguments.database, commitment_of(key, pack, true, false), 0ns);
+  const SimulationReport report =
+      simulate_study(key, pack, subject, arguments.options, store, progress_bar("simulating"));
+  if (!arguments.keep_blind) end_collection(store);
+  print(summary_of(arguments, report));
+  return 0;
+}
+
+}  // namespace
+
+void add_simulate_command(CLI::App& program, Action& action) {
+  auto arguments = std::make_shared<SimulateArguments>();
+  arguments->options.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  SimulationOptions& options = arguments->options;
+  CLI::App* command = program.add_subcommand(
+      "simulate", "Run a whole study with simulated participants, in virtual time");
+  command->add_option("STUDY", arguments->study, "Study file")->required();
+  command->add_option("--db", arguments->database, "Database to make; the key is laid at DB.key")
+      ->required();
+  command->add_option("--participants", options.participants, "How many")
+      ->check(CLI::Range(1, 100000))
+      ->capture_default_str();
+  command->add_option("--seed", options.seed, "Seed of everything random in participants")
+      ->capture_default_str();
+  command->add_option("--subject", arguments->subject, "Subject model (default: built in)");
+  command->add_option("--jobs", options.jobs, "Threads; results do not depend on them")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command->add_flag("--keep-blind", arguments->keep_blind, "Do not close and unblind at the end");
+  command->add_flag("--json", arguments->json, "Summary as one JSON object");
+  command->callback([=, &action] { action = [=] { return simulate(*arguments); }; });
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,49 @@
+#include "app/commands.hpp"
+#include "app/console.hpp"
+#include "stimuli/default_set.hpp"
+#include "stimuli/generator.hpp"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+namespace touchtrial {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct GenerateArguments {
+  fs::path folder = "stimuli";
+  std::uint64_t seed = kDefaultStimuliSeed;
+  int size_px = kDefaultStimulusSizePx;
+};
+
+int generate(const GenerateArguments& arguments) {
+  const StimulusManifest manifest = generate_default_stimuli(
+      arguments.folder, arguments.seed, arguments.size_px, progress_bar("generating"));
+  std::string written;
+  for (const StimulusEntry& entry : manifest.entries) {
+    written += (arguments.folder / entry.file).string() + "\n";
+  }
+  print(written + (arguments.folder / kStimulusManifestFile).string() + "\n");
+  return 0;
+}
+
+}  // namespace
+
+void add_stimuli_command(CLI::App& program, Action& action) {
+  auto arguments = std::make_shared<GenerateArguments>();
+  CLI::App* stimuli = program.add_subcommand("stimuli", "Pictures to make studies of");
+  stimuli->require_subcommand(1);
+  CLI::App* command = stimuli->add_subcommand(
+      "generate", "Make the default pictures: five textures and four textured objects");
+  command->add_option("-o,--out", arguments->folder, "Folder to write into")->capture_default_str();
+  command->add_option("--seed", arguments->seed, "Another seed, other pictures")
+      ->capture_default_str();
+  command->add_option("--size", arguments->size_px, "Side of a picture, pixels")
+      ->check(CLI::Range(kMinStimulusSizePx, kMaxStimulusSizePx))
+      ->capture_default_str();
+  command->callback([=, &action] { action = [=] { return generate(*arguments); }; });
+}
+
+}  // namespace touchtrial

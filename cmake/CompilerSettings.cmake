@@ -1,0 +1,26 @@
+# One place for the compiler's flags: every target of the project gets them.
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM)
+  set(CMAKE_CXX_COMPILER_LAUNCHER "${CCACHE_PROGRAM}")
+endif()
+
+add_library(touchtrial_settings INTERFACE)
+target_compile_features(touchtrial_settings INTERFACE cxx_std_20)
+target_compile_options(touchtrial_settings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
+  -Wold-style-cast -Woverloaded-virtual -Wformat=2 -Werror
+  # No contraction to fused multiply-add: results must not depend on the compiler's choices.
+  -ffp-contract=off)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # GCC 12 sees overlapping copies in std::string's operator+ (its bug 105651).
+  target_compile_options(touchtrial_settings INTERFACE -Wno-restrict)
+endif()
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  # The oldest processor that the program runs on; faster ones are chosen at run time, by name.
+  target_compile_options(touchtrial_settings INTERFACE -march=x86-64-v2)
+endif()
+if(TOUCHTRIAL_SANITIZE)
+  target_compile_options(touchtrial_settings INTERFACE
+    -fsanitize=${TOUCHTRIAL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  target_link_options(touchtrial_settings INTERFACE -fsanitize=${TOUCHTRIAL_SANITIZE})
+endif()

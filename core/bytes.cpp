@@ -1,0 +1,25 @@
+#include "core/bytes.hpp"
+
+#include <sodium.h>
+
+namespace touchtrial {
+
+std::string to_hex(ByteView bytes) {
+  std::string hex(2 * bytes.size() + 1, '\0');
+  sodium_bin2hex(hex.data(), hex.size(), bytes.data(), bytes.size());
+  hex.pop_back();
+  return hex;
+}
+
+std::optional<Bytes> from_hex(std::string_view hex) {
+  if (hex.size() % 2 != 0) return std::nullopt;
+  Bytes bytes(hex.size() / 2);
+  std::size_t written = 0;
+  const char* end = nullptr;
+  const int failed =
+      sodium_hex2bin(bytes.data(), bytes.size(), hex.data(), hex.size(), nullptr, &written, &end);
+  if (failed != 0 || end != hex.data() + hex.size() || written != bytes.size()) return std::nullopt;
+  return bytes;
+}
+
+}  // namespace touchtrial

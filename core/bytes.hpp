@@ -1,0 +1,33 @@
+/// \file Plain byte buffers and their hexadecimal form.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace touchtrial {
+
+using Bytes = std::vector<std::uint8_t>;
+using ByteView = std::span<const std::uint8_t>;
+
+/// The bytes of a text, not copied.
+[[nodiscard]] inline ByteView bytes_of(std::string_view text) noexcept {
+  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
+}
+
+/// The text of some bytes.
+[[nodiscard]] inline std::string text_of(ByteView bytes) {
+  return {bytes.begin(), bytes.end()};
+}
+
+/// Lower-case hexadecimal, two digits a byte.
+[[nodiscard]] std::string to_hex(ByteView bytes);
+
+/// \return the bytes, or nothing if `hex` has an odd length or any other character
+[[nodiscard]] std::optional<Bytes> from_hex(std::string_view hex);
+
+}  // namespace touchtrial

@@ -1,0 +1,93 @@
+#include "core/cipher.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include <sodium.h>
+
+namespace touchtrial {
+namespace {
+
+constexpr std::size_t kNonceSize = crypto_aead_xchacha20poly1305_ietf_NPUBBYTES;
+constexpr std::size_t kTagSize = crypto_aead_xchacha20poly1305_ietf_ABYTES;
+
+Bytes padded(ByteView plaintext, std::size_t multiple) {
+  if (multiple == 0) throw std::invalid_argument("seal: padded_size must be at least 1");
+  // One mark byte, then zeros (ISO/IEC 7816-4), so that the padding can be told from the text.
+  const std::size_t size = (plaintext.size() / multiple + 1) * multiple;
+  Bytes bytes(size, 0);
+  std::copy(plaintext.begin(), plaintext.end(), bytes.begin());
+  bytes[plaintext.size()] = 0x80;
+  return bytes;
+}
+
+std::optional<Bytes> unpadded(Bytes bytes) {
+  while (!bytes.empty() && bytes.back() == 0) bytes.pop_back();
+  if (bytes.empty() || bytes.back() != 0x80) return std::nullopt;
+  bytes.pop_back();
+  return bytes;
+}
+
+std::array<std::uint8_t, kNonceSize> synthetic_nonce(const SecretKey& key, std::string_view context,
+                                                     ByteView plaintext) {
+  crypto_generichash_state state;
+  crypto_generichash_init(&state, key.data(), key.size(), kNonceSize);
+  const Digest context_hash = sha256(bytes_of(context));
+  crypto_generichash_update(&state, context_hash.data(), context_hash.size());
+  crypto_generichash_update(&state, plaintext.data(), plaintext.size());
+  std::array<std::uint8_t, kNonceSize> nonce{};
+  crypto_generichash_final(&state, nonce.data(), nonce.size());
+  return nonce;
+}
+
+}  // namespace
+
+Bytes seal(const SecretKey& key, std::string_view context, ByteView plaintext,
+           std::size_t padded_size) {
+  const Bytes text = padded(plaintext, padded_size);
+  const auto nonce = synthetic_nonce(derive_key(key, "nonce"), context, plaintext);
+  const SecretKey cipher_key = derive_key(key, "cipher");
+  Bytes box(kNonceSize + text.size() + kTagSize);
+  std::copy(nonce.begin(), nonce.end(), box.begin());
+  const ByteView authenticated = bytes_of(context);
+  crypto_aead_xchacha20poly1305_ietf_encrypt(
+      box.data() + kNonceSize, nullptr, text.data(), text.size(), authenticated.data(),
+      authenticated.size(), nullptr, nonce.data(), cipher_key.data());
+  return box;
+}
+
+std::optional<Bytes> unseal(const SecretKey& key, std::string_view context, ByteView box,
+                            std::size_t padded_size) {
+  if (padded_size == 0) throw std::invalid_argument("unseal: padded_size must be at least 1");
+  if (box.size() < kNonceSize + kTagSize) return std::nullopt;
+  Bytes text(box.size() - kNonceSize - kTagSize);
+  if (text.size() % padded_size != 0) return std::nullopt;
+  const ByteView authenticated = bytes_of(context);
+  const SecretKey cipher_key = derive_key(key, "cipher");
+  const int failed = crypto_aead_xchacha20poly1305_ietf_decrypt(
+      text.data(), nullptr, nullptr, box.data() + kNonceSize, box.size() - kNonceSize,
+      authenticated.data(), authenticated.size(), box.data(), cipher_key.data());
+  if (failed != 0) return std::nullopt;
+  return unpadded(std::move(text));
+}
+
+SecretKey derive_key(const SecretKey& key, std::string_view purpose) {
+  return keyed_hash(key, bytes_of(purpose));
+}
+
+SecretKey SystemEntropy::secret(std::string_view /*purpose*/) {
+  if (sodium_init() < 0) throw std::runtime_error("the system's random generator is not available");
+  SecretKey bytes{};
+  randombytes_buf(bytes.data(), bytes.size());
+  return bytes;
+}
+
+SecretKey SeededEntropy::secret(std::string_view purpose) {
+  return FieldHasher()
+      .add("touchtrial seeded entropy")
+      .add(static_cast<std::int64_t>(seed_))
+      .add(purpose)
+      .finish();
+}
+
+}  // namespace touchtrial

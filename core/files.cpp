@@ -1,0 +1,131 @@
+#include "core/files.hpp"
+
+#include "core/errors.hpp"
+
+#include <cerrno>
+#include <fstream>
+#include <system_error>
+#include <utility>
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace touchtrial {
+namespace {
+
+[[noreturn]] void fail(const std::filesystem::path& path, const std::string& what, int error,
+                       const std::string& remedy) {
+  throw FileError(one_line(path.string()) + ": " + what + " (" +
+                  std::generic_category().message(error) + "); " + remedy);
+}
+
+/// An open descriptor that is closed on every way out.
+class Descriptor {
+ public:
+  explicit Descriptor(int number) noexcept : number_(number) {}
+  ~Descriptor() { close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+
+  [[nodiscard]] int number() const noexcept { return number_; }
+  int close() noexcept { return number_ < 0 ? 0 : ::close(std::exchange(number_, -1)); }
+
+ private:
+  int number_;
+};
+
+bool write_all(int descriptor, ByteView content) {
+  while (!content.empty()) {
+    const ssize_t written = ::write(descriptor, content.data(), content.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return false;
+    content = content.subspan(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
+/// Makes the rename itself survive a power cut.
+void sync_folder(const std::filesystem::path& folder) {
+  const Descriptor descriptor(
+      ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY));
+  if (descriptor.number() >= 0) ::fsync(descriptor.number());
+}
+
+}  // namespace
+
+Bytes read_file(const std::filesystem::path& path, std::uintmax_t limit_bytes) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (!std::filesystem::exists(status)) {
+    throw FileError(one_line(path.string()) + ": does not exist; check the path");
+  }
+  if (!std::filesystem::is_regular_file(status)) {
+    throw FileError(one_line(path.string()) + ": is not a file; give the path of a file");
+  }
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (error) fail(path, "cannot be read", error.value(), "check its permissions");
+  if (size > limit_bytes) {
+    throw FileError(one_line(path.string()) + ": has " + std::to_string(size) +
+                    " bytes, more than " + std::to_string(limit_bytes) + "; give a smaller file");
+  }
+  std::ifstream file(path, std::ios::binary);
+  if (!file) fail(path, "cannot be read", errno, "check its permissions");
+  Bytes content(static_cast<std::size_t>(size));
+  file.read(reinterpret_cast<char*>(content.data()), static_cast<std::streamsize>(size));
+  content.resize(static_cast<std::size_t>(file.gcount()));
+  return content;
+}
+
+void replace_file(const std::filesystem::path& path, ByteView content, FileMode mode) {
+  const mode_t permissions = mode == FileMode::owner_only ? 0600 : 0644;
+  std::filesystem::path draft = path;
+  draft += ".tmp" + std::to_string(::getpid());
+  const std::string remedy = "check the folder, its permissions and the free space";
+  ::unlink(draft.c_str());
+  Descriptor file(::open(draft.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, permissions));
+  if (file.number() < 0) fail(path, "cannot be written", errno, remedy);
+  const bool written = write_all(file.number(), content) && ::fsync(file.number()) == 0;
+  const int write_error = errno;
+  const bool closed = file.close() == 0;
+  if (!written || !closed || std::rename(draft.c_str(), path.c_str()) != 0) {
+    const int reason = written ? errno : write_error;
+    ::unlink(draft.c_str());
+    fail(path, "cannot be written", reason, remedy);
+  }
+  sync_folder(path.parent_path());
+}
+
+void replace_file(const std::filesystem::path& path, std::string_view content, FileMode mode) {
+  replace_file(path, bytes_of(content), mode);
+}
+
+MappedFile::MappedFile(const std::filesystem::path& path) {
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.number() < 0)
+    fail(path, "cannot be opened", errno, "check that it exists and its permissions");
+  struct stat status {};
+  if (::fstat(file.number(), &status) != 0 || !S_ISREG(status.st_mode) || status.st_size <= 0) {
+    throw FileError(one_line(path.string()) + ": is empty or not a file; make it anew");
+  }
+  size_ = static_cast<std::size_t>(status.st_size);
+  void* mapped = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, file.number(), 0);
+  if (mapped == MAP_FAILED) fail(path, "cannot be mapped", errno, "check the free memory");
+  data_ = static_cast<const std::uint8_t*>(mapped);
+}
+
+MappedFile::~MappedFile() {
+  if (data_ != nullptr) ::munmap(const_cast<std::uint8_t*>(data_), size_);
+}
+
+MappedFile::MappedFile(MappedFile&& other) noexcept
+    : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+
+MappedFile& MappedFile::operator=(MappedFile&& other) noexcept {
+  std::swap(data_, other.data_);
+  std::swap(size_, other.size_);
+  return *this;
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,54 @@
+/// \file SHA-256 for chains, seals and checksums; keyed BLAKE2b for tags that outsiders must not be
+/// able to look up. Both from libsodium. All functions may be called from any thread.
+#pragma once
+
+#include "core/bytes.hpp"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string_view>
+
+namespace touchtrial {
+
+using Digest = std::array<std::uint8_t, 32>;
+
+/// SHA-256 (FIPS 180-4) of one buffer.
+[[nodiscard]] Digest sha256(ByteView bytes);
+
+/// SHA-256 of a file's content. \throws FileError if it cannot be read
+[[nodiscard]] Digest sha256_of_file(const std::filesystem::path& path);
+
+/// SHA-256 over a sequence of fields, each preceded by its length in eight little-endian bytes, so
+/// that no two different sequences give the same input.
+class FieldHasher {
+ public:
+  FieldHasher();
+  ~FieldHasher();
+  FieldHasher(FieldHasher&&) noexcept;
+  FieldHasher& operator=(FieldHasher&&) noexcept;
+
+  FieldHasher& add(ByteView field);
+  FieldHasher& add(std::string_view field) { return add(bytes_of(field)); }
+  FieldHasher& add(std::int64_t number);
+
+  /// The digest of all fields so far; the hasher must not be used afterwards.
+  [[nodiscard]] Digest finish();
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Keyed BLAKE2b-256: a pseudo-random function of `bytes` under `key`.
+[[nodiscard]] Digest keyed_hash(const Digest& key, ByteView bytes);
+
+[[nodiscard]] inline std::string to_hex(const Digest& digest) {
+  return to_hex(ByteView(digest));
+}
+
+/// \return the digest, or nothing if `hex` is not 64 hexadecimal digits
+[[nodiscard]] std::optional<Digest> digest_from_hex(std::string_view hex);
+
+}  // namespace touchtrial

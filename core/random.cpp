@@ -1,0 +1,49 @@
+#include "core/random.hpp"
+
+#include "core/hash.hpp"
+
+#include <array>
+#include <cstddef>
+
+#include <boost/random/normal_distribution.hpp>
+
+namespace touchtrial {
+namespace {
+
+std::mt19937_64 seeded_engine(std::uint64_t seed, std::string_view purpose, std::uint64_t index) {
+  const Digest digest = FieldHasher()
+                            .add(static_cast<std::int64_t>(seed))
+                            .add(purpose)
+                            .add(static_cast<std::int64_t>(index))
+                            .finish();
+  std::array<std::uint32_t, 8> words{};
+  for (std::size_t i = 0; i < digest.size(); ++i) {
+    words[i / 4] |= std::uint32_t{digest[i]} << (8 * (i % 4));
+  }
+  std::seed_seq sequence(words.begin(), words.end());
+  return std::mt19937_64(sequence);
+}
+
+}  // namespace
+
+RandomStream::RandomStream(std::uint64_t seed, std::string_view purpose, std::uint64_t index)
+    : engine_(seeded_engine(seed, purpose, index)) {}
+
+std::uint64_t RandomStream::below(std::uint64_t bound) {
+  // Draws past the last whole multiple of the bound are thrown away, so that none is likelier.
+  const std::uint64_t excess = (0 - bound) % bound;  // 2^64 mod bound
+  std::uint64_t draw = bits();
+  while (draw < excess) draw = bits();
+  return draw % bound;
+}
+
+double RandomStream::uniform() {
+  return static_cast<double>(bits() >> 11U) * 0x1.0p-53;
+}
+
+double RandomStream::normal() {
+  boost::random::normal_distribution<double> standard;
+  return standard(engine_);
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,47 @@
+/// \file Seeded random numbers that are the same on every platform and standard library.
+#pragma once
+
+#include <cstdint>
+#include <random>
+#include <span>
+#include <string_view>
+#include <utility>
+
+namespace touchtrial {
+
+/// A stream of random numbers. The engine is std::mt19937_64, whose output the C++ standard fixes;
+/// the distributions are ours or Boost.Random's, because those of the standard library differ
+/// between implementations. Not thread-safe; give each thread a stream of its own.
+class RandomStream {
+ public:
+  /// A stream of its own for each (seed, purpose, index): streams of different purposes are
+  /// unrelated, so that adding a draw to one leaves the others as they were.
+  RandomStream(std::uint64_t seed, std::string_view purpose, std::uint64_t index = 0);
+
+  /// The next 64 random bits.
+  [[nodiscard]] std::uint64_t bits() { return engine_(); }
+
+  /// A whole number in [0, bound), each equally likely (by rejection). \pre bound >= 1
+  [[nodiscard]] std::uint64_t below(std::uint64_t bound);
+
+  /// A number in [0, 1) with 53 random bits.
+  [[nodiscard]] double uniform();
+  /// A number in [low, high).
+  [[nodiscard]] double uniform(double low, double high) { return low + (high - low) * uniform(); }
+
+  /// A standard normal number.
+  [[nodiscard]] double normal();
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// Puts the elements into an order drawn uniformly from all (Fisher-Yates, from the back).
+template <typename T>
+void shuffle(std::span<T> elements, RandomStream& random) {
+  for (std::size_t left = elements.size(); left > 1; --left) {
+    std::swap(elements[left - 1], elements[static_cast<std::size_t>(random.below(left))]);
+  }
+}
+
+}  // namespace touchtrial

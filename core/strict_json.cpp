@@ -1,0 +1,292 @@
+#include "core/strict_json.hpp"
+
+#include "core/errors.hpp"
+#include "core/nearest_name.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+namespace {
+
+using nlohmann::json;
+
+/// The longest beginning of a UTF-8 text that has at most `limit` bytes and no half character.
+std::string_view beginning(std::string_view text, std::size_t limit) {
+  if (text.size() <= limit) return text;
+  while (limit > 0 && (static_cast<unsigned char>(text[limit]) & 0xc0U) == 0x80U) --limit;
+  return text.substr(0, limit);
+}
+
+std::string escaped_token(std::string_view token) {
+  constexpr std::size_t kLongest = 80;
+  std::string escaped = "/";
+  for (const char c : beginning(token, kLongest)) {
+    if (c == '~') {
+      escaped += "~0";
+    } else if (c == '/') {
+      escaped += "~1";
+    } else {
+      escaped += c;
+    }
+  }
+  return escaped;
+}
+
+[[noreturn]] void refuse_at(const std::string& source, const std::string& place,
+                            const std::string& what) {
+  throw StudyError(one_line(source + ": " + (place.empty() ? "/" : place) + ": " + what));
+}
+
+/// Follows the parser and knows at any moment where in the document it is.
+class PlaceTracker {
+ public:
+  explicit PlaceTracker(const std::string& source) : source_(source) {}
+
+  void follow(json::parse_event_t event, const json& parsed) {
+    using Event = json::parse_event_t;
+    if (event == Event::object_start || event == Event::array_start) {
+      if (levels_.size() == kMaxJsonDepth) {
+        refuse_at(source_, pointer(), "is nested too deeply; such a file has few levels");
+      }
+      levels_.push_back({event == Event::array_start, 0, {}, {}});
+    } else if (event == Event::key) {
+      enter_member(parsed.get_ref<const std::string&>());
+    } else {
+      if (event != Event::value) levels_.pop_back();
+      if (!levels_.empty()) ++levels_.back().index;
+    }
+  }
+
+  [[nodiscard]] std::string pointer() const {
+    std::string text;
+    for (const Level& level : levels_) {
+      text += escaped_token(level.is_array ? std::to_string(level.index) : level.key);
+    }
+    return text;
+  }
+
+ private:
+  struct Level {
+    bool is_array;
+    std::size_t index;
+    std::string key;
+    std::set<std::string> keys;
+  };
+
+  void enter_member(const std::string& key) {
+    Level& level = levels_.back();
+    level.key = key;
+    if (!level.keys.insert(key).second) {
+      refuse_at(source_, pointer(), "is there twice; keep one of the two");
+    }
+  }
+
+  const std::string& source_;
+  std::vector<Level> levels_;
+};
+
+[[noreturn]] void refuse_grammar(std::string_view text, const std::string& source,
+                                 const json::parse_error& error) {
+  const std::size_t at = std::min(error.byte > 0 ? error.byte - 1 : 0, text.size());
+  const std::string_view before = text.substr(0, at);
+  const auto line = std::count(before.begin(), before.end(), '\n') + 1;
+  const std::size_t column = at - (before.rfind('\n') + 1) + 1;  // npos + 1 is 0
+  // The library's own words, without its prefix and without the bytes it was reading.
+  std::string what = error.what();
+  what.erase(0, std::min(what.find("syntax error"), what.size()));
+  what = what.substr(0, what.find("; last read"));
+  throw StudyError(one_line(source + ": line " + std::to_string(line) + ", column " +
+                            std::to_string(column) + ": " + (what.empty() ? "is not JSON" : what) +
+                            "; give plain JSON, without comments or trailing commas"));
+}
+
+/// The value as a whole number, those beyond 64 bits as the nearest that has 64; nothing if it is
+/// none.
+std::optional<std::int64_t> whole_number(const json& value) {
+  using Limits = std::numeric_limits<std::int64_t>;
+  if (value.is_number_unsigned()) {
+    const auto number = value.get<std::uint64_t>();
+    return number > static_cast<std::uint64_t>(Limits::max()) ? Limits::max()
+                                                              : static_cast<std::int64_t>(number);
+  }
+  if (value.is_number_integer()) return value.get<std::int64_t>();
+  if (!value.is_number_float()) return std::nullopt;
+  const auto number = value.get<double>();
+  if (number != std::floor(number)) return std::nullopt;
+  if (number >= 0x1p63) return Limits::max();
+  return number < -0x1p63 ? Limits::min() : static_cast<std::int64_t>(number);
+}
+
+std::string kind_of(const json& value) {
+  switch (value.type()) {
+    case json::value_t::null:
+      return "null";
+    case json::value_t::boolean:
+      return "true or false";
+    case json::value_t::string:
+      return "text";
+    case json::value_t::array:
+      return "a list";
+    case json::value_t::object:
+      return "an object";
+    default:
+      return value.is_number_float() ? "a number with decimals" : "a number";
+  }
+}
+
+std::string list_of(std::span<const std::string_view> names, std::string_view quote) {
+  std::string list;
+  for (const std::string_view name : names) {
+    if (!list.empty()) list += ", ";
+    list += std::string(quote) + std::string(name) + std::string(quote);
+  }
+  return list;
+}
+
+std::string words_for(const NumberRange& range) {
+  if (!range.open_low && !range.open_high) {
+    return "from " + number_text(range.low) + " to " + number_text(range.high);
+  }
+  return (range.open_low ? "above " : "at least ") + number_text(range.low) + " and " +
+         (range.open_high ? "below " : "at most ") + number_text(range.high);
+}
+
+}  // namespace
+
+struct JsonValue::Node {
+  std::shared_ptr<const json> document;  ///< keeps `value` alive
+  const json* value;
+  std::string source;
+  std::string pointer;
+
+  [[nodiscard]] JsonValue child(const json& member, std::string_view token) const {
+    return JsonValue(std::make_shared<const Node>(
+        Node{document, &member, source, pointer + escaped_token(token)}));
+  }
+};
+
+JsonValue parse_strict_json(std::string_view text, const std::string& source) {
+  PlaceTracker tracker(source);
+  const auto follow = [&tracker](int /*depth*/, json::parse_event_t event, json& parsed) {
+    tracker.follow(event, parsed);
+    return true;
+  };
+  try {
+    auto document = std::make_shared<const json>(json::parse(text.begin(), text.end(), follow));
+    const json* root = document.get();
+    return JsonValue(std::make_shared<const JsonValue::Node>(
+        JsonValue::Node{std::move(document), root, source, ""}));
+  } catch (const json::parse_error& error) {
+    refuse_grammar(text, source, error);
+  } catch (const json::out_of_range&) {
+    refuse_at(source, tracker.pointer(), "is a number too large to hold; give a smaller one");
+  }
+}
+
+void JsonValue::refuse(const std::string& what) const {
+  refuse_at(node_->source, node_->pointer, what);
+}
+
+void JsonValue::refuse_below(std::string_view pointer, const std::string& what) const {
+  refuse_at(node_->source, node_->pointer + std::string(pointer), what);
+}
+
+void JsonValue::refuse_type(const std::string& wanted) const {
+  refuse("must be " + wanted + ", not " + kind_of(*node_->value));
+}
+
+bool JsonValue::is_text() const {
+  return node_->value->is_string();
+}
+
+const std::string& JsonValue::text() const {
+  if (!node_->value->is_string()) refuse_type("text in quotes");
+  return node_->value->get_ref<const std::string&>();
+}
+
+double JsonValue::number(const NumberRange& range) const {
+  if (!node_->value->is_number()) refuse_type("a number");
+  const double number = node_->value->get<double>();
+  if (!range.contains(number)) {
+    refuse("is " + number_text(number) + ", must be " + words_for(range));
+  }
+  return number;
+}
+
+std::int64_t JsonValue::integer(std::int64_t low, std::int64_t high) const {
+  const auto whole = whole_number(*node_->value);
+  if (!whole) refuse_type("a whole number");
+  if (*whole < low || *whole > high) {
+    refuse("is " + node_->value->dump() + ", must be from " + std::to_string(low) + " to " +
+           std::to_string(high));
+  }
+  return *whole;
+}
+
+std::vector<JsonValue> JsonValue::items(std::size_t fewest, std::size_t most) const {
+  if (!node_->value->is_array()) refuse_type("a list");
+  if (node_->value->size() < fewest || node_->value->size() > most) {
+    refuse("has " + std::to_string(node_->value->size()) + " entries, must have from " +
+           std::to_string(fewest) + " to " + std::to_string(most));
+  }
+  std::vector<JsonValue> items;
+  items.reserve(node_->value->size());
+  for (const json& item : *node_->value)
+    items.push_back(node_->child(item, std::to_string(items.size())));
+  return items;
+}
+
+JsonObject JsonValue::object(std::span<const std::string_view> known) const {
+  if (!node_->value->is_object()) refuse_type("an object");
+  for (const auto& [key, value] : node_->value->items()) {
+    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    const auto nearest = nearest_name(key, known);
+    const std::string advice =
+        nearest ? "did you mean " + in_quotes(*nearest) + "?" : "known here: " + list_of(known, "");
+    node_->child(value, key).refuse("is not a known key; " + advice);
+  }
+  return JsonObject(*this);
+}
+
+JsonObject JsonValue::object(std::initializer_list<std::string_view> known) const {
+  return object(std::span<const std::string_view>(known.begin(), known.size()));
+}
+
+std::size_t JsonValue::choice(std::span<const std::string_view> names) const {
+  const std::string& name = text();
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
+  const auto nearest = nearest_name(name, names);
+  refuse(in_quotes(name) + " is not known to this version; " +
+         (nearest ? "did you mean " + in_quotes(*nearest) + "? " : "") +
+         "possible: " + list_of(names, "\""));
+}
+
+std::optional<JsonValue> JsonObject::find(std::string_view key) const {
+  const auto member = place_.node_->value->find(std::string(key));
+  if (member == place_.node_->value->end()) return std::nullopt;
+  return place_.node_->child(*member, key);
+}
+
+JsonValue JsonObject::at(std::string_view key) const {
+  if (auto member = find(key)) return *member;
+  place_.refuse_below(escaped_token(key), "is missing; add it");
+}
+
+std::string number_text(double number) {
+  const bool whole = number == std::floor(number) && std::abs(number) < 0x1.0p53;
+  return whole ? std::to_string(static_cast<std::int64_t>(number)) : json(number).dump();
+}
+
+std::string in_quotes(std::string_view text) {
+  constexpr std::size_t kLongest = 60;
+  const std::string_view shown = beginning(text, kLongest);
+  return one_line("\"" + std::string(shown) + (shown.size() < text.size() ? "...\"" : "\""));
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,111 @@
+/// \file JSON files that people write, read strictly: whatever is not understood is refused with
+/// its place.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace touchtrial {
+
+/// Containers within containers that a file may have.
+inline constexpr std::size_t kMaxJsonDepth = 16;
+
+/// An interval of numbers; bounds belong to it unless said to be open.
+struct NumberRange {
+  double low = 0.0;
+  double high = 0.0;
+  bool open_low = false;
+  bool open_high = false;
+
+  [[nodiscard]] constexpr bool contains(double number) const noexcept {
+    return (open_low ? number > low : number >= low) &&
+           (open_high ? number < high : number <= high);
+  }
+};
+
+/// One word of a file and what it stands for.
+template <typename Value>
+struct Named {
+  std::string_view name;
+  Value value;
+};
+
+class JsonObject;
+
+/// A value and where it stands. All reads throw StudyError "SOURCE: POINTER: what; remedy" if the
+/// value is not what they ask for. Shares the document with all its other values.
+class JsonValue {
+ public:
+  /// \throws StudyError always. \param what  what is wrong, and the remedy
+  [[noreturn]] void refuse(const std::string& what) const;
+  /// The same for a place below this one, whether it is there or missing.
+  /// \param pointer  from here, for instance "/trials/repeats"
+  [[noreturn]] void refuse_below(std::string_view pointer, const std::string& what) const;
+
+  [[nodiscard]] bool is_text() const;
+  [[nodiscard]] const std::string& text() const;
+  [[nodiscard]] double number(const NumberRange& range) const;
+  /// A whole number; 5.0 is one.
+  [[nodiscard]] std::int64_t integer(std::int64_t low, std::int64_t high) const;
+  [[nodiscard]] std::vector<JsonValue> items(std::size_t fewest, std::size_t most) const;
+  /// An object that has no other keys than these.
+  [[nodiscard]] JsonObject object(std::span<const std::string_view> known) const;
+  [[nodiscard]] JsonObject object(std::initializer_list<std::string_view> known) const;
+  /// The place of a text in `names`.
+  [[nodiscard]] std::size_t choice(std::span<const std::string_view> names) const;
+
+  template <typename Value, std::size_t size>
+  [[nodiscard]] Value choice(const std::array<Named<Value>, size>& table) const {
+    std::array<std::string_view, size> names;
+    for (std::size_t i = 0; i < size; ++i) names[i] = table[i].name;
+    return table[choice(std::span<const std::string_view>(names))].value;
+  }
+
+ private:
+  friend class JsonObject;
+  friend JsonValue parse_strict_json(std::string_view text, const std::string& source);
+  struct Node;
+
+  explicit JsonValue(std::shared_ptr<const Node> node) : node_(std::move(node)) {}
+  [[noreturn]] void refuse_type(const std::string& wanted) const;
+
+  std::shared_ptr<const Node> node_;
+};
+
+/// An object whose keys are all known.
+class JsonObject {
+ public:
+  explicit JsonObject(JsonValue place) : place_(std::move(place)) {}
+
+  /// \return the member, or nothing if the object has none of this name
+  [[nodiscard]] std::optional<JsonValue> find(std::string_view key) const;
+  /// \throws StudyError if the member is missing
+  [[nodiscard]] JsonValue at(std::string_view key) const;
+
+ private:
+  JsonValue place_;
+};
+
+/// Parses plain JSON (RFC 8259). Besides what breaks the grammar, refuses a key that an object has
+/// twice, deeper nesting than kMaxJsonDepth, and numbers that no double can hold.
+/// \param source  the file's name, for errors
+/// \return the whole document
+/// \throws StudyError with line and column, or with the JSON pointer
+[[nodiscard]] JsonValue parse_strict_json(std::string_view text, const std::string& source);
+
+/// A number as JSON writes it: shortest, with a decimal dot whatever the locale.
+[[nodiscard]] std::string number_text(double number);
+
+/// A user's text for a message: in quotes, on one line, not longer than some 60 bytes.
+[[nodiscard]] std::string in_quotes(std::string_view text);
+
+}  // namespace touchtrial

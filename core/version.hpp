@@ -1,0 +1,11 @@
+/// \file Which program this is; recorded with every study.
+#pragma once
+
+#include <string_view>
+
+namespace touchtrial {
+
+/// For instance "0.1.0".
+[[nodiscard]] std::string_view program_version() noexcept;
+
+}  // namespace touchtrial

@@ -1,0 +1,85 @@
+#include "engine/image_file.hpp"
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "engine/image_formats/decoder_input.hpp"
+#include "engine/image_formats/image_fault.hpp"
+#include "engine/image_formats/image_kind.hpp"
+#include "engine/image_formats/pnm.hpp"
+#include "engine/image_formats/quiet_decoder.hpp"
+
+#include <new>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+namespace touchtrial {
+namespace {
+
+GreyImage decode_file(ByteView file) {
+  if (file.empty()) throw ImageFault{"is empty", "copy or export it again"};
+  switch (kind_of_image(file)) {
+    case ImageKind::png:
+      return decode_grey(check_png(file));
+    case ImageKind::jpeg:
+      return decode_grey(check_jpeg(file));
+    case ImageKind::tiff:
+      return decode_grey(check_tiff(file));
+    case ImageKind::bmp:
+      return decode_grey(check_bmp(file));
+    case ImageKind::pnm:
+      return read_pnm(file);
+  }
+  throw std::logic_error("an image kind without a reader");
+}
+
+FileError error_about(const std::filesystem::path& path, const std::string& what,
+                      const std::string& remedy) {
+  return FileError(one_line(path.string() + ": " + what + "; " + remedy));
+}
+
+/// Filtered rows and zlib's best effort: textures pack poorly, so every per cent is welcome.
+std::vector<std::uint8_t> png_bytes(const GreyImage& image) {
+  cv::Mat pixels(image.height(), image.width(), CV_8UC1);
+  for (int y = 0; y < image.height(); ++y) {
+    std::copy(image.row(y).begin(), image.row(y).end(), pixels.ptr(y));
+  }
+  std::vector<std::uint8_t> bytes;
+  const std::vector<int> options = {cv::IMWRITE_PNG_COMPRESSION, 9, cv::IMWRITE_PNG_STRATEGY,
+                                    cv::IMWRITE_PNG_STRATEGY_FILTERED};
+  if (!cv::imencode(".png", pixels, bytes, options)) bytes.clear();
+  return bytes;
+}
+
+}  // namespace
+
+GreyImage read_grey_image(const std::filesystem::path& path) {
+  try {
+    return decode_file(read_file(path));
+  } catch (const ImageFault& fault) {
+    throw error_about(path, fault.what, fault.remedy);
+  } catch (const std::bad_alloc&) {
+    throw error_about(path, "does not fit into memory", "crop or shrink it");
+  } catch (const std::length_error&) {
+    throw error_about(path, "does not fit into memory", "crop or shrink it");
+  } catch (const cv::Exception& error) {
+    throw error_about(path, "cannot be decoded (" + error.err + ")", "copy or export it again");
+  }
+}
+
+void write_png(const std::filesystem::path& path, const GreyImage& image) {
+  if (image.empty()) throw std::invalid_argument("write_png: the image has no pixels");
+  std::vector<std::uint8_t> bytes;
+  try {
+    bytes = png_bytes(image);
+  } catch (const cv::Exception&) {
+    bytes.clear();
+  }
+  if (bytes.empty()) throw error_about(path, "cannot be encoded as PNG", "give a smaller image");
+  replace_file(path, bytes);
+}
+
+}  // namespace touchtrial

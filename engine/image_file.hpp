@@ -1,0 +1,33 @@
+/// \file Pictures on disk. PNG, JPEG, TIFF, BMP and PGM/PPM, 8 and 16 bit, grey, colour, alpha.
+/// Source of the conversion rules: docs/method.md, "Images".
+#pragma once
+
+#include "core/plane.hpp"
+
+#include <cstdint>
+#include <filesystem>
+
+namespace touchtrial {
+
+/// Larger images are refused from their header, before memory is spent.
+inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 28;
+
+/// Reads a picture as 8-bit grey: 16-bit samples become floor(v / 257 + 0.5), alpha is composited
+/// on black, colour becomes floor((299 R + 587 G + 114 B + 500) / 1000). PGM and PPM samples of any
+/// other maximum become floor(v * 255 / maximum + 0.5). Of a file with several pictures the first
+/// is read. Orientation tags (Exif, TIFF), colour profiles and gamma are ignored: the samples count
+/// as they are stored. \throws FileError if the file is missing, truncated, not an image of a known
+/// kind, zero-sized,
+///   of an unsupported sample type, has more than kMaxImagePixels pixels, a side of more than a
+///   million, or data that the decoder finds damaged
+/// Prints nothing, whatever the decoder thinks of the file: while it decodes, what this process
+/// writes to standard error is thrown away. Thread-safe; one picture is decoded at a time.
+[[nodiscard]] GreyImage read_grey_image(const std::filesystem::path& path);
+
+/// Writes an 8-bit grey PNG. The same image gives the same bytes on one machine.
+/// \param image  at least 1 x 1
+/// \throws FileError if the file cannot be written
+/// \throws std::invalid_argument if the image is empty
+void write_png(const std::filesystem::path& path, const GreyImage& image);
+
+}  // namespace touchtrial

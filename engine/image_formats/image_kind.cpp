@@ -1,0 +1,66 @@
+#include "engine/image_formats/image_kind.hpp"
+
+#include "engine/image_formats/image_fault.hpp"
+
+#include <array>
+#include <string_view>
+
+namespace touchtrial {
+namespace {
+
+using namespace std::string_view_literals;
+
+struct Signature {
+  std::string_view start;
+  ImageKind kind;
+};
+constexpr std::array kSupported = {Signature{"\x89PNG\r\n\x1a\n"sv, ImageKind::png},
+                                   Signature{"\xff\xd8\xff"sv, ImageKind::jpeg},
+                                   Signature{"II*\0"sv, ImageKind::tiff},
+                                   Signature{"MM\0*"sv, ImageKind::tiff},
+                                   Signature{"BM"sv, ImageKind::bmp},
+                                   Signature{"P2"sv, ImageKind::pnm},
+                                   Signature{"P3"sv, ImageKind::pnm},
+                                   Signature{"P5"sv, ImageKind::pnm},
+                                   Signature{"P6"sv, ImageKind::pnm}};
+
+struct ForeignSignature {
+  std::size_t at;
+  std::string_view text;
+  std::string_view name;
+};
+constexpr std::array kForeign = {ForeignSignature{0, "GIF8"sv, "GIF"},
+                                 ForeignSignature{8, "WEBP"sv, "WebP"},
+                                 ForeignSignature{4, "ftyp"sv, "HEIF, AVIF or video"},
+                                 ForeignSignature{4, "jP  "sv, "JPEG 2000"},
+                                 ForeignSignature{0, "\xff\x4f\xff\x51"sv, "JPEG 2000"},
+                                 ForeignSignature{0, "II+\0"sv, "BigTIFF"},
+                                 ForeignSignature{0, "MM\0+"sv, "BigTIFF"},
+                                 ForeignSignature{0, "8BPS"sv, "Photoshop"},
+                                 ForeignSignature{0, "\x76\x2f\x31\x01"sv, "OpenEXR"},
+                                 ForeignSignature{0, "%PDF"sv, "PDF"},
+                                 ForeignSignature{0, "P1"sv, "PBM"},
+                                 ForeignSignature{0, "P4"sv, "PBM"},
+                                 ForeignSignature{0, "P7"sv, "PAM"}};
+
+bool holds(std::string_view file, std::size_t at, std::string_view text) {
+  return file.size() >= at && file.substr(at).starts_with(text);
+}
+
+}  // namespace
+
+ImageKind kind_of_image(ByteView file) {
+  const std::string_view start(reinterpret_cast<const char*>(file.data()),
+                               file.size() < 16 ? file.size() : 16);
+  for (const Signature& signature : kSupported) {
+    if (start.starts_with(signature.start)) return signature.kind;
+  }
+  for (const ForeignSignature& signature : kForeign) {
+    if (!holds(start, signature.at, signature.text)) continue;
+    throw ImageFault{"is a " + std::string(signature.name) + " file, a kind that is not supported",
+                     "save it as PNG, JPEG, TIFF, BMP or PGM"};
+  }
+  throw ImageFault{"is not an image of a known kind", "give a PNG, JPEG, TIFF, BMP or PGM file"};
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,84 @@
+#include "engine/image_formats/tiff_directory.hpp"
+
+namespace touchtrial {
+namespace {
+
+constexpr std::size_t kEntrySize = 12;
+constexpr std::uint32_t kPrivateTag = 65000;
+constexpr std::uint32_t kLong = 4;
+
+/// Bytes of one value; 0 for types that no entry of ours has.
+std::size_t size_of_type(std::uint32_t type) {
+  switch (type) {
+    case 1:
+      return 1;  // BYTE
+    case 3:
+      return 2;  // SHORT
+    case kLong:
+      return 4;
+    default:
+      return 0;
+  }
+}
+
+}  // namespace
+
+TiffDirectory::TiffDirectory(ByteView file)
+    : file_(file),
+      order_(bytes_at(file, 0, 2)[0] == std::uint8_t{'M'} ? ByteOrder::big : ByteOrder::little) {
+  const std::size_t start = number_at(file, 4, 4, order_);
+  const std::size_t count = number_at(file, start, 2, order_);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t at = start + 2 + i * kEntrySize;
+    const auto tag = static_cast<TiffTag>(number_at(bytes_at(file, at, kEntrySize), 0, 2, order_));
+    const bool is_new = entries_.emplace(tag, at).second;
+    // Which of two entries counts is up to the reader, so such a file has no meaning.
+    if (!is_new) throw_truncated_image();
+  }
+  // The place of the next directory ends this one; where it points to does not matter.
+  static_cast<void>(bytes_at(file, start + 2 + count * kEntrySize, 4));
+}
+
+std::vector<std::uint32_t> TiffDirectory::values(TiffTag tag) const {
+  const auto entry = entries_.find(tag);
+  if (entry == entries_.end()) return {};
+  const std::size_t at = entry->second;
+  const std::size_t size = size_of_type(number_at(file_, at + 2, 2, order_));
+  const std::size_t count = number_at(file_, at + 4, 4, order_);
+  const bool is_inline = size * count <= 4;
+  const std::size_t from = is_inline ? at + 8 : number_at(file_, at + 8, 4, order_);
+  const ByteView bytes = bytes_at(file_, from, size * count);
+  std::vector<std::uint32_t> values(size == 0 ? 0 : count);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = number_at(bytes, i * size, size, order_);
+  }
+  return values;
+}
+
+std::uint32_t TiffDirectory::value(TiffTag tag, std::uint32_t otherwise) const {
+  const std::vector<std::uint32_t> all = values(tag);
+  return all.empty() ? otherwise : all.front();
+}
+
+void TiffDirectory::set(Bytes& copy, TiffTag tag, std::uint32_t number) const {
+  const auto entry = entries_.find(tag);
+  if (entry == entries_.end()) return;
+  store(copy, entry->second + 2, 2, kLong);
+  store(copy, entry->second + 4, 4, 1);
+  store(copy, entry->second + 8, 4, number);
+}
+
+void TiffDirectory::hide(Bytes& copy, TiffTag tag) const {
+  const auto entry = entries_.find(tag);
+  if (entry != entries_.end()) store(copy, entry->second, 2, kPrivateTag);
+}
+
+void TiffDirectory::store(Bytes& copy, std::size_t at, std::size_t size,
+                          std::uint32_t number) const {
+  for (std::size_t i = 0; i < size; ++i) {
+    const std::size_t shift = 8 * (order_ == ByteOrder::big ? size - 1 - i : i);
+    copy[at + i] = static_cast<std::uint8_t>(number >> shift);
+  }
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,59 @@
+/// \file The first directory of a TIFF file: its entries read, and rewritten in a copy.
+/// Source: TIFF 6.0, section 2.
+#pragma once
+
+#include "core/bytes.hpp"
+#include "engine/image_formats/byte_order.hpp"
+
+#include <cstdint>
+#include <map>
+#include <vector>
+
+namespace touchtrial {
+
+enum class TiffTag : std::uint32_t {
+  width = 256,
+  height = 257,
+  bits_per_sample = 258,
+  compression = 259,
+  photometric = 262,
+  strip_offsets = 273,
+  orientation = 274,
+  samples_per_pixel = 277,
+  rows_per_strip = 278,
+  strip_byte_counts = 279,
+  planar = 284,
+  predictor = 317,
+  tile_width = 322,
+  tile_height = 323,
+  tile_offsets = 324,
+  tile_byte_counts = 325,
+  extra_samples = 338,
+  sample_format = 339,
+};
+
+class TiffDirectory {
+ public:
+  /// \throws ImageFault if the header or the directory is cut off
+  explicit TiffDirectory(ByteView file);
+
+  [[nodiscard]] bool has(TiffTag tag) const { return entries_.count(tag) != 0; }
+  /// All values of an entry (BYTE, SHORT or LONG); none if it is absent or of another type.
+  [[nodiscard]] std::vector<std::uint32_t> values(TiffTag tag) const;
+  /// The first value of an entry, or `otherwise`.
+  [[nodiscard]] std::uint32_t value(TiffTag tag, std::uint32_t otherwise) const;
+
+  /// In a copy of the file: makes an entry hold one number. An absent entry stays absent.
+  void set(Bytes& copy, TiffTag tag, std::uint32_t number) const;
+  /// In a copy of the file: renames an entry to a private tag that readers ignore.
+  void hide(Bytes& copy, TiffTag tag) const;
+
+ private:
+  void store(Bytes& copy, std::size_t at, std::size_t size, std::uint32_t number) const;
+
+  ByteView file_;
+  ByteOrder order_;
+  std::map<TiffTag, std::size_t> entries_;  ///< tag -> where its 12 bytes start
+};
+
+}  // namespace touchtrial

@@ -1,0 +1,157 @@
+#include "engine/metrics/glcm.hpp"
+
+#include "engine/metrics/glcm_counts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+namespace {
+
+/// n ln n, from a table where n is small, as most counts are.
+class NLogN {
+ public:
+  NLogN() {
+    for (std::size_t n = 1; n < kTabulated; ++n) table_[n] = direct(n);
+  }
+  [[nodiscard]] double operator()(std::uint64_t n) const {
+    return n < kTabulated ? table_[n] : direct(n);
+  }
+
+ private:
+  static constexpr std::size_t kTabulated = 2048;
+  static double direct(std::uint64_t n) {
+    const auto real = static_cast<double>(n);
+    return real * std::log(real);
+  }
+  std::array<double, kTabulated> table_{};
+};
+
+const NLogN& n_log_n_table() {
+  static const NLogN table;
+  return table;
+}
+
+/// What the statistics need of the symmetric matrix of one direction, in whole numbers but for the
+/// last. Each unordered pair of levels enters once.
+struct Sums {
+  std::array<std::uint64_t, kGreyLevels> marginal{};  ///< row sums of the symmetric matrix
+  std::uint64_t squares = 0;           ///< of the unordered counts of different levels
+  std::uint64_t diagonal_squares = 0;  ///< of the unordered counts of equal levels
+  std::uint64_t distance = 0;          ///< (i - j)^2 times the unordered count
+  double n_log_n = 0.0;                ///< over all entries of the symmetric matrix
+};
+
+/// Two different levels, neighbours `count` times.
+void add_pair(Sums& sums, int i, int j, std::uint64_t count, const NLogN& n_log_n) {
+  const auto gap = static_cast<std::uint64_t>((i - j) * (i - j));
+  sums.marginal[static_cast<std::size_t>(i)] += count;
+  sums.marginal[static_cast<std::size_t>(j)] += count;
+  sums.squares += count * count;
+  sums.distance += gap * count;
+  sums.n_log_n += 2 * n_log_n(count);
+}
+
+/// One level beside itself: its entry of the symmetric matrix counts every pair twice.
+void add_diagonal(Sums& sums, int i, std::uint64_t count, const NLogN& n_log_n) {
+  sums.marginal[static_cast<std::size_t>(i)] += 2 * count;
+  sums.diagonal_squares += count * count;
+  sums.n_log_n += n_log_n(2 * count);
+}
+
+bool empty(const GlcmCell& a, const GlcmCell& b) {
+  std::uint32_t any = 0;
+  for (std::size_t d = 0; d < a.size(); ++d) any |= a[d] | b[d];
+  return any == 0;
+}
+
+std::vector<Sums> sums_of(const GlcmCounts& counts) {
+  const NLogN& n_log_n = n_log_n_table();
+  std::vector<Sums> sums(kGlcmOffsets.size());
+  for (int i = 0; i < kGreyLevels; ++i) {
+    for (std::size_t d = 0; d < sums.size(); ++d) {
+      add_diagonal(sums[d], i, counts.at(i, i)[d], n_log_n);
+    }
+    for (int j = i + 1; j < kGreyLevels; ++j) {
+      const GlcmCell& there = counts.at(i, j);
+      const GlcmCell& back = counts.at(j, i);
+      if (empty(there, back)) continue;
+      for (std::size_t d = 0; d < sums.size(); ++d) {
+        add_pair(sums[d], i, j, std::uint64_t{there[d]} + back[d], n_log_n);
+      }
+    }
+  }
+  return sums;
+}
+
+/// Of one level; both members of a symmetric pair have the same.
+double variance_of(const std::array<std::uint64_t, kGreyLevels>& marginal, double total) {
+  double mean = 0.0;
+  for (std::size_t i = 0; i < marginal.size(); ++i) {
+    mean += static_cast<double>(i * marginal[i]) / total;
+  }
+  double variance = 0.0;
+  for (std::size_t i = 0; i < marginal.size(); ++i) {
+    const double distance = static_cast<double>(i) - mean;
+    variance += distance * distance * (static_cast<double>(marginal[i]) / total);
+  }
+  return variance;
+}
+
+/// contrast = 2 variance - 2 covariance, as both members of a pair have the same variance.
+double correlation_of(double contrast, const Sums& sums, double total) {
+  const auto levels = std::count_if(sums.marginal.begin(), sums.marginal.end(),
+                                    [](std::uint64_t count) { return count != 0; });
+  if (levels == 1) return 1.0;
+  return std::max(-1.0, 1.0 - contrast / (2 * variance_of(sums.marginal, total)));
+}
+
+GlcmStatistics statistics_of(const Sums& sums, std::uint64_t pairs) {
+  const auto n = static_cast<double>(pairs);
+  GlcmStatistics result{};
+  result.angular_second_moment =
+      (static_cast<double>(sums.squares) / 2 + static_cast<double>(sums.diagonal_squares)) /
+      (n * n);
+  result.energy = std::sqrt(result.angular_second_moment);
+  result.entropy = (n_log_n_table()(2 * pairs) - sums.n_log_n) / (2 * n);
+  result.contrast = static_cast<double>(sums.distance) / n;
+  result.correlation = correlation_of(result.contrast, sums, 2 * n);
+  return result;
+}
+
+std::uint64_t pairs_of(const GreyImage& image, const GlcmOffset& offset) {
+  return static_cast<std::uint64_t>(image.height() - std::abs(offset.dy)) *
+         static_cast<std::uint64_t>(image.width() - std::abs(offset.dx));
+}
+
+void check(const GreyImage& image) {
+  if (image.height() < 2 || image.width() < 2) {
+    throw std::invalid_argument("glcm_statistics: the image is " + std::to_string(image.height()) +
+                                " x " + std::to_string(image.width()) +
+                                " pixels, and both sides must be at least 2");
+  }
+  if (image.size() > std::numeric_limits<std::uint32_t>::max()) {
+    throw std::invalid_argument("glcm_statistics: the image has 2^32 pixels or more");
+  }
+}
+
+}  // namespace
+
+GlcmTable glcm_statistics(const GreyImage& image) {
+  check(image);
+  const std::vector<Sums> sums = sums_of(GlcmCounts(image));
+  GlcmTable table{};
+  for (std::size_t d = 0; d < table.size(); ++d) {
+    table[d] = statistics_of(sums[d], pairs_of(image, kGlcmOffsets[d]));
+  }
+  return table;
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,90 @@
+#include "engine/pack/pack.hpp"
+
+#include "core/errors.hpp"
+#include "engine/pack/field_file.hpp"
+#include "engine/pack/manifest_json.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <stdexcept>
+#include <system_error>
+
+namespace touchtrial {
+namespace {
+
+constexpr std::size_t kCodeLength = 16;
+constexpr std::uintmax_t kLargestManifestBytes = std::uintmax_t{1} << 26;
+constexpr const char* kManifestName = "pack.json";
+
+std::filesystem::path field_path(const std::filesystem::path& folder, const std::string& code) {
+  return folder / (code + ".field");
+}
+
+PackManifest read_manifest(const std::filesystem::path& folder) {
+  const std::filesystem::path path = folder / kManifestName;
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) {
+    throw FileError(one_line(path.string()) +
+                    ": does not exist; make the pack with `touchtrial prepare STUDY`");
+  }
+  return manifest_from_json(text_of(ByteView(read_file(path, kLargestManifestBytes))), path);
+}
+
+}  // namespace
+
+bool is_pack_code(std::string_view code) noexcept {
+  return code.size() == kCodeLength && std::ranges::all_of(code, [](char c) {
+           return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9');
+         });
+}
+
+Digest write_field(const std::filesystem::path& folder, const std::string& code, FieldView field) {
+  if (!is_pack_code(code)) {
+    throw std::invalid_argument("write_field: a code is 16 lower-case letters and digits");
+  }
+  const Bytes file = encode_field(field);
+  replace_file(field_path(folder, code), ByteView(file));
+  return sha256(file);
+}
+
+void write_manifest(const std::filesystem::path& folder, const PackManifest& manifest) {
+  replace_file(folder / kManifestName, std::string_view(manifest_to_json(manifest)));
+}
+
+Pack::Pack(std::filesystem::path folder)
+    : folder_(std::move(folder)), manifest_(read_manifest(folder_)) {}
+
+Digest Pack::digest() const {
+  FieldHasher hasher;
+  hasher.add("touchtrial pack 1").add(manifest_.study_id);
+  for (const PackEntry& entry : manifest_.entries) {
+    hasher.add(entry.code).add(ByteView(entry.checksum)).add(ByteView(entry.input_tag));
+    hasher.add(std::bit_cast<std::int64_t>(entry.gains.tangential_n));
+    hasher.add(std::bit_cast<std::int64_t>(entry.gains.normal_n));
+  }
+  return hasher.finish();
+}
+
+const PackEntry& Pack::entry(const std::string& code) const {
+  const auto found = std::ranges::lower_bound(manifest_.entries, code, {}, &PackEntry::code);
+  if (found == manifest_.entries.end() || found->code != code) {
+    throw FileError(one_line((folder_ / kManifestName).string()) + ": /fields: has no field " +
+                    one_line(code) + "; use the pack and key that were made together");
+  }
+  return *found;
+}
+
+MappedField Pack::map(const std::string& code) const {
+  const std::filesystem::path path = field_path(folder_, entry(code).code);
+  MappedFile file(path);
+  const FieldView view = decode_field(file.bytes(), path);
+  return MappedField(std::move(file), view);
+}
+
+bool Pack::is_intact(const std::string& code) const {
+  const PackEntry& known = entry(code);
+  return sha256_of_file(field_path(folder_, known.code)) == known.checksum;
+}
+
+}  // namespace touchtrial

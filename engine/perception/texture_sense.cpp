@@ -1,0 +1,237 @@
+#include "engine/perception/texture_sense.hpp"
+
+#include "engine/tv_gabor/real_fft.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <stdexcept>
+
+namespace touchtrial {
+namespace {
+
+constexpr int kWindow = 256;
+constexpr int kHop = kWindow / 2;
+constexpr int kBins = kWindow / 2;  // above the mean; the last is half the sample rate
+constexpr double kSettleS = 0.5;
+constexpr double kSlowestMmS = 20.0;
+constexpr int kFewestContacts = kWindow * 3 / 4;
+
+using Samples = std::array<float, kWindow>;
+using Spectrum = std::array<std::complex<float>, kBins + 1>;
+
+Samples hann_window() {
+  Samples window{};
+  for (int i = 0; i < kWindow; ++i) {
+    window[i] = static_cast<float>(0.5 - 0.5 * std::cos(2.0 * std::numbers::pi * i / kWindow));
+  }
+  return window;
+}
+
+/// Powers summed over bins, so that a band's is the difference of two. Entry k: bins 1 .. k.
+class SummedPower {
+ public:
+  template <typename PowerOfBin>
+  explicit SummedPower(PowerOfBin power_of_bin) noexcept {
+    for (int k = 1; k <= kBins; ++k) sums_[k] = sums_[k - 1] + power_of_bin(k);
+  }
+  /// Power up to a frequency in bins; bin k reaches from k - 1/2 to k + 1/2.
+  [[nodiscard]] double up_to(double bins) const noexcept {
+    const double place = std::clamp(bins - 0.5, 0.0, static_cast<double>(kBins));
+    const int whole = std::min(static_cast<int>(place), kBins - 1);
+    return sums_[whole] + (place - whole) * (sums_[whole + 1] - sums_[whole]);
+  }
+  [[nodiscard]] double between(double low_bins, double high_bins) const noexcept {
+    return up_to(high_bins) - up_to(low_bins);
+  }
+
+ private:
+  std::array<double, kBins + 1> sums_{};
+};
+
+double log_intensity(double power, double threshold_n) noexcept {
+  return 0.5 * std::log(power + threshold_n * threshold_n);
+}
+
+/// What half a window adds to the one it belongs to.
+struct HalfWindow {
+  double path_mm = 0.0;
+  int contacts = 0;
+  Vec3 end_mm;
+};
+
+/// Power on a part of the plane, N^2, summed over windows.
+struct PartPower {
+  double lateral = 0.0;
+  int windows = 0;
+};
+
+/// Powers, N^2, summed over windows.
+struct FeltPower {
+  std::array<double, kFeltBands> lateral{};
+  std::array<double, kFeltBands> normal{};
+  double xx = 0.0, yy = 0.0, xy = 0.0;
+  std::array<PartPower, kFeltParts> parts{};
+  int windows = 0;
+};
+
+int part_at(Vec3 at_mm, const PlaneGeometry& plane) noexcept {
+  const auto third = [](double place_mm, double side_mm) {
+    const double share = place_mm / side_mm * kFeltPartsASide;
+    return static_cast<int>(std::clamp(share, 0.0, kFeltPartsASide - 1.0));
+  };
+  return third(at_mm.y, plane.height_mm()) * kFeltPartsASide + third(at_mm.x, plane.width_mm());
+}
+
+}  // namespace
+
+struct TextureSense::State {
+  explicit State(const SenseOptions& chosen) : options(chosen), fft(1, kWindow) {}
+
+  void take(Vec3 at_mm, Vec3 force_n) noexcept;
+  void end_half() noexcept;
+  [[nodiscard]] Spectrum spectrum_of(const Samples& samples) noexcept;
+  void add_window(double speed_mm_s, Vec3 middle_mm) noexcept;
+
+  SenseOptions options;
+  RealFft<float> fft;
+  Samples hann = hann_window();
+  Samples x{}, y{}, z{};
+  int filled = 0;
+  HalfWindow earlier, current;
+  Vec3 last_mm;
+  bool landed = false;
+  int unsettled = 0;  // samples still to leave out after landing
+  FeltPower power;
+};
+
+void TextureSense::State::take(Vec3 at_mm, Vec3 force_n) noexcept {
+  x[filled] = static_cast<float>(force_n.x);
+  y[filled] = static_cast<float>(force_n.y);
+  z[filled] = static_cast<float>(force_n.z);
+  const Vec2 step_mm{at_mm.x - last_mm.x, at_mm.y - last_mm.y};
+  current.path_mm += std::sqrt(step_mm.x * step_mm.x + step_mm.y * step_mm.y);
+  current.contacts += force_n.z > 0.0 ? 1 : 0;
+  current.end_mm = at_mm;
+  ++filled;
+  if (filled % kHop == 0) end_half();
+}
+
+void TextureSense::State::end_half() noexcept {
+  if (filled == kWindow) {
+    const double speed_mm_s = (earlier.path_mm + current.path_mm) * options.rate_hz / kWindow;
+    const int contacts = earlier.contacts + current.contacts;
+    if (contacts >= kFewestContacts && speed_mm_s >= kSlowestMmS) {
+      add_window(speed_mm_s, earlier.end_mm);
+    }
+    for (Samples* samples : {&x, &y, &z}) {
+      std::copy(samples->begin() + kHop, samples->end(), samples->begin());
+    }
+    filled = kHop;
+  }
+  earlier = current;
+  current = {};
+}
+
+Spectrum TextureSense::State::spectrum_of(const Samples& samples) noexcept {
+  float sum = 0.0F;
+  for (const float sample : samples) sum += sample;
+  const float mean = sum / kWindow;
+  const std::span<float> plane = fft.plane();
+  for (int i = 0; i < kWindow; ++i) plane[i] = hann[i] * (samples[i] - mean);
+  fft.forward();
+  Spectrum spectrum;
+  std::copy_n(fft.spectrum().begin(), spectrum.size(), spectrum.begin());
+  return spectrum;
+}
+
+void TextureSense::State::add_window(double speed_mm_s, Vec3 middle_mm) noexcept {
+  const Spectrum fx = spectrum_of(x);
+  const Spectrum fy = spectrum_of(y);
+  const Spectrum fz = spectrum_of(z);
+  // One-sided, so that the powers of all bins sum to the variance; Hann's squares sum to 3/8.
+  constexpr double kScale = 2.0 / (kWindow * (0.375 * kWindow));
+  const SummedPower xx([&](int k) { return kScale * std::norm(fx[k]); });
+  const SummedPower yy([&](int k) { return kScale * std::norm(fy[k]); });
+  const SummedPower zz([&](int k) { return kScale * std::norm(fz[k]); });
+  const SummedPower xy([&](int k) { return kScale * std::real(fx[k] * std::conj(fy[k])); });
+  const double longest = speed_mm_s * kWindow / options.rate_hz / kLongestFeltMm;  // in bins
+  for (int band = 0; band < kFeltBands; ++band) {
+    const double low = std::ldexp(longest, band);
+    power.lateral[band] += xx.between(low, 2.0 * low) + yy.between(low, 2.0 * low);
+    power.normal[band] += zz.between(low, 2.0 * low);
+  }
+  const double shortest = std::ldexp(longest, kFeltBands);
+  power.xx += xx.between(longest, shortest);
+  power.yy += yy.between(longest, shortest);
+  power.xy += xy.between(longest, shortest);
+  PartPower& part = power.parts[part_at(middle_mm, options.plane)];
+  part.lateral += xx.between(longest, shortest) + yy.between(longest, shortest);
+  ++part.windows;
+  ++power.windows;
+}
+
+TextureSense::TextureSense(const SenseOptions& options) {
+  const bool has_area = options.plane.width_mm() > 0.0 && options.plane.height_mm() > 0.0;
+  if (!(options.rate_hz > 0.0) || !(options.threshold_n >= 0.0) || !has_area) {
+    throw std::invalid_argument("TextureSense: rate, threshold or plane is out of range");
+  }
+  state_ = std::make_unique<State>(options);
+}
+
+TextureSense::~TextureSense() = default;
+TextureSense::TextureSense(TextureSense&&) noexcept = default;
+TextureSense& TextureSense::operator=(TextureSense&&) noexcept = default;
+
+void TextureSense::reset(const PlaneGeometry& plane) noexcept {
+  state_->options.plane = plane;
+  state_->filled = 0;
+  state_->earlier = {};
+  state_->current = {};
+  state_->landed = false;
+  state_->power = {};
+}
+
+void TextureSense::feel(Vec3 position_mm, Vec3 force_n) noexcept {
+  State& s = *state_;
+  if (!s.landed) {
+    s.landed = force_n.z > 0.0;
+    s.unsettled = static_cast<int>(kSettleS * s.options.rate_hz);
+  } else if (s.unsettled > 0) {
+    --s.unsettled;
+  } else {
+    s.take(position_mm, force_n);
+  }
+  s.last_mm = position_mm;
+}
+
+FeltFeatures TextureSense::features() const noexcept {
+  const FeltPower& p = state_->power;
+  const double share = p.windows > 0 ? 1.0 / p.windows : 0.0;
+  const auto intensity = [&](double mean_power) {
+    return log_intensity(std::max(0.0, mean_power), state_->options.threshold_n);
+  };
+  FeltFeatures features{};
+  for (int band = 0; band < kFeltBands; ++band) {
+    features[kLateralBandsAt + band] = intensity(share * p.lateral[band]);
+    features[kNormalBandsAt + band] = intensity(share * p.normal[band]);
+  }
+  const double diagonal = 0.5 * (p.xx + p.yy);
+  const std::array<double, kFeltDirections> along{p.xx, diagonal + p.xy, p.yy, diagonal - p.xy};
+  for (int i = 0; i < kFeltDirections; ++i)
+    features[kDirectionsAt + i] = intensity(share * along[i]);
+  for (int i = 0; i < kFeltParts; ++i) {
+    const PartPower& part = p.parts[i];
+    features[kPartsAt + i] =
+        intensity(part.windows > 0 ? part.lateral / part.windows : share * (p.xx + p.yy));
+  }
+  return features;
+}
+
+int TextureSense::windows() const noexcept {
+  return state_->power.windows;
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,25 @@
+/// \file What a feasible dual point proves: its texture, and how far that can be from the best.
+/// Source: docs/method.md, "TV-Gabor".
+#pragma once
+
+#include "core/plane.hpp"
+#include "engine/tv_gabor/problem.hpp"
+#include "engine/tv_gabor/real_fft.hpp"
+#include "engine/tv_gabor/vector_field.hpp"
+
+namespace touchtrial {
+
+template <typename Real>
+struct TvGaborCertificate {
+  Plane<Real> texture;  ///< v = M div p / lambda on the torus, grey levels
+  double gap = 0.0;     ///< (primal - dual) / primal, >= 0; 0 where the primal value is 0
+};
+
+/// \param multiplier,scale  the dual point: p = -scale * multiplier, with |p| <= 1 at every pixel
+/// \param fft  of the problem's size; what its buffers hold is lost
+template <typename Real>
+[[nodiscard]] TvGaborCertificate<Real> certify(const TvGaborProblem<Real>& problem,
+                                               const VectorField<Real>& multiplier, double scale,
+                                               RealFft<Real>& fft);
+
+}  // namespace touchtrial

@@ -1,0 +1,40 @@
+/// \file Two-dimensional Fourier transforms of real planes, in float or double.
+#pragma once
+
+#include <complex>
+#include <memory>
+#include <span>
+
+namespace touchtrial {
+
+/// A transform of one size with its buffers. Real is float or double. Results are the same in
+/// every run: plans are estimated, never timed.
+/// One object belongs to one thread at a time; different objects may be made, used and destroyed
+/// at the same time.
+template <typename Real>
+class RealFft {
+ public:
+  /// \param height,width  samples, >= 1
+  /// \throws std::bad_alloc if there is no memory for the buffers
+  RealFft(int height, int width);
+  ~RealFft();
+  RealFft(const RealFft&) = delete;
+  RealFft& operator=(const RealFft&) = delete;
+
+  /// height x width samples, row-major.
+  [[nodiscard]] std::span<Real> plane() noexcept;
+  /// height x (width / 2 + 1) coefficients, row-major; the others follow by conjugate symmetry.
+  [[nodiscard]] std::span<std::complex<Real>> spectrum() noexcept;
+
+  /// plane -> spectrum, unscaled; the plane keeps its values.
+  void forward() noexcept;
+  /// spectrum -> plane, unscaled: inverse after forward multiplies by height * width. The spectrum
+  /// is lost.
+  void inverse() noexcept;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace touchtrial

@@ -1,0 +1,68 @@
+#include "engine/tv_gabor/tv_gabor.hpp"
+
+#include "engine/tv_gabor/domain.hpp"
+#include "engine/tv_gabor/solver.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <type_traits>
+
+namespace touchtrial {
+namespace {
+
+bool is_flat(const GreyImage& image) {
+  return std::all_of(image.samples().begin(), image.samples().end(),
+                     [&](auto sample) { return sample == image.samples().front(); });
+}
+
+/// \return all but the cartoon
+template <typename Real, typename Precision>
+TvGaborResult<Real> result_of(const TvGaborSolver<Precision>& solver, SolverStop stop,
+                              const GreyImage& image) {
+  const Plane<Precision> texture =
+      cropped_from_torus(solver.certificate().texture, image.height(), image.width());
+  return {converted<Real>(texture),
+          {},
+          solver.certificate().gap,
+          solver.steps(),
+          stop == SolverStop::converged};
+}
+
+/// Float goes as far as its digits carry, double takes over if that is not far enough: rounding of
+/// the texture reaches the multiplier at every step, and shows in the gap of images with large
+/// smooth parts, whose gradients are small.
+template <typename Real>
+TvGaborResult<Real> solved(const GreyImage& image, const TvGaborOptions& options) {
+  TvGaborSolver<Real> solver(image, options);
+  if constexpr (std::is_same_v<Real, double>) {
+    return result_of<Real>(solver, solver.run(Patience::unlimited), image);
+  } else {
+    const SolverStop stop = solver.run(Patience::limited);
+    if (stop != SolverStop::stalled) return result_of<Real>(solver, stop, image);
+    TvGaborSolver<double> finisher(image, options, solver);
+    return result_of<Real>(finisher, finisher.run(Patience::unlimited), image);
+  }
+}
+
+}  // namespace
+
+template <typename Real>
+TvGaborResult<Real> tv_gabor(const GreyImage& image, const TvGaborOptions& options) {
+  if (image.empty()) throw std::invalid_argument("tv_gabor: the image is empty");
+  TvGaborResult<Real> result;
+  if (is_flat(image)) {
+    result.texture = Plane<Real>(image.height(), image.width());
+  } else {
+    result = solved<Real>(image, options);
+  }
+  result.cartoon = converted<Real>(image);
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    result.cartoon.samples()[i] -= result.texture.samples()[i];
+  }
+  return result;
+}
+
+template TvGaborResult<float> tv_gabor<float>(const GreyImage&, const TvGaborOptions&);
+template TvGaborResult<double> tv_gabor<double>(const GreyImage&, const TvGaborOptions&);
+
+}  // namespace touchtrial

@@ -1,0 +1,21 @@
+/// \file One writer at a time for a pack. Private to protocols/design.
+#pragma once
+
+#include <filesystem>
+
+namespace touchtrial {
+
+/// Holds `prepare.lock` in the pack's folder; the system lets go of it however the process ends.
+class PackLock {
+ public:
+  /// \throws FileError if another process or thread prepares this pack, or the file cannot be made
+  explicit PackLock(const std::filesystem::path& folder);
+  ~PackLock();
+  PackLock(const PackLock&) = delete;
+  PackLock& operator=(const PackLock&) = delete;
+
+ private:
+  int descriptor_;
+};
+
+}  // namespace touchtrial

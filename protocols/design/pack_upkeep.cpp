@@ -1,0 +1,93 @@
+#include "protocols/design/pack_upkeep.hpp"
+
+#include "core/errors.hpp"
+
+#include <algorithm>
+#include <system_error>
+#include <vector>
+
+namespace touchtrial {
+namespace {
+
+constexpr std::string_view kManifestName = "pack.json";
+constexpr std::string_view kFieldEnding = ".field";
+constexpr std::string_view kDraftMark = ".tmp";
+
+bool is_number(std::string_view text) {
+  return !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
+}
+
+/// The code of a field's file name, or nothing if it is not one.
+std::optional<std::string> code_of_file(std::string_view name) {
+  if (!name.ends_with(kFieldEnding)) return std::nullopt;
+  name.remove_suffix(kFieldEnding.size());
+  if (!is_pack_code(name)) return std::nullopt;
+  return std::string(name);
+}
+
+/// Whether `name` is what a file of the pack is called while it is being written.
+bool is_draft(std::string_view name) {
+  const std::size_t mark = name.rfind(kDraftMark);
+  if (mark == std::string_view::npos || !is_number(name.substr(mark + kDraftMark.size()))) {
+    return false;
+  }
+  const std::string_view target = name.substr(0, mark);
+  return target == kManifestName || code_of_file(target).has_value();
+}
+
+bool names_code(const PackManifest& manifest, const std::string& code) {
+  return std::ranges::find(manifest.entries, code, &PackEntry::code) != manifest.entries.end();
+}
+
+}  // namespace
+
+std::string unfinished_id(const StudyKey& key) {
+  return to_hex(ByteView(derive_key(key.master, "identity of an unfinished pack")).first(16));
+}
+
+const PackEntry* EarlierPack::reusable(const std::string& code, const Digest& tag) const {
+  if (!pack || !names_code(pack->manifest(), code)) return nullptr;
+  const PackEntry& entry = pack->entry(code);
+  if (entry.input_tag != tag) return nullptr;
+  try {
+    return pack->is_intact(code) ? &entry : nullptr;
+  } catch (const FileError&) {
+    return nullptr;  // missing or unreadable: it is written anew
+  }
+}
+
+EarlierPack earlier_pack(const std::filesystem::path& folder, const StudyKey& key) {
+  EarlierPack earlier;
+  if (!std::filesystem::exists(folder / kManifestName)) return earlier;
+  try {
+    earlier.pack.emplace(folder);
+  } catch (const FileError& error) {
+    earlier.damage = error.what();
+    return earlier;
+  }
+  const std::string& id = earlier.pack->manifest().study_id;
+  if (id == key.study_id || id == unfinished_id(key)) return earlier;
+  if (!key.simulated) {
+    throw FileError(one_line(folder.string()) +
+                    ": holds the pack of another key; prepare into another folder with --pack, or "
+                    "remove this one if its key is lost");
+  }
+  earlier.pack.reset();
+  return earlier;
+}
+
+void remove_leftovers(const std::filesystem::path& folder, const PackManifest& manifest) {
+  std::vector<std::filesystem::path> leftovers;
+  for (const auto& file : std::filesystem::directory_iterator(folder)) {
+    const std::string name = file.path().filename().string();
+    const auto code = code_of_file(name);
+    const bool stale = code && !names_code(manifest, *code);
+    if (stale || is_draft(name)) leftovers.push_back(file.path());
+  }
+  for (const auto& path : leftovers) {
+    std::error_code ignored;  // a leftover that stays harms nothing
+    std::filesystem::remove(path, ignored);
+  }
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,35 @@
+/// \file What an existing pack offers to the next `prepare`, and what it leaves behind. Private to
+/// protocols/design.
+#pragma once
+
+#include "engine/pack/pack.hpp"
+#include "protocols/design/study_key.hpp"
+
+#include <map>
+#include <optional>
+#include <string>
+
+namespace touchtrial {
+
+/// The identity that a pack has while it is being built: nothing is presented from such a pack,
+/// because it is not the study's, and the next `prepare` knows it as its own.
+[[nodiscard]] std::string unfinished_id(const StudyKey& key);
+
+/// What lay in the folder before.
+struct EarlierPack {
+  std::optional<Pack> pack;  ///< of this study, finished or not
+  std::string damage;        ///< why a table of contents could not be used; empty if all is well
+
+  /// The entry whose field is whole and made from this input.
+  [[nodiscard]] const PackEntry* reusable(const std::string& code, const Digest& tag) const;
+};
+
+/// \throws FileError if the folder holds another study's pack. A simulated study replaces it:
+///   simulated packs can be made again from the study file.
+[[nodiscard]] EarlierPack earlier_pack(const std::filesystem::path& folder, const StudyKey& key);
+
+/// Removes fields that the manifest does not name, and drafts of writers that were interrupted.
+/// Other files stay. Only while the pack is locked.
+void remove_leftovers(const std::filesystem::path& folder, const PackManifest& manifest);
+
+}  // namespace touchtrial

@@ -1,0 +1,272 @@
+#include "protocols/design/prepare.hpp"
+
+#include "core/errors.hpp"
+#include "engine/image_file.hpp"
+#include "engine/rendering/gains.hpp"
+#include "protocols/design/pack_lock.hpp"
+#include "protocols/design/pack_upkeep.hpp"
+#include "protocols/design/prepare_advice.hpp"
+#include "protocols/design/stimulus_field.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <exception>
+#include <map>
+#include <mutex>
+#include <string_view>
+#include <system_error>
+
+#include <tbb/parallel_for.h>
+
+namespace touchtrial {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// An image of the study; its stimuli, one a method, stand together in the key.
+struct ImageOfStudy {
+  int class_index = 0;
+  int exemplar = 0;
+  std::filesystem::path path;
+  std::size_t first_stimulus = 0;
+  Digest pixels{};
+  std::exception_ptr failure;
+};
+
+std::vector<ImageOfStudy> images_of(const Study& study) {
+  std::vector<ImageOfStudy> images;
+  for (int c = 0; c < static_cast<int>(study.classes.size()); ++c) {
+    const auto& paths = study.classes[static_cast<std::size_t>(c)].images;
+    for (int e = 0; e < static_cast<int>(paths.size()); ++e) {
+      const std::size_t first = images.size() * static_cast<std::size_t>(study.presented_methods());
+      images.push_back({c, e, study.folder / paths[static_cast<std::size_t>(e)], first, {}, {}});
+    }
+  }
+  return images;
+}
+
+[[noreturn]] void refuse_image(const Study& study, const ImageOfStudy& image,
+                               const std::string& what) {
+  throw FileError("study " + study.name + ": /classes/" + std::to_string(image.class_index) +
+                  "/images/" + std::to_string(image.exemplar) + ": " + what);
+}
+
+/// Before any work, so that a long preparation does not end at a misspelt path.
+void check_images_exist(const Study& study, const std::vector<ImageOfStudy>& images) {
+  for (const ImageOfStudy& image : images) {
+    std::error_code error;
+    if (std::filesystem::exists(image.path, error)) continue;
+    refuse_image(study, image,
+                 one_line(image.path.string()) + ": does not exist; correct the path");
+  }
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (std::filesystem::is_directory(folder)) return;
+  throw FileError(one_line(folder.string()) + ": the pack's folder cannot be made (" +
+                  (error ? error.message() : "a file is there") + "); give another with --pack");
+}
+
+/// One run of prepare_pack. Stimuli are worked on in parallel; everything lands in the place of its
+/// stimulus, so results do not depend on who was first.
+class Preparation {
+ public:
+  Preparation(const StudyKey& key, std::filesystem::path folder, const Progress& progress)
+      : key_(key),
+        folder_(std::move(folder)),
+        progress_(progress),
+        earlier_(earlier_pack(folder_, key)),
+        images_(images_of(key.study)),
+        entries_(key.stimuli.size()),
+        solver_warnings_(key.stimuli.size()) {
+    report_.stimuli.resize(key.stimuli.size());
+    if (earlier_.pack) {
+      for (const PackEntry& entry : earlier_.pack->manifest().entries) on_disk_[entry.code] = entry;
+    }
+  }
+
+  PrepareReport run() {
+    check_images_exist(key_.study, images_);
+    provide_fields();
+    const Pack fields(folder_);
+    const StudyGains gains = measure(fields);
+    finish(fields.manifest());
+    advise(gains);
+    return std::move(report_);
+  }
+
+ private:
+  void provide_fields() {
+    const std::vector<ImageOfStudy*> order = images_by_code();
+    tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t i) {
+      try {
+        provide_fields_of(*order[i]);
+      } catch (...) {
+        order[i]->failure = std::current_exception();
+      }
+    });
+    if (building_) write_unfinished();
+    for (const ImageOfStudy& image : images_) {
+      if (image.failure) std::rethrow_exception(image.failure);
+    }
+  }
+
+  /// The order of work: the times of the files then tell nothing of the order of classes.
+  [[nodiscard]] std::vector<ImageOfStudy*> images_by_code() {
+    std::vector<ImageOfStudy*> order;
+    for (ImageOfStudy& image : images_) order.push_back(&image);
+    std::ranges::sort(order, {}, [this](const ImageOfStudy* image) {
+      return std::string_view(key_.stimuli[image->first_stimulus].code);
+    });
+    return order;
+  }
+
+  void provide_fields_of(ImageOfStudy& image) {
+    const GreyImage grey = read(image);
+    image.pixels = FieldHasher().add(std::int64_t{grey.width()}).add(grey.samples()).finish();
+    for (int m = 0; m < key_.study.presented_methods(); ++m) {
+      provide_field(image.first_stimulus + static_cast<std::size_t>(m), grey);
+    }
+  }
+
+  [[nodiscard]] GreyImage read(const ImageOfStudy& image) const {
+    try {
+      return read_grey_image(image.path);
+    } catch (const FileError& error) {
+      refuse_image(key_.study, image, error.what());
+    }
+  }
+
+  void provide_field(std::size_t i, const GreyImage& image) {
+    const Clock::time_point start = Clock::now();
+    const auto& [code, stimulus] = key_.stimuli[i];
+    const auto& method = key_.study.methods[static_cast<std::size_t>(stimulus.method)];
+    const Digest tag = input_tag(key_.master, image, method, key_.study.rendering);
+    const PackEntry* earlier = earlier_.reusable(code, tag);
+    if (earlier != nullptr) {
+      entries_[i] = *earlier;
+    } else {
+      announce_building();
+      const BuiltField built = build_field(image, method, key_.study.rendering);
+      entries_[i] = {code, write_field(folder_, code, built.field.view()), tag, {}};
+      solver_warnings_[i] = solver_warning(key_.study, stimulus, built);
+    }
+    PreparedStimulus& prepared = report_.stimuli[i];
+    prepared.class_label = key_.study.classes[static_cast<std::size_t>(stimulus.class_index)].label;
+    prepared.exemplar = stimulus.exemplar;
+    prepared.method = name_of(method.method);
+    prepared.reused = earlier != nullptr;
+    prepared.seconds = seconds_since(start);
+    note_done(entries_[i]);
+  }
+
+  /// Before the first field is replaced, the pack stops being one that can be presented.
+  void announce_building() {
+    const std::lock_guard lock(mutex_);
+    if (!building_) write_unfinished();
+    building_ = true;
+  }
+
+  /// Finished fields are put on record once a second, so that an interrupted run is not for
+  /// nothing.
+  void note_done(const PackEntry& entry) {
+    const std::lock_guard lock(mutex_);
+    on_disk_[entry.code] = entry;
+    if (building_ && seconds_since(recorded_) > 1.0) write_unfinished();
+    ++done_;
+    if (progress_) progress_(done_, static_cast<int>(key_.stimuli.size()));
+  }
+
+  void write_unfinished() {
+    PackManifest manifest{unfinished_id(key_), {}};
+    for (const auto& [code, entry] : on_disk_) manifest.entries.push_back(entry);
+    write_manifest(folder_, manifest);
+    recorded_ = Clock::now();
+  }
+
+  StudyGains measure(const Pack& fields) {
+    std::vector<MappedField> mapped;
+    std::vector<FieldView> views;
+    for (const KeyedStimulus& stimulus : key_.stimuli) {
+      mapped.push_back(fields.map(stimulus.code));
+      views.push_back(mapped.back().view());
+    }
+    StudyGains gains = choose_gains(views, key_.study.rendering);
+    flat_.resize(views.size());
+    tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t i) {
+      entries_[i].gains = gains.of_field[i];
+      report_.stimuli[i].gains = gains.of_field[i];
+      report_.stimuli[i].statistics = field_statistics(views[i], gains.of_field[i]);
+      report_.stimuli[i].bytes = size_of_field(key_.stimuli[i].code);
+      flat_[i] = is_flat(views[i]) ? 1 : 0;
+    });
+    return gains;
+  }
+
+  [[nodiscard]] std::uintmax_t size_of_field(const std::string& code) const {
+    std::error_code error;
+    const auto bytes = std::filesystem::file_size(folder_ / (code + ".field"), error);
+    return error ? 0 : bytes;
+  }
+
+  void finish(const PackManifest& before) {
+    PackManifest manifest{key_.study_id, entries_};
+    std::ranges::sort(manifest.entries, {}, &PackEntry::code);
+    const bool unchanged =
+        before.study_id == manifest.study_id && before.entries == manifest.entries;
+    if (!unchanged) write_manifest(folder_, manifest);
+    remove_leftovers(folder_, manifest);
+  }
+
+  void advise(const StudyGains& gains) {
+    report_.skipped = skipped_work(key_.study);
+    report_.warnings = rendering_warnings(key_.study.rendering, gains);
+    if (!earlier_.damage.empty()) {
+      report_.warnings.push_back(earlier_.damage + ": all fields were built anew");
+    }
+    std::vector<Digest> pixels;
+    for (const ImageOfStudy& image : images_) pixels.push_back(image.pixels);
+    for (auto& warning : twin_warnings(key_.study, pixels)) {
+      report_.warnings.push_back(std::move(warning));
+    }
+    for (std::size_t i = 0; i < key_.stimuli.size(); ++i) {
+      if (!solver_warnings_[i].empty()) report_.warnings.push_back(solver_warnings_[i]);
+      if (flat_[i] == 0) continue;
+      report_.warnings.push_back(described(key_.study, key_.stimuli[i].stimulus) +
+                                 ": is flat, nothing of it can be felt");
+    }
+  }
+
+  const StudyKey& key_;
+  std::filesystem::path folder_;
+  const Progress& progress_;
+  EarlierPack earlier_;
+  std::vector<ImageOfStudy> images_;
+  std::vector<PackEntry> entries_;
+  std::vector<std::string> solver_warnings_;
+  std::vector<std::uint8_t> flat_;
+  PrepareReport report_;
+
+  std::mutex mutex_;  ///< of what follows
+  std::map<std::string, PackEntry> on_disk_;
+  bool building_ = false;
+  Clock::time_point recorded_;
+  int done_ = 0;
+};
+
+}  // namespace
+
+PrepareReport prepare_pack(const StudyKey& key, const std::filesystem::path& pack_folder,
+                           const Progress& progress) {
+  make_folder(pack_folder);
+  const PackLock lock(pack_folder);
+  return Preparation(key, pack_folder, progress).run();
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,83 @@
+#include "protocols/design/prepare_advice.hpp"
+
+#include "core/errors.hpp"
+#include "core/strict_json.hpp"
+
+#include <map>
+
+namespace touchtrial {
+namespace {
+
+std::string image_in_words(const Study& study, int class_index, int exemplar) {
+  const StudyClass& shown = study.classes[static_cast<std::size_t>(class_index)];
+  const auto& image = shown.images[static_cast<std::size_t>(exemplar)];
+  return one_line("class \"" + shown.label + "\", image " + image.string());
+}
+
+}  // namespace
+
+std::string described(const Study& study, const StimulusIndex& stimulus) {
+  const auto& method = study.methods[static_cast<std::size_t>(stimulus.method)];
+  return image_in_words(study, stimulus.class_index, stimulus.exemplar) + ", method " +
+         std::string(name_of(method.method));
+}
+
+std::vector<SkippedWork> skipped_work(const Study& study) {
+  std::size_t images = 0;
+  for (const StudyClass& study_class : study.classes) images += study_class.images.size();
+  std::vector<SkippedWork> skipped;
+  for (std::size_t m = static_cast<std::size_t>(study.presented_methods());
+       m < study.methods.size(); ++m) {
+    skipped.push_back({std::string(name_of(study.methods[m].method)) + " x " +
+                           std::to_string(images) + " stimuli",
+                       "the classification protocol presents only its first method, " +
+                           std::string(name_of(study.methods.front().method))});
+  }
+  return skipped;
+}
+
+std::vector<std::string> rendering_warnings(const RenderingOptions& rendering,
+                                            const StudyGains& gains) {
+  std::vector<std::string> warnings;
+  if (gains.over_budget) {
+    warnings.push_back("/rendering/gains: the explicit gains exceed the stiffness budget of " +
+                       number_text(rendering.texture_stiffness_n_per_mm) +
+                       " N/mm, where devices may buzz; lower them or give \"budget\"");
+  }
+  if (rendering.gains && rendering.equalise == Equalise::rms) {
+    warnings.emplace_back(
+        "/rendering/equalise: rms has no effect beside explicit gains; give gains \"budget\"");
+  }
+  if (rendering.reference_grey == 0.0) {
+    warnings.emplace_back(
+        "/rendering/reference_grey: 0 is the paper's literal reading, a step of force at the "
+        "surface from which a hand bounces; 128 has none");
+  }
+  return warnings;
+}
+
+std::string solver_warning(const Study& study, const StimulusIndex& stimulus,
+                           const BuiltField& built) {
+  if (built.converged) return {};
+  const auto& options = study.methods[static_cast<std::size_t>(stimulus.method)].tv_gabor;
+  return described(study, stimulus) + ": stopped after " + std::to_string(built.steps) +
+         " steps at a relative gap of " + number_text(built.gap) + ", not " +
+         number_text(options.gap) + "; raise max_steps";
+}
+
+std::vector<std::string> twin_warnings(const Study& study, std::span<const Digest> pixels) {
+  std::vector<std::string> warnings;
+  std::map<Digest, std::string> seen;
+  std::size_t image = 0;
+  for (int c = 0; c < static_cast<int>(study.classes.size()); ++c) {
+    const auto exemplars = study.classes[static_cast<std::size_t>(c)].images.size();
+    for (int e = 0; e < static_cast<int>(exemplars); ++e) {
+      const std::string words = image_in_words(study, c, e);
+      const auto [first, is_new] = seen.emplace(pixels[image++], words);
+      if (!is_new) warnings.push_back(words + ": has the same pixels as " + first->second);
+    }
+  }
+  return warnings;
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,33 @@
+/// \file What `prepare` tells people about a study. Private to protocols/design.
+#pragma once
+
+#include "engine/rendering/gains.hpp"
+#include "protocols/design/prepare.hpp"
+#include "protocols/design/stimulus_field.hpp"
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+
+/// A stimulus in words: class, image and method.
+[[nodiscard]] std::string described(const Study& study, const StimulusIndex& stimulus);
+
+/// Methods of the study file that the protocol does not present.
+[[nodiscard]] std::vector<SkippedWork> skipped_work(const Study& study);
+
+/// Options that are allowed and probably not meant.
+[[nodiscard]] std::vector<std::string> rendering_warnings(const RenderingOptions& rendering,
+                                                          const StudyGains& gains);
+
+/// \return a warning if the solver gave up on the stimulus, else nothing
+[[nodiscard]] std::string solver_warning(const Study& study, const StimulusIndex& stimulus,
+                                         const BuiltField& built);
+
+/// Images that no participant could tell apart. \param pixels  a digest of each image, in the
+/// study's order of classes and images
+[[nodiscard]] std::vector<std::string> twin_warnings(const Study& study,
+                                                     std::span<const Digest> pixels);
+
+}  // namespace touchtrial

@@ -1,0 +1,53 @@
+/// \file What a participant gets, in which order: a function of the study and the enrolment number.
+#pragma once
+
+#include "protocols/design/study.hpp"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace touchtrial {
+
+/// Indices into the study's classes, a class's images, and the study's methods.
+struct StimulusIndex {
+  int class_index = 0;
+  int exemplar = 0;
+  int method = 0;
+
+  friend auto operator<=>(const StimulusIndex&, const StimulusIndex&) = default;
+};
+
+enum class PresentationKind { scored, lead_in };
+
+struct Presentation {
+  int trial = 0;  ///< from 1
+  int block = 0;  ///< from 0
+  PresentationKind kind = PresentationKind::scored;
+  StimulusIndex stimulus;
+
+  friend bool operator==(const Presentation&, const Presentation&) = default;
+};
+
+struct Schedule {
+  std::vector<Presentation> presentations;
+  std::vector<int> layout;  ///< class index of the picture at each position
+
+  friend bool operator==(const Schedule&, const Schedule&) = default;
+};
+
+/// The schedule of one participant. Depends on the study's seed, classes, methods and trial options
+/// and on the enrolment number, and on nothing else: the same on every platform.
+/// \param enrolment  from 1
+/// \throws StudyError if the order is impossible for the study
+[[nodiscard]] Schedule make_schedule(const Study& study, int enrolment);
+
+/// Method blocks in a carry-over-balanced order: row (enrolment mod rows) of a Williams design.
+/// \param methods  >= 1
+/// \return method indices, each once
+[[nodiscard]] std::vector<int> williams_row(int methods, int enrolment);
+
+/// Names this rule and its version; the seal commits to it.
+[[nodiscard]] std::string schedule_rule(const Study& study);
+
+}  // namespace touchtrial

@@ -1,0 +1,81 @@
+/// The study file's "classes".
+#include "protocols/design/study_sections.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace touchtrial {
+namespace {
+
+constexpr std::size_t kLongestLabel = 64;   // bytes
+constexpr std::size_t kLongestPath = 1024;  // bytes
+
+/// C0, DEL and C1, whose UTF-8 form is 0xC2 0x80 .. 0xC2 0x9F.
+bool has_control_character(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    if (c < 0x20 || c == 0x7f) return true;
+    const bool c1 =
+        c == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xa0;
+    if (c1) return true;
+  }
+  return false;
+}
+
+std::string read_label(const JsonValue& place) {
+  const std::string& label = place.text();
+  if (label.empty()) place.refuse("is empty; give the class a label");
+  if (label.size() > kLongestLabel) {
+    place.refuse("has " + std::to_string(label.size()) + " bytes, must have at most " +
+                 std::to_string(kLongestLabel) + "; shorten it");
+  }
+  if (has_control_character(label)) place.refuse("has a control character; remove it");
+  if (label.front() == ' ' || label.back() == ' ') {
+    place.refuse("begins or ends with a blank; remove it");
+  }
+  return label;
+}
+
+std::string read_image(const JsonValue& place) {
+  const std::string& path = place.text();
+  if (path.empty()) place.refuse("is empty; give the path of an image");
+  if (path.size() > kLongestPath) {
+    place.refuse("is longer than " + std::to_string(kLongestPath) + " bytes; shorten the path");
+  }
+  if (has_control_character(path)) place.refuse("has a control character; rename the image");
+  return path;
+}
+
+std::vector<std::filesystem::path> read_images(const JsonValue& place) {
+  std::vector<std::filesystem::path> images;
+  std::set<std::string> seen;
+  for (const JsonValue& item : place.items(1, kMaxImagesOfClass)) {
+    const std::string path = read_image(item);
+    if (!seen.insert(path).second) {
+      item.refuse(in_quotes(path) + " is there twice; list each image of a class once");
+    }
+    images.emplace_back(path);
+  }
+  return images;
+}
+
+}  // namespace
+
+std::vector<StudyClass> read_classes(const JsonValue& place) {
+  std::vector<StudyClass> classes;
+  for (const JsonValue& item : place.items(2, kMaxClasses)) {
+    const JsonObject object = item.object({"label", "images"});
+    StudyClass study_class{read_label(object.at("label")), read_images(object.at("images"))};
+    const bool taken = std::any_of(classes.begin(), classes.end(), [&](const StudyClass& other) {
+      return other.label == study_class.label;
+    });
+    if (taken) {
+      object.at("label").refuse(in_quotes(study_class.label) +
+                                " is the label of another class; labels must be unique");
+    }
+    classes.push_back(std::move(study_class));
+  }
+  return classes;
+}
+
+}  // namespace touchtrial

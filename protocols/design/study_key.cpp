@@ -1,0 +1,96 @@
+#include "protocols/design/study_key.hpp"
+
+#include "core/errors.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace touchtrial {
+namespace {
+
+constexpr std::size_t kStudyIdBytes = 16;
+constexpr std::size_t kCodeBytes = 8;
+
+std::string first_hex(const Digest& digest, std::size_t bytes) {
+  return to_hex(ByteView(digest).first(bytes));
+}
+
+/// Depends on what the stimulus is and on nothing around it, so that a code stays with its stimulus
+/// when others come or go.
+std::string code_for(const SecretKey& code_key, const Study& study, const StimulusIndex& stimulus) {
+  const StudyClass& shown = study.classes[static_cast<std::size_t>(stimulus.class_index)];
+  const auto& image = shown.images[static_cast<std::size_t>(stimulus.exemplar)];
+  const auto& method = study.methods[static_cast<std::size_t>(stimulus.method)];
+  const Digest identity = FieldHasher()
+                              .add("touchtrial code 1")
+                              .add(shown.label)
+                              .add(image.string())
+                              .add(name_of(method.method))
+                              .finish();
+  return first_hex(keyed_hash(code_key, ByteView(identity)), kCodeBytes);
+}
+
+std::vector<KeyedStimulus> keyed_stimuli(const SecretKey& master, const Study& study) {
+  const SecretKey code_key = derive_key(master, "codes");
+  std::vector<KeyedStimulus> stimuli;
+  std::set<std::string> codes;
+  for (int c = 0; c < static_cast<int>(study.classes.size()); ++c) {
+    const auto images = static_cast<int>(study.classes[static_cast<std::size_t>(c)].images.size());
+    for (int e = 0; e < images; ++e) {
+      for (int m = 0; m < study.presented_methods(); ++m) {
+        const StimulusIndex stimulus{c, e, m};
+        stimuli.push_back({code_for(code_key, study, stimulus), stimulus});
+        if (codes.insert(stimuli.back().code).second) continue;
+        throw StudyError("study " + study.name + ": /classes/" + std::to_string(c) + "/images/" +
+                         std::to_string(e) +
+                         ": has the code of another stimulus; rename the image or the label");
+      }
+    }
+  }
+  return stimuli;
+}
+
+StudyKey key_from(const SecretKey& master, const SecretKey& nonce, const Study& study,
+                  bool simulated) {
+  StudyKey key;
+  key.master = master;
+  key.nonce = nonce;
+  key.study_id = first_hex(derive_key(master, "identity"), kStudyIdBytes);
+  key.study = study;
+  key.stimuli = keyed_stimuli(master, study);
+  key.simulated = simulated;
+  return key;
+}
+
+}  // namespace
+
+std::optional<StimulusIndex> StudyKey::stimulus_of(const std::string& code) const {
+  const auto found = std::ranges::find(stimuli, code, &KeyedStimulus::code);
+  if (found == stimuli.end()) return std::nullopt;
+  return found->stimulus;
+}
+
+const std::string& StudyKey::code_of(const StimulusIndex& stimulus) const {
+  const auto found = std::ranges::find(stimuli, stimulus, &KeyedStimulus::stimulus);
+  if (found == stimuli.end()) {
+    throw StudyError("study " + study.name + ": does not present class " +
+                     std::to_string(stimulus.class_index) + ", image " +
+                     std::to_string(stimulus.exemplar) + ", method " +
+                     std::to_string(stimulus.method) + "; use the key that was made for it");
+  }
+  return found->code;
+}
+
+StudyKey make_study_key(const Study& study, Entropy& entropy, bool simulated) {
+  const SecretKey master = entropy.secret("touchtrial study key master");
+  const SecretKey nonce = entropy.secret("touchtrial study key nonce");
+  return key_from(master, nonce, study, simulated);
+}
+
+StudyKey rekeyed(const StudyKey& key, const Study& study) {
+  StudyKey changed = key_from(key.master, key.nonce, study, key.simulated);
+  changed.pack_folder = key.pack_folder;
+  return changed;
+}
+
+}  // namespace touchtrial

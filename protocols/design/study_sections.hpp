@@ -1,0 +1,33 @@
+/// \file Readers of the study file's sections, and their JSON form again. For sources only.
+#pragma once
+
+#include "core/strict_json.hpp"
+#include "protocols/design/study.hpp"
+
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+
+/// What a study may have at most. The limits keep schedules, packs and pictures of a size that one
+/// participant, one disk and one screen can take.
+inline constexpr std::size_t kMaxClasses = 64;
+inline constexpr std::size_t kMaxImagesOfClass = 1000;
+inline constexpr std::size_t kMaxMethods = 8;
+inline constexpr int kMaxStimuli = 10'000;
+inline constexpr int kMaxScoredTrials = 10'000;
+
+/// All throw StudyError with the place of what they cannot accept.
+[[nodiscard]] std::vector<StudyClass> read_classes(const JsonValue& place);
+[[nodiscard]] std::vector<ExtractionOptions> read_methods(const JsonValue& place);
+[[nodiscard]] RenderingOptions read_rendering(const JsonValue& place);
+[[nodiscard]] TrialOptions read_trials(const JsonValue& place);
+
+/// The sections as the study file writes them, every key explicit; a method has the keys that
+/// belong to it and no others. Equal options give equal JSON.
+[[nodiscard]] nlohmann::json to_json(const ExtractionOptions& method);
+[[nodiscard]] nlohmann::json to_json(const RenderingOptions& rendering);
+[[nodiscard]] nlohmann::json to_json(const TrialOptions& trials);
+
+}  // namespace touchtrial

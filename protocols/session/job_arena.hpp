@@ -1,0 +1,36 @@
+/// \file Threads for the jobs that a person asked for. Private to protocols/session.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <utility>
+
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+namespace touchtrial {
+
+/// As many threads as asked for, also beyond the processor's number, while the object lives.
+class JobArena {
+ public:
+  explicit JobArena(int jobs)
+      : jobs_(std::min(jobs, kMostJobs)),
+        limit_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(jobs_)),
+        arena_(jobs_) {}
+
+  [[nodiscard]] int jobs() const noexcept { return jobs_; }
+
+  /// Runs `work`; parallel algorithms in it use the arena's threads.
+  template <typename Work>
+  void run(Work work) {
+    arena_.execute(std::move(work));
+  }
+
+ private:
+  static constexpr int kMostJobs = 256;
+  int jobs_;
+  tbb::global_control limit_;
+  tbb::task_arena arena_;
+};
+
+}  // namespace touchtrial

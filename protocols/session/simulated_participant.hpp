@@ -1,0 +1,52 @@
+/// \file A participant who feels: knows the classes by touch, and answers from what was felt.
+#pragma once
+
+#include "core/random.hpp"
+#include "device/simulated_hand.hpp"
+#include "engine/perception/felt_classifier.hpp"
+#include "engine/perception/texture_sense.hpp"
+#include "protocols/session/felt_knowledge.hpp"
+#include "protocols/session/participant.hpp"
+#include "protocols/session/subject_model.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+
+/// In each trial: strokes the plane on a path of its own, perceives the felt intensities with
+/// Weber noise, and names the picture whose class makes them likeliest, bias included; or lapses,
+/// and names any. Everything random comes from the seed, the participant's number, and how many
+/// trials came before. Refers to subject and knowledge, which must outlive it.
+class SimulatedParticipant final : public Participant {
+ public:
+  /// \param number  from 1
+  SimulatedParticipant(const SubjectModel& subject, const FeltKnowledge& knowledge,
+                       std::uint64_t seed, int number);
+
+  /// \throws std::invalid_argument if a class that was learnt has no picture
+  void see_pictures(const std::vector<std::string>& labels) override;
+  [[nodiscard]] HapticDevice& begin_exploring(const PlaneGeometry& plane) override;
+  void feel(const ServoSample& sample) noexcept override;
+  [[nodiscard]] ParticipantAnswer answer() override;
+
+ private:
+  [[nodiscard]] RandomStream stream(const char* purpose) const;
+  [[nodiscard]] std::vector<double> support_of_pictures(RandomStream& random) const;
+
+  const SubjectModel& subject_;
+  const FeltKnowledge& knowledge_;
+  std::uint64_t seed_;
+  int number_;
+  double weber_;
+  FeltClassifier classifier_;
+  TextureSense sense_;
+  std::optional<SimulatedHand> hand_;
+  std::vector<double> bias_;  ///< log odds by position
+  std::vector<std::size_t> picture_of_prototype_;
+  std::uint64_t trials_begun_ = 0;
+};
+
+}  // namespace touchtrial

@@ -1,0 +1,157 @@
+#include "protocols/session/simulation.hpp"
+
+#include "protocols/session/felt_knowledge.hpp"
+#include "protocols/session/job_arena.hpp"
+#include "protocols/session/labelled_fields.hpp"
+#include "protocols/session/simulated_participant.hpp"
+#include "protocols/session/virtual_session.hpp"
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include <tbb/parallel_pipeline.h>
+
+namespace touchtrial {
+namespace {
+
+/// What all sessions of a simulation share, read-only.
+struct Setting {
+  const StudyKey& key;
+  const StimulusSource& source;
+  const SubjectModel& subject;
+  const FeltKnowledge& knowledge;
+  std::uint64_t seed;
+  Digest seal;
+};
+
+/// Who has which session.
+struct Place {
+  int session = 0;
+  int number = 0;  ///< participant's, and enrolment number
+};
+
+/// A session on its way to the database.
+struct FinishedSession {
+  BufferedEvents events;
+  Bytes wrapped_key;
+  SessionTally tally;
+};
+
+std::string participant_id(int number) {
+  constexpr std::size_t kDigits = 3;
+  std::string digits = std::to_string(number);
+  if (digits.size() < kDigits) digits.insert(0, kDigits - digits.size(), '0');
+  return "P" + digits;
+}
+
+SessionOpening opening_of(const Setting& setting, int number) {
+  SessionOpening opening;
+  opening.participant = participant_id(number);
+  opening.enrolment = number;
+  opening.study_id = setting.key.study_id;
+  opening.seal = setting.seal;
+  opening.device = "simulated";
+  opening.simulated = true;
+  return opening;
+}
+
+/// Of the simulation's seed, so that it can be repeated, and of the study's secret.
+SecretKey participant_key(const Setting& setting, int number) {
+  SeededEntropy entropy(setting.seed);
+  const SecretKey drawn = entropy.secret("participant key of " + participant_id(number));
+  return keyed_hash(setting.key.master, ByteView(drawn));
+}
+
+FinishedSession run_session(const Setting& setting, const Place& place) {
+  FinishedSession finished;
+  const SecretKey key = participant_key(setting, place.number);
+  const Schedule schedule = make_schedule(setting.key.study, place.number);
+  Session session(schedule, setting.key.study.trials,
+                  SessionRecorder(place.session, key, finished.events));
+  session.open({}, opening_of(setting, place.number), schedule_to_json(schedule, setting.key));
+  SimulatedParticipant participant(setting.subject, setting.knowledge, setting.seed, place.number);
+  finished.tally = run_session_in_virtual_time(session, setting.key, setting.source, participant);
+  finished.wrapped_key = wrap_participant_key(setting.key.master, place.session, key);
+  return finished;
+}
+
+/// Stores sessions as they come, in order, and counts.
+class Collector {
+ public:
+  Collector(StudyStore& store, const Progress& progress, int participants)
+      : store_(store), progress_(progress), participants_(participants) {
+    const std::vector<Event> file_chain = store.events(0);
+    if (!file_chain.empty()) at_ = file_chain.back().at;
+  }
+
+  void take(const FinishedSession& session) {
+    // Virtual sessions follow each other without a pause.
+    at_ += session.tally.duration;
+    store_.add_session(session.events, session.wrapped_key, at_);
+    ++report_.sessions;
+    report_.presentations += session.tally.presentations;
+    report_.invalid_trials += session.tally.invalid_trials;
+    report_.ticks += session.tally.ticks;
+    if (progress_) progress_(report_.sessions, participants_);
+  }
+  [[nodiscard]] const SimulationReport& report() const noexcept { return report_; }
+
+ private:
+  StudyStore& store_;
+  const Progress& progress_;
+  int participants_;
+  std::chrono::nanoseconds at_{};
+  SimulationReport report_;
+};
+
+void check(const SimulationOptions& options) {
+  if (options.participants < 1 || options.jobs < 1 || options.first_participant < 1) {
+    throw std::invalid_argument(
+        "simulate_study: participants, jobs and first participant start at 1");
+  }
+}
+
+/// Sessions run beside each other; their order in the database is that of the participants.
+void run_sessions(const Setting& setting, const SimulationOptions& options, int first_session,
+                  Collector& collector) {
+  int started = 0;
+  const auto next = [&](tbb::flow_control& flow) {
+    if (started == options.participants) flow.stop();
+    return started++;
+  };
+  using Finished = std::shared_ptr<const FinishedSession>;
+  const auto run = [&](int i) -> Finished {
+    const Place place{first_session + i, options.first_participant + i};
+    return std::make_shared<const FinishedSession>(run_session(setting, place));
+  };
+  const auto store = [&](const Finished& session) { collector.take(*session); };
+  const auto in_order = tbb::filter_mode::serial_in_order;
+  const auto pipeline = tbb::make_filter<void, int>(in_order, next) &
+                        tbb::make_filter<int, Finished>(tbb::filter_mode::parallel, run) &
+                        tbb::make_filter<Finished, void>(in_order, store);
+  JobArena arena(options.jobs);
+  const auto in_flight = 2 * static_cast<std::size_t>(arena.jobs());
+  arena.run([&] { tbb::parallel_pipeline(in_flight, pipeline); });
+}
+
+}  // namespace
+
+SimulationReport simulate_study(const StudyKey& key, const Pack& pack, const SubjectModel& subject,
+                                const SimulationOptions& options, StudyStore& store,
+                                const Progress& progress) {
+  check(options);
+  subject.check_labels(key.study);
+  const StimulusSource source(pack, key.study.rendering);
+  const FeltKnowledge knowledge =
+      learn_by_feeling(LabelledFields(key, source), subject, key.study.rendering.max_force_n,
+                       options.seed, options.jobs);
+  const Setting setting{key, source, subject, knowledge, options.seed, study_seal(key)};
+  Collector collector(store, progress, options.participants);
+  run_sessions(setting, options, store.next_session(), collector);
+  return collector.report();
+}
+
+}  // namespace touchtrial

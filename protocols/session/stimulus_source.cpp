@@ -1,0 +1,33 @@
+#include "protocols/session/stimulus_source.hpp"
+
+#include "core/errors.hpp"
+
+#include <algorithm>
+
+namespace touchtrial {
+
+StimulusSource::StimulusSource(const Pack& pack, const RenderingOptions& rendering)
+    : folder_(pack.folder().string()) {
+  for (const PackEntry& entry : pack.manifest().entries) {
+    fields_.push_back(pack.map(entry.code));
+    const FieldView view = fields_.back().view();
+    models_.emplace(entry.code, PaperModel(view, rendering, entry.gains));
+    if (models_.size() == 1) plane_ = view.geometry;
+    plane_.height_px = std::min(plane_.height_px, view.geometry.height_px);
+    plane_.width_px = std::min(plane_.width_px, view.geometry.width_px);
+  }
+  if (models_.empty()) {
+    throw FileError(one_line(folder_ + ": the pack has no field; run `touchtrial prepare`"));
+  }
+}
+
+const PaperModel& StimulusSource::model(const std::string& code) const {
+  const auto found = models_.find(code);
+  if (found == models_.end()) {
+    throw FileError(
+        one_line(folder_ + ": the pack has no field " + code + "; run `touchtrial prepare`"));
+  }
+  return found->second;
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,58 @@
+/// \file The parameters of a simulated participant. Format: docs/subject-file.md and
+/// config/schema/subject.schema.json.
+#pragma once
+
+#include "protocols/design/study.hpp"
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace touchtrial {
+
+/// A preference for the picture of one class, whatever is felt.
+struct ClassBias {
+  std::string label;
+  double log_odds = 0.0;
+
+  friend bool operator==(const ClassBias&, const ClassBias&) = default;
+};
+
+/// How somebody explores, perceives, errs and answers.
+struct SubjectModel {
+  /// Standard deviation of the noise on the logarithm of every felt intensity, >= 0.
+  double weber = 0.0;
+  /// Differences between participants: each has a Weber fraction of weber * exp(spread * z), z
+  /// standard normal.
+  double weber_spread = 0.0;
+  double lapse = 0.0;  ///< probability of an answer at random, 0 .. 1
+  /// Log odds by which the first picture is preferred to the last, falling evenly in between.
+  double position_bias = 0.0;
+  std::vector<ClassBias> class_bias;
+  /// Pairs of labels whose pictures are matched to each other's feelings.
+  std::vector<std::pair<std::string, std::string>> label_swap;
+  double explore_s = 10.0;  ///< exploration time of a trial, > 0
+  double push_n = 0.7;      ///< > 0
+  double slowest_mm_s = 50.0;
+  double fastest_mm_s = 150.0;
+  int training_passes = 8;  ///< explorations of each stimulus before the first trial, >= 1
+
+  std::string source;  ///< where it was read from, for errors
+
+  /// Whether a label means something in a study.
+  /// \throws StudyError with this file's JSON pointer if a label is none of the study's
+  void check_labels(const Study& study) const;
+};
+
+/// Reads a subject file strictly: unknown keys, wrong types and impossible values are refused.
+/// Keys that are missing have the defaults above.
+/// \throws StudyError with the file, the JSON pointer, and the nearest known key or value
+/// \throws FileError if the file cannot be read
+[[nodiscard]] SubjectModel load_subject_model(const std::filesystem::path& path);
+
+/// The same from text. \param source  names the origin in errors
+[[nodiscard]] SubjectModel parse_subject_model(std::string_view text, const std::string& source);
+
+}  // namespace touchtrial

@@ -1,0 +1,16 @@
+/// \file Finds the first thing in a database that does not hold.
+#pragma once
+
+#include "protocols/store/database.hpp"
+#include "protocols/store/study_store.hpp"
+
+#include <optional>
+
+namespace touchtrial {
+
+/// Looks, in this order, at the file's structure, its chain, every session's chain, what the file's
+/// chain says of the sessions, keys, traces, and the derived tables. Call inside Database::run and
+/// a transaction.
+[[nodiscard]] std::optional<ChainFault> find_first_fault(const Database& database);
+
+}  // namespace touchtrial

@@ -1,0 +1,174 @@
+#include "protocols/store/database.hpp"
+
+#include "protocols/store/database_header.hpp"
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <memory>
+#include <system_error>
+#include <utility>
+
+#include <sqlite3.h>
+#include <unistd.h>
+
+namespace touchtrial {
+namespace {
+
+constexpr int kBusyTimeoutMs = 2000;
+
+/// Absolute, because SQLite gives names such as ":memory:" a meaning of their own.
+std::string absolute_name(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::filesystem::path absolute = std::filesystem::absolute(path, error);
+  return (error ? path : absolute.lexically_normal()).string();
+}
+
+bool may_write(const std::filesystem::path& path) {
+  const std::filesystem::path file = absolute_name(path);
+  return ::access(file.c_str(), W_OK) == 0 &&
+         ::access(file.parent_path().c_str(), W_OK | X_OK) == 0;
+}
+
+/// For a file that nobody is writing to: read without locks and without files beside it.
+std::string immutable_uri(const std::filesystem::path& path) {
+  std::string uri = "file:";
+  for (const char c : absolute_name(path)) {
+    std::array<char, 4> escaped{c};
+    if (c == '%' || c == '?' || c == '#') {
+      std::snprintf(escaped.data(), escaped.size(), "%%%02X", static_cast<unsigned>(c));
+    }
+    uri += escaped.data();
+  }
+  return uri + "?immutable=1";
+}
+
+/// Reading a database in WAL mode takes a log and its index beside it. Where we may write, SQLite
+/// makes and removes them, and what other programs add is seen; where we may not, a file without a
+/// log is complete and can be read as it is.
+SQLite::Database connected(const std::filesystem::path& path, Database::Mode mode) {
+  if (mode == Database::Mode::read_write || may_write(path)) {
+    return {absolute_name(path), SQLite::OPEN_READWRITE, kBusyTimeoutMs};
+  }
+  if (!has_log(path)) {
+    return {immutable_uri(path), SQLite::OPEN_READONLY | SQLite::OPEN_URI, kBusyTimeoutMs};
+  }
+  return {absolute_name(path), SQLite::OPEN_READONLY, kBusyTimeoutMs};
+}
+
+void set_up(SQLite::Database& connection, Database::Mode mode) {
+  connection.exec(
+      "PRAGMA foreign_keys = ON; PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON;");
+  connection.exec(mode == Database::Mode::read_only
+                      ? "PRAGMA query_only = ON;"
+                      : "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; "
+                        "PRAGMA secure_delete = ON;");
+}
+
+/// What failed and what to do about it, from SQLite's primary result code.
+std::string explanation(int code, const std::string& message) {
+  switch (code) {
+    case SQLITE_BUSY:
+    case SQLITE_LOCKED:
+      return "is in use by another program; close it there, or wait, and try again";
+    case SQLITE_READONLY:
+      return "cannot be written; open it for writing, and check its permissions";
+    case SQLITE_CORRUPT:
+    case SQLITE_NOTADB:
+      return "is damaged (" + message + "); restore it from a backup";
+    case SQLITE_FULL:
+      return "cannot grow; free space on its disk";
+    case SQLITE_CANTOPEN:
+      return "cannot be opened; check that its folder exists and may be written, and no -wal file "
+             "was left beside it";
+    case SQLITE_IOERR:
+      return "reading or writing failed (" + message + "); check the disk";
+    default:
+      return "refused by the database (" + message + "); run `touchtrial verify`";
+  }
+}
+
+StoreError translated(const std::filesystem::path& path, const SQLite::Exception& error) {
+  const int primary_code = error.getErrorCode() & 0xff;
+  return StoreError(one_line(path.string() + ": " + explanation(primary_code, error.what())));
+}
+
+/// Made exclusively: of two programs that create it at once, one is refused.
+void make_empty_file(const std::filesystem::path& path) {
+  std::FILE* file = std::fopen(path.c_str(), "wbx");
+  if (file == nullptr) {
+    const bool exists = errno == EEXIST;
+    throw StoreError(one_line(path.string()) +
+                     (exists
+                          ? ": exists already; choose another name or continue with it"
+                          : ": cannot be made; check that its folder exists and may be written"));
+  }
+  std::fclose(file);
+}
+
+}  // namespace
+
+Database Database::create(const std::filesystem::path& path) {
+  make_empty_file(path);
+  try {
+    Database database(path, connected(path, Mode::read_write));
+    // Large pages suit large traces; the application_id tells our files from others. A file that
+    // holds nothing need not be safe yet: the first transaction's sync covers this.
+    database.connection_.exec("PRAGMA synchronous = OFF; PRAGMA page_size = 8192;");
+    database.connection_.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
+    set_up(database.connection_, Mode::read_write);
+    return database;
+  } catch (const SQLite::Exception& error) {
+    std::error_code ignored;
+    std::filesystem::remove(path, ignored);
+    throw translated(path, error);
+  }
+}
+
+Database Database::open(const std::filesystem::path& path, Mode mode, int newest_version) {
+  check_header(path, newest_version);
+  try {
+    Database database(path, connected(path, mode));
+    if (mode == Mode::read_write &&
+        sqlite3_db_readonly(database.connection_.getHandle(), "main") == 1) {
+      throw StoreError(database.refusal("cannot be written; check its permissions"));
+    }
+    set_up(database.connection_, mode);
+    // SQLite opens files lazily: what is wrong with this one shows when its schema is read.
+    database.connection_.execAndGet("SELECT count(*) FROM sqlite_schema");
+    return database;
+  } catch (const SQLite::Exception& error) {
+    throw translated(path, error);
+  }
+}
+
+Query Database::query(const char* sql) const {
+  auto found = statements_.find(sql);
+  if (found == statements_.end()) {
+    found = statements_.try_emplace(sql, connection_, sql).first;
+  }
+  return Query(found->second);
+}
+
+Query Database::separate_query(const char* sql) const {
+  return Query(std::make_unique<SQLite::Statement>(connection_, sql));
+}
+
+SQLite::Transaction Database::write_transaction() const {
+  return SQLite::Transaction(connection_, SQLite::TransactionBehavior::IMMEDIATE);
+}
+
+bool Database::checkpoint() const {
+  Query query = separate_query("PRAGMA wal_checkpoint(TRUNCATE)");
+  return query.step() && query.integer(0) == 0;
+}
+
+std::string Database::refusal(const std::string& text) const {
+  return one_line(path_.string() + ": " + text);
+}
+
+StoreError Database::refusal_of(const SQLite::Exception& error) const {
+  return translated(path_, error);
+}
+
+}  // namespace touchtrial

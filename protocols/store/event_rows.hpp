@@ -1,0 +1,41 @@
+/// \file Events and traces as rows of tables. Private to protocols/store.
+/// All functions throw SQLite::Exception; call them inside Database::run.
+#pragma once
+
+#include "protocols/store/database.hpp"
+#include "protocols/store/event.hpp"
+#include "protocols/store/session_recorder.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace touchtrial {
+
+using EventVisitor = std::function<void(const Event&)>;
+
+void insert_event(const Database& database, const Event& event);
+void insert_trace(const Database& database, const SealedTrace& trace);
+
+/// Which events are asked for; what is not given may be anything.
+struct EventFilter {
+  std::optional<std::int64_t> session;
+  std::optional<std::int64_t> sequence;
+  std::optional<EventKind> kind;
+};
+
+/// Calls `visit` for the events that the filter names, by session and sequence; it may ask anything
+/// of the database.
+/// \throws EventFault if a row is no event: unknown kind, or a hash of another length
+void for_each_event(const Database& database, const EventFilter& filter, const EventVisitor& visit);
+/// All of one chain.
+void for_each_event(const Database& database, std::int64_t session, const EventVisitor& visit);
+/// One event, if it exists. \throws the same
+[[nodiscard]] std::optional<Event> read_event(const Database& database, int session,
+                                              std::int64_t sequence);
+
+/// Every number but 0 that an event gives as its session, ascending.
+[[nodiscard]] std::vector<std::int64_t> sessions_with_events(const Database& database);
+
+}  // namespace touchtrial

@@ -1,0 +1,43 @@
+/// \file What the file's chain says of the study and its sessions.
+#pragma once
+
+#include "protocols/store/event.hpp"
+#include "protocols/store/payload_json.hpp"
+
+#include <cstdint>
+#include <map>
+#include <optional>
+
+namespace touchtrial {
+
+/// One session as the file's chain knows it.
+struct SessionOnFile {
+  SessionOpenedBody opened;
+  std::int64_t opened_at = 0;  ///< sequence on the file's chain
+  std::optional<SessionClosedBody> closed;
+  bool withdrawn = false;
+};
+
+/// The events of the file's chain in order, held against each other.
+class FileChain {
+ public:
+  /// \throws EventFault if the event cannot come after those before
+  void add(const Event& event);
+
+  /// Empty only before the first event.
+  [[nodiscard]] const std::optional<StudyCommitment>& commitment() const { return commitment_; }
+  [[nodiscard]] const std::map<int, SessionOnFile>& sessions() const { return sessions_; }
+
+ private:
+  void commit(const Event& event);
+  void open_session(const Event& event);
+  void close_session(const Event& event);
+  void withdraw(const Event& event);
+  [[nodiscard]] SessionOnFile& known(const Event& event, int session);
+
+  std::optional<StudyCommitment> commitment_;
+  std::map<int, SessionOnFile> sessions_;
+  bool closed_ = false;
+};
+
+}  // namespace touchtrial

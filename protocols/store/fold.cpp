@@ -1,0 +1,170 @@
+#include "protocols/store/fold.hpp"
+
+#include "protocols/store/event_fault.hpp"
+#include "protocols/store/payload_json.hpp"
+
+#include <string>
+
+namespace touchtrial {
+namespace {
+
+[[noreturn]] void refuse(const Event& event, const std::string& why) {
+  throw EventFault(event.session, event.sequence, why);
+}
+
+[[noreturn]] void refuse_trial(const Event& event, int trial, const char* why) {
+  refuse(event, "trial " + std::to_string(trial) + " " + why);
+}
+
+void open_session(DerivedRows& rows, const Event& event) {
+  if (event.sequence != 0) refuse(event, "a session is opened by its first event only");
+  const SessionOpening opening = body_of(event, opening_from_json);
+  rows.sessions[event.session] = {.session = event.session,
+                                  .participant = opening.participant,
+                                  .enrolment = opening.enrolment,
+                                  .state = SessionState::open,
+                                  .simulated = opening.simulated,
+                                  .pilot = opening.pilot,
+                                  .excluded = false,
+                                  .withdrawn = false,
+                                  .device = opening.device};
+}
+
+SessionRow& open_row(DerivedRows& rows, const Event& event) {
+  const auto found = rows.sessions.find(event.session);
+  if (found == rows.sessions.end()) refuse(event, "the session has not been opened");
+  if (found->second.state != SessionState::open) refuse(event, "the session is already closed");
+  return found->second;
+}
+
+void present_trial(DerivedRows& rows, const Event& event) {
+  const TrialBody body = body_of(event, trial_from_json);
+  const TrialId id(event.session, body.trial);
+  const auto before = rows.trials.find(id);
+  if (before != rows.trials.end()) {
+    // After an interruption a trial may be presented anew; a response or a trace settles it.
+    const TrialRow& row = before->second;
+    if (row.position) refuse_trial(event, body.trial, "is presented again after its answer");
+    if (row.samples > 0) refuse_trial(event, body.trial, "is presented again after its trace");
+  }
+  TrialRow row;
+  row.session = event.session;
+  row.trial = body.trial;
+  row.block = body.block;
+  row.state = TrialState::presented;
+  row.presented_at = event.at;
+  rows.trials[id] = row;
+}
+
+TrialRow& presented_row(DerivedRows& rows, const Event& event, int trial) {
+  const auto found = rows.trials.find({event.session, trial});
+  if (found == rows.trials.end()) refuse_trial(event, trial, "has not been presented");
+  return found->second;
+}
+
+/// A trial that still waits for its answer; after a timeout it may still come.
+TrialRow& waiting_row(DerivedRows& rows, const Event& event, int trial) {
+  TrialRow& row = presented_row(rows, event, trial);
+  if (row.state == TrialState::answered) refuse_trial(event, trial, "is already answered");
+  if (row.state == TrialState::interrupted) refuse_trial(event, trial, "was interrupted");
+  return row;
+}
+
+void touch_plane(DerivedRows& rows, const Event& event) {
+  const int trial = body_of(event, trial_from_json).trial;
+  TrialRow& row = waiting_row(rows, event, trial);
+  if (!row.contact_at) row.contact_at = event.at;
+}
+
+void answer_trial(DerivedRows& rows, const Event& event) {
+  const AnswerBody body = body_of(event, answer_from_json);
+  TrialRow& row = waiting_row(rows, event, body.trial);
+  row.state = TrialState::answered;
+  row.answered_at = event.at;
+  row.position = body.position;
+  row.first_position = body.first_position;
+  row.confidence = body.confidence;
+}
+
+void end_trial(DerivedRows& rows, const Event& event, TrialState state) {
+  const int trial = body_of(event, trial_from_json).trial;
+  waiting_row(rows, event, trial).state = state;
+}
+
+void measure_trial(DerivedRows& rows, const Event& event) {
+  const TraceBody body = body_of(event, trace_body_from_json);
+  TrialRow& row = presented_row(rows, event, body.trial);
+  row.valid = body.valid;
+  row.overruns = body.overruns;
+  row.samples = body.samples;
+  row.rate_hz = body.rate_hz;
+}
+
+void close_session(DerivedRows& rows, const Event& event) {
+  const bool complete = body_of(event, completion_from_json);
+  open_row(rows, event).state = complete ? SessionState::completed : SessionState::stopped;
+}
+
+void mark_participant(DerivedRows& rows, const Event& event, bool SessionRow::*mark) {
+  const int session = body_of(event, participant_from_json).session;
+  const auto found = rows.sessions.find(session);
+  if (found == rows.sessions.end()) refuse(event, "there is no session " + std::to_string(session));
+  found->second.*mark = true;
+}
+
+void fold_session_event(DerivedRows& rows, const Event& event) {
+  open_row(rows, event);
+  switch (event.kind) {
+    case EventKind::presented:
+      return present_trial(rows, event);
+    case EventKind::first_contact:
+      return touch_plane(rows, event);
+    case EventKind::answered:
+      return answer_trial(rows, event);
+    case EventKind::interrupted:
+      return end_trial(rows, event, TrialState::interrupted);
+    case EventKind::timed_out:
+      return end_trial(rows, event, TrialState::timed_out);
+    case EventKind::trace_stored:
+      return measure_trial(rows, event);
+    case EventKind::closed:
+      return close_session(rows, event);
+    default:
+      return;  // remarks change no row
+  }
+}
+
+bool is_about_a_trial(EventKind kind) {
+  return kind >= EventKind::presented && kind <= EventKind::trace_stored;
+}
+
+bool is_about_a_participant(EventKind kind) {
+  return kind == EventKind::participant_excluded || kind == EventKind::participant_withdrawn;
+}
+
+}  // namespace
+
+FoldScope scope_of(const Event& event) {
+  if (is_about_a_participant(event.kind)) {
+    return {.session = body_of(event, participant_from_json).session, .trial = {}};
+  }
+  if (belongs_to_file_chain(event.kind)) return {};
+  FoldScope scope{.session = event.session, .trial = {}};
+  if (is_about_a_trial(event.kind)) {
+    scope.trial = TrialId(event.session, body_of(event, trial_from_json).trial);
+  }
+  return scope;
+}
+
+void fold(DerivedRows& rows, const Event& event) {
+  if (event.kind == EventKind::opened) return open_session(rows, event);
+  if (event.kind == EventKind::participant_excluded) {
+    return mark_participant(rows, event, &SessionRow::excluded);
+  }
+  if (event.kind == EventKind::participant_withdrawn) {
+    return mark_participant(rows, event, &SessionRow::withdrawn);
+  }
+  if (!belongs_to_file_chain(event.kind)) fold_session_event(rows, event);
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,93 @@
+#include "protocols/store/json_object.hpp"
+
+#include "core/errors.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace touchtrial {
+namespace {
+
+[[noreturn]] void refuse(const char* key, const char* why) {
+  throw StoreError(std::string("/") + key + " " + why);
+}
+
+}  // namespace
+
+std::string compact(const nlohmann::json& object) {
+  try {
+    return object.dump();
+  } catch (const nlohmann::json::exception&) {
+    throw StoreError("a text to be stored is not UTF-8; type it again without special characters");
+  }
+}
+
+double finite(double value, const char* key) {
+  if (!std::isfinite(value)) refuse(key, "to be stored is not a finite number; check the device");
+  return value;
+}
+
+JsonObject::JsonObject(const std::string& text)
+    : object_(nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false)) {
+  if (!object_.is_object()) throw StoreError("the body is not a JSON object");
+}
+
+const nlohmann::json& JsonObject::at(const char* key) const {
+  const auto found = object_.find(key);
+  if (found == object_.end()) refuse(key, "is missing");
+  return *found;
+}
+
+std::string JsonObject::text(const char* key) const {
+  const nlohmann::json& value = at(key);
+  if (!value.is_string()) refuse(key, "is not a text");
+  return value.get<std::string>();
+}
+
+bool JsonObject::flag(const char* key) const {
+  const nlohmann::json& value = at(key);
+  if (!value.is_boolean()) refuse(key, "is neither true nor false");
+  return value.get<bool>();
+}
+
+double JsonObject::number(const char* key) const {
+  const nlohmann::json& value = at(key);
+  if (!value.is_number()) refuse(key, "is not a number");
+  return value.get<double>();
+}
+
+Digest JsonObject::digest(const char* key) const {
+  const nlohmann::json& value = at(key);
+  const std::optional<Digest> digest =
+      value.is_string() ? digest_from_hex(value.get_ref<const std::string&>()) : std::nullopt;
+  if (!digest) refuse(key, "is not 64 hexadecimal digits");
+  return *digest;
+}
+
+std::int64_t JsonObject::integer(const char* key, std::int64_t least, std::int64_t most) const {
+  const nlohmann::json& value = at(key);
+  // Beyond 2^63 the parser makes an unsigned number, which a cast would turn negative.
+  const bool too_large =
+      value.is_number_unsigned() &&
+      value.get<std::uint64_t>() > std::uint64_t{std::numeric_limits<std::int64_t>::max()};
+  if (!value.is_number_integer() || too_large) refuse(key, "is not a whole number");
+  const auto number = value.get<std::int64_t>();
+  if (number < least || number > most) refuse(key, "is out of range");
+  return number;
+}
+
+int JsonObject::count(const char* key, int least) const {
+  return static_cast<int>(integer(key, least, std::numeric_limits<int>::max()));
+}
+
+std::optional<int> JsonObject::optional_count(const char* key, int least) const {
+  if (!object_.contains(key)) return std::nullopt;
+  return count(key, least);
+}
+
+std::optional<std::string> JsonObject::optional_text(const char* key) const {
+  if (!object_.contains(key)) return std::nullopt;
+  return text(key);
+}
+
+}  // namespace touchtrial

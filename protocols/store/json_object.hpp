@@ -1,0 +1,46 @@
+/// \file Strict reading of one JSON object, and its compact form with sorted keys.
+/// Private to protocols/store: the only header here that shows nlohmann-json.
+#pragma once
+
+#include "core/hash.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+
+/// \throws StoreError if a text in it is not UTF-8
+[[nodiscard]] std::string compact(const nlohmann::json& object);
+
+/// JSON has no infinities. \return `value` \throws StoreError naming `key` if it is not finite
+[[nodiscard]] double finite(double value, const char* key);
+
+/// A parsed object whose members are asked for by key and type. Every member function throws
+/// StoreError, naming the key, if the value is missing or not what is asked for.
+class JsonObject {
+ public:
+  /// \throws StoreError if the text is not one JSON object
+  explicit JsonObject(const std::string& text);
+
+  [[nodiscard]] std::string text(const char* key) const;
+  [[nodiscard]] bool flag(const char* key) const;
+  [[nodiscard]] double number(const char* key) const;
+  [[nodiscard]] Digest digest(const char* key) const;
+  /// A whole number in [least, most].
+  [[nodiscard]] std::int64_t integer(const char* key, std::int64_t least, std::int64_t most) const;
+  /// A whole number in [least, largest int].
+  [[nodiscard]] int count(const char* key, int least) const;
+  /// The same, or nothing if the key is absent.
+  [[nodiscard]] std::optional<int> optional_count(const char* key, int least) const;
+  [[nodiscard]] std::optional<std::string> optional_text(const char* key) const;
+
+ private:
+  [[nodiscard]] const nlohmann::json& at(const char* key) const;
+
+  nlohmann::json object_;
+};
+
+}  // namespace touchtrial

@@ -1,0 +1,135 @@
+#include "protocols/store/schema.hpp"
+
+#include <array>
+#include <string>
+
+#include <SQLiteCpp/Backup.h>
+
+namespace touchtrial {
+namespace {
+
+// Events and traces are only ever added. REPLACE deletes without a delete trigger, so that inserts
+// over an existing row are refused as well.
+constexpr const char* kEvidence = R"sql(
+CREATE TABLE events(
+  session  INTEGER NOT NULL,
+  sequence INTEGER NOT NULL,
+  kind     TEXT NOT NULL,
+  at_ns    INTEGER NOT NULL,
+  body     TEXT NOT NULL,
+  sealed   BLOB NOT NULL,
+  previous BLOB NOT NULL,
+  hash     BLOB NOT NULL,
+  PRIMARY KEY(session, sequence)
+) STRICT, WITHOUT ROWID;
+CREATE TABLE traces(
+  session INTEGER NOT NULL,
+  trial   INTEGER NOT NULL,
+  box     BLOB NOT NULL,
+  PRIMARY KEY(session, trial)
+) STRICT;
+CREATE TABLE participant_keys(
+  session INTEGER PRIMARY KEY,
+  wrapped BLOB NOT NULL
+) STRICT;
+
+CREATE TRIGGER events_no_update BEFORE UPDATE ON events
+  BEGIN SELECT RAISE(ABORT, 'events are append-only'); END;
+CREATE TRIGGER events_no_delete BEFORE DELETE ON events
+  BEGIN SELECT RAISE(ABORT, 'events are append-only'); END;
+CREATE TRIGGER events_no_replace BEFORE INSERT ON events
+  WHEN EXISTS(SELECT 1 FROM events WHERE session = NEW.session AND sequence = NEW.sequence)
+  BEGIN SELECT RAISE(ABORT, 'events are append-only'); END;
+CREATE TRIGGER traces_no_update BEFORE UPDATE ON traces
+  BEGIN SELECT RAISE(ABORT, 'traces are append-only'); END;
+CREATE TRIGGER traces_no_delete BEFORE DELETE ON traces
+  BEGIN SELECT RAISE(ABORT, 'traces are append-only'); END;
+CREATE TRIGGER traces_no_replace BEFORE INSERT ON traces
+  WHEN EXISTS(SELECT 1 FROM traces WHERE session = NEW.session AND trial = NEW.trial)
+  BEGIN SELECT RAISE(ABORT, 'traces are append-only'); END;
+)sql";
+
+constexpr const char* kDerived = R"sql(
+CREATE TABLE sessions(
+  session     INTEGER PRIMARY KEY,
+  participant TEXT NOT NULL UNIQUE,
+  enrolment   INTEGER NOT NULL UNIQUE,
+  state       TEXT NOT NULL,
+  simulated   INTEGER NOT NULL,
+  pilot       INTEGER NOT NULL,
+  excluded    INTEGER NOT NULL,
+  withdrawn   INTEGER NOT NULL,
+  device      TEXT NOT NULL
+) STRICT;
+CREATE TABLE trials(
+  session         INTEGER NOT NULL REFERENCES sessions(session),
+  trial           INTEGER NOT NULL,
+  block           INTEGER NOT NULL,
+  state           TEXT NOT NULL,
+  presented_at_ns INTEGER NOT NULL,
+  contact_at_ns   INTEGER,
+  valid           INTEGER NOT NULL,
+  overruns        INTEGER NOT NULL,
+  samples         INTEGER NOT NULL,
+  rate_hz         REAL NOT NULL,
+  PRIMARY KEY(session, trial)
+) STRICT, WITHOUT ROWID;
+CREATE TABLE responses(
+  session        INTEGER NOT NULL,
+  trial          INTEGER NOT NULL,
+  answered_at_ns INTEGER NOT NULL,
+  position       INTEGER NOT NULL,
+  first_position INTEGER,
+  confidence     INTEGER,
+  PRIMARY KEY(session, trial),
+  FOREIGN KEY(session, trial) REFERENCES trials(session, trial)
+) STRICT, WITHOUT ROWID;
+)sql";
+
+void make_first_version(SQLite::Database& database) {
+  database.exec(kEvidence);
+  database.exec(kDerived);
+}
+
+constexpr std::array<Migration, kSchemaVersion> kMigrations = {make_first_version};
+
+void back_up(const Database& database, int version) {
+  const std::filesystem::path copy = backup_path(database.path(), version);
+  if (std::filesystem::exists(copy)) {
+    throw StoreError(database.refusal("cannot be brought to this version: its backup " +
+                                      copy.string() + " exists already; move that away"));
+  }
+  SQLite::Database target(copy.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  SQLite::Backup(target, database.connection()).executeStep(-1);
+}
+
+}  // namespace
+
+std::span<const Migration> migrations() {
+  return kMigrations;
+}
+
+int schema_version(const Database& database) {
+  return database.connection().execAndGet("PRAGMA user_version").getInt();
+}
+
+std::filesystem::path backup_path(const std::filesystem::path& database, int version) {
+  return database.string() + ".v" + std::to_string(version) + ".backup";
+}
+
+void migrate(const Database& database, std::span<const Migration> steps) {
+  database.run([&] {
+    const int version = schema_version(database);
+    if (version >= static_cast<int>(steps.size())) return;
+    if (version > 0) back_up(database, version);
+    SQLite::Transaction transaction = database.write_transaction();
+    for (const Migration step : steps.subspan(static_cast<std::size_t>(version))) {
+      step(database.connection());
+    }
+    database.connection().exec("PRAGMA user_version = " + std::to_string(steps.size()));
+    transaction.commit();
+    if (version > 0) database.checkpoint();
+  });
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,30 @@
+/// \file The tables, and how older databases become newer ones.
+/// Format: docs/data-dictionary.md, "Database".
+#pragma once
+
+#include "protocols/store/database.hpp"
+
+#include <filesystem>
+#include <span>
+
+namespace touchtrial {
+
+inline constexpr int kSchemaVersion = 1;
+
+/// One step forward; runs inside a transaction.
+using Migration = void (*)(SQLite::Database&);
+
+/// migrations()[v] makes version v + 1 of version v; version 0 is an empty database.
+[[nodiscard]] std::span<const Migration> migrations();
+
+/// Brings a database to version `steps.size()` in one transaction. Unless it is empty, a copy of it
+/// is laid at backup_path first.
+/// \throws StoreError if a step fails, which leaves the database as it was, or the copy exists
+void migrate(const Database& database, std::span<const Migration> steps);
+
+[[nodiscard]] int schema_version(const Database& database);
+
+/// `<db>.v<version>.backup`
+[[nodiscard]] std::filesystem::path backup_path(const std::filesystem::path& database, int version);
+
+}  // namespace touchtrial

@@ -1,0 +1,33 @@
+/// \file How sessions get into a database: event by event, or whole.
+/// Private to protocols/store.
+#pragma once
+
+#include "protocols/store/chain_link.hpp"
+#include "protocols/store/stored_study.hpp"
+
+namespace touchtrial {
+
+/// The durable sink: every event is one transaction.
+class StoredSession final : public EventSink {
+ public:
+  /// \param study  must outlive this
+  StoredSession(StoredStudy& study, int session, Bytes wrapped_key, UtcClock utc);
+
+  void accept(const Event& event, const std::optional<SealedTrace>& trace) override;
+
+ private:
+  void store(const Event& event, const std::optional<SealedTrace>& trace);
+
+  StoredStudy& study_;
+  ChainLink chain_;
+  Bytes wrapped_key_;
+  UtcClock utc_;
+};
+
+/// Holds the events of a finished session against each other. \throws StoreError, EventFault
+void check_whole_session(const StoredStudy& study, const BufferedEvents& session);
+/// Stores it. \pre inside a write transaction, and check_whole_session found no fault
+void store_whole_session(StoredStudy& study, const BufferedEvents& session,
+                         const Bytes& wrapped_key, std::chrono::nanoseconds at);
+
+}  // namespace touchtrial

@@ -1,0 +1,168 @@
+#include "protocols/store/stored_study.hpp"
+
+#include "protocols/store/chain_link.hpp"
+#include "protocols/store/derived_rows.hpp"
+#include "protocols/store/event_rows.hpp"
+#include "protocols/store/payload_json.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace touchtrial {
+namespace {
+
+constexpr std::size_t kLongestParticipant = 32;
+
+bool is_participant_id(const std::string& id) {
+  const auto allowed = [](char c) {
+    return (c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '+' ||
+           c == '-' || c == '_';
+  };
+  return !id.empty() && id.size() <= kLongestParticipant &&
+         std::all_of(id.begin(), id.end(), allowed);
+}
+
+std::optional<Event> last_event(const Database& database, int session) {
+  Query query = database.query("SELECT max(sequence) FROM events WHERE session = ?");
+  query.bind(session);
+  if (!query.step() || query.is_null(0)) return std::nullopt;
+  return read_event(database, session, query.integer(0));
+}
+
+bool is_closed(const Database& database) {
+  return database.query("SELECT 1 FROM events WHERE session = 0 AND kind = 'study-closed'").step();
+}
+
+}  // namespace
+
+void StoredStudy::refuse(const std::string& text) const {
+  throw StoreError(database_.refusal(text));
+}
+
+void StoredStudy::require_reason(const std::string& reason, const std::string& what) const {
+  if (reason.empty()) refuse(what + " needs a reason, which is recorded; give one");
+}
+
+const StudyCommitment& StoredStudy::commitment() const {
+  if (!commitment_) {
+    const std::optional<Event> first = read_event(database_, 0, 0);
+    if (!first) refuse("its first event is missing; run `touchtrial verify`");
+    commitment_ = body_of(*first, commitment_from_json);
+  }
+  return *commitment_;
+}
+
+StudyState StoredStudy::state() const {
+  StudyState state;
+  state.closed = is_closed(database_);
+  const EventFilter unblindings{.session = 0, .sequence = {}, .kind = EventKind::study_unblinded};
+  for_each_event(database_, unblindings, [&](const Event& event) {
+    state.unblinded = true;
+    state.unblinding_reason = body_of(event, unblinding_from_json).reason;
+  });
+  return state;
+}
+
+int StoredStudy::next_session() const {
+  Query query = database_.query("SELECT max(session) FROM events");
+  const std::int64_t last = query.step() ? query.integer(0) : 0;
+  if (last < 0 || last >= std::numeric_limits<int>::max()) {
+    refuse("has events of session " + std::to_string(last) + "; run `touchtrial verify`");
+  }
+  return static_cast<int>(last) + 1;
+}
+
+SessionRow StoredStudy::session(int session) const {
+  const DerivedRows rows = read_rows(database_, {.session = session, .trial = {}});
+  if (rows.sessions.empty()) {
+    refuse("there is no session " + std::to_string(session) +
+           "; see the sessions with `touchtrial report`");
+  }
+  return rows.sessions.begin()->second;
+}
+
+void StoredStudy::append_to_file(EventKind kind, std::chrono::nanoseconds at,
+                                 const std::string& body) {
+  const std::optional<Event> last = last_event(database_, 0);
+  Event event{.session = 0,
+              .sequence = last ? last->sequence + 1 : 0,
+              .kind = kind,
+              .at = at,
+              .body = body,
+              .sealed = {},
+              .previous = last ? last->hash : Digest{},
+              .hash = {}};
+  event.hash = event_hash(event);
+  append(event, std::nullopt);
+}
+
+void StoredStudy::append(const Event& event, const std::optional<SealedTrace>& trace) {
+  DerivedRows rows = read_rows(database_, scope_of(event));
+  fold(rows, event);
+  insert_event(database_, event);
+  if (trace) insert_trace(database_, *trace);
+  write_rows(database_, rows);
+}
+
+void StoredStudy::admit(const Event& opened, const Bytes& wrapped_key,
+                        std::chrono::nanoseconds at) {
+  if (is_closed(database_)) refuse("the study is closed; it takes no more sessions");
+  if (opened.session != next_session()) {
+    refuse("session " + std::to_string(opened.session) + " is not the next one (" +
+           std::to_string(next_session()) + "); another program may have taken it, start again");
+  }
+  if (opened.kind != EventKind::opened) {
+    throw EventFault(opened.session, opened.sequence, "a session begins with 'opened'");
+  }
+  const SessionOpening opening = body_of(opened, opening_from_json);
+  check_opening(opening);
+  append_to_file(EventKind::session_opened, at,
+                 to_json(SessionOpenedBody{.session = opened.session,
+                                           .participant = opening.participant,
+                                           .enrolment = opening.enrolment,
+                                           .first = opened.hash,
+                                           .key = sha256(wrapped_key)}));
+  database_.query("INSERT INTO participant_keys(session, wrapped) VALUES(?,?)")
+      .bind(opened.session)
+      .bind(wrapped_key)
+      .run();
+}
+
+void StoredStudy::conclude(const Event& closed, std::chrono::nanoseconds at) {
+  append_to_file(EventKind::session_closed, at,
+                 to_json(SessionClosedBody{.session = closed.session,
+                                           .length = closed.sequence + 1,
+                                           .head = closed.hash,
+                                           .complete = body_of(closed, completion_from_json)}));
+}
+
+void StoredStudy::check_opening(const SessionOpening& opening) const {
+  if (opening.study_id != commitment().study_id || opening.seal != commitment().seal) {
+    refuse("is the database of another study, or of this one before it was changed (" +
+           commitment().study + ", id " + commitment().study_id +
+           "); use that study's file and key, or another database");
+  }
+  if (!is_participant_id(opening.participant)) {
+    refuse("'" + opening.participant +
+           "' is no participant id; use 1 to 32 of 0-9, A-Z, a-z, '+', '-', '_'");
+  }
+  refuse_if_taken(opening);
+}
+
+void StoredStudy::refuse_if_taken(const SessionOpening& opening) const {
+  Query query = database_.query(
+      "SELECT session, participant FROM sessions WHERE participant = ?1 OR enrolment = ?2 "
+      "ORDER BY participant = ?1 DESC");
+  query.bind(opening.participant).bind(opening.enrolment);
+  if (!query.step()) return;
+  const std::string session = "session " + std::to_string(query.integer(0));
+  if (query.text(1) == opening.participant) {
+    refuse("participant " + opening.participant + " already has " + session +
+           "; give another participant id");
+  }
+  refuse("enrolment " + std::to_string(opening.enrolment) + ", asked for participant " +
+         opening.participant + ", belongs to participant " + query.text(1) + " (" + session +
+         "); give the next free number");
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,55 @@
+/// \file A study in its database: what every operation of StudyStore is made of.
+/// Private to protocols/store. Call everything here inside Database::run, and what writes inside a
+/// write transaction.
+#pragma once
+
+#include "protocols/store/database.hpp"
+#include "protocols/store/study_store.hpp"
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+
+namespace touchtrial {
+
+class StoredStudy {
+ public:
+  explicit StoredStudy(Database opened) : database_(std::move(opened)) {}
+
+  [[nodiscard]] const Database& database() const noexcept { return database_; }
+
+  /// The first event's body; read once. \throws StoreError if there is none
+  [[nodiscard]] const StudyCommitment& commitment() const;
+  [[nodiscard]] StudyState state() const;
+  [[nodiscard]] int next_session() const;
+  /// \throws StoreError if there is no such session
+  [[nodiscard]] SessionRow session(int session) const;
+
+  /// Adds an event to the file's chain, and to the derived rows what it means.
+  void append_to_file(EventKind kind, std::chrono::nanoseconds at, const std::string& body);
+  /// Adds an event of a session, and to the derived rows what it means.
+  void append(const Event& event, const std::optional<SealedTrace>& trace);
+
+  /// Lets a session in: its key, and its opening on the file's chain.
+  /// \throws StoreError if the study is closed, the session is not the next, belongs to another
+  ///   study, or its participant or enrolment is taken (by which session)
+  void admit(const Event& opened, const Bytes& wrapped_key, std::chrono::nanoseconds at);
+  /// A session's end on the file's chain. \param closed  its last event
+  void conclude(const Event& closed, std::chrono::nanoseconds at);
+
+  /// \throws StoreError with the file's name before `text`
+  [[noreturn]] void refuse(const std::string& text) const;
+  /// \throws StoreError naming `what` if `reason` is empty
+  void require_reason(const std::string& reason, const std::string& what) const;
+
+ private:
+  void check_opening(const SessionOpening& opening) const;
+  void refuse_if_taken(const SessionOpening& opening) const;
+
+  Database database_;
+  mutable std::optional<StudyCommitment> commitment_;
+};
+
+}  // namespace touchtrial

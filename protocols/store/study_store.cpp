@@ -1,0 +1,233 @@
+#include "protocols/store/study_store.hpp"
+
+#include "protocols/store/chain_check.hpp"
+#include "protocols/store/derived_rows.hpp"
+#include "protocols/store/event_rows.hpp"
+#include "protocols/store/payload_json.hpp"
+#include "protocols/store/schema.hpp"
+#include "protocols/store/stored_session.hpp"
+#include "protocols/store/stored_study.hpp"
+
+#include <system_error>
+#include <utility>
+
+namespace touchtrial {
+namespace {
+
+void remove_database(const std::filesystem::path& path) {
+  for (const char* const suffix : {"", "-wal", "-shm"}) {
+    std::error_code ignored;
+    std::filesystem::remove(path.string() + suffix, ignored);
+  }
+}
+
+void check_tables(const Database& database) {
+  const int tables =
+      database.connection()
+          .execAndGet(
+              "SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name IN ('events', "
+              "'traces', 'participant_keys', 'sessions', 'trials', 'responses')")
+          .getInt();
+  if (tables != 6) {
+    throw StoreError(
+        database.refusal("lacks tables of its schema; it is damaged, restore it from a backup"));
+  }
+}
+
+}  // namespace
+
+struct StudyStore::Impl {
+  explicit Impl(Database opened) : study(std::move(opened)) {}
+
+  /// Calls `work` with SQLite's errors translated.
+  template <typename Work>
+  decltype(auto) run(Work&& work) const {
+    return database().run(std::forward<Work>(work));
+  }
+
+  /// Calls `work` in a transaction that is committed unless it throws.
+  template <typename Work>
+  void change(Work&& work) {
+    run([&] {
+      SQLite::Transaction transaction = database().write_transaction();
+      work();
+      transaction.commit();
+    });
+  }
+
+  [[nodiscard]] const Database& database() const { return study.database(); }
+
+  StoredStudy study;
+};
+
+StudyStore::StudyStore(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+StudyStore::~StudyStore() = default;
+StudyStore::StudyStore(StudyStore&&) noexcept = default;
+StudyStore& StudyStore::operator=(StudyStore&&) noexcept = default;
+
+StudyStore StudyStore::create(const std::filesystem::path& path, const StudyCommitment& commitment,
+                              std::chrono::nanoseconds at) {
+  auto impl = std::make_unique<Impl>(Database::create(path));
+  try {
+    migrate(impl->database(), migrations());
+    impl->change(
+        [&] { impl->study.append_to_file(EventKind::study_committed, at, to_json(commitment)); });
+    // From its birth the file is whole without its log.
+    impl->run([&] { return impl->database().checkpoint(); });
+  } catch (...) {
+    impl.reset();
+    remove_database(path);
+    throw;
+  }
+  return StudyStore(std::move(impl));
+}
+
+StudyStore StudyStore::open(const std::filesystem::path& path, Access access) {
+  const bool writes = access == Access::read_write;
+  auto impl = std::make_unique<Impl>(Database::open(
+      path, writes ? Database::Mode::read_write : Database::Mode::read_only, kSchemaVersion));
+  if (writes) {
+    migrate(impl->database(), migrations());
+  } else if (schema_version(impl->database()) < kSchemaVersion) {
+    impl->study.refuse(
+        "is of an older schema; open it once for writing, which brings it up to date");
+  }
+  impl->run([&] { check_tables(impl->database()); });
+  return StudyStore(std::move(impl));
+}
+
+const StudyCommitment& StudyStore::commitment() const {
+  return impl_->run([&]() -> const StudyCommitment& { return impl_->study.commitment(); });
+}
+
+StudyState StudyStore::state() const {
+  return impl_->run([&] { return impl_->study.state(); });
+}
+
+std::vector<SessionRow> StudyStore::sessions() const {
+  return impl_->run([&] { return read_sessions(impl_->database()); });
+}
+
+std::vector<TrialRow> StudyStore::trials() const {
+  return impl_->run([&] { return read_trials(impl_->database()); });
+}
+
+std::vector<Event> StudyStore::events(int session) const {
+  return impl_->run([&] {
+    std::vector<Event> events;
+    for_each_event(impl_->database(), session,
+                   [&](const Event& event) { events.push_back(event); });
+    return events;
+  });
+}
+
+void StudyStore::for_each(EventKind kind, const std::function<void(const Event&)>& visit) const {
+  impl_->run([&] {
+    for_each_event(impl_->database(), {.session = {}, .sequence = {}, .kind = kind}, visit);
+  });
+}
+
+int StudyStore::next_session() const {
+  return impl_->run([&] { return impl_->study.next_session(); });
+}
+
+std::optional<Bytes> StudyStore::wrapped_key(int session) const {
+  return impl_->run([&]() -> std::optional<Bytes> {
+    Query query = impl_->database().query("SELECT wrapped FROM participant_keys WHERE session = ?");
+    query.bind(session);
+    if (!query.step()) return std::nullopt;
+    return query.blob(0);
+  });
+}
+
+std::optional<Bytes> StudyStore::sealed_trace(int session, int trial) const {
+  return impl_->run([&]() -> std::optional<Bytes> {
+    Query query = impl_->database().query("SELECT box FROM traces WHERE session = ? AND trial = ?");
+    query.bind(session).bind(trial);
+    if (!query.step()) return std::nullopt;
+    return query.blob(0);
+  });
+}
+
+void StudyStore::add_session(const BufferedEvents& session, const Bytes& wrapped_key,
+                             std::chrono::nanoseconds at) {
+  impl_->run([&] { check_whole_session(impl_->study, session); });
+  impl_->change([&] { store_whole_session(impl_->study, session, wrapped_key, at); });
+}
+
+std::unique_ptr<EventSink> StudyStore::begin_session(int session, const Bytes& wrapped_key,
+                                                     UtcClock utc) {
+  return std::make_unique<StoredSession>(impl_->study, session, wrapped_key, std::move(utc));
+}
+
+void StudyStore::close_study(std::chrono::nanoseconds at) {
+  impl_->change([&] {
+    if (impl_->study.state().closed) impl_->study.refuse("the study is already closed");
+    impl_->study.append_to_file(EventKind::study_closed, at, "{}");
+  });
+}
+
+void StudyStore::unblind(std::chrono::nanoseconds at, const std::string& reason, bool interim) {
+  impl_->change([&] {
+    impl_->study.require_reason(reason, "unblinding");
+    const bool closed = impl_->study.state().closed;
+    if (!closed && !interim) {
+      impl_->study.refuse("the study is still open; close it first, or look with --interim");
+    }
+    impl_->study.append_to_file(EventKind::study_unblinded, at,
+                                to_json(UnblindingBody{.reason = reason, .interim = !closed}));
+  });
+}
+
+void StudyStore::exclude(int session, std::chrono::nanoseconds at, const std::string& reason) {
+  impl_->change([&] {
+    impl_->study.require_reason(reason, "an exclusion");
+    if (impl_->study.session(session).excluded) {
+      impl_->study.refuse("session " + std::to_string(session) + " is already excluded");
+    }
+    impl_->study.append_to_file(EventKind::participant_excluded, at,
+                                to_json(ParticipantBody{.session = session, .reason = reason}));
+  });
+}
+
+void StudyStore::withdraw(int session, std::chrono::nanoseconds at, const std::string& reason) {
+  impl_->change([&] {
+    if (impl_->study.session(session).withdrawn) {
+      impl_->study.refuse("the participant of session " + std::to_string(session) +
+                          " has already withdrawn");
+    }
+    impl_->database().query("DELETE FROM participant_keys WHERE session = ?").bind(session).run();
+    impl_->study.append_to_file(EventKind::participant_withdrawn, at,
+                                to_json(ParticipantBody{.session = session, .reason = reason}));
+  });
+  // The log still holds the key's page from before.
+  const bool emptied = impl_->run([&] { return impl_->database().checkpoint(); });
+  if (!emptied) {
+    impl_->study.refuse(
+        "the withdrawal is recorded, but another program keeps the key in the file's -wal; close "
+        "it there, then open and close the database once for writing");
+  }
+}
+
+std::optional<ChainFault> StudyStore::first_fault() const {
+  return impl_->run([&] {
+    // One transaction, so that everything is seen at one moment even while others write.
+    SQLite::Transaction snapshot(impl_->database().connection());
+    return find_first_fault(impl_->database());
+  });
+}
+
+void StudyStore::rebuild_derived() {
+  impl_->change([&] {
+    DerivedRows rows;
+    const auto add = [&](const Event& event) { fold(rows, event); };
+    for (const std::int64_t session : sessions_with_events(impl_->database())) {
+      for_each_event(impl_->database(), session, add);
+    }
+    for_each_event(impl_->database(), 0, add);
+    delete_all_rows(impl_->database());
+    write_rows(impl_->database(), rows);
+  });
+}
+
+}  // namespace touchtrial

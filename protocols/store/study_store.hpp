@@ -1,0 +1,178 @@
+/// \file One SQLite file a station and study: events, sealed traces, wrapped participant keys, and
+/// tables derived from the events. Format: docs/data-dictionary.md, "Database".
+#pragma once
+
+#include "core/cipher.hpp"
+#include "protocols/store/event.hpp"
+#include "protocols/store/payload.hpp"
+#include "protocols/store/session_recorder.hpp"
+#include "protocols/store/trace.hpp"
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+
+/// How a session stands, derived from its events.
+enum class SessionState { open, completed, stopped };
+
+struct SessionRow {
+  int session = 0;  ///< from 1
+  std::string participant;
+  int enrolment = 0;
+  SessionState state{};
+  bool simulated = false;
+  bool pilot = false;
+  bool excluded = false;
+  bool withdrawn = false;
+  std::string device;
+
+  friend bool operator==(const SessionRow&, const SessionRow&) = default;
+};
+
+/// How a trial ended, derived from its events.
+enum class TrialState { presented, answered, timed_out, interrupted };
+
+struct TrialRow {
+  int session = 0;
+  int trial = 0;  ///< from 1
+  int block = 0;
+  TrialState state{};
+  std::chrono::nanoseconds presented_at{};
+  std::optional<std::chrono::nanoseconds> contact_at;
+  std::optional<std::chrono::nanoseconds> answered_at;
+  std::optional<int> position;  ///< in the participant's layout; empty: no response
+  std::optional<int> first_position;
+  std::optional<int> confidence;
+  bool valid = true;
+  std::int64_t overruns = 0;
+  std::int64_t samples = 0;
+  double rate_hz = 0.0;
+
+  friend bool operator==(const TrialRow&, const TrialRow&) = default;
+};
+
+/// What the file's chain says of the state of collection.
+struct StudyState {
+  bool closed = false;
+  bool unblinded = false;  ///< outcomes may be shown (an interim look counts)
+  std::string unblinding_reason;
+};
+
+/// A broken link, named: chain, sequence, what does not hold.
+struct ChainFault {
+  int session = 0;  ///< 0: the file's chain
+  std::int64_t sequence = 0;
+  std::string what;
+};
+
+/// UTC since 1970; the file's chain is stamped with it.
+using UtcClock = std::function<std::chrono::nanoseconds()>;
+
+/// The database. One writer at a time (SQLite's lock); not to be shared between threads.
+class StudyStore {
+ public:
+  /// Makes a new database with its first event. Refuses an existing file.
+  /// \throws StoreError if the file exists or cannot be made
+  [[nodiscard]] static StudyStore create(const std::filesystem::path& path,
+                                         const StudyCommitment& commitment,
+                                         std::chrono::nanoseconds at);
+
+  enum class Access { read_only, read_write };
+
+  /// Opens an existing database; an older schema is migrated (read_write) after a backup beside the
+  /// file, a newer one is refused untouched. Reading changes nothing (but folds in a log that a
+  /// crash left), leaves nothing beside the file, and sees what other programs write; a file
+  /// without a -wal can be read where nothing can be written, but should not be written to then by
+  /// anybody else. Only what opening takes is looked at: see first_fault.
+  /// \throws StoreError if it is missing, no Touchtrial database, damaged, or newer
+  [[nodiscard]] static StudyStore open(const std::filesystem::path& path, Access access);
+
+  ~StudyStore();
+  StudyStore(StudyStore&&) noexcept;
+  StudyStore& operator=(StudyStore&&) noexcept;
+
+  [[nodiscard]] const StudyCommitment& commitment() const;
+  [[nodiscard]] StudyState state() const;
+  [[nodiscard]] std::vector<SessionRow> sessions() const;
+  /// All trials of all sessions, by session and trial.
+  [[nodiscard]] std::vector<TrialRow> trials() const;
+  /// Events of one chain in order (0: the file's).
+  [[nodiscard]] std::vector<Event> events(int session) const;
+  /// Calls `visit` for every event of one kind in all sessions, by session and sequence.
+  void for_each(EventKind kind, const std::function<void(const Event&)>& visit) const;
+
+  /// Stores a finished session in one transaction: its key, events and traces, its opening and
+  /// closing on the file's chain, and its derived rows.
+  /// \param wrapped_key  wrap_participant_key's result
+  /// \throws StoreError if participant or enrolment is already taken (by which session), the study
+  ///   is closed, or the chain does not hold; nothing is stored then
+  void add_session(const BufferedEvents& session, const Bytes& wrapped_key,
+                   std::chrono::nanoseconds at);
+
+  /// Starts a session whose events are stored one by one, each in its own transaction; it stands in
+  /// the file from its `opened` on. Whoever asks in vain learns it from that event.
+  /// \param utc  the system's clock if empty
+  /// \return the sink; it must not outlive the store. Same errors as add_session.
+  [[nodiscard]] std::unique_ptr<EventSink> begin_session(int session, const Bytes& wrapped_key,
+                                                         UtcClock utc = {});
+
+  /// The number that the next session gets.
+  [[nodiscard]] int next_session() const;
+
+  void close_study(std::chrono::nanoseconds at);
+  /// \throws StoreError if the study is open and `interim` is false, or `reason` is empty
+  void unblind(std::chrono::nanoseconds at, const std::string& reason, bool interim);
+
+  /// Marks a session as left out of outcomes. \throws StoreError if there is no such session, it is
+  /// already excluded, or `reason` is empty
+  void exclude(int session, std::chrono::nanoseconds at, const std::string& reason);
+  /// Destroys the participant's key, and with it every sealed payload, for ever; the chain, which
+  /// hashes ciphertext, still holds. Copies of the file keep the key: destroy those yourself.
+  /// \throws StoreError if there is no such session or it has already withdrawn; also, after the
+  ///   withdrawal, if another program keeps the key's last traces in the write-ahead log
+  void withdraw(int session, std::chrono::nanoseconds at, const std::string& reason);
+
+  /// The participant's wrapped key; empty after withdrawal.
+  [[nodiscard]] std::optional<Bytes> wrapped_key(int session) const;
+  [[nodiscard]] std::optional<Bytes> sealed_trace(int session, int trial) const;
+
+  /// Recomputes every hash of every chain, holds the file's chain against the sessions' heads and
+  /// lengths, stored traces against their events, and the derived tables against the events. What a
+  /// chain cannot show: events cut off the end of the file's chain, or of a session that is still
+  /// open.
+  /// \return the first fault, or nothing
+  [[nodiscard]] std::optional<ChainFault> first_fault() const;
+
+  /// Makes the derived tables anew from the events.
+  void rebuild_derived();
+
+ private:
+  struct Impl;
+  explicit StudyStore(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+/// A participant's random key, encrypted under the study's. Destroying the row that holds it makes
+/// the participant's payloads unreadable for ever.
+[[nodiscard]] Bytes wrap_participant_key(const SecretKey& study_master, int session,
+                                         const SecretKey& participant_key);
+[[nodiscard]] std::optional<SecretKey> unwrap_participant_key(const SecretKey& study_master,
+                                                              int session, const Bytes& wrapped);
+
+/// The secret text of an event (schedule, measures), or nothing if key or bytes are wrong.
+[[nodiscard]] std::optional<std::string> unsealed(const Event& event,
+                                                  const SecretKey& participant_key);
+[[nodiscard]] std::optional<Trace> unsealed_trace(int session, int trial, const Bytes& box,
+                                                  const SecretKey& participant_key,
+                                                  std::size_t sample_count);
+/// TrialMeasures from the secret text of a trace_stored event.
+/// \throws StoreError if the text is not such
+[[nodiscard]] TrialMeasures measures_from_json(const std::string& text);
+
+}  // namespace touchtrial

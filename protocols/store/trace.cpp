@@ -1,0 +1,274 @@
+#include "protocols/store/trace.hpp"
+
+#include "core/errors.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <zstd.h>
+
+namespace touchtrial {
+namespace {
+
+constexpr std::array<std::uint8_t, 4> kMagic = {'T', 'T', 'R', '1'};
+constexpr std::size_t kHeaderSize = kMagic.size() + sizeof(std::uint64_t) + sizeof(std::uint32_t);
+constexpr std::size_t kMaxSamples = 10'000'000;
+constexpr unsigned kMaxPlanes = 4;
+
+/// One of the six numbers of a sample, and how it becomes whole numbers.
+struct Channel {
+  Vec3 TraceSample::*vector;
+  double Vec3::*component;
+  double steps_per_unit;
+  double limit;  ///< largest magnitude, in units
+  int differences;
+};
+
+// Motion is smooth, so its second differences are small; forces carry the texture's vibration,
+// whose second differences would be larger than its first.
+constexpr double kPositionStepsPerMm = 1000.0;
+constexpr double kForceStepsPerN = 4096.0;
+constexpr std::array<Channel, 6> kChannels = {{
+    {&TraceSample::position_mm, &Vec3::x, kPositionStepsPerMm, 10'000.0, 2},
+    {&TraceSample::position_mm, &Vec3::y, kPositionStepsPerMm, 10'000.0, 2},
+    {&TraceSample::position_mm, &Vec3::z, kPositionStepsPerMm, 10'000.0, 2},
+    {&TraceSample::force_n, &Vec3::x, kForceStepsPerN, 100.0, 1},
+    {&TraceSample::force_n, &Vec3::y, kForceStepsPerN, 100.0, 1},
+    {&TraceSample::force_n, &Vec3::z, kForceStepsPerN, 100.0, 1},
+}};
+
+[[noreturn]] void refuse_bytes(const char* why) {
+  throw StoreError(std::string("trace: ") + why +
+                   "; the database is damaged or of another version, run `touchtrial verify`");
+}
+
+/// Whole steps of one channel. The limits keep all differences of differences within 32 bits.
+std::vector<std::int32_t> quantised(const Channel& channel, std::span<const TraceSample> samples) {
+  std::vector<std::int32_t> steps(samples.size());
+  bool inside = true;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const double value = (samples[i].*channel.vector).*channel.component;
+    const bool fits = std::abs(value) <= channel.limit;  // false for NaN
+    inside = inside && fits;
+    const double whole = std::nearbyint(fits ? value * channel.steps_per_unit : 0.0);
+    steps[i] = static_cast<std::int32_t>(whole);
+  }
+  if (!inside) {
+    throw StoreError(
+        "trace: a sample is not finite or beyond 10 m or 100 N; check the device's units");
+  }
+  return steps;
+}
+
+/// Differences to the number before, from index `first` on.
+void take_differences(std::vector<std::int32_t>& steps, std::size_t first) {
+  for (std::size_t i = steps.size(); i > first; --i) steps[i - 1] -= steps[i - 2];
+}
+
+/// Small numbers of either sign become small non-negative ones.
+std::uint32_t zigzag(std::int32_t step) {
+  return (std::bit_cast<std::uint32_t>(step) << 1U) ^ std::bit_cast<std::uint32_t>(step >> 31);
+}
+std::int32_t unzigzag(std::uint32_t code) {
+  return std::bit_cast<std::int32_t>((code >> 1U) ^ (0U - (code & 1U)));
+}
+
+template <typename Unsigned>
+void put(Bytes& bytes, Unsigned number) {
+  for (std::size_t i = 0; i < sizeof number; ++i) {
+    bytes.push_back(static_cast<std::uint8_t>(number >> (8U * i)));
+  }
+}
+
+/// Takes bytes from the front, never beyond the end.
+class Cursor {
+ public:
+  explicit Cursor(ByteView bytes) : left_(bytes) {}
+
+  [[nodiscard]] ByteView take(std::size_t count) {
+    if (count > left_.size()) refuse_bytes("its bytes end too early");
+    const ByteView taken = left_.first(count);
+    left_ = left_.subspan(count);
+    return taken;
+  }
+  template <typename Unsigned>
+  [[nodiscard]] Unsigned number() {
+    Unsigned value = 0;
+    unsigned shift = 0;
+    for (const std::uint8_t byte : take(sizeof value)) {
+      value |= static_cast<Unsigned>(Unsigned{byte} << shift);
+      shift += 8;
+    }
+    return value;
+  }
+  [[nodiscard]] bool at_end() const { return left_.empty(); }
+
+ private:
+  ByteView left_;
+};
+
+struct FreeCompressor {
+  void operator()(ZSTD_CCtx* context) const { ZSTD_freeCCtx(context); }
+};
+using Compressor = std::unique_ptr<ZSTD_CCtx, FreeCompressor>;
+
+[[noreturn]] void refuse_to_compress(std::size_t code) {
+  throw StoreError(std::string("trace: zstd cannot compress it (") + ZSTD_getErrorName(code) +
+                   "); free some memory");
+}
+
+/// Level 1, made to look for long matches only, in a small table: what repeats in a plane of
+/// differences are runs of zeros, the rest is for the entropy coder. Half the time, no larger.
+Compressor make_compressor() {
+  Compressor compressor(ZSTD_createCCtx());
+  constexpr std::array<std::pair<ZSTD_cParameter, int>, 3> kParameters = {
+      {{ZSTD_c_compressionLevel, 1}, {ZSTD_c_minMatch, 7}, {ZSTD_c_hashLog, 6}}};
+  for (const auto& [parameter, value] : kParameters) {
+    const std::size_t code = ZSTD_CCtx_setParameter(compressor.get(), parameter, value);
+    if (ZSTD_isError(code) != 0) refuse_to_compress(code);
+  }
+  return compressor;
+}
+
+void put_compressed(Bytes& bytes, ZSTD_CCtx* compressor, ByteView plane) {
+  const std::size_t size_at = bytes.size();
+  const std::size_t begin = size_at + sizeof(std::uint32_t);
+  bytes.resize(begin + ZSTD_compressBound(plane.size()));
+  const std::size_t size = ZSTD_compress2(compressor, bytes.data() + begin, bytes.size() - begin,
+                                          plane.data(), plane.size());
+  if (ZSTD_isError(size) != 0) refuse_to_compress(size);
+  bytes.resize(begin + size);
+  for (std::size_t i = 0; i < sizeof(std::uint32_t); ++i) {
+    bytes[size_at + i] = static_cast<std::uint8_t>(size >> (8U * i));
+  }
+}
+
+/// The lowest bytes of all numbers, then the next, as many as the largest number has: each plane
+/// has statistics of its own and thus a code table of its own.
+void put_channel(Bytes& bytes, ZSTD_CCtx* compressor, const std::vector<std::int32_t>& steps) {
+  std::vector<std::uint32_t> codes(steps.size());
+  std::transform(steps.begin(), steps.end(), codes.begin(), zigzag);
+  std::uint32_t all_bits = 0;
+  for (const std::uint32_t code : codes) all_bits |= code;
+  const auto planes = static_cast<unsigned>((std::bit_width(all_bits) + 7) / 8);
+  bytes.push_back(static_cast<std::uint8_t>(planes));
+  Bytes plane(codes.size());
+  for (unsigned p = 0; p < planes; ++p) {
+    std::transform(codes.begin(), codes.end(), plane.begin(),
+                   [p](std::uint32_t code) { return static_cast<std::uint8_t>(code >> (8U * p)); });
+    put_compressed(bytes, compressor, plane);
+  }
+}
+
+unsigned read_plane_count(Cursor& cursor) {
+  const unsigned planes = cursor.number<std::uint8_t>();
+  if (planes > kMaxPlanes) refuse_bytes("a channel has too many bytes a number");
+  return planes;
+}
+
+ByteView read_frame(Cursor& cursor) {
+  return cursor.take(cursor.number<std::uint32_t>());
+}
+
+/// Looks at the parts' own lengths before memory is spent on the claimed number of samples.
+void require_consistent(Cursor cursor, std::size_t count) {
+  for (std::size_t channel = 0; channel < kChannels.size(); ++channel) {
+    const unsigned planes = read_plane_count(cursor);
+    for (unsigned p = 0; p < planes; ++p) {
+      const ByteView frame = read_frame(cursor);
+      if (ZSTD_getFrameContentSize(frame.data(), frame.size()) != count) {
+        refuse_bytes("a part has another length than its samples");
+      }
+    }
+  }
+  if (!cursor.at_end()) refuse_bytes("it has bytes after its end");
+}
+
+void read_plane(Cursor& cursor, Bytes& plane) {
+  const ByteView frame = read_frame(cursor);
+  const std::size_t size = ZSTD_decompress(plane.data(), plane.size(), frame.data(), frame.size());
+  if (ZSTD_isError(size) != 0 || size != plane.size()) refuse_bytes("a part does not decompress");
+}
+
+/// The channel's differences, still zigzag codes.
+std::vector<std::uint32_t> read_codes(Cursor& cursor, std::size_t count) {
+  const unsigned planes = read_plane_count(cursor);
+  std::vector<std::uint32_t> codes(count, 0);
+  Bytes plane(count);
+  for (unsigned p = 0; p < planes; ++p) {
+    read_plane(cursor, plane);
+    for (std::size_t i = 0; i < count; ++i) codes[i] |= std::uint32_t{plane[i]} << (8U * p);
+  }
+  return codes;
+}
+
+void restore_channel(const Channel& channel, std::span<const std::uint32_t> codes,
+                     std::span<TraceSample> samples) {
+  const auto limit = static_cast<std::int64_t>(channel.limit * channel.steps_per_unit);
+  std::int64_t step = 0;
+  std::int64_t slope = 0;
+  for (std::size_t i = 0; i < codes.size(); ++i) {
+    const std::int64_t code = unzigzag(codes[i]);
+    // The second difference starts at the second sample: the first is its own difference.
+    slope = channel.differences == 2 && i > 1 ? slope + code : code;
+    step += slope;
+    if (step < -limit || step > limit) refuse_bytes("a sample is beyond 10 m or 100 N");
+    (samples[i].*channel.vector).*channel.component =
+        static_cast<double>(step) / channel.steps_per_unit;
+  }
+}
+
+}  // namespace
+
+Bytes encode_trace(const Trace& trace) {
+  if (trace.samples.size() > kMaxSamples) {
+    throw StoreError("trace: more than 10,000,000 samples; shorten trials.explore_limit_s");
+  }
+  if (!std::isfinite(trace.rate_hz) || trace.rate_hz <= 0.0) {
+    throw StoreError("trace: the sampling rate is not a positive number; check the device");
+  }
+  Bytes bytes(kMagic.begin(), kMagic.end());
+  bytes.reserve(kHeaderSize + 8 * trace.samples.size() + 4096);
+  put(bytes, std::bit_cast<std::uint64_t>(trace.rate_hz));
+  put(bytes, static_cast<std::uint32_t>(trace.samples.size()));
+  const Compressor compressor = make_compressor();
+  for (const Channel& channel : kChannels) {
+    std::vector<std::int32_t> steps = quantised(channel, trace.samples);
+    // The first sample stays as it is, and so does the first slope: neither is a small number.
+    for (int d = 1; d <= channel.differences; ++d)
+      take_differences(steps, static_cast<std::size_t>(d));
+    put_channel(bytes, compressor.get(), steps);
+  }
+  return bytes;
+}
+
+Trace decode_trace(ByteView bytes) {
+  Cursor cursor(bytes);
+  const ByteView magic = cursor.take(kMagic.size());
+  if (!std::equal(magic.begin(), magic.end(), kMagic.begin())) refuse_bytes("its mark is missing");
+  Trace trace;
+  trace.rate_hz = std::bit_cast<double>(cursor.number<std::uint64_t>());
+  if (!std::isfinite(trace.rate_hz) || trace.rate_hz <= 0.0) refuse_bytes("its rate is no rate");
+  const std::size_t count = cursor.number<std::uint32_t>();
+  if (count > kMaxSamples) refuse_bytes("it claims more than 10,000,000 samples");
+  require_consistent(cursor, count);
+  trace.samples.resize(count);
+  for (const Channel& channel : kChannels) {
+    restore_channel(channel, read_codes(cursor, count), trace.samples);
+  }
+  return trace;
+}
+
+std::size_t trace_padding(std::size_t sample_count) {
+  return 2048 + 8 * std::min(sample_count, kMaxSamples);
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,34 @@
+/// \file Position and force samples of one trial, and their compact form.
+#pragma once
+
+#include "core/bytes.hpp"
+#include "core/vec.hpp"
+
+#include <vector>
+
+namespace touchtrial {
+
+struct TraceSample {
+  Vec3 position_mm;
+  Vec3 force_n;  ///< as sent to the device
+};
+
+/// Evenly sampled from plane-on.
+struct Trace {
+  double rate_hz = 1000.0;
+  std::vector<TraceSample> samples;
+};
+
+/// Quantises (positions to 1 um, forces to a fraction of a millinewton: see the definition), takes
+/// differences, compresses with zstd level 1. Not yet encrypted.
+/// \throws StoreError if a sample is not finite or beyond +-10 m or +-100 N
+[[nodiscard]] Bytes encode_trace(const Trace& trace);
+
+/// \throws StoreError if the bytes are no trace, truncated, or of absurd length
+[[nodiscard]] Trace decode_trace(ByteView bytes);
+
+/// The padding under which traces are sealed: a function of the number of samples alone, so that
+/// the size of a stored trace does not tell rough textures from smooth ones.
+[[nodiscard]] std::size_t trace_padding(std::size_t sample_count);
+
+}  // namespace touchtrial

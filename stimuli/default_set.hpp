@@ -1,0 +1,27 @@
+/// \file The default pictures as files in a folder.
+#pragma once
+
+#include "stimuli/generator.hpp"
+#include "stimuli/manifest.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+
+namespace touchtrial {
+
+/// Told after each picture, for a progress bar: how many are done, of how many.
+using StimuliProgress = std::function<void(int done, int total)>;
+
+/// Makes every recipe and writes <label>.png files and manifest.json. Each file replaces an older
+/// one only when it is complete, the manifest last; other files in the folder stay.
+/// \param folder  is made if it does not exist
+/// \return the manifest that was written; its entries are in the order of `stimulus_recipes()`
+/// \throws FileError if the folder or a file cannot be written, UsageError if the size is out of
+///   range
+StimulusManifest generate_default_stimuli(const std::filesystem::path& folder,
+                                          std::uint64_t seed = kDefaultStimuliSeed,
+                                          int size_px = kDefaultStimulusSizePx,
+                                          const StimuliProgress& progress = {});
+
+}  // namespace touchtrial

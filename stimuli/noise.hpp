@@ -1,0 +1,89 @@
+/// \file Irregularity: gradient noise and cells, the same on every machine for a seed.
+/// Sources: K. Perlin, "Improving noise", 2002; S. Worley, "A cellular texture basis function",
+/// 1996. Everything is additions, products and square roots, which every processor rounds alike.
+#pragma once
+
+#include "core/vec.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace touchtrial {
+
+/// A lattice of random numbers that is hashed, so that it repeats only after a thousand cells.
+class Lattice {
+ public:
+  Lattice(std::uint64_t seed, std::string_view purpose);
+
+  /// A whole number in [0, kSize) for a lattice point; the same point gives the same number.
+  [[nodiscard]] std::uint32_t hash(std::int64_t x, std::int64_t y) const noexcept;
+  /// A number in [0, 1) for a hash.
+  [[nodiscard]] double value(std::uint32_t hash) const noexcept { return values_[hash & kMask]; }
+  /// A vector of length 1 for a hash.
+  [[nodiscard]] Vec2 direction(std::uint32_t hash) const noexcept {
+    return directions_[hash & kMask];
+  }
+
+  static constexpr std::uint32_t kSize = 1024;
+  static constexpr std::uint32_t kMask = kSize - 1;
+
+ private:
+  std::vector<std::uint32_t> order_;
+  std::vector<double> values_;
+  std::vector<Vec2> directions_;
+};
+
+/// Smooth noise with features about one unit wide, mean 0, roughly within -1 .. 1. Thread-safe.
+class Noise {
+ public:
+  Noise(std::uint64_t seed, std::string_view purpose) : lattice_(seed, purpose) {}
+
+  [[nodiscard]] double at(double x, double y) const noexcept;
+  /// Octaves of noise, each about half as wide and half as strong as the one before.
+  [[nodiscard]] double fractal(double x, double y, int octaves) const noexcept;
+  /// The same with sharp crests: 1 on a crest, about 0 between.
+  [[nodiscard]] double ridged(double x, double y, int octaves) const noexcept;
+
+ private:
+  Lattice lattice_;
+};
+
+/// Where a point lies among cells of about one unit.
+struct CellPlace {
+  double to_centre = 0.0;  ///< distance to the nearest centre
+  double to_border = 0.0;  ///< distance to the second nearest, minus the former; 0 on a border
+  std::uint32_t cell = 0;  ///< a random number that belongs to the cell, in [0, Lattice::kSize)
+};
+
+/// Irregular cells around jittered lattice points. Thread-safe.
+class Cells {
+ public:
+  /// \param jitter  0: a square grid; 1: centres anywhere in their square
+  Cells(std::uint64_t seed, std::string_view purpose, double jitter = 0.9)
+      : lattice_(seed, purpose), jitter_(jitter) {}
+
+  [[nodiscard]] CellPlace at(double x, double y) const noexcept;
+  /// A number in [0, 1) for a cell; `trait` tells one of its numbers from another.
+  [[nodiscard]] double value(std::uint32_t cell, std::uint32_t trait = 0) const noexcept {
+    return lattice_.value(cell * 7 + trait * 131);
+  }
+
+ private:
+  Lattice lattice_;
+  double jitter_;
+};
+
+/// 0 up to `start`, 1 from `end` on, smooth between; `end` may be the smaller one.
+[[nodiscard]] constexpr double smooth_step(double start, double end, double x) noexcept {
+  const double t = std::clamp((x - start) / (end - start), 0.0, 1.0);
+  return t * t * (3.0 - 2.0 * t);
+}
+
+/// `from` at t = 0, `to` at t = 1.
+[[nodiscard]] constexpr double mix(double from, double to, double t) noexcept {
+  return from + (to - from) * t;
+}
+
+}  // namespace touchtrial

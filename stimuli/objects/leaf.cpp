@@ -1,0 +1,131 @@
+#include "stimuli/noise.hpp"
+#include "stimuli/objects/still_life.hpp"
+#include "stimuli/recipes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace touchtrial {
+namespace {
+
+constexpr double kLength = 560.0;
+constexpr double kHalfWidth = 188.0;
+constexpr double kVeinDistance = 40.0;
+
+/// Where a point lies on the leaf.
+struct LeafPlace {
+  double along = 0.0;   ///< from the foot (0) to the tip (1)
+  double across = 0.0;  ///< units to the right of the midrib
+};
+
+/// The side vein next to a point.
+struct Vein {
+  double distance = 0.0;  ///< units, across the vein
+  double number = 0.0;
+  double between = 0.0;  ///< 0 on a vein, 1 half-way to the next
+};
+
+/// A broad leaf seen from below, where the veins stand out: midrib, side veins and a net.
+class Leaf {
+ public:
+  explicit Leaf(std::uint64_t seed)
+      : sway_(seed, "leaf/sway"),
+        blotches_(seed, "leaf/blotches"),
+        net_(seed, "leaf/net"),
+        mesh_(seed, "leaf/mesh") {}
+
+  [[nodiscard]] ObjectPoint operator()(double x, double y) const {
+    const LeafPlace place = locate(x, y);
+    if (const ObjectPoint stem = stem_point(place); stem.covers) return stem;
+    if (place.along <= 0.0 || place.along >= 1.0) return {};
+    const Vein vein = nearest_vein(place);
+    const double tooth = 5.0 * (1.0 - vein.between) * smooth_step(0.0, 0.3, place.along);
+    const double edge = half_width(place.along) + tooth + 2.0 * sway_.at(x / 16, y / 16);
+    if (std::abs(place.across) >= edge) return {};
+    return {true, blade(place, vein, x, y)};
+  }
+
+ private:
+  [[nodiscard]] LeafPlace locate(double x, double y) const {
+    // The leaf lies aslant, and its midrib is bent.
+    constexpr Vec2 kFoot{68.0, 446.0};
+    constexpr Vec2 kAlong{0.7071067811865476, -0.7071067811865476};
+    const Vec2 d{x - kFoot.x, y - kFoot.y};
+    const double s = (d.x * kAlong.x + d.y * kAlong.y) / kLength;
+    const double across = d.x * -kAlong.y + d.y * kAlong.x;
+    const double bend = 62.0 * s * (1.0 - s) + 3.0 * sway_.at(s * 5, 3.3);
+    return {s, across + bend - 10.0};
+  }
+
+  static double half_width(double t) {
+    return kHalfWidth * 2.15 * std::sqrt(t) * (1.0 - t) * (1.0 - 0.25 * t) * (1.0 + 0.35 * t);
+  }
+
+  [[nodiscard]] Vein nearest_vein(const LeafPlace& place) const {
+    const double side = place.across < 0.0 ? -1.0 : 1.0;
+    const double reach = std::abs(place.across);
+    const double sway = 5.0 * sway_.fractal(place.along * 7 + 20 * side, reach / 60, 2);
+    const double lane =
+        (kLength * place.along - 0.62 * reach - 0.0011 * reach * reach + sway) / kVeinDistance +
+        0.5 * (side + 1.0) * 0.45;
+    Vein vein;
+    vein.number = std::floor(lane + 0.5) + 100.0 * side;
+    const double offset = lane - std::floor(lane + 0.5);
+    vein.distance = kVeinDistance * std::abs(offset) * 0.84;
+    vein.between = 2.0 * std::abs(offset);
+    return vein;
+  }
+
+  [[nodiscard]] ObjectPoint stem_point(const LeafPlace& place) const {
+    const double thickness = 5.2 - 4.0 * std::clamp(place.along, 0.0, 1.0);
+    const double u = place.across / thickness;
+    if (place.along < -0.085 || place.along > 0.985 || u * u >= 1.0) return {};
+    const double grain = blotches_.fractal(place.across / 2, place.along * 60, 2);
+    const double lift = place.along > 0.0 ? arch(place) : 0.0;
+    return {
+        true,
+        {4.0 + lift + 1.3 * thickness * std::sqrt(1.0 - u * u) + 0.3 * grain, 0.62 + 0.08 * grain}};
+  }
+
+  /// The blade as a whole: halves rise from the midrib and fall to the edge.
+  static double arch(const LeafPlace& place) {
+    const double t = std::abs(place.across) / kHalfWidth;
+    return 26.0 * place.along * (1.0 - place.along) * 2.0 + 34.0 * t * (0.9 - t);
+  }
+
+  [[nodiscard]] SurfacePoint blade(const LeafPlace& place, const Vein& vein, double x,
+                                   double y) const {
+    const double reach = std::abs(place.across);
+    const double taper = 1.0 - 0.7 * std::min(1.0, reach / half_width(place.along));
+    const double ridge = smooth_step(3.4 * taper + 0.6, 0.2, vein.distance);
+    // The net's meshes lie across, between the side veins.
+    const double wx = x + 5.0 * sway_.at(x / 20, y / 20);
+    const double wy = y + 5.0 * sway_.at(x / 20 + 40, y / 20);
+    const CellPlace mesh = mesh_.at(wx / 13, wy / 13);
+    const CellPlace fine = net_.at(wx / 5.2, wy / 5.2);
+    const double pillow = smooth_step(0.0, 0.55, mesh.to_border);
+    const double cushion = smooth_step(0.0, 0.6, fine.to_border);
+    const double blotch = blotches_.fractal(x / 38, y / 38, 4);
+    SurfacePoint point;
+    point.height_px = 4.0 + arch(place) + 5.5 * vein.between + 2.6 * ridge - 2.1 * pillow -
+                      0.8 * cushion + 6.0 * blotches_.fractal(x / 70 + 9, y / 70, 2);
+    point.albedo = std::clamp(
+        0.44 + 0.16 * ridge + 0.11 * (1.0 - pillow) + 0.05 * (1.0 - cushion) + 0.13 * blotch, 0.08,
+        1.0);
+    return point;
+  }
+
+  Noise sway_;
+  Noise blotches_;
+  Cells net_;
+  Cells mesh_;
+};
+
+}  // namespace
+
+GreyImage make_leaf(std::uint64_t seed, int size_px) {
+  const Lamp lamp{{-0.72, -0.42, 0.75}, 0.36, 40.0, 5.0, 9.0, 0.78};
+  return photographed(laid_out(Leaf(seed), size_px), lamp, 112.0);
+}
+
+}  // namespace touchtrial

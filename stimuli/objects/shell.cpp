@@ -1,0 +1,103 @@
+#include "stimuli/noise.hpp"
+#include "stimuli/objects/still_life.hpp"
+#include "stimuli/recipes.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace touchtrial {
+namespace {
+
+constexpr Vec2 kHinge{250.0, 446.0};
+constexpr double kRadius = 392.0;
+constexpr double kHalfAngle = 1.02;  ///< of the fan, radians
+constexpr double kRibAngle = 0.094;  ///< between two ribs
+
+/// A scallop from outside: ribs that fan out from the hinge, crossed by bands of growth.
+class Shell {
+ public:
+  explicit Shell(std::uint64_t seed)
+      : sway_(seed, "shell/sway"), growth_(seed, "shell/growth"), grain_(seed, "shell/grain") {}
+
+  [[nodiscard]] ObjectPoint operator()(double x, double y) const {
+    const double dx = x - kHinge.x + 2.0 * sway_.at(x / 80, y / 80);
+    const double dy = kHinge.y - y;
+    const double angle = std::atan2(dx, dy + 1e-9);
+    const double r = std::sqrt(dx * dx + dy * dy);
+    if (const ObjectPoint fan = fan_point(x, y, angle, r); fan.covers) return fan;
+    return ear_point(x, y, dx, dy);
+  }
+
+ private:
+  /// Height of the rib profile, 0 in a groove, 1 on a crest.
+  [[nodiscard]] double rib(double angle, double r) const {
+    const double place = (angle + 0.008 * sway_.at(angle * 9, r / 90)) / kRibAngle;
+    const double t = 2.0 * (place - std::floor(place)) - 1.0;
+    return std::sqrt(std::max(0.0, 1.0 - t * t * t * t)) * (1.0 - 0.25 * t * t);
+  }
+
+  static double margin(double angle) {
+    const double t = angle / kHalfAngle;
+    return kRadius * (1.0 - 0.25 * t * t - 0.10 * t * t * t * t);
+  }
+
+  [[nodiscard]] ObjectPoint fan_point(double x, double y, double angle, double r) const {
+    const double edge = margin(angle) + 7.0 * rib(angle, kRadius) + 2.0 * sway_.at(x / 20, y / 20);
+    const double side = kHalfAngle * (0.86 + 0.14 * smooth_step(0.0, 0.5, r / kRadius));
+    if (std::abs(angle) >= side || r >= edge) return {};
+    const double share = r / edge;  // 0 at the hinge, 1 at the margin
+    const double ripple = growth_rings(share, angle);
+    const double crest = rib(angle, r);
+    const double to_side = 1.0 - std::abs(angle) / side;
+    const double dome = 84.0 * std::sqrt(std::max(0.0, share * (1.02 - share) * 3.6)) *
+                        std::sqrt(smooth_step(0.0, 0.75, to_side) + 0.02);
+    const double grain = grain_.fractal(x / 3.4, y / 3.4, 3);
+    SurfacePoint point;
+    point.height_px = 6.0 + dome + (2.0 + 8.0 * share) * crest + 2.6 * ripple + 0.7 * grain;
+    point.albedo =
+        std::clamp(0.50 + 0.20 * bands(share, angle) + 0.08 * crest + 0.10 * grain, 0.1, 1.0);
+    return {true, point};
+  }
+
+  /// Terraces of growth: rising slowly, falling suddenly, at irregular distances.
+  [[nodiscard]] double growth_rings(double share, double angle) const {
+    const double place = 17.0 * share * (0.7 + 0.5 * share) +
+                         1.2 * growth_.fractal(share * 6, 0.7, 3) +
+                         0.12 * sway_.at(angle * 14, share * 30);
+    const double coarse = place - std::floor(place);
+    const double fine = 3.7 * place - std::floor(3.7 * place);
+    return coarse * smooth_step(1.0, 0.86, coarse) + 0.5 * fine * smooth_step(1.0, 0.8, fine);
+  }
+
+  /// Bands of colour across the ribs, broken up along the angle.
+  [[nodiscard]] double bands(double share, double angle) const {
+    return growth_.fractal(share * 9 + 30, 0.4 + 0.5 * sway_.at(angle * 5, share * 5), 3) +
+           0.7 * growth_.fractal(share * 26, angle * 7, 2);
+  }
+
+  /// The flat wings beside the hinge.
+  [[nodiscard]] ObjectPoint ear_point(double x, double y, double dx, double dy) const {
+    const double out = std::abs(dx);
+    const double top = 78.0 - 0.16 * out;
+    if (dy < -6.0 || dy > top || out > 96.0 - 0.25 * dy + 3.0 * sway_.at(y / 18, 2.2)) return {};
+    const double line = (out + 0.3 * dy) / 7.5;
+    const double ridge = std::abs(2.0 * (line - std::floor(line)) - 1.0);
+    const double grain = grain_.fractal(x / 3.4, y / 3.4, 3);
+    return {true,
+            {9.0 + 1.6 * ridge + 0.05 * dy + 0.7 * grain + 0.8 * growth_.at(dy / 7, 8.8),
+             std::clamp(0.46 + 0.1 * grain + 0.12 * growth_.fractal(dy / 16, 5.5, 2), 0.1, 1.0)}};
+  }
+
+  Noise sway_;
+  Noise growth_;
+  Noise grain_;
+};
+
+}  // namespace
+
+GreyImage make_shell(std::uint64_t seed, int size_px) {
+  const Lamp lamp{{-0.62, -0.42, 0.8}, 0.36, 60.0, 5.0, 9.0, 0.78};
+  return photographed(laid_out(Shell(seed), size_px), lamp, 112.0);
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,131 @@
+#include "stimuli/noise.hpp"
+#include "stimuli/recipes.hpp"
+#include "stimuli/relief.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace touchtrial {
+namespace {
+
+constexpr double kBrickLength = 128.0;
+constexpr double kCourse = 47.0;  ///< height of a brick and a joint
+
+/// Where a point lies in its brick.
+struct BrickPlace {
+  double inside = 0.0;  ///< distance to the nearest edge, pixels; negative in the joint
+  std::uint32_t brick = 0;
+  Vec2 local;  ///< from the brick's centre
+};
+
+class BrickWall {
+ public:
+  explicit BrickWall(std::uint64_t seed)
+      : traits_(seed, "brick/traits"),
+        edges_(seed, "brick/edges"),
+        face_(seed, "brick/face"),
+        grains_(seed, "brick/grains"),
+        pits_(seed, "brick/pits") {}
+
+  [[nodiscard]] SurfacePoint operator()(double x, double y) const {
+    const BrickPlace place = locate(x, y);
+    const double joint = mortar_height(x, y);
+    const double brick = brick_height(place, x, y);
+    const double blend =
+        smooth_step(-1.2, 1.0, place.inside + 1.6 * edges_.fractal(x / 5, y / 5, 2));
+    SurfacePoint point;
+    point.height_px = mix(joint, brick, blend);
+    point.albedo =
+        std::clamp(mix(mortar_albedo(x, y), brick_albedo(place, x, y), blend), 0.05, 1.0);
+    return point;
+  }
+
+ private:
+  [[nodiscard]] double trait(std::uint32_t brick, std::uint32_t which) const {
+    return traits_.value(brick * 7 + which * 131);
+  }
+
+  [[nodiscard]] BrickPlace locate(double x, double y) const {
+    // No mason's line is straight, and no camera is level.
+    const double wy = y + 0.018 * x + 20.0 + 2.0 * edges_.fractal(x / 90, y / 90, 2);
+    const double wx = x - 0.012 * y + 1.8 * edges_.fractal(x / 70 + 40, y / 70, 2);
+    const double row = std::floor(wy / kCourse);
+    const auto row_number = static_cast<std::int64_t>(row);
+    const double shift = 0.5 * static_cast<double>(row_number & 1) +
+                         0.14 * (traits_.value(traits_.hash(row_number, 77)) - 0.5);
+    const double column = std::floor(wx / kBrickLength + shift);
+    BrickPlace place;
+    place.brick = traits_.hash(static_cast<std::int64_t>(column), row_number);
+    place.local = {wx - (column - shift + 0.5) * kBrickLength, wy - (row + 0.5) * kCourse};
+    const double joint_x = 3.6 + 2.2 * trait(place.brick, 1);
+    const double joint_y = 3.4 + 1.6 * trait(place.brick, 2);
+    const double tilt = 0.02 * (trait(place.brick, 3) - 0.5);
+    const double dx =
+        kBrickLength / 2 - joint_x - std::abs(place.local.x + 3.0 * (trait(place.brick, 4) - 0.5));
+    const double dy =
+        kCourse / 2 - joint_y -
+        std::abs(place.local.y + tilt * place.local.x + 1.6 * (trait(place.brick, 5) - 0.5));
+    place.inside = rounded_corner(dx, dy);
+    return place;
+  }
+
+  /// Distance to a rectangle's edge, with corners of 6 pixels' radius.
+  static double rounded_corner(double dx, double dy) {
+    constexpr double kRadius = 6.0;
+    if (dx >= kRadius || dy >= kRadius) return std::min(dx, dy);
+    const double ax = kRadius - dx;
+    const double ay = kRadius - dy;
+    return kRadius - std::sqrt(ax * ax + ay * ay);
+  }
+
+  [[nodiscard]] double mortar_height(double x, double y) const {
+    return -8.0 + 2.2 * face_.fractal(x / 11, y / 11, 3) +
+           1.5 * grains_.fractal(x / 2.6, y / 2.6, 2);
+  }
+
+  [[nodiscard]] double mortar_albedo(double x, double y) const {
+    return 0.62 + 0.22 * grains_.fractal(x / 2.4 + 7, y / 2.4, 2) +
+           0.12 * face_.fractal(x / 20, y / 20, 2);
+  }
+
+  [[nodiscard]] double brick_height(const BrickPlace& place, double x, double y) const {
+    const double own = 40.0 * trait(place.brick, 6);
+    const double tilt = 0.04 * (trait(place.brick, 8) - 0.5) * place.local.x;
+    return 3.0 * smooth_step(0.0, 5.0, place.inside) + 2.0 * (trait(place.brick, 7) - 0.5) + tilt +
+           2.4 * face_.fractal(x / 17 + own, y / 13, 4) +
+           1.8 * face_.ridged(x / 26 + own, y / 9 + own, 3) +
+           0.9 * grains_.fractal(x / 2.8, y / 2.8, 2) - pit_depth(x + 9.0 * own, y);
+  }
+
+  /// Some cells of the face have a pit, each of its own size.
+  [[nodiscard]] double pit_depth(double x, double y) const {
+    const CellPlace pit = pits_.at(x / 9.0, y / 7.5);
+    if (pits_.value(pit.cell) >= 0.17) return 0.0;
+    const double size = 0.12 + 0.42 * pits_.value(pit.cell, 1);
+    return 3.2 * smooth_step(size, 0.4 * size, pit.to_centre + 0.25 * edges_.at(x / 3, y / 3));
+  }
+
+  [[nodiscard]] double brick_albedo(const BrickPlace& place, double x, double y) const {
+    const double own = 40.0 * trait(place.brick, 6);
+    const double burnt = smooth_step(0.25, 0.6, face_.fractal(x / 45 + own, y / 35, 2));
+    return 0.30 + 0.26 * trait(place.brick, 9) + 0.10 * face_.fractal(x / 9, y / 9 + own, 3) +
+           0.14 * grains_.fractal(x / 2.2, y / 2.2, 2) - 0.12 * burnt;
+  }
+
+  Lattice traits_;
+  Noise edges_;
+  Noise face_;
+  Noise grains_;
+  Cells pits_;
+};
+
+}  // namespace
+
+GreyImage make_brick(std::uint64_t seed, int size_px) {
+  Relief relief(size_px);
+  fill(relief, BrickWall(seed));
+  const Lamp lamp{{-0.5, -0.66, 0.6}, 0.34, 26.0, 2.5, 8.0};
+  return developed(averaged(lit(relief, lamp)), 116.0);
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,117 @@
+#include "core/random.hpp"
+#include "stimuli/noise.hpp"
+#include "stimuli/recipes.hpp"
+#include "stimuli/relief.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace touchtrial {
+namespace {
+
+/// What one system of threads shows at a point.
+struct ThreadPlace {
+  std::int64_t number = 0;  ///< which thread
+  double across = 0.0;      ///< -1 .. 1 from one side of its lane to the other
+  double thickness = 1.0;   ///< of the thread here, relative to its lane
+  double tone = 0.0;        ///< lightness of the thread here, about -1 .. 1
+};
+
+/// Parallel threads of one direction, each of its own thickness, none quite straight.
+class Threads {
+ public:
+  Threads(std::uint64_t seed, std::string_view purpose, double pitch_px)
+      : traits_(seed, std::string(purpose) + "/traits"),
+        wander_(seed, std::string(purpose) + "/wander"),
+        pitch_px_(pitch_px) {}
+
+  /// \param across,along  position in pixels, across and along the threads
+  [[nodiscard]] ThreadPlace at(double across, double along) const {
+    const double drift = 0.5 * wander_.fractal(across / 130, along / 130, 2);
+    double lane = across / pitch_px_ + drift;
+    // The lane's own wobble is a function of its number, so the whole thread moves as one.
+    const double number = std::floor(lane);
+    lane += 0.26 * wander_.fractal(number * 7.31, along / 42, 2);
+    ThreadPlace place;
+    place.number = static_cast<std::int64_t>(std::floor(lane));
+    const auto n = static_cast<double>(place.number);
+    place.across = 2.0 * (lane - n) - 1.0;
+    const double slub = std::max(0.0, wander_.at(n * 3.7 + 50, along / 55) - 0.25);
+    place.thickness = 0.80 + 0.22 * traits_.value(traits_.hash(place.number, 1)) + 0.45 * slub +
+                      0.07 * wander_.at(n * 5.3, along / 9);
+    place.tone = 2.0 * traits_.value(traits_.hash(place.number, 2)) - 1.0 +
+                 0.8 * wander_.fractal(n * 9.1 + 20, along / 30, 3);
+    return place;
+  }
+
+ private:
+  Lattice traits_;
+  Noise wander_;
+  double pitch_px_;
+};
+
+/// Height of a thread that goes over and under: round across, waved along.
+double thread_height(const ThreadPlace& place, double lift) {
+  const double u = place.across / place.thickness;
+  const double round = u * u < 1.0 ? std::sqrt(1.0 - u * u) : -1.2;
+  return 1.25 * round * place.thickness + 1.1 * lift;
+}
+
+class Cloth {
+ public:
+  explicit Cloth(std::uint64_t seed)
+      : warp_(seed, "cloth/warp", 6.6),
+        weft_(seed, "cloth/weft", 7.3),
+        fibres_(seed, "cloth/fibres"),
+        folds_(seed, "cloth/folds") {}
+
+  [[nodiscard]] SurfacePoint operator()(double x, double y) const {
+    const double shear = 9.0 * folds_.fractal(x / 220, y / 220, 2);
+    const ThreadPlace warp = warp_.at(x + shear, y);
+    const ThreadPlace weft = weft_.at(y + 0.8 * shear + 0.03 * x, x);
+    const double lift = warp_lift(warp, weft);
+    const double warp_height = thread_height(warp, lift);
+    const double weft_height = thread_height(weft, -lift);
+    SurfacePoint point =
+        warp_height > weft_height ? yarn(warp, warp_height, y) : yarn(weft, weft_height, x);
+    const double hair = fibres_.fractal(x / 2.1, y / 2.1, 2);
+    point.height_px += 0.35 * hair + 21.0 * folds_.fractal(x / 120, y / 150, 2);
+    point.albedo += 0.05 * hair + 0.12 * folds_.fractal(x / 70 + 9, y / 70, 3);
+    return point;
+  }
+
+ private:
+  static constexpr double kGapHeight = -1.7;
+
+  /// Plain weave: at a crossing the warp is up (1) where the weft is down, and the other way round
+  /// (-1) at the next.
+  static double warp_lift(const ThreadPlace& warp, const ThreadPlace& weft) {
+    const double up = ((warp.number + weft.number) & 1) == 1 ? 1.0 : -1.0;
+    return up * (1.0 - 0.55 * weft.across * weft.across) * (1.0 - 0.55 * warp.across * warp.across);
+  }
+
+  /// The upper thread at a point: twisted, so its fibres run aslant. Between threads it is dark.
+  [[nodiscard]] SurfacePoint yarn(const ThreadPlace& place, double height, double along) const {
+    const double twist = fibres_.ridged((along + 4.0 * place.across) / 4.2,
+                                        static_cast<double>(place.number) * 3.3 + place.across, 2);
+    const double albedo = 0.52 + 0.07 * place.tone + 0.10 * twist;
+    const bool is_gap = height < kGapHeight + 0.5;
+    return {std::max(height, kGapHeight) + 0.45 * twist, is_gap ? 0.75 * albedo : albedo};
+  }
+
+  Threads warp_;
+  Threads weft_;
+  Noise fibres_;
+  Noise folds_;
+};
+
+}  // namespace
+
+GreyImage make_cloth(std::uint64_t seed, int size_px) {
+  Relief relief(size_px);
+  fill(relief, Cloth(seed));
+  const Lamp lamp{{-0.5, -0.62, 0.8}, 0.42, 14.0, 2.0, 5.0};
+  return developed(averaged(lit(relief, lamp)), 126.0);
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,131 @@
+#include "core/random.hpp"
+#include "stimuli/noise.hpp"
+#include "stimuli/recipes.hpp"
+#include "stimuli/relief.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace touchtrial {
+namespace {
+
+struct Stalk {
+  Vec2 middle_px;
+  Vec2 along{1.0, 0.0};  ///< length 1
+  double half_length_px = 0.0;
+  double half_width_px = 0.0;
+  double bend_per_px = 0.0;  ///< how much it leaves the straight line, quadratically
+  double base_px = 0.0;
+  double albedo = 0.6;
+  double number = 0.0;
+  double split = 0.0;  ///< 0 round, 1 a flattened, folded leaf
+};
+
+/// Most lie one way, more or less; some lie anywhere.
+Vec2 random_direction(RandomStream& random) {
+  if (random.uniform() < 0.22) {
+    const Vec2 any{random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)};
+    return (1.0 / std::max(1e-6, std::sqrt(any.x * any.x + any.y * any.y))) * any;
+  }
+  const double slope =
+      0.35 + 0.55 * (random.uniform() + random.uniform() + random.uniform() - 1.5) * 1.4;
+  return (1.0 / std::sqrt(1.0 + slope * slope)) * Vec2{1.0, slope};
+}
+
+Stalk random_stalk(RandomStream& random, int size_px, double height_px) {
+  Stalk stalk;
+  stalk.middle_px = {random.uniform(-60.0, size_px + 60.0), random.uniform(-60.0, size_px + 60.0)};
+  stalk.along = random_direction(random);
+  stalk.half_length_px = random.uniform(45.0, 190.0);
+  const double thick = random.uniform();
+  stalk.half_width_px = 1.4 + 3.2 * thick * thick;
+  stalk.bend_per_px = random.uniform(-1.0, 1.0) * 0.0011;
+  stalk.base_px = height_px + random.uniform(-2.0, 2.0);
+  stalk.albedo = random.uniform(0.5, 0.82);
+  stalk.number = random.uniform(0.0, 900.0);
+  stalk.split = random.uniform() < 0.3 ? 1.0 : 0.0;
+  return stalk;
+}
+
+class Painter {
+ public:
+  Painter(std::uint64_t seed, Relief& relief) : fibres_(seed, "straw/fibres"), relief_(relief) {}
+
+  void ground() {
+    fill(relief_, [&](double x, double y) {
+      const double dust = fibres_.fractal(x / 6, y / 6, 3);
+      return SurfacePoint{-6.0 + 2.0 * dust, 0.3 + 0.1 * dust};
+    });
+  }
+
+  /// Walks along the axis that the stalk follows more, and paints its width at each step.
+  void paint(const Stalk& stalk) {
+    const bool flat = std::abs(stalk.along.x) >= std::abs(stalk.along.y);
+    const double major = flat ? stalk.along.x : stalk.along.y;
+    const double reach = std::abs(major) * stalk.half_length_px + 2 * stalk.half_width_px;
+    const double centre = flat ? stalk.middle_px.x : stalk.middle_px.y;
+    const int first = std::max(0, px_to_grid(centre - reach));
+    const int last = std::min(relief_.side() - 1, px_to_grid(centre + reach));
+    for (int i = first; i <= last; ++i) cross_section(stalk, flat, i);
+  }
+
+ private:
+  void cross_section(const Stalk& stalk, bool flat, int i) {
+    const double major = flat ? stalk.along.x : stalk.along.y;
+    const double minor = flat ? stalk.along.y : stalk.along.x;
+    const double from_middle = grid_to_px(i) - (flat ? stalk.middle_px.x : stalk.middle_px.y);
+    const double s = from_middle / major;
+    const double bend = stalk.bend_per_px * s * s / std::abs(major);
+    const double centre = (flat ? stalk.middle_px.y : stalk.middle_px.x) + s * minor +
+                          (flat == (major > 0) ? bend : -bend);
+    const double reach = 1.6 * stalk.half_width_px / std::abs(major) + 1.0;
+    const int first = std::max(0, px_to_grid(centre - reach));
+    const int last = std::min(relief_.side() - 1, px_to_grid(centre + reach));
+    for (int j = first; j <= last; ++j) {
+      const double t = (grid_to_px(j) - centre) * std::abs(major);
+      if (flat)
+        point(stalk, s, t, j, i);
+      else
+        point(stalk, s, t, i, j);
+    }
+  }
+
+  void point(const Stalk& stalk, double s, double t, int y, int x) {
+    if (std::abs(s) > stalk.half_length_px) return;
+    const double width =
+        stalk.half_width_px * (1.0 + 0.12 * fibres_.at(s / 30 + stalk.number, 1.5));
+    const double u = t / width;
+    if (u * u >= 1.0) return;
+    const double groove = fibres_.ridged(t / 1.7 + stalk.number, s / 60, 2);
+    const double round = std::sqrt(1.0 - u * u);
+    const double folded = 0.75 * (1.0 - std::abs(u - 0.2));
+    const double rise = stalk.split > 0.5 ? folded : round;
+    relief_.height_px.at(y, x) = stalk.base_px + 1.1 * stalk.half_width_px * rise + 0.5 * groove;
+    const double blotch = fibres_.fractal(s / 16 + stalk.number, t / 9, 3);
+    const double knot = std::abs(s - 0.3 * stalk.half_length_px) < 2.0 ? -0.14 : 0.0;
+    relief_.albedo.at(y, x) =
+        std::clamp(stalk.albedo + 0.14 * blotch + 0.14 * (groove - 0.6) + knot, 0.1, 1.0);
+  }
+
+  Noise fibres_;
+  Relief& relief_;
+};
+
+}  // namespace
+
+GreyImage make_straw(std::uint64_t seed, int size_px) {
+  constexpr double kStalksPerPixel = 0.0046;
+  constexpr double kPileHeight = 17.0;
+  Relief relief(size_px);
+  Painter painter(seed, relief);
+  painter.ground();
+  RandomStream random(seed, "straw/stalks");
+  const int count = static_cast<int>(kStalksPerPixel * (size_px + 120) * (size_px + 120));
+  for (int i = 0; i < count; ++i) {
+    painter.paint(random_stalk(random, size_px, kPileHeight * i / count));
+  }
+  const Lamp lamp{{-0.45, -0.7, 0.78}, 0.42, 24.0, 3.5, 8.0};
+  return developed(averaged(lit(relief, lamp)), 122.0);
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,152 @@
+#include "analysis/fake_study.hpp"
+
+#include "engine/pack/pack.hpp"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr int kRepeats = 4;
+
+StudyKey fake_key(Protocol protocol, const FakeOptions& options) {
+  const Study study = parse_study(fake_study_text(protocol, options.label), ".", "fake.json");
+  SeededEntropy entropy(11);
+  return make_study_key(study, entropy, options.simulated);
+}
+
+StudyCommitment fake_commitment(const StudyKey& key, const std::filesystem::path& pack) {
+  StudyCommitment commitment;
+  commitment.study = key.study.name;
+  commitment.protocol = name_of(key.study.protocol);
+  commitment.study_id = key.study_id;
+  commitment.seal = study_seal(key);
+  if (std::filesystem::exists(pack)) commitment.pack = Pack(pack).digest();
+  commitment.configuration = blinded_configuration(key);
+  commitment.scored_trials = key.study.scored_trials();
+  commitment.positions = static_cast<int>(key.study.classes.size());
+  commitment.simulated = key.simulated;
+  commitment.program_version = "0.0.0";
+  return commitment;
+}
+
+/// A pack of 2 x 2 pixel fields, one for each code.
+std::filesystem::path fake_pack(const StudyKey& key, const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  PackManifest manifest{key.study_id, {}};
+  for (const KeyedStimulus& stimulus : key.stimuli) {
+    const TextureField field({0.2, 2, 2}, Plane<FieldSample>(2, 2));
+    const Digest checksum = write_field(folder, stimulus.code, field.view());
+    manifest.entries.push_back({stimulus.code, checksum, {}, {0.01, 0.02}});
+  }
+  std::ranges::sort(manifest.entries, {}, &PackEntry::code);
+  write_manifest(folder, manifest);
+  return folder;
+}
+
+StudyStore fake_store(const StudyKey& key, const FakeOptions& options,
+                      const std::filesystem::path& folder) {
+  const auto pack = folder / "study.pack";
+  if (options.with_pack) fake_pack(key, pack);
+  return StudyStore::create(folder / "study.db", fake_commitment(key, pack), milliseconds(0));
+}
+
+Trace fake_trace() {
+  Trace trace;
+  for (int i = 0; i < 20; ++i) trace.samples.push_back({{0.1 * i, 0.0, -0.5}, {0.0, 0.0, 0.25}});
+  return trace;
+}
+
+int position_of(const Schedule& schedule, int class_index) {
+  const auto found = std::find(schedule.layout.begin(), schedule.layout.end(), class_index);
+  return static_cast<int>(found - schedule.layout.begin());
+}
+
+/// Trial t begins at 10 t seconds, touches 0.5 s and answers 4.25 s later.
+void record_trial(SessionRecorder& recorder, const FakeSession& session, const Schedule& schedule,
+                  const Presentation& shown) {
+  const milliseconds start(10'000 * shown.trial);
+  if (shown.trial == session.interrupt_trial) {
+    recorder.presented(start - milliseconds(2000), shown.trial, shown.block);
+    recorder.interrupted(start - milliseconds(1000), shown.trial, "comfort stop");
+  }
+  recorder.presented(start, shown.trial, shown.block);
+  recorder.first_contact(start + milliseconds(500), shown.trial);
+  if (const auto answer = session.answers(shown)) {
+    recorder.answered(start + milliseconds(4250),
+                      {shown.trial, position_of(schedule, *answer), std::nullopt, std::nullopt});
+  } else {
+    recorder.timed_out(start + milliseconds(4250), shown.trial);
+  }
+  TraceBody body;
+  body.trial = shown.trial;
+  body.rate_hz = 1000.0;
+  body.valid = session.valid;
+  recorder.trace_stored(start + milliseconds(4500), body, {4.0, 300.5, 0.125, 0.001 * shown.trial},
+                        fake_trace());
+}
+
+}  // namespace
+
+std::string fake_study_text(Protocol protocol, const std::string& first_label) {
+  const bool comparison = protocol == Protocol::comparison;
+  nlohmann::json study{{"study", comparison ? "pair" : "single"},
+                       {"protocol", name_of(protocol)},
+                       {"trials", {{"repeats", kRepeats}}},
+                       {"seed", 5}};
+  study["classes"] = {{{"label", first_label}, {"images", {"../stimuli/first.png"}}},
+                      {{"label", "cloth"}, {"images", {"../stimuli/cloth.png"}}},
+                      {{"label", "straw"}, {"images", {"../stimuli/straw.png"}}}};
+  study["methods"] = {{{"name", "adaptive"}}};
+  if (comparison) study["methods"].push_back({{"name", "tv-gabor"}});
+  return study.dump();
+}
+
+FakeStudy::FakeStudy(Protocol protocol, const FakeOptions& options)
+    : key_(fake_key(protocol, options)), store_(fake_store(key_, options, folder_.path())) {}
+
+void FakeStudy::add(const FakeSession& session) {
+  const int number = store_.next_session();
+  SeededEntropy entropy(static_cast<std::uint64_t>(number));
+  const SecretKey own = entropy.secret("participant");
+  BufferedEvents buffer;
+  SessionRecorder recorder(number, own, buffer);
+  const Schedule schedule = make_schedule(key_.study, session.enrolment);
+  SessionOpening opening;
+  opening.participant = session.participant;
+  opening.enrolment = session.enrolment;
+  opening.study_id = key_.study_id;
+  opening.seal = study_seal(key_);
+  opening.device = "simulated";
+  opening.simulated = key_.simulated;
+  opening.pilot = session.pilot;
+  recorder.opened(milliseconds(0), opening, schedule_to_json(schedule, key_));
+  int shown = 0;
+  for (const Presentation& presentation : schedule.presentations) {
+    if (shown++ == session.stop_after) break;
+    record_trial(recorder, session, schedule, presentation);
+  }
+  recorder.closed(milliseconds(10'000'000), session.complete);
+  store_.add_session(buffer, wrap_participant_key(key_.master, number, own), milliseconds(number));
+}
+
+void FakeStudy::close_and_unblind() {
+  store_.close_study(milliseconds(1000));
+  store_.unblind(milliseconds(1001), "planned", false);
+}
+
+FakeAnswers FakeStudy::always_right() {
+  return [](const Presentation& shown) { return shown.stimulus.class_index; };
+}
+
+FakeAnswers FakeStudy::confusing(int from, int to) {
+  return [=](const Presentation& shown) {
+    return shown.stimulus.class_index == from ? to : shown.stimulus.class_index;
+  };
+}
+
+}  // namespace touchtrial

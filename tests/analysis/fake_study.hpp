@@ -1,0 +1,63 @@
+/// \file A study whose answers a test chooses, recorded as a real one is.
+#pragma once
+
+#include "protocols/design/study_key.hpp"
+#include "protocols/store/study_store.hpp"
+#include "support/temp_folder.hpp"
+
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace touchtrial {
+
+/// Class index of the answer to a presentation, or nothing to let the time run out.
+using FakeAnswers = std::function<std::optional<int>(const Presentation&)>;
+
+/// How one fake session goes.
+struct FakeSession {
+  std::string participant;
+  int enrolment = 1;
+  FakeAnswers answers;
+  bool complete = true;
+  bool pilot = false;
+  bool valid = true;
+  int interrupt_trial = 0;   ///< presented twice, the first time interrupted; 0: none
+  int stop_after = 1 << 20;  ///< presentations
+};
+
+struct FakeOptions {
+  bool simulated = true;
+  std::string label = "bark";  ///< of the first class
+  bool with_pack = false;      ///< tiny fields in `folder() / "study.pack"`
+};
+
+/// Three classes, each with one image, four presentations a method.
+class FakeStudy {
+ public:
+  explicit FakeStudy(Protocol protocol, const FakeOptions& options = {});
+
+  [[nodiscard]] const StudyKey& key() const noexcept { return key_; }
+  [[nodiscard]] StudyStore& store() noexcept { return store_; }
+  [[nodiscard]] const std::filesystem::path& folder() const noexcept { return folder_.path(); }
+  [[nodiscard]] std::filesystem::path pack_folder() const { return folder() / "study.pack"; }
+  [[nodiscard]] std::filesystem::path database() const { return folder() / "study.db"; }
+
+  void add(const FakeSession& session);
+  void close_and_unblind();
+
+  /// Answers everything right.
+  [[nodiscard]] static FakeAnswers always_right();
+  /// Takes class `from` for `to`, and everything else for what it is.
+  [[nodiscard]] static FakeAnswers confusing(int from, int to);
+
+ private:
+  TempFolder folder_;
+  StudyKey key_;
+  StudyStore store_;
+};
+
+/// Its study file.
+[[nodiscard]] std::string fake_study_text(Protocol protocol, const std::string& first_label);
+
+}  // namespace touchtrial

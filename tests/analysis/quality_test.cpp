@@ -1,0 +1,90 @@
+#include "analysis/quality.hpp"
+
+#include "analysis/fake_study.hpp"
+#include "analysis/text_matching.hpp"
+#include "support/catch.hpp"
+
+#include <numeric>
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+namespace {
+
+/// Three sessions: one right but for a time-out, one not valid, one stopped after four trials.
+void fill(FakeStudy& study) {
+  study.add({.participant = "P01", .enrolment = 1, .answers = [](const Presentation& shown) {
+               return shown.trial == 3 ? std::nullopt : std::optional(shown.stimulus.class_index);
+             }});
+  study.add({.participant = "P02",
+             .enrolment = 2,
+             .answers = FakeStudy::always_right(),
+             .valid = false,
+             .interrupt_trial = 2});
+  study.add({.participant = "P03",
+             .enrolment = 3,
+             .answers = FakeStudy::always_right(),
+             .complete = false,
+             .stop_after = 4});
+}
+
+}  // namespace
+
+TEST_CASE("make_quality counts sessions, answers and validity without a key") {
+  FakeStudy study(Protocol::classification);
+  fill(study);
+  const QualityReport report = make_quality(study.store());
+  CHECK(report.participants == 2);
+  CHECK(report.trials == 24);
+  CHECK(report.sessions.completed == 2);
+  CHECK(report.sessions.stopped == 1);
+  CHECK(report.sessions.withdrawn == 0);
+  const TrialQuality& quality = report.quality;
+  CHECK(quality.presented == 28);
+  CHECK(quality.answered == 27);
+  CHECK(quality.no_response == 1);
+  CHECK(quality.interrupted == 0);
+  CHECK(quality.with_trace == 28);
+  CHECK(quality.valid == 16);
+  CHECK(quality.lowest_rate_hz == 1000.0);
+  REQUIRE(quality.by_position.size() == 3);
+  CHECK(std::accumulate(quality.by_position.begin(), quality.by_position.end(), 0) == 27);
+}
+
+TEST_CASE("A quality report names no class, no image and no method") {
+  FakeStudy study(Protocol::comparison, {.label = "petrified wood"});
+  study.add({.participant = "P01", .answers = FakeStudy::always_right()});
+  const QualityReport report = make_quality(study.store());
+  for (const std::string& text : {quality_json(report), quality_text(report)}) {
+    for (const char* secret : {"petrified", "cloth", "straw", ".png", "adaptive", "tv-gabor"}) {
+      CHECK_FALSE(contains(text, secret));
+    }
+  }
+}
+
+TEST_CASE("A quality report says how the study stands") {
+  FakeStudy study(Protocol::classification);
+  CHECK(make_quality(study.store()).state.closed == false);
+  const auto open = nlohmann::json::parse(quality_json(make_quality(study.store())));
+  CHECK(open["state"] == "collecting");
+  CHECK(open["blinded"] == true);
+  CHECK(open["stamp"] == "SIMULATED");
+  CHECK(open["validity"]["share"].is_null());
+  study.store().close_study(std::chrono::seconds(1));
+  CHECK(nlohmann::json::parse(quality_json(make_quality(study.store())))["state"] == "closed");
+  study.store().unblind(std::chrono::seconds(2), "planned", false);
+  const auto done = nlohmann::json::parse(quality_json(make_quality(study.store())));
+  CHECK(done["state"] == "unblinded");
+  CHECK(done["blinded"] == false);
+}
+
+TEST_CASE("A quality report of real participants carries no stamp") {
+  FakeStudy study(Protocol::classification, {.simulated = false});
+  const QualityReport report = make_quality(study.store());
+  const auto json = nlohmann::json::parse(quality_json(report));
+  CHECK(json["simulated"] == false);
+  CHECK_FALSE(json.contains("stamp"));
+  CHECK_FALSE(contains(quality_text(report), "SIMULATED"));
+}
+
+}  // namespace touchtrial

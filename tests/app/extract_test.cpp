@@ -1,0 +1,133 @@
+#include "app/touchtrial_process.hpp"
+#include "core/files.hpp"
+#include "core/npy.hpp"
+#include "core/random.hpp"
+#include "engine/image_file.hpp"
+#include "support/catch.hpp"
+#include "support/temp_folder.hpp"
+
+#include <cmath>
+#include <string>
+
+using namespace touchtrial;
+
+namespace {
+
+GreyImage noise(int height, int width) {
+  RandomStream random(1, "extract test");
+  GreyImage image(height, width);
+  for (std::uint8_t& sample : image.samples())
+    sample = static_cast<std::uint8_t>(random.below(256));
+  return image;
+}
+
+}  // namespace
+
+TEST_CASE("extract writes the texture and every stage, with consistent shapes and values") {
+  const TempFolder folder;
+  const auto path = folder.path() / "noise.png";
+  write_png(path, noise(21, 34));
+  const auto dump = folder.path() / "dump";
+  const ProgramResult result = run_touchtrial(
+      folder.path(), {"extract", path.string(), "--dump", dump.string(), "-o",
+                      (folder.path() / "out.png").string(), "--precision", "double"});
+  INFO(result.errors);
+  REQUIRE(result.exit_code == 0);
+  CHECK(line_count(result.output) == 1);
+  CHECK(result.errors.empty());
+
+  CHECK(read_npy(dump / "image.npy").shape == std::vector<int>{21, 34});
+  CHECK(read_npy(dump / "subband_LH.npy").shape == std::vector<int>{11, 17});
+  CHECK(read_npy(dump / "force_tangential.npy").shape == std::vector<int>{21, 34, 2});
+  CHECK(read_npy(dump / "order.npy").type == "<f8");
+  const auto image = read_npy(dump / "image.npy").as_doubles();
+  const auto texture = read_npy(dump / "texture.npy").as_doubles();
+  const auto enhanced = read_npy(dump / "enhanced.npy").as_doubles();
+  const auto rounded = read_npy(dump / "texture_u8.npy").as_doubles();
+  const GreyImage written = read_grey_image(folder.path() / "out.png");
+  for (std::size_t i = 0; i < texture.size(); ++i) {
+    CHECK(enhanced[i] == Approx(image[i] + texture[i]));
+    CHECK(rounded[i] == std::min(255.0, std::max(0.0, std::floor(128 + texture[i] + 0.5))));
+    CHECK(written.samples()[i] == rounded[i]);
+  }
+}
+
+TEST_CASE("extract dumps single precision unless asked for double") {
+  const TempFolder folder;
+  const auto path = folder.path() / "noise.png";
+  write_png(path, noise(5, 7));
+  for (const std::string method : {"adaptive", "tv-gabor"}) {
+    const auto dump = folder.path() / method;
+    REQUIRE(run_touchtrial(folder.path(),
+                           {"extract", path.string(), "--method", method, "--dump", dump.string()})
+                .exit_code == 0);
+    CHECK(read_npy(dump / "texture.npy").type == "<f4");
+  }
+  CHECK(std::filesystem::exists(folder.path() / "tv-gabor" / "cartoon.npy"));
+  CHECK_FALSE(std::filesystem::exists(folder.path() / "tv-gabor" / "order.npy"));
+}
+
+TEST_CASE("extract refuses bad arguments with exit 2 and one line") {
+  const TempFolder folder;
+  const auto path = (folder.path() / "noise.png").string();
+  write_png(path, noise(5, 7));
+  const std::vector<std::vector<std::string>> bad = {
+      {"extract"},
+      {"extract", path, "--method", "magic"},
+      {"extract", path, "--method", "fixed"},
+      {"extract", path, "--method", "fixed", "--order", "1"},
+      {"extract", path, "--method", "fixed", "--order", "nan"},
+      {"extract", path, "--order", "0.5"},
+      {"extract", path, "--radius", "0"},
+      {"extract", path, "--radius", "8"},
+      {"extract", path, "--neighbourhood", "4"},
+      {"extract", path, "--precision", "half"},
+      {"extract", path, "--no-such-option"},
+      {"no-such-command"},
+      {},
+  };
+  for (const auto& arguments : bad) {
+    const ProgramResult result = run_touchtrial(folder.path(), arguments);
+    INFO(Catch::rangeToString(arguments) << " " << result.errors);
+    CHECK(result.exit_code == 2);
+    CHECK(line_count(result.errors) == 1);
+    CHECK(result.output.empty());
+  }
+}
+
+TEST_CASE("extract reports a file that is no image with exit 1, one line and its name") {
+  const TempFolder folder;
+  const auto text = folder.path() / "text.png";
+  replace_file(text, "this is no picture");
+  for (const std::string name : {"text.png", "missing.png"}) {
+    const ProgramResult result =
+        run_touchtrial(folder.path(), {"extract", (folder.path() / name).string()});
+    CHECK(result.exit_code == 1);
+    CHECK(line_count(result.errors) == 1);
+    CHECK(result.errors.find(name) != std::string::npos);
+  }
+}
+
+TEST_CASE("extract says which file it cannot write") {
+  const TempFolder folder;
+  const auto path = (folder.path() / "noise.png").string();
+  write_png(path, noise(5, 7));
+  const ProgramResult result =
+      run_touchtrial(folder.path(), {"extract", path, "-o", "/no/such/folder/out.png"});
+  CHECK(result.exit_code == 1);
+  CHECK(line_count(result.errors) == 1);
+  CHECK(result.errors.find("/no/such/folder/out.png") != std::string::npos);
+}
+
+TEST_CASE("every command has help that exits with 0") {
+  const TempFolder folder;
+  CHECK(run_touchtrial(folder.path(), {"--help"}).exit_code == 0);
+  CHECK(run_touchtrial(folder.path(), {"--version"}).exit_code == 0);
+  for (const std::string command : {"extract", "stimuli", "prepare", "simulate", "close", "unblind",
+                                    "verify", "report", "export"}) {
+    const ProgramResult result = run_touchtrial(folder.path(), {command, "--help"});
+    INFO(command);
+    CHECK(result.exit_code == 0);
+    CHECK(result.output.find("Usage") != std::string::npos);
+  }
+}

@@ -1,0 +1,47 @@
+#include "app/touchtrial_process.hpp"
+
+#include "core/files.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+
+extern char** environ;
+
+namespace touchtrial {
+
+ProgramResult run_touchtrial(const std::filesystem::path& folder,
+                             const std::vector<std::string>& arguments) {
+  std::vector<std::string> words = {TOUCHTRIAL_PROGRAM};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  std::vector<char*> argv;
+  for (std::string& word : words) argv.push_back(word.data());
+  argv.push_back(nullptr);
+
+  const std::string out = (folder / "stdout.txt").string();
+  const std::string err = (folder / "stderr.txt").string();
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  const int flags = O_WRONLY | O_CREAT | O_TRUNC;
+  posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), flags, 0600);
+  posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), flags, 0600);
+  pid_t child = 0;
+  const int failed =
+      posix_spawn(&child, TOUCHTRIAL_PROGRAM, &actions, nullptr, argv.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  REQUIRE(failed == 0);
+  int status = 0;
+  REQUIRE(waitpid(child, &status, 0) == child);
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(read_file(out)),
+          text_of(read_file(err))};
+}
+
+int line_count(const std::string& text) {
+  const auto ends = static_cast<int>(std::count(text.begin(), text.end(), '\n'));
+  return ends + (!text.empty() && text.back() != '\n' ? 1 : 0);
+}
+
+}  // namespace touchtrial

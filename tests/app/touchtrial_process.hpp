@@ -1,0 +1,23 @@
+/// \file Runs the built program as a user would.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+
+struct ProgramResult {
+  int exit_code = -1;  ///< -1 if it died by a signal
+  std::string output;  ///< standard output
+  std::string errors;  ///< standard error
+};
+
+/// Runs `touchtrial ARGUMENTS` to its end; `folder` takes what it prints meanwhile.
+[[nodiscard]] ProgramResult run_touchtrial(const std::filesystem::path& folder,
+                                           const std::vector<std::string>& arguments);
+
+/// The number of lines in a text, the last one finished or not.
+[[nodiscard]] int line_count(const std::string& text);
+
+}  // namespace touchtrial

@@ -1,0 +1,109 @@
+#include "device/servo.hpp"
+
+#include "device/flat_wall.hpp"
+#include "support/catch.hpp"
+
+#include <cmath>
+#include <limits>
+
+namespace touchtrial {
+namespace {
+
+/// Stays where it is, keeps what it was sent, and ends or fails at a chosen tick.
+class ScriptedDevice final : public HapticDevice {
+ public:
+  [[nodiscard]] DeviceInfo info() const override { return {"scripted", "", max_force_n, true}; }
+  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override {
+    sample.position_mm = {static_cast<double>(reads), 0.0, -1.0};
+    return reads++ < ticks ? DeviceStatus::ok : end;
+  }
+  [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override {
+    written.push_back(force_n);
+    return static_cast<int>(written.size()) == fails_at_write ? DeviceStatus::fault
+                                                              : DeviceStatus::ok;
+  }
+
+  double max_force_n = 3.3;
+  int ticks = 1'000'000;
+  int fails_at_write = 0;
+  DeviceStatus end = DeviceStatus::stopped;
+  int reads = 0;
+  std::vector<Vec3> written;
+};
+
+class ConstantForce final : public ForceSource {
+ public:
+  explicit ConstantForce(Vec3 force_n) : force_n_(force_n) {}
+  [[nodiscard]] Vec3 force_n(const DeviceSample&) noexcept override { return force_n_; }
+
+ private:
+  Vec3 force_n_;
+};
+
+TEST_CASE("the servo runs until the hand stops and records what it sent where") {
+  ScriptedDevice device;
+  device.ticks = 5;
+  ConstantForce force({0.0, 0.0, 0.5});
+  KeptSamples kept;
+  const ServoReport report = run_servo_in_virtual_time(device, force, kept, {});
+  CHECK(report.end == ServoEnd::hand_stopped);
+  CHECK(report.ticks == 5);
+  REQUIRE(kept.samples.size() == 5);
+  CHECK(kept.samples[3].position_mm == Vec3{3.0, 0.0, -1.0});
+  CHECK(kept.samples[3].force_n == device.written[3]);
+}
+
+TEST_CASE("when time is up the force fades to nothing, and zero is written last") {
+  ScriptedDevice device;
+  ConstantForce force({0.0, 0.0, 1.0});
+  KeptSamples kept;
+  const ServoReport report =
+      run_servo_in_virtual_time(device, force, kept, {.limit_ticks = 3, .fade_ticks = 4});
+  CHECK(report.end == ServoEnd::time_limit);
+  CHECK(report.ticks == 7);
+  const std::vector<Vec3> expected = {{0, 0, 1},   {0, 0, 1},    {0, 0, 1}, {0, 0, 0.75},
+                                      {0, 0, 0.5}, {0, 0, 0.25}, {0, 0, 0}, {0, 0, 0}};
+  CHECK(device.written == expected);
+}
+
+TEST_CASE("the smaller of the device's and the study's force limits holds") {
+  ScriptedDevice device;
+  device.ticks = 2;
+  device.max_force_n = GENERATE(1.0, 9.0);
+  const double limit_n = std::min(device.max_force_n, 2.0);
+  ConstantForce force({0.0, 3.0, 0.0});
+  KeptSamples kept;
+  const ServoReport report = run_servo_in_virtual_time(device, force, kept, {.max_force_n = 2.0});
+  CHECK(report.limited_ticks == 2);
+  CHECK(device.written[0] == Vec3{0.0, limit_n, 0.0});
+}
+
+TEST_CASE("a force that is not a number ends the loop without reaching the device") {
+  ScriptedDevice device;
+  ConstantForce force({std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0});
+  KeptSamples kept;
+  const ServoReport report = run_servo_in_virtual_time(device, force, kept, {});
+  CHECK(report.end == ServoEnd::fault);
+  CHECK(report.ticks == 0);
+  CHECK(device.written == std::vector<Vec3>{{}});
+}
+
+TEST_CASE("a device that is lost ends the loop with a fault") {
+  ScriptedDevice device;
+  ConstantForce force({});
+  KeptSamples kept;
+  SECTION("while reading") {
+    device.ticks = 4;
+    device.end = DeviceStatus::fault;
+    CHECK(run_servo_in_virtual_time(device, force, kept, {}).end == ServoEnd::fault);
+    CHECK(kept.samples.size() == 4);
+  }
+  SECTION("while writing: the tick is not recorded") {
+    device.fails_at_write = 3;
+    CHECK(run_servo_in_virtual_time(device, force, kept, {}).end == ServoEnd::fault);
+    CHECK(kept.samples.size() == 2);
+  }
+}
+
+}  // namespace
+}  // namespace touchtrial

@@ -1,0 +1,196 @@
+#include "engine/extraction.hpp"
+
+#include "engine/example_images.hpp"
+#include "engine/plane_comparison.hpp"
+#include "engine/reference/adaptive_reference.hpp"
+#include "engine/refusal.hpp"
+#include "support/catch.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace touchtrial {
+namespace {
+
+constexpr double kDoubleTolerance = 1e-10;
+constexpr double kFloatTolerance = 4e-5;
+
+ExtractionOptions adaptive_options(int radius = 2) {
+  ExtractionOptions options;
+  options.radius = radius;
+  return options;
+}
+
+ExtractionOptions fixed_options(double order, int radius = 2) {
+  ExtractionOptions options;
+  options.method = Method::fixed;
+  options.order = order;
+  options.radius = radius;
+  return options;
+}
+
+/// Where the CSGV is 2 or 128 to rounding, two ways of summing may take different branches.
+bool is_at_branch_point(double csgv) {
+  return std::abs(csgv - 2.0) < 1e-6 || std::abs(csgv - 128.0) < 1e-6;
+}
+
+template <typename Real>
+double texture_error(const GreyImage& image, const Plane<double>& csgv,
+                     const Plane<double>& expected, int radius) {
+  Plane<Real> texture = extract_texture<Real>(image, adaptive_options(radius)).texture;
+  Plane<double> kept = expected;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    if (is_at_branch_point(csgv.samples()[i])) {
+      kept.samples()[i] = 0.0;
+      texture.samples()[i] = Real{0};
+    }
+  }
+  return largest_difference(texture, kept);
+}
+
+void check_adaptive(const GreyImage& image, int radius) {
+  const Plane<double> csgv = reference::csgv(image);
+  const Plane<double> expected = reference::texture(image, reference::order_map(csgv), radius);
+  CHECK(texture_error<double>(image, csgv, expected, radius) < kDoubleTolerance);
+  CHECK(texture_error<float>(image, csgv, expected, radius) < kFloatTolerance);
+}
+
+TEST_CASE("the adaptive texture agrees with its definition at every size and radius") {
+  for (const Size size : awkward_sizes()) {
+    for (const auto& [name, image] : example_images(size)) {
+      for (int radius = 1; radius <= ExtractionOptions::kMaxRadius; ++radius) {
+        INFO(name << ", " << size.height << " x " << size.width << ", radius " << radius);
+        check_adaptive(image, radius);
+      }
+    }
+  }
+}
+
+TEST_CASE("the adaptive texture agrees with its definition on real stimulus sizes") {
+  for (const Size size : stimulus_sizes()) {
+    INFO(size.height << " x " << size.width);
+    check_adaptive(cloth_image(size), 2);
+    check_adaptive(noise_image(size), 7);
+    check_adaptive(step_image(size), 3);
+  }
+}
+
+TEMPLATE_TEST_CASE("the adaptive method keeps a flat image exactly flat", "", float, double) {
+  for (int level = 0; level < 256; ++level) {
+    const GreyImage image = flat_image({6, 5}, level);
+    const auto result = extract_texture<TestType>(image, adaptive_options(), WantedPlanes::all());
+    CHECK(largest_magnitude(result.order) == 0.0);
+    CHECK(largest_magnitude(result.texture) == 0.0);
+    CHECK(largest_difference(result.enhanced, image) == 0.0);
+  }
+}
+
+TEMPLATE_TEST_CASE("the adaptive texture of a negative is the negative texture", "", float,
+                   double) {
+  const GreyImage image = cloth_image({64, 63});
+  const auto positive = extract_texture<TestType>(image, adaptive_options()).texture;
+  auto negative = extract_texture<TestType>(negative_of(image), adaptive_options()).texture;
+  for (TestType& sample : negative.samples()) sample = -sample;
+  CHECK(largest_difference(negative, positive) < kFloatTolerance);
+}
+
+TEST_CASE("the adaptive texture does not depend on brightness") {
+  GreyImage dark = cloth_image({64, 63});
+  for (std::uint8_t& sample : dark.samples()) sample = static_cast<std::uint8_t>(sample / 2);
+  GreyImage bright = dark;
+  for (std::uint8_t& sample : bright.samples()) sample = static_cast<std::uint8_t>(sample + 100);
+  CHECK(largest_difference(extract_texture<double>(bright, adaptive_options()).texture,
+                           extract_texture<double>(dark, adaptive_options()).texture) < 1e-9);
+}
+
+TEST_CASE("the adaptive method gives its by-products in the image's shape") {
+  const GreyImage image = cloth_image({9, 12});
+  const auto result = extract_texture<double>(image, adaptive_options(), WantedPlanes::all());
+  const Plane<double> csgv = reference::csgv(image);
+  CHECK(largest_relative_difference(result.csgv, csgv) < 1e-11);
+  CHECK(largest_difference(result.order, reference::order_map(csgv)) < 1e-12);
+  using reference::Tap;
+  for (const auto& [band, expected] :
+       {std::pair{&result.sub_band_ll, reference::sub_band(image, Tap::low, Tap::low)},
+        std::pair{&result.sub_band_lh, reference::sub_band(image, Tap::low, Tap::high)},
+        std::pair{&result.sub_band_hl, reference::sub_band(image, Tap::high, Tap::low)},
+        std::pair{&result.sub_band_hh, reference::sub_band(image, Tap::high, Tap::high)}}) {
+    CHECK(largest_relative_difference(*band, expected) < 1e-12);
+  }
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    REQUIRE(result.enhanced.samples()[i] == image.samples()[i] + result.texture.samples()[i]);
+  }
+  CHECK(result.cartoon.empty());
+}
+
+TEST_CASE("the fixed method uses one order for all pixels") {
+  const GreyImage image = noise_image({13, 12});
+  const auto result = extract_texture<double>(image, fixed_options(0.55, 3), WantedPlanes::all());
+  CHECK(result.order == Plane<double>(13, 12, 0.55));
+  CHECK(largest_difference(result.texture, reference::texture(image, result.order, 3)) <
+        kDoubleTolerance);
+  CHECK(result.csgv.empty());
+  CHECK(result.sub_band_ll.empty());
+}
+
+TEMPLATE_TEST_CASE("the fixed method of order zero finds no texture", "", float, double) {
+  const auto result = extract_texture<TestType>(noise_image({13, 12}), fixed_options(0.0));
+  CHECK(largest_magnitude(result.texture) == 0.0);
+}
+
+TEST_CASE("tv-gabor splits an image into cartoon and texture") {
+  const GreyImage image = cloth_image({20, 24});
+  ExtractionOptions options;
+  options.method = Method::tv_gabor;
+  const auto result = extract_texture<double>(image, options, WantedPlanes::all());
+  CHECK(result.converged);
+  CHECK(result.steps > 0);
+  CHECK(result.gap <= options.tv_gabor.gap);
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    REQUIRE(result.cartoon.samples()[i] + result.texture.samples()[i] ==
+            Approx(image.samples()[i]).epsilon(1e-13));
+  }
+  CHECK(result.order.empty());
+  CHECK(result.csgv.empty());
+}
+
+TEST_CASE("planes that nobody wants are left empty") {
+  for (const Method method : {Method::adaptive, Method::fixed, Method::tv_gabor}) {
+    ExtractionOptions options;
+    options.method = method;
+    const auto result = extract_texture<float>(noise_image({8, 8}), options);
+    CHECK(result.texture.size() == 64);
+    for (const Plane<float>* plane :
+         {&result.sub_band_ll, &result.sub_band_lh, &result.sub_band_hl, &result.sub_band_hh,
+          &result.csgv, &result.order, &result.enhanced, &result.cartoon}) {
+      CHECK(plane->empty());
+    }
+  }
+}
+
+TEST_CASE("methods have the names of study files") {
+  CHECK(method_names() == std::vector<std::string>{"adaptive", "fixed", "tv-gabor"});
+  for (const std::string& name : method_names()) {
+    const auto method = method_from_name(name);
+    REQUIRE(method.has_value());
+    CHECK(name_of(*method) == name);
+  }
+  CHECK_FALSE(method_from_name("tv_gabor").has_value());
+  CHECK_FALSE(method_from_name("").has_value());
+}
+
+TEST_CASE("extract_texture refuses an empty image, whatever the method") {
+  for (const Method method : {Method::adaptive, Method::fixed, Method::tv_gabor}) {
+    ExtractionOptions options;
+    options.method = method;
+    CHECK(refusal_of([&] { (void)extract_texture<float>(GreyImage(), options); }) ==
+          "extract_texture: the image is empty");
+  }
+}
+
+}  // namespace
+}  // namespace touchtrial

@@ -1,0 +1,114 @@
+#include "engine/gl_texture.hpp"
+
+#include "engine/example_images.hpp"
+#include "engine/gl_weights.hpp"
+#include "engine/plane_comparison.hpp"
+#include "engine/reference/adaptive_reference.hpp"
+#include "support/catch.hpp"
+
+#include <cstdint>
+
+namespace touchtrial {
+namespace {
+
+constexpr double kDoubleTolerance = 1e-10;
+/// What a float texture is promised to keep, in grey levels, on any 8-bit image.
+constexpr double kFloatTolerance = 4e-5;
+constexpr int kMaxRadius = 7;
+
+void check_against_definition(const GreyImage& image, double order, int radius) {
+  const Plane<double> orders(image.height(), image.width(), order);
+  const Plane<double> expected = reference::texture(image, orders, radius);
+  CHECK(largest_difference(gl_texture<double>(image, radius, order), expected) < kDoubleTolerance);
+  CHECK(largest_difference(gl_texture<float>(image, radius, order), expected) < kFloatTolerance);
+}
+
+TEST_CASE("gl_texture of one bright pixel is its own weights") {
+  GreyImage image(5, 5);
+  image.at(2, 2) = 80;
+  const Plane<double> texture = gl_texture<double>(image, 2, 0.5);
+  CHECK(texture.at(2, 2) == Approx(80 * (0.5 + 0.125)).epsilon(1e-15));
+  CHECK(texture.at(2, 3) == Approx(-80 * 0.5 / 8).epsilon(1e-15));
+  CHECK(texture.at(0, 4) == Approx(-80 * 0.125 / 8).epsilon(1e-15));
+  CHECK(texture.at(0, 1) == 0.0);  // a knight's move away: in no ring
+}
+
+TEMPLATE_TEST_CASE("gl_texture of a flat image is exactly zero", "", float, double) {
+  for (const int level : {0, 1, 128, 255}) {
+    const GreyImage image = flat_image({9, 11}, level);
+    for (int radius = 1; radius <= kMaxRadius; ++radius) {
+      CHECK(largest_magnitude(gl_texture<TestType>(image, radius, 0.999)) == 0.0);
+    }
+  }
+}
+
+TEMPLATE_TEST_CASE("gl_texture of order zero is zero", "", float, double) {
+  CHECK(largest_magnitude(gl_texture<TestType>(noise_image({20, 21}), 3, 0.0)) == 0.0);
+}
+
+TEMPLATE_TEST_CASE("gl_texture of a negative is the negative texture", "", float, double) {
+  for (const int radius : {1, 2, 7}) {
+    const GreyImage image = noise_image({31, 30});
+    Plane<TestType> texture = gl_texture<TestType>(image, radius, 0.6);
+    for (TestType& sample : texture.samples()) sample = -sample;
+    CHECK(gl_texture<TestType>(negative_of(image), radius, 0.6) == texture);
+  }
+}
+
+TEMPLATE_TEST_CASE("gl_texture does not depend on brightness", "", float, double) {
+  GreyImage dark = noise_image({31, 30});
+  for (std::uint8_t& sample : dark.samples()) sample = static_cast<std::uint8_t>(sample / 2);
+  GreyImage bright = dark;
+  for (std::uint8_t& sample : bright.samples()) sample = static_cast<std::uint8_t>(sample + 100);
+  CHECK(gl_texture<TestType>(bright, 4, 0.7) == gl_texture<TestType>(dark, 4, 0.7));
+}
+
+TEST_CASE("gl_texture stays within 255 (1 - S_K), and reaches it") {
+  GreyImage dot(17, 17);
+  dot.at(8, 8) = 255;
+  for (int radius = 1; radius <= kMaxRadius; ++radius) {
+    for (const double order : {0.1, 0.5, 0.9, 0.999}) {
+      const double bound = 255.0 * (1.0 - gl_weight_sum(order, radius));
+      INFO("order " << order << ", radius " << radius);
+      const GreyImage speckle = speckle_image({64, 63});
+      CHECK(largest_magnitude(gl_texture<double>(speckle, radius, order)) <= bound + 1e-10);
+      CHECK(gl_texture<double>(dot, radius, order).at(8, 8) == Approx(bound).epsilon(1e-13));
+    }
+  }
+}
+
+TEST_CASE("gl_texture agrees with its definition at every size and radius") {
+  for (const Size size : awkward_sizes()) {
+    for (const auto& [name, image] : example_images(size)) {
+      for (int radius = 1; radius <= kMaxRadius; ++radius) {
+        INFO(name << ", " << size.height << " x " << size.width << ", radius " << radius);
+        check_against_definition(image, 0.55, radius);
+      }
+    }
+  }
+}
+
+TEST_CASE("gl_texture agrees with its definition for every order") {
+  for (const double order : {0.01, 0.05, 0.25, 0.3, 0.7, 0.95, 0.999, 0.999999}) {
+    for (const int radius : {1, 2, 7}) {
+      INFO("order " << order << ", radius " << radius);
+      check_against_definition(speckle_image({64, 63}), order, radius);
+    }
+  }
+}
+
+TEST_CASE("gl_texture takes the order of the square that a pixel lies in") {
+  const GreyImage image = noise_image({7, 9});
+  Plane<double> half(4, 5);
+  Plane<double> full(7, 9);
+  for (int y = 0; y < 7; ++y) {
+    for (int x = 0; x < 9; ++x) {
+      full.at(y, x) = half.at(y / 2, x / 2) = 0.05 * (y / 2) + 0.1 * (x / 2);
+    }
+  }
+  CHECK(largest_difference(gl_texture<double>(image, 3, half), reference::texture(image, full, 3)) <
+        kDoubleTolerance);
+}
+
+}  // namespace
+}  // namespace touchtrial

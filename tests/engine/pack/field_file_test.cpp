@@ -1,0 +1,124 @@
+#include "engine/pack/field_file.hpp"
+
+#include "core/errors.hpp"
+#include "engine/rendering/sample_fields.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+
+namespace touchtrial {
+namespace {
+
+const std::filesystem::path kName = "pack/0123456789abcdef.field";
+
+template <typename Value>
+Bytes with_value(Bytes file, std::size_t offset, Value value) {
+  std::memcpy(file.data() + offset, &value, sizeof value);
+  return file;
+}
+
+std::string refusal_of(const Bytes& file) {
+  try {
+    static_cast<void>(decode_field(file, kName));
+  } catch (const FileError& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST_CASE("encode_field lays the header and the samples out as documented") {
+  const std::vector<FieldSample> samples = {{1.0F, 2.0F, 3.0F}, {4.0F, 5.0F, 6.0F}};
+  const Bytes file = encode_field({{0.25, 1, 2}, samples});
+  REQUIRE(file.size() == 64 + 2 * 12);
+  CHECK(text_of(ByteView(file).first(8)) == "TTFIELD1");
+  CHECK(to_hex(ByteView(file).subspan(8, 16)) == "01000000010000000100000002000000");
+  CHECK(to_hex(ByteView(file).subspan(24, 8)) == "000000000000d03f");
+  CHECK(std::all_of(file.begin() + 32, file.begin() + 64, [](std::uint8_t b) { return b == 0; }));
+  CHECK(to_hex(ByteView(file).subspan(64, 12)) == "0000803f0000004000004040");
+}
+
+TEST_CASE("decode_field gives back what encode_field was given") {
+  const int height = GENERATE(1, 3, 20);
+  const int width = GENERATE(1, 17);
+  const TextureField field = random_field(height, width, 1);
+  const Bytes file = encode_field(field.view());
+  const FieldView read = decode_field(file, kName);
+  CHECK(read.geometry.height_px == height);
+  CHECK(read.geometry.width_px == width);
+  CHECK(read.geometry.pitch_mm == 0.2);
+  REQUIRE(read.samples.size() == field.view().samples.size());
+  CHECK(std::memcmp(read.samples.data(), field.view().samples.data(), read.samples.size_bytes()) ==
+        0);
+}
+
+TEST_CASE("encode_field makes files of one size from fields of one size") {
+  const TextureField flat = flat_field(30, 20);
+  const TextureField rough = random_field(30, 20, 2, 100.0);
+  CHECK(encode_field(flat.view()).size() == encode_field(rough.view()).size());
+}
+
+TEST_CASE("encode_field refuses a view that is not a field") {
+  std::vector<FieldSample> samples(6);
+  CHECK_THROWS_AS(encode_field({}), std::invalid_argument);
+  CHECK_THROWS_AS(encode_field({{0.2, 2, 4}, samples}), std::invalid_argument);
+  CHECK_THROWS_AS(encode_field({{0.2, -2, -3}, samples}), std::invalid_argument);
+  CHECK_THROWS_AS(encode_field({{0.0, 2, 3}, samples}), std::invalid_argument);
+  CHECK_THROWS_AS(encode_field({{std::nan(""), 2, 3}, samples}), std::invalid_argument);
+}
+
+TEST_CASE("decode_field refuses a file cut anywhere, or with more behind it") {
+  const Bytes file = encode_field(random_field(2, 3, 3).view());
+  for (std::size_t size = 0; size < file.size(); ++size) {
+    const Bytes cut(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(size));
+    REQUIRE_THROWS_AS(decode_field(cut, kName), FileError);
+  }
+  Bytes longer = file;
+  longer.push_back(0);
+  CHECK(refusal_of(longer).find("truncated or overlong") != std::string::npos);
+}
+
+TEST_CASE("decode_field refuses any other magic, version, layout and reserved byte") {
+  const Bytes file = encode_field(random_field(2, 3, 4).view());
+  for (std::size_t at = 0; at < 64; ++at) {
+    if (at >= 24 && at < 32) continue;  // the pitch may be any number > 0
+    Bytes changed = file;
+    changed[at] ^= 0x41U;
+    CAPTURE(at);
+    REQUIRE_THROWS_AS(decode_field(changed, kName), FileError);
+  }
+}
+
+TEST_CASE("decode_field refuses dimensions that are absurd, overflow or do not fit the file") {
+  const Bytes file = encode_field(random_field(2, 3, 5).view());
+  const auto sized = [&](std::uint32_t height, std::uint32_t width) {
+    return refusal_of(with_value(with_value(file, 16, height), 20, width));
+  };
+  CHECK(sized(0, 3).find("impossible size 3 x 0") != std::string::npos);
+  CHECK(sized(0xffffffffU, 0xffffffffU).find("impossible size") != std::string::npos);
+  CHECK(sized(0x80000000U, 2).find("impossible size") != std::string::npos);
+  CHECK(sized((1U << 28U) + 1U, 1).find("impossible size") != std::string::npos);
+  CHECK(sized(1U << 28U, 1).find("truncated") != std::string::npos);
+  CHECK(sized(3, 3).find("truncated") != std::string::npos);
+}
+
+TEST_CASE("decode_field refuses a pitch that is not a finite number above zero") {
+  const Bytes file = encode_field(random_field(2, 3, 6).view());
+  const double pitch_mm = GENERATE(0.0, -0.2, std::numeric_limits<double>::infinity(),
+                                   std::numeric_limits<double>::quiet_NaN());
+  CHECK(refusal_of(with_value(file, 24, pitch_mm)).find("pitch") != std::string::npos);
+}
+
+TEST_CASE("decode_field names the file and a remedy on one line") {
+  const std::string message = refusal_of(Bytes(10));
+  CHECK(message.find(kName.string()) == 0);
+  CHECK(message.find("touchtrial prepare") != std::string::npos);
+  CHECK(message.find('\n') == std::string::npos);
+}
+
+}  // namespace
+}  // namespace touchtrial

@@ -1,0 +1,177 @@
+#include "engine/pack/pack.hpp"
+
+#include "core/errors.hpp"
+#include "engine/rendering/sample_fields.hpp"
+#include "support/catch.hpp"
+#include "support/temp_folder.hpp"
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+
+namespace touchtrial {
+namespace {
+
+const std::string kFirst = "abcdefgh234567aa";
+const std::string kSecond = "0123456789abcdef";
+
+/// A pack of two fields in a folder of its own.
+struct SmallPack {
+  SmallPack() {
+    manifest.study_id = "0badcafe";
+    add(kSecond, random_field(12, 9, 2));
+    add(kFirst, random_field(12, 9, 1));
+    write_manifest(folder.path(), manifest);
+  }
+
+  void add(const std::string& code, const TextureField& field) {
+    PackEntry entry;
+    entry.code = code;
+    entry.checksum = write_field(folder.path(), code, field.view());
+    entry.input_tag.fill(7);
+    entry.gains = {0.011, 0.023};
+    manifest.entries.push_back(entry);
+  }
+
+  [[nodiscard]] std::filesystem::path field(const std::string& code) const {
+    return folder.path() / (code + ".field");
+  }
+
+  TempFolder folder;
+  PackManifest manifest;
+};
+
+TEST_CASE("is_pack_code accepts 16 lower-case letters and digits alone") {
+  CHECK(is_pack_code(kFirst));
+  CHECK(is_pack_code(kSecond));
+  CHECK_FALSE(is_pack_code(""));
+  CHECK_FALSE(is_pack_code("abcdefgh234567a"));
+  CHECK_FALSE(is_pack_code("abcdefgh234567aaa"));
+  CHECK_FALSE(is_pack_code("ABCDEFGH234567AA"));
+  CHECK_FALSE(is_pack_code("../abcdefgh23456"));
+  CHECK_FALSE(
+      is_pack_code("abcdefgh2345\xc3\xa4"
+                   "aa"));
+}
+
+TEST_CASE("a pack read back has the manifest that was written") {
+  const SmallPack made;
+  const Pack pack(made.folder.path());
+  CHECK(pack.manifest() == made.manifest);
+  CHECK(pack.folder() == made.folder.path());
+  CHECK(pack.entry(kFirst).code == kFirst);
+}
+
+TEST_CASE("a mapped field has the samples that were written, aligned for any processor") {
+  const SmallPack made;
+  const Pack pack(made.folder.path());
+  const TextureField original = random_field(12, 9, 1);
+  const MappedField mapped = pack.map(kFirst);
+  const auto samples = mapped.view().samples;
+  REQUIRE(samples.size() == original.view().samples.size());
+  CHECK(std::memcmp(samples.data(), original.view().samples.data(), samples.size_bytes()) == 0);
+  CHECK(std::bit_cast<std::uintptr_t>(samples.data()) % 64 == 0);
+}
+
+TEST_CASE("a mapped field keeps its samples when it is moved") {
+  const SmallPack made;
+  const Pack pack(made.folder.path());
+  MappedField mapped = pack.map(kFirst);
+  const float surface = mapped.view().samples[5].surface;
+  const MappedField moved = std::move(mapped);
+  CHECK(moved.view().samples[5].surface == surface);
+}
+
+TEST_CASE("write_field returns the checksum of the file") {
+  const SmallPack made;
+  for (const PackEntry& entry : made.manifest.entries) {
+    CHECK(entry.checksum == sha256_of_file(made.field(entry.code)));
+  }
+}
+
+TEST_CASE("a pack knows which of its fields were changed") {
+  const SmallPack made;
+  const Pack pack(made.folder.path());
+  CHECK(pack.is_intact(kFirst));
+  Bytes content = read_file(made.field(kFirst));
+  content.back() ^= 1U;
+  replace_file(made.field(kFirst), ByteView(content));
+  CHECK_FALSE(pack.is_intact(kFirst));
+  CHECK(pack.is_intact(kSecond));
+}
+
+TEST_CASE("a pack's digest depends on everything that pack.json says") {
+  const SmallPack made;
+  const Digest original = Pack(made.folder.path()).digest();
+  const auto digest_with = [&](auto change) {
+    PackManifest manifest = made.manifest;
+    change(manifest);
+    write_manifest(made.folder.path(), manifest);
+    return Pack(made.folder.path()).digest();
+  };
+  CHECK(digest_with([](PackManifest&) {}) == original);
+  CHECK(digest_with([](PackManifest& m) { m.study_id = "0badcaff"; }) != original);
+  CHECK(digest_with([](PackManifest& m) { m.entries[0].checksum[31] ^= 1U; }) != original);
+  CHECK(digest_with([](PackManifest& m) { m.entries[1].input_tag[0] ^= 1U; }) != original);
+  CHECK(digest_with([](PackManifest& m) { m.entries[1].code[15] = 'b'; }) != original);
+  CHECK(digest_with([](PackManifest& m) { m.entries.pop_back(); }) != original);
+  CHECK(digest_with([](PackManifest& m) {
+          m.entries[0].gains.tangential_n = std::nextafter(0.011, 1.0);
+        }) != original);
+  CHECK(digest_with([](PackManifest& m) {
+          m.entries[0].gains.normal_n = std::nextafter(0.023, 1.0);
+        }) != original);
+}
+
+TEST_CASE("a pack's digest does not depend on the layout of pack.json") {
+  const SmallPack made;
+  const Digest original = Pack(made.folder.path()).digest();
+  const std::filesystem::path path = made.folder.path() / "pack.json";
+  std::string text = text_of(ByteView(read_file(path)));
+  std::erase(text, '\n');
+  replace_file(path, std::string_view(text));
+  CHECK(Pack(made.folder.path()).digest() == original);
+}
+
+TEST_CASE("a pack refuses codes that it does not have, and paths in their place") {
+  const SmallPack made;
+  const Pack pack(made.folder.path());
+  CHECK_THROWS_AS(pack.entry("aaaaaaaaaaaaaaaa"), FileError);
+  CHECK_THROWS_AS(pack.map("../" + kFirst), FileError);
+  CHECK_THROWS_AS(pack.is_intact(""), FileError);
+  CHECK_THROWS_AS(write_field(made.folder.path(), "../escape", random_field(3, 3, 1).view()),
+                  std::invalid_argument);
+}
+
+TEST_CASE("a pack refuses a field that is missing, cut or something else") {
+  const SmallPack made;
+  const Pack pack(made.folder.path());
+  std::filesystem::resize_file(made.field(kFirst), 100);
+  CHECK_THROWS_AS(pack.map(kFirst), FileError);
+  CHECK_FALSE(pack.is_intact(kFirst));
+  replace_file(made.field(kFirst), std::string_view("not a field at all"));
+  CHECK_THROWS_AS(pack.map(kFirst), FileError);
+  std::filesystem::remove(made.field(kFirst));
+  CHECK_THROWS_AS(pack.map(kFirst), FileError);
+  CHECK_THROWS_AS(pack.is_intact(kFirst), FileError);
+}
+
+TEST_CASE("a pack that is not there is refused") {
+  const TempFolder folder;
+  CHECK_THROWS_AS(Pack(folder.path()), FileError);
+  CHECK_THROWS_AS(Pack(folder.path() / "nowhere"), FileError);
+  std::filesystem::create_directory(folder.path() / "pack.json");
+  CHECK_THROWS_AS(Pack(folder.path()), FileError);
+}
+
+TEST_CASE("write_field and write_manifest report a folder that is not there") {
+  const TempFolder folder;
+  const std::filesystem::path nowhere = folder.path() / "nowhere";
+  CHECK_THROWS_AS(write_field(nowhere, kFirst, random_field(3, 3, 1).view()), FileError);
+  CHECK_THROWS_AS(write_manifest(nowhere, {"00", {}}), FileError);
+}
+
+}  // namespace
+}  // namespace touchtrial

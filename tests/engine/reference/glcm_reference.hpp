@@ -1,0 +1,12 @@
+/// \file Co-occurrence statistics, slow and literal: the normalised matrix of one direction, pair
+/// by pair, and each statistic as its own double loop.
+#pragma once
+
+#include "core/plane.hpp"
+#include "engine/metrics/glcm.hpp"
+
+namespace touchtrial::reference {
+
+[[nodiscard]] GlcmStatistics glcm_statistics(const GreyImage& image, int dy, int dx);
+
+}  // namespace touchtrial::reference

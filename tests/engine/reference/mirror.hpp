@@ -1,0 +1,19 @@
+/// \file Symmetric extension as it is written down: i mod 2n, and 2n - 1 - that if it is >= n.
+#pragma once
+
+#include "core/plane.hpp"
+
+namespace touchtrial::reference {
+
+inline int mirrored(int i, int n) {
+  const int wrapped = ((i % (2 * n)) + 2 * n) % (2 * n);
+  return wrapped >= n ? 2 * n - 1 - wrapped : wrapped;
+}
+
+/// The sample of the endlessly mirrored plane.
+template <typename Sample>
+double mirrored_sample(const Plane<Sample>& plane, int y, int x) {
+  return static_cast<double>(plane.at(mirrored(y, plane.height()), mirrored(x, plane.width())));
+}
+
+}  // namespace touchtrial::reference

@@ -1,0 +1,249 @@
+#include "engine/rendering/paper_model.hpp"
+
+#include "engine/rendering/sample_fields.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace touchtrial {
+namespace {
+
+constexpr Gains kGains{0.012, 0.01};
+constexpr Vec3 kStill{};
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Vec3 centre_of(FieldView field, int y, int x, double z_mm) {
+  const Vec2 at = field.geometry.to_mm(x, y);
+  return {at.x, at.y, z_mm};
+}
+
+/// Bilinear interpolation written out as four weighted corners.
+double mixed_slowly(FieldView field, double x_mm, double y_mm, float FieldSample::*value) {
+  const int height = field.geometry.height_px;
+  const int width = field.geometry.width_px;
+  const Vec2 px = field.geometry.to_px(x_mm, y_mm);
+  double sum = 0.0;
+  for (int y = -1; y <= height; ++y) {
+    for (int x = -1; x <= width; ++x) {
+      const double weight =
+          std::max(0.0, 1.0 - std::abs(px.x - x)) * std::max(0.0, 1.0 - std::abs(px.y - y));
+      const int row = std::clamp(y, 0, height - 1);
+      const int column = std::clamp(x, 0, width - 1);
+      sum += weight * field.samples[static_cast<std::size_t>(row) * width + column].*value;
+    }
+  }
+  return sum;
+}
+
+TEST_CASE("PaperModel is a Hooke wall on a flat texture") {
+  const TextureField field = flat_field(20, 20);
+  const PaperModel model(field.view(), {}, kGains);
+  CHECK(model.force_n({2.0, 2.0, -1.5}, kStill) == Vec3{0.0, 0.0, 0.4 * 1.5});
+  CHECK(model.force_n({2.0, 2.0, 0.0}, kStill) == Vec3{});
+  CHECK(model.force_n({2.0, 2.0, 3.0}, kStill) == Vec3{});
+}
+
+TEST_CASE("PaperModel raises the surface by c (G - G_ref) / k") {
+  RenderingOptions options;
+  options.filter_mm = 0.0;
+  const TextureField field = make_texture_field(Plane<double>(9, 9, 20.0), options);
+  const PaperModel model(field.view(), options, kGains);
+  const double height_mm = 0.01 * 20.0 / 0.4;
+  CHECK(model.force_n({0.9, 0.9, height_mm + 1e-9}, kStill) == Vec3{});
+  CHECK(model.force_n({0.9, 0.9, height_mm - 0.1}, kStill).z == Approx(0.4 * 0.1));
+  options.reference_grey = 140.0;
+  const PaperModel lower(field.view(), options, kGains);
+  CHECK(lower.force_n({0.9, 0.9, -0.1}, kStill).z == Approx(0.4 * 0.1 + 0.01 * 8.0));
+}
+
+TEST_CASE("PaperModel read literally steps at the surface and is nothing above it") {
+  const TextureField field = flat_field(9, 9);
+  RenderingOptions options;
+  options.reference_grey = 0.0;
+  const PaperModel model(field.view(), options, kGains);
+  CHECK(model.force_n({0.9, 0.9, -1e-9}, kStill).z == Approx(1.28));
+  CHECK(model.force_n({0.9, 0.9, 0.0}, kStill) == Vec3{});
+  CHECK(model.force_n({0.9, 0.9, 0.1}, kStill) == Vec3{});
+}
+
+TEST_CASE("PaperModel damps in contact, never pulls and does not act in the air") {
+  const TextureField field = random_field(20, 20, 1);
+  RenderingOptions options;
+  options.damping_n_s_per_mm = 0.002;
+  const PaperModel model(field.view(), options, {0.012, 0.0});
+  CHECK(model.force_n({2.0, 2.0, -1.0}, {0.0, 0.0, 50.0}).z == Approx(0.4 - 0.1));
+  CHECK(model.force_n({2.0, 2.0, -1.0}, {0.0, 0.0, -50.0}).z == Approx(0.4 + 0.1));
+  CHECK(model.force_n({2.0, 2.0, -1.0}, {0.0, 0.0, 200.0}) == Vec3{});
+  CHECK(model.force_n({2.0, 2.0, 0.1}, {0.0, 0.0, -500.0}) == Vec3{});
+  CHECK(model.force_n({-2.0, 2.0, -1.0}, {0.0, 0.0, 50.0}).z == Approx(0.4 - 0.1));
+  CHECK(model.force_n({-2.0, 2.0, -1.0}, {0.0, 0.0, 300.0}) == Vec3{});
+  CHECK(model.force_n({-2.0, 2.0, 0.1}, {0.0, 0.0, -500.0}) == Vec3{});
+}
+
+TEST_CASE("PaperModel gives the field's own samples at pixel centres") {
+  const TextureField field = random_field(6, 9, 2);
+  const FieldView view = field.view();
+  const PaperModel model(view, {}, kGains);
+  for (int y = 0; y < 6; ++y) {
+    for (int x = 0; x < 9; ++x) {
+      const FieldSample sample = view.samples[static_cast<std::size_t>(y) * 9 + x];
+      const Vec3 force_n = model.force_n(centre_of(view, y, x, -2.0), kStill);
+      REQUIRE(force_n.x == Approx(0.012 * sample.force_x).margin(1e-12));
+      REQUIRE(force_n.y == Approx(0.012 * sample.force_y).margin(1e-12));
+      REQUIRE(force_n.z == Approx(0.8 + 0.01 * (sample.surface - 128.0)).margin(1e-12));
+    }
+  }
+}
+
+TEST_CASE("PaperModel is bilinear between pixel centres and constant in the outer half pixel") {
+  const int height = GENERATE(1, 2, 7);
+  const int width = GENERATE(1, 2, 11);
+  const TextureField field = random_field(height, width, 3);
+  const FieldView view = field.view();
+  const PaperModel model(view, {}, kGains);
+  RandomStream random(4, "points");
+  for (int i = 0; i < 200; ++i) {
+    const double x_mm = random.uniform(0.0, view.geometry.width_mm());
+    const double y_mm = random.uniform(0.0, view.geometry.height_mm());
+    const Vec3 force_n = model.force_n({x_mm, y_mm, -2.0}, kStill);
+    const double fx = mixed_slowly(view, x_mm, y_mm, &FieldSample::force_x);
+    const double fy = mixed_slowly(view, x_mm, y_mm, &FieldSample::force_y);
+    const double g = mixed_slowly(view, x_mm, y_mm, &FieldSample::surface);
+    REQUIRE(force_n.x == Approx(0.012 * fx).margin(1e-9));
+    REQUIRE(force_n.y == Approx(0.012 * fy).margin(1e-9));
+    REQUIRE(force_n.z == Approx(0.8 + 0.01 * (g - 128.0)).margin(1e-9));
+  }
+}
+
+TEST_CASE("PaperModel's force is continuous along any path on the texture") {
+  const TextureField field = random_field(30, 30, 5);
+  const PaperModel model(field.view(), {}, kGains);
+  // No wave of the filtered field is steeper than this; a jump would show at any step.
+  constexpr double kSteepestNPerMm = 8.0;
+  constexpr double kStepMm = 1e-4;
+  double steepest = 0.0;
+  Vec3 before = model.force_n({0.0, 0.0, -2.0}, kStill);
+  for (double t = kStepMm; t <= 6.0; t += kStepMm) {
+    const Vec3 force_n = model.force_n({t, 6.0 - std::abs(6.0 - 2.0 * t), -2.0}, kStill);
+    if (t > kStepMm) steepest = std::max(steepest, norm(force_n - before) / kStepMm);
+    before = force_n;
+  }
+  CHECK(steepest > 0.01);
+  CHECK(steepest < kSteepestNPerMm);
+}
+
+TEST_CASE("PaperModel is the flat wall beyond the plane's edge") {
+  const TextureField field = random_field(10, 10, 6);
+  const PaperModel model(field.view(), {}, kGains);
+  const double outside_mm = GENERATE(-1e-9, 2.0 + 1e-9, -50.0, 1e9);
+  CHECK(model.force_n({outside_mm, 1.0, -1.0}, kStill) == Vec3{0.0, 0.0, 0.4});
+  CHECK(model.force_n({1.0, outside_mm, -1.0}, kStill) == Vec3{0.0, 0.0, 0.4});
+  CHECK(model.force_n({outside_mm, 1.0, 0.0}, kStill) == Vec3{});
+}
+
+TEST_CASE("PaperModel without contact has no force of any kind") {
+  const TextureField field = random_field(10, 10, 7, 200.0);
+  const PaperModel model(field.view(), {}, kGains);
+  RandomStream random(8, "points");
+  int free = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec3 position_mm{random.uniform(0.0, 2.0), random.uniform(0.0, 2.0),
+                           random.uniform(-2.0, 2.0)};
+    const Vec3 force_n = model.force_n(position_mm, kStill);
+    REQUIRE(force_n.z >= 0.0);
+    if (force_n.z > 0.0) continue;
+    REQUIRE(force_n == Vec3{});
+    ++free;
+  }
+  CHECK(free > 200);
+  CHECK(free < 1800);
+}
+
+TEST_CASE("PaperModel does not read the field above the reach of any surface") {
+  std::vector<FieldSample> samples(100);
+  const FieldView view{{0.2, 10, 10}, samples};
+  const PaperModel model(view, {}, kGains);
+  for (FieldSample& sample : samples) sample.surface = 1e6F;
+  CHECK(model.force_n({1.0, 1.0, 0.1}, kStill) == Vec3{});
+  CHECK(model.force_n({1.0, 1.0, -0.1}, kStill).z == Approx(3.3));
+}
+
+TEST_CASE("PaperModel with texture gains at zero is the wall alone") {
+  const TextureField field = random_field(10, 10, 9, 200.0);
+  const PaperModel model(field.view(), {}, {});
+  RandomStream random(10, "points");
+  for (int i = 0; i < 500; ++i) {
+    const double z_mm = random.uniform(-2.0, 2.0);
+    const Vec3 force_n =
+        model.force_n({random.uniform(0.0, 2.0), random.uniform(0.0, 2.0), z_mm}, kStill);
+    REQUIRE(force_n == Vec3{0.0, 0.0, z_mm < 0.0 ? -0.4 * z_mm : 0.0});
+  }
+}
+
+TEST_CASE("PaperModel's tangential force is proportional to its gain") {
+  const TextureField field = random_field(10, 10, 11);
+  const PaperModel once(field.view(), {}, {0.01, 0.005});
+  const PaperModel twice(field.view(), {}, {0.02, 0.005});
+  const Vec3 weak_n = once.force_n({0.77, 1.31, -1.0}, kStill);
+  const Vec3 strong_n = twice.force_n({0.77, 1.31, -1.0}, kStill);
+  CHECK(std::abs(weak_n.x) > 0.0);
+  CHECK(strong_n.x == Approx(2.0 * weak_n.x).epsilon(1e-12));
+  CHECK(strong_n.y == Approx(2.0 * weak_n.y).epsilon(1e-12));
+  CHECK(strong_n.z == weak_n.z);
+}
+
+TEST_CASE("PaperModel limits the norm of the force and keeps its direction") {
+  const TextureField field = random_field(10, 10, 12, 100.0);
+  RenderingOptions unlimited;
+  unlimited.max_force_n = 1e9;
+  const Gains strong{0.2, 0.01};
+  const PaperModel limited(field.view(), {}, strong);
+  const PaperModel free(field.view(), unlimited, strong);
+  const double depth_mm = GENERATE(2.0, 8.0, 20.0, 1e6);
+  RandomStream random(13, "points");
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 at{random.uniform(0.0, 2.0), random.uniform(0.0, 2.0), -depth_mm};
+    const Vec3 full_n = free.force_n(at, kStill);
+    const Vec3 force_n = limited.force_n(at, kStill);
+    const double scale = std::min(1.0, 3.3 / norm(full_n));
+    REQUIRE(norm(force_n) <= 3.3 * (1.0 + 1e-15));
+    REQUIRE(norm(force_n - scale * full_n) < 1e-9);
+  }
+}
+
+TEST_CASE("PaperModel gives zero force for positions and velocities that are not finite") {
+  const TextureField field = random_field(10, 10, 14);
+  const PaperModel model(field.view(), {}, kGains);
+  const double bad = GENERATE(std::nan(""), kInfinity, -kInfinity);
+  CHECK(model.force_n({bad, 1.0, -1.0}, kStill) == Vec3{});
+  CHECK(model.force_n({1.0, bad, -1.0}, kStill) == Vec3{});
+  CHECK(model.force_n({1.0, 1.0, bad}, kStill) == Vec3{});
+  CHECK(model.force_n({1.0, 1.0, -1.0}, {bad, 0.0, 0.0}) == Vec3{});
+  CHECK(model.force_n({1.0, 1.0, -1.0}, {0.0, bad, 0.0}) == Vec3{});
+  CHECK(model.force_n({1.0, 1.0, -1.0}, {0.0, 0.0, bad}) == Vec3{});
+}
+
+TEST_CASE("PaperModel stays within its limit at depths whose squares overflow") {
+  const TextureField field = random_field(10, 10, 15);
+  const PaperModel model(field.view(), {}, kGains);
+  CHECK(norm(model.force_n({1.0, 1.0, -1e200}, kStill)) == Approx(3.3));
+}
+
+TEST_CASE("PaperModel never passes on samples that are not finite") {
+  const float bad =
+      GENERATE(std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+               -std::numeric_limits<float>::infinity());
+  const std::vector<FieldSample> samples(9, FieldSample{bad, bad, bad});
+  const PaperModel model({{0.2, 3, 3}, samples}, {}, kGains);
+  CHECK(model.force_n({0.3, 0.3, -1.0}, kStill) == Vec3{});
+}
+
+TEST_CASE("PaperModel of an empty field is the flat wall") {
+  const PaperModel model({}, {}, kGains);
+  CHECK(model.force_n({0.0, 0.0, -1.0}, kStill) == Vec3{0.0, 0.0, 0.4});
+}
+
+}  // namespace
+}  // namespace touchtrial

@@ -1,0 +1,36 @@
+/// \file Textures and fields that several tests of rendering and packs use.
+#pragma once
+
+#include "core/random.hpp"
+#include "engine/rendering/texture_field.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace touchtrial {
+
+/// Independent grey levels in [-amplitude, amplitude).
+inline Plane<double> random_texture(int height, int width, std::uint64_t seed,
+                                    double amplitude = 40.0) {
+  RandomStream random(seed, "test texture");
+  Plane<double> texture(height, width);
+  for (double& value : texture.samples()) value = random.uniform(-amplitude, amplitude);
+  return texture;
+}
+
+inline TextureField random_field(int height, int width, std::uint64_t seed,
+                                 double amplitude = 40.0) {
+  return make_texture_field(random_texture(height, width, seed, amplitude), {});
+}
+
+inline TextureField flat_field(int height, int width) {
+  return make_texture_field(Plane<double>(height, width, 0.0), {});
+}
+
+inline std::vector<FieldView> views_of(const std::vector<TextureField>& fields) {
+  std::vector<FieldView> views;
+  for (const TextureField& field : fields) views.push_back(field.view());
+  return views;
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,74 @@
+#include "engine/tv_gabor/certificate.hpp"
+
+#include "core/random.hpp"
+#include "engine/example_images.hpp"
+#include "engine/plane_comparison.hpp"
+#include "engine/reference/tv_gabor_reference.hpp"
+#include "engine/tv_gabor/domain.hpp"
+#include "engine/tv_gabor/gabor_spectrum.hpp"
+#include "support/catch.hpp"
+
+#include <cmath>
+#include <cstddef>
+
+namespace touchtrial {
+namespace {
+
+TvGaborProblem<double> problem_of(const GreyImage& image, const TvGaborOptions& options) {
+  const Plane<double> torus = extended_to_torus<double>(image);
+  return {torus, gabor_spectrum(options.components, torus.height(), torus.width()), options.lambda};
+}
+
+VectorField<double> random_multiplier(int height, int width) {
+  VectorField<double> multiplier(height, width);
+  RandomStream random(7, "multiplier");
+  for (std::size_t i = 0; i < multiplier.x.size(); ++i) {
+    multiplier.x.samples()[i] = random.uniform(-0.7, 0.7);
+    multiplier.y.samples()[i] = random.uniform(-0.7, 0.7);
+  }
+  return multiplier;
+}
+
+Plane<double> scaled(const Plane<double>& plane, double factor) {
+  Plane<double> result = plane;
+  for (double& sample : result.samples()) sample *= factor;
+  return result;
+}
+
+TEST_CASE("a certificate holds what primal and dual are by definition") {
+  const GreyImage image = cloth_image({9, 14});
+  TvGaborOptions options;
+  options.lambda = 0.02;
+  const TvGaborProblem<double> problem = problem_of(image, options);
+  const int height = problem.image.height();
+  const int width = problem.image.width();
+  RealFft<double> fft(height, width);
+  const VectorField<double> half = random_multiplier(height, width);  // of norm < 1
+  const auto certificate = certify(problem, half, 0.9, fft);
+
+  const reference::TvGabor definition(image, options);
+  const reference::Dual p{scaled(half.x, -0.9), scaled(half.y, -0.9)};
+  const double primal = definition.primal(p);
+  CHECK(certificate.gap == Approx((primal - definition.dual(p)) / primal).epsilon(1e-10));
+  CHECK(largest_difference(certificate.texture, definition.texture(p)) < 1e-10);
+}
+
+TEST_CASE("a certificate of no multiplier has no texture and the whole gap") {
+  const TvGaborProblem<double> problem = problem_of(noise_image({8, 8}), {});
+  RealFft<double> fft(problem.image.height(), problem.image.width());
+  const auto certificate = certify(
+      problem, VectorField<double>(problem.image.height(), problem.image.width()), 1.0, fft);
+  CHECK(largest_magnitude(certificate.texture) == 0.0);
+  CHECK(certificate.gap == Approx(1.0).epsilon(1e-14));
+}
+
+TEST_CASE("a certificate of a flat image has gap zero") {
+  const TvGaborProblem<double> problem = problem_of(flat_image({8, 8}, 90), {});
+  RealFft<double> fft(problem.image.height(), problem.image.width());
+  const auto certificate = certify(
+      problem, VectorField<double>(problem.image.height(), problem.image.width()), 1.0, fft);
+  CHECK(certificate.gap == 0.0);
+}
+
+}  // namespace
+}  // namespace touchtrial

@@ -1,0 +1,370 @@
+#include "protocols/design/prepare.hpp"
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/random.hpp"
+#include "engine/image_file.hpp"
+#include "protocols/design/pack_lock.hpp"
+#include "protocols/design/pack_upkeep.hpp"
+#include "protocols/design/refusal.hpp"
+#include "protocols/design/study_examples.hpp"
+#include "support/catch.hpp"
+#include "support/temp_folder.hpp"
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kSide = 24;
+
+void write_noise(const std::filesystem::path& path, std::uint64_t seed) {
+  RandomStream random(seed, "test image");
+  GreyImage image(kSide, kSide);
+  for (auto& sample : image.samples()) sample = static_cast<std::uint8_t>(random.below(256));
+  write_png(path, image);
+}
+
+/// A study of three small images in a folder of its own.
+struct Laboratory {
+  TempFolder folder;
+  json document = study_of(3);
+  std::uint64_t key_seed = 1;
+  bool simulated = false;
+
+  Laboratory() {
+    for (std::uint64_t c = 0; c < 3; ++c) write_noise(image(c), c);
+  }
+  [[nodiscard]] std::filesystem::path image(std::uint64_t c) const {
+    return folder.path() / ("c" + std::to_string(c) + "_0.png");
+  }
+  [[nodiscard]] std::filesystem::path pack() const { return folder.path() / "small.pack"; }
+  [[nodiscard]] StudyKey key() const {
+    SeededEntropy entropy(key_seed);
+    return make_study_key(parsed(document, folder.path()), entropy, simulated);
+  }
+  [[nodiscard]] PrepareReport prepare() const { return prepare_pack(key(), pack()); }
+  [[nodiscard]] std::map<std::string, Bytes> files() const {
+    std::map<std::string, Bytes> files;
+    for (const auto& file : std::filesystem::directory_iterator(pack())) {
+      files[file.path().filename().string()] = read_file(file.path());
+    }
+    return files;
+  }
+};
+
+int reused(const PrepareReport& report) {
+  return static_cast<int>(std::ranges::count(report.stimuli, true, &PreparedStimulus::reused));
+}
+
+bool warns(const PrepareReport& report, const std::string& part) {
+  return std::ranges::any_of(report.warnings, [&](const std::string& warning) {
+    return warning.find(part) != std::string::npos;
+  });
+}
+
+}  // namespace
+
+TEST_CASE("packs and keys lie beside the study file, or where one says") {
+  CHECK(default_pack_place("dir/x.json").pack == "dir/x.pack");
+  CHECK(default_pack_place("dir/x.json").key == "dir/x.key");
+  CHECK(default_pack_place("x.y.json").key == "x.y.key");
+  CHECK(simulated_pack_place("dir/x.json").pack == "dir/x.sim.pack");
+  CHECK(simulated_pack_place("dir/x.json").key.empty());
+  CHECK(pack_place_at("there/a.pack").key == "there/a.key");
+  CHECK(pack_place_at("there/a.pack/").pack == "there/a.pack");
+  CHECK(pack_place_at("there/a.pack/").key == "there/a.key");
+  CHECK(pack_place_at("there/a.b").key == "there/a.b.key");
+}
+
+TEST_CASE("prepare makes a field for every stimulus, under its code, with the chosen gains") {
+  const Laboratory laboratory;
+  const StudyKey key = laboratory.key();
+  const PrepareReport report = laboratory.prepare();
+  CHECK(report.stimuli.size() == 3);
+  CHECK(reused(report) == 0);
+  CHECK(report.warnings.empty());
+  CHECK(report.skipped.empty());
+  const Pack pack(laboratory.pack());
+  CHECK(pack.manifest().study_id == key.study_id);
+  REQUIRE(pack.manifest().entries.size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::string& code = key.stimuli[i].code;
+    const PreparedStimulus& prepared = report.stimuli[i];
+    CHECK(prepared.class_label == "c" + std::to_string(i));
+    CHECK(prepared.method == "adaptive");
+    CHECK(pack.is_intact(code));
+    CHECK(pack.entry(code).gains == prepared.gains);
+    CHECK(prepared.gains == report.stimuli[0].gains);
+    CHECK(prepared.gains.tangential_n > 0.0);
+    const MappedField field = pack.map(code);
+    CHECK(field.view().geometry.width_px == kSide);
+    CHECK(prepared.bytes > kSide * kSide * sizeof(FieldSample));
+    const FieldStatistics expected = field_statistics(field.view(), prepared.gains);
+    CHECK(prepared.statistics.tangential_rms_n == expected.tangential_rms_n);
+    CHECK(prepared.statistics.tangential_rms_n > 0.0);
+  }
+}
+
+TEST_CASE("a field is what the engine makes of the image") {
+  const Laboratory laboratory;
+  static_cast<void>(laboratory.prepare());
+  const StudyKey key = laboratory.key();
+  const GreyImage image = read_grey_image(laboratory.image(1));
+  const auto texture = extract_texture<double>(image, key.study.methods[0]).texture;
+  const TextureField expected = make_texture_field(texture, key.study.rendering);
+  const MappedField field = Pack(laboratory.pack()).map(key.stimuli[1].code);
+  REQUIRE(field.view().samples.size() == expected.view().samples.size());
+  for (std::size_t i = 0; i < field.view().samples.size(); ++i) {
+    CHECK(field.view().samples[i].surface == expected.view().samples[i].surface);
+    CHECK(field.view().samples[i].force_x == expected.view().samples[i].force_x);
+  }
+}
+
+TEST_CASE("a second prepare builds nothing and writes nothing") {
+  const Laboratory laboratory;
+  static_cast<void>(laboratory.prepare());
+  const auto before = std::filesystem::last_write_time(laboratory.pack() / "pack.json");
+  const auto files = laboratory.files();
+  const PrepareReport again = laboratory.prepare();
+  CHECK(reused(again) == 3);
+  CHECK(std::filesystem::last_write_time(laboratory.pack() / "pack.json") == before);
+  CHECK(laboratory.files() == files);
+}
+
+TEST_CASE("the same key and images give the same pack, byte by byte") {
+  const Laboratory one;
+  const Laboratory other;
+  static_cast<void>(one.prepare());
+  static_cast<void>(other.prepare());
+  CHECK(one.files() == other.files());
+}
+
+TEST_CASE("only what changed is built again") {
+  Laboratory laboratory;
+  static_cast<void>(laboratory.prepare());
+  write_noise(laboratory.image(1), 77);
+  const PrepareReport image_changed = laboratory.prepare();
+  CHECK(reused(image_changed) == 2);
+  CHECK_FALSE(image_changed.stimuli[1].reused);
+
+  laboratory.document["rendering"] = {{"max_force_n", 2.0}, {"texture_stiffness_n_per_mm", 0.2}};
+  const PrepareReport gains_changed = laboratory.prepare();
+  CHECK(reused(gains_changed) == 3);
+  CHECK(gains_changed.stimuli[0].gains.tangential_n ==
+        Approx(image_changed.stimuli[0].gains.tangential_n / 2.0));
+  CHECK(Pack(laboratory.pack()).manifest().entries[0].gains == gains_changed.stimuli[0].gains);
+
+  laboratory.document["rendering"] = {{"filter_mm", 0.3}};
+  CHECK(reused(laboratory.prepare()) == 0);
+  laboratory.document["methods"][0]["radius"] = 3;
+  CHECK(reused(laboratory.prepare()) == 0);
+  laboratory.document["methods"][0]["radius"] = 3.0;
+  CHECK(reused(laboratory.prepare()) == 3);
+}
+
+TEST_CASE("a damaged or missing field is built again") {
+  const Laboratory laboratory;
+  static_cast<void>(laboratory.prepare());
+  const auto whole = laboratory.files();
+  const StudyKey key = laboratory.key();
+  const auto first = laboratory.pack() / (key.stimuli[0].code + ".field");
+  Bytes content = read_file(first);
+  content[content.size() / 2] ^= 1U;
+  replace_file(first, ByteView(content));
+  std::filesystem::remove(laboratory.pack() / (key.stimuli[2].code + ".field"));
+  const PrepareReport report = laboratory.prepare();
+  CHECK(reused(report) == 1);
+  CHECK(report.stimuli[1].reused);
+  CHECK(laboratory.files() == whole);
+}
+
+TEST_CASE("a damaged table of contents is replaced, with a warning") {
+  const Laboratory laboratory;
+  static_cast<void>(laboratory.prepare());
+  const auto whole = laboratory.files();
+  replace_file(laboratory.pack() / "pack.json", std::string("{\"format\""));
+  const PrepareReport report = laboratory.prepare();
+  CHECK(reused(report) == 0);
+  CHECK(warns(report, "all fields were built anew"));
+  CHECK(laboratory.files() == whole);
+}
+
+TEST_CASE("an interrupted prepare leaves a pack that is nobody's, and keeps what is finished") {
+  const Laboratory laboratory;
+  static_cast<void>(laboratory.prepare());
+  const auto whole = laboratory.files();
+  write_noise(laboratory.image(0), 91);
+  write_noise(laboratory.image(1), 92);
+  replace_file(laboratory.image(2), std::string("not an image"));
+  CHECK_THROWS_AS(laboratory.prepare(), FileError);
+  const StudyKey key = laboratory.key();
+  CHECK(Pack(laboratory.pack()).manifest().study_id == unfinished_id(key));
+  CHECK(unfinished_id(key) != key.study_id);
+
+  write_noise(laboratory.image(2), 2);
+  const PrepareReport completed = laboratory.prepare();
+  CHECK(reused(completed) == 3);
+  CHECK(Pack(laboratory.pack()).manifest().study_id == key.study_id);
+  for (std::uint64_t c = 0; c < 2; ++c) write_noise(laboratory.image(c), c);
+  static_cast<void>(laboratory.prepare());
+  CHECK(laboratory.files() == whole);
+}
+
+TEST_CASE("fields of stimuli that are gone, and drafts, are removed, and other files stay") {
+  Laboratory laboratory;
+  static_cast<void>(laboratory.prepare());
+  const std::string gone = laboratory.key().stimuli[2].code;
+  replace_file(laboratory.pack() / (gone + ".field.tmp123"), std::string("draft"));
+  replace_file(laboratory.pack() / "pack.json.tmp9", std::string("draft"));
+  replace_file(laboratory.pack() / "notes.txt", std::string("mine"));
+  replace_file(laboratory.pack() / "other.field", std::string("mine"));
+  laboratory.document["classes"].erase(2);
+  const PrepareReport report = laboratory.prepare();
+  CHECK(reused(report) == 2);
+  const auto files = laboratory.files();
+  CHECK(files.count(gone + ".field") == 0);
+  CHECK(files.count(gone + ".field.tmp123") == 0);
+  CHECK(files.count("pack.json.tmp9") == 0);
+  CHECK(files.count("notes.txt") == 1);
+  CHECK(files.count("other.field") == 1);
+  CHECK(Pack(laboratory.pack()).manifest().entries.size() == 2);
+}
+
+TEST_CASE("nothing in a pack tells what it shows") {
+  Laboratory laboratory;
+  laboratory.document["classes"][0]["label"] = "sandpaper";
+  static_cast<void>(laboratory.prepare());
+  for (const auto& [name, content] : laboratory.files()) {
+    for (const char* word : {"sandpaper", "c1_0", ".png", "adaptive"}) {
+      CHECK(text_of(content).find(word) == std::string::npos);
+      CHECK(name.find(word) == std::string::npos);
+    }
+  }
+}
+
+TEST_CASE("without the key an input tag cannot be looked up from the image") {
+  Laboratory laboratory;
+  static_cast<void>(laboratory.prepare());
+  const auto tags = Pack(laboratory.pack()).manifest().entries;
+  laboratory.key_seed = 2;
+  std::filesystem::remove_all(laboratory.pack());
+  static_cast<void>(laboratory.prepare());
+  const Pack pack(laboratory.pack());
+  for (const PackEntry& entry : pack.manifest().entries) {
+    for (const PackEntry& before : tags) CHECK(entry.input_tag != before.input_tag);
+  }
+}
+
+TEST_CASE("the pack of another key is not overwritten, unless it is simulated") {
+  Laboratory laboratory;
+  static_cast<void>(laboratory.prepare());
+  laboratory.key_seed = 2;
+  CHECK(refuses<FileError>([&] { return laboratory.prepare(); }, "holds the pack of another key"));
+  laboratory.simulated = true;
+  CHECK(reused(laboratory.prepare()) == 0);
+  CHECK(Pack(laboratory.pack()).manifest().study_id == laboratory.key().study_id);
+  CHECK(laboratory.files().size() == 3 + 2);
+}
+
+TEST_CASE("a missing image is named by its place in the study and its path") {
+  Laboratory laboratory;
+  laboratory.document["classes"][2]["images"].push_back("absent.png");
+  const auto what = message_of<FileError>([&] { return laboratory.prepare(); });
+  CHECK(what.find("study small: /classes/2/images/1: ") == 0);
+  CHECK(what.find((laboratory.folder.path() / "absent.png").string()) != std::string::npos);
+}
+
+TEST_CASE("an image that cannot be decoded is named by its place in the study") {
+  const Laboratory laboratory;
+  replace_file(laboratory.image(1), std::string("not an image"));
+  CHECK(refuses<FileError>([&] { return laboratory.prepare(); },
+                           "study small: /classes/1/images/0: "));
+}
+
+TEST_CASE("two prepares of one pack do not run at once") {
+  const Laboratory laboratory;
+  static_cast<void>(laboratory.prepare());
+  {
+    const PackLock lock(laboratory.pack());
+    CHECK(refuses<FileError>([&] { return laboratory.prepare(); }, "is being prepared by another"));
+  }
+  CHECK(reused(laboratory.prepare()) == 3);
+}
+
+TEST_CASE("a file in the place of the pack is refused") {
+  const Laboratory laboratory;
+  replace_file(laboratory.pack(), std::string("a file"));
+  CHECK_THROWS_AS(laboratory.prepare(), FileError);
+}
+
+TEST_CASE("a classification skips the methods that it does not present, and says so") {
+  Laboratory laboratory;
+  laboratory.document["methods"].push_back({{"name", "tv-gabor"}});
+  const PrepareReport report = laboratory.prepare();
+  CHECK(report.stimuli.size() == 3);
+  REQUIRE(report.skipped.size() == 1);
+  CHECK(report.skipped[0].what == "tv-gabor x 3 stimuli");
+  CHECK(report.skipped[0].why ==
+        "the classification protocol presents only its first method, adaptive");
+}
+
+TEST_CASE("a comparison prepares every method, and equalised, all have the same rms force") {
+  Laboratory laboratory;
+  laboratory.document["protocol"] = "comparison";
+  laboratory.document["methods"] = {{{"name", "adaptive"}}, {{"name", "tv-gabor"}}};
+  laboratory.document["rendering"] = {{"equalise", "rms"}};
+  const PrepareReport report = laboratory.prepare();
+  REQUIRE(report.stimuli.size() == 6);
+  CHECK(report.stimuli[0].method == "adaptive");
+  CHECK(report.stimuli[1].method == "tv-gabor");
+  for (const PreparedStimulus& prepared : report.stimuli) {
+    CHECK(prepared.statistics.tangential_rms_n ==
+          Approx(report.stimuli[0].statistics.tangential_rms_n).epsilon(1e-5));
+  }
+  CHECK(report.stimuli[0].gains.tangential_n != report.stimuli[1].gains.tangential_n);
+}
+
+TEST_CASE("what is probably not meant is warned of") {
+  Laboratory laboratory;
+  laboratory.document["rendering"] = {{"gains", {{"tangential_n", 5}, {"normal_n", 5}}},
+                                      {"equalise", "rms"},
+                                      {"reference_grey", 0}};
+  std::filesystem::copy_file(laboratory.image(0), laboratory.image(2),
+                             std::filesystem::copy_options::overwrite_existing);
+  write_png(laboratory.image(1), GreyImage(kSide, kSide, 90));
+  const PrepareReport report = laboratory.prepare();
+  CHECK(warns(report, "/rendering/gains: the explicit gains exceed the stiffness budget of 0.4"));
+  CHECK(warns(report, "/rendering/equalise: rms has no effect"));
+  CHECK(warns(report, "/rendering/reference_grey: 0 is the paper's literal reading"));
+  CHECK(warns(report, "class \"c2\", image c2_0.png: has the same pixels as class \"c0\""));
+  CHECK(warns(report, "class \"c1\", image c1_0.png, method adaptive: is flat"));
+  CHECK(report.warnings.size() == 5);
+}
+
+TEST_CASE("a solver that gives up is warned of with the gap it reached") {
+  Laboratory laboratory;
+  laboratory.document["methods"] = {{{"name", "tv-gabor"}, {"max_steps", 1}, {"gap", 1e-12}}};
+  const PrepareReport report = laboratory.prepare();
+  CHECK(report.warnings.size() == 3);
+  CHECK(warns(report, "method tv-gabor: stopped after 1 steps at a relative gap of "));
+}
+
+TEST_CASE("progress counts every stimulus once") {
+  const Laboratory laboratory;
+  std::vector<int> counts;
+  int total = 0;
+  static_cast<void>(prepare_pack(laboratory.key(), laboratory.pack(), [&](int done, int of) {
+    counts.push_back(done);
+    total = of;
+  }));
+  CHECK(counts == std::vector<int>{1, 2, 3});
+  CHECK(total == 3);
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,30 @@
+/// \file What an operation says when it refuses.
+#pragma once
+
+#include "support/catch.hpp"
+
+#include <string>
+
+namespace touchtrial {
+
+/// The message of the error that the call throws; fails the test if it throws none.
+template <typename ErrorType, typename Call>
+[[nodiscard]] std::string message_of(const Call& call) {
+  try {
+    static_cast<void>(call());
+  } catch (const ErrorType& error) {
+    return error.what();
+  }
+  FAIL("nothing was refused");
+  return {};
+}
+
+/// Whether the call throws an error of the type with `part` in its message.
+template <typename ErrorType, typename Call>
+[[nodiscard]] bool refuses(const Call& call, const std::string& part) {
+  const std::string message = message_of<ErrorType>(call);
+  UNSCOPED_INFO(message);
+  return message.find(part) != std::string::npos;
+}
+
+}  // namespace touchtrial

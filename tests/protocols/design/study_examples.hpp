@@ -1,0 +1,50 @@
+/// \file Small studies for the tests of this folder.
+#pragma once
+
+#include "protocols/design/study.hpp"
+
+#include <filesystem>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+
+/// The smallest study that is accepted: two classes of one image, one method.
+[[nodiscard]] inline nlohmann::json minimal_study() {
+  return {{"study", "small"},
+          {"protocol", "classification"},
+          {"classes",
+           {{{"label", "rough"}, {"images", {"rough.png"}}},
+            {{"label", "smooth"}, {"images", {"smooth.png"}}}}},
+          {"methods", {{{"name", "adaptive"}}}}};
+}
+
+/// A study of `classes` classes c0, c1, .. with `images` images each.
+[[nodiscard]] inline nlohmann::json study_of(int classes, int images = 1) {
+  nlohmann::json study = minimal_study();
+  study["classes"] = nlohmann::json::array();
+  for (int c = 0; c < classes; ++c) {
+    nlohmann::json paths = nlohmann::json::array();
+    for (int e = 0; e < images; ++e) {
+      paths.push_back("c" + std::to_string(c) + "_" + std::to_string(e) + ".png");
+    }
+    study["classes"].push_back({{"label", "c" + std::to_string(c)}, {"images", paths}});
+  }
+  return study;
+}
+
+/// The same as a comparison of adaptive and tv-gabor.
+[[nodiscard]] inline nlohmann::json comparison_of(int classes, int images = 1) {
+  nlohmann::json study = study_of(classes, images);
+  study["protocol"] = "comparison";
+  study["methods"] = {{{"name", "adaptive"}}, {{"name", "tv-gabor"}}};
+  return study;
+}
+
+[[nodiscard]] inline Study parsed(const nlohmann::json& study,
+                                  const std::filesystem::path& folder = "somewhere") {
+  return parse_study(study.dump(), folder, "study.json");
+}
+
+}  // namespace touchtrial

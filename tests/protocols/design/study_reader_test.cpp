@@ -1,0 +1,344 @@
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "protocols/design/study.hpp"
+#include "protocols/design/study_examples.hpp"
+#include "support/catch.hpp"
+#include "support/temp_folder.hpp"
+
+#include <string>
+
+namespace touchtrial {
+namespace {
+
+using nlohmann::json;
+
+/// The error that a text is refused with; empty if it is accepted.
+std::string refusal_of_text(const std::string& text) {
+  try {
+    static_cast<void>(parse_study(text, "", "study.json"));
+  } catch (const StudyError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::string refusal(const json& study) {
+  return refusal_of_text(study.dump());
+}
+
+bool contains(const std::string& text, const std::string& part) {
+  INFO(text << " -- should contain -- " << part);
+  CHECK(text.find(part) != std::string::npos);
+  return text.find(part) != std::string::npos;
+}
+
+}  // namespace
+
+TEST_CASE("a study with the required keys alone has the documented defaults") {
+  const Study study = parsed(minimal_study());
+  CHECK(study.name == "small");
+  CHECK(study.protocol == Protocol::classification);
+  REQUIRE(study.classes.size() == 2);
+  CHECK(study.classes[1].label == "smooth");
+  CHECK(study.classes[1].images == std::vector<std::filesystem::path>{"smooth.png"});
+  REQUIRE(study.methods.size() == 1);
+  CHECK(study.methods[0] == ExtractionOptions{});
+  CHECK(study.rendering == RenderingOptions{});
+  CHECK(study.trials == TrialOptions{});
+  CHECK(study.seed == 0);
+  CHECK(study.folder == "somewhere");
+  CHECK(json::parse(study.text) == minimal_study());
+}
+
+TEST_CASE("every key of a full study is read") {
+  json document = comparison_of(3, 2);
+  document["methods"] = {{{"name", "fixed"}, {"radius", 4}, {"order", 0.25}},
+                         {{"name", "tv-gabor"},
+                          {"lambda", 0.02},
+                          {"components", {{{"frequency", 0.1}, {"direction", 30}}}},
+                          {"gap", 1e-4},
+                          {"max_steps", 77}}};
+  document["rendering"] = {{"model", "paper"},
+                           {"pitch_mm", 0.1},
+                           {"stiffness_n_per_mm", 0.5},
+                           {"damping_n_s_per_mm", 0.001},
+                           {"filter_mm", 0.3},
+                           {"texture_stiffness_n_per_mm", 0.2},
+                           {"gains", {{"tangential_n", 0.01}, {"normal_n", 0.02}}},
+                           {"equalise", "rms"},
+                           {"reference_grey", 100.5},
+                           {"friction", 0.0},
+                           {"neighbourhood", 5},
+                           {"max_force_n", 2}};
+  document["trials"] = {{"repeats", 7},
+                        {"order", "uniform"},
+                        {"explore_limit_s", 30},
+                        {"on_timeout", "no-response"},
+                        {"practice", 0},
+                        {"break_every", 10},
+                        {"catch", 0},
+                        {"lead_in", 2},
+                        {"blocks", "mixed"}};
+  document["seed"] = 9007199254740992;
+  const Study study = parsed(document);
+  CHECK(study.protocol == Protocol::comparison);
+  CHECK(study.classes[2].images.size() == 2);
+  CHECK(study.methods[0].method == Method::fixed);
+  CHECK(study.methods[0].radius == 4);
+  CHECK(study.methods[0].order == 0.25);
+  CHECK(study.methods[1].tv_gabor == TvGaborOptions{0.02, {{0.1, 30.0}}, 1e-4, 77});
+  const RenderingOptions rendering{.pitch_mm = 0.1,
+                                   .stiffness_n_per_mm = 0.5,
+                                   .damping_n_s_per_mm = 0.001,
+                                   .filter_mm = 0.3,
+                                   .texture_stiffness_n_per_mm = 0.2,
+                                   .gains = Gains{0.01, 0.02},
+                                   .equalise = Equalise::rms,
+                                   .reference_grey = 100.5,
+                                   .neighbourhood = 5,
+                                   .max_force_n = 2.0};
+  CHECK(study.rendering == rendering);
+  const TrialOptions trials{.repeats = 7,
+                            .order = TrialOrder::uniform,
+                            .explore_limit_s = 30.0,
+                            .on_timeout = OnTimeout::no_response,
+                            .break_every = 10,
+                            .lead_in = 2,
+                            .blocks = Blocks::mixed};
+  CHECK(study.trials == trials);
+  CHECK(study.seed == 9007199254740992U);
+}
+
+TEST_CASE("a classification presents its first method alone, a comparison all") {
+  json document = comparison_of(4);
+  CHECK(parsed(document).presented_methods() == 2);
+  CHECK(parsed(document).scored_trials() == 4 * 2 * 5);
+  document["protocol"] = "classification";
+  CHECK(parsed(document).presented_methods() == 1);
+  CHECK(parsed(document).scored_trials() == 4 * 5);
+}
+
+TEST_CASE("a misspelt key is refused with its place and the nearest known one") {
+  json document = minimal_study();
+  document["rendering"]["pich_mm"] = 0.2;
+  CHECK(refusal(document) ==
+        "study.json: /rendering/pich_mm: is not a known key; did you mean \"pitch_mm\"?");
+  document = minimal_study();
+  document["methods"][0]["Radius"] = 2;
+  CHECK(refusal(document) ==
+        "study.json: /methods/0/Radius: is not a known key; did you mean \"radius\"?");
+}
+
+TEST_CASE("a key that resembles none is refused with those that exist") {
+  json document = minimal_study();
+  document["classes"][1]["colour/depth~"] = 1;
+  CHECK(refusal(document) ==
+        "study.json: /classes/1/colour~1depth~0: is not a known key; known here: label, images");
+}
+
+TEST_CASE("a misspelt value is refused with the nearest and all possible ones") {
+  json document = minimal_study();
+  document["trials"]["order"] = "shufled";
+  CHECK(refusal(document) ==
+        "study.json: /trials/order: \"shufled\" is not known to this version; did you mean "
+        "\"shuffled\"? possible: \"shuffled\", \"de-bruijn\", \"uniform\"");
+}
+
+TEST_CASE("a missing key is named by its place") {
+  json document = minimal_study();
+  document.erase("protocol");
+  CHECK(refusal(document) == "study.json: /protocol: is missing; add it");
+  document = minimal_study();
+  document["classes"][0].erase("images");
+  CHECK(refusal(document) == "study.json: /classes/0/images: is missing; add it");
+}
+
+TEST_CASE("a key that belongs to another method is refused with the reason") {
+  json document = minimal_study();
+  document["methods"][0]["lambda"] = 0.01;
+  CHECK(refusal(document) ==
+        "study.json: /methods/0/lambda: belongs to the method tv-gabor, not to adaptive; remove "
+        "it");
+  document["methods"] = {{{"name", "tv-gabor"}, {"radius", 2}}};
+  contains(refusal(document), "belongs to the methods adaptive and fixed, not to tv-gabor");
+}
+
+TEST_CASE("what this version does not do is refused honestly") {
+  json document = minimal_study();
+  document["rendering"]["model"] = "surface";
+  contains(refusal(document), "/rendering/model: \"surface\" is not known to this version");
+  document = minimal_study();
+  document["rendering"]["friction"] = 0.3;
+  contains(refusal(document), "/rendering/friction: must be 0: the rendering model paper");
+  document = minimal_study();
+  document["trials"]["practice"] = 3;
+  contains(refusal(document), "/trials/practice: must be 0: this version has no practice trials");
+  document = minimal_study();
+  document["trials"]["catch"] = 1;
+  contains(refusal(document), "/trials/catch: must be 0: this version has no catch trials");
+  document = minimal_study();
+  document["blinding"] = "single";
+  contains(refusal(document), "/blinding: \"single\" is not known to this version");
+}
+
+TEST_CASE("a comparison of one method is refused") {
+  json document = minimal_study();
+  document["protocol"] = "comparison";
+  contains(refusal(document), "/methods: has 1 entry; the protocol comparison needs at least 2");
+}
+
+TEST_CASE("a method listed twice is refused") {
+  json document = comparison_of(2);
+  document["methods"][1] = {{"name", "adaptive"}, {"radius", 3}};
+  CHECK(refusal(document) == "study.json: /methods/1: \"adaptive\" is there twice; list it once");
+}
+
+TEST_CASE("labels that tables could not tell apart or print are refused") {
+  json document = minimal_study();
+  const auto with_label = [&](const std::string& label) {
+    document["classes"][1]["label"] = label;
+    return refusal(document);
+  };
+  contains(with_label("rough"), "/classes/1/label: \"rough\" is the label of another class");
+  contains(with_label(""), "/classes/1/label: is empty");
+  contains(with_label("a\nb"), "has a control character");
+  contains(with_label("a\xc2\x85z"), "has a control character");
+  contains(with_label("a "), "begins or ends with a blank");
+  contains(with_label(std::string(65, 'x')), "has 65 bytes, must have at most 64");
+  CHECK(with_label(std::string(64, 'x')).empty());
+  CHECK(with_label("\xc3\xa9"
+                   "corce d'arbre")
+            .empty());
+}
+
+TEST_CASE("an image listed twice in a class, or without a name, is refused") {
+  json document = minimal_study();
+  document["classes"][0]["images"] = {"a.png", "b.png", "a.png"};
+  contains(refusal(document), "/classes/0/images/2: \"a.png\" is there twice");
+  document["classes"][0]["images"] = {""};
+  contains(refusal(document), "/classes/0/images/0: is empty");
+  document["classes"][0]["images"] = json::array();
+  contains(refusal(document), "/classes/0/images: has 0 entries, must have from 1 to 1000");
+}
+
+TEST_CASE("fewer than 2 or more than 64 classes are refused") {
+  contains(refusal(study_of(1)), "/classes: has 1 entries, must have from 2 to 64");
+  CHECK(refusal(study_of(64)).empty());
+  contains(refusal(study_of(65)), "/classes: has 65 entries");
+}
+
+TEST_CASE("a name that would not do as a file name is refused") {
+  json document = minimal_study();
+  for (const char* name : {"", "a b", "../x", "a/b", "\xc3\xa9"}) {
+    document["study"] = name;
+    contains(refusal(document), "must have 1 to 64 of the characters 0-9 A-Z a-z _ -");
+  }
+  document["study"] = std::string(65, 'a');
+  contains(refusal(document), "/study: ");
+}
+
+TEST_CASE("the order de-bruijn needs as many repeats as classes, no lead-in and blocks by method") {
+  json document = comparison_of(4);
+  document["trials"] = {{"order", "de-bruijn"}, {"repeats", 5}};
+  contains(refusal(document),
+           "/trials/repeats: is 5; the order de-bruijn needs as many repeats as classes: 4");
+  document["trials"]["repeats"] = 4;
+  CHECK(refusal(document).empty());
+  document["trials"]["lead_in"] = 1;
+  contains(refusal(document), "/trials/lead_in: must be 0");
+  document["trials"]["lead_in"] = 0;
+  document["trials"]["blocks"] = "mixed";
+  contains(refusal(document), "/trials/blocks: must be \"by-method\"");
+}
+
+TEST_CASE("studies beyond what a participant or a disk can take are refused") {
+  json document = study_of(64);
+  document["trials"]["repeats"] = 1000;
+  contains(refusal(document), "/trials/repeats: makes 64000 trials for a participant");
+  contains(refusal(comparison_of(6, 1000)), "/classes: has 6000 images for 2 methods");
+}
+
+TEST_CASE("whole numbers may be written with a decimal point, others may not be rounded") {
+  json document = minimal_study();
+  document["trials"]["repeats"] = 5.0;
+  CHECK(parsed(document).trials.repeats == 5);
+  document["trials"]["repeats"] = 5.5;
+  contains(refusal(document),
+           "/trials/repeats: must be a whole number, not a number with decimals");
+}
+
+TEST_CASE("numbers that no whole number type or double holds are refused") {
+  const auto with_seed = [](const std::string& seed) {
+    std::string text = minimal_study().dump();
+    text.pop_back();
+    return refusal_of_text(text + ",\"seed\":" + seed + "}");
+  };
+  CHECK(with_seed("9007199254740992").empty());
+  for (const char* seed : {"9007199254740993", "18446744073709551615", "18446744073709551616", "-1",
+                           "-9223372036854775809", "1e300"}) {
+    contains(with_seed(seed), "study.json: /seed: is ");
+  }
+  contains(with_seed("1e999"), "study.json: /seed: is a number too large to hold");
+  contains(with_seed("NaN"), "line 1, column ");
+}
+
+TEST_CASE("an even neighbourhood is refused") {
+  json document = minimal_study();
+  document["rendering"]["neighbourhood"] = 4;
+  contains(refusal(document), "/rendering/neighbourhood: is 4, must be odd");
+}
+
+TEST_CASE("a key that is there twice is refused wherever it is") {
+  std::string text = minimal_study().dump();
+  text.pop_back();
+  CHECK(refusal_of_text(text + ",\"study\":\"other\"}") ==
+        "study.json: /study: is there twice; keep one of the two");
+  CHECK(refusal_of_text(R"({"classes":[{},{"label":"a","label":"b"}]})") ==
+        "study.json: /classes/1/label: is there twice; keep one of the two");
+}
+
+TEST_CASE("malformed JSON is refused with line and column") {
+  contains(refusal_of_text("{\n  \"study\": tru\n}"), "study.json: line 2, column 15: ");
+  contains(refusal_of_text(""), "study.json: line 1, column 1: ");
+  contains(refusal_of_text("{\"a\": 1,}"), "study.json: line 1, column 9: ");
+  contains(refusal_of_text("{} // no"), "line 1, column 4: ");
+  contains(refusal_of_text("{\"a\": \"\xff\"}"), "ill-formed UTF-8");
+  contains(refusal_of_text("[]"), "study.json: /: must be an object, not a list");
+}
+
+TEST_CASE("absurd nesting is refused without harm") {
+  const std::string text = std::string(1'000'000, '[');
+  contains(refusal_of_text(text), "is nested too deeply");
+}
+
+TEST_CASE("hostile keys and values stay on one line of bounded length") {
+  json document = minimal_study();
+  document["a\nb" + std::string(10'000, 'x')] = 1;
+  const std::string key_refused = refusal(document);
+  CHECK(key_refused.find('\n') == std::string::npos);
+  CHECK(key_refused.size() < 400);
+  document = minimal_study();
+  document["protocol"] = "a\nb" + std::string(10'000, 'x');
+  const std::string value_refused = refusal(document);
+  CHECK(value_refused.find('\n') == std::string::npos);
+  CHECK(value_refused.size() < 400);
+}
+
+TEST_CASE("a study file is read from disk, with images relative to its folder") {
+  const TempFolder folder;
+  const auto path = folder.path() / "small.json";
+  replace_file(path, minimal_study().dump(2));
+  const Study study = load_study(path);
+  CHECK(study.folder == folder.path());
+  CHECK(study.text == minimal_study().dump(2));
+}
+
+TEST_CASE("a study file that is missing, a folder or far too large is a file error") {
+  const TempFolder folder;
+  CHECK_THROWS_AS(load_study(folder.path() / "none.json"), FileError);
+  CHECK_THROWS_AS(load_study(folder.path()), FileError);
+  replace_file(folder.path() / "large.json", std::string((16U << 20U) + 1, ' '));
+  CHECK_THROWS_AS(load_study(folder.path() / "large.json"), FileError);
+}
+
+}  // namespace touchtrial

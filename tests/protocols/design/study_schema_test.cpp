@@ -1,0 +1,343 @@
+/// The JSON Schema and the reader are held to each other: every statement of the schema is tried
+/// on the reader, and what the reader says it knows is looked up in the schema.
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "protocols/design/study.hpp"
+#include "protocols/design/study_examples.hpp"
+#include "support/catch.hpp"
+
+#include <cmath>
+#include <functional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+namespace {
+
+using nlohmann::json;
+using Pointer = json::json_pointer;
+
+json schema() {
+  const std::filesystem::path root = TOUCHTRIAL_SOURCE_DIR;
+  return json::parse(text_of(read_file(root / "config/schema/study.schema.json")));
+}
+
+/// The error that a study is refused with; empty if it is accepted.
+std::string refusal(const json& study) {
+  try {
+    static_cast<void>(parsed(study));
+  } catch (const StudyError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// A study in which every key that can be there is there, with room to change any one alone.
+json full_study(const json& method) {
+  json study = comparison_of(2);
+  const char* other = method["name"] == "adaptive" ? "fixed" : "adaptive";
+  study["methods"] = {method, {{"name", other}}};
+  study["rendering"] = {{"model", "paper"},
+                        {"pitch_mm", 0.2},
+                        {"stiffness_n_per_mm", 0.4},
+                        {"damping_n_s_per_mm", 0},
+                        {"filter_mm", 0.4},
+                        {"texture_stiffness_n_per_mm", 0.4},
+                        {"gains", {{"tangential_n", 0.01}, {"normal_n", 0.01}}},
+                        {"equalise", "none"},
+                        {"reference_grey", 128},
+                        {"friction", 0},
+                        {"neighbourhood", 3},
+                        {"max_force_n", 3.3}};
+  study["trials"] = {{"repeats", 2},         {"order", "shuffled"}, {"explore_limit_s", 60},
+                     {"on_timeout", "fade"}, {"practice", 0},       {"break_every", 0},
+                     {"catch", 0},           {"lead_in", 0},        {"blocks", "by-method"}};
+  study["blinding"] = "double";
+  study["seed"] = 1;
+  return study;
+}
+
+const json kAdaptive = {{"name", "adaptive"}, {"radius", 2}};
+const json kFixed = {{"name", "fixed"}, {"radius", 2}, {"order", 0.5}};
+const json kTvGabor = {{"name", "tv-gabor"},
+                       {"lambda", 0.01},
+                       {"components", {{{"frequency", 0.25}, {"direction", 0}}}},
+                       {"gap", 1e-5},
+                       {"max_steps", 2000}};
+
+/// One property of the schema at its place in one of the full studies.
+struct Property {
+  json schema;
+  json study;
+  Pointer place;
+  bool required = false;
+
+  [[nodiscard]] std::string refusal_with(const json& value) const {
+    json changed = study;
+    changed[place] = value;
+    return refusal(changed);
+  }
+  [[nodiscard]] std::string refusal_without() const {
+    json changed = study;
+    changed[place.parent_pointer()].erase(place.back());
+    return refusal(changed);
+  }
+};
+
+/// The object form of a schema that also has a word form ("gains"), else the schema itself.
+json object_form(const json& node) {
+  if (!node.contains("oneOf")) return node;
+  for (const json& form : node["oneOf"]) {
+    if (form.contains("properties")) return form;
+  }
+  return node;
+}
+
+using Visit = std::function<void(const json& object_schema, const Pointer& place)>;
+
+/// Calls `visit` for every object in the study, with its schema.
+void for_each_object(const json& node, const json& study, const Pointer& place,
+                     const Visit& visit) {
+  const json form = object_form(node);
+  if (form.contains("items") && study[place].is_array()) {
+    for_each_object(form["items"], study, place / std::size_t{0}, visit);
+  }
+  if (!form.contains("properties")) return;
+  visit(form, place);
+  for (const auto& [key, property] : form["properties"].items()) {
+    if (study[place].contains(key)) for_each_object(property, study, place / key, visit);
+  }
+}
+
+std::vector<Property> all_properties() {
+  std::vector<Property> properties;
+  for (const json& method : {kAdaptive, kFixed, kTvGabor}) {
+    const json study = full_study(method);
+    for_each_object(schema(), study, Pointer(), [&](const json& object, const Pointer& place) {
+      const json required = object.value("required", json::array());
+      for (const auto& [key, property] : object["properties"].items()) {
+        if (!study[place].contains(key)) continue;
+        const bool is_required = std::find(required.begin(), required.end(), key) != required.end();
+        properties.push_back({property, study, place / key, is_required});
+      }
+    });
+  }
+  return properties;
+}
+
+/// The comma-separated names after `mark` in the reader's message.
+std::set<std::string> listed_after(const std::string& message, const std::string& mark) {
+  std::set<std::string> names;
+  std::string rest = message.substr(message.find(mark) + mark.size()) + ", ";
+  for (std::size_t end = rest.find(", "); end != std::string::npos; end = rest.find(", ")) {
+    std::string name = rest.substr(0, end);
+    if (name.front() == '"') name = name.substr(1, name.size() - 2);
+    names.insert(name);
+    rest.erase(0, end + 2);
+  }
+  return names;
+}
+
+bool allows_type(const json& property, const json& value) {
+  if (property.contains("oneOf")) return value.is_object() || value.is_string();
+  if (property.contains("const")) return value.is_number();
+  if (property.contains("enum")) return value.is_string();
+  const std::string type = property["type"];
+  if (type == "string") return value.is_string();
+  if (type == "array") return value.is_array();
+  return type == "object" ? value.is_object() : value.is_number();
+}
+
+/// The smallest step that leaves a bound.
+double step_of(const json& property) {
+  return property["type"] == "integer" ? 1.0 : 1e-9;
+}
+
+}  // namespace
+
+TEST_CASE("the schema speaks of every section of the study file") {
+  std::set<std::string> places;
+  for (const Property& property : all_properties()) places.insert(property.place.to_string());
+  CHECK(places.size() == 8 + 2 + 9 + 14 + 9);
+  for (const char* place : {"/seed", "/rendering/gains/normal_n", "/trials/catch",
+                            "/methods/0/components/0/direction", "/classes/0/images"}) {
+    CHECK(places.count(place) == 1);
+  }
+}
+
+TEST_CASE("the reader knows exactly the schema's keys in every object") {
+  for (const json& method : {kAdaptive, kTvGabor}) {
+    const json study = full_study(method);
+    for_each_object(schema(), study, Pointer(), [&](const json& object, const Pointer& place) {
+      INFO("object at " << place.to_string());
+      CHECK(object["additionalProperties"] == false);
+      json changed = study;
+      changed[place]["zzzzzzzzzzzz"] = 1;
+      std::set<std::string> keys;
+      for (const auto& [key, property] : object["properties"].items()) keys.insert(key);
+      CHECK(listed_after(refusal(changed), "known here: ") == keys);
+    });
+  }
+}
+
+TEST_CASE("the reader requires exactly what the schema requires") {
+  for (const Property& property : all_properties()) {
+    INFO(property.place.to_string() << ": " << property.refusal_without());
+    CHECK(property.refusal_without().empty() != property.required);
+  }
+}
+
+TEST_CASE("the reader refuses a value of another type than the schema's, with its place") {
+  const std::vector<json> values = {json(), true, 7, "qqqqqqqq", json::array(), json::object()};
+  for (const Property& property : all_properties()) {
+    for (const json& value : values) {
+      if (allows_type(property.schema, value)) continue;
+      const std::string message = property.refusal_with(value);
+      INFO(property.place.to_string() << " = " << value.dump() << ": " << message);
+      CHECK(message.find(" " + property.place.to_string() + ": must be ") != std::string::npos);
+    }
+  }
+}
+
+TEST_CASE("the reader accepts exactly the schema's words") {
+  for (const Property& property : all_properties()) {
+    json words = property.schema.value("enum", json::array());
+    if (property.schema.contains("oneOf")) words = property.schema["oneOf"][0]["enum"];
+    if (words.empty()) continue;
+    if (property.place.back() == "name") continue;  // the methods have a test of their own
+    INFO(property.place.to_string());
+    std::set<std::string> expected;
+    for (const json& word : words) {
+      CHECK(property.refusal_with(word).empty());
+      expected.insert(word.get<std::string>());
+    }
+    CHECK(listed_after(property.refusal_with("qqqqqqqq"), "possible: ") == expected);
+  }
+}
+
+TEST_CASE("the reader keeps the schema's bounds") {
+  int bounds = 0;
+  for (const Property& property : all_properties()) {
+    const json& rule = property.schema;
+    INFO(property.place.to_string());
+    const auto check = [&](const char* name, double direction, bool bound_itself) {
+      if (!rule.contains(name)) return;
+      ++bounds;
+      const auto bound = rule[name].get<double>();
+      CHECK(property.refusal_with(bound).empty() == bound_itself);
+      if (std::abs(bound) < 1e15) {
+        CHECK_FALSE(property.refusal_with(bound + direction * step_of(rule)).empty());
+      }
+    };
+    check("minimum", -1.0, true);
+    check("maximum", 1.0, true);
+    check("exclusiveMinimum", -1.0, false);
+    check("exclusiveMaximum", 1.0, false);
+  }
+  CHECK(bounds > 40);
+}
+
+TEST_CASE("the reader keeps the schema's constants and multiples") {
+  int rules = 0;
+  for (const Property& property : all_properties()) {
+    INFO(property.place.to_string());
+    if (property.schema.contains("const")) {
+      ++rules;
+      CHECK(property.refusal_with(property.schema["const"]).empty());
+      CHECK_FALSE(property.refusal_with(property.schema["const"].get<int>() + 1).empty());
+    }
+    if (property.schema.contains("not")) {
+      ++rules;
+      CHECK(property.refusal_with(5).empty());
+      CHECK_FALSE(property.refusal_with(6).empty());
+    }
+  }
+  CHECK(rules == 3 * 4);
+}
+
+TEST_CASE("the reader keeps the schema's lengths of lists") {
+  int lists = 0;
+  for (const Property& property : all_properties()) {
+    if (!property.schema.contains("maxItems")) continue;
+    ++lists;
+    const auto counted = [&](std::size_t count) {
+      json list = json::array();
+      for (std::size_t i = 0; i < count; ++i) {
+        json item = property.study[property.place][0];
+        if (item.contains("label")) item["label"] = "label " + std::to_string(i);
+        if (item.is_string()) item = "image " + std::to_string(i);
+        list.push_back(item);
+      }
+      return property.refusal_with(list).find("entries, must have from ") != std::string::npos;
+    };
+    INFO(property.place.to_string());
+    CHECK(counted(property.schema["minItems"].get<std::size_t>() - 1));
+    CHECK_FALSE(counted(property.schema["minItems"]));
+    CHECK_FALSE(counted(property.schema["maxItems"]));
+    CHECK(counted(property.schema["maxItems"].get<std::size_t>() + 1));
+  }
+  CHECK(lists > 6);
+}
+
+TEST_CASE("the schema's defaults are the reader's") {
+  const Study bare = parsed(minimal_study());
+  int defaults = 0;
+  for (const Property& property : all_properties()) {
+    const bool of_method = property.place.to_string().find("/methods") == 0;
+    if (!property.schema.contains("default") || of_method) continue;
+    json study = minimal_study();
+    study[property.place] = property.schema["default"];
+    INFO(property.place.to_string());
+    ++defaults;
+    CHECK(parsed(study).rendering == bare.rendering);
+    CHECK(parsed(study).trials == bare.trials);
+    CHECK(parsed(study).seed == bare.seed);
+  }
+  CHECK(defaults == 3 * 23);
+}
+
+TEST_CASE("the schema's defaults of the methods' keys are the reader's") {
+  const json properties = schema()["properties"]["methods"]["items"]["properties"];
+  for (const json& method : {kAdaptive, kFixed, kTvGabor}) {
+    json bare = minimal_study();
+    bare["methods"] = {{{"name", method["name"]}}};
+    json written = bare;
+    for (const auto& [key, value] : method.items()) {
+      if (key != "name") written["methods"][0][key] = properties[key]["default"];
+    }
+    CHECK(parsed(written).methods == parsed(bare).methods);
+  }
+}
+
+TEST_CASE("the reader gives a method the keys that the schema leaves it") {
+  const json items = schema()["properties"]["methods"]["items"];
+  std::set<std::string> names;
+  for (const json& rule : items["allOf"]) {
+    const std::string name = rule["if"]["properties"]["name"]["const"];
+    names.insert(name);
+    for (const auto& [key, property] : items["properties"].items()) {
+      if (key == "name") continue;
+      json study = minimal_study();
+      study["methods"] = {{{"name", name}, {key, property["default"]}}};
+      INFO(name << " " << key);
+      CHECK(refusal(study).empty() != rule["then"]["properties"].contains(key));
+    }
+  }
+  std::set<std::string> enumerated = items["properties"]["name"]["enum"];
+  CHECK(names == enumerated);
+  json study = minimal_study();
+  study["methods"][0]["name"] = "qqqqqqqq";
+  CHECK(listed_after(refusal(study), "possible: ") == enumerated);
+}
+
+TEST_CASE("every key of the schema has a row in the documentation") {
+  const std::filesystem::path root = TOUCHTRIAL_SOURCE_DIR;
+  const std::string text = text_of(read_file(root / "docs/study-file.md"));
+  for (const Property& property : all_properties()) {
+    INFO(property.place.to_string());
+    CHECK(text.find("\n| `" + property.place.back() + "` |") != std::string::npos);
+  }
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,131 @@
+#include "protocols/design/study_examples.hpp"
+#include "protocols/design/study_key.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <set>
+
+namespace touchtrial {
+namespace {
+
+using nlohmann::json;
+
+StudyKey key_for(const json& document, std::uint64_t seed = 1) {
+  SeededEntropy entropy(seed);
+  return make_study_key(parsed(document), entropy, false);
+}
+
+json labelled_study() {
+  json document = comparison_of(3, 2);
+  document["classes"][0]["label"] = "bark";
+  document["seed"] = 31875542;
+  return document;
+}
+
+}  // namespace
+
+TEST_CASE("the configuration in clear has no label, image name or seed") {
+  const std::string text = blinded_configuration(key_for(labelled_study()));
+  for (const char* secret :
+       {"bark", "c1_0", "c2_1", ".png", "31875542", "seed", "label", "classes"}) {
+    INFO(secret);
+    CHECK(text.find(secret) == std::string::npos);
+  }
+  const json configuration = json::parse(text);
+  CHECK(configuration["study"] == "small");
+  CHECK(configuration["protocol"] == "comparison");
+  CHECK(configuration["positions"] == 3);
+  CHECK(configuration["blinding"] == "double");
+  CHECK(configuration["methods"][0] == json{{"name", "adaptive"}, {"radius", 2}});
+  CHECK(configuration["rendering"]["pitch_mm"] == 0.2);
+  CHECK(configuration["trials"]["repeats"] == 5);
+}
+
+TEST_CASE("the codes in clear are sorted, so that their order tells nothing") {
+  const StudyKey key = key_for(labelled_study());
+  const std::vector<std::string> codes = json::parse(blinded_configuration(key))["stimuli"];
+  REQUIRE(codes.size() == key.stimuli.size());
+  CHECK(std::is_sorted(codes.begin(), codes.end()));
+  std::vector<std::string> in_study_order;
+  for (const KeyedStimulus& stimulus : key.stimuli) in_study_order.push_back(stimulus.code);
+  CHECK_FALSE(in_study_order == codes);
+}
+
+TEST_CASE("the order of classes and images in the study does not show in clear") {
+  json document = labelled_study();
+  const std::string before = blinded_configuration(key_for(document));
+  std::swap(document["classes"][0], document["classes"][2]);
+  std::swap(document["classes"][1]["images"][0], document["classes"][1]["images"][1]);
+  CHECK(blinded_configuration(key_for(document)) == before);
+}
+
+TEST_CASE("the sections in clear, read again, give the same study options") {
+  json document = labelled_study();
+  document["rendering"] = {{"gains", {{"tangential_n", 0.1}, {"normal_n", 1e-3}}},
+                           {"filter_mm", 0.30000000000000004}};
+  document["trials"] = {{"order", "uniform"}, {"blocks", "mixed"}};
+  document["methods"] = {{{"name", "fixed"}, {"order", 1.0 / 3.0}}, {{"name", "tv-gabor"}}};
+  const StudyKey key = key_for(document);
+  const json configuration = json::parse(blinded_configuration(key));
+  for (const char* section : {"rendering", "trials", "methods"}) {
+    document[section] = configuration[section];
+  }
+  const Study again = parsed(document);
+  CHECK(again.rendering == key.study.rendering);
+  CHECK(again.trials == key.study.trials);
+  CHECK(again.methods == key.study.methods);
+}
+
+TEST_CASE("the seal is the same for the same key and study") {
+  CHECK(study_seal(key_for(labelled_study())) == study_seal(key_for(labelled_study())));
+}
+
+TEST_CASE("any change of study, secrets or codes changes the seal") {
+  const std::vector<std::function<void(json&)>> changes = {
+      [](json& d) { d["study"] = "other"; },
+      [](json& d) { d["protocol"] = "classification"; },
+      [](json& d) { d["classes"][1]["label"] = "other"; },
+      [](json& d) { d["classes"][1]["images"][0] = "other.png"; },
+      [](json& d) { std::swap(d["classes"][0], d["classes"][1]); },
+      [](json& d) { std::swap(d["classes"][0]["images"][0], d["classes"][0]["images"][1]); },
+      [](json& d) { std::swap(d["methods"][0], d["methods"][1]); },
+      [](json& d) { d["methods"][0]["radius"] = 3; },
+      [](json& d) { d["methods"][1]["gap"] = 1e-4; },
+      [](json& d) { d["rendering"]["pitch_mm"] = 0.21; },
+      [](json& d) { d["rendering"]["max_force_n"] = 3.4; },
+      [](json& d) { d["rendering"]["equalise"] = "rms"; },
+      [](json& d) { d["trials"]["repeats"] = 4; },
+      [](json& d) { d["trials"]["order"] = "uniform"; },
+      [](json& d) { d["trials"]["explore_limit_s"] = 61; },
+      [](json& d) { d["trials"]["blocks"] = "mixed"; },
+      [](json& d) { d["seed"] = 2; }};
+  std::set<Digest> seals = {study_seal(key_for(labelled_study()))};
+  for (const auto& change : changes) {
+    json document = labelled_study();
+    change(document);
+    seals.insert(study_seal(key_for(document)));
+  }
+  CHECK(seals.size() == changes.size() + 1);
+
+  StudyKey key = key_for(labelled_study());
+  key.master[31] ^= 1U;
+  CHECK(seals.insert(study_seal(key)).second);
+  key = key_for(labelled_study());
+  key.nonce[0] ^= 1U;
+  CHECK(seals.insert(study_seal(key)).second);
+  key = key_for(labelled_study());
+  key.simulated = true;
+  CHECK(seals.insert(study_seal(key)).second);
+  key = key_for(labelled_study());
+  std::swap(key.stimuli[0].code, key.stimuli[5].code);
+  CHECK(seals.insert(study_seal(key)).second);
+}
+
+TEST_CASE("where a study lies and how its file is laid out do not change the seal") {
+  SeededEntropy entropy(1);
+  const Study moved = parse_study(labelled_study().dump(4), "elsewhere", "other.json");
+  CHECK(study_seal(make_study_key(moved, entropy, false)) == study_seal(key_for(labelled_study())));
+}
+
+}  // namespace touchtrial

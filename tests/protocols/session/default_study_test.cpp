@@ -1,0 +1,56 @@
+/// The studies, stimuli and subjects that come with the program, taken together.
+#include "protocols/design/prepare.hpp"
+#include "protocols/session/commitment.hpp"
+#include "protocols/session/confusion_of.hpp"
+#include "protocols/session/simulation.hpp"
+#include "support/catch.hpp"
+#include "support/temp_folder.hpp"
+
+namespace touchtrial {
+namespace {
+
+const std::filesystem::path kConfig = std::filesystem::path(TOUCHTRIAL_SOURCE_DIR) / "config";
+
+/// The default classification study, prepared.
+class DefaultStudy {
+ public:
+  DefaultStudy() { prepare_pack(key_, folder_.path() / "default.sim.pack"); }
+
+  [[nodiscard]] double accuracy_of(const char* subject_file, int participants) const {
+    const Pack pack(folder_.path() / "default.sim.pack");
+    const SubjectModel subject = load_subject_model(kConfig / "subjects" / subject_file);
+    StudyStore store = StudyStore::create(folder_.path() / (std::string(subject_file) + ".db"),
+                                          commitment_of(key_, pack, true, false), {});
+    const SimulationReport report = simulate_study(
+        key_, pack, subject, {.participants = participants, .seed = 1, .jobs = 2}, store);
+    CHECK(report.invalid_trials == 0);
+    const Confusion confusion = confusion_of(store, key_);
+    return static_cast<double>(correct_of(confusion)) / report.presentations;
+  }
+
+ private:
+  [[nodiscard]] static StudyKey make_key() {
+    SeededEntropy entropy(1);
+    return make_study_key(load_study(kConfig / "classification.json"), entropy, true);
+  }
+
+  TempFolder folder_;
+  StudyKey key_ = make_key();
+};
+
+TEST_CASE("the default subject's mean accuracy in the default study is like people's") {
+  const double accuracy = DefaultStudy().accuracy_of("default.json", 20);
+  CHECK(accuracy >= 0.70);
+  CHECK(accuracy <= 0.95);
+}
+
+TEST_CASE("without noise the default study is answered almost without errors") {
+  CHECK(DefaultStudy().accuracy_of("ideal.json", 4) >= 0.98);
+}
+
+TEST_CASE("the swapped subject confuses two of the default study's classes and no other") {
+  CHECK(DefaultStudy().accuracy_of("swapped.json", 4) == Approx(0.6).margin(0.02));
+}
+
+}  // namespace
+}  // namespace touchtrial

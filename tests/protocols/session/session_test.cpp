@@ -1,0 +1,297 @@
+#include "protocols/session/session.hpp"
+
+#include "core/errors.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <map>
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+namespace {
+
+using std::chrono::seconds;
+using Phase = SessionPhase;
+using Input = SessionInput;
+
+/// Stores in memory, and refuses when told to, as a full disk does.
+class FickleSink final : public EventSink {
+ public:
+  void accept(const Event& event, const std::optional<SealedTrace>& trace) override {
+    if (refuses) throw StoreError("the disk is full");
+    stored.accept(event, trace);
+  }
+  bool refuses = false;
+  BufferedEvents stored;
+};
+
+Schedule schedule_of(int trials) {
+  Schedule schedule;
+  for (int i = 0; i < trials; ++i) {
+    schedule.presentations.push_back(
+        {i + 1, i / 2, PresentationKind::scored, {.class_index = i % 3}});
+  }
+  schedule.layout = {2, 0, 1};
+  return schedule;
+}
+
+/// A session with everything before its first trial done, at 3 s.
+struct Laboratory {
+  explicit Laboratory(int trials = 3, const TrialOptions& options = {})
+      : session(schedule_of(trials), options, SessionRecorder(1, SecretKey{}, sink)) {
+    opening.participant = "P001";
+    opening.enrolment = 1;
+    session.open(seconds(1), opening, "{}");
+    session.calibrate(seconds(2));
+    session.instruct(seconds(3));
+  }
+
+  void run_trial(int position) {
+    session.present(now += seconds(1));
+    session.contact(now += seconds(1));
+    session.end_exploring(now += seconds(1));
+    session.choose(position);
+    session.confirm(now += seconds(1));
+  }
+
+  [[nodiscard]] std::vector<EventKind> kinds() const {
+    std::vector<EventKind> kinds;
+    for (const Event& event : sink.stored.events) kinds.push_back(event.kind);
+    return kinds;
+  }
+  [[nodiscard]] nlohmann::json last_body() const {
+    return nlohmann::json::parse(sink.stored.events.back().body);
+  }
+
+  FickleSink sink;
+  SessionOpening opening;
+  Session session;
+  seconds now{3};
+};
+
+/// The inputs that the session takes now.
+std::vector<Input> accepted(const Session& session) {
+  std::vector<Input> inputs;
+  for (int i = 0; i <= static_cast<int>(Input::close); ++i) {
+    if (session.accepts(static_cast<Input>(i))) inputs.push_back(static_cast<Input>(i));
+  }
+  return inputs;
+}
+
+TEST_CASE("a session goes from opening to closing and records each step") {
+  Laboratory lab(2);
+  lab.run_trial(1);
+  lab.run_trial(0);
+  CHECK(lab.session.phase() == Phase::finished);
+  CHECK(lab.session.current() == nullptr);
+  lab.session.close(lab.now);
+  using Kind = EventKind;
+  const std::vector<Kind> expected = {
+      Kind::opened,   Kind::calibrated, Kind::instructed,    Kind::presented, Kind::first_contact,
+      Kind::answered, Kind::presented,  Kind::first_contact, Kind::answered,  Kind::closed};
+  CHECK(lab.kinds() == expected);
+  CHECK(lab.last_body().at("complete") == true);
+}
+
+TEST_CASE("each phase takes its own inputs and no others") {
+  Laboratory lab(2);
+  Session& session = lab.session;
+  using List = std::vector<Input>;
+  CHECK(accepted(session) ==
+        List{Input::present, Input::take_break, Input::pause, Input::note, Input::stop});
+  session.present(seconds(4));
+  CHECK(accepted(session) == List{Input::contact, Input::end_exploring, Input::time_out,
+                                  Input::interrupt, Input::store_trace, Input::note, Input::stop});
+  session.end_exploring(seconds(5));
+  CHECK(accepted(session) ==
+        List{Input::store_trace, Input::choose, Input::pause, Input::note, Input::stop});
+  session.choose(0);
+  CHECK(accepted(session) == List{Input::store_trace, Input::choose, Input::confirm, Input::pause,
+                                  Input::note, Input::stop});
+  session.pause(seconds(6), "coffee");
+  CHECK(accepted(session) == List{Input::resume, Input::note, Input::stop});
+  session.stop(seconds(7), "fire alarm");
+  CHECK(accepted(session) == List{Input::note, Input::close});
+  session.close(seconds(8));
+  CHECK(accepted(session).empty());
+}
+
+TEST_CASE("an input that does not fit throws, and changes and records nothing") {
+  Laboratory lab;
+  const std::size_t recorded = lab.sink.stored.events.size();
+  const std::map<Input, std::function<void()>> misfits = {
+      {Input::open, [&] { lab.session.open(seconds(9), lab.opening, "{}"); }},
+      {Input::calibrate, [&] { lab.session.calibrate(seconds(9)); }},
+      {Input::instruct, [&] { lab.session.instruct(seconds(9)); }},
+      {Input::contact, [&] { lab.session.contact(seconds(9)); }},
+      {Input::end_exploring, [&] { lab.session.end_exploring(seconds(9)); }},
+      {Input::time_out, [&] { lab.session.time_out(seconds(9)); }},
+      {Input::interrupt, [&] { lab.session.interrupt(seconds(9), "why"); }},
+      {Input::store_trace, [&] { lab.session.store_trace(seconds(9), {}, {}, {}); }},
+      {Input::choose, [&] { lab.session.choose(0); }},
+      {Input::confirm, [&] { lab.session.confirm(seconds(9)); }},
+      {Input::resume, [&] { lab.session.resume(seconds(9)); }},
+      {Input::close, [&] { lab.session.close(seconds(9)); }}};
+  for (const auto& [input, act] : misfits) {
+    CHECK_FALSE(lab.session.accepts(input));
+    CHECK_THROWS_WITH(act(),
+                      Catch::Contains("ready") && Catch::Contains(std::string(name_of(input))));
+  }
+  CHECK(lab.session.phase() == Phase::ready);
+  CHECK(lab.sink.stored.events.size() == recorded);
+}
+
+TEST_CASE("time cannot go back") {
+  Laboratory lab;
+  CHECK_THROWS_AS(lab.session.present(seconds(2)), std::logic_error);
+  CHECK_NOTHROW(lab.session.present(seconds(3)));
+}
+
+TEST_CASE("a choice can be changed once before Next, and both are recorded") {
+  Laboratory lab;
+  lab.session.present(seconds(4));
+  lab.session.end_exploring(seconds(5));
+  lab.session.choose(2);
+  lab.session.choose(0);
+  CHECK_THROWS_AS(lab.session.choose(1), std::logic_error);
+  lab.session.confirm(seconds(6), 3);
+  CHECK(lab.last_body().at("trial") == 1);
+  CHECK(lab.last_body().at("position") == 0);
+  CHECK(lab.last_body().at("first_position") == 2);
+  CHECK(lab.last_body().at("confidence") == 3);
+}
+
+TEST_CASE("there is no picture beyond the layout") {
+  Laboratory lab;
+  lab.session.present(seconds(4));
+  lab.session.end_exploring(seconds(5));
+  CHECK_THROWS_AS(lab.session.choose(3), std::invalid_argument);
+  CHECK_THROWS_AS(lab.session.choose(-1), std::invalid_argument);
+  CHECK(lab.session.phase() == Phase::answering);
+}
+
+TEST_CASE("an answer counts only once the sink has taken it") {
+  Laboratory lab(1);
+  lab.session.present(seconds(4));
+  lab.session.end_exploring(seconds(5));
+  lab.session.choose(1);
+  lab.sink.refuses = true;
+  CHECK_THROWS_AS(lab.session.confirm(seconds(6)), StoreError);
+  CHECK(lab.session.phase() == Phase::chosen);
+  CHECK(lab.session.presentations_left() == 1);
+  lab.sink.refuses = false;
+  lab.session.confirm(seconds(7));
+  CHECK(lab.session.phase() == Phase::finished);
+  CHECK(lab.kinds().back() == EventKind::answered);
+}
+
+TEST_CASE("a plane that could not be recorded is not presented") {
+  Laboratory lab;
+  lab.sink.refuses = true;
+  CHECK_THROWS_AS(lab.session.present(seconds(4)), StoreError);
+  CHECK(lab.session.phase() == Phase::ready);
+}
+
+TEST_CASE("an interrupted trial is repeated after all others, under its number") {
+  Laboratory lab(3);
+  lab.session.present(lab.now += seconds(1));
+  lab.session.interrupt(lab.now += seconds(1), "comfort stop");
+  CHECK(lab.last_body().at("reason") == "comfort stop");
+  std::vector<int> trials;
+  while (lab.session.phase() == Phase::ready) {
+    trials.push_back(lab.session.current()->trial);
+    lab.run_trial(0);
+  }
+  CHECK(trials == std::vector<int>{2, 3, 1});
+}
+
+TEST_CASE("a trial whose trace is stored has one trace and cannot be interrupted any more") {
+  Laboratory lab;
+  lab.session.present(seconds(4));
+  TraceBody body;
+  body.trial = 1;
+  const Trace trace{1000.0, {{{1.0, 2.0, 3.0}, {0.0, 0.0, 0.5}}}};
+  lab.session.store_trace(seconds(5), body, {}, trace);
+  CHECK(lab.session.phase() == Phase::exploring);
+  CHECK_THROWS_AS(lab.session.store_trace(seconds(5), body, {}, trace), std::logic_error);
+  CHECK_THROWS_AS(lab.session.interrupt(seconds(5), "late"), std::logic_error);
+  CHECK(lab.sink.stored.traces.size() == 1);
+}
+
+TEST_CASE("when time is up an answer is still required") {
+  Laboratory lab;
+  lab.session.present(seconds(4));
+  lab.session.time_out(seconds(64));
+  CHECK(lab.session.phase() == Phase::answering);
+  lab.session.choose(1);
+  lab.session.confirm(seconds(66));
+  CHECK(lab.session.presentations_left() == 2);
+}
+
+TEST_CASE("when time is up and the study says no-response, the trial is over without an answer") {
+  TrialOptions options;
+  options.on_timeout = OnTimeout::no_response;
+  Laboratory lab(1, options);
+  lab.session.present(seconds(4));
+  lab.session.time_out(seconds(64));
+  CHECK(lab.session.phase() == Phase::finished);
+  CHECK(lab.kinds().back() == EventKind::timed_out);
+}
+
+TEST_CASE("only the first contact of a presentation is recorded") {
+  Laboratory lab;
+  lab.session.present(seconds(4));
+  lab.session.contact(seconds(5));
+  lab.session.contact(seconds(6));
+  CHECK(std::ranges::count(lab.kinds(), EventKind::first_contact) == 1);
+  lab.session.interrupt(seconds(7), "again");
+  lab.session.present(seconds(8));
+  lab.session.contact(seconds(9));
+  CHECK(std::ranges::count(lab.kinds(), EventKind::first_contact) == 2);
+}
+
+TEST_CASE("a break is due when the study says so") {
+  TrialOptions options;
+  options.break_every = 2;
+  Laboratory lab(4, options);
+  CHECK_FALSE(lab.session.break_due());
+  lab.run_trial(0);
+  CHECK_FALSE(lab.session.break_due());
+  lab.run_trial(0);
+  CHECK(lab.session.break_due());
+  lab.session.take_break(lab.now, "ten minutes");
+  CHECK_FALSE(lab.session.break_due());
+  lab.run_trial(0);
+  lab.run_trial(0);
+  CHECK_FALSE(lab.session.break_due());  // nothing comes after it
+}
+
+TEST_CASE("a pause goes on where it began") {
+  Laboratory lab;
+  lab.session.present(seconds(4));
+  lab.session.end_exploring(seconds(5));
+  lab.session.choose(1);
+  lab.session.pause(seconds(6), "telephone");
+  lab.session.resume(seconds(60));
+  CHECK(lab.session.phase() == Phase::chosen);
+  lab.session.confirm(seconds(61));
+  CHECK(lab.last_body().at("position") == 1);
+}
+
+TEST_CASE("a session that was stopped closes as incomplete") {
+  Laboratory lab;
+  lab.session.present(seconds(4));
+  lab.session.stop(seconds(5), "the participant feels unwell");
+  lab.session.close(seconds(6));
+  CHECK(lab.last_body().at("complete") == false);
+}
+
+TEST_CASE("a session without presentations is finished once the participant is instructed") {
+  Laboratory lab(0);
+  CHECK(lab.session.phase() == Phase::finished);
+}
+
+}  // namespace
+}  // namespace touchtrial

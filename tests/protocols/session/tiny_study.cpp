@@ -1,0 +1,104 @@
+#include "protocols/session/tiny_study.hpp"
+
+#include "core/random.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace touchtrial {
+namespace {
+
+constexpr int kSidePx = 120;
+
+struct Weave {
+  const char* label;
+  double wavelength_px;
+  double direction_deg;
+};
+constexpr std::array<Weave, 5> kWeaves = {{{"bark", 12.0, 0.0},
+                                           {"cloth", 8.0, 90.0},
+                                           {"pebbles", 24.0, 45.0},
+                                           {"straw", 10.0, 135.0},
+                                           {"brick", 40.0, 90.0}}};
+
+Study study_with(const TinyStudyOptions& options) {
+  std::string classes;
+  for (const Weave& weave : kWeaves) {
+    std::string images;
+    for (int i = 0; i < options.images; ++i) {
+      images += std::string(i > 0 ? "," : "") + "\"" + weave.label + std::to_string(i) + ".png\"";
+    }
+    classes += std::string(classes.empty() ? "" : ",") + R"({"label":")" + weave.label +
+               R"(","images":[)" + images + "]}";
+  }
+  const std::string methods = options.comparison ? R"([{"name":"adaptive"},{"name":"tv-gabor"}])"
+                                                 : R"([{"name":"adaptive"}])";
+  return parse_study(R"({"study":"tiny","protocol":")" +
+                         std::string(options.comparison ? "comparison" : "classification") +
+                         R"(","classes":[)" + classes + R"(],"methods":)" + methods +
+                         R"(,"trials":)" + options.trials + R"(,"seed":7})",
+                     ".", "tiny.json");
+}
+
+StudyKey key_with(const TinyStudyOptions& options) {
+  SeededEntropy entropy(options.secret);
+  return make_study_key(study_with(options), entropy, true);
+}
+
+Pack write_pack(const std::filesystem::path& folder, const StudyKey& key, bool smooth) {
+  std::vector<TextureField> fields;
+  for (const KeyedStimulus& keyed : key.stimuli) {
+    fields.push_back(make_texture_field(tiny_texture(keyed.stimulus), key.study.rendering));
+  }
+  std::vector<FieldView> views;
+  for (const TextureField& field : fields) views.push_back(field.view());
+  const StudyGains gains = choose_gains(views, key.study.rendering);
+  std::filesystem::create_directories(folder);
+  PackManifest manifest{key.study_id, {}};
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    const std::string& code = key.stimuli[i].code;
+    const Digest checksum = write_field(folder, code, views[i]);
+    manifest.entries.push_back({code, checksum, {}, smooth ? Gains{} : gains.of_field[i]});
+  }
+  std::ranges::sort(manifest.entries, {}, &PackEntry::code);
+  write_manifest(folder, manifest);
+  return Pack(folder);
+}
+
+}  // namespace
+
+Plane<double> tiny_texture(const StimulusIndex& stimulus) {
+  const Weave& weave = kWeaves[stimulus.class_index];
+  const int image = stimulus.exemplar + 100 * stimulus.method;
+  RandomStream random(static_cast<std::uint64_t>(image), weave.label);
+  Plane<double> texture(kSidePx, kSidePx);
+  constexpr int kWaves = 12;
+  for (int wave = 0; wave < kWaves; ++wave) {
+    const double angle =
+        (weave.direction_deg + random.uniform(-15.0, 15.0)) * std::numbers::pi / 180.0;
+    const double per_px =
+        2.0 * std::numbers::pi /
+        (weave.wavelength_px * random.uniform(0.85, 1.15) * (1.0 + 0.3 * stimulus.method));
+    const double phase = random.uniform(0.0, 2.0 * std::numbers::pi);
+    for (int y = 0; y < kSidePx; ++y) {
+      for (int x = 0; x < kSidePx; ++x) {
+        const double along = x * std::cos(angle) + y * std::sin(angle);
+        texture.at(y, x) += 8.0 * std::sin(per_px * along + phase);
+      }
+    }
+  }
+  return texture;
+}
+
+TinyStudy::TinyStudy(const TinyStudyOptions& options)
+    : key_(key_with(options)),
+      pack_(write_pack(folder_.path() / "tiny.sim.pack", key_, options.smooth)) {}
+
+std::filesystem::path TinyStudy::next_database() {
+  return folder_.path() / (std::to_string(++databases_) + ".db");
+}
+
+}  // namespace touchtrial

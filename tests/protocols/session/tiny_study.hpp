@@ -1,0 +1,44 @@
+/// \file A small study with its pack, made without images: what the simulations are tested on.
+#pragma once
+
+#include "engine/pack/pack.hpp"
+#include "engine/rendering/gains.hpp"
+#include "protocols/design/study_key.hpp"
+#include "support/temp_folder.hpp"
+
+#include <cstdint>
+#include <string>
+
+namespace touchtrial {
+
+/// What a tiny study may have differently.
+struct TinyStudyOptions {
+  int images = 1;             ///< a class
+  bool comparison = false;    ///< two methods
+  bool smooth = false;        ///< gains are zero
+  std::uint64_t secret = 1;   ///< codes and secrets are a function of it
+  std::string trials = "{}";  ///< the study file's "trials"
+};
+
+/// Five textures of 120 x 120 pixels of 0.2 mm (waves of one length and direction each, with random
+/// phases), their key and their pack in a folder of its own.
+class TinyStudy {
+ public:
+  explicit TinyStudy(const TinyStudyOptions& options = {});
+
+  [[nodiscard]] const StudyKey& key() const noexcept { return key_; }
+  [[nodiscard]] const Pack& pack() const noexcept { return pack_; }
+  /// A place for a database that nobody else has.
+  [[nodiscard]] std::filesystem::path next_database();
+
+ private:
+  TempFolder folder_;
+  StudyKey key_;
+  Pack pack_;
+  int databases_ = 0;
+};
+
+/// A texture T of one class, image and method; the same for the same arguments.
+[[nodiscard]] Plane<double> tiny_texture(const StimulusIndex& stimulus);
+
+}  // namespace touchtrial

@@ -1,0 +1,110 @@
+#include "protocols/session/virtual_session.hpp"
+
+#include "protocols/session/tiny_study.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+
+namespace touchtrial {
+namespace {
+
+/// A stylus that rests on the plane for 100 ticks, or is unplugged before.
+class RestingStylus final : public HapticDevice {
+ public:
+  explicit RestingStylus(bool is_lost) : is_lost_(is_lost) {}
+
+  [[nodiscard]] DeviceInfo info() const override { return {"resting", "", 3.3, true}; }
+  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override {
+    sample.position_mm = {10.0, 10.0, -1.0};
+    if (is_lost_ && tick_ == 50) return DeviceStatus::fault;
+    return ++tick_ <= 100 ? DeviceStatus::ok : DeviceStatus::stopped;
+  }
+  [[nodiscard]] DeviceStatus write(Vec3) noexcept override { return DeviceStatus::ok; }
+
+ private:
+  bool is_lost_;
+  int tick_ = 0;
+};
+
+/// Always names the first picture; the device is lost in the first so many presentations.
+class Unlucky final : public Participant {
+ public:
+  explicit Unlucky(int losses) : losses_(losses) {}
+
+  void see_pictures(const std::vector<std::string>& labels) override { pictures = labels; }
+  [[nodiscard]] HapticDevice& begin_exploring(const PlaneGeometry&) override {
+    stylus_ = RestingStylus(losses_-- > 0);
+    return stylus_;
+  }
+  void feel(const ServoSample&) noexcept override { ++ticks; }
+  [[nodiscard]] ParticipantAnswer answer() override { return {0, std::chrono::seconds(1)}; }
+
+  std::vector<std::string> pictures;
+  int ticks = 0;
+
+ private:
+  int losses_;
+  RestingStylus stylus_{false};
+};
+
+struct Ran {
+  SessionTally tally;
+  BufferedEvents events;
+
+  [[nodiscard]] int count(EventKind kind) const {
+    return static_cast<int>(std::ranges::count(events.events, kind, &Event::kind));
+  }
+};
+
+Ran run(Participant& participant) {
+  const TinyStudy study({.trials = R"({"repeats": 1})"});
+  const StimulusSource source(study.pack(), study.key().study.rendering);
+  Ran ran;
+  Session session(make_schedule(study.key().study, 1), study.key().study.trials,
+                  SessionRecorder(1, SecretKey{}, ran.events));
+  SessionOpening opening;
+  opening.participant = "P001";
+  opening.enrolment = 1;
+  session.open({}, opening, "{}");
+  ran.tally = run_session_in_virtual_time(session, study.key(), source, participant);
+  CHECK(session.phase() == SessionPhase::closed);
+  return ran;
+}
+
+TEST_CASE(
+    "anybody can take part in a virtual session, and sees the pictures in the layout's order") {
+  Unlucky lucky(0);
+  const Ran ran = run(lucky);
+  std::vector<std::string> sorted = lucky.pictures;
+  std::ranges::sort(sorted);
+  CHECK(sorted == std::vector<std::string>{"bark", "brick", "cloth", "pebbles", "straw"});
+  CHECK(ran.tally.presentations == 5);
+  CHECK(ran.tally.ticks == 500);
+  CHECK(ran.tally.invalid_trials == 5);
+  CHECK(lucky.ticks == 500);
+  CHECK(ran.count(EventKind::answered) == 5);
+  CHECK(ran.count(EventKind::trace_stored) == 5);
+  CHECK(ran.tally.duration == ran.events.events.back().at);
+}
+
+TEST_CASE("a presentation in which the device was lost is repeated and leaves no trace") {
+  Unlucky unlucky(2);
+  const Ran ran = run(unlucky);
+  CHECK(ran.tally.presentations == 7);
+  CHECK(ran.count(EventKind::interrupted) == 2);
+  CHECK(ran.count(EventKind::answered) == 5);
+  CHECK(ran.count(EventKind::trace_stored) == 5);
+  CHECK(ran.count(EventKind::stopped) == 0);
+}
+
+TEST_CASE("a session whose device is lost again and again is stopped") {
+  Unlucky doomed(1000);
+  const Ran ran = run(doomed);
+  CHECK(ran.count(EventKind::interrupted) == 6);
+  CHECK(ran.count(EventKind::answered) == 0);
+  CHECK(ran.count(EventKind::stopped) == 1);
+  CHECK(ran.count(EventKind::closed) == 1);
+}
+
+}  // namespace
+}  // namespace touchtrial

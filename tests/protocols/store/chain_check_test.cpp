@@ -1,0 +1,241 @@
+#include "protocols/store/store_fixture.hpp"
+#include "support/catch.hpp"
+
+#include <string>
+#include <vector>
+
+using namespace touchtrial;
+using namespace touchtrial::fixture;
+
+namespace {
+
+/// A closed study of two sessions, made once.
+const std::filesystem::path& two_sessions() {
+  static StoredFixture study(2);
+  study.store.reset();
+  return study.path;
+}
+
+/// The fault found after some SQL was run behind the store's back: "session/sequence what".
+std::string fault_after(const std::string& sql) {
+  StoredFixture study(two_sessions());
+  tamper(study, sql);
+  const auto fault = study.store->first_fault();
+  if (!fault) return "";
+  return std::to_string(fault->session) + "/" + std::to_string(fault->sequence) + " " + fault->what;
+}
+
+/// SQL that flips the lowest bit of the first byte of a text or blob column.
+std::string flipped_blob(const std::string& table, const std::string& column,
+                         const std::string& where) {
+  SQLite::Database raw(two_sessions().string());
+  const std::string hex =
+      raw.execAndGet("SELECT hex(" + column + ") FROM " + table + " WHERE " + where).getString();
+  std::string flipped = hex;
+  flipped[1] = static_cast<char>(hex[1] == '0' ? '1' : '0');
+  return "UPDATE " + table + " SET " + column + " = x'" + flipped + "' WHERE " + where;
+}
+
+std::string flipped_text(const std::string& table, const std::string& column,
+                         const std::string& where) {
+  return "UPDATE " + table + " SET " + column + " = 'X' || substr(" + column + ", 2) WHERE " +
+         where;
+}
+
+std::string next_number(const std::string& table, const std::string& column,
+                        const std::string& where) {
+  return "UPDATE " + table + " SET " + column + " = " + column + " + 1 WHERE " + where;
+}
+
+const std::string kFourth = "session = 1 AND sequence = 5";  // trial 1's trace-stored
+
+}  // namespace
+
+TEST_CASE("an altered event is named, whatever was altered in it") {
+  const std::string hash = "the hash of the event does not match its content";
+  REQUIRE(fault_after(next_number("events", "at_ns", kFourth)) == "1/5 " + hash);
+  REQUIRE(fault_after(flipped_blob("events", "sealed", kFourth)) == "1/5 " + hash);
+  REQUIRE(fault_after(flipped_blob("events", "hash", kFourth)) == "1/5 " + hash);
+  REQUIRE(fault_after("UPDATE events SET body = replace(body, 'true', 'false') WHERE " + kFourth) ==
+          "1/5 " + hash);
+  REQUIRE(fault_after("UPDATE events SET kind = 'noted' WHERE " + kFourth) == "1/5 " + hash);
+  REQUIRE(fault_after(flipped_blob("events", "previous", kFourth)) ==
+          "1/5 previous does not match the hash of the event before");
+  REQUIRE(fault_after(flipped_text("events", "kind", kFourth)) ==
+          "1/5 unknown kind of event 'Xrace-stored'");
+  REQUIRE(fault_after("UPDATE events SET hash = x'00' WHERE " + kFourth) ==
+          "1/5 a hash of the event is not 32 bytes long");
+  REQUIRE(fault_after("UPDATE events SET sequence = 900 WHERE " + kFourth) ==
+          "1/5 sequence gap: event 5 is missing");
+  REQUIRE(fault_after("UPDATE events SET session = 3 WHERE " + kFourth) ==
+          "1/5 sequence gap: event 5 is missing");
+}
+
+TEST_CASE("an altered event of the file's chain is named") {
+  const std::string hash = "the hash of the event does not match its content";
+  for (int sequence = 0; sequence < 5; ++sequence) {
+    const std::string where = "session = 0 AND sequence = " + std::to_string(sequence);
+    const std::string place = "0/" + std::to_string(sequence) + " ";
+    REQUIRE(fault_after(next_number("events", "at_ns", where)) == place + hash);
+    REQUIRE(fault_after(flipped_text("events", "body", where)) == place + hash);
+  }
+  REQUIRE(fault_after("DELETE FROM events WHERE session = 0 AND sequence = 0") ==
+          "0/0 sequence gap: event 0 is missing");
+  REQUIRE(fault_after("DELETE FROM events WHERE session = 0") == "0/0 the file's chain is empty");
+}
+
+TEST_CASE("deleted, swapped and moved events are named") {
+  REQUIRE(fault_after("DELETE FROM events WHERE session = 2 AND sequence = 7") ==
+          "2/7 sequence gap: event 7 is missing");
+  REQUIRE(fault_after("DELETE FROM events WHERE session = 2 AND sequence = 0") ==
+          "2/0 sequence gap: event 0 is missing");
+  REQUIRE(fault_after("UPDATE events SET sequence = -1 WHERE session = 1 AND sequence = 3;"
+                      "UPDATE events SET sequence = 3 WHERE session = 1 AND sequence = 4;"
+                      "UPDATE events SET sequence = 4 WHERE session = 1 AND sequence = -1") ==
+          "1/3 previous does not match the hash of the event before");
+  REQUIRE(fault_after("UPDATE events SET session = 9 WHERE session = 2") ==
+          "0/3 session 2 has no events");
+  REQUIRE(fault_after("DELETE FROM events WHERE session = 1") == "0/1 session 1 has no events");
+  REQUIRE(fault_after("INSERT INTO events SELECT 9, sequence, kind, at_ns, body, sealed, previous, "
+                      "hash FROM events WHERE session = 1") ==
+          "9/0 the file's chain knows no such session");
+  REQUIRE(
+      fault_after("INSERT INTO events SELECT -1, sequence, kind, at_ns, body, sealed, previous, "
+                  "hash FROM events WHERE session = 1") ==
+      "0/0 the file's chain knows no such session");
+}
+
+TEST_CASE("a session cut short is held against the file's chain") {
+  REQUIRE(fault_after("DELETE FROM events WHERE session = 2 AND kind = 'closed'") ==
+          "2/13 session 2 ends at event 13, the file's chain says 14");
+  REQUIRE(fault_after("DELETE FROM events WHERE session = 2 AND sequence > 9") ==
+          "2/9 session 2 ends at event 9, the file's chain says 14");
+}
+
+TEST_CASE("the end of a session missing from the end of the file's chain is noticed") {
+  REQUIRE(fault_after("DELETE FROM events WHERE session = 0 AND sequence = 4") ==
+          "2/14 the session is closed, but not on the file's chain");
+  REQUIRE(fault_after("DELETE FROM events WHERE session = 0 AND sequence >= 3") ==
+          "2/0 the file's chain knows no such session");
+}
+
+TEST_CASE("a session of another making in the place of a stored one is noticed") {
+  StoredFixture study(2);
+  StoredFixture other(1);
+  other.store.reset();
+  other.store.emplace(StudyStore::create(other.folder.path() / "b.db", commitment(), kUtc));
+  SessionOpening how = opening(1);
+  how.device = "another";
+  other.store->add_session(session_of(1, 3, stroking(20, 0.05), how), wrapped_key_of(1), kUtc);
+  other.store.reset();
+  tamper(study, "ATTACH '" + (other.folder.path() / "b.db").string() +
+                    "' AS b; DELETE FROM events WHERE session = 1;"
+                    "INSERT INTO events SELECT * FROM b.events WHERE session = 1");
+  const auto fault = study.store->first_fault();
+  REQUIRE(fault->session == 1);
+  REQUIRE(fault->sequence == 0);
+  REQUIRE(fault->what == "the session's first event is not the one on the file's chain");
+}
+
+TEST_CASE("an altered, missing or added trace is named by its trial") {
+  REQUIRE(fault_after(flipped_blob("traces", "box", "session = 2 AND trial = 2")) ==
+          "2/9 trace of trial 2 was altered");
+  REQUIRE(fault_after("DELETE FROM traces WHERE session = 1 AND trial = 3") ==
+          "1/13 trace of trial 3 is missing");
+  REQUIRE(fault_after("DELETE FROM traces WHERE session = 2") == "2/5 trace of trial 1 is missing");
+  REQUIRE(fault_after("UPDATE traces SET trial = 7 WHERE session = 1 AND trial = 2") ==
+          "1/9 trace of trial 2 is missing");
+  REQUIRE(fault_after("INSERT INTO traces VALUES(2, 9, x'00')") ==
+          "2/0 trace of trial 9 has no event");
+  REQUIRE(fault_after("UPDATE traces SET session = 5 WHERE session = 2 AND trial = 3") ==
+          "2/13 trace of trial 3 is missing");
+}
+
+TEST_CASE("an altered, missing or added key is named by its session") {
+  REQUIRE(fault_after(flipped_blob("participant_keys", "wrapped", "session = 2")) ==
+          "2/0 the participant's key was altered");
+  REQUIRE(fault_after("DELETE FROM participant_keys WHERE session = 1") ==
+          "1/0 the participant's key is missing without a withdrawal");
+  REQUIRE(fault_after("INSERT INTO participant_keys VALUES(8, x'00')") ==
+          "8/0 a participant's key has no session");
+  StoredFixture study(1);
+  study.store->withdraw(1, kUtc, "asked to");
+  tamper(study, "INSERT INTO participant_keys VALUES(1, x'00')");
+  REQUIRE(study.store->first_fault()->what ==
+          "the participant withdrew, but the key is still there");
+}
+
+TEST_CASE("every altered column of the derived tables is noticed") {
+  const std::string where = "session = 2";
+  for (const std::string column : {"enrolment", "simulated", "pilot", "excluded", "withdrawn"}) {
+    REQUIRE(contains(fault_after(next_number("sessions", column, where)),
+                     "2/0 derived table sessions"));
+  }
+  for (const std::string column : {"participant", "state", "device"}) {
+    REQUIRE(contains(fault_after(flipped_text("sessions", column, where)),
+                     "2/0 derived table sessions"));
+  }
+  const std::string trial = "session = 2 AND trial = 2";
+  for (const std::string column :
+       {"block", "presented_at_ns", "contact_at_ns", "valid", "overruns", "samples", "rate_hz"}) {
+    REQUIRE(
+        contains(fault_after(next_number("trials", column, trial)), "2/0 derived table trials"));
+  }
+  REQUIRE(
+      contains(fault_after(flipped_text("trials", "state", trial)), "2/0 derived table trials"));
+  for (const std::string column : {"answered_at_ns", "position", "first_position", "confidence"}) {
+    REQUIRE(fault_after(next_number("responses", column, trial)) ==
+            "2/0 derived table responses disagrees with the events at trial 2");
+  }
+}
+
+TEST_CASE("missing and added derived rows are noticed") {
+  REQUIRE(fault_after("DELETE FROM responses WHERE session = 1 AND trial = 1") ==
+          "1/0 derived table responses disagrees with the events at trial 1");
+  REQUIRE(fault_after("UPDATE responses SET trial = 70 WHERE session = 1 AND trial = 1") ==
+          "1/0 derived table responses disagrees with the events at trial 1");
+  REQUIRE(fault_after("INSERT INTO responses VALUES(2, 70, 1, 1, NULL, NULL)") ==
+          "2/0 derived table responses disagrees with the events at trial 70");
+  REQUIRE(fault_after("DELETE FROM trials WHERE session = 2 AND trial = 3") ==
+          "2/0 derived table trials disagrees with the events at trial 3");
+  REQUIRE(fault_after("UPDATE trials SET trial = 7 WHERE session = 1 AND trial = 3") ==
+          "1/0 derived table trials disagrees with the events at trial 3");
+  REQUIRE(fault_after("DELETE FROM sessions WHERE session = 1") ==
+          "1/0 derived table sessions disagrees with the events");
+  REQUIRE(fault_after("UPDATE sessions SET session = 7 WHERE session = 2") ==
+          "2/0 derived table sessions disagrees with the events");
+}
+
+TEST_CASE("tampered derived tables are put right by making them anew") {
+  StoredFixture study(2);
+  const auto trials = study.store->trials();
+  tamper(study, "UPDATE responses SET position = 1; DELETE FROM trials WHERE trial = 3");
+  REQUIRE(study.store->first_fault());
+  study.store->rebuild_derived();
+  REQUIRE_FALSE(study.store->first_fault());
+  REQUIRE(study.store->trials() == trials);
+}
+
+TEST_CASE("a tampered database answers with one line, not with invented data") {
+  StoredFixture study(1);
+  tamper(study,
+         "UPDATE events SET kind = 'gone' WHERE session = 1 AND sequence = 2;"
+         "UPDATE trials SET state = 'gone' WHERE trial = 1;"
+         "UPDATE events SET body = '{}' WHERE session = 0 AND sequence = 0");
+  for (const std::string& line : {refusal_of([&] { return study.store->events(1); }),
+                                  refusal_of([&] { return study.store->trials(); }),
+                                  refusal_of([&] { return study.store->commitment(); })}) {
+    REQUIRE(contains(line, study.path.string()));
+    REQUIRE(contains(line, "run `touchtrial verify`"));
+  }
+}
+
+TEST_CASE("what a chain cannot show: an open session cut at its end") {
+  StoredFixture study;
+  const auto sink = study.store->begin_session(1, wrapped_key_of(1));
+  SessionRecorder recorder(1, participant_key(1), *sink);
+  recorder.opened(nanoseconds(0), opening(1), "{}");
+  recorder.remarked(seconds(1), EventKind::noted, "late");
+  tamper(study, "DELETE FROM events WHERE session = 1 AND sequence = 1");
+  REQUIRE_FALSE(study.store->first_fault());
+}

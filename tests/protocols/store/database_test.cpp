@@ -1,0 +1,251 @@
+#include "protocols/store/schema.hpp"
+#include "protocols/store/store_fixture.hpp"
+#include "support/catch.hpp"
+
+#include <array>
+#include <fstream>
+#include <sstream>
+
+#include <sys/stat.h>
+
+using namespace touchtrial;
+using namespace touchtrial::fixture;
+
+namespace {
+
+using Access = StudyStore::Access;
+
+std::string content_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+void write(const std::filesystem::path& path, const std::string& content) {
+  std::ofstream(path, std::ios::binary) << content;
+}
+
+/// The line with which a file is refused; the file must be as it was, and nothing beside it.
+std::string refusal_untouched(const std::filesystem::path& path, Access access) {
+  const std::string before = content_of(path);
+  const std::string line = refusal_of([&] { return StudyStore::open(path, access); });
+  REQUIRE(contains(line, path.string()));
+  REQUIRE_FALSE(contains(line, "\n"));
+  REQUIRE(content_of(path) == before);
+  REQUIRE_FALSE(std::filesystem::exists(path.string() + "-wal"));
+  REQUIRE_FALSE(std::filesystem::exists(path.string() + "-journal"));
+  return line;
+}
+
+std::string pragma(const std::filesystem::path& path, const std::string& name) {
+  SQLite::Database raw(path.string());
+  return raw.execAndGet("PRAGMA " + name).getString();
+}
+
+void add_a_table(SQLite::Database& database) {
+  database.exec("CREATE TABLE later(x INTEGER) STRICT");
+}
+
+void fail(SQLite::Database& database) {
+  database.exec("CREATE TABLE half(x INTEGER) STRICT");
+  database.exec("no SQL");
+}
+
+}  // namespace
+
+TEST_CASE("a database is in WAL mode, of our application id and schema version") {
+  StoredFixture study(1);
+  study.store.reset();
+  REQUIRE(pragma(study.path, "journal_mode") == "wal");
+  REQUIRE(pragma(study.path, "application_id") == std::to_string(0x5454524c));
+  REQUIRE(pragma(study.path, "user_version") == "1");
+  REQUIRE(pragma(study.path, "integrity_check") == "ok");
+  SQLite::Database raw(study.path.string());
+  REQUIRE_FALSE(SQLite::Statement(raw, "PRAGMA foreign_key_check").executeStep());
+}
+
+TEST_CASE("a database that was closed is one file") {
+  StoredFixture study(2);
+  study.store.reset();
+  REQUIRE_FALSE(std::filesystem::exists(study.path.string() + "-wal"));
+  REQUIRE_FALSE(std::filesystem::exists(study.path.string() + "-shm"));
+}
+
+TEST_CASE("reading leaves the file as it is and nothing beside it") {
+  StoredFixture study(1);
+  study.store.reset();
+  const std::string before = content_of(study.path);
+  {
+    const StudyStore reader = StudyStore::open(study.path, Access::read_only);
+    REQUIRE(reader.trials().size() == 3);
+    REQUIRE_FALSE(reader.first_fault());
+  }
+  REQUIRE(content_of(study.path) == before);
+  REQUIRE_FALSE(std::filesystem::exists(study.path.string() + "-wal"));
+  REQUIRE_FALSE(std::filesystem::exists(study.path.string() + "-shm"));
+}
+
+TEST_CASE("a database opened for reading refuses every change") {
+  StoredFixture study(1);
+  study.store.reset();
+  StudyStore reader = StudyStore::open(study.path, Access::read_only);
+  const std::string why = "cannot be written; open it for writing";
+  REQUIRE(contains(refusal_of([&] { add(reader, 2); }), why));
+  REQUIRE(contains(refusal_of([&] { reader.close_study(kUtc); }), why));
+  REQUIRE(contains(refusal_of([&] { reader.withdraw(1, kUtc, "x"); }), why));
+  REQUIRE(contains(refusal_of([&] { reader.rebuild_derived(); }), why));
+  REQUIRE(reader.next_session() == 2);
+}
+
+TEST_CASE("a database in a folder that cannot be written can be read") {
+  StoredFixture study(1);
+  study.store.reset();
+  const std::filesystem::path odd = study.folder.path() / "50% of #1?";
+  std::filesystem::create_directory(odd);
+  std::filesystem::rename(study.path, odd / "study.db");
+  REQUIRE(::chmod((odd / "study.db").c_str(), 0444) == 0);
+  REQUIRE(::chmod(odd.c_str(), 0555) == 0);
+  {
+    const StudyStore reader = StudyStore::open(odd / "study.db", Access::read_only);
+    REQUIRE(reader.trials().size() == 3);
+    REQUIRE_FALSE(reader.first_fault());
+  }
+  REQUIRE(std::distance(std::filesystem::directory_iterator(odd), {}) == 1);
+  REQUIRE(::chmod(odd.c_str(), 0755) == 0);
+}
+
+TEST_CASE("an existing file is never overwritten") {
+  TempFolder folder;
+  const auto path = folder.path() / "taken.db";
+  write(path, "precious");
+  REQUIRE(contains(refusal_of([&] { return StudyStore::create(path, commitment(), kUtc); }),
+                   "exists already"));
+  REQUIRE(content_of(path) == "precious");
+}
+
+TEST_CASE("a database that cannot be made leaves nothing behind") {
+  TempFolder folder;
+  REQUIRE(contains(refusal_of([&] {
+                     return StudyStore::create(folder.path() / "no" / "x.db", commitment(), kUtc);
+                   }),
+                   "cannot be made"));
+  StudyCommitment odd = commitment();
+  odd.study = "\xc3\x28";
+  REQUIRE_THROWS_AS(StudyStore::create(folder.path() / "x.db", odd, kUtc), StoreError);
+  REQUIRE(std::filesystem::is_empty(folder.path()));
+}
+
+TEST_CASE("what is no database of ours is refused untouched") {
+  TempFolder folder;
+  const auto path = folder.path() / "file.db";
+  for (const Access access : {Access::read_only, Access::read_write}) {
+    REQUIRE(contains(refusal_of([&] { return StudyStore::open(folder.path() / "none", access); }),
+                     "no such database"));
+    REQUIRE(contains(refusal_of([&] { return StudyStore::open(folder.path(), access); }),
+                     "is a folder"));
+    for (const std::string& content :
+         {std::string(), std::string("SQLite format 3"), std::string(5000, 'x')}) {
+      write(path, content);
+      REQUIRE(contains(refusal_untouched(path, access), "is no Touchtrial database"));
+    }
+    std::filesystem::remove(path);
+    SQLite::Database(path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE)
+        .exec("CREATE TABLE events(x)");
+    REQUIRE(contains(refusal_untouched(path, access), "none of Touchtrial"));
+  }
+}
+
+TEST_CASE("a newer database is refused untouched") {
+  StoredFixture study(1);
+  study.store.reset();
+  SQLite::Database(study.path.string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 2");
+  for (const Access access : {Access::read_only, Access::read_write}) {
+    REQUIRE(contains(refusal_untouched(study.path, access),
+                     "newer Touchtrial (schema 2, this one knows 1)"));
+  }
+}
+
+TEST_CASE("a truncated database is refused untouched, wherever it was cut") {
+  StoredFixture study(2);
+  study.store.reset();
+  const std::string whole = content_of(study.path);
+  for (const std::size_t size : {whole.size() - 1, whole.size() - 8192, whole.size() / 2,
+                                 std::size_t{8192}, std::size_t{100}}) {
+    write(study.path, whole.substr(0, size));
+    for (const Access access : {Access::read_only, Access::read_write}) {
+      REQUIRE(contains(refusal_untouched(study.path, access), "is truncated"));
+    }
+  }
+}
+
+TEST_CASE("garbage in a database is noticed, or has hit nothing") {
+  StoredFixture study(2);
+  const auto trials = study.store->trials();
+  study.store.reset();
+  const std::string whole = content_of(study.path);
+  RandomStream random(9, "garbage");
+  int noticed = 0;
+  for (int i = 0; i < 200; ++i) {
+    std::string damaged = whole;
+    const std::size_t begin = 100 + random.below(damaged.size() - 700);
+    for (std::size_t j = 0; j < 600; ++j) damaged[begin + j] = static_cast<char>(random.below(256));
+    write(study.path, damaged);
+    const std::string line = refusal_of([&] {
+      const StudyStore store = StudyStore::open(study.path, Access::read_only);
+      if (const auto fault = store.first_fault()) throw StoreError(fault->what);
+      REQUIRE(store.trials() == trials);
+    });
+    REQUIRE_FALSE(contains(line, "\n"));
+    if (!line.empty()) ++noticed;
+  }
+  REQUIRE(noticed > 20);
+}
+
+TEST_CASE("a database that another program is writing to is refused with the remedy") {
+  StoredFixture study(1);
+  SQLite::Database other(study.path.string(), SQLite::OPEN_READWRITE);
+  other.exec("BEGIN IMMEDIATE");
+  REQUIRE(contains(refusal_of([&] { study.store->close_study(kUtc); }),
+                   "is in use by another program; close it there"));
+  other.exec("ROLLBACK");
+  study.store->close_study(kUtc);
+  REQUIRE(study.store->state().closed);
+}
+
+TEST_CASE("an older database is brought forward after a backup") {
+  StoredFixture study(2);
+  const auto trials = study.store->trials();
+  study.store.reset();
+  const std::array<Migration, 2> steps = {migrations()[0], add_a_table};
+  {
+    const Database database = Database::open(study.path, Database::Mode::read_write, 2);
+    migrate(database, steps);
+    REQUIRE(schema_version(database) == 2);
+    migrate(database, steps);  // nothing is left to do
+  }
+  const auto backup = backup_path(study.path, 1);
+  REQUIRE(backup.string() == study.path.string() + ".v1.backup");
+  const StudyStore before = StudyStore::open(backup, Access::read_only);
+  REQUIRE(before.trials() == trials);
+  REQUIRE_FALSE(before.first_fault());
+  REQUIRE(contains(refusal_of([&] { return StudyStore::open(study.path, Access::read_only); }),
+                   "newer"));
+  SQLite::Database raw(study.path.string());
+  REQUIRE(raw.execAndGet("SELECT count(*) FROM trials").getInt() == 6);
+  REQUIRE(raw.tableExists("later"));
+}
+
+TEST_CASE("a migration that fails leaves the database as it was") {
+  StoredFixture study(1);
+  study.store.reset();
+  const std::array<Migration, 2> steps = {migrations()[0], fail};
+  {
+    const Database database = Database::open(study.path, Database::Mode::read_write, 2);
+    REQUIRE_THROWS_AS(migrate(database, steps), StoreError);
+    REQUIRE(schema_version(database) == 1);
+    REQUIRE_FALSE(database.connection().tableExists("half"));
+    REQUIRE(contains(refusal_of([&] { migrate(database, steps); }), ".v1.backup exists already"));
+  }
+  REQUIRE_FALSE(StudyStore::open(study.path, Access::read_only).first_fault());
+}

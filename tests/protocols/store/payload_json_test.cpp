@@ -1,0 +1,132 @@
+#include "protocols/store/payload_json.hpp"
+
+#include "core/errors.hpp"
+#include "core/random.hpp"
+#include "protocols/store/store_fixture.hpp"
+#include "support/catch.hpp"
+
+#include <bit>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+using namespace touchtrial;
+
+TEST_CASE("bodies are compact JSON with sorted keys") {
+  REQUIRE(presented_to_json(7, 2) == R"({"block":2,"trial":7})");
+  REQUIRE(to_json(AnswerBody{.trial = 7, .position = 0, .first_position = {}, .confidence = {}}) ==
+          R"({"position":0,"trial":7})");
+  REQUIRE(to_json(AnswerBody{.trial = 7, .position = 1, .first_position = 4, .confidence = 2}) ==
+          R"({"confidence":2,"first_position":4,"position":1,"trial":7})");
+  REQUIRE(to_json(TrialMeasures{
+              .contact_s = 8.5, .path_mm = 612.25, .force_rms_n = 0.1, .saturated_share = 0.0}) ==
+          R"({"contact_s":8.5,"force_rms_n":0.1,"path_mm":612.25,"saturated_share":0.0})");
+  REQUIRE(to_json(UnblindingBody{.reason = "end \"now\"\n", .interim = true}) ==
+          R"({"interim":true,"reason":"end \"now\"\n"})");
+}
+
+TEST_CASE("every body reads back as it was written") {
+  REQUIRE(commitment_from_json(to_json(fixture::commitment())) == fixture::commitment());
+
+  const SessionOpening opening = fixture::opening(3);
+  const SessionOpening read = opening_from_json(to_json(opening));
+  REQUIRE(to_json(read) == to_json(opening));
+  REQUIRE(read.seal == opening.seal);
+  REQUIRE(read.enrolment == 3);
+
+  const TraceBody trace{.trial = 9,
+                        .samples = 10'000,
+                        .rate_hz = 999.9871,
+                        .overruns = 3,
+                        .valid = false,
+                        .trace = fixture::digest_of("t")};
+  const TraceBody read_trace = trace_body_from_json(to_json(trace));
+  REQUIRE(read_trace.rate_hz == trace.rate_hz);
+  REQUIRE(read_trace.trace == trace.trace);
+  REQUIRE_FALSE(read_trace.valid);
+  REQUIRE(read_trace.samples == 10'000);
+
+  const AnswerBody answer = answer_from_json(
+      to_json(AnswerBody{.trial = 1, .position = 4, .first_position = 0, .confidence = {}}));
+  REQUIRE(answer.first_position == 0);
+  REQUIRE_FALSE(answer.confidence);
+
+  REQUIRE(trial_from_json(interrupted_to_json(4, "pause")).reason == "pause");
+  REQUIRE(trial_from_json(presented_to_json(4, 1)).block == 1);
+  REQUIRE(completion_from_json(completion_to_json(true)));
+}
+
+TEST_CASE("doubles in bodies survive to the last bit") {
+  RandomStream random(5, "doubles");
+  for (int i = 0; i < 2000; ++i) {
+    const double value =
+        std::ldexp(random.uniform(-1.0, 1.0), static_cast<int>(random.below(400)) - 200);
+    const TrialMeasures measures{
+        .contact_s = value, .path_mm = 0.1, .force_rms_n = 1.0 / 3.0, .saturated_share = -0.0};
+    const TrialMeasures read = measures_from_json(to_json(measures));
+    REQUIRE(std::bit_cast<std::uint64_t>(read.contact_s) == std::bit_cast<std::uint64_t>(value));
+    REQUIRE(read == measures);
+  }
+}
+
+TEST_CASE("hostile bodies are refused by one line and never crash") {
+  const std::vector<std::string> hostile = {"",
+                                            "null",
+                                            "[]",
+                                            "42",
+                                            "{",
+                                            "{\"trial\":",
+                                            "\xff\xfe",
+                                            std::string("{}\0", 3),
+                                            R"({"trial":0})",
+                                            R"({"trial":-1})",
+                                            R"({"trial":1.5})",
+                                            R"({"trial":"1"})",
+                                            R"({"trial":2147483648})",
+                                            R"({"trial":18446744073709551615})",
+                                            R"({"trial":1e400})",
+                                            R"({"trial":null})",
+                                            R"({"trial":{"trial":1}})",
+                                            std::string(100'000, '['),
+                                            std::string(100'000, '{'),
+                                            R"({"position":1})"};
+  using Parse = std::function<void(const std::string&)>;
+  const std::vector<Parse> parsers = {
+      [](const auto& t) { static_cast<void>(commitment_from_json(t)); },
+      [](const auto& t) { static_cast<void>(opening_from_json(t)); },
+      [](const auto& t) { static_cast<void>(answer_from_json(t)); },
+      [](const auto& t) { static_cast<void>(trace_body_from_json(t)); },
+      [](const auto& t) { static_cast<void>(session_opened_from_json(t)); },
+      [](const auto& t) { static_cast<void>(session_closed_from_json(t)); },
+      [](const auto& t) { static_cast<void>(participant_from_json(t)); },
+      [](const auto& t) { static_cast<void>(unblinding_from_json(t)); },
+      [](const auto& t) { static_cast<void>(trial_from_json(t)); },
+      [](const auto& t) { static_cast<void>(completion_from_json(t)); },
+      [](const auto& t) { static_cast<void>(measures_from_json(t)); },
+  };
+  for (const Parse& parse : parsers) {
+    for (const std::string& text : hostile) REQUIRE_THROWS_AS(parse(text), StoreError);
+  }
+}
+
+TEST_CASE("a refused body names the key") {
+  REQUIRE_THROWS_WITH(static_cast<void>(trial_from_json(R"({"trial":"x"})")),
+                      "/trial is not a whole number");
+  REQUIRE_THROWS_WITH(static_cast<void>(answer_from_json(R"({"trial":1})")),
+                      "/position is missing");
+  REQUIRE_THROWS_WITH(
+      static_cast<void>(session_closed_from_json(R"({"session":1,"length":3,"head":"zz"})")),
+      "/head is not 64 hexadecimal digits");
+}
+
+TEST_CASE("what JSON cannot hold is refused before it is written") {
+  const double infinite = std::numeric_limits<double>::infinity();
+  REQUIRE_THROWS_AS(
+      to_json(TrialMeasures{
+          .contact_s = infinite, .path_mm = 0.0, .force_rms_n = 0.0, .saturated_share = 0.0}),
+      StoreError);
+  REQUIRE_THROWS_AS(remark_to_json("\xc3\x28"), StoreError);
+  REQUIRE(remark_to_json("Würfel") == "{\"text\":\"Würfel\"}");
+}

@@ -1,0 +1,194 @@
+/// \file Small studies and sessions to store, and the means to tamper with what was stored.
+#pragma once
+
+#include "core/errors.hpp"
+#include "core/random.hpp"
+#include "protocols/store/session_recorder.hpp"
+#include "protocols/store/study_store.hpp"
+#include "support/temp_folder.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include <SQLiteCpp/Database.h>
+
+namespace touchtrial::fixture {
+
+using std::chrono::milliseconds;
+using std::chrono::nanoseconds;
+using std::chrono::seconds;
+
+inline constexpr nanoseconds kUtc = seconds(1'700'000'000);
+
+inline Digest digest_of(const std::string& text) {
+  return sha256(bytes_of(text));
+}
+
+inline SecretKey study_master() {
+  return digest_of("study master");
+}
+
+inline SecretKey participant_key(int session) {
+  return digest_of("participant key " + std::to_string(session));
+}
+
+inline StudyCommitment commitment() {
+  return {.study = "classification",
+          .protocol = "classification",
+          .study_id = "00112233445566778899aabbccddeeff",
+          .seal = digest_of("seal"),
+          .pack = digest_of("pack"),
+          .configuration = R"({"classes":["c0","c1"]})",
+          .scored_trials = 3,
+          .positions = 5,
+          .simulated = true,
+          .pilot = false,
+          .program_version = "0.1.0"};
+}
+
+inline std::string participant_of(int session) {
+  return "P" + std::to_string(session);
+}
+
+inline SessionOpening opening(int session) {
+  return {.participant = participant_of(session),
+          .enrolment = session,
+          .study_id = commitment().study_id,
+          .seal = commitment().seal,
+          .device = "simulated",
+          .device_serial = "",
+          .opened_utc = "",
+          .simulated = true,
+          .pilot = false};
+}
+
+/// A hand that strokes to and fro while a texture of the given rms force shakes it.
+inline Trace stroking(std::size_t samples, double texture_rms_n, std::uint64_t seed = 1) {
+  RandomStream random(seed, "trace fixture");
+  Trace trace;
+  trace.rate_hz = 1000.0;
+  double phase = 0.0;
+  double shake_mm = 0.0;
+  double shake_mm_per_ms = 0.0;
+  for (std::size_t i = 0; i < samples; ++i) {
+    const double t_s = static_cast<double>(i) * 1e-3;
+    phase += (0.1 + 0.05 * std::sin(0.7 * t_s)) / 30.0;  // 50 to 150 mm/s over 60 mm
+    shake_mm_per_ms = 0.8 * shake_mm_per_ms + 0.02 * texture_rms_n * random.normal();
+    shake_mm = 0.99 * shake_mm + shake_mm_per_ms;
+    const double tremor_mm = 0.05 * std::sin(56.0 * t_s);
+    trace.samples.push_back(
+        {.position_mm = {50.0 + 30.0 * std::sin(phase) + tremor_mm + shake_mm,
+                         40.0 + 8.0 * std::sin(0.43 * phase) - tremor_mm,
+                         -1.75 + 0.1 * std::sin(3.1 * t_s) + 0.1 * shake_mm},
+         .force_n = {texture_rms_n * random.normal(), texture_rms_n * random.normal(),
+                     0.7 + 0.04 * std::sin(3.1 * t_s) + texture_rms_n * random.normal()}});
+  }
+  return trace;
+}
+
+/// Records a session of `trials` trials; the last is not answered in time, the second is answered
+/// after a change of mind and with a confidence.
+inline void record(SessionRecorder& recorder, int session, int trials, const Trace& trace,
+                   const SessionOpening& how) {
+  recorder.opened(nanoseconds(0), how, R"({"schedule":")" + std::to_string(session) + "\"}");
+  recorder.remarked(seconds(1), EventKind::instructed, "read aloud");
+  for (int trial = 1; trial <= trials; ++trial) {
+    const nanoseconds start = seconds(20 * trial);
+    recorder.presented(start, trial, (trial - 1) / 2);
+    recorder.first_contact(start + milliseconds(350), trial);
+    if (trial == trials) {
+      recorder.timed_out(start + seconds(10), trial);
+    } else {
+      AnswerBody answer{
+          .trial = trial, .position = trial % 5, .first_position = {}, .confidence = {}};
+      if (trial == 2) answer.first_position = 4;
+      if (trial == 2) answer.confidence = 3;
+      recorder.answered(start + seconds(9), answer);
+    }
+    recorder.trace_stored(
+        start + seconds(11),
+        {.trial = trial,
+         .samples = 0,
+         .rate_hz = 999.75,
+         .overruns = trial,
+         .valid = trial != 3,
+         .trace = {}},
+        {.contact_s = 0.1 * trial, .path_mm = 512.5, .force_rms_n = 0.05, .saturated_share = 0.0},
+        trace);
+  }
+  recorder.closed(seconds(20 * trials + 30), true);
+}
+
+inline BufferedEvents session_of(int session, int trials, const Trace& trace,
+                                 const SessionOpening& how) {
+  BufferedEvents events;
+  SessionRecorder recorder(session, participant_key(session), events);
+  record(recorder, session, trials, trace, how);
+  return events;
+}
+
+inline BufferedEvents session_of(int session, int trials = 3) {
+  return session_of(session, trials, stroking(20, 0.05), opening(session));
+}
+
+inline Bytes wrapped_key_of(int session) {
+  return wrap_participant_key(study_master(), session, participant_key(session));
+}
+
+inline void add(StudyStore& store, int session, int trials = 3) {
+  store.add_session(session_of(session, trials), wrapped_key_of(session), kUtc);
+}
+
+/// The line with which `work` is refused; empty if it is not.
+template <typename Work>
+std::string refusal_of(Work&& work) {
+  try {
+    work();
+  } catch (const StoreError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+inline bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+/// A study in a folder of its own.
+class StoredFixture {
+ public:
+  explicit StoredFixture(int sessions = 0, int trials = 3)
+      : store(StudyStore::create(path, commitment(), kUtc)) {
+    for (int session = 1; session <= sessions; ++session) add(*store, session, trials);
+  }
+  /// A copy of another study, which must be closed.
+  explicit StoredFixture(const std::filesystem::path& original) {
+    std::filesystem::copy_file(original, path);
+  }
+
+  TempFolder folder;
+  std::filesystem::path path = folder.path() / "study.db";
+  std::optional<StudyStore> store;
+};
+
+/// Closes the store, runs SQL behind its back (the triggers that protect events are gone then), and
+/// opens it again.
+inline void tamper(StoredFixture& study, const std::string& sql) {
+  study.store.reset();
+  {
+    SQLite::Database raw(study.path.string(), SQLite::OPEN_READWRITE);
+    for (const char* const table : {"events", "traces"}) {
+      for (const char* const what : {"update", "delete", "replace"}) {
+        raw.exec(std::string("DROP TRIGGER IF EXISTS ") + table + "_no_" + what);
+      }
+    }
+    raw.exec("PRAGMA foreign_keys = OFF; PRAGMA synchronous = OFF");
+    raw.exec(sql);
+  }
+  study.store = StudyStore::open(study.path, StudyStore::Access::read_write);
+}
+
+}  // namespace touchtrial::fixture

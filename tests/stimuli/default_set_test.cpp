@@ -1,0 +1,119 @@
+#include "stimuli/default_set.hpp"
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "engine/image_file.hpp"
+#include "support/catch.hpp"
+#include "support/temp_folder.hpp"
+
+#include <nlohmann/json.hpp>
+
+using namespace touchtrial;
+
+namespace {
+
+constexpr int kTiny = 48;
+
+/// The folder of the set that comes with the program.
+std::filesystem::path committed_set() {
+  return std::filesystem::path(__FILE__).parent_path() / ".." / ".." / "stimuli";
+}
+
+}  // namespace
+
+TEST_CASE("the default set is a file for each recipe and a manifest that matches them") {
+  const TempFolder folder;
+  const auto set = folder.path() / "new" / "stimuli";
+  const StimulusManifest manifest = generate_default_stimuli(set, 5, kTiny);
+  REQUIRE(manifest.entries.size() == stimulus_recipes().size());
+  for (std::size_t i = 0; i < manifest.entries.size(); ++i) {
+    const StimulusEntry& entry = manifest.entries[i];
+    INFO(entry.label);
+    CHECK(entry.label == stimulus_recipes()[i].label);
+    CHECK(entry.file == entry.label + ".png");
+    CHECK(entry.seed == 5);
+    CHECK(sha256_of_file(set / entry.file) == entry.sha256);
+    const GreyImage picture = read_grey_image(set / entry.file);
+    CHECK(sha256(picture.samples()) == entry.pixels_sha256);
+    CHECK(picture == generate_stimulus(entry.label, 5, kTiny));
+  }
+  CHECK(read_stimulus_manifest(set / kStimulusManifestFile) == manifest);
+}
+
+TEST_CASE("the set that comes with the program matches its manifest and its seed") {
+  const StimulusManifest manifest = read_stimulus_manifest(committed_set() / kStimulusManifestFile);
+  CHECK(manifest.generator_version == kGeneratorVersion);
+  REQUIRE(manifest.entries.size() == stimulus_recipes().size());
+  for (const StimulusEntry& entry : manifest.entries) {
+    INFO(entry.label);
+    CHECK(entry.seed == kDefaultStimuliSeed);
+    CHECK(entry.size_px == kDefaultStimulusSizePx);
+    CHECK(sha256_of_file(committed_set() / entry.file) == entry.sha256);
+    const GreyImage picture = generate_stimulus(entry.label, entry.seed, entry.size_px);
+    CHECK(sha256(picture.samples()) == entry.pixels_sha256);
+  }
+}
+
+TEST_CASE("making the set again replaces it by the same bytes and leaves other files alone") {
+  const TempFolder folder;
+  generate_default_stimuli(folder.path(), 5, kTiny);
+  const Bytes before = read_file(folder.path() / "straw.png");
+  const Bytes manifest_before = read_file(folder.path() / kStimulusManifestFile);
+  replace_file(folder.path() / "straw.png", "spoilt");
+  replace_file(folder.path() / "own.txt", "own");
+  generate_default_stimuli(folder.path(), 5, kTiny);
+  CHECK(read_file(folder.path() / "straw.png") == before);
+  CHECK(read_file(folder.path() / kStimulusManifestFile) == manifest_before);
+  CHECK(text_of(read_file(folder.path() / "own.txt")) == "own");
+}
+
+TEST_CASE("progress is told after each picture") {
+  const TempFolder folder;
+  int last = 0;
+  generate_default_stimuli(folder.path(), 5, kMinStimulusSizePx, [&](int done, int total) {
+    CHECK(done == last + 1);
+    CHECK(total == 9);
+    last = done;
+  });
+  CHECK(last == 9);
+}
+
+TEST_CASE("a folder that cannot be made is refused") {
+  const TempFolder folder;
+  replace_file(folder.path() / "file", "x");
+  CHECK_THROWS_AS(generate_default_stimuli(folder.path() / "file", 5, kTiny), FileError);
+  CHECK_THROWS_AS(generate_default_stimuli(folder.path() / "file" / "set", 5, kTiny), FileError);
+}
+
+TEST_CASE("the manifest names the licence and the generator in plain JSON") {
+  const TempFolder folder;
+  const auto path = folder.path() / "manifest.json";
+  write_stimulus_manifest(path, {});
+  const auto json = nlohmann::json::parse(text_of(read_file(path)));
+  CHECK(json.at("licence") == "CC0-1.0");
+  CHECK(json.at("generator_version") == kGeneratorVersion);
+  CHECK(json.at("stimuli").empty());
+}
+
+TEST_CASE("a manifest that is not one is refused with file and place") {
+  const TempFolder folder;
+  const auto path = folder.path() / "manifest.json";
+  const auto refusal = [&](const std::string& content) {
+    replace_file(path, content);
+    try {
+      static_cast<void>(read_stimulus_manifest(path));
+    } catch (const FileError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK_THROWS_AS(read_stimulus_manifest(folder.path() / "none.json"), FileError);
+  CHECK_THAT(refusal("{"), holds_text("manifest.json"));
+  CHECK_THAT(refusal("[]"), holds_text("manifest.json"));
+  CHECK_THAT(refusal(R"({"format": "other"})"), holds_text("not a manifest"));
+  const std::string start =
+      R"({"format": "touchtrial-stimuli", "generator_version": 1, "licence": "CC0-1.0", "stimuli": )";
+  CHECK_THAT(refusal(start + "[{}]}"), holds_text("/stimuli/0"));
+  CHECK_THAT(refusal(start + "7}"), holds_text("manifest.json"));
+  CHECK_THAT(refusal(start + R"([{"label": "a", "kind": "sound"}]})"), holds_text("kind"));
+}

@@ -1,0 +1,175 @@
+#include "stimuli/generator.hpp"
+
+#include "core/errors.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <string>
+
+using namespace touchtrial;
+
+namespace {
+
+double mean_of(const GreyImage& image) {
+  double sum = 0.0;
+  for (const std::uint8_t grey : image.samples()) sum += grey;
+  return sum / static_cast<double>(image.size());
+}
+
+double share_of(const GreyImage& image, int low, int high) {
+  const auto inside = [&](std::uint8_t grey) { return grey >= low && grey <= high; };
+  return static_cast<double>(
+             std::count_if(image.samples().begin(), image.samples().end(), inside)) /
+         static_cast<double>(image.size());
+}
+
+/// Correlation of the picture with itself moved by (dx, dy), over the part that overlaps.
+double self_correlation(const GreyImage& image, int dx, int dy) {
+  double sum_a = 0.0, sum_b = 0.0, sum_aa = 0.0, sum_bb = 0.0, sum_ab = 0.0, n = 0.0;
+  for (int y = 0; y + dy < image.height(); ++y) {
+    for (int x = 0; x + dx < image.width(); ++x) {
+      const double a = image.at(y, x);
+      const double b = image.at(y + dy, x + dx);
+      sum_a += a;
+      sum_b += b;
+      sum_aa += a * a;
+      sum_bb += b * b;
+      sum_ab += a * b;
+      n += 1.0;
+    }
+  }
+  const double covariance = sum_ab / n - sum_a / n * (sum_b / n);
+  const double variance_a = sum_aa / n - sum_a / n * (sum_a / n);
+  const double variance_b = sum_bb / n - sum_b / n * (sum_b / n);
+  return covariance / std::sqrt(variance_a * variance_b);
+}
+
+/// Mean square of the differences between neighbours along rows over that along columns.
+double anisotropy(const GreyImage& image) {
+  double along_rows = 0.0;
+  double along_columns = 0.0;
+  for (int y = 0; y + 1 < image.height(); ++y) {
+    for (int x = 0; x + 1 < image.width(); ++x) {
+      const double here = image.at(y, x);
+      along_rows += (image.at(y, x + 1) - here) * (image.at(y, x + 1) - here);
+      along_columns += (image.at(y + 1, x) - here) * (image.at(y + 1, x) - here);
+    }
+  }
+  return along_rows / along_columns;
+}
+
+constexpr int kSmall = 192;
+
+}  // namespace
+
+TEST_CASE("there are five textures and four objects, with labels of their own") {
+  std::set<std::string> labels;
+  int textures = 0;
+  for (const StimulusRecipe& recipe : stimulus_recipes()) {
+    labels.insert(std::string(recipe.label));
+    textures += recipe.kind == StimulusKind::texture ? 1 : 0;
+  }
+  CHECK(labels.size() == 9);
+  CHECK(textures == 5);
+  for (const char* label : {"bark", "cloth", "pebbles", "straw", "brick"}) {
+    CHECK(labels.count(label) == 1);
+  }
+}
+
+TEST_CASE("the same label and seed give the same picture, another seed another") {
+  for (const StimulusRecipe& recipe : stimulus_recipes()) {
+    INFO(recipe.label);
+    const GreyImage picture = generate_stimulus(recipe.label, 7, 96);
+    CHECK(picture.height() == 96);
+    CHECK(picture.width() == 96);
+    CHECK(picture == generate_stimulus(recipe.label, 7, 96));
+    CHECK_FALSE(picture == generate_stimulus(recipe.label, 8, 96));
+  }
+}
+
+TEST_CASE("two seeds of a texture are different surfaces, not shifted or re-lit ones") {
+  for (const StimulusRecipe& recipe : stimulus_recipes().first(5)) {
+    INFO(recipe.label);
+    const GreyImage a = generate_stimulus(recipe.label, 1, kSmall);
+    const GreyImage b = generate_stimulus(recipe.label, 2, kSmall);
+    const auto same = [&](std::size_t i) { return a.samples()[i] == b.samples()[i]; };
+    std::size_t equal = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) equal += same(i) ? 1 : 0;
+    CHECK(equal < a.size() / 20);
+  }
+}
+
+TEST_CASE("a texture uses the range of greys round a middle mean, and clips little") {
+  for (const StimulusRecipe& recipe : stimulus_recipes().first(5)) {
+    INFO(recipe.label);
+    const GreyImage picture = generate_stimulus(recipe.label, kDefaultStimuliSeed, kSmall);
+    CHECK(mean_of(picture) > 110.0);
+    CHECK(mean_of(picture) < 140.0);
+    CHECK(share_of(picture, 0, 1) < 0.01);
+    CHECK(share_of(picture, 254, 255) < 0.01);
+    CHECK(share_of(picture, 0, 50) > 0.03);
+    CHECK(share_of(picture, 200, 255) > 0.03);
+  }
+}
+
+TEST_CASE("an object fills most of its picture, and its ground is plain") {
+  for (const StimulusRecipe& recipe : stimulus_recipes().last(4)) {
+    INFO(recipe.label);
+    const GreyImage picture = generate_stimulus(recipe.label, kDefaultStimuliSeed, kSmall);
+    const int ground = picture.at(0, 0);
+    CHECK(picture.at(0, kSmall - 1) == ground);
+    CHECK(share_of(picture, ground, ground) > 0.1);
+    CHECK(share_of(picture, ground, ground) < 0.6);
+    CHECK(mean_of(picture) > 100.0);
+    CHECK(mean_of(picture) < 150.0);
+  }
+}
+
+TEST_CASE("no texture repeats itself: far from the origin it does not look like itself") {
+  for (const StimulusRecipe& recipe : stimulus_recipes().first(5)) {
+    const GreyImage picture = generate_stimulus(recipe.label, kDefaultStimuliSeed, 320);
+    for (int dy = 0; dy <= 160; dy += 16) {
+      for (int dx = 0; dx <= 160; ++dx) {
+        if (dx * dx + dy * dy < 60 * 60) continue;
+        INFO(recipe.label << ", moved by " << dx << ", " << dy);
+        REQUIRE(self_correlation(picture, dx, dy) < 0.6);
+      }
+    }
+  }
+}
+
+TEST_CASE("furrows of bark stand upright, straw and courses of brick lie") {
+  const auto of = [](const char* label) {
+    return anisotropy(generate_stimulus(label, kDefaultStimuliSeed, kSmall));
+  };
+  CHECK(of("bark") > 2.0);
+  CHECK(of("straw") < 0.6);
+  CHECK(of("brick") < 0.9);
+  CHECK(of("pebbles") > 0.8);
+  CHECK(of("pebbles") < 1.25);
+}
+
+TEST_CASE("a texture keeps the size of its features in a larger picture") {
+  for (const StimulusRecipe& recipe : stimulus_recipes().first(5)) {
+    INFO(recipe.label);
+    const double small = self_correlation(generate_stimulus(recipe.label, 3, 128), 2, 0);
+    const double large = self_correlation(generate_stimulus(recipe.label, 3, 256), 2, 0);
+    CHECK(small == Approx(large).margin(0.08));
+  }
+}
+
+TEST_CASE("an unknown label is refused with the known ones, and a size out of range") {
+  CHECK_THROWS_AS(generate_stimulus("velvet", 1), UsageError);
+  CHECK_THROWS_WITH(generate_stimulus("velvet", 1), holds_text("velvet") && holds_text("pebbles"));
+  CHECK_THROWS_AS(generate_stimulus("bark", 1, kMinStimulusSizePx - 1), UsageError);
+  CHECK_THROWS_AS(generate_stimulus("bark", 1, kMaxStimulusSizePx + 1), UsageError);
+}
+
+TEST_CASE("the smallest pictures can be made") {
+  for (const StimulusRecipe& recipe : stimulus_recipes()) {
+    CHECK(generate_stimulus(recipe.label, 5, kMinStimulusSizePx).width() == kMinStimulusSizePx);
+  }
+}
