@@ -4,7 +4,7 @@
 /// = 0.03, L = 255, C3 = C2 / 2.
 ///
 /// Real is the precision of the sums, float or double. Float stays within 2e-7 of double on
-/// textures and within 1e-4 on any pair of images, and takes half the time.
+/// textures and within 2e-5 on any pair of images, and takes half the time.
 #pragma once
 
 #include "core/plane.hpp"

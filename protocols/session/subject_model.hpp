@@ -1,5 +1,5 @@
-/// \file The parameters of a simulated participant. Format: docs/subject-file.md and
-/// config/schema/subject.schema.json.
+/// \file The parameters of a simulated participant.
+/// Format: config/schema/subject.schema.json.
 #pragma once
 
 #include "protocols/design/study.hpp"

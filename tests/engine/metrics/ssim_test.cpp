@@ -17,7 +17,7 @@ constexpr double kC2 = 0.03 * 255 * 0.03 * 255;
 constexpr double kDoubleTolerance = 1e-11;
 /// What floats promise on textures, and on any images.
 constexpr double kTextureTolerance = 2e-7;
-constexpr double kAnyTolerance = 1e-4;
+constexpr double kAnyTolerance = 2e-5;
 
 /// The smallest, odd ones, and those around the width of a tile in floats and in doubles.
 const std::vector<Size> kSizes = {{11, 11}, {11, 12}, {12, 11},  {13, 29},  {64, 63},
