@@ -56,10 +56,11 @@ Cell measured(const TrialView& trial) {
   return (*trial.outcome->measures).*kMeasure;
 }
 
-/// The rule judges traces; without one there is no verdict.
+/// The rule judges traces; without one there is no verdict. Before unblinding, that of its part in
+/// clear.
 Cell validity_of(const TrialView& trial) {
   if (trial.row.samples == 0) return std::monostate{};
-  return flag(trial.row.valid);
+  return flag(trial.outcome != nullptr ? trial.outcome->valid() : trial.row.valid);
 }
 
 struct TrialColumn {
@@ -145,11 +146,13 @@ DataTable participants_table(const StudyStore& store) {
   DataTable table{{"participant", "session", "enrolment", "state", "excluded", "withdrawn", "pilot",
                    "simulated", "counted", "device"},
                   {}};
+  const StudyState state = store.state();
   for (const SessionRow& row : store.sessions()) {
+    const bool shown = !state.unblinded || state.shows(row.session);
     table.rows.push_back({row.participant, std::int64_t{row.session}, std::int64_t{row.enrolment},
                           text_of(row.state), flag(row.excluded), flag(row.withdrawn),
                           flag(row.pilot), flag(row.simulated),
-                          flag(session_counts(row, store.commitment())), row.device});
+                          flag(shown && session_counts(row, store.commitment())), row.device});
   }
   return table;
 }

@@ -80,7 +80,22 @@ TrialOutcome outcome_of(const TrialRow& row, const SessionOutcome& session,
   return trial;
 }
 
+/// What is derived is only believed if it follows from the events, and they from each other.
+void require_whole(const StudyStore& store) {
+  if (const auto fault = store.first_fault(TraceCheck::skip)) {
+    throw VerificationError(shown(*fault) +
+                            "; no outcomes are shown, see `touchtrial verify` and restore the "
+                            "database from a backup");
+  }
+}
+
 }  // namespace
+
+std::string shown(const ChainFault& fault) {
+  const std::string chain =
+      fault.session == 0 ? "the file's chain" : fmt::format("session {}", fault.session);
+  return fmt::format("{}, event {}: {}", chain, fault.sequence, one_line(fault.what));
+}
 
 Outcomes load_outcomes(const StudyStore& store, const StudyKey& key) {
   require_key_of(store, key);
@@ -90,8 +105,14 @@ Outcomes load_outcomes(const StudyStore& store, const StudyKey& key) {
         "the study has not been unblinded, so its outcomes are not shown; run `touchtrial close` "
         "and `touchtrial unblind`");
   }
+  require_whole(store);
+  require_sealed_ends(store, key);
   std::map<int, SessionOutcome> sessions;
   for (const SessionRow& row : store.sessions()) {
+    if (!outcomes.state.shows(row.session)) {
+      ++outcomes.sessions_unseen;
+      continue;
+    }
     sessions[row.session] = {row, session_counts(row, store.commitment())};
     outcomes.sessions.push_back(sessions[row.session]);
   }
@@ -100,6 +121,7 @@ Outcomes load_outcomes(const StudyStore& store, const StudyKey& key) {
   for (const TrialRow& row : store.trials()) {
     const auto schedule = schedules.find(row.session);
     if (schedule == schedules.end()) continue;  // withdrawn
+    if (!outcomes.state.shows(row.session)) continue;
     TrialOutcome trial = outcome_of(row, sessions[row.session], schedule->second);
     const auto measured = measures.find({row.session, row.trial});
     if (measured != measures.end()) trial.measures = measured->second;

@@ -28,6 +28,10 @@ struct TrialOutcome {
 
   /// A trial without a response is wrong.
   [[nodiscard]] bool correct() const noexcept { return response == stimulus.class_index; }
+  /// By the whole validity rule: its part in clear and its sealed part.
+  [[nodiscard]] bool valid() const noexcept {
+    return row.valid && (!measures || measures->within_limits);
+  }
 };
 
 /// A study's trials with the labels to read them by.
@@ -41,8 +45,13 @@ struct Outcomes {
   std::vector<std::vector<std::string>> exemplars;  ///< of each class: image file names
   std::vector<std::string> methods;                 ///< those that the study presents
   std::vector<SessionOutcome> sessions;             ///< by number, withdrawn ones too
+  int sessions_unseen =
+      0;  ///< had not ended at an interim look: neither in `sessions` nor `trials`
   std::vector<TrialOutcome> trials;  ///< by session and trial; of withdrawn ones none
 };
+
+/// "session 2, event 7: <what>"
+[[nodiscard]] std::string shown(const ChainFault& fault);
 
 /// Opens every sealed schedule and measure and holds answers against them.
 ///
@@ -50,10 +59,14 @@ struct Outcomes {
 /// or simulated session only when the whole study is. Of a counted session's scored trials those
 /// count that ended: with an answer, or without a response when time ran out. A trial that was
 /// interrupted and repeated keeps its number, and its last presentation with an answer counts; one
-/// never repeated does not count.
+/// never repeated does not count. After an interim look only sessions that had ended before it are
+/// there, until the next unblinding.
+///
+/// Before that chains, sealed ends and derived tables are held against the events, but not traces.
 ///
 /// \throws StoreError if the study has not been unblinded
-/// \throws VerificationError if the key does not belong, or a session does not hold against its
+/// \throws VerificationError if the key does not belong, the database does not hold, or a session
+/// does not hold against its
 ///   schedule; the message names the session
 [[nodiscard]] Outcomes load_outcomes(const StudyStore& store, const StudyKey& key);
 

@@ -28,6 +28,12 @@ void warn_of_state(const Outcomes& outcomes, Warnings& warnings) {
         "An interim look: the study is still open, and what is seen here may not decide when it "
         "ends.");
   }
+  if (outcomes.sessions_unseen > 0) {
+    warnings.push_back(
+        fmt::format("Left out: {}, not ended before the interim look; `touchtrial unblind` again "
+                    "to see more.",
+                    counted(outcomes.sessions_unseen, "session")));
+  }
   warn_of_sessions(
       outcomes, "withdrawn by the participant", [](const SessionRow& row) { return row.withdrawn; },
       warnings);
@@ -65,7 +71,7 @@ void warn_of_trials(const Outcomes& outcomes, Warnings& warnings) {
   }
   const auto invalid =
       std::count_if(outcomes.trials.begin(), outcomes.trials.end(),
-                    [](const TrialOutcome& trial) { return trial.counted && !trial.row.valid; });
+                    [](const TrialOutcome& trial) { return trial.counted && !trial.valid(); });
   if (invalid > 0) {
     warnings.push_back(fmt::format("Counted although not valid by the study's rule: {}.",
                                    counted(invalid, "trial")));

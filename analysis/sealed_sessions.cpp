@@ -12,15 +12,6 @@ std::string place_of(const Event& event) {
   return fmt::format("session {}, event {}", event.session, event.sequence);
 }
 
-/// The keys of all sessions that can be read.
-std::map<int, SecretKey> participant_keys(const StudyStore& store, const StudyKey& key) {
-  std::map<int, SecretKey> keys;
-  for (const SessionRow& session : store.sessions()) {
-    if (const auto own = participant_key(store, key, session)) keys.emplace(session.session, *own);
-  }
-  return keys;
-}
-
 /// Calls `visit` with the secret text of each event of a kind whose session has a key.
 template <typename Visit>
 void for_each_secret(const StudyStore& store, const StudyKey& key, EventKind kind, Visit visit) {
@@ -28,14 +19,9 @@ void for_each_secret(const StudyStore& store, const StudyKey& key, EventKind kin
   store.for_each(kind, [&](const Event& event) {
     const auto own = keys.find(event.session);
     if (own == keys.end()) return;
-    const auto secret = unsealed(event, own->second);
-    if (!secret) {
-      throw VerificationError(
-          place_of(event) +
-          ": the sealed part does not open with this key; run `touchtrial verify`");
-    }
+    const std::string secret = opened_part(event, own->second);
     try {
-      visit(event, *secret);
+      visit(event, secret);
     } catch (const StoreError& error) {
       throw VerificationError(place_of(event) + ": " + error.what());
     }
@@ -73,11 +59,39 @@ std::optional<SecretKey> participant_key(const StudyStore& store, const StudyKey
   const auto own = unwrap_participant_key(key.master, session.session, *wrapped);
   if (!own) {
     throw VerificationError(
-        fmt::format("session {}: the participant's key does not open with this study key; run "
-                    "`touchtrial verify`",
+        fmt::format("session {}: the participant's key does not open with this study key; "
+                    "restore a backup of the database",
                     session.session));
   }
   return own;
+}
+
+std::map<int, SecretKey> participant_keys(const StudyStore& store, const StudyKey& key) {
+  std::map<int, SecretKey> keys;
+  for (const SessionRow& session : store.sessions()) {
+    if (const auto own = participant_key(store, key, session)) keys.emplace(session.session, *own);
+  }
+  return keys;
+}
+
+std::string opened_part(const Event& event, const SecretKey& own) {
+  std::optional<std::string> text = unsealed(event, own);
+  if (!text) {
+    throw VerificationError(place_of(event) +
+                            ": the sealed part does not open; restore a backup of the database");
+  }
+  return *std::move(text);
+}
+
+void require_sealed_ends(const StudyStore& store, const StudyKey& key) {
+  for_each_secret(store, key, EventKind::closed, [&](const Event& event, const std::string& text) {
+    const ChainEnd before{.length = event.sequence, .head = event.previous};
+    if (chain_end_from_json(text) == before) return;
+    throw VerificationError(
+        place_of(event) +
+        ": the chain is not the one whose end was sealed here: it was made anew without the key; "
+        "restore a backup of the database");
+  });
 }
 
 std::map<int, Schedule> open_schedules(const StudyStore& store, const StudyKey& key) {

@@ -6,6 +6,7 @@
 
 #include <map>
 #include <optional>
+#include <string>
 #include <utility>
 
 namespace touchtrial {
@@ -19,6 +20,19 @@ void require_key_of(const StudyStore& store, const StudyKey& key);
 /// \throws VerificationError if the row is missing without a withdrawal, or does not open
 [[nodiscard]] std::optional<SecretKey> participant_key(const StudyStore& store, const StudyKey& key,
                                                        const SessionRow& session);
+
+/// The keys of all sessions that have not withdrawn. \throws the same
+[[nodiscard]] std::map<int, SecretKey> participant_keys(const StudyStore& store,
+                                                        const StudyKey& key);
+
+/// The text of an event's sealed part. \param own  the participant's key
+/// \throws VerificationError, naming the event, if it does not open
+[[nodiscard]] std::string opened_part(const Event& event, const SecretKey& own);
+
+/// Holds the chain of every session that has ended, and has not withdrawn, against the end that was
+/// sealed when it ended. Whoever lacks the key can make a chain anew, but not this end of it.
+/// \throws VerificationError, naming the session, if one is another chain's
+void require_sealed_ends(const StudyStore& store, const StudyKey& key);
 
 /// Schedules and layouts of all sessions that have not withdrawn, by session.
 /// \throws VerificationError, naming the session, if one does not open or is no schedule of this

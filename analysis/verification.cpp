@@ -1,5 +1,6 @@
 #include "analysis/verification.hpp"
 
+#include "analysis/outcomes.hpp"
 #include "analysis/sealed_sessions.hpp"
 #include "core/errors.hpp"
 #include "protocols/store/payload_json.hpp"
@@ -14,15 +15,18 @@ namespace {
 // Every check below returns what it held against what, and throws an Error where that fails.
 
 std::string check_chain(const StudyStore& store) {
-  const std::optional<ChainFault> fault = store.first_fault();
-  if (fault) {
-    const std::string chain =
-        fault->session == 0 ? "the file's chain" : fmt::format("session {}", fault->session);
-    throw VerificationError(
-        fmt::format("{}, event {}: {}", chain, fault->sequence, one_line(fault->what)));
-  }
+  if (const auto fault = store.first_fault()) throw VerificationError(shown(*fault));
   return fmt::format("the file's chain and those of {} sessions, their traces and tables",
                      store.sessions().size());
+}
+
+std::string check_key(const StudyStore& store, const StudyKey& key) {
+  const std::string& study_id = store.commitment().study_id;
+  if (key.study_id != study_id) {
+    throw VerificationError(fmt::format("is the key of study {}, the database is of study {}",
+                                        key.study_id, one_line(study_id)));
+  }
+  return "the key of study " + study_id;
 }
 
 std::string check_seal(const StudyStore& store, const StudyKey& key) {
@@ -92,21 +96,22 @@ std::string check_responses(const StudyStore& store) {
   return fmt::format("{} answers within the {} pictures", responses, positions);
 }
 
+bool has_sealed_part(const Event& event) {
+  return event.kind == EventKind::opened || event.kind == EventKind::trace_stored ||
+         event.kind == EventKind::closed || !event.sealed.empty();
+}
+
 std::string check_payloads(const StudyStore& store, const StudyKey& key) {
   int opened = 0;
-  for (const SessionRow& session : store.sessions()) {
-    const auto own = participant_key(store, key, session);
-    if (!own) continue;
-    for (const Event& event : store.events(session.session)) {
-      if (event.sealed.empty()) continue;
-      if (!unsealed(event, *own)) {
-        throw VerificationError(fmt::format("session {}, event {}: the sealed part does not open",
-                                            event.session, event.sequence));
-      }
+  for (const auto& [session, own] : participant_keys(store, key)) {
+    for (const Event& event : store.events(session)) {
+      if (!has_sealed_part(event)) continue;
+      static_cast<void>(opened_part(event, own));
       ++opened;
     }
   }
-  return fmt::format("{} sealed parts of events", opened);
+  require_sealed_ends(store, key);
+  return fmt::format("{} sealed parts of events, the ends of chains among them", opened);
 }
 
 void check_trace(const StudyStore& store, const Event& event, const SecretKey& own) {
@@ -124,10 +129,7 @@ void check_trace(const StudyStore& store, const Event& event, const SecretKey& o
 }
 
 std::string check_traces(const StudyStore& store, const StudyKey& key) {
-  std::map<int, SecretKey> keys;
-  for (const SessionRow& session : store.sessions()) {
-    if (const auto own = participant_key(store, key, session)) keys.emplace(session.session, *own);
-  }
+  const std::map<int, SecretKey> keys = participant_keys(store, key);
   int traces = 0;
   store.for_each(EventKind::trace_stored, [&](const Event& event) {
     const auto own = keys.find(event.session);
@@ -156,6 +158,18 @@ std::string check_pack(const StudyStore& store, const StudyKey* key, const Pack&
   for (const KeyedStimulus& stimulus : key->stimuli) static_cast<void>(pack.entry(stimulus.code));
   return fmt::format("{} fields intact, every code of the key among them",
                      pack.manifest().entries.size());
+}
+
+std::string check_head(const StudyStore& store, const Digest& head) {
+  const std::vector<Event> events = store.events(0);
+  const auto found = std::find_if(events.begin(), events.end(),
+                                  [&](const Event& event) { return event.hash == head; });
+  if (found == events.end()) {
+    throw VerificationError(
+        "no event of the file's chain has the hash that was given: its end was cut off, or it was "
+        "made anew");
+  }
+  return fmt::format("event {} of the file's chain, which has {}", found->sequence, events.size());
 }
 
 template <typename Work>
@@ -190,14 +204,27 @@ bool Verification::holds() const noexcept {
                       [](const Check& check) { return check.state == CheckState::failed; });
 }
 
-Verification verify_study(const StudyStore& store, const StudyKey* key, const Pack* pack) {
-  Verification verification{store.commitment().simulated, {}};
+bool Verification::complete() const noexcept {
+  return std::none_of(checks.begin(), checks.end(),
+                      [](const Check& check) { return check.state == CheckState::not_checked; });
+}
+
+Verification verify_study(const StudyStore& store, const StudyKey* key, const Pack* pack,
+                          const std::optional<Digest>& head) {
+  Verification verification;
+  try {
+    verification.head = store.file_head();
+    verification.simulated = store.commitment().simulated;
+  } catch (const StoreError&) {
+    // The first check says what is wrong with the file's chain.
+  }
   const auto with_key = [&](const char* name,
                             std::string (*check)(const StudyStore&, const StudyKey&)) {
     verification.checks.push_back(key == nullptr ? left(name, "key")
                                                  : done(name, [&] { return check(store, *key); }));
   };
   verification.checks.push_back(done("chain", [&] { return check_chain(store); }));
+  with_key("key", check_key);
   with_key("seal", check_seal);
   with_key("configuration", check_configuration);
   with_key("schedule", check_schedule);
@@ -207,6 +234,9 @@ Verification verify_study(const StudyStore& store, const StudyKey* key, const Pa
   verification.checks.push_back(pack == nullptr ? left("pack", "pack") : done("pack", [&] {
     return check_pack(store, key, *pack);
   }));
+  if (head) {
+    verification.checks.push_back(done("head", [&] { return check_head(store, *head); }));
+  }
   return verification;
 }
 

@@ -5,6 +5,7 @@
 #include "protocols/design/study_key.hpp"
 #include "protocols/store/study_store.hpp"
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,7 +16,7 @@ enum class CheckState { passed, failed, not_checked };
 [[nodiscard]] std::string name_of(CheckState state);
 
 struct Check {
-  std::string name;  ///< "chain", "seal", "configuration", "schedule", ...
+  std::string name;  ///< "chain", "key", "seal", "configuration", ...
   CheckState state = CheckState::not_checked;
   std::string detail;  ///< one line: what was held against what, or what does not hold and where
 };
@@ -23,17 +24,23 @@ struct Check {
 struct Verification {
   bool simulated = false;
   std::vector<Check> checks;
+  /// Where the file's chain ends; whoever keeps it elsewhere can show that nothing was cut off.
+  std::optional<ChainHead> head;
 
   /// Whether nothing failed; what could not be checked does not fail.
   [[nodiscard]] bool holds() const noexcept;
+  /// Whether every check was made.
+  [[nodiscard]] bool complete() const noexcept;
 };
 
 /// Never throws for evidence that does not hold: that is a failed check, which names the first
-/// place. In order: chain; seal, configuration, schedule (these with the key); responses; payloads,
-/// traces (with the key); pack (better with the key). Tells nothing of outcomes: it may be used on
-/// a running study. \param key,pack  null: the checks that need it are not done
+/// place. In order: chain; key; seal, configuration, schedule (these with the key); responses;
+/// payloads, traces (with the key); pack (better with the key); head, if one is given. Tells
+/// nothing of outcomes: it may be used on a running study. \param key,pack  null: the checks that
+/// need it are not made \param head  a hash that was once the end of the file's chain, which must
+/// still be on it
 [[nodiscard]] Verification verify_study(const StudyStore& store, const StudyKey* key,
-                                        const Pack* pack);
+                                        const Pack* pack, const std::optional<Digest>& head = {});
 
 /// One JSON object, indented, ending with a line feed.
 [[nodiscard]] std::string verification_json(const Verification& verification);

@@ -1,8 +1,7 @@
 // close, unblind: the end of collection and the recorded look at outcomes.
 #include "app/commands.hpp"
 #include "app/console.hpp"
-#include "core/errors.hpp"
-#include "protocols/design/study_key.hpp"
+#include "app/key_of_database.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <filesystem>
@@ -30,13 +29,8 @@ int close(const fs::path& database) {
 
 int unblind(const UnblindArguments& arguments) {
   StudyStore store = StudyStore::open(arguments.database, StudyStore::Access::read_write);
-  const fs::path key_path = key_path_for(arguments.database, arguments.key);
-  const StudyKey key = load_study_key(key_path);
-  if (study_seal(key) != store.commitment().seal) {
-    throw VerificationError(key_path.string() + ": is not the key that " +
-                            arguments.database.string() +
-                            " was sealed with; give the right one with --key");
-  }
+  // Without it nothing could be shown; better to know before the look is recorded.
+  static_cast<void>(key_of_database(store, arguments.database, arguments.key));
   store.unblind(utc_now(), arguments.reason, arguments.interim);
   print(arguments.database.string() + ": unblinded" +
         (arguments.interim ? " for an interim look\n" : "\n"));
@@ -58,7 +52,8 @@ void add_unblind_command(CLI::App& program, Action& action) {
       program.add_subcommand("unblind", "Record the look at outcomes, which report then shows");
   command->add_option("DB", arguments->database, "Database of the study")->required();
   command->add_option("--reason", arguments->reason, "Why; recorded")->required();
-  command->add_flag("--interim", arguments->interim, "Look before collection is closed");
+  command->add_flag("--interim", arguments->interim,
+                    "Look at the sessions that have ended, before collection is closed");
   command->add_option("--key", arguments->key, "Key of the study (default: DB.key)");
   command->callback([=, &action] { action = [=] { return unblind(*arguments); }; });
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 
 #include <CLI/CLI.hpp>
 
@@ -12,7 +13,12 @@ namespace touchtrial {
 /// What the chosen command does; returns the exit code. Throws touchtrial::Error.
 using Action = std::function<int()>;
 
+/// A whole number from 0 to 2^64 - 1 and nothing else; the parser itself would take -1 for 2^64
+/// - 1.
+[[nodiscard]] CLI::Validator seed_validator();
+
 void add_extract_command(CLI::App& program, Action& action);
+void add_evaluate_command(CLI::App& program, Action& action);
 void add_stimuli_command(CLI::App& program, Action& action);
 void add_prepare_command(CLI::App& program, Action& action);
 void add_simulate_command(CLI::App& program, Action& action);

@@ -3,7 +3,7 @@
 #include "analysis/outcomes.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
-#include "protocols/design/study_key.hpp"
+#include "app/key_of_database.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <filesystem>
@@ -27,8 +27,7 @@ int export_study(const ExportArguments& arguments) {
   const StudyStore store = StudyStore::open(arguments.database, StudyStore::Access::read_only);
   std::optional<Outcomes> outcomes;
   if (store.state().unblinded) {
-    outcomes =
-        load_outcomes(store, load_study_key(key_path_for(arguments.database, arguments.key)));
+    outcomes = load_outcomes(store, key_of_database(store, arguments.database, arguments.key));
   }
   std::string written;
   if (arguments.format == "json") {

@@ -1,11 +1,14 @@
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/method_arguments.hpp"
 #include "core/errors.hpp"
+#include "core/files.hpp"
 #include "core/npy.hpp"
 #include "engine/entropy.hpp"
 #include "engine/extraction.hpp"
 #include "engine/force_field.hpp"
 #include "engine/image_file.hpp"
+#include "engine/pictures/force_arrows.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -23,45 +26,14 @@ namespace fs = std::filesystem;
 
 struct ExtractArguments {
   fs::path image;
-  std::string method = "adaptive";
-  double order = 0.0;
-  int radius = 2;
-  double lambda = TvGaborOptions{}.lambda;
+  MethodArguments method;
+  std::string mapping = "offset";
   int neighbourhood = 3;
   std::string precision = "float";
   fs::path output;
+  fs::path arrows;
   fs::path dump;
 };
-
-/// One option and the methods that it means something to.
-void refuse_unused(const CLI::App& command, const std::string& option, bool used,
-                   const std::string& remedy) {
-  if (!used && command.count(option) > 0) {
-    throw UsageError("extract: " + option + " means nothing here; " + remedy);
-  }
-}
-
-ExtractionOptions options_from(const CLI::App& command, const ExtractArguments& arguments) {
-  ExtractionOptions options;
-  options.method = *method_from_name(arguments.method);
-  options.radius = arguments.radius;
-  options.tv_gabor.lambda = arguments.lambda;
-  const bool fixed = options.method == Method::fixed;
-  const bool tv_gabor = options.method == Method::tv_gabor;
-  refuse_unused(command, "--order", fixed, "it goes with --method fixed");
-  refuse_unused(command, "--radius", !tv_gabor, "it goes with --method adaptive or fixed");
-  refuse_unused(command, "--lambda", tv_gabor, "it goes with --method tv-gabor");
-  if (fixed && command.count("--order") == 0) {
-    throw UsageError("extract: --method fixed needs --order V, 0 <= V < 1");
-  }
-  if (fixed) options.order = arguments.order;
-  try {
-    check_options(options);
-  } catch (const std::invalid_argument& error) {
-    throw UsageError(std::string("extract: --") + error.what());
-  }
-  return options;
-}
 
 template <typename Real>
 void dump_if_made(const fs::path& folder, const std::string& name, const Plane<Real>& plane) {
@@ -83,8 +55,8 @@ void dump_force(const fs::path& folder, const ForceField<Real>& force) {
 
 template <typename Real>
 void dump_all(const fs::path& folder, const GreyImage& image, const Extraction<Real>& extraction,
-              int neighbourhood) {
-  fs::create_directories(folder);
+              const GreyImage& picture, int neighbourhood) {
+  make_folder(folder);
   dump_if_made(folder, "image", image);
   dump_if_made(folder, "subband_LL", extraction.sub_band_ll);
   dump_if_made(folder, "subband_LH", extraction.sub_band_lh);
@@ -95,8 +67,22 @@ void dump_all(const fs::path& folder, const GreyImage& image, const Extraction<R
   dump_if_made(folder, "texture", extraction.texture);
   dump_if_made(folder, "enhanced", extraction.enhanced);
   dump_if_made(folder, "cartoon", extraction.cartoon);
-  dump_if_made(folder, "texture_u8", texture_picture(extraction.texture));
+  dump_if_made(folder, "texture_u8", picture);
   dump_force(folder, tangential_force(texture_surface(extraction.texture), neighbourhood));
+}
+
+/// \return what the picture shows
+template <typename Real>
+std::string draw_arrows(const ExtractArguments& arguments, const Plane<Real>& texture,
+                        const GreyImage& picture) {
+  const ForceField<Real> force =
+      tangential_force(texture_surface(texture), arguments.neighbourhood);
+  const ArrowPatch patch = write_force_arrows(
+      arguments.arrows, picture, {converted<double>(force.x), converted<double>(force.y)});
+  return fmt::format(
+      "{}: {} x {} px from ({}, {}); an arrow as long as a pixel is {:.3g} grey levels per pixel\n",
+      arguments.arrows.string(), patch.width, patch.height, patch.x, patch.y,
+      patch.force_of_unit_arrow);
 }
 
 template <typename Real>
@@ -104,31 +90,71 @@ std::string summary(const ExtractArguments& arguments, const Extraction<Real>& e
                     const GreyImage& picture) {
   const auto samples = extraction.texture.samples();
   const auto [low, high] = std::minmax_element(samples.begin(), samples.end());
-  return fmt::format(
+  std::string text = fmt::format(
       "{}: {} x {} px, {}, texture {:.3f} to {:.3f} grey levels, entropy {:.4f} nats\n",
-      arguments.image.string(), picture.width(), picture.height(), arguments.method,
+      arguments.image.string(), picture.width(), picture.height(), arguments.method.method,
       static_cast<double>(*low), static_cast<double>(*high), entropy(picture));
+  if (arguments.method.components == "auto" && !extraction.components.empty()) {
+    const GaborComponent& strongest = extraction.components.front();
+    text += fmt::format("component: {:.4f} cycles per pixel at {:.1f} degrees\n",
+                        strongest.frequency_cycles_per_px, strongest.direction_deg);
+  }
+  return text;
+}
+
+/// An image may be too small for an option ("auto"): the message then needs its name.
+template <typename Real>
+Extraction<Real> extracted(const fs::path& path, const GreyImage& image,
+                           const ExtractionOptions& options, const WantedPlanes& wanted) {
+  try {
+    return extract_texture<Real>(image, options, wanted);
+  } catch (const std::invalid_argument& error) {
+    throw FileError(one_line(path.string()) + ": " + error.what() +
+                    "; list them or give a larger image");
+  }
 }
 
 template <typename Real>
 int extract_with(const ExtractArguments& arguments, const ExtractionOptions& options) {
   const GreyImage image = read_grey_image(arguments.image);
   const bool dumping = !arguments.dump.empty();
-  const Extraction<Real> extraction =
-      extract_texture<Real>(image, options, dumping ? WantedPlanes::all() : WantedPlanes{});
+  const Extraction<Real> extraction = extracted<Real>(
+      arguments.image, image, options, dumping ? WantedPlanes::all() : WantedPlanes{});
   if (!extraction.converged) {
     spdlog::warn("{}: tv-gabor stopped after {} steps with a relative gap of {:.2g}",
                  arguments.image.string(), extraction.steps, extraction.gap);
   }
-  const GreyImage picture = texture_picture(extraction.texture);
+  const GreyImage picture =
+      texture_picture(extraction.texture, *choice_named<Mapping>(kMappingNames, arguments.mapping));
   if (!arguments.output.empty()) write_png(arguments.output, picture);
-  if (dumping) dump_all(arguments.dump, image, extraction, arguments.neighbourhood);
-  print(summary(arguments, extraction, picture));
+  if (dumping) dump_all(arguments.dump, image, extraction, picture, arguments.neighbourhood);
+  std::string text = summary(arguments, extraction, picture);
+  if (!arguments.arrows.empty()) text += draw_arrows(arguments, extraction.texture, picture);
+  print(text);
   return 0;
 }
 
+/// Pictures are written as PNG, and never over the one they were made from.
+void check_output(const fs::path& image, const fs::path& output, const std::string& option) {
+  if (output.empty()) return;
+  std::error_code ignored;
+  if (fs::equivalent(image, output, ignored)) {
+    throw UsageError("extract: " + output.string() + " is the picture itself; give another " +
+                     option);
+  }
+  std::string ending = output.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (ending != ".png") {
+    throw UsageError("extract: " + output.string() +
+                     ": pictures are written as PNG; end it in .png");
+  }
+}
+
 int extract(const CLI::App& command, const ExtractArguments& arguments) {
-  const ExtractionOptions options = options_from(command, arguments);
+  check_output(arguments.image, arguments.output, "-o");
+  check_output(arguments.image, arguments.arrows, "--arrows");
+  const ExtractionOptions options = extraction_options(command, arguments.method);
   if (arguments.neighbourhood % 2 == 0) {
     throw UsageError("extract: --neighbourhood is a side length and must be odd, 3 or more");
   }
@@ -142,16 +168,9 @@ void add_extract_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<ExtractArguments>();
   CLI::App* command = program.add_subcommand("extract", "Take the texture from one image");
   command->add_option("IMAGE", arguments->image, "PNG, JPEG, TIFF, BMP or PGM")->required();
-  command->add_option("--method", arguments->method, "How the texture is taken")
-      ->check(CLI::IsMember(method_names()))
-      ->capture_default_str();
-  command->add_option("--order", arguments->order, "Fractional order, 0 <= V < 1 (fixed)")
-      ->check(CLI::Range(0.0, std::nextafter(1.0, 0.0)));
-  command->add_option("--radius", arguments->radius, "Radius K of the mask (adaptive, fixed)")
-      ->check(CLI::Range(1, ExtractionOptions::kMaxRadius))
-      ->capture_default_str();
-  command->add_option("--lambda", arguments->lambda, "Weight of the texture norm (tv-gabor)")
-      ->check(CLI::Range(TvGaborOptions::kMinLambda, TvGaborOptions::kMaxLambda))
+  add_method_options(*command, arguments->method);
+  command->add_option("--mapping", arguments->mapping, "How the texture becomes a picture")
+      ->check(CLI::IsMember(words_of(kMappingNames)))
       ->capture_default_str();
   command
       ->add_option("--neighbourhood", arguments->neighbourhood,
@@ -159,6 +178,8 @@ void add_extract_command(CLI::App& program, Action& action) {
       ->check(CLI::Range(3, 1001))
       ->capture_default_str();
   command->add_option("-o,--output", arguments->output, "Write the texture as an 8-bit PNG");
+  command->add_option("--arrows", arguments->arrows,
+                      "Draw the force field over an enlarged patch, as PNG");
   command->add_option("--dump", arguments->dump,
                       "Write every stage as .npy files into this folder");
   command->add_option("--precision", arguments->precision, "Arithmetic of the extraction")

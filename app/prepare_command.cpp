@@ -1,6 +1,8 @@
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "core/cipher.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
 #include "protocols/design/prepare.hpp"
 
 #include <algorithm>
@@ -19,13 +21,39 @@ namespace fs = std::filesystem;
 struct PrepareArguments {
   fs::path study;
   fs::path pack;
+  bool explain = false;
 };
+
+/// A database that was sealed with the study as it was needs the key as it was.
+void keep_earlier_key(const StudyKey& earlier, const fs::path& path) {
+  constexpr std::size_t kSealDigits = 8;
+  fs::path kept = path;
+  kept += "." + to_hex(study_seal(earlier)).substr(0, kSealDigits);
+  save_study_key(kept, earlier);
+  spdlog::warn(
+      "{}: the study has changed since; the earlier key, which databases sealed with it "
+      "need, is kept as {}",
+      path.string(), kept.string());
+}
 
 /// A study that was prepared before keeps its secrets, so that its codes and fields stay valid.
 StudyKey key_for(const Study& study, const fs::path& path) {
-  if (fs::exists(path)) return rekeyed(load_study_key(path), study);
-  SystemEntropy entropy;
-  return make_study_key(study, entropy, false);
+  if (!is_there(path)) {
+    SystemEntropy entropy;
+    return make_study_key(study, entropy, false);
+  }
+  const StudyKey earlier = load_study_key(path);
+  if (earlier.simulated) {
+    throw UsageError(path.string() +
+                     ": is the key of a simulated study; give another folder with --pack");
+  }
+  if (earlier.study.name != study.name) {
+    throw UsageError(path.string() + ": is the key of study \"" + earlier.study.name +
+                     "\"; give another folder with --pack");
+  }
+  StudyKey key = rekeyed(earlier, study);
+  if (study_seal(key) != study_seal(earlier)) keep_earlier_key(earlier, path);
+  return key;
 }
 
 std::string stimulus_row(const PreparedStimulus& stimulus) {
@@ -50,6 +78,18 @@ std::string table_of(const PrepareReport& report) {
   return text;
 }
 
+/// One line where all stimuli share their gains, as they do unless they are equalised.
+std::string gains_of(const PrepareReport& report) {
+  if (report.stimuli.empty()) return "";
+  const Gains first = report.stimuli.front().gains;
+  const bool shared = std::all_of(report.stimuli.begin(), report.stimuli.end(),
+                                  [&](const PreparedStimulus& s) { return s.gains == first; });
+  if (!shared) return "gains: each stimulus has its own, so that all are equally strong\n";
+  return fmt::format(
+      "gains: tangential {:.6g} N per grey level and pixel, normal {:.6g} N per grey level\n",
+      first.tangential_n, first.normal_n);
+}
+
 std::string totals_of(const PrepareReport& report) {
   const auto reused = std::count_if(report.stimuli.begin(), report.stimuli.end(),
                                     [](const PreparedStimulus& s) { return s.reused; });
@@ -61,8 +101,27 @@ std::string totals_of(const PrepareReport& report) {
   return text + "\n";
 }
 
+/// What was done for each stimulus and what it cost.
+std::string explanation_of(const PrepareReport& report) {
+  std::string text = fmt::format("{:<16} {:>8} {:<10} {:<7} {:>8} {:>10}  {}\n", "class",
+                                 "exemplar", "method", "", "seconds", "bytes", "why");
+  for (const PreparedStimulus& stimulus : report.stimuli) {
+    text += fmt::format("{:<16} {:>8} {:<10} {:<7} {:>8.3f} {:>10}  {}\n", stimulus.class_label,
+                        stimulus.exemplar + 1, stimulus.method,
+                        stimulus.reused ? "reused" : "built", stimulus.seconds, stimulus.bytes,
+                        stimulus.reused ? "same picture and options, and the field is intact"
+                                        : "no intact field of this picture and these options");
+  }
+  return text;
+}
+
 int prepare(const PrepareArguments& arguments) {
   const Study study = load_study(arguments.study);
+  check_images_exist(study);
+  if (study.seed == 0) {
+    spdlog::warn("{}: /seed is 0 or missing; give the study a seed of its own",
+                 arguments.study.string());
+  }
   const PackPlace place =
       arguments.pack.empty() ? default_pack_place(arguments.study) : pack_place_at(arguments.pack);
   StudyKey key = key_for(study, place.key);
@@ -70,7 +129,8 @@ int prepare(const PrepareArguments& arguments) {
   save_study_key(place.key, key);
   const PrepareReport report = prepare_pack(key, place.pack, progress_bar("preparing"));
   for (const std::string& warning : report.warnings) spdlog::warn("{}", warning);
-  print(table_of(report) + totals_of(report) +
+  print((arguments.explain ? explanation_of(report) + "\n" : "") + table_of(report) +
+        gains_of(report) + totals_of(report) +
         fmt::format("pack {}\nkey  {} (keep it to yourself)\n", place.pack.string(),
                     place.key.string()));
   return 0;
@@ -85,6 +145,8 @@ void add_prepare_command(CLI::App& program, Action& action) {
   command->add_option("STUDY", arguments->study, "Study file")->required();
   command->add_option("--pack", arguments->pack,
                       "Folder of the pack; the key lies beside it (default: <study>.pack)");
+  command->add_flag("--explain", arguments->explain,
+                    "Say for each stimulus what was done, why, and what it cost");
   command->callback([=, &action] { action = [=] { return prepare(*arguments); }; });
 }
 

@@ -2,12 +2,17 @@
 
 #include "app/commands.hpp"
 #include "core/errors.hpp"
+#include "core/nearest_name.hpp"
 #include "core/version.hpp"
+#include "protocols/store/damaged_store.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
 #include <new>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
@@ -21,6 +26,7 @@ constexpr int kNotVerified = 3;
 
 void add_commands(CLI::App& program, Action& action) {
   add_extract_command(program, action);
+  add_evaluate_command(program, action);
   add_stimuli_command(program, action);
   add_prepare_command(program, action);
   add_simulate_command(program, action);
@@ -43,6 +49,18 @@ void set_up_log() {
   spdlog::set_default_logger(logger);
 }
 
+/// The first word, where it is meant as a command and is none.
+std::string unknown_command(const CLI::App& program, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-' || argv[1][0] == '\0') return "";
+  std::vector<std::string> names;
+  for (const CLI::App* command : program.get_subcommands({})) names.push_back(command->get_name());
+  const std::vector<std::string_view> known(names.begin(), names.end());
+  if (std::find(known.begin(), known.end(), argv[1]) != known.end()) return "";
+  const auto nearest = nearest_name(argv[1], known);
+  return std::string(argv[1]) + ": is not a command; " +
+         (nearest ? "did you mean " + std::string(*nearest) + "?" : "see touchtrial --help");
+}
+
 int parse_and_run(int argc, char** argv) {
   set_up_log();
   CLI::App program("A psychophysics runner for textures that are felt.", "touchtrial");
@@ -51,6 +69,8 @@ int parse_and_run(int argc, char** argv) {
   program.fallthrough(false);
   Action action;
   add_commands(program, action);
+  const std::string unknown = unknown_command(program, argc, argv);
+  if (!unknown.empty()) return complain(kBadInput, unknown);
   try {
     program.parse(argc, argv);
   } catch (const CLI::Success& help) {
@@ -70,6 +90,8 @@ int run_program(int argc, char** argv) noexcept {
     return complain(kBadInput, error.what());
   } catch (const StudyError& error) {
     return complain(kBadInput, error.what());
+  } catch (const DamagedStore& error) {
+    return complain(kNotVerified, error.what());
   } catch (const VerificationError& error) {
     return complain(kNotVerified, error.what());
   } catch (const std::bad_alloc&) {

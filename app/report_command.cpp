@@ -3,7 +3,7 @@
 #include "analysis/report.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
-#include "protocols/design/study_key.hpp"
+#include "app/key_of_database.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <filesystem>
@@ -27,7 +27,7 @@ int report(const ReportArguments& arguments) {
     print(arguments.json ? quality_json(quality) : quality_text(quality));
     return 0;
   }
-  const StudyKey key = load_study_key(key_path_for(arguments.database, arguments.key));
+  const StudyKey key = key_of_database(store, arguments.database, arguments.key);
   const StudyReport outcomes = make_report(load_outcomes(store, key));
   print(arguments.json ? report_json(outcomes) : report_text(outcomes));
   return 0;

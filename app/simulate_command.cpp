@@ -3,6 +3,7 @@
 #include "app/default_subject.hpp"
 #include "core/cipher.hpp"
 #include "core/errors.hpp"
+#include "core/files.hpp"
 #include "engine/pack/pack.hpp"
 #include "protocols/design/prepare.hpp"
 #include "protocols/session/commitment.hpp"
@@ -45,11 +46,17 @@ SubjectModel subject_for(const SimulateArguments& arguments, const Study& study)
   return subject;
 }
 
-void refuse_existing(const fs::path& database) {
-  if (fs::exists(database)) {
-    throw StoreError(database.string() +
+void refuse_existing(const fs::path& path) {
+  if (is_there(path)) {
+    throw StoreError(path.string() +
                      ": exists already; give another --db, or move the old file away");
   }
+}
+
+/// A key that stayed when its database was removed may serve again; any other may be somebody's
+/// only one.
+void refuse_other_key(const fs::path& path, const StudyKey& key) {
+  if (is_there(path) && study_seal(load_study_key(path)) != study_seal(key)) refuse_existing(path);
 }
 
 /// A simulated study has secrets of its own, from the study's seed, so that its databases belong
@@ -87,17 +94,19 @@ void end_collection(StudyStore& store) {
 }
 
 int simulate(const SimulateArguments& arguments) {
+  if (arguments.database.empty()) throw UsageError("simulate: --db is empty; give it a file name");
   refuse_existing(arguments.database);
   const Study study = load_study(arguments.study);
   const SubjectModel subject = subject_for(arguments, study);
   const StudyKey key = simulated_key(study, arguments.study);
+  refuse_other_key(key_path_for(arguments.database, {}), key);
   const PrepareReport prepared = prepare_pack(key, key.pack_folder, progress_bar("preparing"));
   for (const std::string& warning : prepared.warnings) spdlog::warn("{}", warning);
 
   const Pack pack(key.pack_folder);
-  save_study_key(key_path_for(arguments.database, {}), key);
   StudyStore store =
       StudyStore::create(arguments.database, commitment_of(key, pack, true, false), 0ns);
+  save_study_key(key_path_for(arguments.database, {}), key);
   const SimulationReport report =
       simulate_study(key, pack, subject, arguments.options, store, progress_bar("simulating"));
   if (!arguments.keep_blind) end_collection(store);
@@ -120,6 +129,7 @@ void add_simulate_command(CLI::App& program, Action& action) {
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
   command->add_option("--seed", options.seed, "Seed of everything random in participants")
+      ->check(seed_validator())
       ->capture_default_str();
   command->add_option("--subject", arguments->subject, "Subject model (default: built in)");
   command->add_option("--jobs", options.jobs, "Threads; results do not depend on them")

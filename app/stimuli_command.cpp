@@ -39,6 +39,7 @@ void add_stimuli_command(CLI::App& program, Action& action) {
       "generate", "Make the default pictures: five textures and four textured objects");
   command->add_option("-o,--out", arguments->folder, "Folder to write into")->capture_default_str();
   command->add_option("--seed", arguments->seed, "Another seed, other pictures")
+      ->check(seed_validator())
       ->capture_default_str();
   command->add_option("--size", arguments->size_px, "Side of a picture, pixels")
       ->check(CLI::Range(kMinStimulusSizePx, kMaxStimulusSizePx))

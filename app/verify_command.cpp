@@ -1,13 +1,13 @@
-#include "analysis/verification.hpp"
+#include "analysis/study_files.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
-#include "engine/pack/pack.hpp"
-#include "protocols/design/study_key.hpp"
-#include "protocols/store/study_store.hpp"
+#include "core/errors.hpp"
+#include "core/hash.hpp"
 
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <string>
 
 namespace touchtrial {
 namespace {
@@ -20,28 +20,27 @@ struct VerifyArguments {
   fs::path database;
   fs::path key;
   fs::path pack;
+  std::string head;
   bool json = false;
 };
 
-/// A key that was named must be there; the one beside the database may be elsewhere.
-std::optional<StudyKey> key_for(const VerifyArguments& arguments) {
-  const fs::path path = key_path_for(arguments.database, arguments.key);
-  if (arguments.key.empty() && !fs::exists(path)) return std::nullopt;
-  return load_study_key(path);
-}
-
-std::optional<Pack> pack_for(const VerifyArguments& arguments, const std::optional<StudyKey>& key) {
-  if (!arguments.pack.empty()) return Pack(arguments.pack);
-  if (key && fs::exists(key->pack_folder)) return Pack(key->pack_folder);
-  return std::nullopt;
+std::optional<Digest> head_of(const VerifyArguments& arguments) {
+  if (arguments.head.empty()) return std::nullopt;
+  const std::optional<Digest> head = digest_from_hex(arguments.head);
+  if (!head) {
+    throw UsageError(
+        "--head: is no hash of 64 hexadecimal digits; give the one that verify printed");
+  }
+  return head;
 }
 
 int verify(const VerifyArguments& arguments) {
-  const StudyStore store = StudyStore::open(arguments.database, StudyStore::Access::read_only);
-  const std::optional<StudyKey> key = key_for(arguments);
-  const std::optional<Pack> pack = pack_for(arguments, key);
-  const Verification verification =
-      verify_study(store, key ? &*key : nullptr, pack ? &*pack : nullptr);
+  const std::optional<Digest> head = head_of(arguments);
+  const StudyFiles files{.database = arguments.database,
+                         .key = key_path_for(arguments.database, arguments.key),
+                         .key_named = !arguments.key.empty(),
+                         .pack = arguments.pack};
+  const Verification verification = verify_files(files, head);
   print(arguments.json ? verification_json(verification) : verification_text(verification));
   return verification.holds() ? 0 : kNotVerified;
 }
@@ -55,6 +54,8 @@ void add_verify_command(CLI::App& program, Action& action) {
   command->add_option("DB", arguments->database, "Database of the study")->required();
   command->add_option("--key", arguments->key, "Key of the study (default: DB.key, if there)");
   command->add_option("--pack", arguments->pack, "Pack of the study (default: where the key says)");
+  command->add_option("--head", arguments->head,
+                      "A hash that was once the head of the file's chain, and must still be on it");
   command->add_flag("--json", arguments->json, "One JSON object in place of lines");
   command->callback([=, &action] { action = [=] { return verify(*arguments); }; });
 }

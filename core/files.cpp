@@ -46,6 +46,21 @@ bool write_all(int descriptor, ByteView content) {
   return true;
 }
 
+/// What is to be replaced: the file that a link leads to, never a link, device or pipe itself.
+std::filesystem::path replaceable(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto status = std::filesystem::symlink_status(path, error);
+  if (!std::filesystem::exists(status)) return path;
+  if (std::filesystem::is_symlink(status)) {
+    const std::filesystem::path target = std::filesystem::canonical(path, error);
+    if (!error) return replaceable(target);
+    fail(path, "is a link that leads nowhere", error.value(), "give the path of a file");
+  }
+  if (std::filesystem::is_regular_file(status)) return path;
+  throw FileError(one_line(path.string()) +
+                  ": is a folder, device or pipe and is not replaced; give the path of a file");
+}
+
 /// Makes the rename itself survive a power cut.
 void sync_folder(const std::filesystem::path& folder) {
   const Descriptor descriptor(
@@ -78,7 +93,8 @@ Bytes read_file(const std::filesystem::path& path, std::uintmax_t limit_bytes) {
   return content;
 }
 
-void replace_file(const std::filesystem::path& path, ByteView content, FileMode mode) {
+void replace_file(const std::filesystem::path& given, ByteView content, FileMode mode) {
+  const std::filesystem::path path = replaceable(given);
   const mode_t permissions = mode == FileMode::owner_only ? 0600 : 0644;
   std::filesystem::path draft = path;
   draft += ".tmp" + std::to_string(::getpid());
@@ -99,6 +115,21 @@ void replace_file(const std::filesystem::path& path, ByteView content, FileMode 
 
 void replace_file(const std::filesystem::path& path, std::string_view content, FileMode mode) {
   replace_file(path, bytes_of(content), mode);
+}
+
+void make_folder(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  std::error_code ignored;
+  if (std::filesystem::is_directory(folder, ignored)) return;
+  const std::string reason = error ? error.message() : "a file of that name is there";
+  throw FileError(one_line(folder.string()) + ": cannot be made a folder (" + reason +
+                  "); give another path, or change its permissions");
+}
+
+bool is_there(const std::filesystem::path& path) noexcept {
+  std::error_code ignored;
+  return std::filesystem::exists(path, ignored);
 }
 
 MappedFile::MappedFile(const std::filesystem::path& path) {

@@ -20,11 +20,19 @@ enum class FileMode { everyone, owner_only };
                               std::uintmax_t limit_bytes = std::uintmax_t{1} << 32U);
 
 /// Writes beside the target, syncs, and renames over it: after a crash the file is the old one or
-/// the new one, never half of it. \throws FileError with the system's reason
+/// the new one, never half of it. A link is followed; devices and pipes are refused. \throws
+/// FileError with the system's reason
 void replace_file(const std::filesystem::path& path, ByteView content,
                   FileMode mode = FileMode::everyone);
 void replace_file(const std::filesystem::path& path, std::string_view content,
                   FileMode mode = FileMode::everyone);
+
+/// Makes a folder, and those above it, where it is missing.
+/// \throws FileError if there is no such folder afterwards
+void make_folder(const std::filesystem::path& folder);
+
+/// Whether something is there; false also where one cannot look.
+[[nodiscard]] bool is_there(const std::filesystem::path& path) noexcept;
 
 /// A file mapped read-only; only the pages that are touched are read from disk.
 class MappedFile {

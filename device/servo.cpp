@@ -35,8 +35,9 @@ std::optional<ServoEnd> run_tick(HapticDevice& device, ForceSource& force, Sampl
 
 ServoReport run_servo_in_virtual_time(HapticDevice& device, ForceSource& force, SampleSink& sink,
                                       const ServoOptions& options) {
-  SafetyChain safety(std::min(options.max_force_n, device.info().max_force_n));
   ServoReport report;
+  report.force_limit_n = std::min(options.max_force_n, device.info().max_force_n);
+  SafetyChain safety(report.force_limit_n);
   std::optional<ServoEnd> end;
   const std::int64_t last = options.limit_ticks + options.fade_ticks;
   for (std::int64_t tick = 0; tick < last && !end; ++tick) {

@@ -54,6 +54,7 @@ struct ServoReport {
   ServoEnd end = ServoEnd::fault;
   std::int64_t ticks = 0;          ///< recorded samples
   std::int64_t limited_ticks = 0;  ///< shortened by the safety chain
+  double force_limit_n = 0.0;      ///< that held: the smaller of the options' and the device's
 };
 
 /// Runs the loop in virtual time, as fast as the processor goes: tick i is at i * kServoTick, and

@@ -1,63 +1,81 @@
 #include "engine/csgv.hpp"
 
-#include "engine/symmetric_extension.hpp"
+#include "engine/gradient_rows.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <span>
-#include <vector>
+#include <utility>
 
 namespace touchtrial {
 namespace {
 
-/// A row with one mirrored sample before and after it.
-class FramedRow {
- public:
-  explicit FramedRow(int width) : samples_(static_cast<std::size_t>(width) + 2) {}
-
-  [[nodiscard]] double& operator[](int x) { return samples_[static_cast<std::size_t>(x + 1)]; }
-  void mirror_ends() {
-    samples_.front() = samples_[1];
-    samples_.back() = samples_[samples_.size() - 2];
-  }
-
- private:
-  std::vector<double> samples_;
-};
-
-/// Adds the norm of the Sobel gradient of one sub-band. Differences come before sums, so that
-/// equal neighbours give exactly zero.
-void add_sobel_norm(const Plane<double>& band, Plane<double>& sum) {
-  const int width = band.width();
-  FramedRow smooth(width);  // [1 2 1] along y
-  FramedRow slope(width);   // [-1 0 1] along y
-  for (int y = 0; y < band.height(); ++y) {
-    const auto above = band.row(symmetric_index(y - 1, band.height()));
-    const auto row = band.row(y);
-    const auto below = band.row(symmetric_index(y + 1, band.height()));
-    for (int x = 0; x < width; ++x) {
-      smooth[x] = above[x] + 2.0 * row[x] + below[x];
-      slope[x] = below[x] - above[x];
-    }
-    smooth.mirror_ends();
-    slope.mirror_ends();
-    const auto to = sum.row(y);
-    for (int x = 0; x < width; ++x) {
-      const double gx = smooth[x + 1] - smooth[x - 1];
-      const double gy = slope[x - 1] + 2.0 * slope[x] + slope[x + 1];
-      to[x] += std::sqrt(gx * gx + gy * gy);
+/// Takes the slopes of one row of a band into a row of the result, each sample standing for
+/// 2^level of them.
+void take_row(std::span<const double> slopes, int level, Combine combine, std::span<double> to) {
+  for (std::size_t x = 0; x < to.size(); ++x) {
+    const double slope = slopes[x >> static_cast<unsigned>(level)];
+    switch (combine) {
+      case Combine::sum:
+        to[x] += slope;
+        break;
+      case Combine::l2:
+        to[x] += slope * slope;
+        break;
+      case Combine::max:
+        to[x] = std::max(to[x], slope);
+        break;
     }
   }
 }
 
+class Composite {
+ public:
+  Composite(int height, int width, Gradient gradient, Combine combine)
+      : result_(height, width), gradient_(gradient), combine_(combine) {}
+
+  /// \param level  how many doublings the band is away from the result
+  void take(const Plane<double>& band, int level) {
+    GradientRows gradient(band, gradient_);
+    for (int y = 0; y < band.height(); ++y) {
+      const std::span<const double> slopes = gradient.row(y);
+      const int end = std::min((y + 1) << level, result_.height());
+      for (int i = y << level; i < end; ++i) take_row(slopes, level, combine_, result_.row(i));
+    }
+  }
+
+  [[nodiscard]] Plane<double> finish() && {
+    if (combine_ == Combine::l2) {
+      for (double& sample : result_.samples()) sample = std::sqrt(sample);
+    }
+    return std::move(result_);
+  }
+
+ private:
+  Plane<double> result_;
+  Gradient gradient_;
+  Combine combine_;
+};
+
 }  // namespace
 
-Plane<double> composite_gradient(const SubBands& bands) {
-  Plane<double> sum(bands.ll.height(), bands.ll.width());
-  for (const Plane<double>* band : {&bands.ll, &bands.lh, &bands.hl, &bands.hh}) {
-    add_sobel_norm(*band, sum);
+Plane<double> composite_gradient(std::span<const SubBands> levels, Gradient gradient,
+                                 Combine combine) {
+  const Plane<double>& first = levels.front().ll;
+  Composite composite(first.height(), first.width(), gradient, combine);
+  composite.take(levels.back().ll, static_cast<int>(levels.size()) - 1);
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    const auto level = static_cast<int>(i);
+    composite.take(levels[i].lh, level);
+    composite.take(levels[i].hl, level);
+    composite.take(levels[i].hh, level);
   }
-  return sum;
+  return std::move(composite).finish();
+}
+
+Plane<double> composite_gradient(const SubBands& bands) {
+  return composite_gradient({&bands, 1}, Gradient::sobel, Combine::sum);
 }
 
 template <typename Real>

@@ -22,10 +22,12 @@ constexpr Filter kLow = {(1.0 + kRoot3) * kScale, (3.0 + kRoot3) * kScale, (3.0 
                          (1.0 - kRoot3) * kScale};
 constexpr Filter kHigh = {kLow[3], -kLow[2], kLow[1], -kLow[0]};
 
-using ImageRows = std::array<std::span<const std::uint8_t>, kTaps>;
+template <typename Sample>
+using ImageRows = std::array<std::span<const Sample>, kTaps>;
 
 /// Filters along y: one row from the four rows under the filter, continued past its right end.
-void filter_columns(const ImageRows& rows, const Filter& filter, std::vector<double>& out) {
+template <typename Sample>
+void filter_columns(const ImageRows<Sample>& rows, const Filter& filter, std::vector<double>& out) {
   const std::size_t width = rows[0].size();
   for (std::size_t x = 0; x < width; ++x) {
     out[x] = filter[0] * rows[0][x] + filter[1] * rows[1][x] + filter[2] * rows[2][x] +
@@ -45,16 +47,15 @@ void filter_row(const std::vector<double>& row, const Filter& filter, std::span<
   }
 }
 
-}  // namespace
-
-SubBands daub4_sub_bands(const GreyImage& image) {
+template <typename Sample>
+SubBands sub_bands_of(const Plane<Sample>& image) {
   if (image.empty()) throw std::invalid_argument("daub4_sub_bands: the image is empty");
   const Plane<double> blank((image.height() + 1) / 2, (image.width() + 1) / 2);
   SubBands bands{blank, blank, blank, blank};
   std::vector<double> low(2 * static_cast<std::size_t>(blank.width()) + kTaps - 2);
   std::vector<double> high(low.size());
   for (int i = 0; i < blank.height(); ++i) {
-    ImageRows rows;
+    ImageRows<Sample> rows;
     for (int m = 0; m < kTaps; ++m) {
       rows[static_cast<std::size_t>(m)] = image.row(symmetric_index(2 * i + m, image.height()));
     }
@@ -66,6 +67,16 @@ SubBands daub4_sub_bands(const GreyImage& image) {
     filter_row(high, kHigh, bands.hh.row(i));
   }
   return bands;
+}
+
+}  // namespace
+
+SubBands daub4_sub_bands(const GreyImage& image) {
+  return sub_bands_of(image);
+}
+
+SubBands daub4_sub_bands(const Plane<double>& ll) {
+  return sub_bands_of(ll);
 }
 
 }  // namespace touchtrial

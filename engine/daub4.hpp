@@ -15,10 +15,11 @@ struct SubBands {
   Plane<double> hh;
 };
 
-/// Always in double, whatever the precision of the texture: the order map jumps where a sum of
-/// gradients of these crosses a threshold, and a pixel must not change sides by rounding to float.
+/// In double: what the kernels in single precision are held against.
 /// \throws std::invalid_argument if the image is empty
 /// Thread-safe.
 [[nodiscard]] SubBands daub4_sub_bands(const GreyImage& image);
+/// The next level, of the ll of the one before.
+[[nodiscard]] SubBands daub4_sub_bands(const Plane<double>& ll);
 
 }  // namespace touchtrial

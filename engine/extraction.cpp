@@ -1,44 +1,71 @@
 #include "engine/extraction.hpp"
 
+#include "engine/cited_textures.hpp"
 #include "engine/csgv.hpp"
 #include "engine/daub4.hpp"
+#include "engine/force_field.hpp"
+#include "engine/gl_norm.hpp"
 #include "engine/gl_texture.hpp"
+#include "engine/kernels/float_extraction.hpp"
 #include "engine/order_map.hpp"
 #include "engine/tv_gabor/tv_gabor.hpp"
 
 #include <cstddef>
 #include <stdexcept>
 #include <utility>
+#include <vector>
 
 namespace touchtrial {
 namespace {
 
+constexpr int kForceNeighbourhood = 3;
+
+/// \param orders  one order, or a plane of orders at half resolution
+template <typename Real, typename Orders>
+Plane<Real> normed_texture(const GreyImage& image, const ExtractionOptions& options,
+                           const Orders& orders) {
+  if (options.norm == Norm::additive) return gl_texture<Real>(image, options.radius, orders);
+  Plane<double> texture = gl_texture<double>(image, options.radius, orders);
+  apply_norm(options.norm, image, options.radius, orders, texture);
+  return converted<Real>(texture);
+}
+
+std::vector<SubBands> sub_band_levels(const GreyImage& image, int levels) {
+  std::vector<SubBands> bands = {daub4_sub_bands(image)};
+  while (static_cast<int>(bands.size()) < levels) {
+    bands.push_back(daub4_sub_bands(bands.back().ll));
+  }
+  return bands;
+}
+
 template <typename Real>
-Extraction<Real> adaptive(const GreyImage& image, int radius, const WantedPlanes& wanted) {
+Extraction<Real> adaptive(const GreyImage& image, const ExtractionOptions& options,
+                          const WantedPlanes& wanted) {
   Extraction<Real> result;
-  const SubBands bands = daub4_sub_bands(image);
+  const std::vector<SubBands> levels = sub_band_levels(image, options.levels);
+  const SubBands& bands = levels.front();
   if (wanted.sub_bands) {
     result.sub_band_ll = converted<Real>(bands.ll);
     result.sub_band_lh = converted<Real>(bands.lh);
     result.sub_band_hl = converted<Real>(bands.hl);
     result.sub_band_hh = converted<Real>(bands.hh);
   }
-  const Plane<double> gradient = composite_gradient(bands);
+  const Plane<double> gradient = composite_gradient(levels, options.gradient, options.combine);
   if (wanted.csgv) result.csgv = doubled<Real>(gradient, image.height(), image.width());
   const Plane<double> orders = order_map(gradient);
   if (wanted.order) result.order = doubled<Real>(orders, image.height(), image.width());
-  result.texture = gl_texture<Real>(image, radius, orders);
+  result.texture = normed_texture<Real>(image, options, orders);
   return result;
 }
 
 template <typename Real>
-Extraction<Real> fixed(const GreyImage& image, int radius, double order,
+Extraction<Real> fixed(const GreyImage& image, const ExtractionOptions& options,
                        const WantedPlanes& wanted) {
   Extraction<Real> result;
   if (wanted.order) {
-    result.order = Plane<Real>(image.height(), image.width(), static_cast<Real>(order));
+    result.order = Plane<Real>(image.height(), image.width(), static_cast<Real>(options.order));
   }
-  result.texture = gl_texture<Real>(image, radius, order);
+  result.texture = normed_texture<Real>(image, options, options.order);
   return result;
 }
 
@@ -49,9 +76,17 @@ Extraction<Real> by_tv_gabor(const GreyImage& image, const TvGaborOptions& optio
   Extraction<Real> result;
   result.texture = std::move(decomposition.texture);
   if (wanted.cartoon) result.cartoon = std::move(decomposition.cartoon);
+  result.components = std::move(decomposition.components);
   result.gap = decomposition.gap;
   result.steps = decomposition.steps;
   result.converged = decomposition.converged;
+  return result;
+}
+
+template <typename Real>
+Extraction<Real> texture_alone(const Plane<double>& texture) {
+  Extraction<Real> result;
+  result.texture = converted<Real>(texture);
   return result;
 }
 
@@ -60,32 +95,81 @@ Extraction<Real> by_method(const GreyImage& image, const ExtractionOptions& opti
                            const WantedPlanes& wanted) {
   switch (options.method) {
     case Method::fixed:
-      return fixed<Real>(image, options.radius, options.order, wanted);
+      return fixed<Real>(image, options, wanted);
     case Method::tv_gabor:
       return by_tv_gabor<Real>(image, options.tv_gabor, wanted);
+    case Method::gaussian:
+      return texture_alone<Real>(gaussian_texture(image, options.sigma_px));
+    case Method::median:
+      return texture_alone<Real>(median_texture(image, options.radius, options.threshold_grey));
+    case Method::edge:
+      return texture_alone<Real>(edge_texture(image, options.divisor));
+    case Method::luminance:
+      return texture_alone<Real>(luminance_texture(image));
     case Method::adaptive:
       break;
   }
-  return adaptive<Real>(image, options.radius, wanted);
+  return adaptive<Real>(image, options, wanted);
+}
+
+/// The methods' defaults have kernels in single precision; in double the plain way is the truth
+/// that they are held against.
+bool extracted_by_kernel(const GreyImage&, const ExtractionOptions&, const WantedPlanes&,
+                         Extraction<double>&) {
+  return false;
+}
+bool extracted_by_kernel(const GreyImage& image, const ExtractionOptions& options,
+                         const WantedPlanes& wanted, Extraction<float>& result) {
+  if (options.norm != Norm::additive) return false;
+  if (options.method == Method::fixed) {
+    extract_fixed(image, options.radius, options.order, wanted, result);
+    return true;
+  }
+  const bool plain_gradient =
+      options.gradient == Gradient::sobel && options.combine == Combine::sum && options.levels == 1;
+  if (options.method != Method::adaptive || !plain_gradient) return false;
+  extract_adaptive(image, options.radius, wanted, result);
+  return true;
+}
+
+/// What can be made of any texture, where it was not made along with it.
+template <typename Real>
+void add_by_products(const GreyImage& image, const WantedPlanes& wanted, Extraction<Real>& result) {
+  if (wanted.picture && result.picture.empty()) result.picture = texture_picture(result.texture);
+  if (wanted.force && result.force.x.empty()) {
+    result.force = tangential_force(result.texture, kForceNeighbourhood);
+  }
+  result.enhanced = wanted.enhanced ? converted<Real>(image) : Plane<Real>();
+  for (std::size_t i = 0; i < result.enhanced.size(); ++i) {
+    result.enhanced.samples()[i] += result.texture.samples()[i];
+  }
 }
 
 }  // namespace
 
 template <typename Real>
-Extraction<Real> extract_texture(const GreyImage& image, const ExtractionOptions& options,
-                                 const WantedPlanes& wanted) {
+void extract_texture_into(const GreyImage& image, const ExtractionOptions& options,
+                          const WantedPlanes& wanted, Extraction<Real>& result) {
   check_options(options);
   if (image.empty()) throw std::invalid_argument("extract_texture: the image is empty");
-  Extraction<Real> result = by_method<Real>(image, options, wanted);
-  if (wanted.enhanced) {
-    result.enhanced = converted<Real>(image);
-    for (std::size_t i = 0; i < image.size(); ++i) {
-      result.enhanced.samples()[i] += result.texture.samples()[i];
-    }
+  if (!extracted_by_kernel(image, options, wanted, result)) {
+    result = by_method<Real>(image, options, wanted);
   }
+  add_by_products(image, wanted, result);
+}
+
+template <typename Real>
+Extraction<Real> extract_texture(const GreyImage& image, const ExtractionOptions& options,
+                                 const WantedPlanes& wanted) {
+  Extraction<Real> result;
+  extract_texture_into(image, options, wanted, result);
   return result;
 }
 
+template void extract_texture_into<float>(const GreyImage&, const ExtractionOptions&,
+                                          const WantedPlanes&, Extraction<float>&);
+template void extract_texture_into<double>(const GreyImage&, const ExtractionOptions&,
+                                           const WantedPlanes&, Extraction<double>&);
 template Extraction<float> extract_texture<float>(const GreyImage&, const ExtractionOptions&,
                                                   const WantedPlanes&);
 template Extraction<double> extract_texture<double>(const GreyImage&, const ExtractionOptions&,

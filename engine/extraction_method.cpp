@@ -1,24 +1,21 @@
 #include "engine/extraction.hpp"
 
 #include <array>
-#include <cstddef>
 
 namespace touchtrial {
 namespace {
 
-constexpr std::array<std::string_view, 3> kNames = {"adaptive", "fixed", "tv-gabor"};
+constexpr std::array<std::string_view, 7> kNames = {"adaptive", "fixed", "tv-gabor", "gaussian",
+                                                    "median",   "edge",  "luminance"};
 
 }  // namespace
 
 std::string_view name_of(Method method) {
-  return kNames.at(static_cast<std::size_t>(method));
+  return name_among(kNames, method);
 }
 
 std::optional<Method> method_from_name(std::string_view name) {
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
-    if (kNames[i] == name) return static_cast<Method>(i);
-  }
-  return std::nullopt;
+  return choice_named<Method>(kNames, name);
 }
 
 std::vector<std::string> method_names() {

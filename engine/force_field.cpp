@@ -1,5 +1,7 @@
 #include "engine/force_field.hpp"
 
+#include "engine/kernels/field_rows.hpp"
+
 #include <algorithm>
 #include <cstddef>
 #include <span>
@@ -8,7 +10,8 @@
 namespace touchtrial {
 namespace {
 
-/// Adds to one row of forces what the neighbours at (dy, dx) exert, where they exist.
+/// Adds to one row of forces what the neighbours at (dy, dx) exert, where they
+/// exist.
 template <typename Real>
 void add_neighbours(std::span<const Real> row, std::span<const Real> neighbours, int dy, int dx,
                     std::span<Real> force_x, std::span<Real> force_y) {
@@ -24,6 +27,20 @@ void add_neighbours(std::span<const Real> row, std::span<const Real> neighbours,
   }
 }
 
+/// The usual neighbourhood in single precision has its own kernel.
+bool made_by_kernel(const Plane<double>&, int, ForceField<double>&) {
+  return false;
+}
+bool made_by_kernel(const Plane<float>& surface, int neighbourhood, ForceField<float>& force) {
+  if (neighbourhood != 3) return false;
+  for (int y = 0; y < surface.height(); ++y) {
+    const SurfaceRows rows{y > 0 ? surface.row(y - 1).data() : nullptr, surface.row(y).data(),
+                           y + 1 < surface.height() ? surface.row(y + 1).data() : nullptr};
+    force_row(rows, surface.width(), force.x.row(y).data(), force.y.row(y).data());
+  }
+  return true;
+}
+
 }  // namespace
 
 template <typename Real>
@@ -36,6 +53,7 @@ ForceField<Real> tangential_force(const Plane<Real>& surface, int neighbourhood)
   const int reach_x = std::min(neighbourhood / 2, surface.width() - 1);
   ForceField<Real> force{Plane<Real>(surface.height(), surface.width()),
                          Plane<Real>(surface.height(), surface.width())};
+  if (made_by_kernel(surface, neighbourhood, force)) return force;
   for (int y = 0; y < surface.height(); ++y) {
     const int first = std::max(-reach_y, -y);
     const int last = std::min(reach_y, surface.height() - 1 - y);

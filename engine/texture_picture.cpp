@@ -1,4 +1,5 @@
 #include "engine/extraction.hpp"
+#include "engine/kernels/field_rows.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +11,40 @@ namespace {
 constexpr int kMidGrey = 128;
 
 /// In double for either precision: float would round 128 + T on to ties.
-std::uint8_t rounded_to_grey(double texture) {
-  const double level = std::floor(kMidGrey + texture + 0.5);
-  return static_cast<std::uint8_t>(std::fmin(std::fmax(level, 0.0), 255.0));  // NaN becomes 0
+std::uint8_t rounded_to_grey(double level) {
+  const double rounded = std::floor(level + 0.5);
+  return static_cast<std::uint8_t>(std::fmin(std::fmax(rounded, 0.0), 255.0));  // NaN becomes 0
+}
+
+template <typename Real, typename LevelOf>
+GreyImage picture_by(const Plane<Real>& texture, LevelOf level_of) {
+  GreyImage picture(texture.height(), texture.width());
+  std::transform(
+      texture.samples().begin(), texture.samples().end(), picture.samples().begin(),
+      [&](Real sample) { return rounded_to_grey(level_of(static_cast<double>(sample))); });
+  return picture;
+}
+
+GreyImage offset_picture(const Plane<double>& texture) {
+  return picture_by(texture, [](double sample) { return kMidGrey + sample; });
+}
+
+GreyImage offset_picture(const Plane<float>& texture) {
+  GreyImage picture(texture.height(), texture.width());
+  for (int y = 0; y < texture.height(); ++y) {
+    picture_row(texture.row(y).data(), texture.width(), picture.row(y).data());
+  }
+  return picture;
+}
+
+template <typename Real>
+GreyImage stretched(const Plane<Real>& texture) {
+  const auto [least, most] =
+      std::minmax_element(texture.samples().begin(), texture.samples().end());
+  const auto low = static_cast<double>(*least);
+  const double range = static_cast<double>(*most) - low;
+  if (!(range > 0.0)) return GreyImage(texture.height(), texture.width());
+  return picture_by(texture, [=](double sample) { return (sample - low) * 255.0 / range; });
 }
 
 template <typename Real>
@@ -23,12 +55,17 @@ void refuse_empty(const Plane<Real>& texture) {
 }  // namespace
 
 template <typename Real>
-GreyImage texture_picture(const Plane<Real>& texture) {
+GreyImage texture_picture(const Plane<Real>& texture, Mapping mapping) {
   refuse_empty(texture);
-  GreyImage picture(texture.height(), texture.width());
-  std::transform(texture.samples().begin(), texture.samples().end(), picture.samples().begin(),
-                 [](Real sample) { return rounded_to_grey(sample); });
-  return picture;
+  switch (mapping) {
+    case Mapping::abs:
+      return picture_by(texture, [](double sample) { return std::abs(sample); });
+    case Mapping::stretch:
+      return stretched(texture);
+    case Mapping::offset:
+      break;
+  }
+  return offset_picture(texture);
 }
 
 template <typename Real>
@@ -39,8 +76,8 @@ Plane<Real> texture_surface(const Plane<Real>& texture) {
   return surface;
 }
 
-template GreyImage texture_picture<float>(const Plane<float>&);
-template GreyImage texture_picture<double>(const Plane<double>&);
+template GreyImage texture_picture<float>(const Plane<float>&, Mapping);
+template GreyImage texture_picture<double>(const Plane<double>&, Mapping);
 template Plane<float> texture_surface<float>(const Plane<float>&);
 template Plane<double> texture_surface<double>(const Plane<double>&);
 

@@ -1,21 +1,10 @@
 #include "stimuli/default_set.hpp"
 
-#include "core/errors.hpp"
+#include "core/files.hpp"
 #include "engine/image_file.hpp"
-
-#include <system_error>
 
 namespace touchtrial {
 namespace {
-
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (!std::filesystem::is_directory(folder)) {
-    throw FileError(one_line(folder.string() + ": cannot be made a folder (" + error.message() +
-                             "); check the path and its permissions"));
-  }
-}
 
 StimulusEntry write_stimulus(const std::filesystem::path& folder, const StimulusRecipe& recipe,
                              std::uint64_t seed, int size_px) {

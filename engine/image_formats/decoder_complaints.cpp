@@ -28,7 +28,15 @@ bool is_padding(std::string_view line) {
   return count <= kMostPadding;
 }
 
+/// The decoder's own words: a progress bar may have been drawn on the same line before them.
+std::string_view from_first_sign(std::string_view line) {
+  std::size_t begin = line.find(kTiffPrefix);
+  for (const std::string_view sign : kSignsOfDamage) begin = std::min(begin, line.find(sign));
+  return begin == std::string_view::npos ? line : line.substr(begin);
+}
+
 bool is_damage(std::string_view line) {
+  line = from_first_sign(line);
   const auto starts_line = [&](std::string_view sign) { return line.starts_with(sign); };
   if (is_padding(line)) return false;
   if (!line.starts_with(kTiffPrefix)) {

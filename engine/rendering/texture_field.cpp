@@ -1,7 +1,7 @@
 #include "engine/rendering/texture_field.hpp"
 
 #include "engine/force_field.hpp"
-#include "engine/rendering/reconstruction_filter.hpp"
+#include "engine/gaussian_filter.hpp"
 
 #include <cmath>
 #include <stdexcept>

@@ -2,10 +2,12 @@
 
 #include "engine/tv_gabor/domain.hpp"
 #include "engine/tv_gabor/solver.hpp"
+#include "engine/tv_gabor/spectral_peak.hpp"
 
 #include <algorithm>
 #include <stdexcept>
 #include <type_traits>
+#include <utility>
 
 namespace touchtrial {
 namespace {
@@ -15,16 +17,13 @@ bool is_flat(const GreyImage& image) {
                      [&](auto sample) { return sample == image.samples().front(); });
 }
 
-/// \return all but the cartoon
+/// \return all but the cartoon and the components
 template <typename Real, typename Precision>
 TvGaborResult<Real> result_of(const TvGaborSolver<Precision>& solver, SolverStop stop,
                               const GreyImage& image) {
   const Plane<Precision> texture =
       cropped_from_torus(solver.certificate().texture, image.height(), image.width());
-  return {converted<Real>(texture),
-          {},
-          solver.certificate().gap,
-          solver.steps(),
+  return {converted<Real>(texture),     {}, {}, solver.certificate().gap, solver.steps(),
           stop == SolverStop::converged};
 }
 
@@ -44,6 +43,12 @@ TvGaborResult<Real> solved(const GreyImage& image, const TvGaborOptions& options
   }
 }
 
+/// The options with the components that are meant.
+TvGaborOptions resolved(const GreyImage& image, TvGaborOptions options) {
+  if (options.automatic) options.components = {strongest_component(image)};
+  return options;
+}
+
 }  // namespace
 
 template <typename Real>
@@ -53,7 +58,9 @@ TvGaborResult<Real> tv_gabor(const GreyImage& image, const TvGaborOptions& optio
   if (is_flat(image)) {
     result.texture = Plane<Real>(image.height(), image.width());
   } else {
-    result = solved<Real>(image, options);
+    TvGaborOptions explicit_options = resolved(image, options);
+    result = solved<Real>(image, explicit_options);
+    result.components = std::move(explicit_options.components);
   }
   result.cartoon = converted<Real>(image);
   for (std::size_t i = 0; i < image.size(); ++i) {

@@ -1,6 +1,7 @@
 #include "protocols/design/prepare.hpp"
 
 #include "core/errors.hpp"
+#include "core/files.hpp"
 #include "engine/image_file.hpp"
 #include "engine/rendering/gains.hpp"
 #include "protocols/design/pack_lock.hpp"
@@ -51,26 +52,8 @@ std::vector<ImageOfStudy> images_of(const Study& study) {
 
 [[noreturn]] void refuse_image(const Study& study, const ImageOfStudy& image,
                                const std::string& what) {
-  throw FileError("study " + study.name + ": /classes/" + std::to_string(image.class_index) +
-                  "/images/" + std::to_string(image.exemplar) + ": " + what);
-}
-
-/// Before any work, so that a long preparation does not end at a misspelt path.
-void check_images_exist(const Study& study, const std::vector<ImageOfStudy>& images) {
-  for (const ImageOfStudy& image : images) {
-    std::error_code error;
-    if (std::filesystem::exists(image.path, error)) continue;
-    refuse_image(study, image,
-                 one_line(image.path.string()) + ": does not exist; correct the path");
-  }
-}
-
-void make_folder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (std::filesystem::is_directory(folder)) return;
-  throw FileError(one_line(folder.string()) + ": the pack's folder cannot be made (" +
-                  (error ? error.message() : "a file is there") + "); give another with --pack");
+  throw StudyError(study.source + ": /classes/" + std::to_string(image.class_index) + "/images/" +
+                   std::to_string(image.exemplar) + ": " + what);
 }
 
 /// One run of prepare_pack. Stimuli are worked on in parallel; everything lands in the place of its
@@ -92,7 +75,7 @@ class Preparation {
   }
 
   PrepareReport run() {
-    check_images_exist(key_.study, images_);
+    check_images_exist(key_.study);
     provide_fields();
     const Pack fields(folder_);
     const StudyGains gains = measure(fields);
@@ -261,6 +244,14 @@ class Preparation {
 };
 
 }  // namespace
+
+void check_images_exist(const Study& study) {
+  for (const ImageOfStudy& image : images_of(study)) {
+    if (is_there(image.path)) continue;
+    refuse_image(study, image,
+                 one_line(image.path.string()) + ": does not exist; correct the path");
+  }
+}
 
 PrepareReport prepare_pack(const StudyKey& key, const std::filesystem::path& pack_folder,
                            const Progress& progress) {

@@ -51,6 +51,10 @@ struct PrepareReport {
   std::vector<std::string> warnings;
 };
 
+/// Whether every image that the study presents is there; to be asked before anything is written.
+/// \throws StudyError with the place of the first that is not
+void check_images_exist(const Study& study);
+
 /// Called after each stimulus, from any thread but never twice at a time.
 using Progress = std::function<void(int done, int of)>;
 
@@ -59,8 +63,9 @@ using Progress = std::function<void(int done, int of)>;
 /// has any more. A run that is interrupted leaves a pack from which nothing is presented and which
 /// the next run completes; a run that has nothing to do leaves the pack's files untouched.
 /// The pack's bytes depend on key, study and images alone, not on the number of threads.
-/// \throws FileError if an image cannot be read (with its place in the study), the pack cannot be
-///   written, is being prepared by another process, or belongs to another key
+/// \throws StudyError if an image cannot be read, with its place in the study
+/// \throws FileError if the pack cannot be written, is being prepared by another process, or
+///   belongs to another key
 PrepareReport prepare_pack(const StudyKey& key, const std::filesystem::path& pack_folder,
                            const Progress& progress = {});
 

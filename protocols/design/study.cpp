@@ -1,5 +1,6 @@
 #include "protocols/design/study.hpp"
 
+#include "core/errors.hpp"
 #include "core/files.hpp"
 #include "protocols/design/order_rules.hpp"
 #include "protocols/design/study_names.hpp"
@@ -93,12 +94,18 @@ Study parse_study(std::string_view text, const std::filesystem::path& folder,
                   const std::string& source) {
   Study study = read_study(parse_strict_json(text, source));
   study.folder = folder;
+  study.source = source;
   study.text = std::string(text);
   return study;
 }
 
 Study load_study(const std::filesystem::path& path) {
-  const Bytes content = read_file(path, kMaxFileBytes);
+  Bytes content;
+  try {
+    content = read_file(path, kMaxFileBytes);
+  } catch (const FileError& error) {
+    throw StudyError(error.what());
+  }
   return parse_study(text_of(content), path.parent_path(), path.string());
 }
 

@@ -51,6 +51,7 @@ struct Study {
   TrialOptions trials;
   std::uint64_t seed = 0;
   std::filesystem::path folder;  ///< that image paths are relative to
+  std::string source;            ///< the file's name, for errors
   std::string text;              ///< the file's content
 
   /// The methods that the protocol presents: the first alone for classification, all for
@@ -62,7 +63,6 @@ struct Study {
 
 /// Reads a study file strictly: unknown keys, wrong types and impossible values are refused.
 /// \throws StudyError with the file, the JSON pointer, and the nearest known key or value
-/// \throws FileError if the file cannot be read
 [[nodiscard]] Study load_study(const std::filesystem::path& path);
 
 /// The same from text. \param source  names the origin in errors

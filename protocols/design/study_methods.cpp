@@ -7,19 +7,50 @@
 namespace touchtrial {
 namespace {
 
-constexpr std::array<std::string_view, 7> kMethodKeys = {
-    "name", "radius", "order", "lambda", "components", "gap", "max_steps"};
+/// A key besides "name", and the methods that it means something to.
+struct MethodKey {
+  std::string_view key;
+  std::vector<Method> methods;
+};
 
-bool belongs_to(Method method, std::string_view key) {
-  if (key == "name") return true;
-  if (key == "radius") return method == Method::adaptive || method == Method::fixed;
-  if (key == "order") return method == Method::fixed;
-  return method == Method::tv_gabor;
+const std::vector<MethodKey>& method_keys() {
+  using enum Method;
+  static const std::vector<MethodKey> keys = {
+      {"radius", {adaptive, fixed, median}},
+      {"order", {fixed}},
+      {"norm", {adaptive, fixed}},
+      {"gradient", {adaptive}},
+      {"combine", {adaptive}},
+      {"levels", {adaptive}},
+      {"sigma_px", {gaussian}},
+      {"threshold", {median}},
+      {"divisor", {edge}},
+      {"lambda", {tv_gabor}},
+      {"components", {tv_gabor}},
+      {"gap", {tv_gabor}},
+      {"max_steps", {tv_gabor}},
+  };
+  return keys;
 }
 
-std::string owners_of(std::string_view key) {
-  if (key == "radius") return "the methods adaptive and fixed";
-  return key == "order" ? "the method fixed" : "the method tv-gabor";
+std::vector<std::string_view> known_keys() {
+  std::vector<std::string_view> keys = {"name"};
+  for (const MethodKey& entry : method_keys()) keys.push_back(entry.key);
+  return keys;
+}
+
+bool belongs_to(Method method, const MethodKey& entry) {
+  return std::find(entry.methods.begin(), entry.methods.end(), method) != entry.methods.end();
+}
+
+/// "the method fixed", "the methods adaptive and fixed"
+std::string owners_of(const MethodKey& entry) {
+  std::string owners = entry.methods.size() == 1 ? "the method " : "the methods ";
+  for (std::size_t i = 0; i < entry.methods.size(); ++i) {
+    if (i > 0) owners += i + 1 == entry.methods.size() ? " and " : ", ";
+    owners += name_of(entry.methods[i]);
+  }
+  return owners;
 }
 
 Method read_name(const JsonValue& place) {
@@ -32,55 +63,90 @@ Method read_name(const JsonValue& place) {
 }
 
 void refuse_foreign_keys(const JsonObject& object, Method method) {
-  for (const std::string_view key : kMethodKeys) {
-    const auto member = object.find(key);
-    if (!member || belongs_to(method, key)) continue;
-    member->refuse("belongs to " + owners_of(key) + ", not to " + std::string(name_of(method)) +
+  for (const MethodKey& entry : method_keys()) {
+    const auto member = object.find(entry.key);
+    if (!member || belongs_to(method, entry)) continue;
+    member->refuse("belongs to " + owners_of(entry) + ", not to " + std::string(name_of(method)) +
                    "; remove it");
   }
 }
 
-std::vector<GaborComponent> read_components(const JsonValue& place) {
+/// A list, or the word "auto".
+void read_components(const JsonValue& place, TvGaborOptions& options) {
   constexpr std::size_t kMost = 64;
-  std::vector<GaborComponent> components;
+  constexpr std::array<std::string_view, 1> kWords = {"auto"};
+  options.automatic =
+      place.is_text() && place.choice(std::span<const std::string_view>(kWords)) == 0;
+  if (options.automatic) return;
+  options.components.clear();
   for (const JsonValue& item : place.items(1, kMost)) {
     const JsonObject object = item.object({"frequency", "direction"});
-    components.push_back(
+    options.components.push_back(
         {object.at("frequency").number({.low = 0.0, .high = 0.5, .open_low = true}),
          object.at("direction").number({.low = -360.0, .high = 360.0})});
   }
-  return components;
+}
+
+template <typename Choice, std::size_t size>
+void read_choice(const JsonObject& object, std::string_view key,
+                 const std::array<std::string_view, size>& names, Choice& choice) {
+  if (const auto member = object.find(key)) {
+    choice = static_cast<Choice>(member->choice(std::span<const std::string_view>(names)));
+  }
+}
+
+void read_number(const JsonObject& object, std::string_view key, const NumberRange& range,
+                 double& number) {
+  if (const auto member = object.find(key)) number = member->number(range);
+}
+
+void read_integer(const JsonObject& object, std::string_view key, int low, int high, int& number) {
+  if (const auto member = object.find(key)) {
+    number = static_cast<int>(member->integer(low, high));
+  }
 }
 
 TvGaborOptions read_tv_gabor(const JsonObject& object) {
   TvGaborOptions options;
-  if (const auto member = object.find("lambda")) {
-    options.lambda = member->number(
-        {.low = TvGaborOptions::kMinLambda, .high = TvGaborOptions::kMaxLambda});
-  }
-  if (const auto member = object.find("components")) options.components = read_components(*member);
-  if (const auto member = object.find("gap")) {
-    options.gap = member->number({.low = 0.0, .high = 1.0, .open_low = true});
-  }
-  if (const auto member = object.find("max_steps")) {
-    options.max_steps = static_cast<int>(member->integer(1, 1'000'000));
-  }
+  read_number(object, "lambda",
+              {.low = TvGaborOptions::kMinLambda, .high = TvGaborOptions::kMaxLambda},
+              options.lambda);
+  if (const auto member = object.find("components")) read_components(*member, options);
+  read_number(object, "gap", {.low = 0.0, .high = 1.0, .open_low = true}, options.gap);
+  read_integer(object, "max_steps", 1, 1'000'000, options.max_steps);
   return options;
 }
 
 ExtractionOptions read_method(const JsonValue& place) {
-  const JsonObject object = place.object(std::span<const std::string_view>(kMethodKeys));
+  using Options = ExtractionOptions;
+  const std::vector<std::string_view> known = known_keys();
+  const JsonObject object = place.object(std::span<const std::string_view>(known));
   ExtractionOptions options;
   options.method = read_name(object.at("name"));
   refuse_foreign_keys(object, options.method);
-  if (const auto member = object.find("radius")) {
-    options.radius = static_cast<int>(member->integer(1, ExtractionOptions::kMaxRadius));
-  }
-  if (const auto member = object.find("order")) {
-    options.order = member->number({.low = 0.0, .high = 1.0, .open_high = true});
-  }
+  read_integer(object, "radius", 1, Options::kMaxRadius, options.radius);
+  read_number(object, "order", {.low = 0.0, .high = 1.0, .open_high = true}, options.order);
+  read_choice(object, "norm", kNormNames, options.norm);
+  read_choice(object, "gradient", kGradientNames, options.gradient);
+  read_choice(object, "combine", kCombineNames, options.combine);
+  read_integer(object, "levels", 1, Options::kMaxLevels, options.levels);
+  read_number(object, "sigma_px", {.low = 0.0, .high = Options::kMaxSigma_px, .open_low = true},
+              options.sigma_px);
+  read_number(object, "threshold", {.low = 0.0, .high = 255.0}, options.threshold_grey);
+  read_number(object, "divisor", {.low = Options::kMinDivisor, .high = Options::kMaxDivisor},
+              options.divisor);
   options.tv_gabor = read_tv_gabor(object);
   return options;
+}
+
+nlohmann::json components_json(const TvGaborOptions& options) {
+  if (options.automatic) return "auto";
+  nlohmann::json list = nlohmann::json::array();
+  for (const GaborComponent& component : options.components) {
+    list.push_back(
+        {{"frequency", component.frequency_cycles_per_px}, {"direction", component.direction_deg}});
+  }
+  return list;
 }
 
 }  // namespace
@@ -99,17 +165,22 @@ std::vector<ExtractionOptions> read_methods(const JsonValue& place) {
 }
 
 nlohmann::json to_json(const ExtractionOptions& method) {
+  const nlohmann::json all = {{"radius", method.radius},
+                              {"order", method.order},
+                              {"norm", name_among(kNormNames, method.norm)},
+                              {"gradient", name_among(kGradientNames, method.gradient)},
+                              {"combine", name_among(kCombineNames, method.combine)},
+                              {"levels", method.levels},
+                              {"sigma_px", method.sigma_px},
+                              {"threshold", method.threshold_grey},
+                              {"divisor", method.divisor},
+                              {"lambda", method.tv_gabor.lambda},
+                              {"components", components_json(method.tv_gabor)},
+                              {"gap", method.tv_gabor.gap},
+                              {"max_steps", method.tv_gabor.max_steps}};
   nlohmann::json object = {{"name", name_of(method.method)}};
-  if (belongs_to(method.method, "radius")) object["radius"] = method.radius;
-  if (belongs_to(method.method, "order")) object["order"] = method.order;
-  if (!belongs_to(method.method, "lambda")) return object;
-  object["lambda"] = method.tv_gabor.lambda;
-  object["gap"] = method.tv_gabor.gap;
-  object["max_steps"] = method.tv_gabor.max_steps;
-  object["components"] = nlohmann::json::array();
-  for (const GaborComponent& component : method.tv_gabor.components) {
-    object["components"].push_back(
-        {{"frequency", component.frequency_cycles_per_px}, {"direction", component.direction_deg}});
+  for (const MethodKey& entry : method_keys()) {
+    if (belongs_to(method.method, entry)) object[std::string(entry.key)] = all.at(entry.key);
   }
   return object;
 }

@@ -51,10 +51,12 @@ FeltKnowledge learn_by_feeling(const LabelledFields& fields, const SubjectModel&
   knowledge.examples.resize(fields.all().size() * passes);
   const auto feel_example = [&](std::size_t i) {
     const std::size_t prototype = i / passes;
+    // The same strokes on every field: what sets prototypes apart is what they are like, and not
+    // where they happened to be stroked. Fields without a difference are learnt as equals.
     knowledge.examples[i] = {
         static_cast<int>(prototype),
         feel_once(*fields.all()[prototype].model, fields.plane(), subject, max_force_n,
-                  RandomStream(seed, "subject: training pass", i))};
+                  RandomStream(seed, "subject: training pass", i % passes))};
   };
   JobArena(jobs).run(
       [&] { tbb::parallel_for(std::size_t{0}, knowledge.examples.size(), feel_example); });

@@ -17,8 +17,9 @@ struct FeltKnowledge {
   std::vector<std::string> label_of_prototype;
 };
 
-/// Feels every labelled field `training_passes` times, each with a path of its own that no trial
-/// has, through the device and servo of the trials. A function of its arguments.
+/// Feels every labelled field `training_passes` times, through the device and servo of the trials.
+/// Each pass has a path of its own that no trial has, the same on every field. A function of its
+/// arguments.
 /// \param max_force_n  limit of the servo's force
 /// \param jobs  threads, >= 1; the result does not depend on them
 [[nodiscard]] FeltKnowledge learn_by_feeling(const LabelledFields& fields,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <thread>
 #include <utility>
 
 #include <tbb/global_control.h>
@@ -14,7 +15,7 @@ namespace touchtrial {
 class JobArena {
  public:
   explicit JobArena(int jobs)
-      : jobs_(std::min(jobs, kMostJobs)),
+      : jobs_(std::min(jobs, most_jobs())),
         limit_(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(jobs_)),
         arena_(jobs_) {}
 
@@ -27,7 +28,12 @@ class JobArena {
   }
 
  private:
-  static constexpr int kMostJobs = 256;
+  /// More threads than this gain nothing and may not be granted.
+  static int most_jobs() noexcept {
+    constexpr unsigned kThreadsACore = 4;
+    return static_cast<int>(kThreadsACore * std::max(1U, std::thread::hardware_concurrency()));
+  }
+
   int jobs_;
   tbb::global_control limit_;
   tbb::task_arena arena_;

@@ -167,6 +167,7 @@ void Session::choose(int position) {
   if (position < 0 || position >= static_cast<int>(schedule_.layout.size())) {
     throw std::invalid_argument("there is no picture at this position");
   }
+  if (answer_ && answer_->position == position) return;  // no change, and not the one allowed
   answer_ = answer_ ? Answer{position, answer_->position} : Answer{position, std::nullopt};
   phase_ = Phase::chosen;
 }

@@ -1,5 +1,8 @@
 #include "protocols/session/trial_measures.hpp"
 
+#include "protocols/session/exploration.hpp"
+
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 
@@ -39,22 +42,32 @@ ContactSums sums_of(const Trace& trace, double max_force_n, const ValidityRule& 
   return sums;
 }
 
+double exploring_s(const Trace& trace) {
+  const auto landing = std::ranges::find_if(trace.samples, [](const TraceSample& sample) {
+    return sample.position_mm.z <= kLandingHeightMm;
+  });
+  return static_cast<double>(trace.samples.end() - landing) / trace.rate_hz;
+}
+
+/// What was felt, without a verdict.
+TrialMeasures measures_of(const ContactSums& sums, double rate_hz) {
+  if (sums.samples == 0) return {};
+  const auto samples = static_cast<double>(sums.samples);
+  return {samples / rate_hz, sums.path_mm, std::sqrt(sums.force_squares / samples),
+          static_cast<double>(sums.saturated) / samples};
+}
+
 }  // namespace
 
 TrialFindings findings_of(const Trace& trace, double max_force_n, const ValidityRule& rule) {
   const ContactSums sums = sums_of(trace, max_force_n, rule);
-  TrialFindings findings;
-  if (sums.samples == 0) return findings;
-  const auto samples = static_cast<double>(sums.samples);
-  findings.measures = {samples / trace.rate_hz, sums.path_mm,
-                       std::sqrt(sums.force_squares / samples),
-                       static_cast<double>(sums.saturated) / samples};
+  TrialMeasures measures = measures_of(sums, trace.rate_hz);
   // A median lies within bounds if at most half of the samples lie beyond either: no sorting.
   const bool median_fits = 2 * sums.weak <= sums.samples && 2 * sums.strong <= sums.samples;
-  findings.valid = findings.measures.contact_s >= rule.least_contact_s &&
-                   findings.measures.path_mm >= rule.least_path_mm && median_fits &&
-                   findings.measures.saturated_share < rule.saturated_share;
-  return findings;
+  measures.within_limits = measures.contact_s >= rule.least_contact_s &&
+                           measures.path_mm >= rule.least_path_mm && median_fits &&
+                           measures.saturated_share < rule.saturated_share;
+  return {measures, exploring_s(trace) >= rule.least_exploring_s};
 }
 
 }  // namespace touchtrial

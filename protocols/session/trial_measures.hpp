@@ -6,8 +6,11 @@
 
 namespace touchtrial {
 
-/// The validity rule, fixed before outcomes are seen.
+/// The validity rule, fixed before outcomes are seen. Forces, and the path and contact that they
+/// bend, tell textures apart, so that whether they are within limits is known after unblinding
+/// alone; that the exploration was long enough is stored in clear.
 struct ValidityRule {
+  double least_exploring_s = 5.0;  ///< from landing to the last sample
   double least_contact_s = 5.0;
   double least_path_mm = 300.0;  ///< in contact
   double least_median_n = 0.2;   ///< of the force's norm in contact
@@ -17,11 +20,17 @@ struct ValidityRule {
 
 struct TrialFindings {
   TrialMeasures measures;
-  bool valid = false;  ///< by the rule, overruns apart
+  /// Follows from the number of samples and the time of landing, which are in clear as well: adds
+  /// nothing to them.
+  bool long_enough = false;
+
+  /// By the whole rule, overruns apart.
+  [[nodiscard]] bool valid() const noexcept { return long_enough && measures.within_limits; }
 };
 
 /// A sample has contact if its normal force is above zero; it is saturated if its force's norm is
-/// within 0.1 % of the limit. \param max_force_n  limit of the force's norm, > 0
+/// within 0.1 % of the limit. The stylus has landed from the first sample at kLandingHeightMm or
+/// below. \param max_force_n  limit of the force's norm, > 0
 [[nodiscard]] TrialFindings findings_of(const Trace& trace, double max_force_n,
                                         const ValidityRule& rule = {});
 

@@ -73,7 +73,7 @@ class VirtualSession {
       session_.interrupt(now_, "device fault");
       return;
     }
-    store_trace();
+    store_trace(done.servo.force_limit_n);
     if (done.servo.end == ServoEnd::time_limit) {
       session_.time_out(now_);
     } else {
@@ -82,13 +82,13 @@ class VirtualSession {
     if (session_.phase() == SessionPhase::answering) take_answer();
   }
 
-  void store_trace() {
-    const TrialFindings findings = findings_of(trace_, servo_.max_force_n);
-    if (!findings.valid) ++tally_.invalid_trials;
+  void store_trace(double force_limit_n) {
+    const TrialFindings findings = findings_of(trace_, force_limit_n);
+    if (!findings.valid()) ++tally_.invalid_trials;
     TraceBody body;
     body.trial = session_.current()->trial;
     body.rate_hz = kServoRateHz;
-    body.valid = findings.valid;
+    body.valid = findings.long_enough;
     session_.store_trace(now_, body, findings.measures, trace_);
   }
 

@@ -1,5 +1,6 @@
 #include "protocols/store/database.hpp"
 
+#include "protocols/store/damaged_store.hpp"
 #include "protocols/store/database_header.hpp"
 
 #include <array>
@@ -84,13 +85,16 @@ std::string explanation(int code, const std::string& message) {
     case SQLITE_IOERR:
       return "reading or writing failed (" + message + "); check the disk";
     default:
-      return "refused by the database (" + message + "); run `touchtrial verify`";
+      return "refused by the database (" + message +
+             "); it may be damaged, restore it from a backup";
   }
 }
 
-StoreError translated(const std::filesystem::path& path, const SQLite::Exception& error) {
+[[noreturn]] void rethrow(const std::filesystem::path& path, const SQLite::Exception& error) {
   const int primary_code = error.getErrorCode() & 0xff;
-  return StoreError(one_line(path.string() + ": " + explanation(primary_code, error.what())));
+  const std::string line = one_line(path.string() + ": " + explanation(primary_code, error.what()));
+  if (primary_code == SQLITE_CORRUPT || primary_code == SQLITE_NOTADB) throw DamagedStore(line);
+  throw StoreError(line);
 }
 
 /// Made exclusively: of two programs that create it at once, one is refused.
@@ -121,7 +125,7 @@ Database Database::create(const std::filesystem::path& path) {
   } catch (const SQLite::Exception& error) {
     std::error_code ignored;
     std::filesystem::remove(path, ignored);
-    throw translated(path, error);
+    rethrow(path, error);
   }
 }
 
@@ -138,7 +142,7 @@ Database Database::open(const std::filesystem::path& path, Mode mode, int newest
     database.connection_.execAndGet("SELECT count(*) FROM sqlite_schema");
     return database;
   } catch (const SQLite::Exception& error) {
-    throw translated(path, error);
+    rethrow(path, error);
   }
 }
 
@@ -167,8 +171,8 @@ std::string Database::refusal(const std::string& text) const {
   return one_line(path_.string() + ": " + text);
 }
 
-StoreError Database::refusal_of(const SQLite::Exception& error) const {
-  return translated(path_, error);
+void Database::refuse(const SQLite::Exception& error) const {
+  rethrow(path_, error);
 }
 
 }  // namespace touchtrial

@@ -55,9 +55,9 @@ class Database {
     try {
       return work();
     } catch (const SQLite::Exception& error) {
-      throw refusal_of(error);
+      refuse(error);
     } catch (const EventFault& fault) {
-      throw StoreError(refusal(std::string(fault.what()) + "; run `touchtrial verify`"));
+      throw StoreError(refusal(std::string(fault.what()) + "; restore it from a backup"));
     }
   }
 
@@ -68,7 +68,7 @@ class Database {
   Database(std::filesystem::path path, SQLite::Database connection)
       : path_(std::move(path)), connection_(std::move(connection)) {}
 
-  [[nodiscard]] StoreError refusal_of(const SQLite::Exception& error) const;
+  [[noreturn]] void refuse(const SQLite::Exception& error) const;
 
   std::filesystem::path path_;
   // Reading changes a connection's state, but not what it stands for.

@@ -1,6 +1,7 @@
 #include "protocols/store/database_header.hpp"
 
 #include "core/errors.hpp"
+#include "protocols/store/damaged_store.hpp"
 
 #include <array>
 #include <cstring>
@@ -18,11 +19,15 @@ using Header = std::array<unsigned char, 100>;
   throw StoreError(one_line(path.string()) + ": " + why);
 }
 
+[[noreturn]] void refuse_damaged(const std::filesystem::path& path, const std::string& why) {
+  throw DamagedStore(one_line(path.string()) + ": " + why + "; restore it from a backup");
+}
+
 Header read_header(const std::filesystem::path& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (status.type() == std::filesystem::file_type::not_found) {
-    refuse(path, "no such database; check the name, or make one with `touchtrial run`");
+    refuse(path, "no such database; check the name, or make one with `touchtrial simulate`");
   }
   if (std::filesystem::is_directory(status)) refuse(path, "is a folder; name a database in it");
   std::ifstream file(path, std::ios::binary);
@@ -66,12 +71,12 @@ void check_header(const std::filesystem::path& path, int newest_version) {
     refuse(path, "was written by a newer Touchtrial (schema " + std::to_string(version) +
                      ", this one knows " + std::to_string(newest_version) + "); use that version");
   }
-  if (version == 0) refuse(path, "has no schema version; it is damaged, restore it from a backup");
+  if (version == 0) refuse_damaged(path, "has no schema version, so it is damaged");
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
   // A log may hold pages that the file still lacks.
   if (!error && size < size_in_header(header) && !has_log(path)) {
-    refuse(path, "is truncated; restore it from a backup");
+    refuse_damaged(path, "is truncated");
   }
 }
 

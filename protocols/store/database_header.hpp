@@ -13,7 +13,8 @@ inline constexpr std::int32_t kApplicationId = 0x5454524c;
 /// Looks at a file before SQLite does, so that a file of others, a newer one or a truncated one is
 /// refused untouched.
 /// \param newest_version  the newest schema that the program knows
-/// \throws StoreError with file and remedy
+/// \throws DamagedStore if it is truncated or has no version, StoreError for all else; both with
+///   file and remedy
 void check_header(const std::filesystem::path& path, int newest_version);
 
 /// Whether a write-ahead log lies beside the database, with anything in it.

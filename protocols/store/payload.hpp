@@ -55,7 +55,7 @@ struct TraceBody {
   std::int64_t samples = 0;
   double rate_hz = 0.0;
   std::int64_t overruns = 0;
-  bool valid = true;  ///< the study's validity rule
+  bool valid = true;  ///< by what is in clear: the rest of the validity rule is sealed
   Digest trace{};     ///< SHA-256 of the stored (encrypted) trace
 };
 
@@ -65,8 +65,18 @@ struct TrialMeasures {
   double path_mm = 0.0;  ///< length of the stylus' path while in contact
   double force_rms_n = 0.0;
   double saturated_share = 0.0;  ///< of the ticks in contact
+  bool within_limits = true;     ///< the part of the validity rule that tells of forces
 
   friend bool operator==(const TrialMeasures&, const TrialMeasures&) = default;
+};
+
+/// Sealed part of `closed`: the chain before it. Without the key no other chain can be given this
+/// end.
+struct ChainEnd {
+  std::int64_t length = 0;  ///< events before `closed`
+  Digest head{};            ///< hash of the last of them
+
+  friend bool operator==(const ChainEnd&, const ChainEnd&) = default;
 };
 
 /// `presented`, `first-contact`, `interrupted`, `timed-out`: which trial, from 1, and why.

@@ -111,7 +111,8 @@ std::string to_json(const TrialMeasures& body) {
   return compact({{"contact_s", finite(body.contact_s, "contact_s")},
                   {"path_mm", finite(body.path_mm, "path_mm")},
                   {"force_rms_n", finite(body.force_rms_n, "force_rms_n")},
-                  {"saturated_share", finite(body.saturated_share, "saturated_share")}});
+                  {"saturated_share", finite(body.saturated_share, "saturated_share")},
+                  {"within_limits", body.within_limits}});
 }
 
 TrialMeasures measures_from_json(const std::string& text) try {
@@ -119,10 +120,20 @@ TrialMeasures measures_from_json(const std::string& text) try {
   return {.contact_s = object.number("contact_s"),
           .path_mm = object.number("path_mm"),
           .force_rms_n = object.number("force_rms_n"),
-          .saturated_share = object.number("saturated_share")};
+          .saturated_share = object.number("saturated_share"),
+          .within_limits = object.flag("within_limits")};
 } catch (const StoreError& error) {
   throw StoreError(std::string("sealed measures of a trial: ") + error.what() +
-                   "; the database is damaged or of another version, run `touchtrial verify`");
+                   "; the database is damaged or of another version, restore it from a backup");
+}
+
+std::string to_json(const ChainEnd& body) {
+  return compact({{"length", body.length}, {"head", hex(body.head)}});
+}
+
+ChainEnd chain_end_from_json(const std::string& text) {
+  const JsonObject object(text);
+  return {.length = object.integer("length", 1, kAny), .head = object.digest("head")};
 }
 
 std::string to_json(const SessionOpenedBody& body) {

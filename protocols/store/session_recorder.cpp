@@ -81,7 +81,9 @@ void SessionRecorder::remarked(std::chrono::nanoseconds at, EventKind kind,
 }
 
 void SessionRecorder::closed(std::chrono::nanoseconds at, bool complete) {
-  append(at, EventKind::closed, completion_to_json(complete), "");
+  // Only who has the key can seal this: a chain that was made anew without it ends otherwise.
+  append(at, EventKind::closed, completion_to_json(complete),
+         to_json(ChainEnd{.length = length_, .head = head_}));
 }
 
 void SessionRecorder::append(std::chrono::nanoseconds at, EventKind kind, std::string body,

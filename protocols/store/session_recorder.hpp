@@ -60,6 +60,7 @@ class SessionRecorder {
                     const Trace& trace);
   /// calibrated, instructed, practised, break_taken, paused, stopped, noted: a line of text or "".
   void remarked(std::chrono::nanoseconds at, EventKind kind, const std::string& text);
+  /// Seals the chain's length and head up to here into the event, see ChainEnd.
   /// \param complete  whether the schedule was finished
   void closed(std::chrono::nanoseconds at, bool complete);
 

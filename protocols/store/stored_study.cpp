@@ -7,6 +7,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <optional>
+#include <set>
 
 namespace touchtrial {
 namespace {
@@ -46,7 +48,7 @@ void StoredStudy::require_reason(const std::string& reason, const std::string& w
 const StudyCommitment& StoredStudy::commitment() const {
   if (!commitment_) {
     const std::optional<Event> first = read_event(database_, 0, 0);
-    if (!first) refuse("its first event is missing; run `touchtrial verify`");
+    if (!first) refuse("its first event is missing; restore it from a backup");
     commitment_ = body_of(*first, commitment_from_json);
   }
   return *commitment_;
@@ -55,10 +57,16 @@ const StudyCommitment& StoredStudy::commitment() const {
 StudyState StoredStudy::state() const {
   StudyState state;
   state.closed = is_closed(database_);
-  const EventFilter unblindings{.session = 0, .sequence = {}, .kind = EventKind::study_unblinded};
-  for_each_event(database_, unblindings, [&](const Event& event) {
+  std::set<int> ended;
+  for_each_event(database_, 0, [&](const Event& event) {
+    if (event.kind == EventKind::session_closed) {
+      ended.insert(body_of(event, session_closed_from_json).session);
+    }
+    if (event.kind != EventKind::study_unblinded) return;
+    const UnblindingBody body = body_of(event, unblinding_from_json);
     state.unblinded = true;
-    state.unblinding_reason = body_of(event, unblinding_from_json).reason;
+    state.unblinding_reason = body.reason;
+    state.interim = body.interim ? std::optional(ended) : std::nullopt;
   });
   return state;
 }
@@ -67,7 +75,7 @@ int StoredStudy::next_session() const {
   Query query = database_.query("SELECT max(session) FROM events");
   const std::int64_t last = query.step() ? query.integer(0) : 0;
   if (last < 0 || last >= std::numeric_limits<int>::max()) {
-    refuse("has events of session " + std::to_string(last) + "; run `touchtrial verify`");
+    refuse("has events of session " + std::to_string(last) + "; restore it from a backup");
   }
   return static_cast<int>(last) + 1;
 }
@@ -79,6 +87,12 @@ SessionRow StoredStudy::session(int session) const {
            "; see the sessions with `touchtrial report`");
   }
   return rows.sessions.begin()->second;
+}
+
+ChainHead StoredStudy::file_head() const {
+  const std::optional<Event> last = last_event(database_, 0);
+  if (!last) return {};
+  return {.length = last->sequence + 1, .hash = last->hash};
 }
 
 void StoredStudy::append_to_file(EventKind kind, std::chrono::nanoseconds at,

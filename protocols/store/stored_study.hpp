@@ -23,6 +23,8 @@ class StoredStudy {
   /// The first event's body; read once. \throws StoreError if there is none
   [[nodiscard]] const StudyCommitment& commitment() const;
   [[nodiscard]] StudyState state() const;
+  /// Where the file's chain ends.
+  [[nodiscard]] ChainHead file_head() const;
   [[nodiscard]] int next_session() const;
   /// \throws StoreError if there is no such session
   [[nodiscard]] SessionRow session(int session) const;

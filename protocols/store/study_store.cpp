@@ -1,6 +1,7 @@
 #include "protocols/store/study_store.hpp"
 
 #include "protocols/store/chain_check.hpp"
+#include "protocols/store/damaged_store.hpp"
 #include "protocols/store/derived_rows.hpp"
 #include "protocols/store/event_rows.hpp"
 #include "protocols/store/payload_json.hpp"
@@ -29,7 +30,7 @@ void check_tables(const Database& database) {
               "'traces', 'participant_keys', 'sessions', 'trials', 'responses')")
           .getInt();
   if (tables != 6) {
-    throw StoreError(
+    throw DamagedStore(
         database.refusal("lacks tables of its schema; it is damaged, restore it from a backup"));
   }
 }
@@ -104,6 +105,10 @@ StudyState StudyStore::state() const {
   return impl_->run([&] { return impl_->study.state(); });
 }
 
+ChainHead StudyStore::file_head() const {
+  return impl_->run([&] { return impl_->study.file_head(); });
+}
+
 std::vector<SessionRow> StudyStore::sessions() const {
   return impl_->run([&] { return read_sessions(impl_->database()); });
 }
@@ -174,8 +179,12 @@ void StudyStore::unblind(std::chrono::nanoseconds at, const std::string& reason,
     if (!closed && !interim) {
       impl_->study.refuse("the study is still open; close it first, or look with --interim");
     }
+    if (closed && interim) {
+      impl_->study.refuse(
+          "the study is closed, so that this is no interim look; unblind it without --interim");
+    }
     impl_->study.append_to_file(EventKind::study_unblinded, at,
-                                to_json(UnblindingBody{.reason = reason, .interim = !closed}));
+                                to_json(UnblindingBody{.reason = reason, .interim = interim}));
   });
 }
 
@@ -209,11 +218,11 @@ void StudyStore::withdraw(int session, std::chrono::nanoseconds at, const std::s
   }
 }
 
-std::optional<ChainFault> StudyStore::first_fault() const {
+std::optional<ChainFault> StudyStore::first_fault(TraceCheck traces) const {
   return impl_->run([&] {
     // One transaction, so that everything is seen at one moment even while others write.
     SQLite::Transaction snapshot(impl_->database().connection());
-    return find_first_fault(impl_->database());
+    return find_first_fault(impl_->database(), traces);
   });
 }
 

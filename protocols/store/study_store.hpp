@@ -13,6 +13,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -60,9 +61,29 @@ struct TrialRow {
 /// What the file's chain says of the state of collection.
 struct StudyState {
   bool closed = false;
-  bool unblinded = false;  ///< outcomes may be shown (an interim look counts)
-  std::string unblinding_reason;
+  bool unblinded = false;         ///< outcomes may be shown (an interim look counts)
+  std::string unblinding_reason;  ///< of the last unblinding
+  /// If that was an interim look: the sessions that had ended before it.
+  std::optional<std::set<int>> interim;
+
+  /// Whether a session's outcomes may be shown: an interim look shows nothing of sessions that end
+  /// after it.
+  [[nodiscard]] bool shows(int session) const {
+    return unblinded && (!interim || interim->contains(session));
+  }
 };
+
+/// Where a chain ends.
+struct ChainHead {
+  std::int64_t length = 0;  ///< number of events
+  Digest hash{};            ///< of the last; zeros if there is none
+
+  friend bool operator==(const ChainHead&, const ChainHead&) = default;
+};
+
+/// How much of a study is looked at: reading the file's pages and its traces, nearly all of a file,
+/// may be left out.
+enum class TraceCheck { full, skip };
 
 /// A broken link, named: chain, sequence, what does not hold.
 struct ChainFault {
@@ -90,7 +111,8 @@ class StudyStore {
   /// crash left), leaves nothing beside the file, and sees what other programs write; a file
   /// without a -wal can be read where nothing can be written, but should not be written to then by
   /// anybody else. Only what opening takes is looked at: see first_fault.
-  /// \throws StoreError if it is missing, no Touchtrial database, damaged, or newer
+  /// \throws DamagedStore if it is truncated, lacks tables or cannot be read by SQLite
+  /// \throws StoreError if it is missing, no Touchtrial database, or newer
   [[nodiscard]] static StudyStore open(const std::filesystem::path& path, Access access);
 
   ~StudyStore();
@@ -99,6 +121,8 @@ class StudyStore {
 
   [[nodiscard]] const StudyCommitment& commitment() const;
   [[nodiscard]] StudyState state() const;
+  /// Where the file's chain ends.
+  [[nodiscard]] ChainHead file_head() const;
   [[nodiscard]] std::vector<SessionRow> sessions() const;
   /// All trials of all sessions, by session and trial.
   [[nodiscard]] std::vector<TrialRow> trials() const;
@@ -126,7 +150,10 @@ class StudyStore {
   [[nodiscard]] int next_session() const;
 
   void close_study(std::chrono::nanoseconds at);
-  /// \throws StoreError if the study is open and `interim` is false, or `reason` is empty
+  /// \param interim  a look at the sessions that have ended, while the study goes on
+  /// \throws StoreError if the study is open and `interim` is false or it is closed and `interim`
+  /// is
+  ///   true, or `reason` is empty
   void unblind(std::chrono::nanoseconds at, const std::string& reason, bool interim);
 
   /// Marks a session as left out of outcomes. \throws StoreError if there is no such session, it is
@@ -146,8 +173,9 @@ class StudyStore {
   /// lengths, stored traces against their events, and the derived tables against the events. What a
   /// chain cannot show: events cut off the end of the file's chain, or of a session that is still
   /// open.
+  /// \param traces  `skip`: neither the pages of the file nor its traces are looked at
   /// \return the first fault, or nothing
-  [[nodiscard]] std::optional<ChainFault> first_fault() const;
+  [[nodiscard]] std::optional<ChainFault> first_fault(TraceCheck traces = TraceCheck::full) const;
 
   /// Makes the derived tables anew from the events.
   void rebuild_derived();

@@ -47,7 +47,7 @@ constexpr std::array<Channel, 6> kChannels = {{
 
 [[noreturn]] void refuse_bytes(const char* why) {
   throw StoreError(std::string("trace: ") + why +
-                   "; the database is damaged or of another version, run `touchtrial verify`");
+                   "; the database is damaged or of another version, restore it from a backup");
 }
 
 /// Whole steps of one channel. The limits keep all differences of differences within 32 bits.

@@ -133,6 +133,27 @@ TEST_CASE("trials.csv has the published columns, exact times and figures") {
   CHECK(missed.at("reaction_time_s").empty());
 }
 
+TEST_CASE("An exported trial is valid by the rule's part in clear, then by its sealed part too") {
+  FakeStudy study(Protocol::classification);
+  study.add({.participant = "P01",
+             .enrolment = 1,
+             .answers = FakeStudy::always_right(),
+             .within_limits = false});
+  study.add(
+      {.participant = "P02", .enrolment = 2, .answers = FakeStudy::always_right(), .valid = false});
+  study.add({.participant = "P03", .enrolment = 3, .answers = FakeStudy::always_right()});
+  const auto check = [&](const std::map<std::string, std::string>& expected) {
+    const std::vector<CsvRow> rows = rows_of(study.folder() / "trials.csv");
+    REQUIRE(rows.size() == 36);
+    for (const CsvRow& row : rows) CHECK(row.at("valid") == expected.at(row.at("participant")));
+  };
+  export_csv(study.store(), std::nullopt, study.folder());
+  check({{"P01", "1"}, {"P02", "0"}, {"P03", "1"}});
+  study.close_and_unblind();
+  export_csv(study.store(), load_outcomes(study.store(), study.key()), study.folder());
+  check({{"P01", "0"}, {"P02", "0"}, {"P03", "1"}});
+}
+
 TEST_CASE("Before unblinding an export has no word of what was presented or answered") {
   FakeStudy study(Protocol::comparison, {.label = "petrified wood"});
   fill(study);

@@ -86,7 +86,8 @@ void record_trial(SessionRecorder& recorder, const FakeSession& session, const S
   body.trial = shown.trial;
   body.rate_hz = 1000.0;
   body.valid = session.valid;
-  recorder.trace_stored(start + milliseconds(4500), body, {4.0, 300.5, 0.125, 0.001 * shown.trial},
+  recorder.trace_stored(start + milliseconds(4500), body,
+                        {4.0, 300.5, 0.125, 0.001 * shown.trial, session.within_limits},
                         fake_trace());
 }
 

@@ -22,8 +22,9 @@ struct FakeSession {
   bool complete = true;
   bool pilot = false;
   bool valid = true;
-  int interrupt_trial = 0;   ///< presented twice, the first time interrupted; 0: none
-  int stop_after = 1 << 20;  ///< presentations
+  bool within_limits = true;  ///< by the sealed measures
+  int interrupt_trial = 0;    ///< presented twice, the first time interrupted; 0: none
+  int stop_after = 1 << 20;   ///< presentations
 };
 
 struct FakeOptions {

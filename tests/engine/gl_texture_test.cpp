@@ -14,7 +14,7 @@ namespace {
 constexpr double kDoubleTolerance = 1e-10;
 /// What a float texture is promised to keep, in grey levels, on any 8-bit image.
 constexpr double kFloatTolerance = 4e-5;
-constexpr int kMaxRadius = 7;
+constexpr int kMaxRadius = 9;
 
 void check_against_definition(const GreyImage& image, double order, int radius) {
   const Plane<double> orders(image.height(), image.width(), order);

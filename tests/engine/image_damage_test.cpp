@@ -168,7 +168,8 @@ TEST_CASE("sample types other than unsigned 8 and 16 bits are refused") {
   CHECK_THAT(error_of(Tiff(1, 1, four).with(258, {32}).bytes()), holds_text("32-bit"));
   CHECK_THAT(error_of(Tiff(1, 1, four).with(258, {32}).with(339, {3}).bytes()),
              holds_text("floating-point"));
-  CHECK_THAT(error_of(Tiff(2, 1, four).with(258, {16}).with(339, {2}).bytes()), holds_text("signed"));
+  CHECK_THAT(error_of(Tiff(2, 1, four).with(258, {16}).with(339, {2}).bytes()),
+             holds_text("signed"));
   Bytes jpeg = encoded(".jpg", colour_picture());
   const Bytes frame_start = {0xFF, 0xC0};
   const auto frame = std::search(jpeg.begin(), jpeg.end(), frame_start.begin(), frame_start.end());

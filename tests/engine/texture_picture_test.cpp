@@ -34,6 +34,31 @@ TEST_CASE("texture_picture does not round a float twice") {
   CHECK(picture_of(std::nextafter(-0.5F, -1.0F)) == 127);
 }
 
+TEMPLATE_TEST_CASE("the mapping abs shows magnitudes, rounded half up", "", float, double) {
+  Plane<TestType> texture(1, 4);
+  texture.at(0, 0) = TestType(-3.5);
+  texture.at(0, 1) = TestType(2.25);
+  texture.at(0, 2) = TestType(-400);
+  const GreyImage picture = texture_picture(texture, Mapping::abs);
+  CHECK(picture.at(0, 0) == 4);
+  CHECK(picture.at(0, 1) == 2);
+  CHECK(picture.at(0, 2) == 255);
+  CHECK(picture.at(0, 3) == 0);
+}
+
+TEMPLATE_TEST_CASE("the mapping stretch fills 0 to 255, and shows a flat texture as 0", "", float,
+                   double) {
+  Plane<TestType> texture(1, 3);
+  texture.at(0, 0) = TestType(-1);
+  texture.at(0, 1) = TestType(1);
+  texture.at(0, 2) = TestType(4);
+  const GreyImage picture = texture_picture(texture, Mapping::stretch);
+  CHECK(picture.at(0, 0) == 0);
+  CHECK(picture.at(0, 1) == 102);
+  CHECK(picture.at(0, 2) == 255);
+  CHECK(texture_picture(Plane<TestType>(2, 3, TestType(7)), Mapping::stretch) == GreyImage(2, 3));
+}
+
 TEMPLATE_TEST_CASE("texture_surface adds mid-grey and rounds nothing", "", float, double) {
   const Plane<TestType> surface = texture_surface(Plane<TestType>(2, 3, TestType(-200.25)));
   REQUIRE(surface.height() == 2);

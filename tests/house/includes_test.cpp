@@ -78,7 +78,7 @@ bool may_include(const std::string& from, const std::string& to) {
   return from == to || kArrows.at(from).count(to) > 0;
 }
 
-/// The C++ standard library's headers have neither folder nor ending; POSIX's have one we list.
+/// The C++ standard library's headers have neither folder nor ending; all others have.
 bool is_third_party(const std::string& header) {
   return header.find('/') != std::string::npos || header.find('.') != std::string::npos;
 }
@@ -155,6 +155,8 @@ TEST_CASE("every header of the product guards itself and says what it is for") {
     INFO(path);
     CHECK(first.starts_with("/// \\file "));
     const std::string text((std::istreambuf_iterator<char>(file)), {});
-    CHECK(text.find("#pragma once") != std::string::npos);
+    // An -inl header is read once for every SIMD target, by the target macro's rules.
+    const bool once_a_target = path.ends_with("-inl.hpp");
+    CHECK((once_a_target || text.find("#pragma once") != std::string::npos));
   }
 }

@@ -202,7 +202,7 @@ TEST_CASE("an interrupted prepare leaves a pack that is nobody's, and keeps what
   write_noise(laboratory.image(0), 91);
   write_noise(laboratory.image(1), 92);
   replace_file(laboratory.image(2), std::string("not an image"));
-  CHECK_THROWS_AS(laboratory.prepare(), FileError);
+  CHECK_THROWS_AS(laboratory.prepare(), StudyError);
   const StudyKey key = laboratory.key();
   CHECK(Pack(laboratory.pack()).manifest().study_id == unfinished_id(key));
   CHECK(unfinished_id(key) != key.study_id);
@@ -275,16 +275,16 @@ TEST_CASE("the pack of another key is not overwritten, unless it is simulated") 
 TEST_CASE("a missing image is named by its place in the study and its path") {
   Laboratory laboratory;
   laboratory.document["classes"][2]["images"].push_back("absent.png");
-  const auto what = message_of<FileError>([&] { return laboratory.prepare(); });
-  CHECK(what.find("study small: /classes/2/images/1: ") == 0);
+  const auto what = message_of<StudyError>([&] { return laboratory.prepare(); });
+  CHECK(what.find("study.json: /classes/2/images/1: ") == 0);
   CHECK(what.find((laboratory.folder.path() / "absent.png").string()) != std::string::npos);
 }
 
 TEST_CASE("an image that cannot be decoded is named by its place in the study") {
   const Laboratory laboratory;
   replace_file(laboratory.image(1), std::string("not an image"));
-  CHECK(refuses<FileError>([&] { return laboratory.prepare(); },
-                           "study small: /classes/1/images/0: "));
+  CHECK(refuses<StudyError>([&] { return laboratory.prepare(); },
+                            "study.json: /classes/1/images/0: "));
 }
 
 TEST_CASE("two prepares of one pack do not run at once") {

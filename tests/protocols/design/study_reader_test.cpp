@@ -2,6 +2,7 @@
 #include "core/files.hpp"
 #include "protocols/design/study.hpp"
 #include "protocols/design/study_examples.hpp"
+#include "protocols/design/study_sections.hpp"
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 
@@ -153,6 +154,38 @@ TEST_CASE("a missing key is named by its place") {
   CHECK(refusal(document) == "study.json: /classes/0/images: is missing; add it");
 }
 
+TEST_CASE("every method is read with its options, and written again as it was read") {
+  json document = comparison_of(2);
+  document["methods"] = {{{"name", "adaptive"},
+                          {"norm", "sum"},
+                          {"gradient", "prewitt"},
+                          {"combine", "max"},
+                          {"levels", 3}},
+                         {{"name", "tv-gabor"}, {"components", "auto"}},
+                         {{"name", "gaussian"}, {"sigma_px", 1.5}},
+                         {{"name", "median"}, {"radius", 3}, {"threshold", 0}},
+                         {{"name", "edge"}, {"divisor", 2}},
+                         {{"name", "luminance"}}};
+  const Study study = parsed(document);
+  REQUIRE(study.methods.size() == 6);
+  CHECK(study.methods[0].norm == Norm::sum);
+  CHECK(study.methods[0].gradient == Gradient::prewitt);
+  CHECK(study.methods[0].combine == Combine::max);
+  CHECK(study.methods[0].levels == 3);
+  CHECK(study.methods[1].tv_gabor.automatic);
+  CHECK(study.methods[2].sigma_px == 1.5);
+  CHECK(study.methods[3].radius == 3);
+  CHECK(study.methods[3].threshold_grey == 0.0);
+  CHECK(study.methods[4].divisor == 2.0);
+  CHECK(study.methods[5].method == Method::luminance);
+  json again = document;
+  again["methods"] = json::array();
+  for (const ExtractionOptions& method : study.methods) again["methods"].push_back(to_json(method));
+  CHECK(again["methods"][1]["components"] == "auto");
+  CHECK(again["methods"][5] == json{{"name", "luminance"}});
+  CHECK(parsed(again).methods == study.methods);
+}
+
 TEST_CASE("a key that belongs to another method is refused with the reason") {
   json document = minimal_study();
   document["methods"][0]["lambda"] = 0.01;
@@ -160,7 +193,7 @@ TEST_CASE("a key that belongs to another method is refused with the reason") {
         "study.json: /methods/0/lambda: belongs to the method tv-gabor, not to adaptive; remove "
         "it");
   document["methods"] = {{{"name", "tv-gabor"}, {"radius", 2}}};
-  contains(refusal(document), "belongs to the methods adaptive and fixed, not to tv-gabor");
+  contains(refusal(document), "belongs to the methods adaptive, fixed and median, not to tv-gabor");
 }
 
 TEST_CASE("what this version does not do is refused honestly") {
@@ -333,12 +366,12 @@ TEST_CASE("a study file is read from disk, with images relative to its folder") 
   CHECK(study.text == minimal_study().dump(2));
 }
 
-TEST_CASE("a study file that is missing, a folder or far too large is a file error") {
+TEST_CASE("a study file that is missing, a folder or far too large is refused as a study") {
   const TempFolder folder;
-  CHECK_THROWS_AS(load_study(folder.path() / "none.json"), FileError);
-  CHECK_THROWS_AS(load_study(folder.path()), FileError);
+  CHECK_THROWS_AS(load_study(folder.path() / "none.json"), StudyError);
+  CHECK_THROWS_AS(load_study(folder.path()), StudyError);
   replace_file(folder.path() / "large.json", std::string((16U << 20U) + 1, ' '));
-  CHECK_THROWS_AS(load_study(folder.path() / "large.json"), FileError);
+  CHECK_THROWS_AS(load_study(folder.path() / "large.json"), StudyError);
 }
 
 }  // namespace touchtrial

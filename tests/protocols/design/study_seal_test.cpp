@@ -37,7 +37,12 @@ TEST_CASE("the configuration in clear has no label, image name or seed") {
   CHECK(configuration["protocol"] == "comparison");
   CHECK(configuration["positions"] == 3);
   CHECK(configuration["blinding"] == "double");
-  CHECK(configuration["methods"][0] == json{{"name", "adaptive"}, {"radius", 2}});
+  CHECK(configuration["methods"][0] == json{{"name", "adaptive"},
+                                            {"radius", 2},
+                                            {"norm", "additive"},
+                                            {"gradient", "sobel"},
+                                            {"combine", "sum"},
+                                            {"levels", 1}});
   CHECK(configuration["rendering"]["pitch_mm"] == 0.2);
   CHECK(configuration["trials"]["repeats"] == 5);
 }

@@ -154,6 +154,7 @@ TEST_CASE("a choice can be changed once before Next, and both are recorded") {
   lab.session.present(seconds(4));
   lab.session.end_exploring(seconds(5));
   lab.session.choose(2);
+  lab.session.choose(2);  // the same again is no change
   lab.session.choose(0);
   CHECK_THROWS_AS(lab.session.choose(1), std::logic_error);
   lab.session.confirm(seconds(6), 3);

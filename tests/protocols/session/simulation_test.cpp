@@ -7,6 +7,7 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -58,9 +59,27 @@ TEST_CASE("on smooth planes every subject is at chance") {
   subject.weber = GENERATE(0.0, 0.4);
   const StudyStore store = simulated(study, subject, {.participants = 20, .seed = 11, .jobs = 2});
   // 500 trials: 99.9 % of binomial draws with p = 0.2 lie between 71 and 131.
-  const int correct = correct_of(confusion_of(store, study.key()));
+  const Confusion confusion = confusion_of(store, study.key());
+  const int correct = correct_of(confusion);
   CHECK(correct >= 71);
   CHECK(correct <= 131);
+  // Nobody prefers a class either.
+  for (int answered = 0; answered < 5; ++answered) {
+    int times = 0;
+    for (const auto& [cell, count] : confusion) times += cell.second == answered ? count : 0;
+    CHECK(times >= 71);
+    CHECK(times <= 131);
+  }
+  // 25 even draws among five: fewer than three different answers come once in 10^9, and one answer
+  // 17 times or more once in 10^6.
+  std::map<int, std::map<int, int>> answers;
+  for (const TrialRow& row : store.trials()) ++answers[row.session][row.position.value()];
+  REQUIRE(answers.size() == 20);
+  for (const auto& [session, count] : answers) {
+    INFO("session " << session);
+    CHECK(count.size() >= 3);
+    for (const auto& [position, times] : count) CHECK(times < 17);
+  }
 }
 
 TEST_CASE("a label swap shows in the confusions of its two classes alone") {
@@ -150,6 +169,38 @@ TEST_CASE("but for answers, nothing in clear depends on what is presented") {
   const std::vector<Event> b = simulated(smooth, subject, options).events(1);
   REQUIRE(a.size() == b.size());
   for (std::size_t i = 0; i < a.size(); ++i) CHECK(clear_part(a[i]) == clear_part(b[i]));
+}
+
+/// Trials whose forces are within limits, by their sealed measures.
+int within_limits(const StudyStore& store, const StudyKey& key) {
+  const auto participant_key = unwrap_participant_key(key.master, 1, store.wrapped_key(1).value());
+  int within = 0;
+  store.for_each(EventKind::trace_stored, [&](const Event& event) {
+    const TrialMeasures measures =
+        measures_from_json(unsealed(event, participant_key.value()).value());
+    within += measures.within_limits ? 1 : 0;
+  });
+  return within;
+}
+
+TEST_CASE("a force limit that some textures reach does not show in clear which ones do") {
+  SubjectModel subject = quick_subject();
+  subject.explore_s = 6.0;
+  subject.training_passes = 1;
+  const std::string tight = R"({"max_force_n": 0.84})";
+  TinyStudy textured({.rendering = tight});
+  TinyStudy smooth({.smooth = true, .rendering = tight});
+  const SimulationOptions options{.participants = 1, .seed = 21};
+  const StudyStore limited = simulated(textured, subject, options);
+  const StudyStore free = simulated(smooth, subject, options);
+  CHECK(within_limits(limited, textured.key()) > 0);
+  CHECK(within_limits(limited, textured.key()) < 25);
+  CHECK(within_limits(free, smooth.key()) == 25);
+  const std::vector<Event> a = limited.events(1);
+  const std::vector<Event> b = free.events(1);
+  REQUIRE(a.size() == b.size());
+  for (std::size_t i = 0; i < a.size(); ++i) CHECK(clear_part(a[i]) == clear_part(b[i]));
+  for (const TrialRow& row : limited.trials()) CHECK(row.valid);
 }
 
 TEST_CASE("the last participants can be added later and are who they would have been") {

@@ -39,7 +39,8 @@ Study study_with(const TinyStudyOptions& options) {
   return parse_study(R"({"study":"tiny","protocol":")" +
                          std::string(options.comparison ? "comparison" : "classification") +
                          R"(","classes":[)" + classes + R"(],"methods":)" + methods +
-                         R"(,"trials":)" + options.trials + R"(,"seed":7})",
+                         R"(,"trials":)" + options.trials + R"(,"rendering":)" + options.rendering +
+                         R"(,"seed":7})",
                      ".", "tiny.json");
 }
 

@@ -13,11 +13,12 @@ namespace touchtrial {
 
 /// What a tiny study may have differently.
 struct TinyStudyOptions {
-  int images = 1;             ///< a class
-  bool comparison = false;    ///< two methods
-  bool smooth = false;        ///< gains are zero
-  std::uint64_t secret = 1;   ///< codes and secrets are a function of it
-  std::string trials = "{}";  ///< the study file's "trials"
+  int images = 1;                ///< a class
+  bool comparison = false;       ///< two methods
+  bool smooth = false;           ///< gains are zero
+  std::uint64_t secret = 1;      ///< codes and secrets are a function of it
+  std::string trials = "{}";     ///< the study file's "trials"
+  std::string rendering = "{}";  ///< the study file's "rendering"
 };
 
 /// Five textures of 120 x 120 pixels of 0.2 mm (waves of one length and direction each, with random

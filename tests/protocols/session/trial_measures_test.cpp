@@ -22,7 +22,7 @@ TEST_CASE("measures of a steady stroke are those of its one force") {
   CHECK(found.measures.path_mm == Approx(599.9));
   CHECK(found.measures.force_rms_n == Approx(0.5));
   CHECK(found.measures.saturated_share == 0.0);
-  CHECK(found.valid);
+  CHECK(found.valid());
 }
 
 TEST_CASE("time and way without contact do not count") {
@@ -36,22 +36,39 @@ TEST_CASE("time and way without contact do not count") {
 
 TEST_CASE("a trial without contact measures nothing and is invalid") {
   const TrialFindings found = findings_of(stroke(10.0, {}), kLimitN);
-  CHECK(found.measures == TrialMeasures{});
-  CHECK_FALSE(found.valid);
+  CHECK(found.measures == TrialMeasures{.within_limits = false});
+  CHECK_FALSE(found.valid());
+  CHECK_FALSE(findings_of({}, kLimitN).valid());
 }
 
-TEST_CASE("each clause of the validity rule can fail alone") {
-  CHECK_FALSE(findings_of(stroke(4.9, {0.0, 0.0, 0.7}), kLimitN).valid);
-  CHECK_FALSE(findings_of(stroke(6.0, {0.0, 0.0, 0.19}), kLimitN).valid);
-  CHECK_FALSE(findings_of(stroke(6.0, {0.0, 0.0, 2.01}), kLimitN).valid);
+TEST_CASE("each clause of the validity rule that tells of forces can fail alone, and is sealed") {
+  const auto fails_within = [](const Trace& trace) {
+    const TrialFindings found = findings_of(trace, kLimitN);
+    return found.long_enough && !found.measures.within_limits && !found.valid();
+  };
+  CHECK(fails_within(stroke(6.0, {0.0, 0.0, 0.19})));
+  CHECK(fails_within(stroke(6.0, {0.0, 0.0, 2.01})));
+  Trace lifted = stroke(6.0, {0.0, 0.0, 0.7});
+  for (int i = 0; i < 1100; ++i) lifted.samples[i].force_n = {};
+  CHECK(fails_within(lifted));
   Trace still = stroke(6.0, {0.0, 0.0, 0.7});
   for (TraceSample& sample : still.samples) sample.position_mm.x *= 0.4;
-  CHECK_FALSE(findings_of(still, kLimitN).valid);
+  CHECK(fails_within(still));
   Trace saturated = stroke(6.0, {0.0, 0.0, 0.7});
   for (int i = 0; i < 60; ++i) saturated.samples[100 * i].force_n = {0.0, 0.0, kLimitN};
-  const TrialFindings found = findings_of(saturated, kLimitN);
-  CHECK(found.measures.saturated_share == Approx(0.01));
-  CHECK_FALSE(found.valid);
+  CHECK(findings_of(saturated, kLimitN).measures.saturated_share == Approx(0.01));
+  CHECK(fails_within(saturated));
+}
+
+TEST_CASE("an exploration is long enough from its landing on, whatever is felt") {
+  CHECK(findings_of(stroke(5.0, {0.0, 0.0, 0.7}), kLimitN).long_enough);
+  CHECK_FALSE(findings_of(stroke(4.999, {0.0, 0.0, 0.7}), kLimitN).long_enough);
+  CHECK(findings_of(stroke(5.0, {}), kLimitN).long_enough);
+  Trace late = stroke(6.0, {0.0, 0.0, 0.7});
+  for (int i = 0; i < 1001; ++i) late.samples[i].position_mm.z = 3.1;
+  CHECK_FALSE(findings_of(late, kLimitN).long_enough);
+  late.samples[1000].position_mm.z = 3.0;
+  CHECK(findings_of(late, kLimitN).long_enough);
 }
 
 TEST_CASE("the validity rule asks for the median force, whatever the extremes") {
@@ -60,7 +77,7 @@ TEST_CASE("the validity rule asks for the median force, whatever the extremes") 
     if (i % 5 == 0) trace.samples[i].force_n.z = 0.01;
     if (i % 5 == 1) trace.samples[i].force_n.z = 2.5;
   }
-  CHECK(findings_of(trace, kLimitN).valid);
+  CHECK(findings_of(trace, kLimitN).valid());
 }
 
 }  // namespace

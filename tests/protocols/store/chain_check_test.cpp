@@ -226,7 +226,7 @@ TEST_CASE("a tampered database answers with one line, not with invented data") {
                                   refusal_of([&] { return study.store->trials(); }),
                                   refusal_of([&] { return study.store->commitment(); })}) {
     REQUIRE(contains(line, study.path.string()));
-    REQUIRE(contains(line, "run `touchtrial verify`"));
+    REQUIRE(contains(line, "restore it from a backup"));
   }
 }
 

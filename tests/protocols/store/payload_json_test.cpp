@@ -20,9 +20,10 @@ TEST_CASE("bodies are compact JSON with sorted keys") {
           R"({"position":0,"trial":7})");
   REQUIRE(to_json(AnswerBody{.trial = 7, .position = 1, .first_position = 4, .confidence = 2}) ==
           R"({"confidence":2,"first_position":4,"position":1,"trial":7})");
-  REQUIRE(to_json(TrialMeasures{
-              .contact_s = 8.5, .path_mm = 612.25, .force_rms_n = 0.1, .saturated_share = 0.0}) ==
-          R"({"contact_s":8.5,"force_rms_n":0.1,"path_mm":612.25,"saturated_share":0.0})");
+  REQUIRE(
+      to_json(TrialMeasures{
+          .contact_s = 8.5, .path_mm = 612.25, .force_rms_n = 0.1, .saturated_share = 0.0}) ==
+      R"({"contact_s":8.5,"force_rms_n":0.1,"path_mm":612.25,"saturated_share":0.0,"within_limits":true})");
   REQUIRE(to_json(UnblindingBody{.reason = "end \"now\"\n", .interim = true}) ==
           R"({"interim":true,"reason":"end \"now\"\n"})");
 }

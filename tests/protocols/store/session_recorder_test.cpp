@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "protocols/store/chain_link.hpp"
+#include "protocols/store/payload_json.hpp"
 #include "protocols/store/store_fixture.hpp"
 #include "support/catch.hpp"
 
@@ -48,15 +49,19 @@ TEST_CASE("a recorder knows its head and length") {
   REQUIRE(recorder.length() == 2);
 }
 
-TEST_CASE("only schedule and measures are sealed, and only the right key opens them") {
+TEST_CASE("only schedule, measures and the end are sealed, and only the right key opens them") {
   const BufferedEvents session = session_of(4);
   for (const Event& event : session.events) {
-    const bool secret = event.kind == EventKind::opened || event.kind == EventKind::trace_stored;
+    const bool secret = event.kind == EventKind::opened || event.kind == EventKind::trace_stored ||
+                        event.kind == EventKind::closed;
     REQUIRE(event.sealed.empty() != secret);
     REQUIRE(unsealed(event, participant_key(4)).has_value() == secret);
     REQUIRE_FALSE(unsealed(event, participant_key(5)));
   }
   REQUIRE(unsealed(session.events.front(), participant_key(4)) == R"({"schedule":"4"})");
+  const Event& end = session.events.back();
+  REQUIRE(chain_end_from_json(*unsealed(end, participant_key(4))) ==
+          ChainEnd{.length = end.sequence, .head = end.previous});
   REQUIRE(measures_from_json(*unsealed(session.events[5], participant_key(4))) ==
           TrialMeasures{
               .contact_s = 0.1, .path_mm = 512.5, .force_rms_n = 0.05, .saturated_share = 0.0});

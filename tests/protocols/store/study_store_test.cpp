@@ -216,6 +216,8 @@ TEST_CASE("unblinding is recorded with its reason, and an open study needs an in
   REQUIRE(study.store->state().unblinded);
   REQUIRE(study.store->state().unblinding_reason == "safety board");
   study.store->close_study(kUtc);
+  REQUIRE(
+      contains(refusal_of([&] { study.store->unblind(kUtc, "again", true); }), "no interim look"));
   study.store->unblind(kUtc, "collection is over", false);
   const auto chain = study.store->events(0);
   REQUIRE(chain[3].body == R"({"interim":true,"reason":"safety board"})");

@@ -1,4 +1,4 @@
-#include "engine/rendering/reconstruction_filter.hpp"
+#include "engine/gaussian_filter.hpp"
 
 #include "engine/rendering/sample_fields.hpp"
 #include "support/catch.hpp"

@@ -1,4 +1,4 @@
-#include "engine/rendering/reconstruction_filter.hpp"
+#include "engine/gaussian_filter.hpp"
 
 #include "engine/symmetric_extension.hpp"
 

@@ -1,5 +1,5 @@
-/// \file The Gaussian that takes from a surface what no device could render.
-/// Source: docs/method.md, "Rendering models".
+/// \file The Gaussian: takes from a surface what no device could render, and from an image what is
+/// texture. Source: docs/method.md, "Rendering" and "Other extractors".
 #pragma once
 
 #include "core/plane.hpp"

@@ -1,0 +1,88 @@
+#include "analysis/evaluation/evaluation_report.hpp"
+#include "analysis/text_table.hpp"
+
+#include <cstddef>
+
+#include <fmt/format.h>
+
+namespace touchtrial {
+namespace {
+
+/// A row of the co-occurrence table.
+struct Statistic {
+  const char* name;
+  double GlcmStatistics::*figure;
+  int decimals;
+};
+
+constexpr std::array<Statistic, 5> kStatistics = {
+    {{"ASM", &GlcmStatistics::angular_second_moment, 6},
+     {"energy", &GlcmStatistics::energy, 4},
+     {"entropy", &GlcmStatistics::entropy, 3},
+     {"contrast", &GlcmStatistics::contrast, 2},
+     {"correlation", &GlcmStatistics::correlation, 3}}};
+
+constexpr const char* kWhatEntropyIs =
+    "The paper's Table 1 prints, as \"Entropy\", what is called energy here: the square root of "
+    "the angular second moment (ASM). The entropy of the co-occurrence matrix, in nats, is the "
+    "row below it.";
+
+void add_statistic(TextTable& table, const Statistic& statistic, const char* picture,
+                   const GlcmTable& glcm) {
+  std::vector<std::string> row = {fmt::format("{}, {}", statistic.name, picture)};
+  for (const GlcmStatistics& direction : glcm) {
+    row.push_back(fmt::format("{:.{}f}", direction.*statistic.figure, statistic.decimals));
+  }
+  table.add(row);
+}
+
+std::string glcm_text(const Evaluation& evaluation) {
+  std::vector<std::string> header = {"co-occurrence"};
+  for (const GlcmOffset& offset : kGlcmOffsets) {
+    header.push_back(fmt::format("{} deg", offset.degrees));
+  }
+  TextTable table(header);
+  for (const Statistic& statistic : kStatistics) {
+    add_statistic(table, statistic, "original", evaluation.original.glcm);
+    add_statistic(table, statistic, "adaptive", evaluation.adaptive.glcm);
+  }
+  return table.text();
+}
+
+std::string orders_text(const Evaluation& evaluation) {
+  TextTable table({"fixed order", "entropy, nats", "MS-SSIM", "MS-SSIM (Wang)"});
+  for (const OrderFigures& figures : evaluation.orders) {
+    table.add({fmt::format("{:.2f}", figures.order), fmt::format("{:.4f}", figures.entropy),
+               fmt::format("{:.5f}", figures.ms_ssim),
+               fmt::format("{:.5f}", figures.ms_ssim_wang)});
+  }
+  const OrderFigures& closest = closest_order(evaluation);
+  return "\n" + table.text() + "\n" +
+         wrapped("  ", fmt::format("Closest to the adaptive texture is the fixed order {:.2f}: "
+                                   "MS-SSIM {:.5f} (Wang {:.5f}) where 1 is identity, entropy "
+                                   "{:.4f} against {:.4f} nats.",
+                                   closest.order, closest.ms_ssim, closest.ms_ssim_wang,
+                                   closest.entropy, evaluation.adaptive.entropy));
+}
+
+std::string image_text(const EvaluatedImage& image) {
+  const Evaluation& evaluation = image.evaluation;
+  std::string text = fmt::format(
+      "{}: {} x {} px, entropy of the grey levels {:.4f} nats, of the "
+      "adaptive texture {:.4f}\n\n",
+      image.image, evaluation.width, evaluation.height, evaluation.original.entropy,
+      evaluation.adaptive.entropy);
+  text += glcm_text(evaluation);
+  if (!evaluation.orders.empty()) text += orders_text(evaluation);
+  return text + "\n";
+}
+
+}  // namespace
+
+std::string evaluation_text(std::span<const EvaluatedImage> images) {
+  std::string text;
+  for (const EvaluatedImage& image : images) text += image_text(image);
+  return text + wrapped("", kWhatEntropyIs);
+}
+
+}  // namespace touchtrial

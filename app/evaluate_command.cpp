@@ -1,0 +1,77 @@
+#include "analysis/evaluation/evaluation_report.hpp"
+#include "analysis/figures/gnuplot.hpp"
+#include "app/commands.hpp"
+#include "app/console.hpp"
+#include "core/errors.hpp"
+#include "engine/image_file.hpp"
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct EvaluateArguments {
+  std::vector<fs::path> images;
+  bool sweep = false;
+  bool json = false;
+  fs::path picture;
+};
+
+EvaluatedImage evaluated(const fs::path& path, bool sweep,
+                         const std::function<void()>& order_done) {
+  const GreyImage image = read_grey_image(path);
+  try {
+    return {path.string(), evaluate_image(image, sweep, order_done)};
+  } catch (const std::invalid_argument& error) {
+    throw FileError(one_line(path.string()) + ": " + error.what() + "; give a larger image" +
+                    (sweep ? " or leave --sweep away" : ""));
+  }
+}
+
+std::vector<EvaluatedImage> evaluated(const EvaluateArguments& arguments) {
+  const auto bar = progress_bar("evaluating");
+  const int steps_of_image = arguments.sweep ? kSweptOrders : 1;
+  const int steps = static_cast<int>(arguments.images.size()) * steps_of_image;
+  int done = 0;
+  std::vector<EvaluatedImage> images;
+  for (const fs::path& path : arguments.images) {
+    images.push_back(evaluated(path, arguments.sweep, [&] { bar(++done, steps); }));
+    if (!arguments.sweep) bar(++done, steps);
+  }
+  return images;
+}
+
+int evaluate(const EvaluateArguments& arguments) {
+  if (!arguments.picture.empty()) require_gnuplot();
+  const std::vector<EvaluatedImage> images = evaluated(arguments);
+  if (!arguments.picture.empty()) {
+    draw_with_gnuplot(order_sweep_script(images), arguments.picture);
+  }
+  print(arguments.json ? evaluation_json(images) : evaluation_text(images));
+  return 0;
+}
+
+}  // namespace
+
+void add_evaluate_command(CLI::App& program, Action& action) {
+  auto arguments = std::make_shared<EvaluateArguments>();
+  CLI::App* command = program.add_subcommand(
+      "evaluate", "Co-occurrence statistics of images and their textures; the order sweep");
+  command->add_option("IMAGE", arguments->images, "PNG, JPEG, TIFF, BMP or PGM")->required();
+  CLI::Option* sweep = command->add_flag("--sweep", arguments->sweep,
+                                         "Compare the adaptive texture with fixed orders by "
+                                         "MS-SSIM: 0.05 to 0.95");
+  command->add_option("--picture", arguments->picture, "Draw the sweep's curves as PNG (gnuplot)")
+      ->needs(sweep);
+  command->add_flag("--json", arguments->json, "One JSON object in place of tables");
+  command->callback([=, &action] { action = [=] { return evaluate(*arguments); }; });
+}
+
+}  // namespace touchtrial

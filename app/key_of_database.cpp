@@ -1,0 +1,28 @@
+#include "app/key_of_database.hpp"
+
+#include "analysis/sealed_sessions.hpp"
+#include "app/console.hpp"
+#include "core/errors.hpp"
+
+#include <system_error>
+
+namespace touchtrial {
+
+StudyKey key_of_database(const StudyStore& store, const std::filesystem::path& database,
+                         const std::filesystem::path& given) {
+  const std::filesystem::path path = key_path_for(database, given);
+  std::error_code error;
+  if (given.empty() && !std::filesystem::exists(path, error)) {
+    throw FileError(path.string() + ": there is no key beside the database; name it with --key");
+  }
+  StudyKey key = load_study_key(path);
+  try {
+    require_key_of(store, key);
+  } catch (const VerificationError& wrong) {
+    throw VerificationError(path.string() + ": is not the key of " + database.string() + ": " +
+                            wrong.what());
+  }
+  return key;
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,164 @@
+#include "app/method_arguments.hpp"
+
+#include "core/errors.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+#include <system_error>
+
+namespace touchtrial {
+namespace {
+
+/// An option and the methods that it means something to.
+struct MethodOption {
+  const char* name;
+  std::vector<Method> methods;
+};
+
+const std::vector<MethodOption>& method_options() {
+  using enum Method;
+  static const std::vector<MethodOption> options = {
+      {"--order", {fixed}},          {"--radius", {adaptive, fixed, median}},
+      {"--norm", {adaptive, fixed}}, {"--gradient", {adaptive}},
+      {"--combine", {adaptive}},     {"--levels", {adaptive}},
+      {"--sigma", {gaussian}},       {"--threshold", {median}},
+      {"--divisor", {edge}},         {"--lambda", {tv_gabor}},
+      {"--components", {tv_gabor}}};
+  return options;
+}
+
+std::string owners_of(const MethodOption& option) {
+  std::string owners;
+  for (std::size_t i = 0; i < option.methods.size(); ++i) {
+    if (i > 0) owners += i + 1 == option.methods.size() ? " or " : ", ";
+    owners += name_of(option.methods[i]);
+  }
+  return owners;
+}
+
+void refuse_unused(const CLI::App& command, Method method) {
+  for (const MethodOption& option : method_options()) {
+    const bool used =
+        std::find(option.methods.begin(), option.methods.end(), method) != option.methods.end();
+    if (used || command.count(option.name) == 0) continue;
+    throw UsageError(std::string("extract: ") + option.name +
+                     " means nothing here; it goes with --method " + owners_of(option));
+  }
+}
+
+[[noreturn]] void refuse_components(const std::string& text) {
+  throw UsageError("extract: --components: " + one_line(text) +
+                   " is not auto or \"frequency,degrees;frequency,degrees\"");
+}
+
+/// The number that begins at `from`, which moves behind it.
+double take_number(const std::string& text, std::size_t& from) {
+  double number = 0.0;
+  const char* end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data() + from, end, number);
+  if (error != std::errc{}) refuse_components(text);
+  from = static_cast<std::size_t>(stop - text.data());
+  return number;
+}
+
+/// "f,theta;f,theta"
+std::vector<GaborComponent> components_from(const std::string& text) {
+  std::vector<GaborComponent> components;
+  std::size_t i = 0;
+  while (true) {
+    GaborComponent component;
+    component.frequency_cycles_per_px = take_number(text, i);
+    if (i >= text.size() || text[i++] != ',') refuse_components(text);
+    component.direction_deg = take_number(text, i);
+    components.push_back(component);
+    if (i == text.size()) return components;
+    if (text[i++] != ';') refuse_components(text);
+  }
+}
+
+void read_components(const std::string& text, TvGaborOptions& options) {
+  options.automatic = text == "auto";
+  if (!text.empty() && !options.automatic) options.components = components_from(text);
+}
+
+void check(const ExtractionOptions& options) {
+  try {
+    check_options(options);
+  } catch (const std::invalid_argument& error) {
+    const std::string what = error.what();
+    const bool of_component = what.starts_with("frequency") || what.starts_with("direction");
+    throw UsageError("extract: --" + (of_component ? "components: " + what : what));
+  }
+}
+
+void add_words(CLI::App& command, MethodArguments& arguments) {
+  command.add_option("--method", arguments.method, "How the texture is taken")
+      ->check(CLI::IsMember(method_names()))
+      ->capture_default_str();
+  command.add_option("--norm", arguments.norm, "Normalisation of the mask (adaptive, fixed)")
+      ->check(CLI::IsMember(words_of(kNormNames)))
+      ->capture_default_str();
+  command.add_option("--gradient", arguments.gradient, "Slope of the sub-bands (adaptive)")
+      ->check(CLI::IsMember(words_of(kGradientNames)))
+      ->capture_default_str();
+  command
+      .add_option("--combine", arguments.combine, "One number of all sub-bands' slopes (adaptive)")
+      ->check(CLI::IsMember(words_of(kCombineNames)))
+      ->capture_default_str();
+  command.add_option("--components", arguments.components,
+                     "Oscillations that are texture, \"cycles per px,degrees;..\", or auto "
+                     "(tv-gabor)");
+}
+
+void add_number(CLI::App& command, const char* option, double& number, const char* meaning,
+                double low, double high) {
+  command.add_option(option, number, meaning)->check(CLI::Range(low, high))->capture_default_str();
+}
+
+void add_numbers(CLI::App& command, ExtractionOptions& numbers) {
+  using Options = ExtractionOptions;
+  command.add_option("--order", numbers.order, "Fractional order, 0 <= V < 1 (fixed)")
+      ->check(CLI::Range(0.0, std::nextafter(1.0, 0.0)));
+  command
+      .add_option("--radius", numbers.radius,
+                  "Radius K of the mask (adaptive, fixed) or of the window (median)")
+      ->check(CLI::Range(1, Options::kMaxRadius))
+      ->capture_default_str();
+  command.add_option("--levels", numbers.levels, "Levels of sub-bands (adaptive)")
+      ->check(CLI::Range(1, Options::kMaxLevels))
+      ->capture_default_str();
+  add_number(command, "--sigma", numbers.sigma_px, "Standard deviation, pixels (gaussian)",
+             std::nextafter(0.0, 1.0), Options::kMaxSigma_px);
+  add_number(command, "--threshold", numbers.threshold_grey,
+             "Difference that is no texture yet, grey levels (median)", 0.0, 255.0);
+  add_number(command, "--divisor", numbers.divisor, "Of the norm of the gradient (edge)",
+             Options::kMinDivisor, Options::kMaxDivisor);
+  add_number(command, "--lambda", numbers.tv_gabor.lambda, "Weight of the texture norm (tv-gabor)",
+             TvGaborOptions::kMinLambda, TvGaborOptions::kMaxLambda);
+}
+
+}  // namespace
+
+void add_method_options(CLI::App& command, MethodArguments& arguments) {
+  add_words(command, arguments);
+  add_numbers(command, arguments.numbers);
+}
+
+ExtractionOptions extraction_options(const CLI::App& command, const MethodArguments& arguments) {
+  ExtractionOptions options = arguments.numbers;
+  options.method = *method_from_name(arguments.method);
+  refuse_unused(command, options.method);
+  if (options.method == Method::fixed && command.count("--order") == 0) {
+    throw UsageError("extract: --method fixed needs --order V, 0 <= V < 1");
+  }
+  options.norm = *choice_named<Norm>(kNormNames, arguments.norm);
+  options.gradient = *choice_named<Gradient>(kGradientNames, arguments.gradient);
+  options.combine = *choice_named<Combine>(kCombineNames, arguments.combine);
+  read_components(arguments.components, options.tv_gabor);
+  check(options);
+  return options;
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,40 @@
+/// \file The command line's options of the extraction methods. Private to app: it shows the
+/// parser's type.
+#pragma once
+
+#include "engine/extraction.hpp"
+
+#include <array>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+namespace touchtrial {
+
+/// The words as they are typed.
+struct MethodArguments {
+  std::string method = "adaptive";
+  std::string norm = "additive";
+  std::string gradient = "sobel";
+  std::string combine = "sum";
+  std::string components;  ///< "auto", "f,theta;f,theta", or nothing for the default
+  ExtractionOptions numbers;
+};
+
+/// Adds --method and one option for each of the methods' parameters.
+/// \param arguments  must live as long as the command
+void add_method_options(CLI::App& command, MethodArguments& arguments);
+
+/// The options that the parsed words mean.
+/// \throws UsageError for an option that the method does not have, and for values out of range
+[[nodiscard]] ExtractionOptions extraction_options(const CLI::App& command,
+                                                   const MethodArguments& arguments);
+
+template <std::size_t size>
+[[nodiscard]] std::vector<std::string> words_of(const std::array<std::string_view, size>& names) {
+  return {names.begin(), names.end()};
+}
+
+}  // namespace touchtrial

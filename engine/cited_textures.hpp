@@ -1,0 +1,25 @@
+/// \file The extractors that the paper cites, for comparison.
+/// Source: docs/method.md, "Other extractors". All use symmetric extension; textures are in grey
+/// levels, and exactly 0 on flat areas but for luminance_texture's. Thread-safe.
+#pragma once
+
+#include "core/plane.hpp"
+
+namespace touchtrial {
+
+/// T = I - Gaussian(I). \param image  not empty  \param sigma_px  > 0
+[[nodiscard]] Plane<double> gaussian_texture(const GreyImage& image, double sigma_px);
+
+/// T = I - median of the (2 * radius + 1)^2 samples round it where that exceeds the threshold in
+/// magnitude, else 0. A pixel costs 4 * radius + 2 steps.
+/// \param image  not empty  \param radius  pixels, >= 1  \param threshold_grey  >= 0
+[[nodiscard]] Plane<double> median_texture(const GreyImage& image, int radius,
+                                           double threshold_grey);
+
+/// T = min(127, norm of the Sobel gradient / divisor). \param image  not empty  \param divisor  > 0
+[[nodiscard]] Plane<double> edge_texture(const GreyImage& image, double divisor);
+
+/// T = I - 128: the picture itself is felt. \param image  not empty
+[[nodiscard]] Plane<double> luminance_texture(const GreyImage& image);
+
+}  // namespace touchtrial

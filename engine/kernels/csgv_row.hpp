@@ -1,0 +1,30 @@
+/// \file One row of the composite sub-band gradient (CSGV) and of the orders that follow from it,
+/// in single precision, vectorised for every target. Source: docs/method.md, "CSGV and the order
+/// map".
+#pragma once
+
+#include "engine/kernels/wavelet_rows.hpp"
+
+#include <array>
+
+namespace touchtrial {
+
+/// Three neighbouring rows of one sub-band, each with its ends mirrored: columns -1 to count.
+struct BandRows {
+  RootRow above;
+  RootRow centre;
+  RootRow below;
+};
+
+/// Sobel differences are taken of the exact integers, so CSGV is accurate relative to itself: exact
+/// where the gradient is a whole number along one axis, as for ramps, and 0 where it is 0.
+/// \param csgv  receives `count` samples; a vector behind them may be overwritten
+/// \return the largest of the samples
+float csgv_row(const std::array<BandRows, 4>& bands, int count, float* csgv);
+
+/// Orders of one row of squares, each twice: out[2 i] = out[2 i + 1] = the order of csgv[i].
+/// \param largest  of the whole image, >= kFlatBelowCsgv
+/// \param out  receives 2 * count samples; two vectors behind them may be overwritten
+void order_row(const float* csgv, int count, float largest, float* out);
+
+}  // namespace touchtrial

@@ -1,0 +1,156 @@
+#include "engine/kernels/float_extraction.hpp"
+
+#include "engine/kernels/aligned_rows.hpp"
+#include "engine/kernels/csgv_row.hpp"
+#include "engine/kernels/extended_rows.hpp"
+#include "engine/kernels/gl_row.hpp"
+#include "engine/kernels/half_gradient.hpp"
+#include "engine/kernels/reshaped.hpp"
+#include "engine/kernels/texture_sink.hpp"
+#include "engine/order_map.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <utility>
+
+namespace touchtrial {
+namespace {
+
+static_assert(ExtractionOptions::kMaxRadius <= kMaxGlRadius);
+
+using NamedBand = std::pair<SubBand, Plane<float>*>;
+
+std::array<NamedBand, 4> sub_bands_of(Extraction<float>& result) {
+  return {{{SubBand::ll, &result.sub_band_ll},
+           {SubBand::lh, &result.sub_band_lh},
+           {SubBand::hl, &result.sub_band_hl},
+           {SubBand::hh, &result.sub_band_hh}}};
+}
+
+void shape_sub_bands(bool wanted, const SubBandRows& bands, Extraction<float>& result) {
+  for (const auto& [band, plane] : sub_bands_of(result)) {
+    reshape_if(wanted, *plane, bands.height(), bands.width());
+  }
+}
+
+void keep_sub_bands(SubBandRows& bands, int y, Extraction<float>& result) {
+  for (const auto& [band, plane] : sub_bands_of(result)) {
+    sub_band_values(bands.row(band, y), bands.width(), plane->row(y).data());
+  }
+}
+
+/// What an extraction by another method may have left.
+void forget_other_methods(Extraction<float>& result) {
+  result.cartoon = {};
+  result.components.clear();
+  result.gap = 0.0;
+  result.steps = 0;
+  result.converged = true;
+}
+
+HalfGradient half_gradient(const GreyImage& image, bool with_sub_bands, Extraction<float>& result) {
+  SubBandRows bands(image);
+  shape_sub_bands(with_sub_bands, bands, result);
+  return HalfGradient(bands, [&](int y) {
+    if (with_sub_bands) keep_sub_bands(bands, y, result);
+  });
+}
+
+void keep_csgv(const HalfGradient& gradient, Plane<float>& csgv) {
+  for (int y = 0; y < csgv.height(); ++y) {
+    const float* const from = gradient.row(y / 2);
+    const auto to = csgv.row(y);
+    for (std::size_t x = 0; x < to.size(); ++x) to[x] = from[x / 2];
+  }
+}
+
+/// The orders of two image rows at a time, each square's order twice.
+class OrderRows {
+ public:
+  explicit OrderRows(const HalfGradient& gradient)
+      : gradient_(gradient),
+        row_(1, 2 * static_cast<std::size_t>(gradient.width()), kVectorBytes / sizeof(float)) {}
+
+  /// \param y  rows of the image in turn
+  const float* row(int y) {
+    if (y % 2 == 0) {
+      order_row(gradient_.row(y / 2), gradient_.width(), gradient_.largest(), row_.row(0));
+    }
+    return row_.row(0);
+  }
+
+ private:
+  const HalfGradient& gradient_;
+  AlignedRows<float> row_;
+};
+
+/// No order is above 0 anywhere: nothing need be looked at again.
+void finish_flat(const GreyImage& image, TextureSink& sink, Extraction<float>& result) {
+  std::fill(result.order.samples().begin(), result.order.samples().end(), 0.0F);
+  for (int y = 0; y < image.height(); ++y) {
+    std::fill_n(sink.row(y), image.width(), 0.0F);
+    sink.finish_row(y);
+  }
+  sink.finish();
+}
+
+void second_pass(const GreyImage& image, int radius, const HalfGradient& gradient,
+                 TextureSink& sink, Extraction<float>& result) {
+  OrderRows orders(gradient);
+  ExtendedRows rows(image, radius);
+  for (int y = 0; y < image.height(); ++y) {
+    const float* const order = orders.row(y);
+    if (!result.order.empty()) std::copy_n(order, image.width(), result.order.row(y).data());
+    rows.next_row();
+    gl_row(rows, radius, order, sink.row(y));
+    sink.finish_row(y);
+  }
+  sink.finish();
+}
+
+}  // namespace
+
+void extract_adaptive(const GreyImage& image, int radius, const WantedPlanes& wanted,
+                      Extraction<float>& result) {
+  forget_other_methods(result);
+  const HalfGradient gradient = half_gradient(image, wanted.sub_bands, result);
+  reshape_if(wanted.csgv, result.csgv, image.height(), image.width());
+  keep_csgv(gradient, result.csgv);
+  reshape_if(wanted.order, result.order, image.height(), image.width());
+  TextureSink sink(image.height(), image.width(), wanted, result);
+  if (gradient.largest() < static_cast<float>(kFlatBelowCsgv)) {
+    finish_flat(image, sink, result);
+  } else {
+    second_pass(image, radius, gradient, sink, result);
+  }
+}
+
+void extract_fixed(const GreyImage& image, int radius, double order, const WantedPlanes& wanted,
+                   Extraction<float>& result) {
+  forget_other_methods(result);
+  for (const auto& [band, plane] : sub_bands_of(result)) *plane = {};
+  result.csgv = {};
+  reshape_if(wanted.order, result.order, image.height(), image.width());
+  std::fill(result.order.samples().begin(), result.order.samples().end(),
+            static_cast<float>(order));
+  TextureSink sink(image.height(), image.width(), wanted, result);
+  ExtendedRows rows(image, radius);
+  for (int y = 0; y < image.height(); ++y) {
+    rows.next_row();
+    gl_row(rows, radius, order, sink.row(y));
+    sink.finish_row(y);
+  }
+  sink.finish();
+}
+
+void extract_sub_bands(const GreyImage& image, Extraction<float>& result) {
+  SubBandRows bands(image);
+  shape_sub_bands(true, bands, result);
+  for (int y = 0; y < bands.height(); ++y) {
+    bands.next_row();
+    keep_sub_bands(bands, y, result);
+  }
+}
+
+}  // namespace touchtrial

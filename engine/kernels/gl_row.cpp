@@ -1,0 +1,221 @@
+#include "engine/kernels/gl_row.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+// Compiled once for every target: this file includes itself.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "engine/kernels/gl_row.cpp"
+
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+// clang-format off: the next one is compiled for the target that those two have set.
+#include "engine/kernels/real_pairs-inl.hpp"
+// clang-format on
+
+#ifndef TOUCHTRIAL_GL_ROW_ONCE
+#define TOUCHTRIAL_GL_ROW_ONCE
+namespace touchtrial {
+namespace {
+
+/// Columns that are worked on at a time: with usual radii all that they need stays in the
+/// first-level cache.
+constexpr int kTile = 512;
+constexpr int kSlack = static_cast<int>(kVectorBytes / sizeof(std::int16_t));
+constexpr int kColumns = kTile + 2 * kMaxGlRadius + 2 + kSlack;
+
+/// Column sums of one tile. Entry i of ring k belongs to column x0 - k + i. Only what the radius
+/// needs is touched.
+struct Workspace {
+  alignas(64) std::int16_t centre[kColumns];
+  alignas(64) std::int16_t sums[kMaxGlRadius][kColumns];
+};
+
+struct Tile {
+  int x0;
+  int width;
+};
+
+/// a_{k+1} = lead[k] - v * share[k].
+struct DecayTable {
+  std::array<float, kMaxGlRadius + 1> lead{};
+  std::array<float, kMaxGlRadius + 1> share{};
+};
+
+constexpr DecayTable decay_table() {
+  DecayTable table;
+  for (int k = 1; k <= kMaxGlRadius; ++k) {
+    table.lead[k] = static_cast<float>(static_cast<double>(k) / (k + 1));
+    table.share[k] = static_cast<float>(1.0 / (k + 1));
+  }
+  return table;
+}
+
+constexpr DecayTable kDecays = decay_table();
+
+/// One order for all pixels: every factor is rounded once, from double.
+struct FixedFactors {
+  FixedFactors(double order, int radius) : gain(static_cast<float>(order / 8)) {
+    for (int k = 1; k < radius; ++k) decays[k] = static_cast<float>((k - order) / (k + 1));
+  }
+  float gain;
+  std::array<float, kMaxGlRadius + 1> decays{};
+};
+
+}  // namespace
+}  // namespace touchtrial
+#endif
+
+HWY_BEFORE_NAMESPACE();
+namespace touchtrial {
+namespace HWY_NAMESPACE {
+namespace {
+
+/// The factors that each pixel's own order gives.
+class PixelOrders {
+ public:
+  explicit PixelOrders(const float* orders) : orders_(orders) {}
+  HWY_INLINE RealPair at(int x) const { return load_pair(orders_ + x); }
+  static HWY_INLINE RealPair step(RealPair order, int k, RealPair ring, RealPair inner) {
+    const auto lead = hn::Set(Reals(), kDecays.lead[k]);
+    const auto share = hn::Set(Reals(), kDecays.share[k]);
+    return {hn::MulAdd(hn::NegMulAdd(order.lower, share, lead), inner.lower, ring.lower),
+            hn::MulAdd(hn::NegMulAdd(order.upper, share, lead), inner.upper, ring.upper)};
+  }
+  static HWY_INLINE RealPair finish(RealPair order, RealPair sum) {
+    const auto eighth = hn::Set(Reals(), 0.125F);  // the rings hold eight samples
+    return {hn::Mul(hn::Mul(order.lower, eighth), sum.lower),
+            hn::Mul(hn::Mul(order.upper, eighth), sum.upper)};
+  }
+
+ private:
+  const float* orders_;
+};
+
+/// The factors of one order for all pixels.
+class OneOrder {
+ public:
+  explicit OneOrder(const FixedFactors& factors) : factors_(factors) {}
+  struct Nothing {};
+  static HWY_INLINE Nothing at(int) { return {}; }
+  HWY_INLINE RealPair step(Nothing, int k, RealPair ring, RealPair inner) const {
+    const auto decay = hn::Set(Reals(), factors_.decays[k]);
+    return {hn::MulAdd(decay, inner.lower, ring.lower), hn::MulAdd(decay, inner.upper, ring.upper)};
+  }
+  HWY_INLINE RealPair finish(Nothing, RealPair sum) const {
+    const auto gain = hn::Set(Reals(), factors_.gain);
+    return {hn::Mul(gain, sum.lower), hn::Mul(gain, sum.upper)};
+  }
+
+ private:
+  const FixedFactors& factors_;
+};
+
+HWY_INLINE void load_centre(const ExtendedRows& rows, int radius, Tile tile, Workspace& work) {
+  const std::uint8_t* const from = rows.row(0) + tile.x0 - radius;
+  for (int i = 0; i < tile.width + 2 * radius; i += kBlock) {
+    hn::Store(load_bytes(from + i), Integers(), work.centre + i);
+  }
+}
+
+HWY_INLINE void sum_columns(const ExtendedRows& rows, int radius, int k, Tile tile,
+                            Workspace& work) {
+  const std::uint8_t* const above = rows.row(-k) + tile.x0 - k;
+  const std::uint8_t* const below = rows.row(k) + tile.x0 - k;
+  const std::int16_t* const centre = work.centre + radius - k;
+  std::int16_t* const sums = work.sums[k - 1];
+  for (int i = 0; i < tile.width + 2 * k; i += kBlock) {
+    const auto wings = hn::Add(load_bytes(above + i), load_bytes(below + i));
+    hn::Store(hn::Add(wings, hn::LoadU(Integers(), centre + i)), Integers(), sums + i);
+  }
+}
+
+/// 8 D_k of a block.
+HWY_INLINE RealPair ring_difference(const Workspace& work, int k, int i, Integer nine_centre) {
+  const Integers d;
+  const std::int16_t* const sums = work.sums[k - 1] + i;
+  const auto sides = hn::Add(hn::LoadU(d, sums), hn::LoadU(d, sums + 2 * k));
+  return to_reals(hn::Sub(hn::Sub(nine_centre, hn::LoadU(d, sums + k)), sides));
+}
+
+/// The texture of a block, from the outermost ring in.
+/// \param kRadius  the radius where it is known at compile time, else 0
+template <int kRadius, class Orders>
+HWY_INLINE RealPair texture_block(const Workspace& work, int any_radius, int x0, int i,
+                                  const Orders& orders) {
+  const int radius = kRadius == 0 ? any_radius : kRadius;
+  const auto centre = hn::LoadU(Integers(), work.centre + radius + i);
+  const auto nine_centre = hn::Add(hn::ShiftLeft<3>(centre), centre);
+  const auto order = orders.at(x0 + i);
+  RealPair sum = ring_difference(work, radius, i, nine_centre);
+  for (int k = radius - 1; k >= 1; --k) {
+    sum = orders.step(order, k, ring_difference(work, k, i, nine_centre), sum);
+  }
+  return orders.finish(order, sum);
+}
+
+template <int kRadius, class Orders>
+HWY_INLINE void texture_tile(const Workspace& work, int radius, Tile tile, const Orders& orders,
+                             float* texture) {
+  int i = 0;
+  for (; i + kBlock <= tile.width; i += kBlock) {
+    store_pair(texture_block<kRadius>(work, radius, tile.x0, i, orders), texture + tile.x0 + i);
+  }
+  if (i == tile.width) return;
+  alignas(64) float rest[kBlock];
+  store_pair(texture_block<kRadius>(work, radius, tile.x0, i, orders), rest);
+  std::copy_n(rest, tile.width - i, texture + tile.x0 + i);
+}
+
+template <class Orders>
+HWY_INLINE void texture_row(const ExtendedRows& rows, int radius, const Orders& orders,
+                            float* texture) {
+  Workspace work;
+  for (int x0 = 0; x0 < rows.width(); x0 += kTile) {
+    const Tile tile{x0, std::min(kTile, rows.width() - x0)};
+    load_centre(rows, radius, tile, work);
+    for (int k = 1; k <= radius; ++k) sum_columns(rows, radius, k, tile, work);
+    if (radius == 2) {  // the usual one, worth its own code
+      texture_tile<2>(work, radius, tile, orders, texture);
+    } else {
+      texture_tile<0>(work, radius, tile, orders, texture);
+    }
+  }
+}
+
+void row_of_orders(const ExtendedRows& rows, int radius, const float* orders, float* texture) {
+  texture_row(rows, radius, PixelOrders(orders), texture);
+}
+
+void row_of_one_order(const ExtendedRows& rows, int radius, const FixedFactors& factors,
+                      float* texture) {
+  texture_row(rows, radius, OneOrder(factors), texture);
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace touchtrial
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace touchtrial {
+namespace {
+
+HWY_EXPORT(row_of_orders);
+HWY_EXPORT(row_of_one_order);
+
+}  // namespace
+
+void gl_row(const ExtendedRows& rows, int radius, const float* orders, float* texture) {
+  HWY_DYNAMIC_DISPATCH(row_of_orders)(rows, radius, orders, texture);
+}
+
+void gl_row(const ExtendedRows& rows, int radius, double order, float* texture) {
+  HWY_DYNAMIC_DISPATCH(row_of_one_order)
+  (rows, radius, FixedFactors(order, radius), texture);
+}
+
+}  // namespace touchtrial
+#endif

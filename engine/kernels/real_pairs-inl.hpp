@@ -1,0 +1,81 @@
+/// \file Sixteen-bit integers and the reals that they become, for one target: one vector of
+/// integers makes a pair of vectors of reals. The one-lane target has only the lower of the two.
+// Included once for every target, by files that do the same.
+#if defined(TOUCHTRIAL_REAL_PAIRS_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef TOUCHTRIAL_REAL_PAIRS_INL
+#undef TOUCHTRIAL_REAL_PAIRS_INL
+#else
+#define TOUCHTRIAL_REAL_PAIRS_INL
+#endif
+
+#include <cstddef>
+#include <cstdint>
+
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace touchtrial {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using Reals = hn::ScalableTag<float>;
+using WideIntegers = hn::RebindToSigned<Reals>;
+#if HWY_TARGET == HWY_SCALAR
+using Integers = hn::Rebind<std::int16_t, Reals>;
+#else
+using Integers = hn::Repartition<std::int16_t, Reals>;
+#endif
+using Real = hn::Vec<Reals>;
+using Integer = hn::Vec<Integers>;
+
+/// Integers in a vector: how many samples a block of the kernels has.
+constexpr int kBlock = static_cast<int>(hn::MaxLanes(Integers()));
+
+struct RealPair {
+  Real lower;
+  Real upper;
+};
+
+/// The integers as reals, which is exact.
+HWY_INLINE RealPair to_reals(Integer v) {
+  const Reals d;
+  const WideIntegers wide;
+#if HWY_TARGET == HWY_SCALAR
+  return {hn::ConvertTo(d, hn::PromoteTo(wide, v)), hn::Zero(d)};
+#else
+  const hn::Half<Integers> half;
+  return {hn::ConvertTo(d, hn::PromoteTo(wide, hn::LowerHalf(half, v))),
+          hn::ConvertTo(d, hn::PromoteTo(wide, hn::UpperHalf(half, v)))};
+#endif
+}
+
+HWY_INLINE RealPair load_pair(const float* from) {
+  const Reals d;
+#if HWY_TARGET == HWY_SCALAR
+  return {hn::LoadU(d, from), hn::Zero(d)};
+#else
+  return {hn::LoadU(d, from), hn::LoadU(d, from + hn::Lanes(d))};
+#endif
+}
+
+HWY_INLINE void store_pair(RealPair pair, float* to) {
+  const Reals d;
+  hn::StoreU(pair.lower, d, to);
+#if HWY_TARGET != HWY_SCALAR
+  hn::StoreU(pair.upper, d, to + hn::Lanes(d));
+#endif
+}
+
+/// kBlock bytes as integers.
+HWY_INLINE Integer load_bytes(const std::uint8_t* from) {
+  return hn::PromoteTo(Integers(), hn::LoadU(hn::Rebind<std::uint8_t, Integers>(), from));
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace touchtrial
+HWY_AFTER_NAMESPACE();
+
+#endif

@@ -1,0 +1,179 @@
+#include "engine/pictures/force_arrows.hpp"
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <vector>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace touchtrial {
+namespace {
+
+constexpr int kPanel_px = 720;
+constexpr int kMargin_px = 24;
+constexpr int kSubpixelBits = 4;
+/// All but the strongest 5 % of the arrows are at most this many pixels of the texture long, so
+/// that neighbours in a row do not run into each other.
+constexpr double kLongArrow_px = 0.95;
+constexpr double kShortestArrow_px = 0.06;
+
+const cv::Scalar kWhite(255, 255, 255);
+const cv::Scalar kArrowColour(0, 60, 230);  // blue, green, red
+
+double norm_at(const ForceField<double>& force, int y, int x) {
+  return std::hypot(force.x.at(y, x), force.y.at(y, x));
+}
+
+/// sums(y, x): of the squared forces above and left of (y, x).
+cv::Mat summed_squares(const ForceField<double>& force) {
+  cv::Mat squares(force.x.height(), force.x.width(), CV_64F);
+  for (int y = 0; y < squares.rows; ++y) {
+    for (int x = 0; x < squares.cols; ++x) {
+      const double norm = norm_at(force, y, x);
+      squares.at<double>(y, x) = norm * norm;
+    }
+  }
+  cv::Mat sums;
+  cv::integral(squares, sums, CV_64F);
+  return sums;
+}
+
+double sum_in(const cv::Mat& sums, const ArrowPatch& patch) {
+  const int bottom = patch.y + patch.height;
+  const int right = patch.x + patch.width;
+  return sums.at<double>(bottom, right) - sums.at<double>(patch.y, right) -
+         sums.at<double>(bottom, patch.x) + sums.at<double>(patch.y, patch.x);
+}
+
+/// The force that 95 % of the patch's pixels do not exceed.
+double long_force_in(const ForceField<double>& force, const ArrowPatch& patch) {
+  std::vector<double> norms;
+  for (int y = patch.y; y < patch.y + patch.height; ++y) {
+    for (int x = patch.x; x < patch.x + patch.width; ++x) norms.push_back(norm_at(force, y, x));
+  }
+  const auto place = norms.begin() + static_cast<std::ptrdiff_t>(norms.size() * 19 / 20);
+  std::nth_element(norms.begin(), place, norms.end());
+  return *place > 0.0 ? *place : *std::max_element(norms.begin(), norms.end());
+}
+
+cv::Mat enlarged(const cv::Mat& picture, double scale) {
+  cv::Mat large;
+  const cv::Size size(std::max(1, static_cast<int>(std::lround(picture.cols * scale))),
+                      std::max(1, static_cast<int>(std::lround(picture.rows * scale))));
+  cv::resize(picture, large, size, 0, 0, scale < 1.0 ? cv::INTER_AREA : cv::INTER_NEAREST);
+  return large;
+}
+
+/// In units of 1 / 2^kSubpixelBits output pixels; the centre of the first output pixel is 0.
+cv::Point subpixel(double x, double y, double scale) {
+  const double units = 1 << kSubpixelBits;
+  return {static_cast<int>(std::lround((x * scale - 0.5) * units)),
+          static_cast<int>(std::lround((y * scale - 0.5) * units))};
+}
+
+void draw_arrows(cv::Mat& canvas, const ForceField<double>& force, const ArrowPatch& patch,
+                 double scale) {
+  if (patch.force_of_unit_arrow <= 0.0) return;
+  for (int y = 0; y < patch.height; ++y) {
+    for (int x = 0; x < patch.width; ++x) {
+      const double dx = force.x.at(patch.y + y, patch.x + x) / patch.force_of_unit_arrow;
+      const double dy = force.y.at(patch.y + y, patch.x + x) / patch.force_of_unit_arrow;
+      if (std::hypot(dx, dy) < kShortestArrow_px) continue;
+      cv::arrowedLine(canvas, subpixel(x + 0.5 - dx / 2, y + 0.5 - dy / 2, scale),
+                      subpixel(x + 0.5 + dx / 2, y + 0.5 + dy / 2, scale), kArrowColour, 2,
+                      cv::LINE_AA, kSubpixelBits, 0.3);
+    }
+  }
+}
+
+/// The whole texture, in the middle of a panel, with the patch framed.
+cv::Mat overview(const cv::Mat& texture, const ArrowPatch& patch) {
+  const double scale = static_cast<double>(kPanel_px) / std::max(texture.rows, texture.cols);
+  cv::Mat panel(kPanel_px, kPanel_px, CV_8UC3, kWhite);
+  cv::Mat picture = enlarged(texture, scale);
+  const cv::Point frame(static_cast<int>(patch.x * scale), static_cast<int>(patch.y * scale));
+  const cv::Size size(static_cast<int>(std::ceil(patch.width * scale)),
+                      static_cast<int>(std::ceil(patch.height * scale)));
+  cv::rectangle(picture, cv::Rect(frame, size), kArrowColour, 3);
+  picture.copyTo(panel(cv::Rect((kPanel_px - picture.cols) / 2, (kPanel_px - picture.rows) / 2,
+                                picture.cols, picture.rows)));
+  return panel;
+}
+
+cv::Mat close_up(const cv::Mat& texture, const ForceField<double>& force, const ArrowPatch& patch) {
+  const double scale = static_cast<double>(kPanel_px) / std::max(patch.height, patch.width);
+  cv::Mat panel(kPanel_px, kPanel_px, CV_8UC3, kWhite);
+  cv::Mat picture = enlarged(texture(cv::Rect(patch.x, patch.y, patch.width, patch.height)), scale);
+  draw_arrows(picture, force, patch, scale);
+  picture.copyTo(panel(cv::Rect((kPanel_px - picture.cols) / 2, (kPanel_px - picture.rows) / 2,
+                                picture.cols, picture.rows)));
+  return panel;
+}
+
+cv::Mat in_colour(const GreyImage& image) {
+  cv::Mat grey(image.height(), image.width(), CV_8UC1);
+  for (int y = 0; y < image.height(); ++y) {
+    std::copy(image.row(y).begin(), image.row(y).end(), grey.ptr(y));
+  }
+  cv::Mat colour;
+  cv::cvtColor(grey, colour, cv::COLOR_GRAY2BGR);
+  return colour;
+}
+
+cv::Mat two_panels(const GreyImage& texture, const ForceField<double>& force,
+                   const ArrowPatch& patch) {
+  const cv::Mat picture = in_colour(texture);
+  cv::Mat sheet(kPanel_px, 2 * kPanel_px + kMargin_px, CV_8UC3, kWhite);
+  overview(picture, patch).copyTo(sheet(cv::Rect(0, 0, kPanel_px, kPanel_px)));
+  close_up(picture, force, patch)
+      .copyTo(sheet(cv::Rect(kPanel_px + kMargin_px, 0, kPanel_px, kPanel_px)));
+  return sheet;
+}
+
+}  // namespace
+
+ArrowPatch strongest_patch(const ForceField<double>& force) {
+  if (force.x.empty()) throw std::invalid_argument("strongest_patch: the field is empty");
+  const int height = std::min(kArrowPatchSide_px, force.x.height());
+  const int width = std::min(kArrowPatchSide_px, force.x.width());
+  const cv::Mat sums = summed_squares(force);
+  ArrowPatch best{(force.x.height() - height) / 2, (force.x.width() - width) / 2, height, width,
+                  0.0};
+  double most = 0.0;
+  for (int y = 0; y + height <= force.x.height(); ++y) {
+    for (int x = 0; x + width <= force.x.width(); ++x) {
+      const ArrowPatch patch{y, x, height, width, 0.0};
+      const double sum = sum_in(sums, patch);
+      if (sum <= most) continue;
+      most = sum;
+      best = patch;
+    }
+  }
+  best.force_of_unit_arrow = long_force_in(force, best) / kLongArrow_px;
+  return best;
+}
+
+ArrowPatch write_force_arrows(const std::filesystem::path& path, const GreyImage& texture,
+                              const ForceField<double>& force) {
+  if (texture.height() != force.x.height() || texture.width() != force.x.width()) {
+    throw std::invalid_argument("write_force_arrows: texture and field differ in size");
+  }
+  const ArrowPatch patch = strongest_patch(force);
+  std::vector<std::uint8_t> bytes;
+  if (!cv::imencode(".png", two_panels(texture, force, patch), bytes,
+                    {cv::IMWRITE_PNG_COMPRESSION, 9})) {
+    throw FileError(one_line(path.string()) + ": cannot be encoded as PNG; give a smaller image");
+  }
+  replace_file(path, bytes);
+  return patch;
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,79 @@
+#include "engine/evaluation/evaluation.hpp"
+
+#include "engine/entropy.hpp"
+#include "engine/example_images.hpp"
+#include "engine/extraction.hpp"
+#include "engine/metrics/ssim.hpp"
+#include "engine/refusal.hpp"
+#include "support/catch.hpp"
+
+namespace touchtrial {
+namespace {
+
+GreyImage fixed_picture(const GreyImage& image, double order) {
+  ExtractionOptions options;
+  options.method = Method::fixed;
+  options.order = order;
+  return texture_picture(extract_texture<double>(image, options).texture);
+}
+
+TEST_CASE("an evaluation holds the figures of the image and of its adaptive texture") {
+  const GreyImage image = cloth_image({20, 31});
+  const Evaluation evaluation = evaluate_image(image, false);
+  const GreyImage texture = texture_picture(extract_texture<double>(image, {}).texture);
+  CHECK(evaluation.height == 20);
+  CHECK(evaluation.width == 31);
+  CHECK(evaluation.original.entropy == entropy(image));
+  CHECK(evaluation.adaptive.entropy == entropy(texture));
+  const GlcmTable original = glcm_statistics(image);
+  const GlcmTable adaptive = glcm_statistics(texture);
+  for (std::size_t i = 0; i < kGlcmOffsets.size(); ++i) {
+    CHECK(evaluation.original.glcm[i].contrast == original[i].contrast);
+    CHECK(evaluation.adaptive.glcm[i].contrast == adaptive[i].contrast);
+  }
+  CHECK(evaluation.orders.empty());
+}
+
+TEST_CASE("a sweep compares the adaptive texture with every fixed order") {
+  const GreyImage image = cloth_image({170, 163});
+  int calls = 0;
+  const Evaluation evaluation = evaluate_image(image, true, [&] { ++calls; });
+  CHECK(calls == kSweptOrders);
+  REQUIRE(evaluation.orders.size() == kSweptOrders);
+  CHECK(evaluation.orders.front().order == 0.05);
+  CHECK(evaluation.orders[2].order == 0.15);
+  CHECK(evaluation.orders.back().order == 0.95);
+  const GreyImage adaptive = texture_picture(extract_texture<double>(image, {}).texture);
+  for (const std::size_t i : {std::size_t{0}, std::size_t{12}}) {
+    const OrderFigures& figures = evaluation.orders[i];
+    const GreyImage fixed = fixed_picture(image, figures.order);
+    CHECK(figures.entropy == entropy(fixed));
+    CHECK(figures.ms_ssim == ms_ssim<double>(adaptive, fixed).unit);
+    CHECK(figures.ms_ssim_wang == ms_ssim<double>(adaptive, fixed).wang);
+  }
+  for (const OrderFigures& figures : evaluation.orders) {
+    CHECK(closest_order(evaluation).ms_ssim >= figures.ms_ssim);
+  }
+}
+
+TEST_CASE("of a flat image every fixed order gives the adaptive texture") {
+  const Evaluation evaluation = evaluate_image(flat_image({161, 161}, 77), true);
+  for (const OrderFigures& figures : evaluation.orders) {
+    CHECK(figures.ms_ssim == 1.0);
+    CHECK(figures.entropy == 0.0);
+  }
+  CHECK(closest_order(evaluation).order == 0.05);
+}
+
+TEST_CASE("an image too small to be evaluated is refused with its size and the one needed") {
+  CHECK(refusal_of([] {
+          (void)evaluate_image(noise_image({160, 500}), true);
+        }) == "has 500 x 160 px; MS-SSIM needs at least 161 px on each side");
+  CHECK(refusal_of([] { (void)evaluate_image(noise_image({160, 500}), false); }).empty());
+  CHECK(refusal_of([] {
+          (void)evaluate_image(noise_image({1, 9}), false);
+        }) == "has 9 x 1 px; co-occurrence statistics need at least 2 px on each side");
+}
+
+}  // namespace
+}  // namespace touchtrial

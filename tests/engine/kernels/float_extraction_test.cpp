@@ -1,0 +1,219 @@
+#include "engine/kernels/float_extraction.hpp"
+
+#include "engine/every_simd_target.hpp"
+#include "engine/force_field.hpp"
+#include "engine/kernels/kernel_images.hpp"
+#include "engine/plane_comparison.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+
+namespace touchtrial {
+namespace {
+
+/// Grey levels, on any 8-bit image and on photographs at K = 2.
+constexpr double kAnyTolerance = 4e-5;
+constexpr double kPhotographTolerance = 2e-5;
+
+ExtractionOptions adaptive_options(int radius) {
+  ExtractionOptions options;
+  options.radius = radius;
+  return options;
+}
+
+/// Where CSGV is this close to 2 or 128, two ways of summing may take different branches.
+bool is_at_branch_point(double csgv) {
+  return std::abs(csgv - 2.0) < 1e-3 || std::abs(csgv - 128.0) < 1e-3;
+}
+
+/// The largest difference away from the branch points.
+double texture_error(const Plane<float>& texture, const Extraction<double>& truth) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < texture.size(); ++i) {
+    if (is_at_branch_point(truth.csgv.samples()[i])) continue;
+    largest = std::max(largest, std::abs(texture.samples()[i] - truth.texture.samples()[i]));
+  }
+  return largest;
+}
+
+void check_on_every_target(const GreyImage& image, int radius, double tolerance) {
+  const ExtractionOptions options = adaptive_options(radius);
+  const auto truth = extract_texture<double>(image, options, WantedPlanes::all());
+  on_every_simd_target([&] {
+    CHECK(texture_error(extract_texture<float>(image, options).texture, truth) < tolerance);
+  });
+}
+
+TEST_CASE(
+    "the adaptive kernels agree with double on every target, at every "
+    "size and radius") {
+  for (const Size size : kernel_sizes()) {
+    for (const auto& [name, image] : kernel_images(size)) {
+      for (const int radius : {1, 2, 3, 7, 63}) {
+        INFO(name << ", " << size.height << " x " << size.width << ", radius " << radius);
+        check_on_every_target(image, radius, kAnyTolerance);
+      }
+    }
+  }
+}
+
+TEST_CASE(
+    "the adaptive kernels agree with double on every target on a real "
+    "stimulus size") {
+  for (const auto& [name, image] : kernel_images({501, 499})) {
+    INFO(name);
+    check_on_every_target(image, 2, name == "cloth" ? kPhotographTolerance : kAnyTolerance);
+  }
+}
+
+/// A checkerboard with one level more here and there: large texture, hardly any gradient.
+GreyImage uneven_checkerboard(Size size) {
+  GreyImage image = checkerboard(size);
+  for (int y = 3; y < size.height; y += 11) {
+    for (int x = 5; x < size.width; x += 13) {
+      image.at(y, x) = static_cast<std::uint8_t>(std::abs(image.at(y, x) - 1));
+    }
+  }
+  return image;
+}
+
+TEST_CASE(
+    "the adaptive kernels keep their precision where CSGV is small and "
+    "texture large") {
+  for (const int radius : {1, 2, 7}) {
+    check_on_every_target(uneven_checkerboard({64, 63}), radius, kAnyTolerance);
+  }
+}
+
+TEST_CASE(
+    "the adaptive kernels see a ramp's CSGV exactly, even on the branch "
+    "point") {
+  on_every_simd_target([] {
+    WantedPlanes wanted;
+    wanted.csgv = true;
+    GreyImage image(40, 60);
+    for (int y = 0; y < 40; ++y) {
+      for (int x = 0; x < 60; ++x) image.at(y, x) = static_cast<std::uint8_t>(4 * x + 3);
+    }
+    const auto result = extract_texture<float>(image, adaptive_options(2), wanted);
+    for (int x = 4; x < 52; ++x) REQUIRE(result.csgv.at(20, x) == 128.0F);
+  });
+}
+
+TEST_CASE("the adaptive kernels keep a flat image exactly flat on every target") {
+  on_every_simd_target([] {
+    for (const int level : {0, 1, 127, 255}) {
+      const auto result = extract_texture<float>(flat_image({7, 37}, level), adaptive_options(2),
+                                                 WantedPlanes::all());
+      for (const Plane<float>* plane :
+           {&result.texture, &result.csgv, &result.order, &result.force.x, &result.force.y}) {
+        CHECK(plane->size() == 7 * 37);
+        CHECK(largest_magnitude(*plane) == 0.0);
+      }
+      CHECK(result.picture == flat_image({7, 37}, 128));
+    }
+  });
+}
+
+TEST_CASE("the adaptive kernels give exactly the negative texture of a negative") {
+  on_every_simd_target([] {
+    const GreyImage image = cloth_image({64, 63});
+    Plane<float> texture = extract_texture<float>(image, adaptive_options(2)).texture;
+    for (float& sample : texture.samples()) sample = -sample;
+    CHECK(extract_texture<float>(negative_of(image), adaptive_options(2)).texture == texture);
+  });
+}
+
+TEST_CASE("the adaptive kernels do not see brightness") {
+  on_every_simd_target([] {
+    GreyImage dark = cloth_image({64, 63});
+    for (std::uint8_t& sample : dark.samples()) sample = static_cast<std::uint8_t>(sample / 2);
+    GreyImage bright = dark;
+    for (std::uint8_t& sample : bright.samples()) sample = static_cast<std::uint8_t>(sample + 100);
+    CHECK(extract_texture<float>(bright, adaptive_options(2)).texture ==
+          extract_texture<float>(dark, adaptive_options(2)).texture);
+  });
+}
+
+void check_by_products(const GreyImage& image) {
+  const auto truth = extract_texture<double>(image, adaptive_options(2), WantedPlanes::all());
+  const auto result = extract_texture<float>(image, adaptive_options(2), WantedPlanes::all());
+  CHECK(largest_relative_difference(result.csgv, truth.csgv) < 5e-7);
+  CHECK(largest_difference(result.sub_band_ll, truth.sub_band_ll) < 5e-5);
+  CHECK(largest_difference(result.sub_band_lh, truth.sub_band_lh) < 5e-5);
+  CHECK(largest_difference(result.sub_band_hl, truth.sub_band_hl) < 5e-5);
+  CHECK(largest_difference(result.sub_band_hh, truth.sub_band_hh) < 5e-5);
+  CHECK(result.picture == texture_picture(converted<double>(result.texture)));
+  const auto force = tangential_force(converted<double>(result.texture), 3);
+  CHECK(largest_difference(result.force.x, force.x) < 2e-4);
+  CHECK(largest_difference(result.force.y, force.y) < 2e-4);
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    if (is_at_branch_point(truth.csgv.samples()[i])) continue;
+    REQUIRE(std::abs(result.order.samples()[i] - truth.order.samples()[i]) < 3e-7);
+  }
+}
+
+TEST_CASE("the adaptive kernels give the by-products of double on every target") {
+  on_every_simd_target([] {
+    for (const Size size : kernel_sizes()) {
+      for (const auto& [name, image] : kernel_images(size)) {
+        INFO(name << ", " << size.height << " x " << size.width);
+        check_by_products(image);
+      }
+    }
+  });
+}
+
+TEST_CASE(
+    "a large image, written past the caches, has the same texture, "
+    "picture and force") {
+  const GreyImage image = cloth_image({2053, 2051});
+  ExtractionOptions options = adaptive_options(2);
+  options.method = Method::fixed;
+  WantedPlanes wanted;
+  wanted.picture = wanted.force = true;
+  const auto result = extract_texture<float>(image, options, wanted);
+  CHECK(largest_difference(result.texture, extract_texture<double>(image, options).texture) <
+        kPhotographTolerance);
+  CHECK(result.picture == texture_picture(result.texture));
+  const auto force = tangential_force(result.texture, 3);
+  CHECK(result.force.x == force.x);
+  CHECK(result.force.y == force.y);
+}
+
+TEST_CASE(
+    "an extraction that is used again holds what the last image and "
+    "wishes gave") {
+  Extraction<float> result;
+  extract_texture_into(noise_image({20, 30}), adaptive_options(3), WantedPlanes::all(), result);
+  const GreyImage image = cloth_image({20, 30});
+  const float* const texture = result.texture.samples().data();
+  extract_texture_into(image, adaptive_options(2), {}, result);
+  CHECK(result.texture.samples().data() == texture);
+  CHECK(result.texture == extract_texture<float>(image, adaptive_options(2)).texture);
+  CHECK(result.sub_band_ll.empty());
+  CHECK(result.order.empty());
+  CHECK(result.picture.empty());
+  CHECK(result.force.x.empty());
+  CHECK(result.enhanced.empty());
+}
+
+TEST_CASE("extract_sub_bands gives the sub-bands that an extraction gives") {
+  const GreyImage image = noise_image({21, 36});
+  WantedPlanes wanted;
+  wanted.sub_bands = true;
+  const auto expected = extract_texture<float>(image, adaptive_options(2), wanted);
+  Extraction<float> result;
+  extract_sub_bands(image, result);
+  CHECK(result.sub_band_ll == expected.sub_band_ll);
+  CHECK(result.sub_band_lh == expected.sub_band_lh);
+  CHECK(result.sub_band_hl == expected.sub_band_hl);
+  CHECK(result.sub_band_hh == expected.sub_band_hh);
+}
+
+}  // namespace
+}  // namespace touchtrial

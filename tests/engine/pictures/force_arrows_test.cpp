@@ -1,0 +1,93 @@
+#include "engine/pictures/force_arrows.hpp"
+
+#include "core/errors.hpp"
+#include "engine/example_images.hpp"
+#include "engine/image_file.hpp"
+#include "engine/refusal.hpp"
+#include "support/catch.hpp"
+#include "support/temp_folder.hpp"
+
+#include <algorithm>
+
+namespace touchtrial {
+namespace {
+
+ForceField<double> force_of(const GreyImage& image) {
+  return tangential_force(converted<double>(image), 3);
+}
+
+/// Flat but for one square.
+GreyImage square_in_flat(Size size, int top, int left, int side) {
+  GreyImage image = flat_image(size, 100);
+  for (int y = top; y < top + side; ++y) {
+    for (int x = left; x < left + side; ++x) image.at(y, x) = 180;
+  }
+  return image;
+}
+
+TEST_CASE("the patch is where the force is strongest") {
+  const ArrowPatch patch = strongest_patch(force_of(square_in_flat({90, 120}, 60, 20, 10)));
+  CHECK(patch.height == kArrowPatchSide_px);
+  CHECK(patch.width == kArrowPatchSide_px);
+  CHECK(patch.y <= 59);
+  CHECK(patch.y + patch.height >= 71);
+  CHECK(patch.x <= 19);
+  CHECK(patch.x + patch.width >= 31);
+  CHECK(patch.force_of_unit_arrow > 0.0);
+}
+
+TEST_CASE("the patch of a flat texture is its middle, without arrows") {
+  const ArrowPatch patch = strongest_patch(force_of(flat_image({100, 60}, 7)));
+  CHECK(patch.y == 38);
+  CHECK(patch.x == 18);
+  CHECK(patch.force_of_unit_arrow == 0.0);
+}
+
+TEST_CASE("a texture smaller than a patch is the patch") {
+  const ArrowPatch patch = strongest_patch(force_of(noise_image({5, 30})));
+  CHECK(patch.y == 0);
+  CHECK(patch.height == 5);
+  CHECK(patch.width == kArrowPatchSide_px);
+}
+
+TEST_CASE("arrows point from bright to dark and stand where their pixels are") {
+  const TempFolder folder;
+  const auto path = folder.path() / "arrows.png";
+  const GreyImage step = step_image({24, 24}, 40, 200);  // brighter on the right
+  (void)write_force_arrows(path, step, force_of(step));
+  const GreyImage drawn = read_grey_image(path);
+  CHECK(drawn.height() == 720);
+  CHECK(drawn.width() == 2 * 720 + 24);
+  // Of the close-up's 30 x 30 squares, those beside the step hold arrows and all others none.
+  const auto is_plain = [&](int column) {
+    const int left = 720 + 24 + 30 * column;
+    for (int x = left; x < left + 30; ++x) {
+      if (drawn.at(375, x) != step.at(12, column)) return false;
+    }
+    return true;
+  };
+  CHECK(is_plain(8));
+  CHECK_FALSE(is_plain(11));
+  CHECK_FALSE(is_plain(12));
+  CHECK(is_plain(14));
+}
+
+TEST_CASE("force arrows are drawn of any size of texture") {
+  const TempFolder folder;
+  for (const Size size : {Size{1, 1}, Size{1, 3000}, Size{3000, 2}, Size{25, 7}}) {
+    const GreyImage image = noise_image(size);
+    CHECK_NOTHROW(write_force_arrows(folder.path() / "arrows.png", image, force_of(image)));
+  }
+}
+
+TEST_CASE("force arrows refuse a field of another size and a folder that is not there") {
+  const GreyImage image = noise_image({6, 7});
+  CHECK_FALSE(refusal_of([&] {
+                (void)write_force_arrows("x.png", image, force_of(noise_image({7, 6})));
+              }).empty());
+  CHECK_FALSE(refusal_of([] { (void)strongest_patch({}); }).empty());
+  CHECK_THROWS_AS(write_force_arrows("/no/such/folder/x.png", image, force_of(image)), FileError);
+}
+
+}  // namespace
+}  // namespace touchtrial
