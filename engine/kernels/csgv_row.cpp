@@ -85,10 +85,9 @@ HWY_INLINE Sobel sobel(const std::int16_t* above, const std::int16_t* centre,
           shuffled_sum(hn::Sub(falling, rising), down)};
 }
 
-/// Square roots. The processor's own instruction for the longest vectors is slow; its estimate to
-/// 14 bits and one step with the exact remainder give the same to the last bit or nearly, and the
-/// exact root of a square.
-HWY_INLINE Real root_of(Real v) {
+/// The square root by the processor's estimate to 14 bits and one step with the exact remainder:
+/// the same to the last bit or nearly, and the exact root of a square.
+HWY_INLINE Real estimated_root(Real v) {
 #if HWY_TARGET <= HWY_AVX3
   const Reals d;
   const auto inverse = hn::ApproximateReciprocalSqrt(hn::Max(v, hn::Set(d, 1e-30F)));
@@ -96,22 +95,23 @@ HWY_INLINE Real root_of(Real v) {
   const auto remainder = hn::NegMulAdd(estimate, estimate, v);
   return hn::MulAdd(hn::Mul(remainder, hn::Set(d, 0.5F)), inverse, estimate);
 #else
-  return hn::Sqrt(v);
+  return hn::Sqrt(v);  // the estimate of shorter vectors is too coarse
 #endif
 }
 
-HWY_INLINE Real norm(Real whole_x, Real root_x, Real whole_y, Real root_y) {
+HWY_INLINE Real squared_norm(Real whole_x, Real root_x, Real whole_y, Real root_y) {
   const auto root3 = hn::Set(Reals(), std::numbers::sqrt3_v<float>);
   const auto x = hn::MulAdd(root3, root_x, whole_x);
   const auto y = hn::MulAdd(root3, root_y, whole_y);
-  return root_of(hn::MulAdd(x, x, hn::Mul(y, y)));
+  return hn::MulAdd(x, x, hn::Mul(y, y));
 }
 
 HWY_INLINE RealPair gradient_norm(const BandRows& rows, int i) {
   const Sobel whole = sobel(rows.above.whole, rows.centre.whole, rows.below.whole, i);
   const Sobel root = sobel(rows.above.root, rows.centre.root, rows.below.root, i);
-  return {norm(whole.x.lower, root.x.lower, whole.y.lower, root.y.lower),
-          norm(whole.x.upper, root.x.upper, whole.y.upper, root.y.upper)};
+  // One of the two by the slow unit for roots, which works beside the others.
+  return {hn::Sqrt(squared_norm(whole.x.lower, root.x.lower, whole.y.lower, root.y.lower)),
+          estimated_root(squared_norm(whole.x.upper, root.x.upper, whole.y.upper, root.y.upper))};
 }
 
 HWY_INLINE RealPair csgv_block(const std::array<BandRows, 4>& bands, int i) {

@@ -16,8 +16,8 @@ struct BandRows {
   RootRow below;
 };
 
-/// Sobel differences are taken of the exact integers, so CSGV is accurate relative to itself: exact
-/// where the gradient is a whole number along one axis, as for ramps, and 0 where it is 0.
+/// Sobel differences are taken of the exact integers, so little is lost in them: CSGV is exact
+/// where the gradient is a whole number along one axis, as for ramps, and 0 where there is none.
 /// \param csgv  receives `count` samples; a vector behind them may be overwritten
 /// \return the largest of the samples
 float csgv_row(const std::array<BandRows, 4>& bands, int count, float* csgv);

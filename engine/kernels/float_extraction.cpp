@@ -148,8 +148,8 @@ void extract_sub_bands(const GreyImage& image, Extraction<float>& result) {
   SubBandRows bands(image);
   shape_sub_bands(true, bands, result);
   for (int y = 0; y < bands.height(); ++y) {
-    bands.next_row();
-    keep_sub_bands(bands, y, result);
+    bands.next_row({result.sub_band_ll.row(y).data(), result.sub_band_lh.row(y).data(),
+                    result.sub_band_hl.row(y).data(), result.sub_band_hh.row(y).data()});
   }
 }
 

@@ -20,7 +20,7 @@ class HalfGradient {
       : height_(bands.height()),
         width_(bands.width()),
         rows_(static_cast<std::size_t>(height_), static_cast<std::size_t>(width_), 0,
-              RowFill::none) {
+              RowUse::plane) {
     for (int y = 0; y < height_; ++y) {
       bands.next_row();
       on_row(y);

@@ -37,21 +37,36 @@ SubBandRows::SubBandRows(const GreyImage& image)
 }
 
 void SubBandRows::next_row() {
-  ++y_;
-  filter_image_row(2 * y_ + 2);
-  filter_image_row(2 * y_ + 3);
+  advance();
   for (const int part : {kLow, kHigh}) {
-    std::array<RootRow, kTaps> rows;
-    for (int m = 0; m < kTaps; ++m) rows[m] = filtered_row(part, 2 * y_ + m);
     const bool low = part == kLow;
-    const RootRow below_cut = row(low ? SubBand::ll : SubBand::hl, y_);
-    const RootRow above_cut = row(low ? SubBand::lh : SubBand::hh, y_);
-    filter_along_y(rows, width(), {below_cut, above_cut});
-    for (const RootRow band : {below_cut, above_cut}) {
+    const RootRow low_along_y = row(low ? SubBand::ll : SubBand::hl, y_);
+    const RootRow high_along_y = row(low ? SubBand::lh : SubBand::hh, y_);
+    filter_along_y(filtered_rows(part), width(), {low_along_y, high_along_y});
+    for (const RootRow band : {low_along_y, high_along_y}) {
       mirror_ends(band.whole, width());
       mirror_ends(band.root, width());
     }
   }
+}
+
+void SubBandRows::next_row(const std::array<float*, 4>& to) {
+  advance();
+  const auto [ll, lh, hl, hh] = to;
+  filter_along_y(filtered_rows(kLow), width(), ll, lh);
+  filter_along_y(filtered_rows(kHigh), width(), hl, hh);
+}
+
+void SubBandRows::advance() {
+  ++y_;
+  filter_image_row(2 * y_ + 2);
+  filter_image_row(2 * y_ + 3);
+}
+
+std::array<RootRow, 4> SubBandRows::filtered_rows(int part) noexcept {
+  std::array<RootRow, kTaps> rows;
+  for (int m = 0; m < kTaps; ++m) rows[m] = filtered_row(part, 2 * y_ + m);
+  return rows;
 }
 
 RootRow SubBandRows::row(SubBand band, int y) noexcept {

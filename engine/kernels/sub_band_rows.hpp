@@ -6,6 +6,7 @@
 #include "engine/kernels/aligned_rows.hpp"
 #include "engine/kernels/wavelet_rows.hpp"
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -27,11 +28,17 @@ class SubBandRows {
   /// Computes the next row of all sub-bands; the first call row 0. \pre there is one
   void next_row();
 
+  /// The same, straight to values; row() then does not have them.
+  /// \param to  a row of width() samples for each sub-band, in the order of the enumeration
+  void next_row(const std::array<float*, 4>& to);
+
   /// \param y  the present row or one of the two before it
   /// \return columns -1 .. width(), the outer two mirrored, and a vector of slack
   [[nodiscard]] RootRow row(SubBand band, int y) noexcept;
 
  private:
+  void advance();
+  [[nodiscard]] std::array<RootRow, 4> filtered_rows(int part) noexcept;
   [[nodiscard]] RootRow filtered_row(int part, int y) noexcept;
   void filter_image_row(int y);
 

@@ -11,8 +11,8 @@ constexpr std::size_t kForceX = 3;
 constexpr std::size_t kForceY = 4;
 constexpr std::size_t kScratchRows = 5;
 
-/// Planes from this size on are gone from the caches before anyone reads them.
-constexpr std::size_t kStreamFromBytes = std::size_t{16} << 20;
+/// From this size on, planes leave the caches before anyone reads them; measured.
+constexpr std::size_t kStreamFromBytes = std::size_t{32} << 20;
 
 }  // namespace
 
@@ -23,7 +23,8 @@ TextureSink::TextureSink(int height, int width, const WantedPlanes& wanted,
   reshape_if(wanted.picture, result.picture, height, width);
   reshape_if(wanted.force, result.force.x, height, width);
   reshape_if(wanted.force, result.force.y, height, width);
-  if (result.texture.size() * sizeof(float) >= kStreamFromBytes) {
+  const std::size_t samples = result.texture.size() + 2 * result.force.x.size();
+  if (samples * sizeof(float) >= kStreamFromBytes) {
     scratch_.emplace(kScratchRows, static_cast<std::size_t>(width), 0);
   }
 }

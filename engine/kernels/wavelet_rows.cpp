@@ -91,12 +91,17 @@ HWY_INLINE FilteredParts filtered_part(const std::array<RootRow, 4>& rows,
                   hn::LoadU(d, rows[2].*part + i), hn::LoadU(d, rows[3].*part + i));
 }
 
+HWY_INLINE FilteredParts products(const std::array<RootRow, 4>& rows, int i) {
+  const FilteredParts whole = filtered_part(rows, &RootRow::whole, i);
+  const FilteredParts root = filtered_part(rows, &RootRow::root, i);
+  return {product(whole.low, root.low), product(whole.high, root.high)};
+}
+
 void along_y(const std::array<RootRow, 4>& rows, int count, const LowHigh& out) {
   for (int i = 0; i < count; i += kBlock) {
-    const FilteredParts whole = filtered_part(rows, &RootRow::whole, i);
-    const FilteredParts root = filtered_part(rows, &RootRow::root, i);
-    store(product(whole.low, root.low), out.low, i);
-    store(product(whole.high, root.high), out.high, i);
+    const FilteredParts parts = products(rows, i);
+    store(parts.low, out.low, i);
+    store(parts.high, out.high, i);
   }
 }
 
@@ -107,19 +112,40 @@ HWY_INLINE Real value(Real whole, Real root) {
   return hn::Mul(hn::MulAdd(root3, root, whole), scale);
 }
 
-HWY_INLINE RealPair values_at(RootRow row, int i) {
-  const RealPair whole = to_reals(hn::LoadU(Integers(), row.whole + i));
-  const RealPair root = to_reals(hn::LoadU(Integers(), row.root + i));
+HWY_INLINE RealPair values_of(Parts parts) {
+  const RealPair whole = to_reals(parts.whole);
+  const RealPair root = to_reals(parts.root);
   return {value(whole.lower, root.lower), value(whole.upper, root.upper)};
 }
 
+HWY_INLINE void store_some(RealPair pair, int count, float* to) {
+  alignas(64) float all[kBlock];
+  store_pair(pair, all);
+  std::copy_n(all, count, to);
+}
+
 void values(RootRow row, int count, float* out) {
+  const Integers d;
   int i = 0;
-  for (; i + kBlock <= count; i += kBlock) store_pair(values_at(row, i), out + i);
+  for (; i + kBlock <= count; i += kBlock) {
+    store_pair(values_of({hn::LoadU(d, row.whole + i), hn::LoadU(d, row.root + i)}), out + i);
+  }
   if (i == count) return;
-  alignas(64) float rest[kBlock];
-  store_pair(values_at(row, i), rest);
-  std::copy_n(rest, count - i, out + i);
+  const Parts rest{hn::LoadU(d, row.whole + i), hn::LoadU(d, row.root + i)};
+  store_some(values_of(rest), count - i, out + i);
+}
+
+void values_along_y(const std::array<RootRow, 4>& rows, int count, float* low, float* high) {
+  int i = 0;
+  for (; i + kBlock <= count; i += kBlock) {
+    const FilteredParts parts = products(rows, i);
+    store_pair(values_of(parts.low), low + i);
+    store_pair(values_of(parts.high), high + i);
+  }
+  if (i == count) return;
+  const FilteredParts rest = products(rows, i);
+  store_some(values_of(rest.low), count - i, low + i);
+  store_some(values_of(rest.high), count - i, high + i);
 }
 
 }  // namespace
@@ -134,6 +160,7 @@ namespace {
 HWY_EXPORT(along_x);
 HWY_EXPORT(along_y);
 HWY_EXPORT(values);
+HWY_EXPORT(values_along_y);
 
 }  // namespace
 
@@ -143,6 +170,10 @@ void filter_along_x(const std::uint8_t* row, int count, const LowHigh& out) {
 
 void filter_along_y(const std::array<RootRow, 4>& rows, int count, const LowHigh& out) {
   HWY_DYNAMIC_DISPATCH(along_y)(rows, count, out);
+}
+
+void filter_along_y(const std::array<RootRow, 4>& rows, int count, float* low, float* high) {
+  HWY_DYNAMIC_DISPATCH(values_along_y)(rows, count, low, high);
 }
 
 void sub_band_values(RootRow row, int count, float* out) {

@@ -3,8 +3,8 @@
 /// The taps are (1 + s, 3 + s, 3 - s, 1 - s) / (4 sqrt 2) with s = sqrt 3, so each filter gives a
 /// number whole + root s with integer parts. Filtered along both axes, a sub-band is
 /// (whole + root s) / 16, both parts in 16 bits for any 8-bit image. Nothing is rounded before
-/// differences are taken: a gradient is accurate relative to itself, however bright the image, a
-/// flat image has exactly none, and a negative has exactly that of its positive.
+/// differences are taken: what a gradient loses does not depend on the image's brightness, a flat
+/// image has exactly none, and a negative has exactly that of its positive.
 #pragma once
 
 #include <array>
@@ -35,6 +35,9 @@ void filter_along_x(const std::uint8_t* row, int count, const LowHigh& out);
 
 /// Filters four rows, from top to bottom, along y, and halves both parts, which are even.
 void filter_along_y(const std::array<RootRow, 4>& rows, int count, const LowHigh& out);
+
+/// The same as values in single precision. \param low,high  receive `count` samples and no more
+void filter_along_y(const std::array<RootRow, 4>& rows, int count, float* low, float* high);
 
 /// A sub-band's values in single precision. \param out  receives `count` samples and no more
 void sub_band_values(RootRow row, int count, float* out);
