@@ -1,6 +1,6 @@
 #include "engine/perception/texture_sense.hpp"
 
-#include "engine/tv_gabor/real_fft.hpp"
+#include "engine/fourier/real_fft.hpp"
 
 #include <algorithm>
 #include <array>

@@ -3,8 +3,8 @@
 #pragma once
 
 #include "core/plane.hpp"
+#include "engine/fourier/real_fft.hpp"
 #include "engine/tv_gabor/problem.hpp"
-#include "engine/tv_gabor/real_fft.hpp"
 #include "engine/tv_gabor/vector_field.hpp"
 
 namespace touchtrial {

@@ -1,6 +1,6 @@
 #include "engine/tv_gabor/gabor_spectrum.hpp"
 
-#include "engine/tv_gabor/real_fft.hpp"
+#include "engine/fourier/real_fft.hpp"
 
 #include <algorithm>
 #include <array>

@@ -4,10 +4,10 @@
 
 #include "core/plane.hpp"
 #include "engine/extraction.hpp"
+#include "engine/fourier/real_fft.hpp"
 #include "engine/tv_gabor/admm.hpp"
 #include "engine/tv_gabor/certificate.hpp"
 #include "engine/tv_gabor/problem.hpp"
-#include "engine/tv_gabor/real_fft.hpp"
 
 #include <vector>
 

@@ -1,7 +1,7 @@
 #include "engine/tv_gabor/gabor_spectrum.hpp"
 
+#include "engine/fourier/real_fft.hpp"
 #include "engine/reference/tv_gabor_reference.hpp"
-#include "engine/tv_gabor/real_fft.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "engine/tv_gabor/real_fft.hpp"
+#include "engine/fourier/real_fft.hpp"
 
 #include "core/random.hpp"
 #include "support/catch.hpp"
