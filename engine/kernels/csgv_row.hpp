@@ -5,22 +5,15 @@
 
 #include "engine/kernels/wavelet_rows.hpp"
 
-#include <array>
-
 namespace touchtrial {
 
-/// Three neighbouring rows of one sub-band, each with its ends mirrored: columns -1 to count.
-struct BandRows {
-  RootRow above;
-  RootRow centre;
-  RootRow below;
-};
-
-/// Sobel differences are taken of the exact integers, so little is lost in them: CSGV is exact
-/// where the gradient is a whole number along one axis, as for ramps, and 0 where there is none.
+/// Everything up to the gradient is exact in whole numbers: CSGV is exact where the gradient is a
+/// whole number along one axis, as for ramps, and 0 where there is none.
+/// \param rows  with the ends of `smoothed` and `difference` mirrored, or with more of the image
+/// \param first  column of the rows that the result begins with
 /// \param csgv  receives `count` samples; a vector behind them may be overwritten
 /// \return the largest of the samples
-float csgv_row(const std::array<BandRows, 4>& bands, int count, float* csgv);
+float csgv_row(const SobelRows& rows, int first, int count, float* csgv);
 
 /// Orders of one row of squares, each twice: out[2 i] = out[2 i + 1] = the order of csgv[i].
 /// \param largest  of the whole image, >= kFlatBelowCsgv

@@ -19,27 +19,6 @@ namespace {
 
 static_assert(ExtractionOptions::kMaxRadius <= kMaxGlRadius);
 
-using NamedBand = std::pair<SubBand, Plane<float>*>;
-
-std::array<NamedBand, 4> sub_bands_of(Extraction<float>& result) {
-  return {{{SubBand::ll, &result.sub_band_ll},
-           {SubBand::lh, &result.sub_band_lh},
-           {SubBand::hl, &result.sub_band_hl},
-           {SubBand::hh, &result.sub_band_hh}}};
-}
-
-void shape_sub_bands(bool wanted, const SubBandRows& bands, Extraction<float>& result) {
-  for (const auto& [band, plane] : sub_bands_of(result)) {
-    reshape_if(wanted, *plane, bands.height(), bands.width());
-  }
-}
-
-void keep_sub_bands(SubBandRows& bands, int y, Extraction<float>& result) {
-  for (const auto& [band, plane] : sub_bands_of(result)) {
-    sub_band_values(bands.row(band, y), bands.width(), plane->row(y).data());
-  }
-}
-
 /// What an extraction by another method may have left.
 void forget_other_methods(Extraction<float>& result) {
   result.cartoon = {};
@@ -49,12 +28,8 @@ void forget_other_methods(Extraction<float>& result) {
   result.converged = true;
 }
 
-HalfGradient half_gradient(const GreyImage& image, bool with_sub_bands, Extraction<float>& result) {
-  SubBandRows bands(image);
-  shape_sub_bands(with_sub_bands, bands, result);
-  return HalfGradient(bands, [&](int y) {
-    if (with_sub_bands) keep_sub_bands(bands, y, result);
-  });
+BandRows<Plane<float>> sub_bands_of(Extraction<float>& result) {
+  return {&result.sub_band_ll, &result.sub_band_lh, &result.sub_band_hl, &result.sub_band_hh};
 }
 
 void keep_csgv(const HalfGradient& gradient, Plane<float>& csgv) {
@@ -114,7 +89,11 @@ void second_pass(const GreyImage& image, int radius, const HalfGradient& gradien
 void extract_adaptive(const GreyImage& image, int radius, const WantedPlanes& wanted,
                       Extraction<float>& result) {
   forget_other_methods(result);
-  const HalfGradient gradient = half_gradient(image, wanted.sub_bands, result);
+  for (Plane<float>* const plane : sub_bands_of(result)) {
+    if (!wanted.sub_bands) *plane = {};
+  }
+  if (wanted.sub_bands) extract_sub_bands(image, result);
+  const HalfGradient gradient(image);
   reshape_if(wanted.csgv, result.csgv, image.height(), image.width());
   keep_csgv(gradient, result.csgv);
   reshape_if(wanted.order, result.order, image.height(), image.width());
@@ -129,7 +108,7 @@ void extract_adaptive(const GreyImage& image, int radius, const WantedPlanes& wa
 void extract_fixed(const GreyImage& image, int radius, double order, const WantedPlanes& wanted,
                    Extraction<float>& result) {
   forget_other_methods(result);
-  for (const auto& [band, plane] : sub_bands_of(result)) *plane = {};
+  for (Plane<float>* const plane : sub_bands_of(result)) *plane = {};
   result.csgv = {};
   reshape_if(wanted.order, result.order, image.height(), image.width());
   std::fill(result.order.samples().begin(), result.order.samples().end(),
@@ -145,11 +124,15 @@ void extract_fixed(const GreyImage& image, int radius, double order, const Wante
 }
 
 void extract_sub_bands(const GreyImage& image, Extraction<float>& result) {
-  SubBandRows bands(image);
-  shape_sub_bands(true, bands, result);
-  for (int y = 0; y < bands.height(); ++y) {
-    bands.next_row({result.sub_band_ll.row(y).data(), result.sub_band_lh.row(y).data(),
-                    result.sub_band_hl.row(y).data(), result.sub_band_hh.row(y).data()});
+  const int height = (image.height() + 1) / 2;
+  const int width = (image.width() + 1) / 2;
+  const auto planes = sub_bands_of(result);
+  for (Plane<float>* const plane : planes) reshape(*plane, height, width);
+  ColumnFilter filter(image, {0, width});
+  for (int y = 0; y < height; ++y) {
+    BandRows<float> to;
+    for (std::size_t band = 0; band < to.size(); ++band) to[band] = planes[band]->row(y).data();
+    filter_along_x(filter.row(y), width, to);
   }
 }
 

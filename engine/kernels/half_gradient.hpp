@@ -3,7 +3,7 @@
 
 #include "core/plane.hpp"
 #include "engine/kernels/aligned_rows.hpp"
-#include "engine/kernels/sub_band_rows.hpp"
+#include "engine/kernels/column_filter.hpp"
 
 #include <cstddef>
 
@@ -13,21 +13,8 @@ namespace touchtrial {
 /// second pass. Takes as many bytes as the image has pixels.
 class HalfGradient {
  public:
-  /// \param bands  of which no row has been computed
-  /// \param on_row  called as on_row(y) after row y of the sub-bands was computed
-  template <typename OnRow>
-  HalfGradient(SubBandRows& bands, OnRow on_row)
-      : height_(bands.height()),
-        width_(bands.width()),
-        rows_(static_cast<std::size_t>(height_), static_cast<std::size_t>(width_), 0,
-              RowUse::plane) {
-    for (int y = 0; y < height_; ++y) {
-      bands.next_row();
-      on_row(y);
-      if (y > 0) compute(bands, y - 1);
-    }
-    compute(bands, height_ - 1);
-  }
+  /// \param image  not empty
+  explicit HalfGradient(const GreyImage& image);
 
   [[nodiscard]] const float* row(int y) const noexcept {
     return rows_.row(static_cast<std::size_t>(y));
@@ -37,7 +24,7 @@ class HalfGradient {
   [[nodiscard]] float largest() const noexcept { return largest_; }
 
  private:
-  void compute(SubBandRows& bands, int y);
+  void compute(const GreyImage& image, Columns columns);
 
   int height_;
   int width_;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <numbers>
 
 // Compiled once for every target: this file includes itself.
 #undef HWY_TARGET_INCLUDE
@@ -14,138 +13,153 @@
 #include "engine/kernels/real_pairs-inl.hpp"
 // clang-format on
 
+#ifndef TOUCHTRIAL_WAVELET_ROWS_ONCE
+#define TOUCHTRIAL_WAVELET_ROWS_ONCE
+namespace touchtrial {
+namespace {
+
+/// Weights of four neighbouring samples.
+using Taps = std::array<std::int16_t, 4>;
+
+/// kRootDenominator times (p + q s)(whole + root s): weights of the wholes and of the roots.
+struct RootTaps {
+  Taps whole;
+  Taps root;
+};
+
+constexpr RootTaps root_taps(const std::array<int, 4>& p, const std::array<int, 4>& q) {
+  RootTaps taps{};
+  for (std::size_t m = 0; m < 4; ++m) {
+    taps.whole[m] = static_cast<std::int16_t>(kRootDenominator * p[m] + kRootNumerator * q[m]);
+    taps.root[m] = static_cast<std::int16_t>(3 * kRootDenominator * q[m] + kRootNumerator * p[m]);
+  }
+  return taps;
+}
+
+constexpr RootTaps kLow = root_taps({1, 3, 3, 1}, {1, 1, -1, -1});
+constexpr RootTaps kHigh = root_taps({1, -3, 3, -1}, {-1, 1, 1, -1});
+
+}  // namespace
+}  // namespace touchtrial
+#endif
+
 HWY_BEFORE_NAMESPACE();
 namespace touchtrial {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// Both parts of one filter's output.
-struct Parts {
-  Integer whole;
-  Integer root;
-};
+using WideInteger = hn::Vec<WideIntegers>;
 
-struct FilteredParts {
-  Parts low;
-  Parts high;
-};
+/// Sub-band samples in a vector.
+constexpr int kHalfBlock = static_cast<int>(hn::MaxLanes(WideIntegers()));
 
 HWY_INLINE Integer tripled(Integer v) {
   return hn::Add(hn::Add(v, v), v);
 }
 
-/// Both filters on four neighbouring samples that are whole numbers.
-HWY_INLINE FilteredParts filtered(Integer x0, Integer x1, Integer x2, Integer x3) {
+/// A block of each of the four rows at `x`, filtered, to `to` of the outputs.
+HWY_INLINE void filter_block(const std::array<const std::uint8_t*, 4>& rows, int x,
+                             const FilteredRows& out, int to) {
+  const Integers d;
+  const auto x0 = load_bytes(rows[0] + x);
+  const auto x1 = load_bytes(rows[1] + x);
+  const auto x2 = load_bytes(rows[2] + x);
+  const auto x3 = load_bytes(rows[3] + x);
   const auto outer_sum = hn::Add(x0, x3);
   const auto inner_sum = hn::Add(x1, x2);
   const auto outer_difference = hn::Sub(x0, x3);
   const auto inner_difference = hn::Sub(x1, x2);
-  return {{hn::Add(outer_sum, tripled(inner_sum)), hn::Add(outer_difference, inner_difference)},
-          {hn::Sub(outer_difference, tripled(inner_difference)), hn::Sub(inner_sum, outer_sum)}};
+  hn::StoreU(hn::Add(outer_sum, tripled(inner_sum)), d, out.low_whole + to);
+  hn::StoreU(hn::Add(outer_difference, inner_difference), d, out.low_root + to);
+  hn::StoreU(hn::Sub(outer_difference, tripled(inner_difference)), d, out.high_whole + to);
+  hn::StoreU(hn::Sub(inner_sum, outer_sum), d, out.high_root + to);
 }
 
-/// Samples at even and at odd places of 2 * kBlock bytes.
-struct EvenOdd {
-  Integer even;
-  Integer odd;
-};
+void along_y(const std::array<const std::uint8_t*, 4>& rows, int width, const FilteredRows& out) {
+  int x = 0;
+  for (; x + kBlock <= width; x += kBlock) filter_block(rows, x, out, x);
+  if (x == width) return;
+  if (width >= kBlock) {
+    filter_block(rows, width - kBlock, out, width - kBlock);
+    return;
+  }
+  std::uint8_t copies[4][kBlock] = {};
+  for (std::size_t m = 0; m < 4; ++m) std::copy_n(rows[m], width, copies[m]);
+  filter_block({copies[0], copies[1], copies[2], copies[3]}, 0, out, 0);
+}
 
-HWY_INLINE EvenOdd load_even_odd(const std::uint8_t* from) {
-  const Integers d;
+/// Adds even * from[0] + odd * from[1], even * from[2] + odd * from[3] .. to the lanes of a sum.
+HWY_INLINE WideInteger add_pairs(const std::int16_t* from, std::int16_t even, std::int16_t odd,
+                                 WideInteger sum) {
+  const WideIntegers wide;
 #if HWY_TARGET == HWY_SCALAR
-  return {hn::Set(d, from[0]), hn::Set(d, from[1])};
+  return hn::Add(sum, hn::Set(wide, from[0] * even + from[1] * odd));
 #else
-  const hn::RebindToUnsigned<Integers> words;
-  const hn::Repartition<std::uint8_t, Integers> bytes;
-  const auto both = hn::BitCast(words, hn::LoadU(bytes, from));  // little-endian: even ones low
-  return {hn::BitCast(d, hn::And(both, hn::Set(words, 255))),
-          hn::BitCast(d, hn::ShiftRight<8>(both))};
+  const Integers d;
+  const auto both = static_cast<std::uint16_t>(even) |
+                    (static_cast<std::uint32_t>(static_cast<std::uint16_t>(odd)) << 16);
+  const auto weights = hn::BitCast(d, hn::Set(wide, static_cast<std::int32_t>(both)));
+  auto other = hn::Zero(wide);
+  sum = hn::ReorderWidenMulAccumulate(wide, hn::LoadU(d, from), weights, sum, other);
+  return hn::RearrangeToOddPlusEven(sum, other);
 #endif
 }
 
-HWY_INLINE void store(Parts parts, RootRow to, int i) {
-  hn::StoreU(parts.whole, Integers(), to.whole + i);
-  hn::StoreU(parts.root, Integers(), to.root + i);
+/// A block of a sub-band, times kWaveletDivisor.
+HWY_INLINE WideInteger band_block(const std::int16_t* whole, const std::int16_t* root,
+                                  const RootTaps& taps, int i) {
+  const auto zero = hn::Zero(WideIntegers());
+  const auto wholes = add_pairs(whole + 2 * i + 2, taps.whole[2], taps.whole[3],
+                                add_pairs(whole + 2 * i, taps.whole[0], taps.whole[1], zero));
+  return add_pairs(root + 2 * i + 2, taps.root[2], taps.root[3],
+                   add_pairs(root + 2 * i, taps.root[0], taps.root[1], wholes));
 }
 
-void along_x(const std::uint8_t* row, int count, const LowHigh& out) {
-  for (int i = 0; i < count; i += kBlock) {
-    const EvenOdd left = load_even_odd(row + 2 * i);
-    const EvenOdd right = load_even_odd(row + 2 * i + 2);
-    const FilteredParts parts = filtered(left.even, left.odd, right.even, right.odd);
-    store(parts.low, out.low, i);
-    store(parts.high, out.high, i);
+/// Calls to(band, block) with a block of each sub-band.
+template <class To>
+HWY_INLINE void for_each_band(const FilteredRows& rows, int i, const To& to) {
+  const auto ll = band_block(rows.low_whole, rows.low_root, kLow, i);
+  const auto hl = band_block(rows.low_whole, rows.low_root, kHigh, i);
+  to(0, ll);
+  to(2, hl);
+  const auto lh = band_block(rows.high_whole, rows.high_root, kLow, i);
+  const auto hh = band_block(rows.high_whole, rows.high_root, kHigh, i);
+  to(1, lh);
+  to(3, hh);
+}
+
+void sobel_along_x(const FilteredRows& rows, int count, const SobelRows& out) {
+  const WideIntegers d;
+  for (int i = 0; i < count; i += kHalfBlock) {
+    for_each_band(rows, i, [&](std::size_t band, WideInteger block) HWY_ATTR {
+      const auto pair = hn::Add(block, hn::Load(d, out.last[band] + i));
+      const auto pair_before = hn::Load(d, out.pairs[band] + i);
+      hn::Store(block, d, out.last[band] + i);
+      hn::Store(pair, d, out.pairs[band] + i);
+      hn::Store(hn::Add(pair, pair_before), d, out.smoothed[band] + i);
+      hn::Store(hn::Sub(pair, pair_before), d, out.difference[band] + i);
+    });
   }
 }
 
-/// (p + q s)(whole + root s), where `whole` and `root` hold the filters p + q s of the parts.
-HWY_INLINE Parts product(Parts whole, Parts root) {
-  return {hn::ShiftRight<1>(hn::Add(whole.whole, tripled(root.root))),
-          hn::ShiftRight<1>(hn::Add(whole.root, root.whole))};
-}
-
-HWY_INLINE FilteredParts filtered_part(const std::array<RootRow, 4>& rows,
-                                       std::int16_t* RootRow::*part, int i) {
-  const Integers d;
-  return filtered(hn::LoadU(d, rows[0].*part + i), hn::LoadU(d, rows[1].*part + i),
-                  hn::LoadU(d, rows[2].*part + i), hn::LoadU(d, rows[3].*part + i));
-}
-
-HWY_INLINE FilteredParts products(const std::array<RootRow, 4>& rows, int i) {
-  const FilteredParts whole = filtered_part(rows, &RootRow::whole, i);
-  const FilteredParts root = filtered_part(rows, &RootRow::root, i);
-  return {product(whole.low, root.low), product(whole.high, root.high)};
-}
-
-void along_y(const std::array<RootRow, 4>& rows, int count, const LowHigh& out) {
-  for (int i = 0; i < count; i += kBlock) {
-    const FilteredParts parts = products(rows, i);
-    store(parts.low, out.low, i);
-    store(parts.high, out.high, i);
-  }
-}
-
-HWY_INLINE Real value(Real whole, Real root) {
+void values_block(const FilteredRows& rows, int i, const BandRows<float>& out, int to) {
   const Reals d;
-  const auto scale = hn::Set(d, kWaveletScale);
-  const auto root3 = hn::Set(d, std::numbers::sqrt3_v<float>);
-  return hn::Mul(hn::MulAdd(root3, root, whole), scale);
+  for_each_band(rows, i, [&](std::size_t band, WideInteger block) HWY_ATTR {
+    hn::StoreU(hn::Mul(hn::ConvertTo(d, block), hn::Set(d, kWaveletScale)), d, out[band] + to);
+  });
 }
 
-HWY_INLINE RealPair values_of(Parts parts) {
-  const RealPair whole = to_reals(parts.whole);
-  const RealPair root = to_reals(parts.root);
-  return {value(whole.lower, root.lower), value(whole.upper, root.upper)};
-}
-
-HWY_INLINE void store_some(RealPair pair, int count, float* to) {
-  alignas(64) float all[kBlock];
-  store_pair(pair, all);
-  std::copy_n(all, count, to);
-}
-
-void values(RootRow row, int count, float* out) {
-  const Integers d;
+void values_along_x(const FilteredRows& rows, int count, const BandRows<float>& out) {
   int i = 0;
-  for (; i + kBlock <= count; i += kBlock) {
-    store_pair(values_of({hn::LoadU(d, row.whole + i), hn::LoadU(d, row.root + i)}), out + i);
-  }
+  for (; i + kHalfBlock <= count; i += kHalfBlock) values_block(rows, i, out, i);
   if (i == count) return;
-  const Parts rest{hn::LoadU(d, row.whole + i), hn::LoadU(d, row.root + i)};
-  store_some(values_of(rest), count - i, out + i);
-}
-
-void values_along_y(const std::array<RootRow, 4>& rows, int count, float* low, float* high) {
-  int i = 0;
-  for (; i + kBlock <= count; i += kBlock) {
-    const FilteredParts parts = products(rows, i);
-    store_pair(values_of(parts.low), low + i);
-    store_pair(values_of(parts.high), high + i);
+  if (count >= kHalfBlock) {
+    values_block(rows, count - kHalfBlock, out, count - kHalfBlock);
+    return;
   }
-  if (i == count) return;
-  const FilteredParts rest = products(rows, i);
-  store_some(values_of(rest.low), count - i, low + i);
-  store_some(values_of(rest.high), count - i, high + i);
+  float all[4][kHalfBlock];
+  values_block(rows, 0, {all[0], all[1], all[2], all[3]}, 0);
+  for (std::size_t band = 0; band < 4; ++band) std::copy_n(all[band], count, out[band]);
 }
 
 }  // namespace
@@ -157,27 +171,23 @@ HWY_AFTER_NAMESPACE();
 namespace touchtrial {
 namespace {
 
-HWY_EXPORT(along_x);
 HWY_EXPORT(along_y);
-HWY_EXPORT(values);
-HWY_EXPORT(values_along_y);
+HWY_EXPORT(sobel_along_x);
+HWY_EXPORT(values_along_x);
 
 }  // namespace
 
-void filter_along_x(const std::uint8_t* row, int count, const LowHigh& out) {
-  HWY_DYNAMIC_DISPATCH(along_x)(row, count, out);
+void filter_along_y(const std::array<const std::uint8_t*, 4>& rows, int width,
+                    const FilteredRows& out) {
+  HWY_DYNAMIC_DISPATCH(along_y)(rows, width, out);
 }
 
-void filter_along_y(const std::array<RootRow, 4>& rows, int count, const LowHigh& out) {
-  HWY_DYNAMIC_DISPATCH(along_y)(rows, count, out);
+void filter_along_x(const FilteredRows& rows, int count, const SobelRows& out) {
+  HWY_DYNAMIC_DISPATCH(sobel_along_x)(rows, count, out);
 }
 
-void filter_along_y(const std::array<RootRow, 4>& rows, int count, float* low, float* high) {
-  HWY_DYNAMIC_DISPATCH(values_along_y)(rows, count, low, high);
-}
-
-void sub_band_values(RootRow row, int count, float* out) {
-  HWY_DYNAMIC_DISPATCH(values)(row, count, out);
+void filter_along_x(const FilteredRows& rows, int count, const BandRows<float>& out) {
+  HWY_DYNAMIC_DISPATCH(values_along_x)(rows, count, out);
 }
 
 }  // namespace touchtrial
