@@ -1,0 +1,63 @@
+/// \file The cases of every kernel and its peers.
+#pragma once
+
+#include "bench/case.hpp"
+#include "bench/peers/opencv_daub4.hpp"
+#include "bench/peers/opencv_ring_sums.hpp"
+
+#include <string>
+#include <vector>
+
+namespace touchtrial::bench {
+
+/// What to go through.
+struct Scope {
+  std::vector<int> sizes_px = {256, 500, 1024, 4096};
+  /// Of whole extractions alone, besides.
+  std::vector<int> more_sizes_px = {64, 128, 2048, 8192};
+  std::vector<int> radii = {1, 2, 3, 7};
+  std::vector<std::string> targets;  ///< SIMD targets of the adaptive filter, best first
+};
+
+/// The side of a usual stimulus.
+inline constexpr int kUsualSize_px = 500;
+/// The method's default K.
+inline constexpr int kUsualRadius = 2;
+/// The fixed order that stands for all.
+inline constexpr double kFixedOrder = 0.55;
+
+/// "touchtrial", or "touchtrial AVX-512" if a SIMD target is given.
+[[nodiscard]] std::string our_name(const std::string& target = {});
+
+[[nodiscard]] Case adaptive_filter_case(int size_px, int radius, const std::string& target);
+[[nodiscard]] Case filter2d_case(int size_px, int radius, const std::string& input);
+[[nodiscard]] Cases gl_cases(const Scope& scope);
+
+[[nodiscard]] Case daub4_case(int size_px);
+[[nodiscard]] Case opencv_daub4_case(int size_px, Daub4Way way);
+[[nodiscard]] Cases daub4_cases(const Scope& scope);
+
+/// What an extraction gives besides the texture.
+enum class Extras { none, picture, force };
+[[nodiscard]] Case extraction_case(int size_px, int radius, Extras extras);
+[[nodiscard]] Case ring_sums_case(int size_px, int radius, Extras extras, RingSums how);
+[[nodiscard]] Cases extraction_cases(const Scope& scope);
+
+template <typename Real>
+[[nodiscard]] Case ms_ssim_case(int size_px);
+[[nodiscard]] Case opencv_ms_ssim_case(int size_px);
+[[nodiscard]] Cases ms_ssim_cases(const Scope& scope);
+
+[[nodiscard]] Case glcm_case(int size_px);
+[[nodiscard]] Case pair_loop_case(int size_px);
+[[nodiscard]] Cases glcm_cases(const Scope& scope);
+
+[[nodiscard]] Cases fft_cases(const Scope& scope);
+
+[[nodiscard]] Case paper_force_case();
+[[nodiscard]] Cases force_cases();
+
+/// All of the above.
+[[nodiscard]] Cases all_cases(const Scope& scope);
+
+}  // namespace touchtrial::bench

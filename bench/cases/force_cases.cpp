@@ -1,0 +1,83 @@
+#include "bench/cases/cases.hpp"
+#include "bench/inputs/pictures.hpp"
+#include "core/random.hpp"
+#include "engine/extraction.hpp"
+#include "engine/rendering/gains.hpp"
+#include "engine/rendering/paper_model.hpp"
+#include "engine/rendering/texture_field.hpp"
+
+#include <array>
+#include <cmath>
+#include <memory>
+#include <vector>
+
+namespace touchtrial::bench {
+namespace {
+
+/// Places that are asked for in one run.
+constexpr int kPlaces = 10000;
+/// The hand moves on from place to place, as in a servo: this far a tick, and 1 mm deep.
+constexpr double kStep_mm = 0.1;
+constexpr double kDepth_mm = 1.0;
+
+struct Stroke {
+  explicit Stroke(double side_mm) {
+    RandomStream random(1, "benchmark stroke");
+    double heading = 0.0;
+    Vec3 place = {side_mm / 2, side_mm / 2, -kDepth_mm};
+    for (int i = 0; i < kPlaces; ++i) {
+      heading += 0.2 * random.normal();
+      place.x = std::abs(place.x + kStep_mm * std::cos(heading));
+      place.y = std::abs(place.y + kStep_mm * std::sin(heading));
+      places_mm.push_back({std::fmod(place.x, side_mm), std::fmod(place.y, side_mm), place.z});
+    }
+  }
+  std::vector<Vec3> places_mm;
+};
+
+TextureField field_of(const GreyImage& image, const RenderingOptions& options) {
+  return make_texture_field(extract_texture<double>(image, {}).texture, options);
+}
+
+struct PaperStroke {
+  PaperStroke()
+      : image(square_of(timed_picture(), kUsualSize_px)),
+        field(field_of(image, options)),
+        model(field.view(), options, choose_gains(std::array{field.view()}, options).of_field[0]),
+        stroke(kUsualSize_px * options.pitch_mm) {}
+
+  void run() {
+    for (const Vec3& place_mm : stroke.places_mm) {
+      const Vec3 force_n = model.force_n(place_mm, {});
+      sum_n.x += force_n.x;
+      sum_n.y += force_n.y;
+      sum_n.z += force_n.z;
+    }
+  }
+
+  RenderingOptions options;
+  GreyImage image;
+  TextureField field;
+  PaperModel model;
+  Stroke stroke;
+  Vec3 sum_n;  ///< so that no evaluation can be left out
+};
+
+}  // namespace
+
+Case paper_force_case() {
+  Case one;
+  one.work = "force evaluation";
+  one.who = our_name() + ", paper";
+  one.make = [] {
+    const auto stroke = std::make_shared<PaperStroke>();
+    return Job{[=] { stroke->run(); }, {}, kPlaces};
+  };
+  return one;
+}
+
+Cases force_cases() {
+  return {paper_force_case()};
+}
+
+}  // namespace touchtrial::bench

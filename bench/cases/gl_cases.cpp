@@ -1,0 +1,249 @@
+#include "bench/cases/cases.hpp"
+#include "bench/inputs/difference.hpp"
+#include "bench/inputs/pictures.hpp"
+#include "bench/peers/fixed_mask.hpp"
+#include "bench/peers/mat_view.hpp"
+#include "bench/peers/naive_mask.hpp"
+#include "engine/extraction.hpp"
+#include "engine/gl_texture.hpp"
+#include "engine/kernels/aligned_rows.hpp"
+#include "engine/kernels/extended_rows.hpp"
+#include "engine/kernels/gl_row.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <memory>
+
+#include <opencv2/imgproc.hpp>
+
+namespace touchtrial::bench {
+namespace {
+
+/// The naive mask takes 40 ms for the usual picture; larger ones teach nothing more.
+constexpr int kLargestNaive_px = 500;
+constexpr int kLargestNaiveRadius = 3;
+/// Grey levels; filter2D goes through Fourier space from 11 x 11 on.
+constexpr double kOurTolerance = 4e-5;
+constexpr double kPeerTolerance = 2e-3;
+
+/// An image with the orders that the adaptive method gives it.
+struct OrderedImage {
+  explicit OrderedImage(int size_px) : image(square_of(timed_picture(), size_px)) {
+    WantedPlanes wanted;
+    wanted.order = true;
+    orders = extract_texture<float>(image, {}, wanted).order;
+  }
+
+  [[nodiscard]] Plane<double> half_orders() const {
+    Plane<double> half((orders.height() + 1) / 2, (orders.width() + 1) / 2);
+    for (int y = 0; y < half.height(); ++y) {
+      for (int x = 0; x < half.width(); ++x) half.at(y, x) = orders.at(2 * y, 2 * x);
+    }
+    return half;
+  }
+
+  GreyImage image;
+  Plane<float> orders;
+};
+
+Case gl_case(const std::string& work, const std::string& who, const std::string& input, int size_px,
+             int radius) {
+  Case one;
+  one.work = work;
+  one.who = who;
+  one.input = input;
+  one.size_px = size_px;
+  one.radius = radius;
+  one.error_unit = "grey levels";
+  one.tolerance = kPeerTolerance;
+  return one;
+}
+
+Case our_case(const std::string& work, int size_px, int radius, const std::string& target) {
+  Case one = gl_case(work, our_name(target), "u8", size_px, radius);
+  one.target = target;
+  one.tolerance = kOurTolerance;
+  return one;
+}
+
+/// The filter alone, with an order for each pixel in a plane whose rows may be read past their end.
+struct AdaptiveFilter {
+  AdaptiveFilter(int size_px, int with_radius)
+      : input(size_px),
+        radius(with_radius),
+        orders(static_cast<std::size_t>(size_px), static_cast<std::size_t>(size_px), 0,
+               RowUse::plane),
+        texture(size_px, size_px) {
+    for (int y = 0; y < size_px; ++y) {
+      std::copy_n(input.orders.row(y).data(), size_px, orders.row(static_cast<std::size_t>(y)));
+    }
+  }
+
+  void run() {
+    ExtendedRows rows(input.image, radius);
+    for (int y = 0; y < texture.height(); ++y) {
+      rows.next_row();
+      gl_row(rows, radius, orders.row(static_cast<std::size_t>(y)), texture.row(y).data());
+    }
+  }
+
+  OrderedImage input;
+  int radius;
+  AlignedRows<float> orders;
+  Plane<float> texture;
+};
+
+Job adaptive_job(int size_px, int radius) {
+  const auto filter = std::make_shared<AdaptiveFilter>(size_px, radius);
+  return {[=] { filter->run(); },
+          [=] {
+            const auto truth =
+                gl_texture<double>(filter->input.image, radius, filter->input.half_orders());
+            return largest_difference(filter->texture, truth);
+          }};
+}
+
+struct FixedFilter {
+  explicit FixedFilter(int size_px) : image(square_of(timed_picture(), size_px)) {}
+  GreyImage image;
+  Extraction<float> result;
+};
+
+Case fixed_filter_case(int size_px, int radius) {
+  Case one = our_case("G-L fixed", size_px, radius, {});
+  one.make = [=] {
+    const auto filter = std::make_shared<FixedFilter>(size_px);
+    ExtractionOptions options;
+    options.method = Method::fixed;
+    options.radius = radius;
+    options.order = kFixedOrder;
+    return Job{[=] { extract_texture_into(filter->image, options, {}, filter->result); },
+               [=] {
+                 return largest_difference(filter->result.texture,
+                                           gl_texture<double>(filter->image, radius, kFixedOrder));
+               }};
+  };
+  return one;
+}
+
+struct Filter2d {
+  Filter2d(int size_px, int radius, MaskGives gives)
+      : image(square_of(timed_picture(), size_px)),
+        mask(fixed_order_mask(kFixedOrder, radius, gives)) {
+    mat_of(image).convertTo(floats, CV_32F);
+  }
+
+  [[nodiscard]] double error(int radius) const {
+    return largest_difference(plane_of<float>(texture),
+                              gl_texture<double>(image, radius, kFixedOrder));
+  }
+
+  GreyImage image;
+  cv::Mat mask, floats, texture;
+};
+
+Job filter2d_job(int size_px, int radius, const std::string& input) {
+  const auto filter = std::make_shared<Filter2d>(size_px, radius, MaskGives::texture);
+  const cv::Mat from = input == "u8" ? mat_of(filter->image) : filter->floats;
+  return {
+      [=] {
+        cv::filter2D(from, filter->texture, CV_32F, filter->mask, {-1, -1}, 0, cv::BORDER_REFLECT);
+      },
+      [=] { return filter->error(radius); }};
+}
+
+/// Filters for the enhanced image and takes the image off: twice the rounding.
+Case enhanced_first_case(int size_px, int radius) {
+  Case one = gl_case("G-L fixed", "OpenCV filter2D, I + T less I", "f32", size_px, radius);
+  one.make = [=] {
+    const auto filter = std::make_shared<Filter2d>(size_px, radius, MaskGives::enhanced);
+    return Job{[=] {
+                 cv::filter2D(filter->floats, filter->texture, CV_32F, filter->mask, {-1, -1}, 0,
+                              cv::BORDER_REFLECT);
+                 cv::subtract(filter->texture, filter->floats, filter->texture);
+               },
+               [=] { return filter->error(radius); }};
+  };
+  return one;
+}
+
+template <typename Real>
+struct Naive {
+  explicit Naive(int size_px)
+      : input(size_px), orders(converted<double>(input.orders)), texture(size_px, size_px) {}
+  OrderedImage input;
+  Plane<double> orders;
+  Plane<Real> texture;
+};
+
+template <typename Real>
+Case naive_case(const std::string& who, int size_px, int radius) {
+  Case one = gl_case("G-L adaptive", who, "u8", size_px, radius);
+  one.make = [=] {
+    const auto naive = std::make_shared<Naive<Real>>(size_px);
+    return Job{
+        [=] { naive_mask_texture(naive->input.image, naive->orders, radius, naive->texture); },
+        [=] {
+          Plane<long double> truth(size_px, size_px);
+          naive_mask_texture(naive->input.image, naive->orders, radius, truth);
+          return largest_difference(naive->texture, truth);
+        }};
+  };
+  return one;
+}
+
+/// What the engine gives in double.
+Case double_case(int size_px, int radius) {
+  Case one = gl_case("G-L adaptive", our_name() + ", double", "u8", size_px, radius);
+  one.make = [=] {
+    const auto naive = std::make_shared<Naive<double>>(size_px);
+    const auto half = std::make_shared<Plane<double>>(naive->input.half_orders());
+    return Job{[=] { naive->texture = gl_texture<double>(naive->input.image, radius, *half); },
+               [=] {
+                 Plane<long double> truth(size_px, size_px);
+                 naive_mask_texture(naive->input.image, naive->orders, radius, truth);
+                 return largest_difference(naive->texture, truth);
+               }};
+  };
+  return one;
+}
+
+void add_slow_cases(int size_px, int radius, Cases& cases) {
+  if (size_px > kLargestNaive_px || radius > kLargestNaiveRadius) return;
+  cases.push_back(naive_case<float>("naive mask, float", size_px, radius));
+  cases.push_back(naive_case<double>("naive mask, double", size_px, radius));
+  cases.push_back(double_case(size_px, radius));
+}
+
+}  // namespace
+
+Case adaptive_filter_case(int size_px, int radius, const std::string& target) {
+  Case one = our_case("G-L adaptive", size_px, radius, target);
+  one.make = [=] { return adaptive_job(size_px, radius); };
+  return one;
+}
+
+Case filter2d_case(int size_px, int radius, const std::string& input) {
+  Case one = gl_case("G-L fixed", "OpenCV filter2D", input, size_px, radius);
+  one.make = [=] { return filter2d_job(size_px, radius, input); };
+  return one;
+}
+
+Cases gl_cases(const Scope& scope) {
+  Cases cases;
+  for (const int size_px : scope.sizes_px) {
+    for (const int radius : scope.radii) {
+      for (const std::string& target : scope.targets) {
+        cases.push_back(adaptive_filter_case(size_px, radius, target));
+      }
+      cases.push_back(fixed_filter_case(size_px, radius));
+      cases.push_back(filter2d_case(size_px, radius, "f32"));
+      cases.push_back(filter2d_case(size_px, radius, "u8"));
+      if (radius == kUsualRadius) cases.push_back(enhanced_first_case(size_px, radius));
+      add_slow_cases(size_px, radius, cases);
+    }
+  }
+  return cases;
+}
+
+}  // namespace touchtrial::bench

@@ -1,0 +1,73 @@
+#include "bench/inputs/extraction_truth.hpp"
+
+#include "bench/inputs/difference.hpp"
+#include "engine/order_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace touchtrial::bench {
+namespace {
+
+constexpr double kBranchWidth = 1e-3;
+constexpr double kTieWidth_grey = 1e-4;
+
+Extraction<double> extracted(const GreyImage& image, int radius, bool with_force) {
+  ExtractionOptions options;
+  options.radius = radius;
+  WantedPlanes wanted;
+  wanted.csgv = true;
+  wanted.picture = true;
+  wanted.force = with_force;
+  return extract_texture<double>(image, options, wanted);
+}
+
+bool is_near_tie(double texture) {
+  const double above = texture + 0.5 - std::floor(texture + 0.5);
+  return std::min(above, 1.0 - above) < kTieWidth_grey;
+}
+
+}  // namespace
+
+ExtractionTruth::ExtractionTruth(const GreyImage& image, int radius, bool with_force)
+    : truth_(extracted(image, radius, with_force)) {}
+
+bool ExtractionTruth::is_at_branch(int y, int x) const {
+  const double csgv = truth_.csgv.at(y, x);
+  return std::abs(csgv - kFlatBelowCsgv) < kBranchWidth ||
+         std::abs(csgv - kSteepAboveCsgv) < kBranchWidth;
+}
+
+/// Of the pixel or a neighbour. \pre inside the edge
+bool ExtractionTruth::is_near_branch(int y, int x) const {
+  for (int dy = -1; dy <= 1; ++dy) {
+    for (int dx = -1; dx <= 1; ++dx) {
+      if (is_at_branch(y + dy, x + dx)) return true;
+    }
+  }
+  return false;
+}
+
+double ExtractionTruth::texture_error(const Plane<float>& texture) const {
+  return largest_difference(texture, truth_.texture, 0,
+                            [this](int y, int x) { return !is_at_branch(y, x); });
+}
+
+double ExtractionTruth::force_error(const Plane<float>& x, const Plane<float>& y) const {
+  const auto counts = [this](int row, int column) { return !is_near_branch(row, column); };
+  return std::max(largest_difference(x, truth_.force.x, 1, counts),
+                  largest_difference(y, truth_.force.y, 1, counts));
+}
+
+int ExtractionTruth::unlike_pixels(const GreyImage& picture) const {
+  int unlike = 0;
+  for (int y = 0; y < picture.height(); ++y) {
+    for (int x = 0; x < picture.width(); ++x) {
+      if (picture.at(y, x) == truth_.picture.at(y, x)) continue;
+      if (!is_at_branch(y, x) && !is_near_tie(truth_.texture.at(y, x))) ++unlike;
+    }
+  }
+  return unlike;
+}
+
+}  // namespace touchtrial::bench

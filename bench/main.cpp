@@ -1,0 +1,5 @@
+#include "bench/program.hpp"
+
+int main(int argc, char** argv) {
+  return touchtrial::bench::run_program(argc, argv);
+}

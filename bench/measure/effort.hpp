@@ -1,0 +1,19 @@
+/// \file How long measuring may take.
+#pragma once
+
+namespace touchtrial::bench {
+
+struct Effort {
+  int repetitions = 7;         ///< of every row, in an order drawn at random among all rows
+  double repetition_s = 0.02;  ///< at least, and one run
+  double pair_s = 3.0;         ///< for one goal, about
+  int least_rounds = 5;        ///< of a pair, however long they take
+  int most_rounds = 41;
+};
+
+/// For looking whether everything works.
+[[nodiscard]] constexpr Effort quick_effort() {
+  return {3, 0.002, 0.2, 3, 15};
+}
+
+}  // namespace touchtrial::bench

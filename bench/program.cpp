@@ -1,0 +1,101 @@
+#include "bench/program.hpp"
+
+#include "app/console.hpp"
+#include "bench/cases/cases.hpp"
+#include "bench/goals/goal.hpp"
+#include "bench/inputs/pictures.hpp"
+#include "bench/machine.hpp"
+#include "bench/measure/rows.hpp"
+#include "bench/measure/simd_target.hpp"
+#include "bench/results_json.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "engine/simd/targets.hpp"
+
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <utility>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <opencv2/core/utility.hpp>
+
+namespace touchtrial::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Arguments {
+  fs::path json;
+  fs::path image;
+  std::string target;
+  bool quick = false;
+};
+
+Scope scope_for(const Arguments& arguments, const std::vector<std::string>& targets) {
+  Scope scope;
+  scope.targets = targets;
+  if (arguments.quick) {
+    scope.sizes_px = {256};
+    scope.more_sizes_px = {64};
+    scope.radii = {kUsualRadius};
+  }
+  return scope;
+}
+
+std::vector<GoalResult> take_goals(const std::vector<std::string>& targets, const Effort& effort) {
+  std::vector<Goal> goals = kernel_goals(targets);
+  for (Goal& goal : error_goals(targets)) goals.push_back(std::move(goal));
+  std::vector<GoalResult> results;
+  const auto progress = progress_bar("goals");
+  for (std::size_t i = 0; i < goals.size(); ++i) {
+    for (GoalResult& result : goals[i](effort)) results.push_back(std::move(result));
+    progress(static_cast<int>(i + 1), static_cast<int>(goals.size()));
+  }
+  return results;
+}
+
+void run(const Arguments& arguments) {
+  cv::setNumThreads(1);
+  if (!arguments.image.empty()) choose_timed_picture(arguments.image);
+  choose_usual_target(arguments.target);
+  const std::vector<std::string> targets =
+      arguments.target.empty() ? simd_targets() : std::vector{arguments.target};
+  const Effort effort = arguments.quick ? quick_effort() : Effort{};
+  const std::vector<GoalResult> goals = take_goals(targets, effort);
+  print(goals_table(goals));
+  if (arguments.json.empty()) return;
+  const std::vector<Row> rows =
+      measure_rows(all_cases(scope_for(arguments, targets)), effort, progress_bar("rows"));
+  replace_file(arguments.json, results_json(this_machine(), goals, rows));
+}
+
+void set_up(CLI::App& program, Arguments& arguments) {
+  program.add_option("--json", arguments.json, "Measure every kernel at every size, write FILE");
+  program.add_option("--image", arguments.image, "Take times on this picture, not on bark.png");
+  program.add_option("--target", arguments.target, "Use this SIMD target only, for instance AVX2")
+      ->check(CLI::IsMember(simd_targets()));
+  program.add_flag("--quick", arguments.quick, "Smallest sizes, few repetitions: does all work?");
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv) {
+  CLI::App program("Run time against error: the engine's kernels beside their peers");
+  Arguments arguments;
+  set_up(program, arguments);
+  try {
+    program.parse(argc, argv);
+    run(arguments);
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    return program.exit(error) == 0 ? 0 : 2;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "touchtrial-bench: %s\n", error.what());
+    return 1;
+  }
+}
+
+}  // namespace touchtrial::bench
