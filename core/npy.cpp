@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <charconv>
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <numeric>
@@ -51,8 +52,8 @@ Bytes header_of(std::string_view type, const std::vector<int>& shape) {
   return header;
 }
 
-[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& reason) {
-  throw FileError(one_line(path.string()) + ": " + reason +
+[[noreturn]] void refuse(const std::string& name, const std::string& reason) {
+  throw FileError(one_line(name) + ": " + reason +
                   "; give a .npy file of type u1, f4 or f8 in C order");
 }
 
@@ -105,20 +106,20 @@ struct Layout {
   std::size_t data_at = 0;
 };
 
-Layout layout_of(const std::filesystem::path& path, const Bytes& file) {
+Layout layout_of(const std::string& name, ByteView file) {
   if (file.size() < 12 ||
       !std::equal(kMagic.begin(), kMagic.end(), file.begin(),
                   [](char a, std::uint8_t b) { return static_cast<std::uint8_t>(a) == b; })) {
-    refuse(path, "is not a .npy file");
+    refuse(name, "is not a .npy file");
   }
   const int version = file[6];
-  if (version != 1 && version != 2) refuse(path, "has .npy version " + std::to_string(version));
+  if (version != 1 && version != 2) refuse(name, "has .npy version " + std::to_string(version));
   const std::size_t dictionary_at = version == 1 ? 10 : 12;
   std::size_t length = static_cast<std::size_t>(file[8]) | static_cast<std::size_t>(file[9]) << 8U;
   if (version == 2) {
     length |= static_cast<std::size_t>(file[10]) << 16U | static_cast<std::size_t>(file[11]) << 24U;
   }
-  if (dictionary_at + length > file.size()) refuse(path, "is truncated in its header");
+  if (dictionary_at + length > file.size()) refuse(name, "is truncated in its header");
   return {dictionary_at, dictionary_at + length};
 }
 
@@ -131,6 +132,12 @@ std::vector<double> doubles_from(const Bytes& data) {
     values[i] = static_cast<double>(sample);
   }
   return values;
+}
+
+bool is_finite(const NpyArray& array) {
+  if (array.type == "|u1") return true;
+  const std::vector<double> values = array.as_doubles();
+  return std::ranges::all_of(values, [](double value) { return std::isfinite(value); });
 }
 
 }  // namespace
@@ -158,26 +165,30 @@ std::vector<double> NpyArray::as_doubles() const {
 }
 
 NpyArray read_npy(const std::filesystem::path& path) {
-  const Bytes file = read_file(path);
-  const Layout layout = layout_of(path, file);
+  return parse_npy(read_file(path), path.string());
+}
+
+NpyArray parse_npy(ByteView file, const std::string& name) {
+  const Layout layout = layout_of(name, file);
   const std::string dictionary =
-      text_of(ByteView(file).subspan(layout.dictionary_at, layout.data_at - layout.dictionary_at));
+      text_of(file.subspan(layout.dictionary_at, layout.data_at - layout.dictionary_at));
   const auto type = value_of(dictionary, "descr");
   const auto order = value_of(dictionary, "fortran_order");
   const auto shape_value = value_of(dictionary, "shape");
-  if (!type || !order || !shape_value) refuse(path, "has no complete header");
-  if (!order->starts_with("False")) refuse(path, "is in Fortran order");
+  if (!type || !order || !shape_value) refuse(name, "has no complete header");
+  if (!order->starts_with("False")) refuse(name, "is in Fortran order");
   NpyArray array;
   array.type = std::string(type->substr(0, 5));
   if (array.type.size() == 5) array.type = array.type.substr(1, 3);
   const std::size_t sample = sample_size(array.type);
-  if (sample == 0) refuse(path, "has samples of type " + one_line(array.type));
+  if (sample == 0) refuse(name, "has samples of type " + one_line(array.type));
   const auto shape = parse_shape(*shape_value);
-  if (!shape) refuse(path, "has an unreadable shape");
+  if (!shape) refuse(name, "has an unreadable shape");
   array.shape = *shape;
   const auto bytes = data_size(array.shape, sample);
-  if (!bytes || *bytes != file.size() - layout.data_at) refuse(path, "is truncated or overlong");
+  if (!bytes || *bytes != file.size() - layout.data_at) refuse(name, "is truncated or overlong");
   array.data.assign(file.begin() + static_cast<std::ptrdiff_t>(layout.data_at), file.end());
+  if (!is_finite(array)) refuse(name, "has samples that are not finite");
   return array;
 }
 

@@ -35,7 +35,11 @@ struct NpyArray {
 };
 
 /// Reads version 1.0 and 2.0 files of the types above, C order.
-/// \throws FileError if the file is missing, truncated, or of another type or order
+/// \throws FileError if the file is missing, truncated, of another type or order, or has samples
+///   that are not finite
 [[nodiscard]] NpyArray read_npy(const std::filesystem::path& path);
+
+/// The same from a file's bytes. \param name  what errors call it, in place of the path
+[[nodiscard]] NpyArray parse_npy(ByteView file, const std::string& name);
 
 }  // namespace touchtrial

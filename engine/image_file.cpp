@@ -11,6 +11,7 @@
 #include <new>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include <opencv2/core.hpp>
@@ -18,6 +19,11 @@
 
 namespace touchtrial {
 namespace {
+
+/// Up to here a file is read as a whole, which turns a failing disk into an error. A larger one is
+/// mapped: then a huge file that is no picture, or holds little of one, costs the few pages that
+/// its checks look at.
+constexpr std::uintmax_t kLargestReadWhole = std::uintmax_t{1} << 26U;
 
 GreyImage decode_file(ByteView file) {
   if (file.empty()) throw ImageFault{"is empty", "copy or export it again"};
@@ -36,9 +42,8 @@ GreyImage decode_file(ByteView file) {
   throw std::logic_error("an image kind without a reader");
 }
 
-FileError error_about(const std::filesystem::path& path, const std::string& what,
-                      const std::string& remedy) {
-  return FileError(one_line(path.string() + ": " + what + "; " + remedy));
+FileError error_about(const std::string& name, const std::string& what, const std::string& remedy) {
+  return FileError(one_line(name + ": " + what + "; " + remedy));
 }
 
 /// Filtered rows and zlib's best effort: textures pack poorly, so every per cent is welcome.
@@ -57,16 +62,26 @@ std::vector<std::uint8_t> png_bytes(const GreyImage& image) {
 }  // namespace
 
 GreyImage read_grey_image(const std::filesystem::path& path) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(path, error);
+  if (!error && size > kLargestReadWhole) {
+    const MappedFile file(path);
+    return decode_grey_image(file.bytes(), path.string());
+  }
+  return decode_grey_image(read_file(path), path.string());
+}
+
+GreyImage decode_grey_image(ByteView file, const std::string& name) {
   try {
-    return decode_file(read_file(path));
+    return decode_file(file);
   } catch (const ImageFault& fault) {
-    throw error_about(path, fault.what, fault.remedy);
+    throw error_about(name, fault.what, fault.remedy);
   } catch (const std::bad_alloc&) {
-    throw error_about(path, "does not fit into memory", "crop or shrink it");
+    throw error_about(name, "does not fit into memory", "crop or shrink it");
   } catch (const std::length_error&) {
-    throw error_about(path, "does not fit into memory", "crop or shrink it");
+    throw error_about(name, "does not fit into memory", "crop or shrink it");
   } catch (const cv::Exception& error) {
-    throw error_about(path, "cannot be decoded (" + error.err + ")", "copy or export it again");
+    throw error_about(name, "cannot be decoded (" + error.err + ")", "copy or export it again");
   }
 }
 
@@ -78,7 +93,8 @@ void write_png(const std::filesystem::path& path, const GreyImage& image) {
   } catch (const cv::Exception&) {
     bytes.clear();
   }
-  if (bytes.empty()) throw error_about(path, "cannot be encoded as PNG", "give a smaller image");
+  if (bytes.empty())
+    throw error_about(path.string(), "cannot be encoded as PNG", "give a smaller image");
   replace_file(path, bytes);
 }
 

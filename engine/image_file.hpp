@@ -2,10 +2,12 @@
 /// Source of the conversion rules: docs/method.md, "Images".
 #pragma once
 
+#include "core/bytes.hpp"
 #include "core/plane.hpp"
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 namespace touchtrial {
 
@@ -22,7 +24,12 @@ inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 28;
 ///   million, or data that the decoder finds damaged
 /// Prints nothing, whatever the decoder thinks of the file: while it decodes, what this process
 /// writes to standard error is thrown away. Thread-safe; one picture is decoded at a time.
+/// A file over 64 MiB is mapped, and must not be made shorter meanwhile; what it costs goes by its
+/// picture, not by its size.
 [[nodiscard]] GreyImage read_grey_image(const std::filesystem::path& path);
+
+/// The same from a file's bytes. \param name  what errors call it, in place of the path
+[[nodiscard]] GreyImage decode_grey_image(ByteView file, const std::string& name);
 
 /// Writes an 8-bit grey PNG. The same image gives the same bytes on one machine.
 /// \param image  at least 1 x 1

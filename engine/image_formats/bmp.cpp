@@ -82,7 +82,8 @@ DecoderInput check_bmp(ByteView file) {
   }
   if (bytes_at(file, header.data_at, data_size(header)).empty()) throw_truncated_image();
   DecoderInput input;
-  input.bytes.assign(file.begin(), file.end());
+  const ByteView used = file.first(header.data_at + data_size(header));
+  input.bytes.assign(used.begin(), used.end());
   input.width_px = static_cast<int>(header.width);
   input.height_px = static_cast<int>(header.height);
   // Usual masks without alpha mean the same as no masks, where the decoder knows that the fourth

@@ -5,6 +5,7 @@
 #include "engine/image_formats/sample_rules.hpp"
 #include "engine/image_formats/stderr_capture.hpp"
 
+#include <limits>
 #include <mutex>
 
 #include <opencv2/core/utils/logger.hpp>
@@ -28,6 +29,9 @@ class DetailedLog {
 };
 
 cv::Mat decode(const Bytes& bytes) {
+  if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+    throw ImageFault{"has more than 2 GiB of samples in the file", "crop or shrink it"};
+  }
   static std::mutex one_at_a_time;
   const std::lock_guard lock(one_at_a_time);
   cv::Mat decoded;

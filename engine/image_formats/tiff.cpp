@@ -146,8 +146,9 @@ std::uint64_t unpacked_size(const Layout& layout, const Pieces& pieces, std::uin
 
 /// How many bytes one byte of a file may unpack to, generously; 0 if there is no limit.
 std::uint64_t packing_limit(const Layout& layout) {
-  if (layout.photometric == kYcbcr || layout.compression == kJpeg || layout.bits == 1) return 0;
-  return layout.compression == kNone ? 1 : 4096;
+  if (layout.photometric == kYcbcr || layout.compression == kJpeg) return 0;
+  if (layout.compression == kNone) return 1;
+  return layout.bits == 1 ? 0 : 4096;
 }
 
 void check_pieces(ByteView file, const Layout& layout, const Pieces& pieces) {
@@ -185,13 +186,23 @@ Alpha alpha_rule(const TiffDirectory& directory, const Layout& layout) {
   return is_straight && !is_multiplied ? Alpha::straight : Alpha::ignored;
 }
 
+/// The decoder stumbles over uncompressed tiles with less than the four bytes a pixel that it makes
+/// of them.
+void refuse_plain_tiles(const Layout& layout, const Pieces& pieces) {
+  if (!pieces.tiled || layout.compression != kNone) return;
+  if (layout.bits == 16 || layout.bits * layout.channels == 32) return;
+  throw_unsupported_image("is a TIFF in tiles without compression, which is not supported");
+}
+
 }  // namespace
 
 DecoderInput check_tiff(ByteView file) {
   const TiffDirectory directory(file);
   const Layout layout = read_layout(directory);
   check_samples(directory, layout);
-  check_pieces(file, layout, read_pieces(directory, layout));
+  const Pieces pieces = read_pieces(directory, layout);
+  check_pieces(file, layout, pieces);
+  refuse_plain_tiles(layout, pieces);
   DecoderInput input;
   input.bytes.assign(file.begin(), file.end());
   input.width_px = static_cast<int>(layout.width);

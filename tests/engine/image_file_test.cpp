@@ -242,6 +242,39 @@ TEST_CASE("a compressed TIFF decodes to what was encoded") {
   CHECK(std::equal(image.samples().begin(), image.samples().end(), grey.begin<std::uint8_t>()));
 }
 
+/// A TIFF of one 16 x 16 tile, of which the picture is the upper left corner.
+Bytes tiled_tiff(std::uint32_t bits, const Bytes& tile) {
+  Tiff tiff(5, 4, tile);
+  for (const std::uint32_t strips : {273U, 278U, 279U}) tiff.entries.erase(strips);
+  const auto size = static_cast<std::uint32_t>(tile.size());
+  return tiff.with(258, {bits})
+      .with(322, {16})
+      .with(323, {16})
+      .with(324, {8})
+      .with(325, {size})
+      .bytes();
+}
+
+TEST_CASE("a TIFF in 16-bit tiles is read, and refused if a tile is short") {
+  CHECK(read_bytes(tiled_tiff(16, Bytes(512, 7))).at(3, 4) == 7);
+  CHECK_THROWS_WITH(read_bytes(tiled_tiff(16, Bytes(511, 7))), holds_text("truncated"));
+}
+
+TEST_CASE("a TIFF in tiles of four 8-bit channels is read") {
+  Tiff tiff(5, 4, Bytes(1024, 255));
+  for (const std::uint32_t strips : {273U, 278U, 279U}) tiff.entries.erase(strips);
+  tiff.with(258, {8, 8, 8, 8}).with(262, {2}).with(277, {4});
+  tiff.with(322, {16}).with(323, {16}).with(324, {8}).with(325, {1024});
+  CHECK(first_row(tiff.bytes()) == Row{255, 255, 255, 255, 255});
+}
+
+TEST_CASE("a TIFF in 8-bit tiles without compression is refused by name") {
+  for (const std::uint32_t bits : {1U, 8U}) {
+    CHECK_THROWS_WITH(read_bytes(tiled_tiff(bits, Bytes(256))),
+                      holds_text("tiles without compression"));
+  }
+}
+
 TEST_CASE("BMP rows from the top or the bottom, palettes and alpha follow the rules") {
   const Bytes rows = {30, 20, 10, 120, 110, 100, 0, 0, 1, 1, 1, 2, 2, 2, 0, 0};
   CHECK(first_row(Bmp{2, 2, 24, rows, {}, 0, {}}.bytes()) == Row{1, 2});

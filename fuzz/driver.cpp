@@ -1,0 +1,12 @@
+// What libFuzzer calls. Compiled once for each entry, with its name.
+#include "fuzz/entries.hpp"
+
+#include <cstddef>
+#include <cstdint>
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  touchtrial::fuzz::TOUCHTRIAL_FUZZ_ENTRY({data, size});
+  return 0;
+}

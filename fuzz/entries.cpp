@@ -1,0 +1,100 @@
+#include "fuzz/entries.hpp"
+
+#include "core/errors.hpp"
+#include "core/npy.hpp"
+#include "engine/image_file.hpp"
+#include "protocols/design/study.hpp"
+#include "protocols/session/subject_model.hpp"
+#include "protocols/store/trace.hpp"
+
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+
+namespace touchtrial::fuzz {
+namespace {
+
+void require(bool holds, const char* law) {
+  if (!holds) throw std::logic_error(law);
+}
+
+/// What the program would show is one line.
+void check_refusal(const Error& error) {
+  const std::string text = error.what();
+  require(!text.empty() && text.find('\n') == std::string::npos, "a refusal is one line");
+}
+
+template <typename Read>
+void accept_or_refuse(Read read) {
+  try {
+    read();
+  } catch (const Error& error) {
+    check_refusal(error);
+  }
+}
+
+bool equal(const Trace& a, const Trace& b) {
+  if (a.rate_hz != b.rate_hz || a.samples.size() != b.samples.size()) return false;
+  for (std::size_t i = 0; i < a.samples.size(); ++i) {
+    if (!(a.samples[i].position_mm == b.samples[i].position_mm)) return false;
+    if (!(a.samples[i].force_n == b.samples[i].force_n)) return false;
+  }
+  return true;
+}
+
+/// A still stylus packs so well that a few bytes may rightly stand for millions of samples: slow,
+/// not wrong, and nothing for a fuzzer. The number stands behind the mark and the rate.
+bool claims_a_long_trace(ByteView bytes) {
+  constexpr std::size_t kCountAt = 12;
+  constexpr std::uint32_t kLong = 20'000;
+  constexpr std::uint32_t kRefused = 10'000'000;
+  if (bytes.size() < kCountAt + 4) return false;
+  std::uint32_t count = 0;
+  for (std::size_t i = 4; i-- > 0;) count = count << 8U | bytes[kCountAt + i];
+  return count > kLong && count <= kRefused;
+}
+
+}  // namespace
+
+void read_as_image(ByteView bytes) {
+  accept_or_refuse([&] {
+    const GreyImage image = decode_grey_image(bytes, "picture");
+    require(!image.empty(), "a picture has pixels");
+    require(static_cast<std::int64_t>(image.size()) <= kMaxImagePixels, "a picture is not huge");
+  });
+}
+
+void read_as_npy(ByteView bytes) {
+  accept_or_refuse([&] {
+    const NpyArray array = parse_npy(bytes, "array.npy");
+    std::size_t count = 1;
+    for (const int extent : array.shape) count *= static_cast<std::size_t>(extent);
+    require(array.as_doubles().size() == count, "an array has as many samples as its shape");
+  });
+}
+
+void read_as_study(ByteView bytes) {
+  accept_or_refuse([&] {
+    const Study study = parse_study(text_of(bytes), "folder", "study.json");
+    require(!study.classes.empty() && !study.methods.empty(), "a study has classes and methods");
+    require(study.scored_trials() > 0, "a study has trials");
+  });
+}
+
+void read_as_subject(ByteView bytes) {
+  accept_or_refuse([&] {
+    const SubjectModel model = parse_subject_model(text_of(bytes), "subject.json");
+    require(model.weber >= 0.0 && model.explore_s > 0.0, "a subject's numbers are in range");
+  });
+}
+
+void read_as_trace(ByteView bytes) {
+  if (claims_a_long_trace(bytes)) return;
+  accept_or_refuse([&] {
+    const Trace trace = decode_trace(bytes);
+    require(equal(decode_trace(encode_trace(trace)), trace), "a trace survives being stored");
+  });
+}
+
+}  // namespace touchtrial::fuzz

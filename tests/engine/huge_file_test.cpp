@@ -1,0 +1,73 @@
+// Files far larger than their pictures must not cost what they weigh.
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "image_samples.hpp"
+#include "support/catch.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+using namespace touchtrial;
+using namespace touchtrial::samples;
+
+namespace {
+
+constexpr std::uintmax_t kHugeBytes = std::uintmax_t{3} << 29U;  // 1.5 GiB, a hole on disk
+constexpr long kModest_kib = 64L << 10U;
+
+/// The most memory that this process ever had, in KiB.
+long peak_memory_kib() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with("VmHWM:")) return std::stol(line.substr(6));
+  }
+  return 0;
+}
+
+/// A file that starts with these bytes and goes on with zeros.
+class HugeFile {
+ public:
+  explicit HugeFile(const Bytes& start) : path_(folder_.path() / "huge") {
+    std::ofstream(path_, std::ios::binary) << text_of(start);
+    std::filesystem::resize_file(path_, kHugeBytes);
+  }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+ private:
+  TempFolder folder_;
+  std::filesystem::path path_;
+};
+
+void check_refused_cheaply(const Bytes& start, const std::string& reason) {
+  const HugeFile file(start);
+  const long before_kib = peak_memory_kib();
+  CHECK_THROWS_WITH(read_grey_image(file.path()), holds_text(reason));
+  CHECK(peak_memory_kib() - before_kib < kModest_kib);
+}
+
+}  // namespace
+
+TEST_CASE("1.5 GiB of nothing are refused at the price of a page") {
+  check_refused_cheaply({}, "not an image of a known kind");
+  check_refused_cheaply(text("GIF89a"), "GIF");
+}
+
+TEST_CASE("1.5 GiB of junk behind the beginning of a picture are refused at the price of a page") {
+  check_refused_cheaply(hex("89504e470d0a1a0a"), "truncated or damaged");
+  check_refused_cheaply(hex("ffd8ffe0"), "truncated or damaged");
+  check_refused_cheaply(text(std::string_view("II*\0", 4)), "truncated or damaged");
+  check_refused_cheaply(text("BM"), "not supported");
+  check_refused_cheaply(text("P5 99999 99999 255\n"), "more than");
+}
+
+TEST_CASE("a small picture with 1.5 GiB behind its end is read at its own price") {
+  for (const char* extension : {".png", ".jpg", ".bmp", ".ppm"}) {
+    INFO(extension);
+    const Bytes picture = encoded(extension, colour_picture());
+    const HugeFile file(picture);
+    const long before_kib = peak_memory_kib();
+    CHECK(read_grey_image(file.path()) == read_bytes(picture));
+    CHECK(peak_memory_kib() - before_kib < kModest_kib);
+  }
+}
