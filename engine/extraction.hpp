@@ -130,13 +130,13 @@ void extract_texture_into(const GreyImage& image, const ExtractionOptions& optio
                           const WantedPlanes& wanted, Extraction<Real>& result);
 
 /// The texture as an 8-bit picture, rounded half up and limited to 0 .. 255.
-/// \throws std::invalid_argument if the texture is empty
+/// \throws std::invalid_argument if the texture is empty or not finite
 template <typename Real>
 [[nodiscard]] GreyImage texture_picture(const Plane<Real>& texture,
                                         Mapping mapping = Mapping::offset);
 
 /// The surface that forces are made from: 128 + T, unrounded.
-/// \throws std::invalid_argument if the texture is empty
+/// \throws std::invalid_argument if the texture is empty or not finite
 template <typename Real>
 [[nodiscard]] Plane<Real> texture_surface(const Plane<Real>& texture);
 

@@ -1,5 +1,6 @@
 #include "engine/force_field.hpp"
 
+#include "engine/finite_plane.hpp"
 #include "engine/kernels/field_rows.hpp"
 
 #include <algorithm>
@@ -49,6 +50,7 @@ ForceField<Real> tangential_force(const Plane<Real>& surface, int neighbourhood)
   if (neighbourhood < 3 || neighbourhood % 2 == 0) {
     throw std::invalid_argument("neighbourhood: must be odd and at least 3");
   }
+  require_finite(surface, "tangential_force", "surface");
   const int reach_y = std::min(neighbourhood / 2, surface.height() - 1);
   const int reach_x = std::min(neighbourhood / 2, surface.width() - 1);
   ForceField<Real> force{Plane<Real>(surface.height(), surface.width()),

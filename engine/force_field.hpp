@@ -17,7 +17,7 @@ struct ForceField {
 /// dark. At the border only neighbours that exist count. Real is float or double.
 /// \param surface  G, grey levels, at least 1 x 1
 /// \param neighbourhood  n, side of the square neighbourhood, odd, >= 3; may exceed the image
-/// \throws std::invalid_argument if the surface is empty or n is even or < 3
+/// \throws std::invalid_argument if the surface is empty or not finite, or n is even or < 3
 template <typename Real>
 [[nodiscard]] ForceField<Real> tangential_force(const Plane<Real>& surface, int neighbourhood);
 

@@ -1,5 +1,6 @@
 #include "engine/gaussian_filter.hpp"
 
+#include "engine/finite_plane.hpp"
 #include "engine/symmetric_extension.hpp"
 
 #include <algorithm>
@@ -81,6 +82,7 @@ Plane<double> gaussian_filtered(const Plane<double>& plane, double sigma_px) {
   if (!(sigma_px >= 0.0)) {
     throw std::invalid_argument("gaussian_filtered: sigma must be a number >= 0");
   }
+  require_finite(plane, "gaussian_filtered", "plane");
   if (sigma_px == 0.0) return plane;
   return filtered_along_x(filtered_along_y(plane, sigma_px), sigma_px);
 }

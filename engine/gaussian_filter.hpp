@@ -12,7 +12,7 @@ namespace touchtrial {
 /// its mean. Thread-safe. Cost: about 30 * sigma_px multiplications a pixel.
 /// \param plane  at least 1 x 1, any unit
 /// \param sigma_px  standard deviation, >= 0; 0 gives the plane itself, infinity its mean
-/// \throws std::invalid_argument if the plane is empty, or sigma_px is negative or NaN
+/// \throws std::invalid_argument if the plane is empty or not finite, or sigma_px negative or NaN
 [[nodiscard]] Plane<double> gaussian_filtered(const Plane<double>& plane, double sigma_px);
 
 }  // namespace touchtrial

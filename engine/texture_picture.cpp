@@ -1,9 +1,11 @@
 #include "engine/extraction.hpp"
+#include "engine/finite_plane.hpp"
 #include "engine/kernels/field_rows.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 namespace touchtrial {
 namespace {
@@ -12,8 +14,7 @@ constexpr int kMidGrey = 128;
 
 /// In double for either precision: float would round 128 + T on to ties.
 std::uint8_t rounded_to_grey(double level) {
-  const double rounded = std::floor(level + 0.5);
-  return static_cast<std::uint8_t>(std::fmin(std::fmax(rounded, 0.0), 255.0));  // NaN becomes 0
+  return static_cast<std::uint8_t>(std::clamp(std::floor(level + 0.5), 0.0, 255.0));
 }
 
 template <typename Real, typename LevelOf>
@@ -48,15 +49,16 @@ GreyImage stretched(const Plane<Real>& texture) {
 }
 
 template <typename Real>
-void refuse_empty(const Plane<Real>& texture) {
-  if (texture.empty()) throw std::invalid_argument("the texture is empty");
+void check(const Plane<Real>& texture, const std::string& caller) {
+  if (texture.empty()) throw std::invalid_argument(caller + ": the texture is empty");
+  require_finite(texture, caller, "texture");
 }
 
 }  // namespace
 
 template <typename Real>
 GreyImage texture_picture(const Plane<Real>& texture, Mapping mapping) {
-  refuse_empty(texture);
+  check(texture, "texture_picture");
   switch (mapping) {
     case Mapping::abs:
       return picture_by(texture, [](double sample) { return std::abs(sample); });
@@ -70,7 +72,7 @@ GreyImage texture_picture(const Plane<Real>& texture, Mapping mapping) {
 
 template <typename Real>
 Plane<Real> texture_surface(const Plane<Real>& texture) {
-  refuse_empty(texture);
+  check(texture, "texture_surface");
   Plane<Real> surface = texture;
   for (Real& sample : surface.samples()) sample += kMidGrey;
   return surface;

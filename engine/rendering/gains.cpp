@@ -76,11 +76,19 @@ ChannelGains channel_gains(std::span<const FieldView> fields, const RenderingOpt
   return gains;
 }
 
+bool is_gain(double gain) {
+  return std::isfinite(gain) && gain >= 0.0;
+}
+
 void check(std::span<const FieldView> fields, const RenderingOptions& options) {
   if (fields.empty()) throw std::invalid_argument("choose_gains: there is no field");
   const double budget = options.texture_stiffness_n_per_mm;
   if (!std::isfinite(budget) || budget <= 0.0) {
     throw std::invalid_argument("choose_gains: the budget must be a finite number > 0");
+  }
+  if (options.gains &&
+      !(is_gain(options.gains->tangential_n) && is_gain(options.gains->normal_n))) {
+    throw std::invalid_argument("choose_gains: explicit gains must be finite numbers >= 0");
   }
 }
 

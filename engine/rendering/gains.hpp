@@ -29,7 +29,7 @@ struct StudyGains {
 ///
 /// Flat fields do not count; equalised they get gain 0, as all do if all are flat.
 /// \throws std::invalid_argument if there is no field, a field has samples that are not finite, or
-///   the budget is not a finite number > 0
+///   the budget is not a finite number > 0, or an explicit gain not one >= 0
 /// Thread-safe. Memory: four bytes a pixel of all fields together.
 [[nodiscard]] StudyGains choose_gains(std::span<const FieldView> fields,
                                       const RenderingOptions& options);

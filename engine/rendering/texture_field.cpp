@@ -1,5 +1,6 @@
 #include "engine/rendering/texture_field.hpp"
 
+#include "engine/finite_plane.hpp"
 #include "engine/force_field.hpp"
 #include "engine/gaussian_filter.hpp"
 
@@ -23,6 +24,7 @@ void check_options(const RenderingOptions& options) {
 TextureField make_texture_field(const Plane<double>& texture, const RenderingOptions& options) {
   check_options(options);
   if (texture.empty()) throw std::invalid_argument("make_texture_field: the texture is empty");
+  require_finite(texture, "make_texture_field", "texture");
   // Filter and force see only differences, so the level of 128 joins last and costs no digits.
   const Plane<double> smooth =
       gaussian_filtered(texture, to_px(options.filter_mm, options.pitch_mm));

@@ -40,7 +40,8 @@ class TextureField {
 /// Builds a field from an extracted texture T: surface 128 + T, reconstruction filter, tangential
 /// force with the options' neighbourhood. Computed in double, stored as float.
 /// \param texture  T, grey levels, finite, at least 1 x 1
-/// \throws std::invalid_argument if the texture is empty, or pitch, filter or neighbourhood is out
+/// \throws std::invalid_argument if the texture is empty or not finite, or pitch, filter or
+/// neighbourhood is out
 ///   of range
 /// Thread-safe.
 [[nodiscard]] TextureField make_texture_field(const Plane<double>& texture,

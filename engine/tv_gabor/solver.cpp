@@ -75,7 +75,9 @@ SolverStop TvGaborSolver<Real>::run(Patience patience) {
     const AdmmResiduals residuals = admm_.measured_step();
     check();
     if (certificate_.gap <= options_.gap) return SolverStop::converged;
-    if (patience == Patience::limited && is_stalled()) return SolverStop::stalled;
+    // Without steps left there is nothing to go on with, so this is the end, not a stall.
+    const bool may_stall = patience == Patience::limited && steps_ < options_.max_steps;
+    if (may_stall && is_stalled()) return SolverStop::stalled;
     balance(residuals);
   }
   return SolverStop::exhausted;

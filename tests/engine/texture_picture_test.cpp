@@ -26,7 +26,8 @@ TEMPLATE_TEST_CASE("texture_picture clamps to what eight bits hold", "", float, 
   CHECK(picture_of<TestType>(TestType(-1000)) == 0);
   CHECK(picture_of<TestType>(TestType(127)) == 255);
   CHECK(picture_of<TestType>(TestType(127.5)) == 255);
-  CHECK(picture_of<TestType>(std::numeric_limits<TestType>::infinity()) == 255);
+  CHECK(picture_of<TestType>(std::numeric_limits<TestType>::max()) == 255);
+  CHECK(picture_of<TestType>(std::numeric_limits<TestType>::lowest()) == 0);
 }
 
 TEST_CASE("texture_picture does not round a float twice") {

@@ -4,6 +4,7 @@
 #include "engine/refusal.hpp"
 #include "support/catch.hpp"
 
+#include <algorithm>
 #include <cstdint>
 #include <set>
 
@@ -17,6 +18,16 @@ TEST_CASE("simd_targets names at least one target, and none twice") {
   REQUIRE_FALSE(names.empty());
   CHECK(std::set<std::string>(names.begin(), names.end()).size() == names.size());
   CHECK(std::set<std::string>(names.begin(), names.end()).count("Unknown") == 0);
+}
+
+TEST_CASE("the kernels under test have the portable target besides those of this processor") {
+  const std::vector<std::string> names = simd_targets();
+  const bool has_portable = std::any_of(names.begin(), names.end(), [](const std::string& name) {
+    return name == "SCALAR" || name == "EMU128";
+  });
+  CHECK(has_portable);
+  // Every processor that the program runs on has SSE4 (x86-64-v2) or its like.
+  CHECK(names.size() >= 2);
 }
 
 TEST_CASE("force_simd_target leaves its target alone to choose from, and all of them afterwards") {

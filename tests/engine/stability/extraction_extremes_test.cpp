@@ -1,0 +1,186 @@
+// Every extractor on every extreme image: finite, bounded, the same each time; and its laws.
+#include "engine/finite_plane.hpp"
+#include "engine/gl_weights.hpp"
+#include "engine/plane_comparison.hpp"
+#include "engine/stability/extreme_cases.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <type_traits>
+
+namespace touchtrial {
+namespace {
+
+template <typename Real>
+Plane<Real> texture_of(const GreyImage& image, const ExtractionOptions& options) {
+  return extract_texture<Real>(image, options).texture;
+}
+
+TEST_CASE("every texture of every extreme image is finite, bounded and the same each time") {
+  for_every_extreme([]<typename Real>(const ExtractionCase& extraction, const GreyImage& image) {
+    const auto result = extract_texture<Real>(image, extraction.options, WantedPlanes::all());
+    REQUIRE(all_finite(result.texture));
+    REQUIRE(largest_magnitude(result.texture) <= extraction.largest_texture);
+    REQUIRE(all_finite(result.force.x));
+    REQUIRE(all_finite(result.force.y));
+    REQUIRE(texture_of<Real>(image, extraction.options) == result.texture);
+  });
+}
+
+/// The largest that |T| - 255 (1 - S_K) gets; infinite if an order is none.
+template <typename Real>
+double excess_over_bound(const Extraction<Real>& result, int radius) {
+  double excess = -255.0;
+  for (std::size_t i = 0; i < result.order.size(); ++i) {
+    const auto order = static_cast<double>(result.order.samples()[i]);
+    if (!(order >= 0.0 && order < 1.0)) return std::numeric_limits<double>::infinity();
+    const double bound = 255.0 * (1.0 - gl_weight_sum(order, radius));
+    const auto texture = static_cast<double>(result.texture.samples()[i]);
+    excess = std::max(excess, std::abs(texture) - bound);
+  }
+  return excess;
+}
+
+TEST_CASE("every order of an extreme image lies in 0 to 1, and its texture within 255 (1 - S_K)") {
+  WantedPlanes wanted;
+  wanted.order = true;
+  for_every_extreme([&]<typename Real>(const ExtractionCase& extraction, const GreyImage& image) {
+    const ExtractionOptions& options = extraction.options;
+    if (options.method != Method::adaptive || options.norm != Norm::additive) return;
+    const auto result = extract_texture<Real>(image, options, wanted);
+    REQUIRE(excess_over_bound(result, options.radius) <= 4e-5);
+  });
+}
+
+TEST_CASE("every extractor but luminance keeps a flat image exactly flat") {
+  in_both_precisions([]<typename Real>() {
+    for (const ExtractionCase& extraction : extraction_cases()) {
+      if (extraction.options.method == Method::luminance) continue;
+      for (const int level : {0, 128, 255}) {
+        INFO(extraction.name << ", level " << level);
+        const GreyImage image = flat_image({7, 21}, level);
+        CHECK(largest_magnitude(texture_of<Real>(image, extraction.options)) == 0.0);
+      }
+    }
+  });
+}
+
+/// How far rounding may take two ways to one texture apart, in grey levels.
+template <typename Real>
+double tolerance(const ExtractionCase& extraction) {
+  const double digits = std::is_same_v<Real, float> ? 2e-7 : 1e-12;
+  return digits * std::max(255.0, extraction.largest_texture);
+}
+
+/// Edge sees no sign; luminance is reflected at 127.5 instead of 128.
+bool is_odd(const ExtractionCase& extraction) {
+  return extraction.options.method != Method::edge &&
+         extraction.options.method != Method::luminance;
+}
+
+/// Orders are the same on both sides only away from the branch points of the order map.
+bool has_clear_branches(const GreyImage& image, const ExtractionOptions& options) {
+  if (options.method != Method::adaptive) return true;
+  WantedPlanes wanted;
+  wanted.csgv = true;
+  const auto csgv = extract_texture<double>(image, options, wanted).csgv;
+  return std::none_of(csgv.samples().begin(), csgv.samples().end(), [](double value) {
+    return std::abs(value - 2.0) < 1e-3 || std::abs(value - 128.0) < 1e-3;
+  });
+}
+
+TEST_CASE("the negative of an extreme image has the negative texture") {
+  int compared = 0;
+  for_every_extreme([&]<typename Real>(const ExtractionCase& extraction, const GreyImage& image) {
+    if (!is_odd(extraction) || !has_clear_branches(image, extraction.options)) return;
+    Plane<Real> negative = texture_of<Real>(negative_of(image), extraction.options);
+    for (Real& sample : negative.samples()) sample = -sample;
+    REQUIRE(largest_difference(negative, texture_of<Real>(image, extraction.options)) <=
+            tolerance<Real>(extraction));
+    ++compared;
+  });
+  CHECK(compared > 5000);
+}
+
+TEST_CASE("edge and luminance answer a negative as their formulas say") {
+  ExtractionOptions edge;
+  edge.method = Method::edge;
+  ExtractionOptions luminance;
+  luminance.method = Method::luminance;
+  in_both_precisions([&]<typename Real>() {
+    const GreyImage image = noise_image({9, 14});
+    CHECK(texture_of<Real>(negative_of(image), edge) == texture_of<Real>(image, edge));
+    Plane<Real> opposite = texture_of<Real>(negative_of(image), luminance);
+    for (Real& sample : opposite.samples()) sample = -sample - Real{1};
+    CHECK(opposite == texture_of<Real>(image, luminance));
+  });
+}
+
+TEST_CASE("no extractor but luminance sees how bright an extreme image is") {
+  for_every_extreme([]<typename Real>(const ExtractionCase& extraction, const GreyImage& image) {
+    if (extraction.options.method == Method::luminance) return;
+    const GreyImage dark = rescaled(image, 2, 0);
+    if (!has_clear_branches(dark, extraction.options)) return;
+    REQUIRE(largest_difference(texture_of<Real>(rescaled(image, 2, 100), extraction.options),
+                               texture_of<Real>(dark, extraction.options)) <=
+            tolerance<Real>(extraction));
+  });
+}
+
+TEST_CASE("detail sub-bands and gradients do not see how bright an image is") {
+  WantedPlanes wanted;
+  wanted.sub_bands = wanted.csgv = true;
+  in_both_precisions([&]<typename Real>() {
+    const double rounding = std::is_same_v<Real, float> ? 1e-4 : 1e-11;
+    for (const Size size : extreme_sizes()) {
+      for (const auto& [name, image] : extreme_images(size)) {
+        INFO(name << ", " << size.height << " x " << size.width);
+        const auto dark = extract_texture<Real>(rescaled(image, 2, 0), {}, wanted);
+        const auto bright = extract_texture<Real>(rescaled(image, 2, 120), {}, wanted);
+        CHECK(largest_difference(bright.sub_band_lh, dark.sub_band_lh) < rounding);
+        CHECK(largest_difference(bright.sub_band_hl, dark.sub_band_hl) < rounding);
+        CHECK(largest_difference(bright.sub_band_hh, dark.sub_band_hh) < rounding);
+        CHECK(largest_relative_difference(bright.csgv, dark.csgv) < rounding);
+      }
+    }
+  });
+}
+
+TEST_CASE("a fixed order is linear: textures of two images add up to that of their sum") {
+  in_both_precisions([]<typename Real>() {
+    for (const ExtractionCase& extraction : extraction_cases()) {
+      if (extraction.options.method != Method::fixed) continue;
+      INFO(extraction.name);
+      const GreyImage a = rescaled(noise_image({21, 34}, 1), 2, 0);
+      const GreyImage b = rescaled(noise_image({21, 34}, 2), 2, 0);
+      GreyImage sum = a;
+      Plane<Real> added = texture_of<Real>(a, extraction.options);
+      const Plane<Real> other = texture_of<Real>(b, extraction.options);
+      for (std::size_t i = 0; i < sum.size(); ++i) {
+        sum.samples()[i] = static_cast<std::uint8_t>(a.samples()[i] + b.samples()[i]);
+        added.samples()[i] += other.samples()[i];
+      }
+      CHECK(largest_difference(texture_of<Real>(sum, extraction.options), added) <=
+            tolerance<Real>(extraction));
+    }
+  });
+}
+
+TEST_CASE("order 0 and an order that is next to nothing leave no texture but rounding") {
+  in_both_precisions([]<typename Real>() {
+    for (const ExtractionCase& extraction : extraction_cases()) {
+      const ExtractionOptions& options = extraction.options;
+      if (options.method != Method::fixed || options.norm == Norm::none) continue;
+      if (options.order > 1e-100) continue;
+      INFO(extraction.name);
+      const double largest = largest_magnitude(texture_of<Real>(noise_image({9, 20}), options));
+      CHECK(largest <= 255.0 * options.order * options.radius);
+    }
+  });
+}
+
+}  // namespace
+}  // namespace touchtrial

@@ -1,0 +1,109 @@
+// Single precision against double: how far apart textures, pictures and MS-SSIM may be.
+#include "engine/metrics/ssim.hpp"
+#include "engine/plane_comparison.hpp"
+#include "engine/stability/extreme_cases.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+namespace touchtrial {
+namespace {
+
+constexpr double kTextureTolerance = 4e-5;  // grey levels, on any 8-bit image and radius
+
+bool is_at_branch_point(double csgv) {
+  return std::abs(csgv - 2.0) < 1e-3 || std::abs(csgv - 128.0) < 1e-3;
+}
+
+bool is_near_tie(double texture) {
+  const double fraction = texture - std::floor(texture);
+  return std::abs(fraction - 0.5) < 1e-4;
+}
+
+/// What the promise of equal pictures leaves out, and how often that happened.
+struct Comparison {
+  std::size_t pixels = 0;
+  std::size_t at_branch_point = 0;
+  std::size_t differ_at_tie = 0;
+};
+
+void compare(const GreyImage& image, int radius, Comparison& counts) {
+  ExtractionOptions options;
+  options.radius = radius;
+  WantedPlanes wanted;
+  wanted.csgv = wanted.picture = true;
+  const auto truth = extract_texture<double>(image, options, wanted);
+  const auto single = extract_texture<float>(image, options, wanted);
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    ++counts.pixels;
+    if (is_at_branch_point(truth.csgv.samples()[i])) {
+      ++counts.at_branch_point;
+      continue;
+    }
+    const double texture = truth.texture.samples()[i];
+    REQUIRE(std::abs(single.texture.samples()[i] - texture) < kTextureTolerance);
+    if (single.picture.samples()[i] == truth.picture.samples()[i]) continue;
+    REQUIRE(is_near_tie(texture));
+    ++counts.differ_at_tie;
+  }
+}
+
+TEST_CASE("8-bit textures of both precisions are the same but at branch points and ties") {
+  on_every_simd_target([] {
+    Comparison noisy;
+    Comparison smooth;
+    for (const int radius : {1, 2, 3, 7, 20, ExtractionOptions::kMaxRadius}) {
+      for (const Size size : {Size{3, 5}, Size{33, 35}, Size{120, 161}}) {
+        INFO("radius " << radius << ", " << size.height << " x " << size.width);
+        compare(noise_image(size), radius, noisy);
+        compare(speckle_image(size), radius, noisy);
+        compare(cloth_image(size), radius, smooth);
+      }
+    }
+    // The exceptions are exceptions: none in noise lies on a branch point.
+    CHECK(noisy.at_branch_point * 1000 < noisy.pixels);
+    CHECK(noisy.differ_at_tie * 1000 < noisy.pixels);
+    CHECK(smooth.at_branch_point * 100 < smooth.pixels);
+    CHECK(smooth.differ_at_tie * 1000 < smooth.pixels);
+  });
+}
+
+double ms_ssim_error(const GreyImage& a, const GreyImage& b) {
+  const MsSsim exact = ms_ssim<double>(a, b);
+  const MsSsim single = ms_ssim<float>(a, b);
+  return std::max(std::abs(single.unit - exact.unit), std::abs(single.wang - exact.wang));
+}
+
+GreyImage texture_picture_of(const GreyImage& image, double order) {
+  ExtractionOptions options;
+  options.method = Method::fixed;
+  options.order = order;
+  return texture_picture(extract_texture<double>(image, options).texture);
+}
+
+TEST_CASE("MS-SSIM of textures in single precision is within 2e-7 of double") {
+  const GreyImage image = cloth_image({200, 181});
+  const GreyImage adaptive = texture_picture(extract_texture<double>(image, {}).texture);
+  on_every_simd_target([&] {
+    for (const double order : {0.05, 0.5, 0.95}) {
+      CHECK(ms_ssim_error(adaptive, texture_picture_of(image, order)) < 2e-7);
+    }
+  });
+}
+
+TEST_CASE("MS-SSIM of extreme images in single precision is within 1e-4 of double") {
+  const std::vector<NamedImage> images = extreme_images({161, 178});
+  on_every_simd_target([&] {
+    for (const auto& [name, image] : images) {
+      for (const auto& [other_name, other] : images) {
+        INFO(name << " and " << other_name);
+        CHECK(ms_ssim_error(image, other) < 1e-4);
+      }
+    }
+  });
+}
+
+}  // namespace
+}  // namespace touchtrial
