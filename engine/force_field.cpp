@@ -1,7 +1,7 @@
 #include "engine/force_field.hpp"
 
 #include "engine/finite_plane.hpp"
-#include "engine/kernels/field_rows.hpp"
+#include "engine/kernels/force_rows.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -34,11 +34,13 @@ bool made_by_kernel(const Plane<double>&, int, ForceField<double>&) {
 }
 bool made_by_kernel(const Plane<float>& surface, int neighbourhood, ForceField<float>& force) {
   if (neighbourhood != 3) return false;
+  ForceRows rows(surface.width());
   for (int y = 0; y < surface.height(); ++y) {
-    const SurfaceRows rows{y > 0 ? surface.row(y - 1).data() : nullptr, surface.row(y).data(),
-                           y + 1 < surface.height() ? surface.row(y + 1).data() : nullptr};
-    force_row(rows, surface.width(), force.x.row(y).data(), force.y.row(y).data());
+    std::copy_n(surface.row(y).data(), surface.width(), rows.next_surface());
+    const int before = std::max(y - 1, 0);
+    rows.add_row(force.x.row(before).data(), force.y.row(before).data());
   }
+  rows.finish(force.x.row(surface.height() - 1).data(), force.y.row(surface.height() - 1).data());
   return true;
 }
 

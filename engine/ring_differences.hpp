@@ -25,9 +25,9 @@ class RingDifferences {
   }
 
  private:
-  const std::uint8_t* above_;
-  const std::uint8_t* centre_;
-  const std::uint8_t* below_;
+  const std::int16_t* above_;
+  const std::int16_t* centre_;
+  const std::int16_t* below_;
   std::ptrdiff_t k_;
 };
 

@@ -42,11 +42,11 @@ class AlignedRows {
     return (samples + kPerVector - 1) / kPerVector * kPerVector;
   }
   /// Loads wait for stores whose addresses have the same last twelve bits. Rows of a width near a
-  /// power of two would have them, in all columns: a stride of a page and a fifth keeps five rows
-  /// well apart.
+  /// power of two would have them, in all columns: a stride of a page and more than a quarter keeps
+  /// neighbouring rows well apart.
   static constexpr std::size_t spread(std::size_t stride, RowUse use) {
     constexpr std::size_t kPage = 4096 / sizeof(Sample);
-    constexpr std::size_t kApart = 13 * kPerVector;
+    constexpr std::size_t kApart = 18 * kPerVector;
     if (use == RowUse::plane) return stride;
     return stride + (kPage + kApart - stride % kPage) % kPage;
   }

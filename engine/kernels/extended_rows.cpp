@@ -2,15 +2,39 @@
 
 #include "engine/symmetric_extension.hpp"
 
-#include <algorithm>
+// Compiled once for every target: this file includes itself.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "engine/kernels/extended_rows.cpp"
 
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+// clang-format off: the next one is compiled for the target that those two have set.
+#include "engine/kernels/real_pairs-inl.hpp"
+// clang-format on
+
+HWY_BEFORE_NAMESPACE();
 namespace touchtrial {
+namespace HWY_NAMESPACE {
+namespace {
 
-void extend_row(const std::uint8_t* from, int width, int before, int after, std::uint8_t* to) {
-  std::copy_n(from, width, to);
-  for (int i = 1; i <= before; ++i) to[-i] = from[symmetric_index(-i, width)];
-  for (int i = 0; i < after; ++i) to[width + i] = from[symmetric_index(width + i, width)];
+void widened(const std::uint8_t* from, int width, std::int16_t* to) {
+  int x = 0;
+  for (; x + kBlock <= width; x += kBlock) hn::StoreU(load_bytes(from + x), Integers(), to + x);
+  for (; x < width; ++x) to[x] = from[x];
 }
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace touchtrial
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace touchtrial {
+namespace {
+
+HWY_EXPORT(widened);
+
+}  // namespace
 
 ExtendedRows::ExtendedRows(const GreyImage& image, int reach)
     : image_(image),
@@ -26,8 +50,15 @@ void ExtendedRows::next_row() {
 }
 
 void ExtendedRows::load(int y) {
-  const auto from = image_.row(symmetric_index(y, image_.height()));
-  extend_row(from.data(), image_.width(), reach_, reach_, rows_.row(slot(y)));
+  const int width = image_.width();
+  std::int16_t* const to = rows_.row(slot(y));
+  HWY_DYNAMIC_DISPATCH(widened)
+  (image_.row(symmetric_index(y, image_.height())).data(), width, to);
+  for (int i = 1; i <= reach_; ++i) {
+    to[-i] = to[symmetric_index(-i, width)];
+    to[width - 1 + i] = to[symmetric_index(width - 1 + i, width)];
+  }
 }
 
 }  // namespace touchtrial
+#endif

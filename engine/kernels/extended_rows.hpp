@@ -9,8 +9,9 @@
 
 namespace touchtrial {
 
-/// Rows y - reach .. y + reach of an image for one y at a time, with `reach` mirrored samples at
-/// both ends. Every row is copied once, so memory is (2 * reach + 1) rows, whatever the height.
+/// Rows y - reach .. y + reach of an image for one y at a time, as 16-bit integers, with `reach`
+/// mirrored samples at both ends. Every row is widened once; memory is (2 * reach + 1) rows,
+/// whatever the height.
 /// Keeps a reference to the image; not thread-safe.
 class ExtendedRows {
  public:
@@ -23,7 +24,7 @@ class ExtendedRows {
   /// The first sample, in column 0, of the row `offset` below the present one; columns -reach ..
   /// width - 1 + reach may be read, and a vector more. Valid until next_row.
   /// \param offset  -reach .. reach
-  [[nodiscard]] const std::uint8_t* row(int offset) const noexcept {
+  [[nodiscard]] const std::int16_t* row(int offset) const noexcept {
     return rows_.row(slot(y_ + offset));
   }
   [[nodiscard]] int width() const noexcept { return image_.width(); }
@@ -38,11 +39,7 @@ class ExtendedRows {
   const GreyImage& image_;
   int reach_;
   int y_ = -1;
-  AlignedRows<std::uint8_t> rows_;
+  AlignedRows<std::int16_t> rows_;
 };
-
-/// Copies a row and continues it by symmetric extension.
-/// \param before,after  mirrored samples to write in front of `to` and behind its `width` samples
-void extend_row(const std::uint8_t* from, int width, int before, int after, std::uint8_t* to);
 
 }  // namespace touchtrial

@@ -7,9 +7,11 @@
 // Compiled once for every target: this file includes itself.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "engine/kernels/field_rows.cpp"
-#include <hwy/cache_control.h>
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
+// clang-format off: the next one is compiled for the target that those two have set.
+#include "engine/kernels/streamed_row-inl.hpp"
+// clang-format on
 
 HWY_BEFORE_NAMESPACE();
 namespace touchtrial {
@@ -43,43 +45,42 @@ void row_of_picture(const float* texture, int width, std::uint8_t* picture) {
   for (; x < width; ++x) picture_at(one, texture + x, picture + x);
 }
 
-/// Where all eight neighbours exist; each difference of opposite neighbours comes first, so that
-/// equal ones cancel exactly.
+/// Differences of opposite neighbours come first, so that equal ones cancel exactly.
 template <class D>
-HWY_INLINE void force_at(D d, const SurfaceRows& rows, int x, float* force_x, float* force_y) {
-  const auto north_west = hn::LoadU(d, rows.above + x - 1);
-  const auto north_east = hn::LoadU(d, rows.above + x + 1);
-  const auto south_west = hn::LoadU(d, rows.below + x - 1);
-  const auto south_east = hn::LoadU(d, rows.below + x + 1);
-  const auto across = hn::Sub(hn::LoadU(d, rows.centre + x - 1), hn::LoadU(d, rows.centre + x + 1));
-  const auto down = hn::Sub(hn::LoadU(d, rows.above + x), hn::LoadU(d, rows.below + x));
-  const auto falling = hn::Sub(north_west, south_east);
-  const auto rising = hn::Sub(south_west, north_east);
+HWY_INLINE void force_at(D d, const float* surface, const SlopeRow& above, const SlopeRow& centre,
+                         const SlopeRow& below, int x, float* force_x, float* force_y) {
   const auto half = hn::Set(d, 0.5F);
-  hn::StoreU(hn::MulAdd(half, hn::Add(falling, rising), across), d, force_x + x);
-  hn::StoreU(hn::MulAdd(half, hn::Sub(falling, rising), down), d, force_y + x);
+  const auto left = hn::LoadU(d, surface + x - 1);
+  const auto right = hn::LoadU(d, surface + x + 1);
+  const auto across = hn::Sub(left, right);
+  const auto weight = hn::MulAdd(half, hn::Add(left, right), hn::LoadU(d, surface + x));
+  const auto beside = hn::Add(hn::LoadU(d, above.across + x), across);
+  hn::StoreU(across, d, below.across + x);
+  hn::StoreU(weight, d, below.weight + x);
+  hn::StoreU(hn::MulAdd(half, beside, hn::LoadU(d, centre.across + x)), d, force_x + x);
+  hn::StoreU(hn::Sub(hn::LoadU(d, above.weight + x), weight), d, force_y + x);
 }
 
-void inner_row_of_force(const SurfaceRows& rows, int width, float* force_x, float* force_y) {
+void row_of_force(const float* surface, int width, const SlopeRow& above, const SlopeRow& centre,
+                  const SlopeRow& below, float* force_x, float* force_y,
+                  const StreamedRow& beside) {
   const hn::ScalableTag<float> d;
   const int lanes = static_cast<int>(hn::Lanes(d));
-  int x = 1;
-  for (; x + lanes < width; x += lanes) force_at(d, rows, x, force_x, force_y);
-  const hn::CappedTag<float, 1> one;
-  for (; x + 1 < width; ++x) force_at(one, rows, x, force_x, force_y);
-}
-
-void row_of_stream(const float* from, int width, float* to) {
-  const hn::ScalableTag<float> d;
-  const int lanes = static_cast<int>(hn::Lanes(d));
-  const auto bytes_in_vector = static_cast<std::uintptr_t>(lanes) * sizeof(float);
   int x = 0;
-  while (x < width && reinterpret_cast<std::uintptr_t>(to + x) % bytes_in_vector != 0) {
-    to[x] = from[x];
-    ++x;
+  for (; x + lanes <= width; x += lanes) {
+    move_samples(beside, x, lanes);
+    force_at(d, surface, above, centre, below, x, force_x, force_y);
   }
-  for (; x + lanes <= width; x += lanes) hn::Stream(hn::LoadU(d, from + x), d, to + x);
-  std::copy(from + x, from + width, to + x);
+  if (x < width && width >= lanes) {  // once more what has been done, and the rest
+    x = width;
+    force_at(d, surface, above, centre, below, width - lanes, force_x, force_y);
+  }
+  const hn::CappedTag<float, 1> one;
+  for (; x < width; ++x) force_at(one, surface, above, centre, below, x, force_x, force_y);
+}
+
+void all_of_row(const StreamedRow& row) {
+  move_samples(row, 0, row.count);
 }
 
 }  // namespace
@@ -92,27 +93,8 @@ namespace touchtrial {
 namespace {
 
 HWY_EXPORT(row_of_picture);
-HWY_EXPORT(inner_row_of_force);
-HWY_EXPORT(row_of_stream);
-
-/// One pixel of a row that lacks neighbours.
-void edge_force(const SurfaceRows& rows, int width, int x, float* force_x, float* force_y) {
-  const float here = rows.centre[x];
-  float sum_x = 0.0F;
-  float sum_y = 0.0F;
-  const float* const around[3] = {rows.above, rows.centre, rows.below};
-  for (int dy = -1; dy <= 1; ++dy) {
-    const float* const row = around[dy + 1];
-    for (int dx = -1; row != nullptr && dx <= 1; ++dx) {
-      if (x + dx < 0 || x + dx >= width) continue;
-      const float share = (here - row[x + dx]) * (dx != 0 && dy != 0 ? 0.5F : 1.0F);
-      sum_x += share * static_cast<float>(dx);
-      sum_y += share * static_cast<float>(dy);
-    }
-  }
-  force_x[x] = sum_x;
-  force_y[x] = sum_y;
-}
+HWY_EXPORT(row_of_force);
+HWY_EXPORT(all_of_row);
 
 }  // namespace
 
@@ -120,22 +102,14 @@ void picture_row(const float* texture, int width, std::uint8_t* picture) {
   HWY_DYNAMIC_DISPATCH(row_of_picture)(texture, width, picture);
 }
 
-void force_row(const SurfaceRows& rows, int width, float* force_x, float* force_y) {
-  if (rows.above == nullptr || rows.below == nullptr) {
-    for (int x = 0; x < width; ++x) edge_force(rows, width, x, force_x, force_y);
-    return;
-  }
-  HWY_DYNAMIC_DISPATCH(inner_row_of_force)(rows, width, force_x, force_y);
-  edge_force(rows, width, 0, force_x, force_y);
-  edge_force(rows, width, width - 1, force_x, force_y);
+void force_row(const float* surface, int width, const SlopeRow& above, const SlopeRow& centre,
+               const SlopeRow& below, float* force_x, float* force_y, const StreamedRow& beside) {
+  HWY_DYNAMIC_DISPATCH(row_of_force)
+  (surface, width, above, centre, below, force_x, force_y, beside);
 }
 
-void stream_row(const float* from, int width, float* to) {
-  HWY_DYNAMIC_DISPATCH(row_of_stream)(from, width, to);
-}
-
-void finish_streams() {
-  hwy::FlushStream();
+void move_row(const StreamedRow& row) {
+  HWY_DYNAMIC_DISPATCH(all_of_row)(row);
 }
 
 }  // namespace touchtrial

@@ -2,6 +2,8 @@
 /// copy to memory that is not needed again soon. Vectorised for every target.
 #pragma once
 
+#include "engine/kernels/streamed_row.hpp"
+
 #include <cstdint>
 
 namespace touchtrial {
@@ -10,20 +12,23 @@ namespace touchtrial {
 /// \param width  >= 0; no more than this many samples are read or written
 void picture_row(const float* texture, int width, std::uint8_t* picture);
 
-/// Three neighbouring rows of a surface; above the first and below the last row there is nothing.
-struct SurfaceRows {
-  const float* above = nullptr;  ///< may be null
-  const float* centre = nullptr;
-  const float* below = nullptr;  ///< may be null
+/// How a row of a surface falls from left to right, and what its columns weigh in the fall from row
+/// to row: G(x - 1) - G(x + 1) and G(x) + (G(x - 1) + G(x + 1)) / 2.
+struct SlopeRow {
+  float* across = nullptr;
+  float* weight = nullptr;
 };
 
-/// The tangential force of the neighbourhood of 3 x 3: only neighbours that exist count. Source:
-/// docs/method.md, "Force field".
-/// \param width  >= 1; no more than this many samples are read or written
-void force_row(const SurfaceRows& rows, int width, float* force_x, float* force_y);
+/// Takes a row of a surface and gives the tangential force of the row above it, by the
+/// neighbourhood of 3 x 3: x = across + (across above + across below) / 2, y = weight above -
+/// weight below. \param surface  `width` samples, and a zero before and behind them \param
+/// above,centre  slopes of the two rows above the surface \param below  receives the slopes of the
+/// surface; a vector behind them may be overwritten \param force_x,force_y  receive `width` samples
+/// and no more \param beside  a row of at most `width` samples that is moved meanwhile
+void force_row(const float* surface, int width, const SlopeRow& above, const SlopeRow& centre,
+               const SlopeRow& below, float* force_x, float* force_y, const StreamedRow& beside);
 
-/// Copies past the caches. \pre finish_streams() before another thread reads `to`
-void stream_row(const float* from, int width, float* to);
-void finish_streams();
+/// Moves all of a row past the caches.
+void move_row(const StreamedRow& row);
 
 }  // namespace touchtrial

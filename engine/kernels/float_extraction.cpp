@@ -60,16 +60,6 @@ class OrderRows {
   AlignedRows<float> row_;
 };
 
-/// No order is above 0 anywhere: nothing need be looked at again.
-void finish_flat(const GreyImage& image, TextureSink& sink, Extraction<float>& result) {
-  std::fill(result.order.samples().begin(), result.order.samples().end(), 0.0F);
-  for (int y = 0; y < image.height(); ++y) {
-    std::fill_n(sink.row(y), image.width(), 0.0F);
-    sink.finish_row(y);
-  }
-  sink.finish();
-}
-
 void second_pass(const GreyImage& image, int radius, const HalfGradient& gradient,
                  TextureSink& sink, Extraction<float>& result) {
   OrderRows orders(gradient);
@@ -78,7 +68,7 @@ void second_pass(const GreyImage& image, int radius, const HalfGradient& gradien
     const float* const order = orders.row(y);
     if (!result.order.empty()) std::copy_n(order, image.width(), result.order.row(y).data());
     rows.next_row();
-    gl_row(rows, radius, order, sink.row(y));
+    gl_row(rows, radius, order, sink.row(y), sink.waiting());
     sink.finish_row(y);
   }
   sink.finish();
@@ -99,7 +89,8 @@ void extract_adaptive(const GreyImage& image, int radius, const WantedPlanes& wa
   reshape_if(wanted.order, result.order, image.height(), image.width());
   TextureSink sink(image.height(), image.width(), wanted, result);
   if (gradient.largest() < static_cast<float>(kFlatBelowCsgv)) {
-    finish_flat(image, sink, result);
+    std::fill(result.order.samples().begin(), result.order.samples().end(), 0.0F);
+    sink.fill_flat();
   } else {
     second_pass(image, radius, gradient, sink, result);
   }
@@ -117,7 +108,7 @@ void extract_fixed(const GreyImage& image, int radius, double order, const Wante
   ExtendedRows rows(image, radius);
   for (int y = 0; y < image.height(); ++y) {
     rows.next_row();
-    gl_row(rows, radius, order, sink.row(y));
+    gl_row(rows, radius, order, sink.row(y), sink.waiting());
     sink.finish_row(y);
   }
   sink.finish();

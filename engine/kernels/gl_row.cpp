@@ -11,8 +11,9 @@
 
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-// clang-format off: the next one is compiled for the target that those two have set.
+// clang-format off: the next oness are compiled for the target that those two have set.
 #include "engine/kernels/real_pairs-inl.hpp"
+#include "engine/kernels/streamed_row-inl.hpp"
 // clang-format on
 
 #ifndef TOUCHTRIAL_GL_ROW_ONCE
@@ -24,12 +25,13 @@ namespace {
 /// first-level cache.
 constexpr int kTile = 512;
 constexpr int kSlack = static_cast<int>(kVectorBytes / sizeof(std::int16_t));
-constexpr int kColumns = kTile + 2 * kMaxGlRadius + 2 + kSlack;
+constexpr int kFront = 64;
+constexpr int kColumns = kFront + kTile + kMaxGlRadius + 1 + kSlack;
+static_assert(kFront > kMaxGlRadius);
 
-/// Column sums of one tile. Entry i of ring k belongs to column x0 - k + i. Only what the radius
-/// needs is touched.
+/// Column sums of one tile. Entry kFront + i of a ring belongs to column x0 + i. Only what the
+/// radius needs is touched.
 struct Workspace {
-  alignas(64) std::int16_t centre[kColumns];
   alignas(64) std::int16_t sums[kMaxGlRadius][kColumns];
 };
 
@@ -113,40 +115,35 @@ class OneOrder {
   const FixedFactors& factors_;
 };
 
-HWY_INLINE void load_centre(const ExtendedRows& rows, int radius, Tile tile, Workspace& work) {
-  const std::uint8_t* const from = rows.row(0) + tile.x0 - radius;
-  for (int i = 0; i < tile.width + 2 * radius; i += kBlock) {
-    hn::Store(load_bytes(from + i), Integers(), work.centre + i);
-  }
-}
-
-HWY_INLINE void sum_columns(const ExtendedRows& rows, int radius, int k, Tile tile,
-                            Workspace& work) {
-  const std::uint8_t* const above = rows.row(-k) + tile.x0 - k;
-  const std::uint8_t* const below = rows.row(k) + tile.x0 - k;
-  const std::int16_t* const centre = work.centre + radius - k;
-  std::int16_t* const sums = work.sums[k - 1];
-  for (int i = 0; i < tile.width + 2 * k; i += kBlock) {
-    const auto wings = hn::Add(load_bytes(above + i), load_bytes(below + i));
-    hn::Store(hn::Add(wings, hn::LoadU(Integers(), centre + i)), Integers(), sums + i);
+/// Blocks that lie at whole multiples of kBlock columns from the tile's first one.
+HWY_INLINE void sum_columns(const ExtendedRows& rows, int k, Tile tile, Workspace& work) {
+  const Integers d;
+  const std::int16_t* const above = rows.row(-k) + tile.x0;
+  const std::int16_t* const centre = rows.row(0) + tile.x0;
+  const std::int16_t* const below = rows.row(k) + tile.x0;
+  std::int16_t* const sums = work.sums[k - 1] + kFront;
+  const int first = -(k + kBlock - 1) / kBlock * kBlock;
+  for (int i = first; i < tile.width + k; i += kBlock) {
+    const auto wings = hn::Add(hn::Load(d, above + i), hn::Load(d, below + i));
+    hn::Store(hn::Add(wings, hn::Load(d, centre + i)), d, sums + i);
   }
 }
 
 /// 8 D_k of a block.
 HWY_INLINE RealPair ring_difference(const Workspace& work, int k, int i, Integer nine_centre) {
   const Integers d;
-  const std::int16_t* const sums = work.sums[k - 1] + i;
-  const auto sides = hn::Add(hn::LoadU(d, sums), hn::LoadU(d, sums + 2 * k));
-  return to_reals(hn::Sub(hn::Sub(nine_centre, hn::LoadU(d, sums + k)), sides));
+  const std::int16_t* const sums = work.sums[k - 1] + kFront + i;
+  const auto sides = hn::Add(hn::LoadU(d, sums - k), hn::LoadU(d, sums + k));
+  return to_reals(hn::Sub(hn::Sub(nine_centre, hn::Load(d, sums)), sides));
 }
 
 /// The texture of a block, from the outermost ring in.
 /// \param kRadius  the radius where it is known at compile time, else 0
 template <int kRadius, class Orders>
-HWY_INLINE RealPair texture_block(const Workspace& work, int any_radius, int x0, int i,
-                                  const Orders& orders) {
+HWY_INLINE RealPair texture_block(const Workspace& work, const std::int16_t* centres,
+                                  int any_radius, int x0, int i, const Orders& orders) {
   const int radius = kRadius == 0 ? any_radius : kRadius;
-  const auto centre = hn::LoadU(Integers(), work.centre + radius + i);
+  const auto centre = hn::Load(Integers(), centres + x0 + i);
   const auto nine_centre = hn::Add(hn::ShiftLeft<3>(centre), centre);
   const auto order = orders.at(x0 + i);
   RealPair sum = ring_difference(work, radius, i, nine_centre);
@@ -157,41 +154,45 @@ HWY_INLINE RealPair texture_block(const Workspace& work, int any_radius, int x0,
 }
 
 template <int kRadius, class Orders>
-HWY_INLINE void texture_tile(const Workspace& work, int radius, Tile tile, const Orders& orders,
-                             float* texture) {
+HWY_INLINE void texture_tile(const Workspace& work, const std::int16_t* centres, int radius,
+                             Tile tile, const Orders& orders, float* texture,
+                             std::span<const StreamedRow> beside) {
   int i = 0;
   for (; i + kBlock <= tile.width; i += kBlock) {
-    store_pair(texture_block<kRadius>(work, radius, tile.x0, i, orders), texture + tile.x0 + i);
+    for (const StreamedRow& row : beside) move_samples(row, tile.x0 + i, kBlock);
+    store_pair(texture_block<kRadius>(work, centres, radius, tile.x0, i, orders),
+               texture + tile.x0 + i);
   }
   if (i == tile.width) return;
+  for (const StreamedRow& row : beside) move_samples(row, tile.x0 + i, kBlock);
   alignas(64) float rest[kBlock];
-  store_pair(texture_block<kRadius>(work, radius, tile.x0, i, orders), rest);
+  store_pair(texture_block<kRadius>(work, centres, radius, tile.x0, i, orders), rest);
   std::copy_n(rest, tile.width - i, texture + tile.x0 + i);
 }
 
 template <class Orders>
 HWY_INLINE void texture_row(const ExtendedRows& rows, int radius, const Orders& orders,
-                            float* texture) {
+                            float* texture, std::span<const StreamedRow> beside) {
   Workspace work;
   for (int x0 = 0; x0 < rows.width(); x0 += kTile) {
     const Tile tile{x0, std::min(kTile, rows.width() - x0)};
-    load_centre(rows, radius, tile, work);
-    for (int k = 1; k <= radius; ++k) sum_columns(rows, radius, k, tile, work);
+    for (int k = 1; k <= radius; ++k) sum_columns(rows, k, tile, work);
     if (radius == 2) {  // the usual one, worth its own code
-      texture_tile<2>(work, radius, tile, orders, texture);
+      texture_tile<2>(work, rows.row(0), radius, tile, orders, texture, beside);
     } else {
-      texture_tile<0>(work, radius, tile, orders, texture);
+      texture_tile<0>(work, rows.row(0), radius, tile, orders, texture, beside);
     }
   }
 }
 
-void row_of_orders(const ExtendedRows& rows, int radius, const float* orders, float* texture) {
-  texture_row(rows, radius, PixelOrders(orders), texture);
+void row_of_orders(const ExtendedRows& rows, int radius, const float* orders, float* texture,
+                   std::span<const StreamedRow> beside) {
+  texture_row(rows, radius, PixelOrders(orders), texture, beside);
 }
 
 void row_of_one_order(const ExtendedRows& rows, int radius, const FixedFactors& factors,
-                      float* texture) {
-  texture_row(rows, radius, OneOrder(factors), texture);
+                      float* texture, std::span<const StreamedRow> beside) {
+  texture_row(rows, radius, OneOrder(factors), texture, beside);
 }
 
 }  // namespace
@@ -208,13 +209,15 @@ HWY_EXPORT(row_of_one_order);
 
 }  // namespace
 
-void gl_row(const ExtendedRows& rows, int radius, const float* orders, float* texture) {
-  HWY_DYNAMIC_DISPATCH(row_of_orders)(rows, radius, orders, texture);
+void gl_row(const ExtendedRows& rows, int radius, const float* orders, float* texture,
+            std::span<const StreamedRow> beside) {
+  HWY_DYNAMIC_DISPATCH(row_of_orders)(rows, radius, orders, texture, beside);
 }
 
-void gl_row(const ExtendedRows& rows, int radius, double order, float* texture) {
+void gl_row(const ExtendedRows& rows, int radius, double order, float* texture,
+            std::span<const StreamedRow> beside) {
   HWY_DYNAMIC_DISPATCH(row_of_one_order)
-  (rows, radius, FixedFactors(order, radius), texture);
+  (rows, radius, FixedFactors(order, radius), texture, beside);
 }
 
 }  // namespace touchtrial

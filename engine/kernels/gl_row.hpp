@@ -7,6 +7,9 @@
 #pragma once
 
 #include "engine/kernels/extended_rows.hpp"
+#include "engine/kernels/streamed_row.hpp"
+
+#include <span>
 
 namespace touchtrial {
 
@@ -16,9 +19,12 @@ inline constexpr int kMaxGlRadius = 63;
 /// \param rows  reach >= radius  \param radius  1 .. kMaxGlRadius
 /// \param orders  v in [0, 1) for each pixel; read up to a vector past the row's end
 /// \param texture  receives width() samples and no more
-void gl_row(const ExtendedRows& rows, int radius, const float* orders, float* texture);
+/// \param beside  rows of at most width() samples that are moved meanwhile
+void gl_row(const ExtendedRows& rows, int radius, const float* orders, float* texture,
+            std::span<const StreamedRow> beside = {});
 
 /// The same with one order for all pixels.
-void gl_row(const ExtendedRows& rows, int radius, double order, float* texture);
+void gl_row(const ExtendedRows& rows, int radius, double order, float* texture,
+            std::span<const StreamedRow> beside = {});
 
 }  // namespace touchtrial

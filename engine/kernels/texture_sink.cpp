@@ -3,16 +3,16 @@
 #include "engine/kernels/field_rows.hpp"
 #include "engine/kernels/reshaped.hpp"
 
+#include <algorithm>
+#include <cstdint>
+
+#include <hwy/cache_control.h>
+
 namespace touchtrial {
 namespace {
 
-constexpr int kTextureRows = 3;
-constexpr std::size_t kForceX = 3;
-constexpr std::size_t kForceY = 4;
-constexpr std::size_t kScratchRows = 5;
-
-/// From this size on, planes leave the caches before anyone reads them; measured.
-constexpr std::size_t kStreamFromBytes = std::size_t{32} << 20;
+/// From this size on, planes leave the second-level cache before anyone reads them; measured.
+constexpr std::size_t kStreamFromBytes = std::size_t{1} << 20;
 
 }  // namespace
 
@@ -24,40 +24,64 @@ TextureSink::TextureSink(int height, int width, const WantedPlanes& wanted,
   reshape_if(wanted.force, result.force.x, height, width);
   reshape_if(wanted.force, result.force.y, height, width);
   const std::size_t samples = result.texture.size() + 2 * result.force.x.size();
-  if (samples * sizeof(float) >= kStreamFromBytes) {
-    scratch_.emplace(kScratchRows, static_cast<std::size_t>(width), 0);
-  }
+  past_caches_ = samples * sizeof(float) >= kStreamFromBytes;
+  scratch_.emplace(2, static_cast<std::size_t>(width), 0);
+  if (wanted.force) force_.emplace(width);
 }
 
 float* TextureSink::row(int y) noexcept {
-  return scratch_ ? scratch_->row(static_cast<std::size_t>(y % kTextureRows))
-                  : result_.texture.row(y).data();
+  if (force_) return force_->next_surface();
+  return past_caches_ ? scratch_->row(static_cast<std::size_t>(y % 2))
+                      : result_.texture.row(y).data();
 }
 
 void TextureSink::finish_row(int y) {
-  if (scratch_) stream_row(row(y), width_, result_.texture.row(y).data());
-  if (!result_.picture.empty()) picture_row(row(y), width_, result_.picture.row(y).data());
-  if (!result_.force.x.empty() && y > 0) make_force(y - 1);
+  waiting_count_ = 0;
+  const float* const texture = row(y);
+  if (!result_.picture.empty()) picture_row(texture, width_, result_.picture.row(y).data());
+  if (force_) {
+    add_force(y);
+  } else if (past_caches_) {
+    wait(texture, result_.texture.row(y).data());
+  }
 }
 
 void TextureSink::finish() {
-  if (!result_.force.x.empty()) make_force(height_ - 1);
-  if (scratch_) finish_streams();
+  for (const StreamedRow& row : waiting()) move_row(row);
+  if (force_) {
+    force_->finish(result_.force.x.row(height_ - 1).data(),
+                   result_.force.y.row(height_ - 1).data());
+  }
+  if (past_caches_) hwy::FlushStream();
+}
+
+void TextureSink::fill_flat() {
+  std::fill(result_.texture.samples().begin(), result_.texture.samples().end(), 0.0F);
+  std::fill(result_.force.x.samples().begin(), result_.force.x.samples().end(), 0.0F);
+  std::fill(result_.force.y.samples().begin(), result_.force.y.samples().end(), 0.0F);
+  std::fill(result_.picture.samples().begin(), result_.picture.samples().end(), std::uint8_t{128});
 }
 
 /// A constant added to the texture would add nothing to its force: 128 need not be.
-void TextureSink::make_force(int y) {
-  const SurfaceRows rows{y > 0 ? row(y - 1) : nullptr, row(y),
-                         y + 1 < height_ ? row(y + 1) : nullptr};
-  float* const to_x = result_.force.x.row(y).data();
-  float* const to_y = result_.force.y.row(y).data();
-  if (!scratch_) {
-    force_row(rows, width_, to_x, to_y);
-    return;
+void TextureSink::add_force(int y) {
+  const float* const texture = row(y);
+  float* const kept = result_.texture.row(y).data();
+  float* const of_x = y > 0 ? result_.force.x.row(y - 1).data() : nullptr;
+  float* const of_y = y > 0 ? result_.force.y.row(y - 1).data() : nullptr;
+  if (past_caches_ || y == 0) {
+    force_->add_row(scratch_->row(0), scratch_->row(1), start_stream(texture, width_, kept));
+  } else {
+    std::copy_n(texture, width_, kept);
+    force_->add_row(of_x, of_y);
   }
-  force_row(rows, width_, scratch_->row(kForceX), scratch_->row(kForceY));
-  stream_row(scratch_->row(kForceX), width_, to_x);
-  stream_row(scratch_->row(kForceY), width_, to_y);
+  if (past_caches_ && y > 0) {
+    wait(scratch_->row(0), of_x);
+    wait(scratch_->row(1), of_y);
+  }
+}
+
+void TextureSink::wait(const float* from, float* to) {
+  waiting_[waiting_count_++] = start_stream(from, width_, to);
 }
 
 }  // namespace touchtrial

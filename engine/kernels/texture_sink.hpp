@@ -3,9 +3,13 @@
 
 #include "engine/extraction.hpp"
 #include "engine/kernels/aligned_rows.hpp"
+#include "engine/kernels/force_rows.hpp"
+#include "engine/kernels/streamed_row.hpp"
 
+#include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 
 namespace touchtrial {
 
@@ -17,19 +21,32 @@ class TextureSink {
   ///   nothing is allocated where they have it already. Must outlive this.
   TextureSink(int height, int width, const WantedPlanes& wanted, Extraction<float>& result);
 
-  /// Where row y is to be written; the rows before it must have been finished.
+  /// Where row y is to be written, width samples and no more; the rows before it must have been
+  /// finished.
   [[nodiscard]] float* row(int y) noexcept;
+  /// What must be moved between row(y) and finish_row(y), by who computes the row.
+  [[nodiscard]] std::span<const StreamedRow> waiting() const noexcept {
+    return {waiting_.data(), waiting_count_};
+  }
   void finish_row(int y);
   /// After the last row.
   void finish();
 
+  /// Instead of all the rows: no texture anywhere.
+  void fill_flat();
+
  private:
-  void make_force(int y);
+  void add_force(int y);
+  void wait(const float* from, float* to);
 
   int height_;
   int width_;
   Extraction<float>& result_;
-  std::optional<AlignedRows<float>> scratch_;  // three rows of texture, two of force
+  bool past_caches_;
+  std::optional<ForceRows> force_;             // where there is to be force
+  std::optional<AlignedRows<float>> scratch_;  // rows that wait: two of texture, or force x and y
+  std::array<StreamedRow, 2> waiting_;
+  std::size_t waiting_count_ = 0;
 };
 
 }  // namespace touchtrial

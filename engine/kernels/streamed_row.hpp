@@ -1,0 +1,34 @@
+/// \file Rows on their way to planes that are too large for the caches.
+///
+/// Stores past the caches keep up with memory, but a burst of them stalls everything behind it.
+/// So a row is moved a vector at a time by a kernel that has something else to compute.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+namespace touchtrial {
+
+/// Samples 0 .. count - 1 are still to be moved; `to` is a multiple of a cache line.
+/// \pre std::atomic_thread_fence or hwy::FlushStream() before another thread reads them
+struct StreamedRow {
+  const float* from = nullptr;
+  float* to = nullptr;
+  int count = 0;
+};
+
+/// Copies the ends of a row, which share their cache lines with other rows, and leaves its middle.
+inline StreamedRow start_stream(const float* from, int width, float* to) {
+  constexpr std::uintptr_t kLineBytes = 64;
+  constexpr int kLineSamples = kLineBytes / sizeof(float);
+  const std::uintptr_t past_line = reinterpret_cast<std::uintptr_t>(to) % kLineBytes;
+  const int head =
+      std::min(width, static_cast<int>((kLineBytes - past_line) % kLineBytes / sizeof(float)));
+  const int count = (width - head) / kLineSamples * kLineSamples;
+  std::copy_n(from, head, to);
+  std::copy(from + head + count, from + width, to + head + count);
+  return {from + head, to + head, count};
+}
+
+}  // namespace touchtrial
