@@ -14,13 +14,12 @@ namespace fs = std::filesystem;
 
 struct GenerateArguments {
   fs::path folder = "stimuli";
-  std::uint64_t seed = kDefaultStimuliSeed;
-  int size_px = kDefaultStimulusSizePx;
+  StimuliChoice choice;
 };
 
 int generate(const GenerateArguments& arguments) {
-  const StimulusManifest manifest = generate_default_stimuli(
-      arguments.folder, arguments.seed, arguments.size_px, progress_bar("generating"));
+  const StimulusManifest manifest =
+      generate_default_stimuli(arguments.folder, arguments.choice, progress_bar("generating"));
   std::string written;
   for (const StimulusEntry& entry : manifest.entries) {
     written += (arguments.folder / entry.file).string() + "\n";
@@ -36,14 +35,19 @@ void add_stimuli_command(CLI::App& program, Action& action) {
   CLI::App* stimuli = program.add_subcommand("stimuli", "Pictures to make studies of");
   stimuli->require_subcommand(1);
   CLI::App* command = stimuli->add_subcommand(
-      "generate", "Make the default pictures: five textures and four textured objects");
+      "generate", "Make the default pictures: textures, objects, their materials, practice, flat");
   command->add_option("-o,--out", arguments->folder, "Folder to write into")->capture_default_str();
-  command->add_option("--seed", arguments->seed, "Another seed, other pictures")
+  command->add_option("--seed", arguments->choice.seed, "Another seed, other pictures")
       ->check(seed_validator())
       ->capture_default_str();
-  command->add_option("--size", arguments->size_px, "Side of a picture, pixels")
+  command->add_option("--size", arguments->choice.size_px, "Side of a picture, pixels")
       ->check(CLI::Range(kMinStimulusSizePx, kMaxStimulusSizePx))
       ->capture_default_str();
+  command
+      ->add_option("--exemplars", arguments->choice.exemplars,
+                   "Different pictures of each label (default: five of the textures, one of the "
+                   "others)")
+      ->check(CLI::Range(1, kMaxStimulusExemplars));
   command->callback([=, &action] { action = [=] { return generate(*arguments); }; });
 }
 

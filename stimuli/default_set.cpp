@@ -1,38 +1,68 @@
 #include "stimuli/default_set.hpp"
 
+#include "core/errors.hpp"
 #include "core/files.hpp"
 #include "engine/image_file.hpp"
+
+#include <string>
+#include <vector>
 
 namespace touchtrial {
 namespace {
 
-StimulusEntry write_stimulus(const std::filesystem::path& folder, const StimulusRecipe& recipe,
-                             std::uint64_t seed, int size_px) {
-  StimulusEntry entry;
-  entry.label = recipe.label;
-  entry.kind = recipe.kind;
-  entry.file = entry.label + ".png";
-  entry.seed = seed;
-  entry.size_px = size_px;
-  const GreyImage picture = generate_stimulus(recipe.label, seed, size_px);
+std::string file_of(std::string_view label, int exemplar) {
+  const std::string name(label);
+  if (exemplar == 1) return name + ".png";
+  return "exemplars/" + name + "-" + std::to_string(exemplar) + ".png";
+}
+
+/// The pictures to make, without their digests.
+std::vector<StimulusEntry> chosen_entries(const StimuliChoice& choice) {
+  std::vector<StimulusEntry> entries;
+  for (const StimulusRecipe& recipe : stimulus_recipes()) {
+    const bool one_is_enough = recipe.kind == StimulusKind::flat;
+    const int wanted =
+        one_is_enough ? 1 : choice.exemplars.value_or(shipped_exemplars(recipe.kind));
+    for (int exemplar = 1; exemplar <= wanted; ++exemplar) {
+      StimulusEntry& entry = entries.emplace_back();
+      entry.label = recipe.label;
+      entry.kind = recipe.kind;
+      entry.exemplar = exemplar;
+      entry.file = file_of(recipe.label, exemplar);
+      entry.seed = choice.seed;
+      entry.size_px = choice.size_px;
+    }
+  }
+  return entries;
+}
+
+void write_stimulus(const std::filesystem::path& folder, StimulusEntry& entry) {
+  const GreyImage picture =
+      generate_stimulus(entry.label, entry.seed, entry.size_px, entry.exemplar);
+  make_folder((folder / entry.file).parent_path());
   write_png(folder / entry.file, picture);
   entry.sha256 = sha256_of_file(folder / entry.file);
   entry.pixels_sha256 = sha256(picture.samples());
-  return entry;
 }
 
 }  // namespace
 
-StimulusManifest generate_default_stimuli(const std::filesystem::path& folder, std::uint64_t seed,
-                                          int size_px, const StimuliProgress& progress) {
+StimulusManifest generate_default_stimuli(const std::filesystem::path& folder,
+                                          const StimuliChoice& choice,
+                                          const StimuliProgress& progress) {
+  const int exemplars = choice.exemplars.value_or(1);
+  if (exemplars < 1 || exemplars > kMaxStimulusExemplars) {
+    throw UsageError("a set of " + std::to_string(exemplars) +
+                     " exemplars of each label cannot be made; choose 1 to " +
+                     std::to_string(kMaxStimulusExemplars));
+  }
   make_folder(folder);
   StimulusManifest manifest;
-  const auto recipes = stimulus_recipes();
-  for (const StimulusRecipe& recipe : recipes) {
-    manifest.entries.push_back(write_stimulus(folder, recipe, seed, size_px));
-    if (progress) {
-      progress(static_cast<int>(manifest.entries.size()), static_cast<int>(recipes.size()));
-    }
+  manifest.entries = chosen_entries(choice);
+  int done = 0;
+  for (StimulusEntry& entry : manifest.entries) {
+    write_stimulus(folder, entry);
+    if (progress) progress(++done, static_cast<int>(manifest.entries.size()));
   }
   write_stimulus_manifest(folder / kStimulusManifestFile, manifest);
   return manifest;

@@ -7,21 +7,33 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 
 namespace touchtrial {
 
 /// Told after each picture, for a progress bar: how many are done, of how many.
 using StimuliProgress = std::function<void(int done, int total)>;
 
-/// Makes every recipe and writes <label>.png files and manifest.json. Each file replaces an older
-/// one only when it is complete, the manifest last; other files in the folder stay.
+/// Which pictures to make.
+struct StimuliChoice {
+  std::uint64_t seed = kDefaultStimuliSeed;
+  int size_px = kDefaultStimulusSizePx;
+  /// Of every label but a flat one, of which one is enough; empty: as many as come with the
+  /// program.
+  std::optional<int> exemplars;
+};
+
+/// Makes every recipe and writes <label>.png files, further exemplars as
+/// exemplars/<label>-<number>.png, and manifest.json. Each file replaces an older one only when it
+/// is complete, the manifest last; other files in the folder stay.
 /// \param folder  is made if it does not exist
-/// \return the manifest that was written; its entries are in the order of `stimulus_recipes()`
-/// \throws FileError if the folder or a file cannot be written, UsageError if the size is out of
-///   range
+/// \return the manifest that was written; its entries are in the order of `stimulus_recipes()`,
+///   exemplars of a label together
+/// \throws FileError if the folder or a file cannot be written, UsageError if the size or the
+/// number
+///   of exemplars is out of range
 StimulusManifest generate_default_stimuli(const std::filesystem::path& folder,
-                                          std::uint64_t seed = kDefaultStimuliSeed,
-                                          int size_px = kDefaultStimulusSizePx,
+                                          const StimuliChoice& choice = {},
                                           const StimuliProgress& progress = {});
 
 }  // namespace touchtrial

@@ -9,9 +9,9 @@
 namespace touchtrial {
 namespace {
 
-using Maker = GreyImage (*)(std::uint64_t seed, int size_px);
+using Maker = GreyImage (*)(const Specimen& specimen, int size_px);
 
-constexpr std::array<StimulusRecipe, 9> kRecipes = {{
+constexpr std::array<StimulusRecipe, 17> kRecipes = {{
     {"bark", StimulusKind::texture, "long upright plates of bark with deep furrows"},
     {"cloth", StimulusKind::texture, "plain weave of uneven yarn, lightly rumpled"},
     {"pebbles", StimulusKind::texture, "rounded pebbles of many sizes"},
@@ -21,14 +21,27 @@ constexpr std::array<StimulusRecipe, 9> kRecipes = {{
     {"leaf", StimulusKind::object, "the underside of a leaf with its veins"},
     {"shell", StimulusKind::object, "a ribbed scallop shell"},
     {"log", StimulusKind::object, "the sawn end of a log with its rings"},
+    {"wicker", StimulusKind::material, "a wall of woven rods"},
+    {"venation", StimulusKind::material, "midrib, side veins and net of a large leaf"},
+    {"ribs", StimulusKind::material, "ribs and terraces of growth of a large shell"},
+    {"endgrain", StimulusKind::material, "rings and cracks of sawn wood"},
+    {"sand", StimulusKind::practice, "ripples of sand that fork and end"},
+    {"leather", StimulusKind::practice, "grained leather with wrinkles and pores"},
+    {"cork", StimulusKind::practice, "pressed granules of cork"},
+    {"flat", StimulusKind::flat, "one grey everywhere"},
 }};
-constexpr std::array<Maker, kRecipes.size()> kMakers = {make_bark,  make_cloth, make_pebbles,
-                                                        make_straw, make_brick, make_basket,
-                                                        make_leaf,  make_shell, make_log};
+
+constexpr std::array<Maker, kRecipes.size()> kMakers = {
+    make_bark,     make_cloth, make_pebbles, make_straw,  make_brick,    make_basket,
+    make_leaf,     make_shell, make_log,     make_wicker, make_venation, make_ribs,
+    make_endgrain, make_sand,  make_leather, make_cork,   make_flat};
+
+constexpr std::array<std::string_view, 5> kKindNames = {"texture", "object", "material", "practice",
+                                                        "flat"};
 
 Maker maker_of(std::string_view label) {
-  const auto recipe = std::find_if(kRecipes.begin(), kRecipes.end(),
-                                   [&](const StimulusRecipe& r) { return r.label == label; });
+  const auto* const recipe = std::find_if(kRecipes.begin(), kRecipes.end(),
+                                          [&](const auto& r) { return r.label == label; });
   if (recipe != kRecipes.end())
     return kMakers.at(static_cast<std::size_t>(recipe - kRecipes.begin()));
   std::string labels;
@@ -41,21 +54,41 @@ Maker maker_of(std::string_view label) {
 }  // namespace
 
 std::string_view name_of(StimulusKind kind) {
-  return kind == StimulusKind::texture ? "texture" : "object";
+  return kKindNames.at(static_cast<std::size_t>(kind));
+}
+
+std::optional<StimulusKind> stimulus_kind_from_name(std::string_view name) {
+  const auto* const found = std::find(kKindNames.begin(), kKindNames.end(), name);
+  if (found == kKindNames.end()) return std::nullopt;
+  return static_cast<StimulusKind>(found - kKindNames.begin());
+}
+
+int shipped_exemplars(StimulusKind kind) {
+  constexpr int kOfTextures = 5;
+  return kind == StimulusKind::texture ? kOfTextures : 1;
+}
+
+GreyImage make_flat(const Specimen& /*specimen*/, int size_px) {
+  constexpr std::uint8_t kMiddleGrey = 128;
+  return {size_px, size_px, kMiddleGrey};
 }
 
 std::span<const StimulusRecipe> stimulus_recipes() {
   return kRecipes;
 }
 
-GreyImage generate_stimulus(std::string_view label, std::uint64_t seed, int size_px) {
+GreyImage generate_stimulus(std::string_view label, std::uint64_t seed, int size_px, int exemplar) {
   const Maker make = maker_of(label);
   if (size_px < kMinStimulusSizePx || size_px > kMaxStimulusSizePx) {
     throw UsageError("a stimulus of " + std::to_string(size_px) +
                      " pixels a side cannot be made; choose " + std::to_string(kMinStimulusSizePx) +
                      " to " + std::to_string(kMaxStimulusSizePx));
   }
-  return make(seed, size_px);
+  if (exemplar < 1 || exemplar > kMaxStimulusExemplars) {
+    throw UsageError("there is no exemplar " + std::to_string(exemplar) + "; choose 1 to " +
+                     std::to_string(kMaxStimulusExemplars));
+  }
+  return make(Specimen(seed, exemplar), size_px);
 }
 
 }  // namespace touchtrial

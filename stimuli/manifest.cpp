@@ -15,6 +15,7 @@ constexpr const char* kFormat = "touchtrial-stimuli";
 Json to_json(const StimulusEntry& entry) {
   return {{"label", entry.label},
           {"kind", name_of(entry.kind)},
+          {"exemplar", entry.exemplar},
           {"file", entry.file},
           {"seed", entry.seed},
           {"size_px", entry.size_px},
@@ -31,10 +32,10 @@ Digest read_digest(const Json& entry, const char* key) {
 StimulusEntry entry_from(const Json& json) {
   StimulusEntry entry;
   entry.label = json.at("label").get<std::string>();
-  const auto kind = json.at("kind").get<std::string>();
-  if (kind != "texture" && kind != "object")
-    throw FileError("\"kind\" is neither texture nor object");
-  entry.kind = kind == "texture" ? StimulusKind::texture : StimulusKind::object;
+  const auto kind = stimulus_kind_from_name(json.at("kind").get<std::string>());
+  if (!kind) throw FileError("\"kind\" is none of texture, object, material, practice, flat");
+  entry.kind = *kind;
+  entry.exemplar = json.at("exemplar").get<int>();
   entry.file = json.at("file").get<std::string>();
   entry.seed = json.at("seed").get<std::uint64_t>();
   entry.size_px = json.at("size_px").get<int>();

@@ -19,7 +19,8 @@ inline constexpr std::string_view kStimuliLicence = "CC0-1.0";
 struct StimulusEntry {
   std::string label;
   StimulusKind kind = StimulusKind::texture;
-  std::string file;  ///< name inside the folder
+  int exemplar = 1;
+  std::string file;  ///< path inside the folder
   std::uint64_t seed = 0;
   int size_px = 0;
   Digest sha256{};         ///< of the file

@@ -2,21 +2,29 @@
 #pragma once
 
 #include "core/plane.hpp"
-
-#include <cstdint>
+#include "stimuli/specimen.hpp"
 
 namespace touchtrial {
 
 /// Each makes a square picture of `size_px` pixels a side. Textures keep the size of their features
 /// whatever the size of the picture; objects grow with it.
-[[nodiscard]] GreyImage make_bark(std::uint64_t seed, int size_px);
-[[nodiscard]] GreyImage make_cloth(std::uint64_t seed, int size_px);
-[[nodiscard]] GreyImage make_pebbles(std::uint64_t seed, int size_px);
-[[nodiscard]] GreyImage make_straw(std::uint64_t seed, int size_px);
-[[nodiscard]] GreyImage make_brick(std::uint64_t seed, int size_px);
-[[nodiscard]] GreyImage make_basket(std::uint64_t seed, int size_px);
-[[nodiscard]] GreyImage make_leaf(std::uint64_t seed, int size_px);
-[[nodiscard]] GreyImage make_shell(std::uint64_t seed, int size_px);
-[[nodiscard]] GreyImage make_log(std::uint64_t seed, int size_px);
+[[nodiscard]] GreyImage make_bark(const Specimen& specimen, int size_px);
+[[nodiscard]] GreyImage make_cloth(const Specimen& specimen, int size_px);
+[[nodiscard]] GreyImage make_pebbles(const Specimen& specimen, int size_px);
+[[nodiscard]] GreyImage make_straw(const Specimen& specimen, int size_px);
+[[nodiscard]] GreyImage make_brick(const Specimen& specimen, int size_px);
+[[nodiscard]] GreyImage make_basket(const Specimen& specimen, int size_px);
+[[nodiscard]] GreyImage make_leaf(const Specimen& specimen, int size_px);
+[[nodiscard]] GreyImage make_shell(const Specimen& specimen, int size_px);
+[[nodiscard]] GreyImage make_log(const Specimen& specimen, int size_px);
+[[nodiscard]] GreyImage make_wicker(const Specimen& specimen, int size_px);
+[[nodiscard]] GreyImage make_venation(const Specimen& specimen, int size_px);
+[[nodiscard]] GreyImage make_ribs(const Specimen& specimen, int size_px);
+[[nodiscard]] GreyImage make_endgrain(const Specimen& specimen, int size_px);
+[[nodiscard]] GreyImage make_sand(const Specimen& specimen, int size_px);
+[[nodiscard]] GreyImage make_leather(const Specimen& specimen, int size_px);
+[[nodiscard]] GreyImage make_cork(const Specimen& specimen, int size_px);
+/// One grey everywhere, whatever the specimen.
+[[nodiscard]] GreyImage make_flat(const Specimen& specimen, int size_px);
 
 }  // namespace touchtrial

@@ -122,6 +122,14 @@ int px_to_grid(double coordinate_px) noexcept {
   return static_cast<int>(std::ceil(coordinate_px * kOversampling - 0.5));
 }
 
+Lamp lamp_for(const Specimen& specimen, Lamp lamp) {
+  const Vec2 turn = specimen.turn("lamp/turn", 0.45);
+  const Vec3 towards = lamp.towards;
+  lamp.towards = {turn.x * towards.x - turn.y * towards.y, turn.y * towards.x + turn.x * towards.y,
+                  towards.z * specimen.factor("lamp/height", 0.15)};
+  return lamp;
+}
+
 double light_on_level(const Lamp& lamp) noexcept {
   return lamp.ambient + (1.0 - lamp.ambient) * lamp.towards.z / norm(lamp.towards);
 }
@@ -187,6 +195,12 @@ GreyImage developed(const Plane<double>& light, double mean_grey, const GreyImag
 
 GreyImage developed(const Plane<double>& light, double mean_grey) {
   return developed(light, mean_grey, GreyImage(light.height(), light.width(), 1));
+}
+
+GreyImage photographed(const Specimen& specimen, const Relief& relief, const Lamp& lamp,
+                       double mean_grey) {
+  return developed(averaged(lit(relief, lamp_for(specimen, lamp))),
+                   mean_grey + specimen.shift("development", 9.0));
 }
 
 }  // namespace touchtrial

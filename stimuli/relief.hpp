@@ -3,6 +3,7 @@
 
 #include "core/plane.hpp"
 #include "core/vec.hpp"
+#include "stimuli/specimen.hpp"
 
 #include <vector>
 
@@ -38,13 +39,14 @@ struct Relief {
 }
 [[nodiscard]] int px_to_grid(double coordinate_px) noexcept;
 
-/// Fills the relief with surface(x_px, y_px).
+/// Fills the relief with surface(x_px, y_px), seen from the view.
 template <typename Surface>
-void fill(Relief& relief, const Surface& surface) {
+void fill(Relief& relief, const Surface& surface, const View& view = {}) {
   for (int y = 0; y < relief.side(); ++y) {
     for (int x = 0; x < relief.side(); ++x) {
-      const SurfacePoint point = surface(grid_to_px(x), grid_to_px(y));
-      relief.height_px.at(y, x) = point.height_px;
+      const Vec2 place = view.on_surface(grid_to_px(x), grid_to_px(y));
+      const SurfacePoint point = surface(place.x, place.y);
+      relief.height_px.at(y, x) = view.scale * view.relief * point.height_px;
       relief.albedo.at(y, x) = point.albedo;
     }
   }
@@ -58,6 +60,9 @@ struct Lamp {
   double hollow_px = 7.0;              ///< size of the hollows that the ambient light misses
   double least_open = 0.15;            ///< share of the ambient light that the deepest hollow gets
 };
+
+/// The lamp as it stands for a piece: turned by up to about half a radian, higher or lower.
+[[nodiscard]] Lamp lamp_for(const Specimen& specimen, Lamp lamp);
 
 /// The light that comes back to the viewer from a level surface of albedo 1.
 [[nodiscard]] double light_on_level(const Lamp& lamp) noexcept;
@@ -81,5 +86,10 @@ struct Lamp {
 [[nodiscard]] GreyImage developed(const Plane<double>& light, double mean_grey,
                                   const GreyImage& counts);
 [[nodiscard]] GreyImage developed(const Plane<double>& light, double mean_grey);
+
+/// Sets up the lamp for the piece, lights the relief and develops the picture, some of them darker
+/// or lighter than `mean_grey`.
+[[nodiscard]] GreyImage photographed(const Specimen& specimen, const Relief& relief,
+                                     const Lamp& lamp, double mean_grey);
 
 }  // namespace touchtrial

@@ -32,6 +32,28 @@ class Basket {
     return handle_point(wx, wy);
   }
 
+  /// Rods over and under the stakes, row by row.
+  /// \param angle  round the basket, radians \param v  downwards, units
+  [[nodiscard]] SurfacePoint woven(double angle, double v) const {
+    const double wobble = 2.0 * sway_.fractal(angle * 4 + 9, v / 60, 2);
+    const double row = std::floor((v + wobble) / kRow);
+    const auto row_number = static_cast<std::int64_t>(row);
+    const double across = 2.0 * ((v + wobble) / kRow - row) - 1.0;
+    const double place = angle / kStake + 0.12 * sway_.at(angle * 9, row * 0.31);
+    const double parity = static_cast<double>(row_number & 1);
+    const double wave = std::cos(3.14159265358979 * (place + parity));
+    const double thickness = 0.86 + 0.16 * traits_.value(traits_.hash(row_number, 1)) +
+                             0.08 * rods_.at(angle * 6, row * 3.7);
+    const double u = across / thickness;
+    const double round = u * u < 1.0 ? std::sqrt(1.0 - u * u) : -0.6;
+    const double rod = 6.2 * round + 5.0 * wave;
+    const double stake_u = 2.6 * (place - std::floor(place + 0.5));
+    const double stake =
+        stake_u * stake_u < 1.0 ? 5.5 * std::sqrt(1.0 - stake_u * stake_u) - 1.5 : -6.0;
+    return rod >= stake ? rod_point(rod, angle, across, row_number)
+                        : stake_point(stake, stake_u, v, place);
+  }
+
  private:
   static double half_width(double y) {
     const double t = (y - kRim) / (kFoot - kRim);
@@ -92,27 +114,6 @@ class Basket {
     return point;
   }
 
-  /// Rods over and under the stakes, row by row.
-  [[nodiscard]] SurfacePoint woven(double angle, double v) const {
-    const double wobble = 2.0 * sway_.fractal(angle * 4 + 9, v / 60, 2);
-    const double row = std::floor((v + wobble) / kRow);
-    const auto row_number = static_cast<std::int64_t>(row);
-    const double across = 2.0 * ((v + wobble) / kRow - row) - 1.0;
-    const double place = angle / kStake + 0.12 * sway_.at(angle * 9, row * 0.31);
-    const double parity = static_cast<double>(row_number & 1);
-    const double wave = std::cos(3.14159265358979 * (place + parity));
-    const double thickness = 0.86 + 0.16 * traits_.value(traits_.hash(row_number, 1)) +
-                             0.08 * rods_.at(angle * 6, row * 3.7);
-    const double u = across / thickness;
-    const double round = u * u < 1.0 ? std::sqrt(1.0 - u * u) : -0.6;
-    const double rod = 6.2 * round + 5.0 * wave;
-    const double stake_u = 2.6 * (place - std::floor(place + 0.5));
-    const double stake =
-        stake_u * stake_u < 1.0 ? 5.5 * std::sqrt(1.0 - stake_u * stake_u) - 1.5 : -6.0;
-    return rod >= stake ? rod_point(rod, angle, across, row_number)
-                        : stake_point(stake, stake_u, v, place);
-  }
-
   [[nodiscard]] SurfacePoint rod_point(double height, double angle, double across,
                                        std::int64_t row) const {
     const double along = angle * 190.0;
@@ -138,9 +139,32 @@ class Basket {
 
 }  // namespace
 
-GreyImage make_basket(std::uint64_t seed, int size_px) {
+GreyImage make_basket(const Specimen& specimen, int size_px) {
   const Lamp lamp{{-0.5, -0.55, 0.8}, 0.34, 70.0, 4.0, 9.0, 0.78};
-  return photographed(laid_out(Basket(seed), size_px), lamp, 112.0);
+  return photographed(specimen,
+                      laid_out(Basket(specimen.noise_seed()), size_px, object_view(specimen)), lamp,
+                      112.0);
+}
+
+GreyImage make_wicker(const Specimen& specimen, int size_px) {
+  constexpr double kUnitsPerRadian = 190.0;
+  const Basket basket(specimen.noise_seed());
+  const Noise bulge(specimen.noise_seed(), "wicker/bulge");
+  const double stakes = specimen.factor("wicker/stakes", 0.15);
+  Relief relief(size_px);
+  // Stakes are never set quite upright or evenly, and the wall gives here and there.
+  const auto wall = [&](double x, double y) {
+    const double u = x + 13.0 * bulge.fractal(x / 75, y / 260, 2);
+    const double v = y + 13.0 * bulge.fractal(x / 210 + 20, y / 170, 2);
+    SurfacePoint point = basket.woven(stakes * u / kUnitsPerRadian, v);
+    point.height_px += 9.0 * bulge.fractal(x / 120 + 50, y / 120, 2);
+    return point;
+  };
+  View view = view_of(specimen, {0.18, 0.08, 0.2});
+  view.scale *= 1.3;
+  fill(relief, wall, view);
+  const Lamp lamp{{-0.5, -0.55, 0.8}, 0.34, 40.0, 4.0, 9.0};
+  return photographed(specimen, relief, lamp, 118.0);
 }
 
 }  // namespace touchtrial

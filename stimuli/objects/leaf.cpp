@@ -8,9 +8,16 @@
 namespace touchtrial {
 namespace {
 
-constexpr double kLength = 560.0;
-constexpr double kHalfWidth = 188.0;
 constexpr double kVeinDistance = 40.0;
+
+/// Of which leaf, seen from where.
+struct LeafShape {
+  Vec2 foot{68.0, 446.0};
+  double length = 560.0;
+  double half_width = 188.0;
+  double midrib = 5.2;  ///< its half thickness at the foot, units
+  double arch = 1.0;    ///< how much the blade as a whole rises and falls, relative
+};
 
 /// Where a point lies on the leaf.
 struct LeafPlace {
@@ -28,8 +35,9 @@ struct Vein {
 /// A broad leaf seen from below, where the veins stand out: midrib, side veins and a net.
 class Leaf {
  public:
-  explicit Leaf(std::uint64_t seed)
-      : sway_(seed, "leaf/sway"),
+  explicit Leaf(std::uint64_t seed, const LeafShape& shape = {})
+      : shape_(shape),
+        sway_(seed, "leaf/sway"),
         blotches_(seed, "leaf/blotches"),
         net_(seed, "leaf/net"),
         mesh_(seed, "leaf/mesh") {}
@@ -48,17 +56,17 @@ class Leaf {
  private:
   [[nodiscard]] LeafPlace locate(double x, double y) const {
     // The leaf lies aslant, and its midrib is bent.
-    constexpr Vec2 kFoot{68.0, 446.0};
     constexpr Vec2 kAlong{0.7071067811865476, -0.7071067811865476};
-    const Vec2 d{x - kFoot.x, y - kFoot.y};
-    const double s = (d.x * kAlong.x + d.y * kAlong.y) / kLength;
+    const Vec2 d{x - shape_.foot.x, y - shape_.foot.y};
+    const double s = (d.x * kAlong.x + d.y * kAlong.y) / shape_.length;
     const double across = d.x * -kAlong.y + d.y * kAlong.x;
     const double bend = 62.0 * s * (1.0 - s) + 3.0 * sway_.at(s * 5, 3.3);
     return {s, across + bend - 10.0};
   }
 
-  static double half_width(double t) {
-    return kHalfWidth * 2.15 * std::sqrt(t) * (1.0 - t) * (1.0 - 0.25 * t) * (1.0 + 0.35 * t);
+  [[nodiscard]] double half_width(double t) const {
+    return shape_.half_width * 2.15 * std::sqrt(t) * (1.0 - t) * (1.0 - 0.25 * t) *
+           (1.0 + 0.35 * t);
   }
 
   [[nodiscard]] Vein nearest_vein(const LeafPlace& place) const {
@@ -66,7 +74,8 @@ class Leaf {
     const double reach = std::abs(place.across);
     const double sway = 5.0 * sway_.fractal(place.along * 7 + 20 * side, reach / 60, 2);
     const double lane =
-        (kLength * place.along - 0.62 * reach - 0.0011 * reach * reach + sway) / kVeinDistance +
+        (shape_.length * place.along - 0.62 * reach - 0.0011 * reach * reach + sway) /
+            kVeinDistance +
         0.5 * (side + 1.0) * 0.45;
     Vein vein;
     vein.number = std::floor(lane + 0.5) + 100.0 * side;
@@ -77,7 +86,7 @@ class Leaf {
   }
 
   [[nodiscard]] ObjectPoint stem_point(const LeafPlace& place) const {
-    const double thickness = 5.2 - 4.0 * std::clamp(place.along, 0.0, 1.0);
+    const double thickness = shape_.midrib - 4.0 * std::clamp(place.along, 0.0, 1.0);
     const double u = place.across / thickness;
     if (place.along < -0.085 || place.along > 0.985 || u * u >= 1.0) return {};
     const double grain = blotches_.fractal(place.across / 2, place.along * 60, 2);
@@ -88,9 +97,9 @@ class Leaf {
   }
 
   /// The blade as a whole: halves rise from the midrib and fall to the edge.
-  static double arch(const LeafPlace& place) {
-    const double t = std::abs(place.across) / kHalfWidth;
-    return 26.0 * place.along * (1.0 - place.along) * 2.0 + 34.0 * t * (0.9 - t);
+  [[nodiscard]] double arch(const LeafPlace& place) const {
+    const double t = std::abs(place.across) / shape_.half_width;
+    return shape_.arch * (26.0 * place.along * (1.0 - place.along) * 2.0 + 34.0 * t * (0.9 - t));
   }
 
   [[nodiscard]] SurfacePoint blade(const LeafPlace& place, const Vein& vein, double x,
@@ -115,6 +124,7 @@ class Leaf {
     return point;
   }
 
+  LeafShape shape_;
   Noise sway_;
   Noise blotches_;
   Cells net_;
@@ -123,9 +133,38 @@ class Leaf {
 
 }  // namespace
 
-GreyImage make_leaf(std::uint64_t seed, int size_px) {
+GreyImage make_leaf(const Specimen& specimen, int size_px) {
   const Lamp lamp{{-0.72, -0.42, 0.75}, 0.36, 40.0, 5.0, 9.0, 0.78};
-  return photographed(laid_out(Leaf(seed), size_px), lamp, 112.0);
+  return photographed(
+      specimen, laid_out(Leaf(specimen.noise_seed()), size_px, object_view(specimen)), lamp, 112.0);
+}
+
+GreyImage make_venation(const Specimen& specimen, int size_px) {
+  // So large a leaf that its edge is out of sight.
+  LeafShape shape;
+  shape.foot = {-780.0 + specimen.shift("venation/foot", 110.0), 1010.0};
+  shape.length = 2300.0;
+  shape.half_width = 900.0;
+  shape.arch = 0.0;
+  shape.midrib = 8.6;
+  Relief relief(size_px);
+  const Leaf leaf(specimen.noise_seed(), shape);
+  const Noise bend(specimen.noise_seed(), "venation/bend");
+  View view = view_of(specimen, {0.15, 0.25, 0.2});
+  view.scale *= 1.35;
+  view.relief *= 0.62;
+  fill(
+      relief,
+      [&](double x, double y) {
+        const double u = x + 8.0 * bend.fractal(x / 150, y / 150, 2);
+        const double v = y + 8.0 * bend.fractal(x / 150 + 40, y / 150, 2);
+        SurfacePoint point = leaf(u, v).surface;
+        point.height_px += 16.0 * bend.fractal(x / 110 + 80, y / 110, 2);
+        return point;
+      },
+      view);
+  const Lamp lamp{{-0.72, -0.42, 0.75}, 0.36, 30.0, 5.0, 9.0};
+  return photographed(specimen, relief, lamp, 118.0);
 }
 
 }  // namespace touchtrial

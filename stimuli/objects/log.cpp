@@ -8,26 +8,36 @@
 namespace touchtrial {
 namespace {
 
-constexpr Vec2 kMiddle{250.0, 252.0};
-constexpr Vec2 kPith{232.0, 268.0};  ///< rings are wider on one side
-constexpr double kRadius = 206.0;    ///< of the wood
-constexpr double kBark = 24.0;       ///< thickness of the bark
+constexpr double kBark = 24.0;  ///< thickness of the bark
+
+/// Of which log, seen from where.
+struct LogShape {
+  Vec2 middle{250.0, 252.0};
+  Vec2 pith{232.0, 268.0};  ///< rings are wider on one side
+  double radius = 206.0;    ///< of the wood
+  double years = 34.0;
+  double uneven = 2.6;  ///< by how many years good and bad ones shift the rings
+  double saw = 0.55;    ///< height of the saw marks, units
+  double rays = 60.0;   ///< wood rays in a radian
+  int cracks = 9;
+};
 
 /// The sawn end of a log: rings of growth, drying cracks, saw marks, and bark round it.
 class LogEnd {
  public:
-  explicit LogEnd(std::uint64_t seed)
-      : sway_(seed, "log/sway"),
+  explicit LogEnd(std::uint64_t seed, const LogShape& shape = {})
+      : shape_(shape),
+        sway_(seed, "log/sway"),
         rings_(seed, "log/rings"),
         grain_(seed, "log/grain"),
         bark_(seed, "log/bark"),
         cracks_(seed, "log/cracks") {}
 
   [[nodiscard]] ObjectPoint operator()(double x, double y) const {
-    const Vec2 d{x - kMiddle.x, y - kMiddle.y};
+    const Vec2 d{x - shape_.middle.x, y - shape_.middle.y};
     const double r = std::sqrt(d.x * d.x + d.y * d.y) + 1e-9;
     const Vec2 way = (1.0 / r) * d;
-    const double wood = kRadius * (1.0 + 0.06 * sway_.fractal(1.4 * way.x, 1.4 * way.y, 2));
+    const double wood = shape_.radius * (1.0 + 0.06 * sway_.fractal(1.4 * way.x, 1.4 * way.y, 2));
     const double rough = bark_.fractal(6.0 * way.x + 3, 6.0 * way.y, 3);
     if (r >= wood + kBark * (1.0 + 0.45 * rough)) return {};
     if (r >= wood) return {true, bark_point(x, y, r - wood, way)};
@@ -37,24 +47,24 @@ class LogEnd {
  private:
   /// From the pith (0) to the bark (1), along rings that share the outline only far out.
   [[nodiscard]] double ring_place(double x, double y, double share) const {
-    const Vec2 p{x - kPith.x, y - kPith.y};
-    const double near = std::sqrt(p.x * p.x + p.y * p.y) / kRadius;
+    const Vec2 p{x - shape_.pith.x, y - shape_.pith.y};
+    const double near = std::sqrt(p.x * p.x + p.y * p.y) / shape_.radius;
     const double place = mix(near, share, smooth_step(0.0, 1.0, share));
-    return place + 0.018 * sway_.fractal(x / 60, y / 60, 3);
+    return place + 3.708 / shape_.radius * sway_.fractal(x / 60, y / 60, 3);
   }
 
   [[nodiscard]] SurfacePoint wood_point(double x, double y, double share, Vec2 way) const {
     const double place = ring_place(x, y, share);
     // Good years and bad ones: the rings' distances vary.
-    const double year = 34.0 * place + 2.6 * rings_.fractal(7.0 * place, 0.5, 3);
+    const double year = shape_.years * place + shape_.uneven * rings_.fractal(7.0 * place, 0.5, 3);
     const double season = year - std::floor(year);
     const double late = smooth_step(0.25, 0.85, season) * smooth_step(1.0, 0.93, season);
-    const double ray = grain_.fractal(60.0 * way.x, 60.0 * way.y, 2);
+    const double ray = grain_.fractal(shape_.rays * way.x, shape_.rays * way.y, 2);
     const double pore = grain_.fractal(x / 2.4, y / 2.4, 2);
     const double saw = grain_.at((x + 0.45 * y) / 3.6, (0.45 * x - y) / 130);
     const double crack = crack_depth(x, y);
     SurfacePoint point;
-    point.height_px = 46.0 + 2.0 * late + 0.55 * saw + 0.5 * pore + 0.35 * ray - 12.0 * crack;
+    point.height_px = 46.0 + 2.0 * late + shape_.saw * saw + 0.5 * pore + 0.35 * ray - 12.0 * crack;
     point.albedo = 0.66 - 0.24 * late + 0.06 * ray + 0.08 * pore -
                    0.14 * smooth_step(0.62, 0.2, place) * 0.8 +
                    0.09 * sway_.fractal(x / 50 + 7, y / 50, 3);
@@ -64,17 +74,18 @@ class LogEnd {
 
   /// Cracks run from the pith outwards and open on the way; each has a direction and an end.
   [[nodiscard]] double crack_depth(double x, double y) const {
-    const Vec2 p{x - kPith.x, y - kPith.y};
+    const Vec2 p{x - shape_.pith.x, y - shape_.pith.y};
     const double r = std::sqrt(p.x * p.x + p.y * p.y);
     double depth = 0.0;
-    for (std::int64_t i = 0; i < 9; ++i) {
+    for (std::int64_t i = 0; i < shape_.cracks; ++i) {
       const Vec2 way = cracks_.direction(cracks_.hash(i, 3));
       const double along = p.x * way.x + p.y * way.y;
       if (along <= 0.0) continue;
       const double across = p.y * way.x - p.x * way.y +
                             5.0 * sway_.fractal(r / 40 + 9.0 * static_cast<double>(i), 1.1, 3);
-      const double first = kRadius * (i == 0 ? 0.0 : 0.55 * cracks_.value(cracks_.hash(i, 1)));
-      const double last = kRadius * (0.6 + 0.42 * cracks_.value(cracks_.hash(i, 2)));
+      const double first =
+          shape_.radius * (i == 0 ? 0.0 : 0.55 * cracks_.value(cracks_.hash(i, 1)));
+      const double last = shape_.radius * (0.6 + 0.42 * cracks_.value(cracks_.hash(i, 2)));
       const double open = (i == 0 ? 3.6 : 1.9) * smooth_step(first - 8.0, first + 50.0, along) *
                           smooth_step(last, last - 50.0, along);
       depth = std::max(depth,
@@ -95,6 +106,7 @@ class LogEnd {
     return point;
   }
 
+  LogShape shape_;
   Noise sway_;
   Noise rings_;
   Noise grain_;
@@ -104,9 +116,32 @@ class LogEnd {
 
 }  // namespace
 
-GreyImage make_log(std::uint64_t seed, int size_px) {
+GreyImage make_log(const Specimen& specimen, int size_px) {
   const Lamp lamp{{-0.62, -0.5, 0.62}, 0.32, 55.0, 4.0, 7.0, 0.78};
-  return photographed(laid_out(LogEnd(seed), size_px), lamp, 116.0);
+  return photographed(specimen,
+                      laid_out(LogEnd(specimen.noise_seed()), size_px, object_view(specimen)), lamp,
+                      116.0);
+}
+
+GreyImage make_endgrain(const Specimen& specimen, int size_px) {
+  // The pith is out of sight to the lower left, the bark to the upper right.
+  LogShape shape;
+  shape.pith = {-150.0 + specimen.shift("endgrain/x", 60.0),
+                640.0 + specimen.shift("endgrain/y", 60.0)};
+  shape.middle = shape.pith;
+  shape.radius = 1000.0;
+  shape.years = 60.0 * specimen.factor("endgrain/years", 0.3);
+  shape.uneven = 6.5;
+  shape.saw = 0.25;
+  shape.rays = 330.0;
+  shape.cracks = 13;
+  Relief relief(size_px);
+  const LogEnd log(specimen.noise_seed(), shape);
+  fill(
+      relief, [&](double x, double y) { return log(x, y).surface; },
+      view_of(specimen, {0.12, 0.2, 0.2}));
+  const Lamp lamp{{-0.62, -0.5, 0.62}, 0.32, 30.0, 4.0, 7.0};
+  return photographed(specimen, relief, lamp, 118.0);
 }
 
 }  // namespace touchtrial

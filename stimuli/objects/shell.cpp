@@ -8,20 +8,29 @@
 namespace touchtrial {
 namespace {
 
-constexpr Vec2 kHinge{250.0, 446.0};
-constexpr double kRadius = 392.0;
 constexpr double kHalfAngle = 1.02;  ///< of the fan, radians
-constexpr double kRibAngle = 0.094;  ///< between two ribs
+
+/// Of which shell, seen from where.
+struct ShellShape {
+  Vec2 hinge{250.0, 446.0};
+  double radius = 392.0;
+  double rib_angle = 0.094;  ///< between two ribs, radians
+  double dome = 84.0;        ///< how high it bulges
+  double years = 17.0;       ///< terraces of growth
+};
 
 /// A scallop from outside: ribs that fan out from the hinge, crossed by bands of growth.
 class Shell {
  public:
-  explicit Shell(std::uint64_t seed)
-      : sway_(seed, "shell/sway"), growth_(seed, "shell/growth"), grain_(seed, "shell/grain") {}
+  explicit Shell(std::uint64_t seed, const ShellShape& shape = {})
+      : shape_(shape),
+        sway_(seed, "shell/sway"),
+        growth_(seed, "shell/growth"),
+        grain_(seed, "shell/grain") {}
 
   [[nodiscard]] ObjectPoint operator()(double x, double y) const {
-    const double dx = x - kHinge.x + 2.0 * sway_.at(x / 80, y / 80);
-    const double dy = kHinge.y - y;
+    const double dx = x - shape_.hinge.x + 2.0 * sway_.at(x / 80, y / 80);
+    const double dy = shape_.hinge.y - y;
     const double angle = std::atan2(dx, dy + 1e-9);
     const double r = std::sqrt(dx * dx + dy * dy);
     if (const ObjectPoint fan = fan_point(x, y, angle, r); fan.covers) return fan;
@@ -31,25 +40,26 @@ class Shell {
  private:
   /// Height of the rib profile, 0 in a groove, 1 on a crest.
   [[nodiscard]] double rib(double angle, double r) const {
-    const double place = (angle + 0.008 * sway_.at(angle * 9, r / 90)) / kRibAngle;
+    const double place = (angle + 0.008 * sway_.at(angle * 9, r / 90)) / shape_.rib_angle;
     const double t = 2.0 * (place - std::floor(place)) - 1.0;
     return std::sqrt(std::max(0.0, 1.0 - t * t * t * t)) * (1.0 - 0.25 * t * t);
   }
 
-  static double margin(double angle) {
+  [[nodiscard]] double margin(double angle) const {
     const double t = angle / kHalfAngle;
-    return kRadius * (1.0 - 0.25 * t * t - 0.10 * t * t * t * t);
+    return shape_.radius * (1.0 - 0.25 * t * t - 0.10 * t * t * t * t);
   }
 
   [[nodiscard]] ObjectPoint fan_point(double x, double y, double angle, double r) const {
-    const double edge = margin(angle) + 7.0 * rib(angle, kRadius) + 2.0 * sway_.at(x / 20, y / 20);
-    const double side = kHalfAngle * (0.86 + 0.14 * smooth_step(0.0, 0.5, r / kRadius));
+    const double edge =
+        margin(angle) + 7.0 * rib(angle, shape_.radius) + 2.0 * sway_.at(x / 20, y / 20);
+    const double side = kHalfAngle * (0.86 + 0.14 * smooth_step(0.0, 0.5, r / shape_.radius));
     if (std::abs(angle) >= side || r >= edge) return {};
     const double share = r / edge;  // 0 at the hinge, 1 at the margin
     const double ripple = growth_rings(share, angle);
     const double crest = rib(angle, r);
     const double to_side = 1.0 - std::abs(angle) / side;
-    const double dome = 84.0 * std::sqrt(std::max(0.0, share * (1.02 - share) * 3.6)) *
+    const double dome = shape_.dome * std::sqrt(std::max(0.0, share * (1.02 - share) * 3.6)) *
                         std::sqrt(smooth_step(0.0, 0.75, to_side) + 0.02);
     const double grain = grain_.fractal(x / 3.4, y / 3.4, 3);
     SurfacePoint point;
@@ -61,7 +71,7 @@ class Shell {
 
   /// Terraces of growth: rising slowly, falling suddenly, at irregular distances.
   [[nodiscard]] double growth_rings(double share, double angle) const {
-    const double place = 17.0 * share * (0.7 + 0.5 * share) +
+    const double place = shape_.years * share * (0.7 + 0.5 * share) +
                          1.2 * growth_.fractal(share * 6, 0.7, 3) +
                          0.12 * sway_.at(angle * 14, share * 30);
     const double coarse = place - std::floor(place);
@@ -88,6 +98,7 @@ class Shell {
              std::clamp(0.46 + 0.1 * grain + 0.12 * growth_.fractal(dy / 16, 5.5, 2), 0.1, 1.0)}};
   }
 
+  ShellShape shape_;
   Noise sway_;
   Noise growth_;
   Noise grain_;
@@ -95,9 +106,36 @@ class Shell {
 
 }  // namespace
 
-GreyImage make_shell(std::uint64_t seed, int size_px) {
+GreyImage make_shell(const Specimen& specimen, int size_px) {
   const Lamp lamp{{-0.62, -0.42, 0.8}, 0.36, 60.0, 5.0, 9.0, 0.78};
-  return photographed(laid_out(Shell(seed), size_px), lamp, 112.0);
+  return photographed(specimen,
+                      laid_out(Shell(specimen.noise_seed()), size_px, object_view(specimen)), lamp,
+                      112.0);
+}
+
+GreyImage make_ribs(const Specimen& specimen, int size_px) {
+  // So near the margin of so large a shell that neither hinge nor margin is in sight.
+  ShellShape shape;
+  shape.hinge = {170.0 + specimen.shift("ribs/hinge", 160.0), 1120.0};
+  shape.radius = 1750.0;
+  shape.rib_angle = 0.040 * specimen.factor("ribs/angle", 0.2);
+  shape.dome = 0.0;
+  shape.years = 62.0 * specimen.factor("ribs/years", 0.25);
+  const Shell shell(specimen.noise_seed(), shape);
+  const Noise warp(specimen.noise_seed(), "ribs/warp");
+  Relief relief(size_px);
+  fill(
+      relief,
+      [&](double x, double y) {
+        const double u = x + 4.0 * warp.fractal(x / 130, y / 190, 2);
+        const double v = y + 14.0 * warp.fractal(x / 90 + 30, y / 140, 2);
+        SurfacePoint point = shell(u, v).surface;
+        point.height_px += 6.0 * warp.fractal(x / 80 + 60, y / 80, 3);
+        return point;
+      },
+      view_of(specimen, {0.12, 0.15, 0.2}));
+  const Lamp lamp{{-0.62, -0.42, 0.8}, 0.36, 40.0, 5.0, 9.0};
+  return photographed(specimen, relief, lamp, 118.0);
 }
 
 }  // namespace touchtrial

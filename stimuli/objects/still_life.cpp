@@ -1,5 +1,6 @@
 #include "stimuli/objects/still_life.hpp"
 
+#include <cmath>
 #include <vector>
 
 namespace touchtrial {
@@ -22,11 +23,20 @@ void dim_ground(Plane<double>& light, const Plane<double>& covered, double light
 
 }  // namespace
 
-GreyImage photographed(const StillLife& scene, Lamp lamp, double mean_grey) {
+View object_view(const Specimen& specimen) {
+  View view = view_of(specimen, {0.0, 0.12, 0.15});
+  view.scale = 1.0 / (1.0 + 0.15 * std::abs(specimen.shift("view/scale", 1.0)));
+  view.middle = {kObjectUnits / 2, kObjectUnits / 2};
+  return view;
+}
+
+GreyImage photographed(const Specimen& specimen, const StillLife& scene, Lamp lamp,
+                       double mean_grey) {
   const double scale = scene.relief.side() / (kOversampling * kObjectUnits);
   lamp.shadow_reach_px *= scale;
   lamp.shadow_blur_px *= scale;
   lamp.hollow_px *= scale;
+  lamp = lamp_for(specimen, lamp);
   Plane<double> light = lit(scene.relief, lamp);
   dim_ground(light, scene.covered, light_on_level(lamp));
   const Plane<double> share = averaged(scene.covered);
@@ -34,7 +44,7 @@ GreyImage photographed(const StillLife& scene, Lamp lamp, double mean_grey) {
   for (std::size_t i = 0; i < share.size(); ++i) {
     counts.samples()[i] = share.samples()[i] > 0.5 ? 1 : 0;
   }
-  return developed(averaged(light), mean_grey, counts);
+  return developed(averaged(light), mean_grey + specimen.shift("development", 9.0), counts);
 }
 
 }  // namespace touchtrial

@@ -23,18 +23,24 @@ struct StillLife {
 /// Lights the scene and develops it for the object's sake; the ground is as light as the object's
 /// lighter parts.
 /// \param mean_grey  mean grey level of the object
-[[nodiscard]] GreyImage photographed(const StillLife& scene, Lamp lamp, double mean_grey);
+[[nodiscard]] GreyImage photographed(const Specimen& specimen, const StillLife& scene, Lamp lamp,
+                                     double mean_grey);
+
+/// How a further piece lies: turned a little about the middle, and not larger than the first.
+[[nodiscard]] View object_view(const Specimen& specimen);
 
 /// Lays an object on a flat, even ground.
 /// \param object  object(x, y) with x and y in 0 .. kObjectUnits; heights in the same units
 template <typename Object>
-[[nodiscard]] StillLife laid_out(const Object& object, int size_px) {
+[[nodiscard]] StillLife laid_out(const Object& object, int size_px, const View& view = {}) {
   const double scale = size_px / kObjectUnits;
   StillLife scene{Relief(size_px), Plane<double>(kOversampling * size_px, kOversampling * size_px)};
   for (int y = 0; y < scene.relief.side(); ++y) {
     for (int x = 0; x < scene.relief.side(); ++x) {
-      const ObjectPoint point = object(grid_to_px(x) / scale, grid_to_px(y) / scale);
-      scene.relief.height_px.at(y, x) = point.covers ? scale * point.surface.height_px : 0.0;
+      const Vec2 place = view.on_surface(grid_to_px(x) / scale, grid_to_px(y) / scale);
+      const ObjectPoint point = object(place.x, place.y);
+      const double height = scale * view.scale * view.relief * point.surface.height_px;
+      scene.relief.height_px.at(y, x) = point.covers ? height : 0.0;
       scene.relief.albedo.at(y, x) = point.covers ? point.surface.albedo : 1.0;
       scene.covered.at(y, x) = point.covers ? 1.0 : 0.0;
     }

@@ -59,11 +59,12 @@ double thread_height(const ThreadPlace& place, double lift) {
 
 class Cloth {
  public:
-  explicit Cloth(std::uint64_t seed)
-      : warp_(seed, "cloth/warp", 6.6),
-        weft_(seed, "cloth/weft", 7.3),
-        fibres_(seed, "cloth/fibres"),
-        folds_(seed, "cloth/folds") {}
+  explicit Cloth(const Specimen& specimen)
+      : warp_(specimen.noise_seed(), "cloth/warp", 6.6 * specimen.factor("cloth/warp", 0.12)),
+        weft_(specimen.noise_seed(), "cloth/weft", 7.3 * specimen.factor("cloth/weft", 0.12)),
+        fibres_(specimen.noise_seed(), "cloth/fibres"),
+        folds_(specimen.noise_seed(), "cloth/folds"),
+        rumple_(21.0 * specimen.factor("cloth/rumple", 0.6)) {}
 
   [[nodiscard]] SurfacePoint operator()(double x, double y) const {
     const double shear = 9.0 * folds_.fractal(x / 220, y / 220, 2);
@@ -75,7 +76,7 @@ class Cloth {
     SurfacePoint point =
         warp_height > weft_height ? yarn(warp, warp_height, y) : yarn(weft, weft_height, x);
     const double hair = fibres_.fractal(x / 2.1, y / 2.1, 2);
-    point.height_px += 0.35 * hair + 21.0 * folds_.fractal(x / 120, y / 150, 2);
+    point.height_px += 0.35 * hair + rumple_ * folds_.fractal(x / 120, y / 150, 2);
     point.albedo += 0.05 * hair + 0.12 * folds_.fractal(x / 70 + 9, y / 70, 3);
     return point;
   }
@@ -103,15 +104,16 @@ class Cloth {
   Threads weft_;
   Noise fibres_;
   Noise folds_;
+  double rumple_;  ///< height of the folds, pixels
 };
 
 }  // namespace
 
-GreyImage make_cloth(std::uint64_t seed, int size_px) {
+GreyImage make_cloth(const Specimen& specimen, int size_px) {
   Relief relief(size_px);
-  fill(relief, Cloth(seed));
+  fill(relief, Cloth(specimen), view_of(specimen, {0.15, 0.3, 0.2}));
   const Lamp lamp{{-0.5, -0.62, 0.8}, 0.42, 14.0, 2.0, 5.0};
-  return developed(averaged(lit(relief, lamp)), 126.0);
+  return photographed(specimen, relief, lamp, 126.0);
 }
 
 }  // namespace touchtrial

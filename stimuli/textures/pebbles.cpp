@@ -47,6 +47,9 @@ constexpr Layer kLayers[] = {{33.0, 7.0, 300},  {25.0, 5.0, 900},   {18.0, 3.0, 
                              {12.5, 1.0, 9000}, {8.5, -2.0, 22000}, {5.5, -5.0, 50000},
                              {3.6, -7.0, 90000}};
 
+/// Pebbles above this are the large ones, of which a heap has more or fewer.
+constexpr double kLargest_px = 20.0;
+
 /// Pebbles that are already placed, found by the square they lie in.
 class Heap {
  public:
@@ -69,8 +72,8 @@ class Heap {
   [[nodiscard]] const std::vector<Pebble>& pebbles() const { return pebbles_; }
 
  private:
-  static constexpr double kSquare = 24.0;
-  static constexpr double kMargin = 40.0;
+  static constexpr double kSquare = 30.0;
+  static constexpr double kMargin = 50.0;
   static constexpr int kReach = 3;
 
   [[nodiscard]] int square_of(double coordinate) const {
@@ -95,15 +98,22 @@ class Heap {
   std::vector<Pebble> pebbles_;
 };
 
-std::vector<Pebble> heap_of_pebbles(std::uint64_t seed, int size_px) {
-  RandomStream random(seed, "pebbles/places");
+std::vector<Pebble> heap_of_pebbles(const Specimen& specimen, int size_px) {
+  const double scale = specimen.factor("view/scale", 0.25);
+  const double relief = scale * specimen.factor("view/relief", 0.2);
+  const double large_share = specimen.factor("pebbles/large", 1.5);
+  RandomStream random(specimen.noise_seed(), "pebbles/places");
   Heap heap(size_px);
   for (const Layer& layer : kLayers) {
-    const double side = size_px + 2 * layer.radius_px;
-    const int tries = static_cast<int>(side * side * 1e-6 * layer.tries_per_megapixel) + 1;
+    const double side = size_px / scale + 2 * layer.radius_px;
+    const double share = layer.radius_px > kLargest_px ? large_share : 1.0;
+    const int tries = static_cast<int>(share * side * side * 1e-6 * layer.tries_per_megapixel) + 1;
     for (int i = 0; i < tries; ++i) {
-      const double radius = layer.radius_px * random.uniform(0.8, 1.2);
-      heap.offer(random_pebble(random, radius, size_px, layer.base_px + random.uniform(-2.0, 2.0)));
+      const double radius = scale * layer.radius_px * random.uniform(0.8, 1.2);
+      const double base = relief * (layer.base_px + random.uniform(-2.0, 2.0));
+      Pebble pebble = random_pebble(random, radius, size_px, base);
+      pebble.flatness *= relief / scale;
+      heap.offer(pebble);
     }
   }
   return heap.pebbles();
@@ -169,13 +179,13 @@ class Painter {
 
 }  // namespace
 
-GreyImage make_pebbles(std::uint64_t seed, int size_px) {
+GreyImage make_pebbles(const Specimen& specimen, int size_px) {
   Relief relief(size_px);
-  Painter painter(seed, relief);
+  Painter painter(specimen.noise_seed(), relief);
   painter.sand();
-  for (const Pebble& pebble : heap_of_pebbles(seed, size_px)) painter.paint(pebble);
+  for (const Pebble& pebble : heap_of_pebbles(specimen, size_px)) painter.paint(pebble);
   const Lamp lamp{{-0.55, -0.6, 0.7}, 0.34, 40.0, 4.0, 12.0};
-  return developed(averaged(lit(relief, lamp)), 118.0);
+  return photographed(specimen, relief, lamp, 118.0);
 }
 
 }  // namespace touchtrial

@@ -21,24 +21,40 @@ struct Stalk {
   double split = 0.0;  ///< 0 round, 1 a flattened, folded leaf
 };
 
+/// How the stalks of a piece are.
+struct Strewing {
+  explicit Strewing(const Specimen& specimen)
+      : scale(specimen.factor("view/scale", 0.22)),
+        loose_share(0.22 * specimen.factor("straw/loose", 0.7)),
+        slope(0.35 + specimen.shift("view/turn", 0.22)),
+        thickness(specimen.factor("straw/thickness", 0.2)),
+        pile_height_px(17.0 * scale * specimen.factor("view/relief", 0.3)) {}
+
+  double scale;
+  double loose_share;  ///< of the stalks, that lie anywhere
+  double slope;        ///< of the way that the others lie
+  double thickness;    ///< of the thicker stalks, relative
+  double pile_height_px;
+};
+
 /// Most lie one way, more or less; some lie anywhere.
-Vec2 random_direction(RandomStream& random) {
-  if (random.uniform() < 0.22) {
+Vec2 random_direction(RandomStream& random, const Strewing& strewing) {
+  if (random.uniform() < strewing.loose_share) {
     const Vec2 any{random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)};
     return (1.0 / std::max(1e-6, std::sqrt(any.x * any.x + any.y * any.y))) * any;
   }
   const double slope =
-      0.35 + 0.55 * (random.uniform() + random.uniform() + random.uniform() - 1.5) * 1.4;
+      strewing.slope + 0.55 * (random.uniform() + random.uniform() + random.uniform() - 1.5) * 1.4;
   return (1.0 / std::sqrt(1.0 + slope * slope)) * Vec2{1.0, slope};
 }
 
-Stalk random_stalk(RandomStream& random, int size_px, double height_px) {
+Stalk random_stalk(RandomStream& random, int size_px, const Strewing& strewing, double height_px) {
   Stalk stalk;
   stalk.middle_px = {random.uniform(-60.0, size_px + 60.0), random.uniform(-60.0, size_px + 60.0)};
-  stalk.along = random_direction(random);
-  stalk.half_length_px = random.uniform(45.0, 190.0);
+  stalk.along = random_direction(random, strewing);
+  stalk.half_length_px = strewing.scale * random.uniform(45.0, 190.0);
   const double thick = random.uniform();
-  stalk.half_width_px = 1.4 + 3.2 * thick * thick;
+  stalk.half_width_px = strewing.scale * (1.4 + 3.2 * strewing.thickness * thick * thick);
   stalk.bend_per_px = random.uniform(-1.0, 1.0) * 0.0011;
   stalk.base_px = height_px + random.uniform(-2.0, 2.0);
   stalk.albedo = random.uniform(0.5, 0.82);
@@ -113,19 +129,20 @@ class Painter {
 
 }  // namespace
 
-GreyImage make_straw(std::uint64_t seed, int size_px) {
+GreyImage make_straw(const Specimen& specimen, int size_px) {
   constexpr double kStalksPerPixel = 0.0046;
-  constexpr double kPileHeight = 17.0;
   Relief relief(size_px);
-  Painter painter(seed, relief);
+  Painter painter(specimen.noise_seed(), relief);
   painter.ground();
-  RandomStream random(seed, "straw/stalks");
-  const int count = static_cast<int>(kStalksPerPixel * (size_px + 120) * (size_px + 120));
+  const Strewing strewing(specimen);
+  RandomStream random(specimen.noise_seed(), "straw/stalks");
+  const double side = (size_px + 120) / strewing.scale;
+  const int count = static_cast<int>(kStalksPerPixel * side * side);
   for (int i = 0; i < count; ++i) {
-    painter.paint(random_stalk(random, size_px, kPileHeight * i / count));
+    painter.paint(random_stalk(random, size_px, strewing, strewing.pile_height_px * i / count));
   }
   const Lamp lamp{{-0.45, -0.7, 0.78}, 0.42, 24.0, 3.5, 8.0};
-  return developed(averaged(lit(relief, lamp)), 122.0);
+  return photographed(specimen, relief, lamp, 122.0);
 }
 
 }  // namespace touchtrial

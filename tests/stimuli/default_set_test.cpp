@@ -6,6 +6,9 @@
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 
+#include <set>
+#include <string>
+
 #include <nlohmann/json.hpp>
 
 using namespace touchtrial;
@@ -16,7 +19,7 @@ constexpr int kTiny = 48;
 
 /// The folder of the set that comes with the program.
 std::filesystem::path committed_set() {
-  return std::filesystem::path(__FILE__).parent_path() / ".." / ".." / "stimuli";
+  return std::filesystem::path(TOUCHTRIAL_SOURCE_DIR) / "stimuli";
 }
 
 }  // namespace
@@ -24,18 +27,20 @@ std::filesystem::path committed_set() {
 TEST_CASE("the default set is a file for each recipe and a manifest that matches them") {
   const TempFolder folder;
   const auto set = folder.path() / "new" / "stimuli";
-  const StimulusManifest manifest = generate_default_stimuli(set, 5, kTiny);
-  REQUIRE(manifest.entries.size() == stimulus_recipes().size());
+  const StimulusManifest manifest = generate_default_stimuli(set, {5, kTiny, 2});
+  REQUIRE(manifest.entries.size() == 2 * stimulus_recipes().size() - 1);
   for (std::size_t i = 0; i < manifest.entries.size(); ++i) {
     const StimulusEntry& entry = manifest.entries[i];
-    INFO(entry.label);
-    CHECK(entry.label == stimulus_recipes()[i].label);
-    CHECK(entry.file == entry.label + ".png");
+    INFO(entry.file);
+    CHECK(entry.label == stimulus_recipes()[i / 2].label);
+    CHECK(entry.exemplar == static_cast<int>(i % 2) + 1);
+    CHECK(entry.file ==
+          (i % 2 == 0 ? entry.label + ".png" : "exemplars/" + entry.label + "-2.png"));
     CHECK(entry.seed == 5);
     CHECK(sha256_of_file(set / entry.file) == entry.sha256);
     const GreyImage picture = read_grey_image(set / entry.file);
     CHECK(sha256(picture.samples()) == entry.pixels_sha256);
-    CHECK(picture == generate_stimulus(entry.label, 5, kTiny));
+    CHECK(picture == generate_stimulus(entry.label, 5, kTiny, entry.exemplar));
   }
   CHECK(read_stimulus_manifest(set / kStimulusManifestFile) == manifest);
 }
@@ -43,25 +48,35 @@ TEST_CASE("the default set is a file for each recipe and a manifest that matches
 TEST_CASE("the set that comes with the program matches its manifest and its seed") {
   const StimulusManifest manifest = read_stimulus_manifest(committed_set() / kStimulusManifestFile);
   CHECK(manifest.generator_version == kGeneratorVersion);
-  REQUIRE(manifest.entries.size() == stimulus_recipes().size());
+  // Twenty further exemplars; every recipe has its first one.
+  CHECK(manifest.entries.size() == stimulus_recipes().size() + 20);
+  // To make all again takes too long for every test run.
+  const std::set<std::string> made_again = {
+      "bark.png", "exemplars/brick-5.png", "shell.png", "endgrain.png", "sand.png", "flat.png"};
+  std::size_t made = 0;
   for (const StimulusEntry& entry : manifest.entries) {
-    INFO(entry.label);
+    INFO(entry.file);
     CHECK(entry.seed == kDefaultStimuliSeed);
     CHECK(entry.size_px == kDefaultStimulusSizePx);
     CHECK(sha256_of_file(committed_set() / entry.file) == entry.sha256);
-    const GreyImage picture = generate_stimulus(entry.label, entry.seed, entry.size_px);
+    CHECK(sha256(read_grey_image(committed_set() / entry.file).samples()) == entry.pixels_sha256);
+    if (made_again.count(entry.file) == 0) continue;
+    const GreyImage picture =
+        generate_stimulus(entry.label, entry.seed, entry.size_px, entry.exemplar);
     CHECK(sha256(picture.samples()) == entry.pixels_sha256);
+    ++made;
   }
+  CHECK(made == made_again.size());
 }
 
 TEST_CASE("making the set again replaces it by the same bytes and leaves other files alone") {
   const TempFolder folder;
-  generate_default_stimuli(folder.path(), 5, kTiny);
+  generate_default_stimuli(folder.path(), {5, kTiny, 1});
   const Bytes before = read_file(folder.path() / "straw.png");
   const Bytes manifest_before = read_file(folder.path() / kStimulusManifestFile);
   replace_file(folder.path() / "straw.png", "spoilt");
   replace_file(folder.path() / "own.txt", "own");
-  generate_default_stimuli(folder.path(), 5, kTiny);
+  generate_default_stimuli(folder.path(), {5, kTiny, 1});
   CHECK(read_file(folder.path() / "straw.png") == before);
   CHECK(read_file(folder.path() / kStimulusManifestFile) == manifest_before);
   CHECK(text_of(read_file(folder.path() / "own.txt")) == "own");
@@ -70,19 +85,28 @@ TEST_CASE("making the set again replaces it by the same bytes and leaves other f
 TEST_CASE("progress is told after each picture") {
   const TempFolder folder;
   int last = 0;
-  generate_default_stimuli(folder.path(), 5, kMinStimulusSizePx, [&](int done, int total) {
+  generate_default_stimuli(folder.path(), {5, kMinStimulusSizePx, {}}, [&](int done, int total) {
     CHECK(done == last + 1);
-    CHECK(total == 9);
+    CHECK(total == 37);
     last = done;
   });
-  CHECK(last == 9);
+  CHECK(last == 37);
 }
 
 TEST_CASE("a folder that cannot be made is refused") {
   const TempFolder folder;
   replace_file(folder.path() / "file", "x");
-  CHECK_THROWS_AS(generate_default_stimuli(folder.path() / "file", 5, kTiny), FileError);
-  CHECK_THROWS_AS(generate_default_stimuli(folder.path() / "file" / "set", 5, kTiny), FileError);
+  CHECK_THROWS_AS(generate_default_stimuli(folder.path() / "file", {5, kTiny, 1}), FileError);
+  CHECK_THROWS_AS(generate_default_stimuli(folder.path() / "file" / "set", {5, kTiny, 1}),
+                  FileError);
+}
+
+TEST_CASE("a set without exemplars or with too many is refused before anything is made") {
+  const TempFolder folder;
+  const auto set = folder.path() / "set";
+  CHECK_THROWS_AS(generate_default_stimuli(set, {5, kTiny, 0}), UsageError);
+  CHECK_THROWS_AS(generate_default_stimuli(set, {5, kTiny, kMaxStimulusExemplars + 1}), UsageError);
+  CHECK_FALSE(is_there(set));
 }
 
 TEST_CASE("the manifest names the licence and the generator in plain JSON") {

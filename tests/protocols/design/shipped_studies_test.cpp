@@ -43,12 +43,33 @@ TEST_CASE("the comparison study has four objects and both methods at the same rm
   CHECK(study.scored_trials() == 40);
 }
 
+TEST_CASE("the study of exemplars has the same classes with five pictures each") {
+  const Study study = load_study(kConfig / "classification-exemplars.json");
+  CHECK(labels_of(study) == labels_of(load_study(kConfig / "classification.json")));
+  for (const StudyClass& study_class : study.classes) CHECK(study_class.images.size() == 5);
+  CHECK(study.scored_trials() == 25);
+}
+
+TEST_CASE("the comparison without outlines differs from the other in its pictures alone") {
+  const Study textures = load_study(kConfig / "comparison-textures.json");
+  const Study objects = load_study(kConfig / "comparison.json");
+  CHECK(textures.name == "comparison-textures");
+  CHECK(textures.classes.size() == 4);
+  CHECK(textures.methods == objects.methods);
+  CHECK(textures.rendering == objects.rendering);
+  CHECK(textures.trials == objects.trials);
+  CHECK(textures.seed != objects.seed);
+}
+
 TEST_CASE("every image of the studies that come with the program is there") {
-  for (const char* name : {"classification.json", "comparison.json"}) {
+  for (const char* name : {"classification.json", "classification-exemplars.json",
+                           "comparison.json", "comparison-textures.json"}) {
     const Study study = load_study(kConfig / name);
     for (const StudyClass& study_class : study.classes) {
-      INFO(study_class.images[0].string());
-      CHECK(std::filesystem::is_regular_file(study.folder / study_class.images[0]));
+      for (const std::filesystem::path& image : study_class.images) {
+        INFO(image.string());
+        CHECK(std::filesystem::is_regular_file(study.folder / image));
+      }
     }
   }
 }
