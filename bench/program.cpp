@@ -2,6 +2,7 @@
 
 #include "app/console.hpp"
 #include "bench/cases/cases.hpp"
+#include "bench/docs/publish.hpp"
 #include "bench/goals/goal.hpp"
 #include "bench/inputs/pictures.hpp"
 #include "bench/machine.hpp"
@@ -27,10 +28,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
+const fs::path kDocs = fs::path(TOUCHTRIAL_SOURCE_DIR) / "docs" / "benchmarks";
+
 struct Arguments {
   fs::path json;
   fs::path image;
   std::string target;
+  std::string only;
+  int runs = 1;
+  bool docs = false;
   bool quick = false;
 };
 
@@ -57,26 +63,51 @@ std::vector<GoalResult> take_goals(const std::vector<std::string>& targets, cons
   return results;
 }
 
+/// For tools that look at a program from outside.
+void run_only(const Arguments& arguments, const Scope& scope) {
+  for (const Case& one : all_cases(scope)) {
+    if (name_of(one) != arguments.only) continue;
+    const ForcedTarget forced(one.target);
+    const Job job = one.make();
+    for (int i = 0; i < arguments.runs; ++i) job.run();
+    return;
+  }
+  std::string names;
+  for (const Case& one : all_cases(scope)) names += "\n  " + name_of(one);
+  throw UsageError("--only: there is no such case; there are" + names);
+}
+
 void run(const Arguments& arguments) {
   cv::setNumThreads(1);
   if (!arguments.image.empty()) choose_timed_picture(arguments.image);
   choose_usual_target(arguments.target);
   const std::vector<std::string> targets =
       arguments.target.empty() ? simd_targets() : std::vector{arguments.target};
+  const Scope scope = scope_for(arguments, targets);
+  if (!arguments.only.empty()) return run_only(arguments, scope);
   const Effort effort = arguments.quick ? quick_effort() : Effort{};
   const std::vector<GoalResult> goals = take_goals(targets, effort);
   print(goals_table(goals));
-  if (arguments.json.empty()) return;
-  const std::vector<Row> rows =
-      measure_rows(all_cases(scope_for(arguments, targets)), effort, progress_bar("rows"));
-  replace_file(arguments.json, results_json(this_machine(), goals, rows));
+  if (arguments.json.empty() && !arguments.docs) return;
+  const std::vector<Row> rows = measure_rows(all_cases(scope), effort, progress_bar("rows"));
+  if (!arguments.json.empty()) {
+    replace_file(arguments.json, results_json(this_machine(), goals, rows));
+  }
+  if (arguments.docs) publish(this_machine(), goals, rows, kDocs);
 }
 
 void set_up(CLI::App& program, Arguments& arguments) {
   program.add_option("--json", arguments.json, "Measure every kernel at every size, write FILE");
+  program.add_flag("--docs", arguments.docs, "The same, into docs/benchmarks with its figures");
   program.add_option("--image", arguments.image, "Take times on this picture, not on bark.png");
   program.add_option("--target", arguments.target, "Use this SIMD target only, for instance AVX2")
       ->check(CLI::IsMember(simd_targets()));
+  CLI::Option* const only =
+      program.add_option("--only", arguments.only, "Run this case alone and measure nothing");
+  program.add_option("--runs", arguments.runs, "How often")
+      ->check(CLI::Range(0, 1000000))
+      ->needs(only)
+      ->capture_default_str();
   program.add_flag("--quick", arguments.quick, "Smallest sizes, few repetitions: does all work?");
 }
 

@@ -1,0 +1,15 @@
+#include "bench/figures/figures.hpp"
+
+#include "analysis/figures/gnuplot.hpp"
+
+namespace touchtrial::bench {
+
+void draw_figures(const std::vector<Row>& rows, Format format,
+                  const std::filesystem::path& folder) {
+  const std::string ending = format == Format::svg ? ".svg" : ".png";
+  draw_with_gnuplot(filter_figure(rows, format), folder / ("filters" + ending));
+  draw_with_gnuplot(ms_ssim_figure(rows, format), folder / ("ms-ssim" + ending));
+  draw_with_gnuplot(size_figure(rows, format), folder / ("sizes" + ending));
+}
+
+}  // namespace touchtrial::bench
