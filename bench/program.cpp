@@ -54,6 +54,7 @@ Scope scope_for(const Arguments& arguments, const std::vector<std::string>& targ
 std::vector<GoalResult> take_goals(const std::vector<std::string>& targets, const Effort& effort) {
   std::vector<Goal> goals = kernel_goals(targets);
   for (Goal& goal : error_goals(targets)) goals.push_back(std::move(goal));
+  for (Goal& goal : study_goals()) goals.push_back(std::move(goal));
   std::vector<GoalResult> results;
   const auto progress = progress_bar("goals");
   for (std::size_t i = 0; i < goals.size(); ++i) {

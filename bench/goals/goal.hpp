@@ -48,6 +48,9 @@ using Goal = std::function<std::vector<GoalResult>(const Effort& effort)>;
 /// How exact textures and MS-SSIM are, on every one of the targets.
 [[nodiscard]] std::vector<Goal> error_goals(const std::vector<std::string>& targets);
 
+/// The time of a simulated study, and what its database takes.
+[[nodiscard]] std::vector<Goal> study_goals();
+
 /// The table as it is printed and as it stands in the documentation (Markdown, columns aligned).
 [[nodiscard]] std::string goals_table(const std::vector<GoalResult>& results);
 

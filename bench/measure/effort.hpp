@@ -4,7 +4,7 @@
 namespace touchtrial::bench {
 
 struct Effort {
-  int repetitions = 7;         ///< of every row, in an order drawn at random among all rows
+  int repetitions = 7;         ///< of a row; fewer of large images
   double repetition_s = 0.02;  ///< at least, and one run
   double pair_s = 3.0;         ///< for one goal, about
   int least_rounds = 5;        ///< of a pair, however long they take

@@ -39,7 +39,6 @@ class MedianReporter : public benchmark::BenchmarkReporter {
 void set_up(const Effort& effort) {
   std::vector<std::string> words = {"touchtrial-bench",
                                     "--benchmark_enable_random_interleaving=true",
-                                    fmt::format("--benchmark_repetitions={}", effort.repetitions),
                                     fmt::format("--benchmark_min_time={}", effort.repetition_s)};
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
@@ -50,7 +49,17 @@ void set_up(const Effort& effort) {
 /// Operations of a job, known once it was made.
 using Operations = std::map<std::string, int>;
 
-void register_case(const Case& one, Operations& operations, const std::function<void()>& begin) {
+/// Images whose runs take so long that few of them do.
+constexpr int kLargeSize_px = 2048;
+constexpr int kLeastRepetitions = 3;
+
+int repetitions_of(const Case& one, const Effort& effort) {
+  return one.size_px >= kLargeSize_px ? std::min(kLeastRepetitions, effort.repetitions)
+                                      : effort.repetitions;
+}
+
+void register_case(const Case& one, int repetitions, Operations& operations,
+                   const std::function<void()>& begin) {
   const auto work = [&one, &operations, begin](benchmark::State& state) {
     begin();
     const ForcedTarget forced(one.target);
@@ -60,6 +69,7 @@ void register_case(const Case& one, Operations& operations, const std::function<
     for ([[maybe_unused]] auto _ : state) job.run();
   };
   benchmark::RegisterBenchmark(name_of(one).c_str(), work)
+      ->Repetitions(repetitions)
       ->Unit(benchmark::kMicrosecond)
       ->MeasureProcessCPUTime();
 }
@@ -74,7 +84,9 @@ std::vector<double> interleaved_times_us(const Cases& cases, const Effort& effor
   // The number of runs in a repetition is found by trying one, then about the right number.
   const int expected = static_cast<int>(cases.size()) * (effort.repetitions + 2);
   const auto begin = [&] { progress(std::min(begun++, expected), expected); };
-  for (const Case& one : cases) register_case(one, operations, begin);
+  for (const Case& one : cases) {
+    register_case(one, repetitions_of(one, effort), operations, begin);
+  }
   MedianReporter reporter;
   benchmark::RunSpecifiedBenchmarks(&reporter);
   std::vector<double> times_us;

@@ -1,0 +1,114 @@
+#include "app/default_subject.hpp"
+#include "bench/goals/goal.hpp"
+#include "bench/measure/median.hpp"
+#include "core/cipher.hpp"
+#include "core/errors.hpp"
+#include "engine/pack/pack.hpp"
+#include "protocols/design/prepare.hpp"
+#include "protocols/session/commitment.hpp"
+#include "protocols/session/simulation.hpp"
+#include "protocols/session/subject_model.hpp"
+#include "protocols/store/study_store.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <system_error>
+
+namespace touchtrial::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kStudyTarget_us = 1e6;
+constexpr double kTrialTarget_bytes = 100e3;
+constexpr int kParticipants = 20;
+constexpr int kRounds = 3;
+
+/// A folder of its own, gone afterwards.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string name = (fs::temp_directory_path() / "touchtrial-bench-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) {
+      throw FileError(name + ": cannot be made; make room or set TMPDIR");
+    }
+    path_ = name;
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  [[nodiscard]] const fs::path& path() const noexcept { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+struct StudyFigures {
+  double us = 0.0;
+  double bytes_a_trial = 0.0;
+};
+
+/// The classification study that comes with the program, 20 participants of 25 trials of 10 s, one
+/// transaction a session, in one thread; by the wall clock, because the disk belongs to it.
+StudyFigures simulate_once(const StudyKey& key, const Pack& pack, const fs::path& database) {
+  const SubjectModel subject = parse_subject_model(default_subject_json(), "default subject");
+  SimulationOptions options;
+  options.participants = kParticipants;
+  const auto start = std::chrono::steady_clock::now();
+  SimulationReport report;
+  {
+    StudyStore store = StudyStore::create(database, commitment_of(key, pack, true, false),
+                                          std::chrono::nanoseconds(0));
+    report = simulate_study(key, pack, subject, options, store);
+  }
+  const std::chrono::duration<double, std::micro> us = std::chrono::steady_clock::now() - start;
+  return {us.count(), static_cast<double>(fs::file_size(database)) / report.presentations};
+}
+
+std::vector<GoalResult> results_of(const StudyFigures& figures) {
+  GoalResult time;
+  time.goal = "study of 20 x 25 trials of 10 s, one thread";
+  time.ours_us = figures.us;
+  time.limit = Limit::time_us;
+  time.target = kStudyTarget_us;
+  GoalResult bytes;
+  bytes.goal = "database, a trial of 10 s";
+  bytes.count = std::round(figures.bytes_a_trial);
+  bytes.count_unit = "bytes";
+  bytes.limit = Limit::count;
+  bytes.target = kTrialTarget_bytes;
+  return {time, bytes};
+}
+
+std::vector<GoalResult> measure_study() {
+  const ScratchFolder folder;
+  const Study study = load_study(fs::path(TOUCHTRIAL_SOURCE_DIR) / "config/classification.json");
+  SeededEntropy entropy(study.seed);
+  StudyKey key = make_study_key(study, entropy, true);
+  key.pack_folder = folder.path() / "pack";
+  prepare_pack(key, key.pack_folder, {});
+  const Pack pack(key.pack_folder);
+  std::vector<double> times_us;
+  StudyFigures figures;
+  for (int round = 0; round < kRounds; ++round) {
+    figures = simulate_once(key, pack, folder.path() / (std::to_string(round) + ".db"));
+    times_us.push_back(figures.us);
+  }
+  figures.us = median(times_us);
+  return results_of(figures);
+}
+
+}  // namespace
+
+std::vector<Goal> study_goals() {
+  return {[](const Effort&) { return measure_study(); }};
+}
+
+}  // namespace touchtrial::bench
