@@ -25,7 +25,6 @@ namespace fs = std::filesystem;
 constexpr double kStudyTarget_us = 1e6;
 constexpr double kTrialTarget_bytes = 100e3;
 constexpr int kParticipants = 20;
-constexpr int kRounds = 3;
 
 /// A folder of its own, gone afterwards.
 class ScratchFolder {
@@ -87,7 +86,7 @@ std::vector<GoalResult> results_of(const StudyFigures& figures) {
   return {time, bytes};
 }
 
-std::vector<GoalResult> measure_study() {
+std::vector<GoalResult> measure_study(int rounds) {
   const ScratchFolder folder;
   const Study study = load_study(fs::path(TOUCHTRIAL_SOURCE_DIR) / "config/classification.json");
   SeededEntropy entropy(study.seed);
@@ -97,7 +96,7 @@ std::vector<GoalResult> measure_study() {
   const Pack pack(key.pack_folder);
   std::vector<double> times_us;
   StudyFigures figures;
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < rounds; ++round) {
     figures = simulate_once(key, pack, folder.path() / (std::to_string(round) + ".db"));
     times_us.push_back(figures.us);
   }
@@ -108,7 +107,7 @@ std::vector<GoalResult> measure_study() {
 }  // namespace
 
 std::vector<Goal> study_goals() {
-  return {[](const Effort&) { return measure_study(); }};
+  return {[](const Effort& effort) { return measure_study(effort.study_rounds); }};
 }
 
 }  // namespace touchtrial::bench
