@@ -44,7 +44,7 @@ Scope scope_for(const Arguments& arguments, const std::vector<std::string>& targ
   Scope scope;
   scope.targets = targets;
   if (arguments.quick) {
-    scope.sizes_px = {256};
+    scope.sizes_px = {kUsualSize_px};
     scope.more_sizes_px = {64};
     scope.radii = {kUsualRadius};
   }

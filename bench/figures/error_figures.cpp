@@ -9,7 +9,7 @@
 namespace touchtrial::bench {
 namespace {
 
-constexpr FigureSize kSize = {900, 420};
+constexpr FigureSize kSize = {1000, 420};
 /// Drawn for an error of nothing, which has no logarithm.
 constexpr double kLeastError = 1e-16;
 

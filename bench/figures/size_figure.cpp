@@ -7,11 +7,11 @@
 namespace touchtrial::bench {
 namespace {
 
-constexpr FigureSize kSize = {900, 420};
+constexpr FigureSize kSize = {1000, 420};
 
 Curve curve_of(const std::vector<Row>& rows, const std::string& work, const std::string& who,
                Colour colour, Mark mark) {
-  Curve curve{who + (work == "extraction" ? ", texture" : ", texture and force"), colour, mark, {}};
+  Curve curve{who + (work == "extraction" ? ", texture" : ", and force"), colour, mark, {}};
   for (const Row& row : rows) {
     if (row.what.work != work || row.what.who != who || row.what.radius != kUsualRadius) continue;
     const double pixels = static_cast<double>(row.what.size_px) * row.what.size_px;
