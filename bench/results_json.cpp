@@ -47,7 +47,7 @@ Json json_of(const Row& row) {
           {"radius", what.radius > 0 ? Json(what.radius) : Json(nullptr)},
           {"us", figure(row.us)},
           {"error", figure(row.error)},
-          {"error_unit", word(what.error_unit)}};
+          {"error_unit", word(what.accuracy.unit)}};
 }
 
 template <class Entries>

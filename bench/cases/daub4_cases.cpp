@@ -18,14 +18,7 @@ namespace {
 constexpr double kTolerance = 3e-4;
 
 Case daub4_case_of(const std::string& who, const std::string& input, int size_px) {
-  Case one;
-  one.work = "DAUB4";
-  one.who = who;
-  one.input = input;
-  one.size_px = size_px;
-  one.error_unit = "grey levels";
-  one.tolerance = kTolerance;
-  return one;
+  return case_on_image("DAUB4", who, input, size_px, 0, {"grey levels", kTolerance});
 }
 
 /// The largest error of ll, lh, hl and hh.

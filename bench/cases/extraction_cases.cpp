@@ -14,8 +14,6 @@ namespace {
 
 constexpr double kOurTolerance = 4e-5;
 constexpr double kPeerTolerance = 2e-3;
-/// Force is a sum of six differences of textures.
-constexpr double kForceTolerance = 10 * kPeerTolerance;
 /// Larger images have no error of their own: the same rows are computed, and double would need
 /// gigabytes.
 constexpr int kLargestWithError_px = 4096;
@@ -32,15 +30,12 @@ std::string work_of(Extras extras) {
   return "extraction";
 }
 
-Case extraction_case_of(Extras extras, const std::string& who, int size_px, int radius) {
-  Case one;
-  one.work = work_of(extras);
-  one.who = who;
-  one.input = "u8";
-  one.size_px = size_px;
-  one.radius = radius;
-  one.error_unit = "grey levels";
-  return one;
+Case extraction_case_of(Extras extras, const std::string& who, int size_px, int radius,
+                        double tolerance) {
+  // Force is a sum of six differences of textures.
+  const double share = extras == Extras::force ? 10.0 : 1.0;
+  return case_on_image(work_of(extras), who, "u8", size_px, radius,
+                       {"grey levels", share * tolerance});
 }
 
 struct OurExtraction {
@@ -106,8 +101,7 @@ void add_all(int size_px, int radius, Extras extras, Cases& cases) {
 }  // namespace
 
 Case extraction_case(int size_px, int radius, Extras extras) {
-  Case one = extraction_case_of(extras, our_name(), size_px, radius);
-  one.tolerance = extras == Extras::force ? 10 * kOurTolerance : kOurTolerance;
+  Case one = extraction_case_of(extras, our_name(), size_px, radius, kOurTolerance);
   one.make = [=] {
     const auto ours = std::make_shared<OurExtraction>(size_px, radius, extras);
     return Job{
@@ -119,8 +113,7 @@ Case extraction_case(int size_px, int radius, Extras extras) {
 
 Case ring_sums_case(int size_px, int radius, Extras extras, RingSums how) {
   const std::string who = how == RingSums::tuned ? "OpenCV ring sums, tuned" : "OpenCV ring sums";
-  Case one = extraction_case_of(extras, who, size_px, radius);
-  one.tolerance = extras == Extras::force ? kForceTolerance : kPeerTolerance;
+  Case one = extraction_case_of(extras, who, size_px, radius, kPeerTolerance);
   one.make = [=] {
     const auto peer = std::make_shared<PeerExtraction>(size_px, how);
     return Job{[=] { peer->run(radius, extras); },

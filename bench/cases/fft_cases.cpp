@@ -14,14 +14,7 @@ constexpr double kTolerance = 1e-2;
 
 /// There and back is the identity: what is lost is the error.
 Case fft_case_of(const std::string& who, const std::string& input, int size_px) {
-  Case one;
-  one.work = "FFT there and back";
-  one.who = who;
-  one.input = input;
-  one.size_px = size_px;
-  one.error_unit = "grey levels";
-  one.tolerance = kTolerance;
-  return one;
+  return case_on_image("FFT there and back", who, input, size_px, 0, {"grey levels", kTolerance});
 }
 
 template <typename Real>

@@ -48,21 +48,13 @@ struct OrderedImage {
 
 Case gl_case(const std::string& work, const std::string& who, const std::string& input, int size_px,
              int radius) {
-  Case one;
-  one.work = work;
-  one.who = who;
-  one.input = input;
-  one.size_px = size_px;
-  one.radius = radius;
-  one.error_unit = "grey levels";
-  one.tolerance = kPeerTolerance;
-  return one;
+  return case_on_image(work, who, input, size_px, radius, {"grey levels", kPeerTolerance});
 }
 
 Case our_case(const std::string& work, int size_px, int radius, const std::string& target) {
   Case one = gl_case(work, our_name(target), "u8", size_px, radius);
   one.target = target;
-  one.tolerance = kOurTolerance;
+  one.accuracy.tolerance = kOurTolerance;
   return one;
 }
 

@@ -42,13 +42,7 @@ struct Counted {
 
 template <class Measure>
 Case glcm_case_of(const std::string& who, int size_px, Measure measure) {
-  Case one;
-  one.work = "GLCM and statistics";
-  one.who = who;
-  one.input = "u8";
-  one.size_px = size_px;
-  one.error_unit = "relative";
-  one.tolerance = kTolerance;
+  Case one = case_on_image("GLCM and statistics", who, "u8", size_px, 0, {"relative", kTolerance});
   one.make = [=] {
     const auto counted = std::make_shared<Counted>(size_px);
     return Job{[=] { counted->table = measure(counted->image); }, [=] { return counted->error(); }};

@@ -43,13 +43,7 @@ struct TexturePair {
 /// \param measure  of a TexturePair: its similarity
 template <class Measure>
 Case ms_ssim_case_of(const std::string& who, int size_px, Measure measure) {
-  Case one;
-  one.work = "MS-SSIM";
-  one.who = who;
-  one.input = "u8";
-  one.size_px = size_px;
-  one.error_unit = "of MS-SSIM";
-  one.tolerance = kTolerance;
+  Case one = case_on_image("MS-SSIM", who, "u8", size_px, 0, {"of MS-SSIM", kTolerance});
   one.make = [=] {
     const auto pair = std::make_shared<TexturePair>(size_px);
     return Job{[=] { pair->similarity = measure(*pair); }, [=] { return pair->error(); }};

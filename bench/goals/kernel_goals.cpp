@@ -26,7 +26,7 @@ GoalResult without_peer(const std::string& name, const Case& ours) {
   GoalResult result;
   result.goal = name;
   result.error = error_of(ours);
-  result.error_unit = ours.error_unit;
+  result.error_unit = ours.accuracy.unit;
   return result;
 }
 

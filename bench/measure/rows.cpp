@@ -16,11 +16,11 @@ double error_of(const Case& one) {
   if (!job.error) return kNotTaken;
   job.run();
   const double error = job.error();
-  if (!(error <= one.tolerance)) {
+  if (!(error <= one.accuracy.tolerance)) {
     throw Error(
         fmt::format("{}: is off by {:.3g} {}, where {:.3g} is tolerated; it computes "
                     "something else",
-                    name_of(one), error, one.error_unit, one.tolerance));
+                    name_of(one), error, one.accuracy.unit, one.accuracy.tolerance));
   }
   return error;
 }
