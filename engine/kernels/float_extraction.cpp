@@ -28,7 +28,7 @@ void forget_other_methods(Extraction<float>& result) {
   result.converged = true;
 }
 
-BandRows<Plane<float>> sub_bands_of(Extraction<float>& result) {
+std::array<Plane<float>*, 4> sub_bands_of(Extraction<float>& result) {
   return {&result.sub_band_ll, &result.sub_band_lh, &result.sub_band_hl, &result.sub_band_hh};
 }
 
@@ -60,18 +60,27 @@ class OrderRows {
   AlignedRows<float> row_;
 };
 
-void second_pass(const GreyImage& image, int radius, const HalfGradient& gradient,
-                 TextureSink& sink, Extraction<float>& result) {
-  OrderRows orders(gradient);
+/// \param order_of  called with y, for all rows in turn; gives what gl_row takes
+template <typename OrderOf>
+void filter_rows(const GreyImage& image, int radius, TextureSink& sink, OrderOf order_of) {
   ExtendedRows rows(image, radius);
   for (int y = 0; y < image.height(); ++y) {
-    const float* const order = orders.row(y);
-    if (!result.order.empty()) std::copy_n(order, image.width(), result.order.row(y).data());
+    const auto order = order_of(y);
     rows.next_row();
     gl_row(rows, radius, order, sink.row(y), sink.waiting());
     sink.finish_row(y);
   }
   sink.finish();
+}
+
+void second_pass(const GreyImage& image, int radius, const HalfGradient& gradient,
+                 TextureSink& sink, Plane<float>& kept_orders) {
+  OrderRows orders(gradient);
+  filter_rows(image, radius, sink, [&](int y) {
+    const float* const order = orders.row(y);
+    if (!kept_orders.empty()) std::copy_n(order, image.width(), kept_orders.row(y).data());
+    return order;
+  });
 }
 
 }  // namespace
@@ -92,7 +101,7 @@ void extract_adaptive(const GreyImage& image, int radius, const WantedPlanes& wa
     std::fill(result.order.samples().begin(), result.order.samples().end(), 0.0F);
     sink.fill_flat();
   } else {
-    second_pass(image, radius, gradient, sink, result);
+    second_pass(image, radius, gradient, sink, result.order);
   }
 }
 
@@ -105,13 +114,25 @@ void extract_fixed(const GreyImage& image, int radius, double order, const Wante
   std::fill(result.order.samples().begin(), result.order.samples().end(),
             static_cast<float>(order));
   TextureSink sink(image.height(), image.width(), wanted, result);
-  ExtendedRows rows(image, radius);
-  for (int y = 0; y < image.height(); ++y) {
-    rows.next_row();
-    gl_row(rows, radius, order, sink.row(y), sink.waiting());
-    sink.finish_row(y);
-  }
-  sink.finish();
+  filter_rows(image, radius, sink, [=](int) { return order; });
+}
+
+void filter_adaptive(const GreyImage& image, int radius, const Plane<float>& orders,
+                     Plane<float>& texture) {
+  constexpr std::size_t kReadPast = 2 * kVectorBytes / sizeof(float);
+  const auto width = static_cast<std::size_t>(image.width());
+  AlignedRows<float> last(1, width, kReadPast);
+  Extraction<float> result;
+  result.texture = std::move(texture);
+  TextureSink sink(image.height(), image.width(), {}, result);
+  filter_rows(image, radius, sink, [&](int y) -> const float* {
+    const float* const row = orders.row(y).data();
+    const std::size_t end = (static_cast<std::size_t>(y) + 1) * width;
+    if (end + kReadPast <= orders.size()) return row;
+    std::copy_n(row, width, last.row(0));
+    return last.row(0);
+  });
+  texture = std::move(result.texture);
 }
 
 void extract_sub_bands(const GreyImage& image, Extraction<float>& result) {

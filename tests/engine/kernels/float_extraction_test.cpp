@@ -169,20 +169,44 @@ TEST_CASE("the adaptive kernels give the by-products of double on every target")
 }
 
 TEST_CASE(
-    "a large image, written past the caches, has the same texture, "
-    "picture and force") {
-  const GreyImage image = cloth_image({2053, 2051});
-  ExtractionOptions options = adaptive_options(2);
-  options.method = Method::fixed;
+    "an image whose planes are written past the caches has the same texture, "
+    "picture and force on every target") {
+  const GreyImage image = cloth_image({301, 299});
+  const Plane<double> truth = extract_texture<double>(image, adaptive_options(2)).texture;
+  on_every_simd_target([&] {
+    WantedPlanes wanted;
+    wanted.picture = wanted.force = true;
+    const auto result = extract_texture<float>(image, adaptive_options(2), wanted);
+    CHECK(result.texture == extract_texture<float>(image, adaptive_options(2)).texture);
+    CHECK(largest_difference(result.texture, truth) < kPhotographTolerance);
+    CHECK(result.picture == texture_picture(result.texture));
+    const auto force = tangential_force(result.texture, 3);
+    CHECK(result.force.x == force.x);
+    CHECK(result.force.y == force.y);
+  });
+}
+
+TEST_CASE("an image that is worked on in several strips has the CSGV of double") {
+  const GreyImage image = noise_image({5, 2100});
   WantedPlanes wanted;
-  wanted.picture = wanted.force = true;
-  const auto result = extract_texture<float>(image, options, wanted);
-  CHECK(largest_difference(result.texture, extract_texture<double>(image, options).texture) <
-        kPhotographTolerance);
-  CHECK(result.picture == texture_picture(result.texture));
-  const auto force = tangential_force(result.texture, 3);
-  CHECK(result.force.x == force.x);
-  CHECK(result.force.y == force.y);
+  wanted.csgv = true;
+  const auto truth = extract_texture<double>(image, adaptive_options(1), wanted);
+  on_every_simd_target([&] {
+    const auto result = extract_texture<float>(image, adaptive_options(1), wanted);
+    CHECK(largest_relative_difference(result.csgv, truth.csgv) < 5e-7);
+  });
+}
+
+TEST_CASE("filter_adaptive gives the texture that an extraction gives for its orders") {
+  WantedPlanes wanted;
+  wanted.order = true;
+  Plane<float> texture(2, 2);
+  for (const Size size : {Size{1, 1}, Size{3, 5}, Size{64, 63}, Size{270, 281}}) {
+    const GreyImage image = cloth_image(size);
+    const auto expected = extract_texture<float>(image, adaptive_options(3), wanted);
+    filter_adaptive(image, 3, expected.order, texture);
+    CHECK(texture == expected.texture);
+  }
 }
 
 TEST_CASE(
