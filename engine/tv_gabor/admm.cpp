@@ -1,14 +1,21 @@
 #include "engine/tv_gabor/admm.hpp"
 
+#include "engine/tv_gabor/row_kernels.hpp"
+
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 #include <numbers>
 
 namespace touchtrial {
 namespace {
 
-constexpr double kOverRelaxation = 1.8;
+constexpr double kCautiousRelaxation = 1.8;
+constexpr double kEagerRelaxation = 1.5;
+constexpr double kEagerMomentum = 0.3;
+/// Of the image's gradient, at the start.
+constexpr double kFirstShare = 0.5;
 
 /// Spectrum of minus the second difference on a ring of n samples, first `count` coefficients.
 template <typename Real>
@@ -22,17 +29,47 @@ std::vector<Real> ring_laplacian(int n, int count) {
   return spectrum;
 }
 
+/// A row of z, parted into the scaled multiplier b and w.
+template <typename Real>
+struct SplitRow {
+  explicit SplitRow(std::size_t width) : b_x(width), b_y(width), w_x(width), w_y(width) {}
+
+  void split(std::span<const Real> z_x, std::span<const Real> z_y, double penalty) {
+    clip_row(z_x.data(), z_y.data(), z_x.size(), static_cast<Real>(penalty), b_x.data(),
+             b_y.data());
+    const auto unit = static_cast<Real>(1.0 / penalty);
+    for (std::size_t x = 0; x < z_x.size(); ++x) {
+      b_x[x] *= unit;
+      b_y[x] *= unit;
+      w_x[x] = z_x[x] - b_x[x];
+      w_y[x] = z_y[x] - b_y[x];
+    }
+  }
+
+  std::vector<Real> b_x, b_y, w_x, w_y;
+};
+
+/// Sums over the plane of squared norms.
+struct Sums {
+  double w = 0.0, b = 0.0, change_of_w = 0.0, change_of_b = 0.0;
+
+  template <typename Real>
+  void add(const SplitRow<Real>& before, const SplitRow<Real>& after) {
+    const auto squared = [](double x, double y) { return x * x + y * y; };
+    for (std::size_t i = 0; i < after.w_x.size(); ++i) {
+      w += squared(after.w_x[i], after.w_y[i]);
+      b += squared(after.b_x[i], after.b_y[i]);
+      change_of_w += squared(after.w_x[i] - before.w_x[i], after.w_y[i] - before.w_y[i]);
+      change_of_b += squared(after.b_x[i] - before.b_x[i], after.b_y[i] - before.b_y[i]);
+    }
+  }
+};
+
 double ratio_of_norms(double squared, double reference_squared) {
   return std::sqrt(squared / std::max(reference_squared, std::numeric_limits<double>::min()));
 }
 
 }  // namespace
-
-/// Sums over the plane of squared norms: of grad f, grad u, w, b, grad u - w, the change of w.
-template <typename Real>
-struct TvGaborAdmm<Real>::Sums {
-  double image = 0.0, cartoon = 0.0, w = 0.0, multiplier = 0.0, split = 0.0, change = 0.0;
-};
 
 template <typename Real>
 TvGaborAdmm<Real>::TvGaborAdmm(const TvGaborProblem<Real>& problem, RealFft<Real>& fft,
@@ -42,114 +79,143 @@ TvGaborAdmm<Real>::TvGaborAdmm(const TvGaborProblem<Real>& problem, RealFft<Real
       penalty_(penalty),
       laplacian_y_(ring_laplacian<Real>(problem.image.height(), problem.spectrum.height())),
       laplacian_x_(ring_laplacian<Real>(problem.image.width(), problem.spectrum.width())),
-      multiplier_(problem.image.height(), problem.image.width()),
-      target_(problem.image.height(), problem.image.width()),
-      image_(1, problem.image.width()),
-      texture_(1, problem.image.width()),
-      w_(1, problem.image.width()) {
+      z_(problem.image.height(), problem.image.width()),
+      former_(problem.image.height(), problem.image.width()),
+      target_x_(static_cast<std::size_t>(problem.image.width())),
+      target_y_(target_x_.size()),
+      above_(target_x_.size()),
+      first_(target_x_.size()) {
   for (int y = 0; y < problem.image.height(); ++y) {
-    gradient_of_row<Real>(problem.image.row(y), problem.image.row(row_below(y)), target_.x.row(y),
-                          target_.y.row(y));
+    const auto x_row = z_.x.row(y), y_row = z_.y.row(y);
+    gradient_of_row<Real>(problem.image.row(y), problem.image.row(row_below(y)), x_row, y_row);
+    const auto halve = [this](Real& sample) {
+      image_squared_ += static_cast<double>(sample) * sample;
+      sample *= static_cast<Real>(kFirstShare);
+    };
+    std::for_each(x_row.begin(), x_row.end(), halve);
+    std::for_each(y_row.begin(), y_row.end(), halve);
   }
 }
 
+/// Leaves -div target in the transform's plane, row by row, behind the row that is worked on; the
+/// last row is above the first.
 template <typename Real>
-void TvGaborAdmm<Real>::step() {
-  update_texture();
-  for (int y = 0; y < problem_.image.height(); ++y) update_row(y);
+template <typename TargetRow>
+void TvGaborAdmm<Real>::load_targets(const TargetRow& target_row) {
+  std::fill(above_.begin(), above_.end(), Real{0});
+  for (int y = 0; y < problem_.image.height(); ++y) {
+    target_row(y);
+    negative_divergence_of_row<Real>(target_x_, target_y_, above_, plane_row(y));
+    std::swap(above_, target_y_);
+  }
+  const auto row = plane_row(0);
+  for (std::size_t x = 0; x < row.size(); ++x) row[x] += above_[x];
+}
+
+template <typename Real>
+void TvGaborAdmm<Real>::start_again() {
+  const auto limit = static_cast<Real>(1.0 / penalty_);
+  load_targets([&](int y) {
+    const AdmmRow<Real> row{.image = problem_.image.row(y).data(),
+                            .image_below = problem_.image.row(row_below(y)).data(),
+                            .texture = nullptr,
+                            .texture_below = nullptr,
+                            .z_x = z_.x.row(y).data(),
+                            .z_y = z_.y.row(y).data(),
+                            .former_x = nullptr,
+                            .former_y = nullptr,
+                            .target_x = target_x_.data(),
+                            .target_y = target_y_.data()};
+    admm_target_row(row, target_x_.size(), limit);
+  });
+  has_former_ = false;
+}
+
+template <typename Real>
+void TvGaborAdmm<Real>::step(AdmmPace pace) {
+  const auto row_alone = [](int, const auto& map_row) { map_row(); };
+  if (pace == AdmmPace::eager) {
+    map(kEagerRelaxation, has_former_ ? kEagerMomentum : 0.0, row_alone);
+  } else {
+    map(kCautiousRelaxation, 0.0, row_alone);
+  }
 }
 
 template <typename Real>
 AdmmResiduals TvGaborAdmm<Real>::measured_step() {
-  update_texture();
+  SplitRow<Real> before(target_x_.size()), after(target_x_.size());
   Sums sums;
-  for (int y = 0; y < problem_.image.height(); ++y) {
-    update_row(y);
-    add_residuals(y, sums);
-  }
-  return {ratio_of_norms(sums.split, std::max({sums.image, sums.cartoon, sums.w})),
-          ratio_of_norms(sums.change, sums.multiplier)};
+  map(kCautiousRelaxation, 0.0, [&](int y, const auto& map_row) {
+    before.split(z_.x.row(y), z_.y.row(y), penalty_);
+    map_row();
+    after.split(z_.x.row(y), z_.y.row(y), penalty_);
+    sums.add(before, after);
+  });
+  return {ratio_of_norms(sums.change_of_b, std::max(sums.w, image_squared_)),
+          ratio_of_norms(sums.change_of_w, sums.b)};
+}
+
+/// One step. \param around  called as around(y, map_row) for every row, with what maps it
+template <typename Real>
+template <typename Around>
+void TvGaborAdmm<Real>::map(double relaxation, double momentum, const Around& around) {
+  filter();
+  const AdmmNumbers<Real> numbers{.relaxation = static_cast<Real>(relaxation),
+                                  .limit = static_cast<Real>(1.0 / penalty_),
+                                  .momentum = static_cast<Real>(momentum)};
+  const auto first = plane_row(0);
+  std::copy(first.begin(), first.end(), first_.begin());
+  load_targets([&](int y) {
+    const int below = row_below(y);
+    const AdmmRow<Real> row{.image = problem_.image.row(y).data(),
+                            .image_below = problem_.image.row(below).data(),
+                            .texture = plane_row(y).data(),
+                            .texture_below = below == 0 ? first_.data() : plane_row(below).data(),
+                            .z_x = z_.x.row(y).data(),
+                            .z_y = z_.y.row(y).data(),
+                            .former_x = former_.x.row(y).data(),
+                            .former_y = former_.y.row(y).data(),
+                            .target_x = target_x_.data(),
+                            .target_y = target_y_.data()};
+    around(y, [&] { admm_row(row, target_x_.size(), numbers); });
+  });
+  has_former_ = true;
 }
 
 /// The u-step in terms of v = f - u: diagonal in the Fourier basis, and without K = M^-1, so that
 /// frequencies which M removes are exact. Leaves v in the transform's plane.
 template <typename Real>
-void TvGaborAdmm<Real>::update_texture() {
-  negative_divergence(target_, fft_.plane());
+void TvGaborAdmm<Real>::filter() {
   fft_.forward();
   const auto lambda = static_cast<Real>(problem_.lambda);
   const auto penalty = static_cast<Real>(penalty_);
   const auto scale = Real{1} / static_cast<Real>(problem_.image.size());
+  const auto spectrum = fft_.spectrum();
   std::size_t i = 0;
   for (const Real laplacian_y : laplacian_y_) {
     for (const Real laplacian_x : laplacian_x_) {
       const Real weight = penalty * problem_.spectrum.samples()[i];
       const Real divisor = lambda + weight * (laplacian_y + laplacian_x);
-      fft_.spectrum()[i] *= scale * weight / divisor;
+      spectrum[i] *= scale * weight / divisor;
       ++i;
     }
   }
   fft_.inverse();
 }
 
-/// The w-step (shrinkage by 1 / penalty) and the multiplier's, for one row.
 template <typename Real>
-void TvGaborAdmm<Real>::update_row(int y) {
-  const int below = row_below(y);
-  const auto f_x = image_.x.row(0), f_y = image_.y.row(0);
-  const auto v_x = texture_.x.row(0), v_y = texture_.y.row(0);
-  gradient_of_row<Real>(problem_.image.row(y), problem_.image.row(below), f_x, f_y);
-  gradient_of_row<Real>(texture_row(y), texture_row(below), v_x, v_y);
-  const auto relaxation = static_cast<Real>(kOverRelaxation);
-  const auto threshold = static_cast<Real>(1.0 / penalty_);
-  const auto b_x = multiplier_.x.row(y), b_y = multiplier_.y.row(y);
-  const auto target_x = target_.x.row(y), target_y = target_.y.row(y);
-  const auto w_x = w_.x.row(0), w_y = w_.y.row(0);
-  for (std::size_t x = 0; x < f_x.size(); ++x) {
-    w_x[x] = f_x[x] - target_x[x] + b_x[x];
-    w_y[x] = f_y[x] - target_y[x] + b_y[x];
-    const Real z_x = relaxation * (f_x[x] - v_x[x]) + (1 - relaxation) * w_x[x] + b_x[x];
-    const Real z_y = relaxation * (f_y[x] - v_y[x]) + (1 - relaxation) * w_y[x] + b_y[x];
-    const Real norm = std::sqrt(z_x * z_x + z_y * z_y);
-    const Real share = threshold / std::max(norm, threshold);
-    b_x[x] = share * z_x;
-    b_y[x] = share * z_y;
-    target_x[x] = f_x[x] - (z_x - 2 * b_x[x]);  // the new w is z - b
-    target_y[x] = f_y[x] - (z_y - 2 * b_y[x]);
-  }
-}
-
-template <typename Real>
-void TvGaborAdmm<Real>::add_residuals(int y, Sums& sums) const {
-  const auto squared = [](double a, double b) { return a * a + b * b; };
-  const auto b_x = multiplier_.x.row(y), b_y = multiplier_.y.row(y);
-  for (std::size_t x = 0; x < b_x.size(); ++x) {
-    const double w_x = image_.x.row(0)[x] - target_.x.row(y)[x] + b_x[x];
-    const double w_y = image_.y.row(0)[x] - target_.y.row(y)[x] + b_y[x];
-    const double u_x = image_.x.row(0)[x] - texture_.x.row(0)[x];
-    const double u_y = image_.y.row(0)[x] - texture_.y.row(0)[x];
-    sums.image += squared(image_.x.row(0)[x], image_.y.row(0)[x]);
-    sums.cartoon += squared(u_x, u_y);
-    sums.w += squared(w_x, w_y);
-    sums.multiplier += squared(b_x[x], b_y[x]);
-    sums.split += squared(u_x - w_x, u_y - w_y);
-    sums.change += squared(w_x - w_.x.row(0)[x], w_y - w_.y.row(0)[x]);
-  }
-}
-
-template <typename Real>
-void TvGaborAdmm<Real>::scale_penalty(double factor) {
-  penalty_ *= factor;
-  const auto kept = static_cast<Real>(1.0 / factor);
-  const auto rescale = [kept](Plane<Real>& multiplier, Plane<Real>& target) {
-    for (std::size_t i = 0; i < multiplier.size(); ++i) {
-      const Real former = multiplier.samples()[i];
-      multiplier.samples()[i] = kept * former;
-      target.samples()[i] += multiplier.samples()[i] - former;
+void TvGaborAdmm<Real>::set_penalty(double penalty) {
+  const auto former = static_cast<Real>(penalty_);
+  const auto change = static_cast<Real>(1.0 / penalty - 1.0 / penalty_);
+  penalty_ = penalty;
+  for (int y = 0; y < z_.x.height(); ++y) {
+    const auto z_x = z_.x.row(y), z_y = z_.y.row(y);
+    clip_row(z_x.data(), z_y.data(), z_x.size(), former, target_x_.data(), target_y_.data());
+    for (std::size_t x = 0; x < z_x.size(); ++x) {
+      z_x[x] += change * target_x_[x];
+      z_y[x] += change * target_y_[x];
     }
-  };
-  rescale(multiplier_.x, target_.x);
-  rescale(multiplier_.y, target_.y);
+  }
 }
 
 template <typename Real>
@@ -158,7 +224,7 @@ int TvGaborAdmm<Real>::row_below(int y) const noexcept {
 }
 
 template <typename Real>
-std::span<const Real> TvGaborAdmm<Real>::texture_row(int y) const {
+std::span<Real> TvGaborAdmm<Real>::plane_row(int y) const {
   const auto width = static_cast<std::size_t>(problem_.image.width());
   return fft_.plane().subspan(static_cast<std::size_t>(y) * width, width);
 }

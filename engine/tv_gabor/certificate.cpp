@@ -1,20 +1,61 @@
 #include "engine/tv_gabor/certificate.hpp"
 
+#include "engine/tv_gabor/row_kernels.hpp"
+
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
+#include <span>
+#include <utility>
 #include <vector>
 
 namespace touchtrial {
 namespace {
 
+/// Rows of q = -p, made when they are wanted: the field itself keeps what the solver needs.
 template <typename Real>
-Plane<Real> texture_of(const TvGaborProblem<Real>& problem, const VectorField<Real>& multiplier,
+class DualRows {
+ public:
+  DualRows(const VectorField<Real>& field, double scale)
+      : field_(field),
+        scale_(static_cast<Real>(scale)),
+        x_(static_cast<std::size_t>(field.x.width())),
+        y_(x_.size()) {}
+
+  void go_to(int y) {
+    clip_row(field_.x.row(y).data(), field_.y.row(y).data(), x_.size(), scale_, x_.data(),
+             y_.data());
+  }
+  [[nodiscard]] std::vector<Real>& x() noexcept { return x_; }
+  [[nodiscard]] std::vector<Real>& y() noexcept { return y_; }
+
+ private:
+  const VectorField<Real>& field_;
+  Real scale_;
+  std::vector<Real> x_, y_;
+};
+
+template <typename Real>
+void load_divergence(const VectorField<Real>& field, double scale, std::span<Real> plane) {
+  DualRows<Real> q(field, scale);
+  const int height = field.x.height();
+  const auto width = static_cast<std::size_t>(field.x.width());
+  q.go_to(height - 1);
+  std::vector<Real> above = q.y();
+  for (int y = 0; y < height; ++y) {
+    q.go_to(y);
+    negative_divergence_of_row<Real>(q.x(), q.y(), above,
+                                     plane.subspan(static_cast<std::size_t>(y) * width, width));
+    std::swap(above, q.y());
+  }
+}
+
+template <typename Real>
+Plane<Real> texture_of(const TvGaborProblem<Real>& problem, const VectorField<Real>& field,
                        double scale, RealFft<Real>& fft) {
-  negative_divergence(multiplier, fft.plane());
+  load_divergence(field, scale, fft.plane());
   fft.forward();
   const auto factor =
-      static_cast<Real>(scale / (problem.lambda * static_cast<double>(problem.image.size())));
+      static_cast<Real>(1.0 / (problem.lambda * static_cast<double>(problem.image.size())));
   const auto spectrum = fft.spectrum();
   for (std::size_t i = 0; i < spectrum.size(); ++i) {
     spectrum[i] *= factor * problem.spectrum.samples()[i];
@@ -30,23 +71,27 @@ Plane<Real> texture_of(const TvGaborProblem<Real>& problem, const VectorField<Re
 /// pixels and the gap keeps its digits.
 template <typename Real>
 double relative_gap(const TvGaborProblem<Real>& problem, const Plane<Real>& texture,
-                    const VectorField<Real>& multiplier, double scale) {
+                    const VectorField<Real>& field, double scale) {
   const std::size_t width = static_cast<std::size_t>(texture.width());
-  std::vector<Real> f_x(width), f_y(width), v_x(width), v_y(width);
+  std::vector<Real> u_x(width), u_y(width), v_x(width), v_y(width), steepness(width);
+  DualRows<Real> q(field, scale);
   double primal = 0.0;
   double difference = 0.0;
   for (int y = 0; y < texture.height(); ++y) {
     const int below = y + 1 == texture.height() ? 0 : y + 1;
-    gradient_of_row<Real>(problem.image.row(y), problem.image.row(below), f_x, f_y);
+    gradient_of_row<Real>(problem.image.row(y), problem.image.row(below), u_x, u_y);
     gradient_of_row<Real>(texture.row(y), texture.row(below), v_x, v_y);
     for (std::size_t x = 0; x < width; ++x) {
-      const double q_x = scale * multiplier.x.row(y)[x];
-      const double q_y = scale * multiplier.y.row(y)[x];
-      const double u_x = f_x[x] - v_x[x];
-      const double u_y = f_y[x] - v_y[x];
-      const double steepness = std::sqrt(u_x * u_x + u_y * u_y);
-      primal += steepness + 0.5 * (q_x * v_x[x] + q_y * v_y[x]);
-      difference += std::max(0.0, steepness - (q_x * u_x + q_y * u_y));
+      u_x[x] -= v_x[x];
+      u_y[x] -= v_y[x];
+    }
+    norm_row(u_x.data(), u_y.data(), width, steepness.data());
+    q.go_to(y);
+    for (std::size_t x = 0; x < width; ++x) {
+      const double q_x = q.x()[x];
+      const double q_y = q.y()[x];
+      primal += steepness[x] + 0.5 * (q_x * v_x[x] + q_y * v_y[x]);
+      difference += std::max(0.0, steepness[x] - (q_x * u_x[x] + q_y * u_y[x]));
     }
   }
   return primal > 0.0 ? difference / primal : 0.0;
@@ -56,11 +101,10 @@ double relative_gap(const TvGaborProblem<Real>& problem, const Plane<Real>& text
 
 template <typename Real>
 TvGaborCertificate<Real> certify(const TvGaborProblem<Real>& problem,
-                                 const VectorField<Real>& multiplier, double scale,
-                                 RealFft<Real>& fft) {
+                                 const VectorField<Real>& field, double scale, RealFft<Real>& fft) {
   TvGaborCertificate<Real> certificate;
-  certificate.texture = texture_of(problem, multiplier, scale, fft);
-  certificate.gap = relative_gap(problem, certificate.texture, multiplier, scale);
+  certificate.texture = texture_of(problem, field, scale, fft);
+  certificate.gap = relative_gap(problem, certificate.texture, field, scale);
   return certificate;
 }
 

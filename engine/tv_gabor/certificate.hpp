@@ -15,11 +15,11 @@ struct TvGaborCertificate {
   double gap = 0.0;     ///< (primal - dual) / primal, >= 0; 0 where the primal value is 0
 };
 
-/// \param multiplier,scale  the dual point: p = -scale * multiplier, with |p| <= 1 at every pixel
+/// \param field,scale  the dual point: p = -scale * field, where longer than 1 shortened to that
 /// \param fft  of the problem's size; what its buffers hold is lost
 template <typename Real>
 [[nodiscard]] TvGaborCertificate<Real> certify(const TvGaborProblem<Real>& problem,
-                                               const VectorField<Real>& multiplier, double scale,
+                                               const VectorField<Real>& field, double scale,
                                                RealFft<Real>& fft);
 
 }  // namespace touchtrial

@@ -1,4 +1,4 @@
-/// \file The course of a TV-Gabor decomposition: steps, checks, a penalty that follows the image.
+/// \file The course of a TV-Gabor decomposition: steps, checks, a penalty that follows a schedule.
 /// Source: docs/method.md, "TV-Gabor".
 #pragma once
 
@@ -7,6 +7,7 @@
 #include "engine/fourier/real_fft.hpp"
 #include "engine/tv_gabor/admm.hpp"
 #include "engine/tv_gabor/certificate.hpp"
+#include "engine/tv_gabor/penalty_schedule.hpp"
 #include "engine/tv_gabor/problem.hpp"
 
 #include <vector>
@@ -25,36 +26,45 @@ enum class Patience { limited, unlimited };
 template <typename Real>
 class TvGaborSolver {
  public:
-  /// \param image  not flat, not empty. Keeps a reference to the options.
+  /// \param image  not flat, not empty
   TvGaborSolver(const GreyImage& image, const TvGaborOptions& options);
   /// Goes on where a solver of the same image and options, of another precision, stopped.
   template <typename Other>
-  TvGaborSolver(const GreyImage& image, const TvGaborOptions& options,
-                const TvGaborSolver<Other>& former);
+  TvGaborSolver(const GreyImage& image, const TvGaborOptions& options, const VectorField<Other>& z,
+                const PenaltySchedule& schedule, int steps)
+      : TvGaborSolver(image, options) {
+    schedule_ = schedule;
+    admm_.resume(z, schedule.penalty());
+    steps_ = steps;
+    admm_.start_again();
+  }
 
   TvGaborSolver(const TvGaborSolver&) = delete;
   TvGaborSolver& operator=(const TvGaborSolver&) = delete;
 
   /// Takes steps until one of the reasons to stop holds.
   SolverStop run(Patience patience);
+  /// Takes that many steps, whatever the gap is; the certificate is then that of the last one.
+  void advance(int count);
 
-  /// Texture on the torus and gap at the last check; empty before a run.
+  /// Texture on the torus and gap at the last check; empty before the first.
   [[nodiscard]] const TvGaborCertificate<Real>& certificate() const noexcept {
     return certificate_;
   }
   /// Steps taken, those of the former solver among them.
   [[nodiscard]] int steps() const noexcept { return steps_; }
-  [[nodiscard]] const TvGaborAdmm<Real>& admm() const noexcept { return admm_; }
+  [[nodiscard]] const VectorField<Real>& z() const noexcept { return admm_.z(); }
+  [[nodiscard]] const PenaltySchedule& schedule() const noexcept { return schedule_; }
 
  private:
-  void check();
-  void balance(const AdmmResiduals& residuals);
+  void step_to_check(int last);
   [[nodiscard]] bool is_stalled() const;
 
-  const TvGaborOptions& options_;
+  double wanted_gap_;
+  int max_steps_;
   TvGaborProblem<Real> problem_;
   RealFft<Real> fft_;
-  double first_penalty_;
+  PenaltySchedule schedule_;
   TvGaborAdmm<Real> admm_;
   TvGaborCertificate<Real> certificate_;
   std::vector<double> gaps_;  // at every check of this solver

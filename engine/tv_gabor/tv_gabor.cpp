@@ -5,6 +5,7 @@
 #include "engine/tv_gabor/spectral_peak.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
@@ -32,14 +33,19 @@ TvGaborResult<Real> result_of(const TvGaborSolver<Precision>& solver, SolverStop
 /// smooth parts, whose gradients are small.
 template <typename Real>
 TvGaborResult<Real> solved(const GreyImage& image, const TvGaborOptions& options) {
-  TvGaborSolver<Real> solver(image, options);
   if constexpr (std::is_same_v<Real, double>) {
-    return result_of<Real>(solver, solver.run(Patience::unlimited), image);
+    TvGaborSolver<double> solver(image, options);
+    return result_of<double>(solver, solver.run(Patience::unlimited), image);
   } else {
-    const SolverStop stop = solver.run(Patience::limited);
-    if (stop != SolverStop::stalled) return result_of<Real>(solver, stop, image);
-    TvGaborSolver<double> finisher(image, options, solver);
-    return result_of<Real>(finisher, finisher.run(Patience::unlimited), image);
+    auto solver = std::make_optional<TvGaborSolver<float>>(image, options);
+    const SolverStop stop = solver->run(Patience::limited);
+    if (stop != SolverStop::stalled) return result_of<float>(*solver, stop, image);
+    const VectorField<float> z = solver->z();
+    const PenaltySchedule schedule = solver->schedule();
+    const int steps = solver->steps();
+    solver.reset();  // before double's larger planes are there
+    TvGaborSolver<double> finisher(image, options, z, schedule, steps);
+    return result_of<float>(finisher, finisher.run(Patience::unlimited), image);
   }
 }
 

@@ -28,20 +28,25 @@ void gradient_of_row(std::span<const Real> row, std::span<const Real> below,
   for (std::size_t x = 0; x <= last; ++x) along_y[x] = below[x] - row[x];
 }
 
-/// out = -div field, the adjoint of the gradient. \param out  height x width samples, row-major
+/// out = -div field, one row: the adjoint of the gradient. \param above  along_y of the row above
+template <typename Real>
+void negative_divergence_of_row(std::span<const Real> along_x, std::span<const Real> along_y,
+                                std::span<const Real> above, std::span<Real> out) noexcept {
+  out[0] = (along_x.back() - along_x[0]) + (above[0] - along_y[0]);
+  for (std::size_t x = 1; x < out.size(); ++x) {
+    out[x] = (along_x[x - 1] - along_x[x]) + (above[x] - along_y[x]);
+  }
+}
+
+/// The same for a whole field. \param out  height x width samples, row-major
 template <typename Real>
 void negative_divergence(const VectorField<Real>& field, std::span<Real> out) noexcept {
   const int height = field.x.height();
   const std::size_t width = static_cast<std::size_t>(field.x.width());
   for (int y = 0; y < height; ++y) {
-    const auto along_x = field.x.row(y);
-    const auto along_y = field.y.row(y);
-    const auto above = field.y.row(y == 0 ? height - 1 : y - 1);
-    const auto to = out.subspan(static_cast<std::size_t>(y) * width, width);
-    to[0] = (along_x[width - 1] - along_x[0]) + (above[0] - along_y[0]);
-    for (std::size_t x = 1; x < width; ++x) {
-      to[x] = (along_x[x - 1] - along_x[x]) + (above[x] - along_y[x]);
-    }
+    negative_divergence_of_row<Real>(field.x.row(y), field.y.row(y),
+                                     field.y.row(y == 0 ? height - 1 : y - 1),
+                                     out.subspan(static_cast<std::size_t>(y) * width, width));
   }
 }
 

@@ -1,0 +1,227 @@
+#include "engine/tv_gabor/row_kernels.hpp"
+
+// Compiled once for every target: this file includes itself.
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "engine/tv_gabor/row_kernels.cpp"
+
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace touchtrial {
+namespace HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+template <typename Values>
+struct Pair {
+  Values x;
+  Values y;
+};
+
+template <class D>
+using PairOf = Pair<hn::Vec<D>>;
+
+template <class D>
+HWY_INLINE PairOf<D> load(D d, const hn::TFromD<D>* x, const hn::TFromD<D>* y) {
+  return {hn::LoadU(d, x), hn::LoadU(d, y)};
+}
+
+template <class D>
+HWY_INLINE void store(D d, const PairOf<D>& pair, hn::TFromD<D>* x, hn::TFromD<D>* y) {
+  hn::StoreU(pair.x, d, x);
+  hn::StoreU(pair.y, d, y);
+}
+
+/// The gradient at `here`, whose right neighbours start at `right`.
+template <class D>
+HWY_INLINE PairOf<D> gradient(D d, const hn::TFromD<D>* here, const hn::TFromD<D>* right,
+                              const hn::TFromD<D>* below) {
+  const auto centre = hn::LoadU(d, here);
+  return {hn::Sub(hn::LoadU(d, right), centre), hn::Sub(hn::LoadU(d, below), centre)};
+}
+
+template <class V>
+HWY_INLINE V norm(const Pair<V>& pair) {
+  return hn::Sqrt(hn::MulAdd(pair.x, pair.x, hn::Mul(pair.y, pair.y)));
+}
+
+template <class V>
+HWY_INLINE Pair<V> clipped(const Pair<V>& pair, V limit) {
+  const V share = hn::Div(limit, hn::Max(norm(pair), limit));
+  return {hn::Mul(share, pair.x), hn::Mul(share, pair.y)};
+}
+
+template <class V>
+HWY_INLINE V target(V image, V z, V b) {
+  return hn::Add(hn::Sub(image, z), hn::Add(b, b));
+}
+
+/// relaxation * grad u + (1 - relaxation) * w + b, with w = z - b
+template <class V>
+HWY_INLINE V mapped(V u, V z, V b, V relaxation) {
+  const V w = hn::Sub(z, b);
+  return hn::Add(hn::MulAdd(relaxation, hn::Sub(u, w), w), b);
+}
+
+/// Samples i .. of a row, as many as d has lanes; `right` is the distance to the right neighbour.
+template <class D, typename Real>
+HWY_INLINE void map_samples(D d, const AdmmRow<Real>& row, const AdmmNumbers<Real>& numbers,
+                            std::size_t i, std::ptrdiff_t right) {
+  const auto relaxation = hn::Set(d, numbers.relaxation);
+  const auto momentum = hn::Set(d, numbers.momentum);
+  const auto limit = hn::Set(d, numbers.limit);
+  const auto f = gradient(d, row.image + i, row.image + i + right, row.image_below + i);
+  const auto v = gradient(d, row.texture + i, row.texture + i + right, row.texture_below + i);
+  const auto z = load(d, row.z_x + i, row.z_y + i);
+  const auto b = clipped(z, limit);
+  const auto former = load(d, row.former_x + i, row.former_y + i);
+  const PairOf<D> next = {mapped(hn::Sub(f.x, v.x), z.x, b.x, relaxation),
+                          mapped(hn::Sub(f.y, v.y), z.y, b.y, relaxation)};
+  store(d, next, row.former_x + i, row.former_y + i);
+  const PairOf<D> ahead = {hn::MulAdd(momentum, hn::Sub(next.x, former.x), next.x),
+                           hn::MulAdd(momentum, hn::Sub(next.y, former.y), next.y)};
+  store(d, ahead, row.z_x + i, row.z_y + i);
+  const auto next_b = clipped(ahead, limit);
+  store(d, PairOf<D>{target(f.x, ahead.x, next_b.x), target(f.y, ahead.y, next_b.y)},
+        row.target_x + i, row.target_y + i);
+}
+
+template <class D, typename Real>
+HWY_INLINE void target_samples(D d, const AdmmRow<Real>& row, Real bound, std::size_t i,
+                               std::ptrdiff_t right) {
+  const auto f = gradient(d, row.image + i, row.image + i + right, row.image_below + i);
+  const auto z = load(d, row.z_x + i, row.z_y + i);
+  const auto b = clipped(z, hn::Set(d, bound));
+  store(d, PairOf<D>{target(f.x, z.x, b.x), target(f.y, z.y, b.y)}, row.target_x + i,
+        row.target_y + i);
+}
+
+/// Calls visit(descriptor, index, distance to the right neighbour) for whole vectors, then for
+/// single samples; the last one's neighbour is the first.
+template <typename Real, class Visit>
+HWY_INLINE void over_row(std::size_t width, const Visit& visit) {
+  const hn::ScalableTag<Real> d;
+  const hn::CappedTag<Real, 1> one;
+  std::size_t i = 0;
+  for (; i + hn::Lanes(d) < width; i += hn::Lanes(d)) visit(d, i, 1);
+  for (; i + 1 < width; ++i) visit(one, i, 1);
+  visit(one, width - 1, -static_cast<std::ptrdiff_t>(width - 1));
+}
+
+template <typename Real>
+void map_row(const AdmmRow<Real>& row, std::size_t width, const AdmmNumbers<Real>& numbers) {
+  over_row<Real>(width, [&](auto d, std::size_t i, std::ptrdiff_t right)
+                            HWY_ATTR { map_samples(d, row, numbers, i, right); });
+}
+
+template <typename Real>
+void targets_of_row(const AdmmRow<Real>& row, std::size_t width, Real limit) {
+  over_row<Real>(width, [&](auto d, std::size_t i, std::ptrdiff_t right)
+                            HWY_ATTR { target_samples(d, row, limit, i, right); });
+}
+
+template <typename Real>
+void clipped_row(const Real* x, const Real* y, std::size_t width, Real scale, Real* out_x,
+                 Real* out_y) {
+  over_row<Real>(width, [&](auto d, std::size_t i, std::ptrdiff_t) HWY_ATTR {
+    const auto factor = hn::Set(d, scale);
+    const auto from = load(d, x + i, y + i);
+    const PairOf<decltype(d)> scaled = {hn::Mul(factor, from.x), hn::Mul(factor, from.y)};
+    store(d, clipped(scaled, hn::Set(d, Real{1})), out_x + i, out_y + i);
+  });
+}
+
+template <typename Real>
+void norms_of_row(const Real* x, const Real* y, std::size_t width, Real* out) {
+  over_row<Real>(width, [&](auto d, std::size_t i, std::ptrdiff_t)
+                            HWY_ATTR { hn::StoreU(norm(load(d, x + i, y + i)), d, out + i); });
+}
+
+// Dispatch tables hold functions, not templates.
+void map_row_f32(const AdmmRow<float>& row, std::size_t width, const AdmmNumbers<float>& numbers) {
+  map_row(row, width, numbers);
+}
+void map_row_f64(const AdmmRow<double>& row, std::size_t width,
+                 const AdmmNumbers<double>& numbers) {
+  map_row(row, width, numbers);
+}
+void targets_f32(const AdmmRow<float>& row, std::size_t width, float limit) {
+  targets_of_row(row, width, limit);
+}
+void targets_f64(const AdmmRow<double>& row, std::size_t width, double limit) {
+  targets_of_row(row, width, limit);
+}
+void clip_f32(const float* x, const float* y, std::size_t width, float scale, float* out_x,
+              float* out_y) {
+  clipped_row(x, y, width, scale, out_x, out_y);
+}
+void clip_f64(const double* x, const double* y, std::size_t width, double scale, double* out_x,
+              double* out_y) {
+  clipped_row(x, y, width, scale, out_x, out_y);
+}
+void norms_f32(const float* x, const float* y, std::size_t width, float* out) {
+  norms_of_row(x, y, width, out);
+}
+void norms_f64(const double* x, const double* y, std::size_t width, double* out) {
+  norms_of_row(x, y, width, out);
+}
+
+}  // namespace
+}  // namespace HWY_NAMESPACE
+}  // namespace touchtrial
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace touchtrial {
+namespace {
+
+HWY_EXPORT(map_row_f32);
+HWY_EXPORT(map_row_f64);
+HWY_EXPORT(targets_f32);
+HWY_EXPORT(targets_f64);
+HWY_EXPORT(clip_f32);
+HWY_EXPORT(clip_f64);
+HWY_EXPORT(norms_f32);
+HWY_EXPORT(norms_f64);
+
+}  // namespace
+
+template <>
+void admm_row(const AdmmRow<float>& row, std::size_t width, const AdmmNumbers<float>& numbers) {
+  HWY_DYNAMIC_DISPATCH(map_row_f32)(row, width, numbers);
+}
+template <>
+void admm_row(const AdmmRow<double>& row, std::size_t width, const AdmmNumbers<double>& numbers) {
+  HWY_DYNAMIC_DISPATCH(map_row_f64)(row, width, numbers);
+}
+template <>
+void admm_target_row(const AdmmRow<float>& row, std::size_t width, float limit) {
+  HWY_DYNAMIC_DISPATCH(targets_f32)(row, width, limit);
+}
+template <>
+void admm_target_row(const AdmmRow<double>& row, std::size_t width, double limit) {
+  HWY_DYNAMIC_DISPATCH(targets_f64)(row, width, limit);
+}
+template <>
+void clip_row(const float* x, const float* y, std::size_t width, float scale, float* out_x,
+              float* out_y) {
+  HWY_DYNAMIC_DISPATCH(clip_f32)(x, y, width, scale, out_x, out_y);
+}
+template <>
+void clip_row(const double* x, const double* y, std::size_t width, double scale, double* out_x,
+              double* out_y) {
+  HWY_DYNAMIC_DISPATCH(clip_f64)(x, y, width, scale, out_x, out_y);
+}
+template <>
+void norm_row(const float* x, const float* y, std::size_t width, float* out) {
+  HWY_DYNAMIC_DISPATCH(norms_f32)(x, y, width, out);
+}
+template <>
+void norm_row(const double* x, const double* y, std::size_t width, double* out) {
+  HWY_DYNAMIC_DISPATCH(norms_f64)(x, y, width, out);
+}
+
+}  // namespace touchtrial
+#endif
