@@ -41,6 +41,12 @@ void TvGaborSolver<Real>::advance(int count) {
   while (steps_ < last) step_to_check(last);
 }
 
+template <typename Real>
+void TvGaborSolver<Real>::check_the_start() {
+  certificate_ = certify(problem_, admm_.z(), admm_.penalty(), fft_);
+  admm_.start_again();
+}
+
 /// Certifying costs as much as a step; the penalty changes only then.
 template <typename Real>
 void TvGaborSolver<Real>::step_to_check(int last) {

@@ -47,6 +47,9 @@ class TvGaborSolver {
   /// Takes that many steps, whatever the gap is; the certificate is then that of the last one.
   void advance(int count);
 
+  /// Certifies what there is before the first step.
+  void check_the_start();
+
   /// Texture on the torus and gap at the last check; empty before the first.
   [[nodiscard]] const TvGaborCertificate<Real>& certificate() const noexcept {
     return certificate_;

@@ -186,21 +186,41 @@ double TvGabor::dual(const Dual& p) const {
   return inner(f_, d) - inner(d, apply_m(d)) / (2 * lambda_);
 }
 
+Dual TvGabor::ascent(const Dual& p) const {
+  Plane<double> inside = apply_m(divergence(p));
+  for (std::size_t i = 0; i < inside.size(); ++i) {
+    inside.samples()[i] -= lambda_ * f_.samples()[i];
+  }
+  return gradient(inside);
+}
+
+Dual TvGabor::fixed_point(int steps) const {
+  const Plane<double> zero(f_.height(), f_.width());
+  Dual p{zero, zero};
+  for (int step = 0; step < steps; ++step) {
+    const Dual w = ascent(p);
+    for (std::size_t i = 0; i < zero.size(); ++i) {
+      const double x = w.x.samples()[i] / 8;
+      const double y = w.y.samples()[i] / 8;
+      const double divisor = 1 + std::hypot(x, y);
+      p.x.samples()[i] = (p.x.samples()[i] + x) / divisor;
+      p.y.samples()[i] = (p.y.samples()[i] + y) / divisor;
+    }
+  }
+  return p;
+}
+
 Dual TvGabor::fista(int steps) const {
   const Plane<double> zero(f_.height(), f_.width());
   Dual p{zero, zero};
   Dual ahead = p;
   double t = 1.0;
   for (int step = 0; step < steps; ++step) {
-    Plane<double> inside = apply_m(divergence(ahead));
-    for (std::size_t i = 0; i < inside.size(); ++i) {
-      inside.samples()[i] -= lambda_ * f_.samples()[i];
-    }
-    const Dual ascent = gradient(inside);
+    const Dual w = ascent(ahead);
     const double next_t = (1 + std::sqrt(1 + 4 * t * t)) / 2;
     for (std::size_t i = 0; i < zero.size(); ++i) {
-      double x = ahead.x.samples()[i] + ascent.x.samples()[i] / 8;
-      double y = ahead.y.samples()[i] + ascent.y.samples()[i] / 8;
+      double x = ahead.x.samples()[i] + w.x.samples()[i] / 8;
+      double y = ahead.y.samples()[i] + w.y.samples()[i] / 8;
       project(x, y);
       ahead.x.samples()[i] = x + (t - 1) / next_t * (x - p.x.samples()[i]);
       ahead.y.samples()[i] = y + (t - 1) / next_t * (y - p.y.samples()[i]);

@@ -28,9 +28,14 @@ class TvGabor {
   [[nodiscard]] double dual(const Dual& p) const;
 
   [[nodiscard]] Dual fista(int steps) const;
+  /// p <- (p + w / 8) / (1 + |w| / 8)
+  [[nodiscard]] Dual fixed_point(int steps) const;
   [[nodiscard]] Plane<double> cropped(const Plane<double>& torus) const;
 
  private:
+  /// w = grad(M div p - lambda f)
+  [[nodiscard]] Dual ascent(const Dual& p) const;
+
   int height_, width_;  // of the image
   double lambda_;
   Plane<double> f_;

@@ -1,0 +1,57 @@
+/// \file The courses of three TV-Gabor solvers on one picture, to compare them.
+/// Source: docs/method.md, "TV-Gabor".
+#pragma once
+
+#include "core/plane.hpp"
+#include "engine/extraction.hpp"
+
+#include <memory>
+
+namespace touchtrial {
+
+enum class TvGaborAlgorithm {
+  admm,         ///< the one that extraction uses, its checks included
+  fista,        ///< accelerated projected gradient on the dual, steps of 1/8
+  fixed_point,  ///< semi-implicit fixed point on the dual, tau = 1/8
+};
+
+/// What a solver has after some steps.
+template <typename Real>
+struct TvGaborPoint {
+  int steps = 0;
+  double gap = 0.0;     ///< relative primal-dual gap, >= 0
+  Plane<Real> texture;  ///< v, grey levels, of the image's shape
+};
+
+/// A solver in one precision throughout: float does not go on in double as extraction's does. One
+/// object belongs to one thread at a time.
+template <typename Real>
+class TvGaborCourse {
+ public:
+  /// \param image  at least 1 x 1 \param options  lambda and components count; gap and max_steps
+  /// do not
+  /// \throws std::invalid_argument if the image is empty or flat, or too small to choose a
+  /// component
+  TvGaborCourse(const GreyImage& image, const TvGaborOptions& options, TvGaborAlgorithm algorithm);
+  ~TvGaborCourse();
+  TvGaborCourse(const TvGaborCourse&) = delete;
+  TvGaborCourse& operator=(const TvGaborCourse&) = delete;
+
+  /// Takes steps: what a benchmark times. ADMM checks every tenth, and the last of each call.
+  /// \param steps  >= 0
+  void advance(int steps);
+  /// Texture and gap as they are; does not change the course. Costs about a step.
+  [[nodiscard]] TvGaborPoint<Real> point();
+
+ private:
+  class Solver;
+  class Admm;
+  template <typename Method>
+  class OnDual;
+
+  int height_, width_;
+  int steps_ = 0;
+  std::unique_ptr<Solver> solver_;
+};
+
+}  // namespace touchtrial
