@@ -50,11 +50,13 @@ void filter_row(const std::vector<double>& row, const Filter& filter, std::span<
 template <typename Sample>
 SubBands sub_bands_of(const Plane<Sample>& image) {
   if (image.empty()) throw std::invalid_argument("daub4_sub_bands: the image is empty");
-  const Plane<double> blank((image.height() + 1) / 2, (image.width() + 1) / 2);
-  SubBands bands{blank, blank, blank, blank};
-  std::vector<double> low(2 * static_cast<std::size_t>(blank.width()) + kTaps - 2);
+  const int height = (image.height() + 1) / 2;
+  const int width = (image.width() + 1) / 2;
+  SubBands bands{Plane<double>(height, width), Plane<double>(height, width),
+                 Plane<double>(height, width), Plane<double>(height, width)};
+  std::vector<double> low(2 * static_cast<std::size_t>(width) + kTaps - 2);
   std::vector<double> high(low.size());
-  for (int i = 0; i < blank.height(); ++i) {
+  for (int i = 0; i < height; ++i) {
     ImageRows<Sample> rows;
     for (int m = 0; m < kTaps; ++m) {
       rows[static_cast<std::size_t>(m)] = image.row(symmetric_index(2 * i + m, image.height()));

@@ -38,19 +38,25 @@ std::vector<SubBands> sub_band_levels(const GreyImage& image, int levels) {
   return bands;
 }
 
+/// CSGV at half resolution. The sub-bands live no longer than they are needed, unless wanted.
+template <typename Real>
+Plane<double> half_gradient(const GreyImage& image, const ExtractionOptions& options, bool keep,
+                            Extraction<Real>& result) {
+  const std::vector<SubBands> levels = sub_band_levels(image, options.levels);
+  if (keep) {
+    result.sub_band_ll = converted<Real>(levels.front().ll);
+    result.sub_band_lh = converted<Real>(levels.front().lh);
+    result.sub_band_hl = converted<Real>(levels.front().hl);
+    result.sub_band_hh = converted<Real>(levels.front().hh);
+  }
+  return composite_gradient(levels, options.gradient, options.combine);
+}
+
 template <typename Real>
 Extraction<Real> adaptive(const GreyImage& image, const ExtractionOptions& options,
                           const WantedPlanes& wanted) {
   Extraction<Real> result;
-  const std::vector<SubBands> levels = sub_band_levels(image, options.levels);
-  const SubBands& bands = levels.front();
-  if (wanted.sub_bands) {
-    result.sub_band_ll = converted<Real>(bands.ll);
-    result.sub_band_lh = converted<Real>(bands.lh);
-    result.sub_band_hl = converted<Real>(bands.hl);
-    result.sub_band_hh = converted<Real>(bands.hh);
-  }
-  const Plane<double> gradient = composite_gradient(levels, options.gradient, options.combine);
+  const Plane<double> gradient = half_gradient(image, options, wanted.sub_bands, result);
   if (wanted.csgv) result.csgv = doubled<Real>(gradient, image.height(), image.width());
   const Plane<double> orders = order_map(gradient);
   if (wanted.order) result.order = doubled<Real>(orders, image.height(), image.width());
@@ -84,9 +90,9 @@ Extraction<Real> by_tv_gabor(const GreyImage& image, const TvGaborOptions& optio
 }
 
 template <typename Real>
-Extraction<Real> texture_alone(const Plane<double>& texture) {
+Extraction<Real> texture_alone(Plane<Real> texture) {
   Extraction<Real> result;
-  result.texture = converted<Real>(texture);
+  result.texture = std::move(texture);
   return result;
 }
 
@@ -99,13 +105,14 @@ Extraction<Real> by_method(const GreyImage& image, const ExtractionOptions& opti
     case Method::tv_gabor:
       return by_tv_gabor<Real>(image, options.tv_gabor, wanted);
     case Method::gaussian:
-      return texture_alone<Real>(gaussian_texture(image, options.sigma_px));
+      return texture_alone<Real>(gaussian_texture<Real>(image, options.sigma_px));
     case Method::median:
-      return texture_alone<Real>(median_texture(image, options.radius, options.threshold_grey));
+      return texture_alone<Real>(
+          median_texture<Real>(image, options.radius, options.threshold_grey));
     case Method::edge:
-      return texture_alone<Real>(edge_texture(image, options.divisor));
+      return texture_alone<Real>(edge_texture<Real>(image, options.divisor));
     case Method::luminance:
-      return texture_alone<Real>(luminance_texture(image));
+      return texture_alone<Real>(luminance_texture<Real>(image));
     case Method::adaptive:
       break;
   }

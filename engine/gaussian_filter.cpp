@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
+#include <cstddef>
+#include <cstdint>
 #include <stdexcept>
-#include <vector>
 
 namespace touchtrial {
 namespace {
@@ -36,46 +36,62 @@ std::vector<double> half_kernel(double sigma_px) {
 
 /// Adds one pair of taps. The kernel's sum is 1, so it may be applied to the differences from the
 /// middle sample, which are exactly zero where the plane is flat.
-void add_pair(std::span<double> out, const double* middle, const double* before,
-              const double* after, double weight) {
+template <typename Sample>
+void add_pair(std::span<double> out, const Sample* middle, const Sample* before,
+              const Sample* after, double weight) {
   for (std::size_t i = 0; i < out.size(); ++i) {
     out[i] += weight * ((before[i] - middle[i]) + (after[i] - middle[i]));
   }
 }
 
-Plane<double> filtered_along_y(const Plane<double>& plane, double sigma_px) {
-  const int height = plane.height();
-  const std::vector<double> weights = half_kernel(effective_sigma(sigma_px, height));
-  Plane<double> out = plane;
-  for (int y = 0; y < height; ++y) {
-    for (int k = 1; k < static_cast<int>(weights.size()); ++k) {
-      const double* before = plane.row(symmetric_index(y - k, height)).data();
-      const double* after = plane.row(symmetric_index(y + k, height)).data();
-      add_pair(out.row(y), plane.row(y).data(), before, after, weights[k]);
-    }
-  }
-  return out;
-}
-
-Plane<double> filtered_along_x(const Plane<double>& plane, double sigma_px) {
-  const int width = plane.width();
-  const std::vector<double> weights = half_kernel(effective_sigma(sigma_px, width));
-  const int radius = static_cast<int>(weights.size()) - 1;
-  std::vector<double> extended(static_cast<std::size_t>(width) + 2 * weights.size() - 2);
-  Plane<double> out = plane;
-  for (int y = 0; y < plane.height(); ++y) {
-    for (int i = 0; i < static_cast<int>(extended.size()); ++i) {
-      extended[i] = plane.at(y, symmetric_index(i - radius, width));
-    }
-    const double* middle = extended.data() + radius;
-    for (int k = 1; k <= radius; ++k) {
-      add_pair(out.row(y), middle, middle - k, middle + k, weights[k]);
-    }
-  }
-  return out;
-}
-
 }  // namespace
+
+template <typename Sample>
+GaussianRows<Sample>::GaussianRows(const Plane<Sample>& plane, double sigma_px)
+    : plane_(plane),
+      weights_y_(half_kernel(effective_sigma(sigma_px, plane.height()))),
+      weights_x_(half_kernel(effective_sigma(sigma_px, plane.width()))),
+      extended_(static_cast<std::size_t>(plane.width()) + 2 * weights_x_.size() - 2),
+      filtered_(static_cast<std::size_t>(plane.width())) {}
+
+template <typename Sample>
+std::span<const double> GaussianRows<Sample>::row(int y) {
+  filter_along_y(y);
+  filter_along_x();
+  return filtered_;
+}
+
+template <typename Sample>
+void GaussianRows<Sample>::filter_along_y(int y) {
+  const int height = plane_.height();
+  const auto middle = plane_.row(y);
+  const std::span<double> out(extended_.data() + weights_x_.size() - 1, middle.size());
+  std::copy(middle.begin(), middle.end(), out.begin());
+  for (int k = 1; k < static_cast<int>(weights_y_.size()); ++k) {
+    add_pair(out, middle.data(), plane_.row(symmetric_index(y - k, height)).data(),
+             plane_.row(symmetric_index(y + k, height)).data(),
+             weights_y_[static_cast<std::size_t>(k)]);
+  }
+}
+
+template <typename Sample>
+void GaussianRows<Sample>::filter_along_x() {
+  const int width = plane_.width();
+  const auto radius = static_cast<int>(weights_x_.size()) - 1;
+  double* const middle = extended_.data() + radius;
+  for (int i = 1; i <= radius; ++i) {
+    middle[-i] = middle[symmetric_index(-i, width)];
+    middle[width - 1 + i] = middle[symmetric_index(width - 1 + i, width)];
+  }
+  std::copy_n(middle, width, filtered_.begin());
+  for (int k = 1; k <= radius; ++k) {
+    add_pair<double>(filtered_, middle, middle - k, middle + k,
+                     weights_x_[static_cast<std::size_t>(k)]);
+  }
+}
+
+template class GaussianRows<std::uint8_t>;
+template class GaussianRows<double>;
 
 Plane<double> gaussian_filtered(const Plane<double>& plane, double sigma_px) {
   if (plane.empty()) throw std::invalid_argument("gaussian_filtered: the plane is empty");
@@ -84,7 +100,13 @@ Plane<double> gaussian_filtered(const Plane<double>& plane, double sigma_px) {
   }
   require_finite(plane, "gaussian_filtered", "plane");
   if (sigma_px == 0.0) return plane;
-  return filtered_along_x(filtered_along_y(plane, sigma_px), sigma_px);
+  Plane<double> out(plane.height(), plane.width());
+  GaussianRows rows(plane, sigma_px);
+  for (int y = 0; y < plane.height(); ++y) {
+    const std::span<const double> row = rows.row(y);
+    std::copy(row.begin(), row.end(), out.row(y).begin());
+  }
+  return out;
 }
 
 }  // namespace touchtrial

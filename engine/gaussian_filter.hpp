@@ -4,7 +4,33 @@
 
 #include "core/plane.hpp"
 
+#include <span>
+#include <vector>
+
 namespace touchtrial {
+
+/// A filtered plane row by row, for those who need no plane of it: memory is that of two rows and
+/// of the weights. Sample is double or std::uint8_t; results are those of gaussian_filtered() to
+/// the last bit. Keeps a reference to the plane; not thread-safe.
+template <typename Sample>
+class GaussianRows {
+ public:
+  /// \param plane  not empty  \param sigma_px  > 0, may be infinite
+  GaussianRows(const Plane<Sample>& plane, double sigma_px);
+
+  /// Row y of the filtered plane; valid until the next call.
+  [[nodiscard]] std::span<const double> row(int y);
+
+ private:
+  void filter_along_y(int y);
+  void filter_along_x();
+
+  const Plane<Sample>& plane_;
+  std::vector<double> weights_y_;
+  std::vector<double> weights_x_;
+  std::vector<double> extended_;  ///< a row filtered along y, mirrored at both ends
+  std::vector<double> filtered_;
+};
 
 /// Convolves a plane with a sampled Gaussian of sum 1, mirrored at the edges (half-sample symmetric
 /// extension, however far the kernel reaches out). Weights below 1e-12 of the middle one are left

@@ -3,6 +3,7 @@
 #include "engine/symmetric_extension.hpp"
 
 #include <cmath>
+#include <cstdint>
 
 namespace touchtrial {
 namespace {
@@ -14,14 +15,16 @@ void mirror_ends(std::vector<double>& framed) {
 
 }  // namespace
 
-GradientRows::GradientRows(const Plane<double>& plane, Gradient gradient)
+template <typename Sample>
+GradientRows<Sample>::GradientRows(const Plane<Sample>& plane, Gradient gradient)
     : plane_(plane),
       gradient_(gradient),
       smooth_(static_cast<std::size_t>(plane.width()) + 2),
       slope_(smooth_.size()),
       norms_(static_cast<std::size_t>(plane.width())) {}
 
-void GradientRows::filter_columns(int y) {
+template <typename Sample>
+void GradientRows<Sample>::filter_columns(int y) {
   const auto above = plane_.row(symmetric_index(y - 1, plane_.height()));
   const auto here = plane_.row(y);
   const auto below = plane_.row(symmetric_index(y + 1, plane_.height()));
@@ -34,7 +37,8 @@ void GradientRows::filter_columns(int y) {
   mirror_ends(slope_);
 }
 
-std::span<const double> GradientRows::row(int y) {
+template <typename Sample>
+std::span<const double> GradientRows<Sample>::row(int y) {
   filter_columns(y);
   const double weight = gradient_ == Gradient::sobel ? 2.0 : 1.0;
   for (int x = 0; x < plane_.width(); ++x) {
@@ -48,5 +52,8 @@ std::span<const double> GradientRows::row(int y) {
   }
   return norms_;
 }
+
+template class GradientRows<std::uint8_t>;
+template class GradientRows<double>;
 
 }  // namespace touchtrial

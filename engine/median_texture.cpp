@@ -1,88 +1,79 @@
 #include "engine/cited_textures.hpp"
 #include "engine/symmetric_extension.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <vector>
+#include <span>
+
+#include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 
 namespace touchtrial {
 namespace {
 
-/// The samples of a window as a histogram whose median follows them: from pixel to pixel it moves
-/// by a few levels only.
-class WindowHistogram {
- public:
-  explicit WindowHistogram(std::int64_t samples) : rank_(samples / 2) {}
+constexpr int kStripRows = 256;
 
-  void add(std::uint8_t level) noexcept {
-    ++counts_[level];
-    if (level < median_) ++below_;
+/// The medians of a strip of rows. OpenCV's filter is exact, but repeats the last sample beyond the
+/// edge: it gets the strip with its mirrored surroundings, and what it makes of those is left out.
+class MedianStrip {
+ public:
+  MedianStrip(const GreyImage& image, int radius) : image_(image), radius_(radius) {}
+
+  void move_to(int first_row, int rows) {
+    framed_.create(rows + 2 * radius_, image_.width() + 2 * radius_, CV_8UC1);
+    for (int y = 0; y < framed_.rows; ++y) {
+      frame_row(image_.row(symmetric_index(first_row + y - radius_, image_.height())), y);
+    }
+    cv::medianBlur(framed_, medians_, 2 * radius_ + 1);
   }
-  void remove(std::uint8_t level) noexcept {
-    --counts_[level];
-    if (level < median_) --below_;
-  }
-  /// \pre the window is full
-  [[nodiscard]] int median() noexcept {
-    while (below_ > rank_) below_ -= counts_[--median_];
-    while (below_ + counts_[median_] <= rank_) below_ += counts_[median_++];
-    return static_cast<int>(median_);
+
+  /// \param y  from 0 at the strip's first row
+  [[nodiscard]] const std::uint8_t* row(int y) const {
+    return medians_.ptr<std::uint8_t>(y + radius_) + radius_;
   }
 
  private:
-  std::array<std::int64_t, 256> counts_{};
-  std::int64_t rank_;       ///< of the median among the samples, from 0
-  std::size_t median_ = 0;  ///< a candidate
-  std::int64_t below_ = 0;  ///< samples under the candidate
-};
-
-/// Rows y - radius .. y + radius of the extended image, by columns.
-class WindowColumns {
- public:
-  WindowColumns(const GreyImage& image, int radius)
-      : image_(image), radius_(radius), rows_(static_cast<std::size_t>(2 * radius + 1)) {}
-
-  void move_to_row(int y) {
-    for (int dy = -radius_; dy <= radius_; ++dy) {
-      rows_[static_cast<std::size_t>(dy + radius_)] =
-          image_.row(symmetric_index(y + dy, image_.height())).data();
+  void frame_row(std::span<const std::uint8_t> from, int y) {
+    std::uint8_t* const to = framed_.ptr<std::uint8_t>(y) + radius_;
+    std::copy(from.begin(), from.end(), to);
+    const int width = image_.width();
+    for (int i = 1; i <= radius_; ++i) {
+      to[-i] = from[static_cast<std::size_t>(symmetric_index(-i, width))];
+      to[width - 1 + i] = from[static_cast<std::size_t>(symmetric_index(width - 1 + i, width))];
     }
   }
-  template <typename Visit>
-  void for_each_sample(int x, Visit visit) const {
-    const int column = symmetric_index(x, image_.width());
-    for (const std::uint8_t* row : rows_) visit(row[column]);
-  }
 
- private:
   const GreyImage& image_;
   int radius_;
-  std::vector<const std::uint8_t*> rows_;
+  cv::Mat framed_;
+  cv::Mat medians_;
 };
 
 }  // namespace
 
-Plane<double> median_texture(const GreyImage& image, int radius, double threshold_grey) {
-  Plane<double> texture(image.height(), image.width());
-  WindowColumns columns(image, radius);
-  const std::int64_t side = 2 * std::int64_t{radius} + 1;
-  for (int y = 0; y < image.height(); ++y) {
-    columns.move_to_row(y);
-    WindowHistogram window(side * side);
-    const auto enter = [&](int x) {
-      columns.for_each_sample(x, [&](std::uint8_t level) { window.add(level); });
-    };
-    for (int x = -radius; x < radius; ++x) enter(x);
-    for (int x = 0; x < image.width(); ++x) {
-      enter(x + radius);
-      const double difference = image.at(y, x) - window.median();
-      if (std::abs(difference) > threshold_grey) texture.at(y, x) = difference;
-      columns.for_each_sample(x - radius, [&](std::uint8_t level) { window.remove(level); });
+template <typename Real>
+Plane<Real> median_texture(const GreyImage& image, int radius, double threshold_grey) {
+  Plane<Real> texture(image.height(), image.width());
+  MedianStrip strip(image, radius);
+  for (int first = 0; first < image.height(); first += kStripRows) {
+    const int rows = std::min(kStripRows, image.height() - first);
+    strip.move_to(first, rows);
+    for (int y = 0; y < rows; ++y) {
+      const auto greys = image.row(first + y);
+      std::transform(
+          greys.begin(), greys.end(), strip.row(y), texture.row(first + y).begin(),
+          [threshold_grey](std::uint8_t grey, std::uint8_t median) {
+            const int difference = grey - median;
+            return static_cast<Real>(std::abs(difference) > threshold_grey ? difference : 0);
+          });
     }
   }
   return texture;
 }
+
+template Plane<float> median_texture<float>(const GreyImage&, int, double);
+template Plane<double> median_texture<double>(const GreyImage&, int, double);
 
 }  // namespace touchtrial

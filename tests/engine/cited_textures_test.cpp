@@ -26,12 +26,12 @@ TEST_CASE("the gaussian texture agrees with its definition") {
   for (const Size size : awkward_sizes()) {
     const GreyImage image = noise_image(size);
     INFO(size.height << " x " << size.width);
-    CHECK(largest_difference(gaussian_texture(image, 2.0),
+    CHECK(largest_difference(gaussian_texture<double>(image, 2.0),
                              reference::gaussian_texture(image, 2.0)) < 1e-9);
   }
   const GreyImage image = cloth_image({20, 17});
-  CHECK(largest_difference(gaussian_texture(image, 0.4), reference::gaussian_texture(image, 0.4)) <
-        1e-9);
+  CHECK(largest_difference(gaussian_texture<double>(image, 0.4),
+                           reference::gaussian_texture(image, 0.4)) < 1e-9);
 }
 
 TEST_CASE("the median texture is its definition exactly") {
@@ -39,20 +39,21 @@ TEST_CASE("the median texture is its definition exactly") {
     for (const auto& [name, image] : example_images(size)) {
       for (const int radius : {1, 2, 6}) {
         INFO(name << ", " << size.height << " x " << size.width << ", radius " << radius);
-        CHECK(median_texture(image, radius, 4.0) == reference::median_texture(image, radius, 4.0));
+        CHECK(median_texture<double>(image, radius, 4.0) ==
+              reference::median_texture(image, radius, 4.0));
       }
     }
   }
   const GreyImage image = noise_image({12, 9});
-  CHECK(median_texture(image, 63, 0.0) == reference::median_texture(image, 63, 0.0));
+  CHECK(median_texture<double>(image, 63, 0.0) == reference::median_texture(image, 63, 0.0));
 }
 
 TEST_CASE("the median texture leaves differences up to the threshold alone") {
   GreyImage image = flat_image({9, 9}, 100);
   image.at(4, 4) = 104;
-  CHECK(largest_magnitude(median_texture(image, 2, 4.0)) == 0.0);
+  CHECK(largest_magnitude(median_texture<double>(image, 2, 4.0)) == 0.0);
   image.at(4, 4) = 105;
-  const Plane<double> texture = median_texture(image, 2, 4.0);
+  const Plane<double> texture = median_texture<double>(image, 2, 4.0);
   CHECK(texture.at(4, 4) == 5.0);
   CHECK(texture.at(4, 3) == 0.0);
 }
@@ -61,17 +62,17 @@ TEST_CASE("the edge texture agrees with its definition and ends at 127") {
   for (const Size size : awkward_sizes()) {
     for (const auto& [name, image] : example_images(size)) {
       INFO(name << ", " << size.height << " x " << size.width);
-      CHECK(largest_difference(edge_texture(image, 4.0), reference::edge_texture(image, 4.0)) <
-            1e-11);
+      CHECK(largest_difference(edge_texture<double>(image, 4.0),
+                               reference::edge_texture(image, 4.0)) < 1e-11);
     }
   }
-  CHECK(largest_magnitude(edge_texture(step_image({8, 8}, 0, 255), 4.0)) == 127.0);
-  CHECK(edge_texture(step_image({8, 8}, 100, 110), 4.0).at(4, 4) == 10.0);
+  CHECK(largest_magnitude(edge_texture<double>(step_image({8, 8}, 0, 255), 4.0)) == 127.0);
+  CHECK(edge_texture<double>(step_image({8, 8}, 100, 110), 4.0).at(4, 4) == 10.0);
 }
 
 TEST_CASE("the luminance texture's picture is the image") {
   const GreyImage image = noise_image({10, 13});
-  CHECK(luminance_texture(image).at(3, 4) == image.at(3, 4) - 128.0);
+  CHECK(luminance_texture<double>(image).at(3, 4) == image.at(3, 4) - 128.0);
   const auto texture = extract_texture<float>(image, options_of(Method::luminance)).texture;
   CHECK(texture_picture(texture) == image);
 }
