@@ -42,7 +42,7 @@ Outcomes labelled(const StudyStore& store, const Study& study) {
     outcomes.exemplars.push_back(exemplar_names(one));
   }
   for (int i = 0; i < study.presented_methods(); ++i) {
-    outcomes.methods.emplace_back(name_of(study.methods[i].method));
+    outcomes.methods.emplace_back(study.methods[i].label);
   }
   return outcomes;
 }

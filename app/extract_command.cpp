@@ -24,6 +24,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// That of the forces which the engine makes along with a texture.
+constexpr int kForceNeighbourhood = 3;
+
 struct ExtractArguments {
   fs::path image;
   MethodArguments method;
@@ -35,9 +38,11 @@ struct ExtractArguments {
   fs::path dump;
 };
 
+/// Writes a plane and lets it go: of a large picture the planes fill most of the memory.
 template <typename Real>
-void dump_if_made(const fs::path& folder, const std::string& name, const Plane<Real>& plane) {
+void dump_if_made(const fs::path& folder, const std::string& name, Plane<Real>& plane) {
   if (!plane.empty()) write_npy(folder / (name + ".npy"), plane);
+  plane = {};
 }
 
 /// (H, W, 2): the force's x, then y, at each pixel.
@@ -53,9 +58,9 @@ void dump_force(const fs::path& folder, const ForceField<Real>& force) {
                   {force.x.height(), force.x.width(), 2});
 }
 
+/// All but texture, picture and force, which others need after it, is gone then.
 template <typename Real>
-void dump_all(const fs::path& folder, const GreyImage& image, const Extraction<Real>& extraction,
-              const GreyImage& picture, int neighbourhood) {
+void dump_all(const fs::path& folder, GreyImage& image, Extraction<Real>& extraction) {
   make_folder(folder);
   dump_if_made(folder, "image", image);
   dump_if_made(folder, "subband_LL", extraction.sub_band_ll);
@@ -64,30 +69,27 @@ void dump_all(const fs::path& folder, const GreyImage& image, const Extraction<R
   dump_if_made(folder, "subband_HH", extraction.sub_band_hh);
   dump_if_made(folder, "csgv", extraction.csgv);
   dump_if_made(folder, "order", extraction.order);
-  dump_if_made(folder, "texture", extraction.texture);
   dump_if_made(folder, "enhanced", extraction.enhanced);
   dump_if_made(folder, "cartoon", extraction.cartoon);
-  dump_if_made(folder, "texture_u8", picture);
-  dump_force(folder, tangential_force(texture_surface(extraction.texture), neighbourhood));
+  write_npy(folder / "texture.npy", extraction.texture);
+  write_npy(folder / "texture_u8.npy", extraction.picture);
+  dump_force(folder, extraction.force);
 }
 
 /// \return what the picture shows
 template <typename Real>
-std::string draw_arrows(const ExtractArguments& arguments, const Plane<Real>& texture,
-                        const GreyImage& picture) {
-  const ForceField<Real> force =
-      tangential_force(texture_surface(texture), arguments.neighbourhood);
+std::string draw_arrows(const fs::path& path, const Extraction<Real>& extraction) {
   const ArrowPatch patch = write_force_arrows(
-      arguments.arrows, picture, {converted<double>(force.x), converted<double>(force.y)});
+      path, extraction.picture,
+      {converted<double>(extraction.force.x), converted<double>(extraction.force.y)});
   return fmt::format(
       "{}: {} x {} px from ({}, {}); an arrow as long as a pixel is {:.3g} grey levels per pixel\n",
-      arguments.arrows.string(), patch.width, patch.height, patch.x, patch.y,
-      patch.force_of_unit_arrow);
+      path.string(), patch.width, patch.height, patch.x, patch.y, patch.force_of_unit_arrow);
 }
 
 template <typename Real>
-std::string summary(const ExtractArguments& arguments, const Extraction<Real>& extraction,
-                    const GreyImage& picture) {
+std::string summary(const ExtractArguments& arguments, const Extraction<Real>& extraction) {
+  const GreyImage& picture = extraction.picture;
   const auto samples = extraction.texture.samples();
   const auto [low, high] = std::minmax_element(samples.begin(), samples.end());
   std::string text = fmt::format(
@@ -114,22 +116,41 @@ Extraction<Real> extracted(const fs::path& path, const GreyImage& image,
   }
 }
 
+WantedPlanes wanted_planes(const ExtractArguments& arguments) {
+  WantedPlanes wanted = arguments.dump.empty() ? WantedPlanes{} : WantedPlanes::all();
+  wanted.picture = arguments.mapping == kMappingNames.front();
+  wanted.force = arguments.neighbourhood == kForceNeighbourhood &&
+                 (!arguments.dump.empty() || !arguments.arrows.empty());
+  return wanted;
+}
+
+/// What the engine does not make along with a texture: another mapping or neighbourhood.
+template <typename Real>
+void complete(const ExtractArguments& arguments, Extraction<Real>& extraction) {
+  if (extraction.picture.empty()) {
+    extraction.picture = texture_picture(extraction.texture,
+                                         *choice_named<Mapping>(kMappingNames, arguments.mapping));
+  }
+  const bool needs_force = !arguments.dump.empty() || !arguments.arrows.empty();
+  if (needs_force && extraction.force.x.empty()) {
+    extraction.force = tangential_force(extraction.texture, arguments.neighbourhood);
+  }
+}
+
 template <typename Real>
 int extract_with(const ExtractArguments& arguments, const ExtractionOptions& options) {
-  const GreyImage image = read_grey_image(arguments.image);
-  const bool dumping = !arguments.dump.empty();
-  const Extraction<Real> extraction = extracted<Real>(
-      arguments.image, image, options, dumping ? WantedPlanes::all() : WantedPlanes{});
+  GreyImage image = read_grey_image(arguments.image);
+  Extraction<Real> extraction =
+      extracted<Real>(arguments.image, image, options, wanted_planes(arguments));
   if (!extraction.converged) {
     spdlog::warn("{}: tv-gabor stopped after {} steps with a relative gap of {:.2g}",
                  arguments.image.string(), extraction.steps, extraction.gap);
   }
-  const GreyImage picture =
-      texture_picture(extraction.texture, *choice_named<Mapping>(kMappingNames, arguments.mapping));
-  if (!arguments.output.empty()) write_png(arguments.output, picture);
-  if (dumping) dump_all(arguments.dump, image, extraction, picture, arguments.neighbourhood);
-  std::string text = summary(arguments, extraction, picture);
-  if (!arguments.arrows.empty()) text += draw_arrows(arguments, extraction.texture, picture);
+  complete(arguments, extraction);
+  if (!arguments.output.empty()) write_png(arguments.output, extraction.picture);
+  if (!arguments.dump.empty()) dump_all(arguments.dump, image, extraction);
+  std::string text = summary(arguments, extraction);
+  if (!arguments.arrows.empty()) text += draw_arrows(arguments.arrows, extraction);
   print(text);
   return 0;
 }

@@ -1,5 +1,6 @@
 #include "app/method_arguments.hpp"
 
+#include "app/commands.hpp"
 #include "core/errors.hpp"
 
 #include <algorithm>
@@ -36,6 +37,11 @@ std::string owners_of(const MethodOption& option) {
     owners += name_of(option.methods[i]);
   }
   return owners;
+}
+
+void refuse_unused_seed(const CLI::App& command, Control control) {
+  if (control != Control::none || command.count("--seed") == 0) return;
+  throw UsageError("extract: --seed means nothing here; it goes with --control phase-scrambled");
 }
 
 void refuse_unused(const CLI::App& command, Method method) {
@@ -110,6 +116,11 @@ void add_words(CLI::App& command, MethodArguments& arguments) {
   command.add_option("--components", arguments.components,
                      "Oscillations that are texture, \"cycles per px,degrees;..\", or auto "
                      "(tv-gabor)");
+  command
+      .add_option("--control", arguments.control,
+                  "Make of the texture its own control: the same spectrum without structure")
+      ->check(CLI::IsMember(words_of(kControlNames)))
+      ->capture_default_str();
 }
 
 void add_number(CLI::App& command, const char* option, double& number, const char* meaning,
@@ -137,6 +148,9 @@ void add_numbers(CLI::App& command, ExtractionOptions& numbers) {
              Options::kMinDivisor, Options::kMaxDivisor);
   add_number(command, "--lambda", numbers.tv_gabor.lambda, "Weight of the texture norm (tv-gabor)",
              TvGaborOptions::kMinLambda, TvGaborOptions::kMaxLambda);
+  command.add_option("--seed", numbers.control_seed, "Of the control's random phases")
+      ->check(seed_validator())
+      ->capture_default_str();
 }
 
 }  // namespace
@@ -156,6 +170,8 @@ ExtractionOptions extraction_options(const CLI::App& command, const MethodArgume
   options.norm = *choice_named<Norm>(kNormNames, arguments.norm);
   options.gradient = *choice_named<Gradient>(kGradientNames, arguments.gradient);
   options.combine = *choice_named<Combine>(kCombineNames, arguments.combine);
+  options.control = *choice_named<Control>(kControlNames, arguments.control);
+  refuse_unused_seed(command, options.control);
   read_components(arguments.components, options.tv_gabor);
   check(options);
   return options;

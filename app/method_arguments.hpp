@@ -20,6 +20,7 @@ struct MethodArguments {
   std::string gradient = "sobel";
   std::string combine = "sum";
   std::string components;  ///< "auto", "f,theta;f,theta", or nothing for the default
+  std::string control = "none";
   ExtractionOptions numbers;
 };
 

@@ -1,5 +1,6 @@
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/prepare_explanation.hpp"
 #include "core/cipher.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
@@ -22,6 +23,7 @@ struct PrepareArguments {
   fs::path study;
   fs::path pack;
   bool explain = false;
+  bool json = false;
 };
 
 /// A database that was sealed with the study as it was needs the key as it was.
@@ -56,12 +58,12 @@ StudyKey key_for(const Study& study, const fs::path& path) {
   return key;
 }
 
-std::string stimulus_row(const PreparedStimulus& stimulus) {
+std::string stimulus_row(const PreparedStimulus& stimulus, std::size_t method_width) {
   const FieldStatistics& figures = stimulus.statistics;
   return fmt::format(
-      "{:<16} {:>8} {:<10} {:<7} {:>9.4f} {:>9.4f} {:>9.3f} {:>7.1f} % {:>6.1f} {:>6.1f} "
+      "{:<16} {:>8} {:<{}} {:<7} {:>9.4f} {:>9.4f} {:>9.3f} {:>7.1f} % {:>6.1f} {:>6.1f} "
       "{:>6.1f}\n",
-      stimulus.class_label, stimulus.exemplar + 1, stimulus.method,
+      stimulus.class_label, stimulus.exemplar + 1, stimulus.method, method_width,
       stimulus.reused ? "reused" : "built", figures.tangential_rms_n, figures.tangential_p999_n,
       figures.stiffness_p99_n_per_mm, 100 * figures.share_below_1_mm,
       100 * figures.share_above_250_hz[0], 100 * figures.share_above_250_hz[1],
@@ -69,12 +71,17 @@ std::string stimulus_row(const PreparedStimulus& stimulus) {
 }
 
 std::string table_of(const PrepareReport& report) {
+  std::size_t width = 10;
+  for (const PreparedStimulus& stimulus : report.stimuli) {
+    width = std::max(width, stimulus.method.size());
+  }
   std::string text = fmt::format(
-      "{:<16} {:>8} {:<10} {:<7} {:>9} {:>9} {:>9} {:>9} {:>20}\n{:<16} {:>8} {:<10} {:<7} {:>9} "
+      "{:<16} {:>8} {:<{}} {:<7} {:>9} {:>9} {:>9} {:>9} {:>20}\n{:<16} {:>8} {:<{}} {:<7} {:>9} "
       "{:>9} {:>9} {:>9} {:>6} {:>6} {:>6}\n",
-      "", "", "", "", "rms", "99.9th", "stiffness", "under", "% over 250 Hz at", "class",
-      "exemplar", "method", "", "force N", "force N", "N/mm", "1 mm", "50", "100", "200 mm/s");
-  for (const PreparedStimulus& stimulus : report.stimuli) text += stimulus_row(stimulus);
+      "", "", "", width, "", "rms", "99.9th", "stiffness", "under", "% over 250 Hz at", "class",
+      "exemplar", "method", width, "", "force N", "force N", "N/mm", "1 mm", "50", "100",
+      "200 mm/s");
+  for (const PreparedStimulus& stimulus : report.stimuli) text += stimulus_row(stimulus, width);
   return text;
 }
 
@@ -101,20 +108,6 @@ std::string totals_of(const PrepareReport& report) {
   return text + "\n";
 }
 
-/// What was done for each stimulus and what it cost.
-std::string explanation_of(const PrepareReport& report) {
-  std::string text = fmt::format("{:<16} {:>8} {:<10} {:<7} {:>8} {:>10}  {}\n", "class",
-                                 "exemplar", "method", "", "seconds", "bytes", "why");
-  for (const PreparedStimulus& stimulus : report.stimuli) {
-    text += fmt::format("{:<16} {:>8} {:<10} {:<7} {:>8.3f} {:>10}  {}\n", stimulus.class_label,
-                        stimulus.exemplar + 1, stimulus.method,
-                        stimulus.reused ? "reused" : "built", stimulus.seconds, stimulus.bytes,
-                        stimulus.reused ? "same picture and options, and the field is intact"
-                                        : "no intact field of this picture and these options");
-  }
-  return text;
-}
-
 int prepare(const PrepareArguments& arguments) {
   const Study study = load_study(arguments.study);
   check_images_exist(study);
@@ -127,9 +120,14 @@ int prepare(const PrepareArguments& arguments) {
   StudyKey key = key_for(study, place.key);
   key.pack_folder = place.pack;
   save_study_key(place.key, key);
-  const PrepareReport report = prepare_pack(key, place.pack, progress_bar("preparing"));
+  const PrepareReport report =
+      prepare_pack(key, place.pack, progress_bar("preparing"), {.explain = arguments.explain});
   for (const std::string& warning : report.warnings) spdlog::warn("{}", warning);
-  print((arguments.explain ? explanation_of(report) + "\n" : "") + table_of(report) +
+  if (arguments.json) {
+    print(prepare_json(report, place));
+    return 0;
+  }
+  print((arguments.explain ? explanation_text(report) + "\n" : "") + table_of(report) +
         gains_of(report) + totals_of(report) +
         fmt::format("pack {}\nkey  {} (keep it to yourself)\n", place.pack.string(),
                     place.key.string()));
@@ -146,7 +144,9 @@ void add_prepare_command(CLI::App& program, Action& action) {
   command->add_option("--pack", arguments->pack,
                       "Folder of the pack; the key lies beside it (default: <study>.pack)");
   command->add_flag("--explain", arguments->explain,
-                    "Say for each stimulus what was done, why, and what it cost");
+                    "Say stage by stage what was computed, reused or skipped, why, and what it "
+                    "cost");
+  command->add_flag("--json", arguments->json, "One JSON object in place of the tables");
   command->callback([=, &action] { action = [=] { return prepare(*arguments); }; });
 }
 

@@ -100,7 +100,8 @@ int simulate(const SimulateArguments& arguments) {
   const SubjectModel subject = subject_for(arguments, study);
   const StudyKey key = simulated_key(study, arguments.study);
   refuse_other_key(key_path_for(arguments.database, {}), key);
-  const PrepareReport prepared = prepare_pack(key, key.pack_folder, progress_bar("preparing"));
+  const PrepareReport prepared =
+      prepare_pack(key, key.pack_folder, progress_bar("preparing"), {.statistics = false});
   for (const std::string& warning : prepared.warnings) spdlog::warn("{}", warning);
 
   const Pack pack(key.pack_folder);

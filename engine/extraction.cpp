@@ -1,6 +1,7 @@
 #include "engine/extraction.hpp"
 
 #include "engine/cited_textures.hpp"
+#include "engine/controls/phase_scramble.hpp"
 #include "engine/csgv.hpp"
 #include "engine/daub4.hpp"
 #include "engine/force_field.hpp"
@@ -11,7 +12,9 @@
 #include "engine/tv_gabor/tv_gabor.hpp"
 
 #include <cstddef>
+#include <cstdint>
 #include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -38,11 +41,27 @@ std::vector<SubBands> sub_band_levels(const GreyImage& image, int levels) {
   return bands;
 }
 
+template <typename Sample>
+std::uint64_t bytes_of(const Plane<Sample>& plane) {
+  return plane.size() * sizeof(Sample);
+}
+
+/// What a method that knows no local order leaves out; bytes as the adaptive one would need.
+void note_no_order_map(const GreyImage& image, const ExtractionOptions& options, StageLog* log) {
+  if (log == nullptr) return;
+  const std::string why = options.method == Method::fixed
+                              ? "one order serves the whole image"
+                              : std::string(name_of(options.method)) + " uses none";
+  log->skip("sub-bands", why, image.size() * sizeof(double));
+  log->skip("order map", why, image.size() / 4 * sizeof(double));
+}
+
 /// CSGV at half resolution. The sub-bands live no longer than they are needed, unless wanted.
 template <typename Real>
 Plane<double> half_gradient(const GreyImage& image, const ExtractionOptions& options, bool keep,
-                            Extraction<Real>& result) {
+                            Extraction<Real>& result, StageTimer& timer) {
   const std::vector<SubBands> levels = sub_band_levels(image, options.levels);
+  timer.done("sub-bands", "orders follow their gradient", 4 * bytes_of(levels.front().ll));
   if (keep) {
     result.sub_band_ll = converted<Real>(levels.front().ll);
     result.sub_band_lh = converted<Real>(levels.front().lh);
@@ -54,12 +73,13 @@ Plane<double> half_gradient(const GreyImage& image, const ExtractionOptions& opt
 
 template <typename Real>
 Extraction<Real> adaptive(const GreyImage& image, const ExtractionOptions& options,
-                          const WantedPlanes& wanted) {
+                          const WantedPlanes& wanted, StageTimer& timer) {
   Extraction<Real> result;
-  const Plane<double> gradient = half_gradient(image, options, wanted.sub_bands, result);
+  const Plane<double> gradient = half_gradient(image, options, wanted.sub_bands, result, timer);
   if (wanted.csgv) result.csgv = doubled<Real>(gradient, image.height(), image.width());
   const Plane<double> orders = order_map(gradient);
   if (wanted.order) result.order = doubled<Real>(orders, image.height(), image.width());
+  timer.done("order map", "each pixel has an order of its own", bytes_of(orders));
   result.texture = normed_texture<Real>(image, options, orders);
   return result;
 }
@@ -98,7 +118,7 @@ Extraction<Real> texture_alone(Plane<Real> texture) {
 
 template <typename Real>
 Extraction<Real> by_method(const GreyImage& image, const ExtractionOptions& options,
-                           const WantedPlanes& wanted) {
+                           const WantedPlanes& wanted, StageTimer& timer) {
   switch (options.method) {
     case Method::fixed:
       return fixed<Real>(image, options, wanted);
@@ -116,7 +136,7 @@ Extraction<Real> by_method(const GreyImage& image, const ExtractionOptions& opti
     case Method::adaptive:
       break;
   }
-  return adaptive<Real>(image, options, wanted);
+  return adaptive<Real>(image, options, wanted, timer);
 }
 
 /// The methods' defaults have kernels in single precision; in double the plain way is the truth
@@ -152,34 +172,62 @@ void add_by_products(const GreyImage& image, const WantedPlanes& wanted, Extract
   }
 }
 
+template <typename Real>
+std::string what_was_taken(const ExtractionOptions& options, const Extraction<Real>& result) {
+  std::string what(name_of(options.method));
+  if (result.steps > 0) what += ", " + std::to_string(result.steps) + " steps";
+  return what;
+}
+
+/// Planes that a control would make stale are left for later.
+WantedPlanes wanted_of_method(const ExtractionOptions& options, WantedPlanes wanted) {
+  if (options.control != Control::none) wanted.picture = wanted.force = false;
+  return wanted;
+}
+
 }  // namespace
 
 template <typename Real>
+void apply_control(const ExtractionOptions& options, Plane<Real>& texture, StageLog* log) {
+  if (options.control == Control::none) return;
+  StageTimer timer(log);
+  texture = phase_scrambled(texture, options.control_seed);
+  timer.done("control", "phases of noise, amplitudes of the texture", bytes_of(texture));
+}
+
+template <typename Real>
 void extract_texture_into(const GreyImage& image, const ExtractionOptions& options,
-                          const WantedPlanes& wanted, Extraction<Real>& result) {
+                          const WantedPlanes& wanted, Extraction<Real>& result, StageLog* log) {
   check_options(options);
   if (image.empty()) throw std::invalid_argument("extract_texture: the image is empty");
-  if (!extracted_by_kernel(image, options, wanted, result)) {
-    result = by_method<Real>(image, options, wanted);
+  if (options.method != Method::adaptive) note_no_order_map(image, options, log);
+  const WantedPlanes of_method = wanted_of_method(options, wanted);
+  StageTimer timer(log);
+  if (!extracted_by_kernel(image, options, of_method, result)) {
+    result = by_method<Real>(image, options, of_method, timer);
   }
+  timer.done("texture", what_was_taken(options, result), bytes_of(result.texture));
+  apply_control(options, result.texture, log);
   add_by_products(image, wanted, result);
 }
 
 template <typename Real>
 Extraction<Real> extract_texture(const GreyImage& image, const ExtractionOptions& options,
-                                 const WantedPlanes& wanted) {
+                                 const WantedPlanes& wanted, StageLog* log) {
   Extraction<Real> result;
-  extract_texture_into(image, options, wanted, result);
+  extract_texture_into(image, options, wanted, result, log);
   return result;
 }
 
+template void apply_control<float>(const ExtractionOptions&, Plane<float>&, StageLog*);
+template void apply_control<double>(const ExtractionOptions&, Plane<double>&, StageLog*);
 template void extract_texture_into<float>(const GreyImage&, const ExtractionOptions&,
-                                          const WantedPlanes&, Extraction<float>&);
+                                          const WantedPlanes&, Extraction<float>&, StageLog*);
 template void extract_texture_into<double>(const GreyImage&, const ExtractionOptions&,
-                                           const WantedPlanes&, Extraction<double>&);
+                                           const WantedPlanes&, Extraction<double>&, StageLog*);
 template Extraction<float> extract_texture<float>(const GreyImage&, const ExtractionOptions&,
-                                                  const WantedPlanes&);
+                                                  const WantedPlanes&, StageLog*);
 template Extraction<double> extract_texture<double>(const GreyImage&, const ExtractionOptions&,
-                                                    const WantedPlanes&);
+                                                    const WantedPlanes&, StageLog*);
 
 }  // namespace touchtrial

@@ -5,6 +5,7 @@
 #include "core/plane.hpp"
 #include "engine/extraction_choices.hpp"
 #include "engine/force_field.hpp"
+#include "engine/stage_log.hpp"
 
 #include <cstdint>
 #include <optional>
@@ -67,6 +68,8 @@ struct ExtractionOptions {
   double threshold_grey = 4.0;          ///< [0, 255] (median)
   double divisor = 4.0;                 ///< kMinDivisor .. kMaxDivisor (edge)
   TvGaborOptions tv_gabor;
+  Control control = Control::none;  ///< made of the method's texture (every method)
+  std::uint64_t control_seed = 0;   ///< of the phases (Control::phase_scrambled)
 
   friend bool operator==(const ExtractionOptions&, const ExtractionOptions&) = default;
 };
@@ -93,7 +96,9 @@ struct WantedPlanes {
 /// empty (0 x 0). All have the image's shape but for the sub-bands.
 template <typename Real>
 struct Extraction {
-  Plane<Real> texture;  ///< T, grey levels, 0 where the image is flat; v for tv-gabor
+  /// T, grey levels, 0 where the image is flat; v for tv-gabor. With a control, and picture, force
+  /// and enhanced with it, that of the control; the other planes are the method's.
+  Plane<Real> texture;
   /// Adaptive only, of the first level; ceil(H/2) x ceil(W/2). The first letter is the filter along
   /// x.
   Plane<Real> sub_band_ll, sub_band_lh, sub_band_hl, sub_band_hh;
@@ -116,18 +121,25 @@ struct Extraction {
 /// \param image  8-bit grey, at least 1 x 1
 /// \throws std::invalid_argument if the image is empty or an option is out of range or NaN, or if
 ///   tv-gabor is to choose its component and the image has less than 3 pixels on each side
+/// \param log  takes the stages, if there is one; bytes are those of their planes
 /// Thread-safe. A tv-gabor that stops at max_steps is no error: see Extraction::converged.
 template <typename Real>
 [[nodiscard]] Extraction<Real> extract_texture(const GreyImage& image,
                                                const ExtractionOptions& options,
-                                               const WantedPlanes& wanted = {});
+                                               const WantedPlanes& wanted = {},
+                                               StageLog* log = nullptr);
 
 /// The same into an extraction made before: planes that have the right shape already are written
 /// over, so that a series of images of one size allocates next to nothing (float; adaptive and
 /// fixed with their default norm, gradient, combine and levels).
 template <typename Real>
 void extract_texture_into(const GreyImage& image, const ExtractionOptions& options,
-                          const WantedPlanes& wanted, Extraction<Real>& result);
+                          const WantedPlanes& wanted, Extraction<Real>& result,
+                          StageLog* log = nullptr);
+
+/// Turns a method's texture into its control, if the options ask for one.
+template <typename Real>
+void apply_control(const ExtractionOptions& options, Plane<Real>& texture, StageLog* log = nullptr);
 
 /// The texture as an 8-bit picture, rounded half up and limited to 0 .. 255.
 /// \throws std::invalid_argument if the texture is empty or not finite

@@ -1,5 +1,6 @@
-/// \file What the adaptive and the fixed method leave to choose besides numbers, with the words of
-/// study files and of the command line. Source: docs/method.md, "Options".
+/// \file What the methods leave to choose besides numbers, with the words of
+/// study files and of the command line. Source: docs/method.md, "Options" and
+/// "Controls".
 #pragma once
 
 #include <array>
@@ -37,11 +38,18 @@ enum class Combine {
   max
 };
 
+/// What a texture becomes to serve as its own control.
+enum class Control {
+  none,            ///< the texture as it is
+  phase_scrambled  ///< its spectrum without its structure: random phases
+};
+
 /// In the order of the enumerations.
 inline constexpr std::array<std::string_view, 3> kNormNames = {"additive", "sum", "none"};
 inline constexpr std::array<std::string_view, 3> kMappingNames = {"offset", "abs", "stretch"};
 inline constexpr std::array<std::string_view, 3> kGradientNames = {"sobel", "prewitt", "central"};
 inline constexpr std::array<std::string_view, 3> kCombineNames = {"sum", "l2", "max"};
+inline constexpr std::array<std::string_view, 2> kControlNames = {"none", "phase-scrambled"};
 
 /// The place of a word in one of the tables above, as a value of its enumeration.
 template <typename Choice, std::size_t size>

@@ -24,8 +24,8 @@ constexpr std::array<Statistic, 5> kStatistics = {
 
 constexpr const char* kWhatEntropyIs =
     "The paper's Table 1 prints, as \"Entropy\", what is called energy here: the square root of "
-    "the angular second moment (ASM). The entropy of the co-occurrence matrix, in nats, is the "
-    "row below it.";
+    "the angular second moment (ASM). The entropy of the co-occurrence matrix, in nats, is in the "
+    "rows below it.";
 
 void add_statistic(TextTable& table, const Statistic& statistic, const char* picture,
                    const GlcmTable& glcm) {

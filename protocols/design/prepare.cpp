@@ -14,6 +14,7 @@
 #include <exception>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <string_view>
 #include <system_error>
 
@@ -35,7 +36,10 @@ struct ImageOfStudy {
   std::filesystem::path path;
   std::size_t first_stimulus = 0;
   Digest pixels{};
+  std::int64_t size_px = 0;
   std::exception_ptr failure;
+
+  [[nodiscard]] bool is_large() const noexcept { return size_px > kLargeImagePixels; }
 };
 
 std::vector<ImageOfStudy> images_of(const Study& study) {
@@ -44,7 +48,7 @@ std::vector<ImageOfStudy> images_of(const Study& study) {
     const auto& paths = study.classes[static_cast<std::size_t>(c)].images;
     for (int e = 0; e < static_cast<int>(paths.size()); ++e) {
       const std::size_t first = images.size() * static_cast<std::size_t>(study.presented_methods());
-      images.push_back({c, e, study.folder / paths[static_cast<std::size_t>(e)], first, {}, {}});
+      images.push_back({c, e, study.folder / paths[static_cast<std::size_t>(e)], first, {}, 0, {}});
     }
   }
   return images;
@@ -60,14 +64,17 @@ std::vector<ImageOfStudy> images_of(const Study& study) {
 /// stimulus, so results do not depend on who was first.
 class Preparation {
  public:
-  Preparation(const StudyKey& key, std::filesystem::path folder, const Progress& progress)
+  Preparation(const StudyKey& key, std::filesystem::path folder, const Progress& progress,
+              const PrepareOptions& options)
       : key_(key),
         folder_(std::move(folder)),
         progress_(progress),
+        options_(options),
         earlier_(earlier_pack(folder_, key)),
         images_(images_of(key.study)),
         entries_(key.stimuli.size()),
-        solver_warnings_(key.stimuli.size()) {
+        solver_warnings_(key.stimuli.size()),
+        logs_(options.explain ? key.stimuli.size() : 0) {
     report_.stimuli.resize(key.stimuli.size());
     if (earlier_.pack) {
       for (const PackEntry& entry : earlier_.pack->manifest().entries) on_disk_[entry.code] = entry;
@@ -81,19 +88,25 @@ class Preparation {
     const StudyGains gains = measure(fields);
     finish(fields.manifest());
     advise(gains);
+    hand_over_stages();
     return std::move(report_);
   }
 
  private:
   void provide_fields() {
     const std::vector<ImageOfStudy*> order = images_by_code();
-    tbb::parallel_for(std::size_t{0}, order.size(), [&](std::size_t i) {
+    const auto provide = [this](ImageOfStudy& image, bool large_too) {
       try {
-        provide_fields_of(*order[i]);
+        provide_fields_of(image, large_too);
       } catch (...) {
-        order[i]->failure = std::current_exception();
+        image.failure = std::current_exception();
       }
-    });
+    };
+    tbb::parallel_for(std::size_t{0}, order.size(),
+                      [&](std::size_t i) { provide(*order[i], false); });
+    for (ImageOfStudy* image : order) {
+      if (image->is_large()) provide(*image, true);
+    }
     if (building_) write_unfinished();
     for (const ImageOfStudy& image : images_) {
       if (image.failure) std::rethrow_exception(image.failure);
@@ -110,12 +123,37 @@ class Preparation {
     return order;
   }
 
-  void provide_fields_of(ImageOfStudy& image) {
+  /// \param large_too  false leaves a large image for later
+  void provide_fields_of(ImageOfStudy& image, bool large_too) {
+    StageTimer timer(log_of(image.first_stimulus));
     const GreyImage grey = read(image);
+    image.size_px = static_cast<std::int64_t>(grey.size());
+    if (image.is_large() && !large_too) return;
     image.pixels = FieldHasher().add(std::int64_t{grey.width()}).add(grey.samples()).finish();
+    timer.done("read image", "its pixels decide what must be built", grey.size());
+    std::optional<TakenTexture> taken;
     for (int m = 0; m < key_.study.presented_methods(); ++m) {
-      provide_field(image.first_stimulus + static_cast<std::size_t>(m), grey);
+      const std::size_t i = image.first_stimulus + static_cast<std::size_t>(m);
+      if (m > 0 && options_.explain) {
+        logs_[i].reuse("read image", "read for " + key_.study.methods.front().label, grey.size());
+      }
+      provide_field(i, grey, taken);
     }
+  }
+
+  [[nodiscard]] StageLog* log_of(std::size_t stimulus) {
+    return options_.explain ? &logs_[stimulus] : nullptr;
+  }
+
+  /// Whether a later stimulus of the same image is made of the same texture.
+  [[nodiscard]] bool is_needed_again(std::size_t i) const {
+    const StimulusIndex& stimulus = key_.stimuli[i].stimulus;
+    const auto& methods = key_.study.methods;
+    const auto own = without_control(methods[static_cast<std::size_t>(stimulus.method)]);
+    for (int m = stimulus.method + 1; m < key_.study.presented_methods(); ++m) {
+      if (without_control(methods[static_cast<std::size_t>(m)]) == own) return true;
+    }
+    return false;
   }
 
   [[nodiscard]] GreyImage read(const ImageOfStudy& image) const {
@@ -126,27 +164,45 @@ class Preparation {
     }
   }
 
-  void provide_field(std::size_t i, const GreyImage& image) {
+  void provide_field(std::size_t i, const GreyImage& image, std::optional<TakenTexture>& taken) {
     const Clock::time_point start = Clock::now();
     const auto& [code, stimulus] = key_.stimuli[i];
-    const auto& method = key_.study.methods[static_cast<std::size_t>(stimulus.method)];
+    const ExtractionOptions method = method_of(key_.study, stimulus);
     const Digest tag = input_tag(key_.master, image, method, key_.study.rendering);
     const PackEntry* earlier = earlier_.reusable(code, tag);
     if (earlier != nullptr) {
       entries_[i] = *earlier;
+      note_reuse(i, seconds_since(start));
     } else {
       announce_building();
-      const BuiltField built = build_field(image, method, key_.study.rendering);
-      entries_[i] = {code, write_field(folder_, code, built.field.view()), tag, {}};
-      solver_warnings_[i] = solver_warning(key_.study, stimulus, built);
+      build(i, image, method, tag, taken);
     }
     PreparedStimulus& prepared = report_.stimuli[i];
     prepared.class_label = key_.study.classes[static_cast<std::size_t>(stimulus.class_index)].label;
     prepared.exemplar = stimulus.exemplar;
-    prepared.method = name_of(method.method);
+    prepared.method = key_.study.methods[static_cast<std::size_t>(stimulus.method)].label;
     prepared.reused = earlier != nullptr;
     prepared.seconds = seconds_since(start);
     note_done(entries_[i]);
+  }
+
+  void build(std::size_t i, const GreyImage& image, const ExtractionOptions& method,
+             const Digest& tag, std::optional<TakenTexture>& taken) {
+    const auto& [code, stimulus] = key_.stimuli[i];
+    const BuiltField built =
+        build_field(image, method, key_.study.rendering, taken, is_needed_again(i), log_of(i));
+    StageTimer timer(log_of(i));
+    entries_[i] = {code, write_field(folder_, code, built.field.view()), tag, {}};
+    timer.done("write field", "the pack had none of this picture and these options",
+               size_of_field(code));
+    solver_warnings_[i] = solver_warning(key_.study, stimulus, built);
+  }
+
+  void note_reuse(std::size_t i, double seconds) {
+    if (!options_.explain) return;
+    logs_[i].add({"field", StageState::reused,
+                  "same picture and options, and intact: nothing was extracted", seconds,
+                  size_of_field(key_.stimuli[i].code)});
   }
 
   /// Before the first field is replaced, the pack stops being one that can be presented.
@@ -180,22 +236,57 @@ class Preparation {
       mapped.push_back(fields.map(stimulus.code));
       views.push_back(mapped.back().view());
     }
+    StageTimer timer(study_log());
     StudyGains gains = choose_gains(views, key_.study.rendering);
+    timer.done("gains",
+               key_.study.rendering.gains ? "explicit, held against the stiffness budget"
+                                          : "from the stiffness of all stimuli together",
+               views.size() * sizeof(Gains));
     flat_.resize(views.size());
+    const auto measure_one = [&](std::size_t i) { describe(i, views[i], gains.of_field[i]); };
     tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t i) {
-      entries_[i].gains = gains.of_field[i];
-      report_.stimuli[i].gains = gains.of_field[i];
-      report_.stimuli[i].statistics = field_statistics(views[i], gains.of_field[i]);
-      report_.stimuli[i].bytes = size_of_field(key_.stimuli[i].code);
-      flat_[i] = is_flat(views[i]) ? 1 : 0;
+      if (!is_large(views[i])) measure_one(i);
     });
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      if (is_large(views[i])) measure_one(i);
+    }
     return gains;
   }
 
+  [[nodiscard]] StageLog* study_log() { return options_.explain ? &study_log_ : nullptr; }
+
+  static bool is_large(FieldView field) noexcept {
+    return std::int64_t{field.geometry.height_px} * field.geometry.width_px > kLargeImagePixels;
+  }
+
+  void describe(std::size_t i, FieldView field, Gains gains) {
+    PreparedStimulus& prepared = report_.stimuli[i];
+    entries_[i].gains = gains;
+    prepared.gains = gains;
+    prepared.bytes = size_of_field(key_.stimuli[i].code);
+    flat_[i] = is_flat(field) ? 1 : 0;
+    if (options_.statistics) {
+      StageTimer timer(log_of(i));
+      prepared.statistics = field_statistics(field, gains);
+      timer.done("statistics", "they follow the gains of the study", sizeof(FieldStatistics));
+    } else if (options_.explain) {
+      logs_[i].skip("statistics", "nobody asked for them", sizeof(FieldStatistics));
+    }
+  }
+
   [[nodiscard]] std::uintmax_t size_of_field(const std::string& code) const {
+    return size_of(folder_ / (code + ".field"));
+  }
+
+  static std::uintmax_t size_of(const std::filesystem::path& file) {
     std::error_code error;
-    const auto bytes = std::filesystem::file_size(folder_ / (code + ".field"), error);
+    const auto bytes = std::filesystem::file_size(file, error);
     return error ? 0 : bytes;
+  }
+
+  void hand_over_stages() {
+    for (std::size_t i = 0; i < logs_.size(); ++i) report_.stimuli[i].stages = logs_[i].stages();
+    report_.study_stages = study_log_.stages();
   }
 
   void finish(const PackManifest& before) {
@@ -203,12 +294,23 @@ class Preparation {
     std::ranges::sort(manifest.entries, {}, &PackEntry::code);
     const bool unchanged =
         before.study_id == manifest.study_id && before.entries == manifest.entries;
-    if (!unchanged) write_manifest(folder_, manifest);
+    StageTimer timer(study_log());
+    if (!unchanged) {
+      write_manifest(folder_, manifest);
+      timer.done("pack.json", "fields or gains have changed", size_of(folder_ / "pack.json"));
+    } else if (options_.explain) {
+      study_log_.reuse("pack.json", "fields and gains are as they were",
+                       size_of(folder_ / "pack.json"));
+    }
     remove_leftovers(folder_, manifest);
   }
 
   void advise(const StudyGains& gains) {
-    report_.skipped = skipped_work(key_.study);
+    std::uintmax_t pixels_of_study = 0;
+    for (const ImageOfStudy& image : images_) {
+      pixels_of_study += static_cast<std::uintmax_t>(image.size_px);
+    }
+    report_.skipped = skipped_work(key_.study, pixels_of_study);
     report_.warnings = rendering_warnings(key_.study.rendering, gains);
     if (!earlier_.damage.empty()) {
       report_.warnings.push_back(earlier_.damage + ": all fields were built anew");
@@ -229,11 +331,14 @@ class Preparation {
   const StudyKey& key_;
   std::filesystem::path folder_;
   const Progress& progress_;
+  PrepareOptions options_;
   EarlierPack earlier_;
   std::vector<ImageOfStudy> images_;
   std::vector<PackEntry> entries_;
   std::vector<std::string> solver_warnings_;
   std::vector<std::uint8_t> flat_;
+  std::vector<StageLog> logs_;  ///< of the stimuli, if an explanation is wanted
+  StageLog study_log_;
   PrepareReport report_;
 
   std::mutex mutex_;  ///< of what follows
@@ -254,10 +359,10 @@ void check_images_exist(const Study& study) {
 }
 
 PrepareReport prepare_pack(const StudyKey& key, const std::filesystem::path& pack_folder,
-                           const Progress& progress) {
+                           const Progress& progress, const PrepareOptions& options) {
   make_folder(pack_folder);
   const PackLock lock(pack_folder);
-  return Preparation(key, pack_folder, progress).run();
+  return Preparation(key, pack_folder, progress, options).run();
 }
 
 }  // namespace touchtrial

@@ -3,6 +3,7 @@
 
 #include "engine/pack/pack.hpp"
 #include "engine/rendering/field_statistics.hpp"
+#include "engine/stage_log.hpp"
 #include "protocols/design/study_key.hpp"
 
 #include <cstdint>
@@ -31,29 +32,40 @@ struct PackPlace {
 struct PreparedStimulus {
   std::string class_label;
   int exemplar = 0;
-  std::string method;
+  std::string method;  ///< its label
   bool reused = false;
-  FieldStatistics statistics;
+  FieldStatistics statistics;  ///< zeros if they were not asked for
   Gains gains;
   double seconds = 0.0;
   std::uintmax_t bytes = 0;
+  std::vector<Stage> stages;  ///< if an explanation was asked for
 };
 
 /// Work that was not done, and why.
 struct SkippedWork {
   std::string what;
   std::string why;
+  std::uintmax_t bytes = 0;  ///< that were not written for it
 };
 
 struct PrepareReport {
   std::vector<PreparedStimulus> stimuli;
   std::vector<SkippedWork> skipped;
   std::vector<std::string> warnings;
+  std::vector<Stage> study_stages;  ///< of all stimuli together, if an explanation was asked for
+};
+
+/// What is wanted besides the pack.
+struct PrepareOptions {
+  bool statistics = true;  ///< PreparedStimulus::statistics: two Fourier transforms a stimulus
+  bool explain = false;    ///< the stages, with their times and bytes
 };
 
 /// Whether every image that the study presents is there; to be asked before anything is written.
 /// \throws StudyError with the place of the first that is not
 void check_images_exist(const Study& study);
+
+inline constexpr std::int64_t kLargeImagePixels = std::int64_t{1} << 22;
 
 /// Called after each stimulus, from any thread but never twice at a time.
 using Progress = std::function<void(int done, int of)>;
@@ -63,10 +75,12 @@ using Progress = std::function<void(int done, int of)>;
 /// has any more. A run that is interrupted leaves a pack from which nothing is presented and which
 /// the next run completes; a run that has nothing to do leaves the pack's files untouched.
 /// The pack's bytes depend on key, study and images alone, not on the number of threads.
+/// Images of more than kLargeImagePixels are worked on one after another: what a large one needs
+/// (docs/benchmarks/memory.md) is needed once, whatever the number of threads.
 /// \throws StudyError if an image cannot be read, with its place in the study
 /// \throws FileError if the pack cannot be written, is being prepared by another process, or
 ///   belongs to another key
 PrepareReport prepare_pack(const StudyKey& key, const std::filesystem::path& pack_folder,
-                           const Progress& progress = {});
+                           const Progress& progress = {}, const PrepareOptions& options = {});
 
 }  // namespace touchtrial

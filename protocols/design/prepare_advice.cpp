@@ -19,19 +19,19 @@ std::string image_in_words(const Study& study, int class_index, int exemplar) {
 std::string described(const Study& study, const StimulusIndex& stimulus) {
   const auto& method = study.methods[static_cast<std::size_t>(stimulus.method)];
   return image_in_words(study, stimulus.class_index, stimulus.exemplar) + ", method " +
-         std::string(name_of(method.method));
+         method.label;
 }
 
-std::vector<SkippedWork> skipped_work(const Study& study) {
+std::vector<SkippedWork> skipped_work(const Study& study, std::uintmax_t pixels) {
   std::size_t images = 0;
   for (const StudyClass& study_class : study.classes) images += study_class.images.size();
   std::vector<SkippedWork> skipped;
   for (std::size_t m = static_cast<std::size_t>(study.presented_methods());
        m < study.methods.size(); ++m) {
-    skipped.push_back({std::string(name_of(study.methods[m].method)) + " x " +
-                           std::to_string(images) + " stimuli",
+    skipped.push_back({study.methods[m].label + " x " + std::to_string(images) + " stimuli",
                        "the classification protocol presents only its first method, " +
-                           std::string(name_of(study.methods.front().method))});
+                           study.methods.front().label,
+                       pixels * sizeof(FieldSample)});
   }
   return skipped;
 }

@@ -14,8 +14,8 @@ namespace touchtrial {
 /// A stimulus in words: class, image and method.
 [[nodiscard]] std::string described(const Study& study, const StimulusIndex& stimulus);
 
-/// Methods of the study file that the protocol does not present.
-[[nodiscard]] std::vector<SkippedWork> skipped_work(const Study& study);
+/// Methods of the study file that the protocol does not present. \param pixels  of all its images
+[[nodiscard]] std::vector<SkippedWork> skipped_work(const Study& study, std::uintmax_t pixels);
 
 /// Options that are allowed and probably not meant.
 [[nodiscard]] std::vector<std::string> rendering_warnings(const RenderingOptions& rendering,

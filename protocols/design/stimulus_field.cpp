@@ -1,8 +1,11 @@
 #include "protocols/design/stimulus_field.hpp"
 
+#include "core/random.hpp"
+#include "engine/cited_textures.hpp"
 #include "protocols/design/study_sections.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace touchtrial {
 namespace {
@@ -19,25 +22,103 @@ std::string rendering_text(const RenderingOptions& rendering) {
       .dump();
 }
 
+bool is_flat(const GreyImage& image) {
+  const std::uint8_t level = image.samples().front();
+  return std::ranges::all_of(image.samples(), [level](std::uint8_t grey) { return grey == level; });
+}
+
+TextureField rendered(Plane<double> texture, const RenderingOptions& rendering, StageLog* log) {
+  StageTimer timer(log);
+  TextureField field = make_texture_field(texture, rendering);
+  const double sigma_px = to_px(rendering.filter_mm, rendering.pitch_mm);
+  timer.done("filter, forces",
+             sigma_px > 0.0 ? "a Gaussian of " + number_text(sigma_px) + " px first"
+                            : "unfiltered: there is nothing to filter, or filter_mm is 0",
+             field.view().samples.size_bytes());
+  return field;
+}
+
+/// What every method takes from a flat image: nothing, or as luminance a level.
+Plane<double> flat_texture(const GreyImage& image, const ExtractionOptions& method) {
+  const double level =
+      method.method == Method::luminance ? luminance_texture<double>(image).at(0, 0) : 0.0;
+  return {image.height(), image.width(), level};
+}
+
+/// On a level neither control nor filter has anything to do.
+BuiltField flat_field(const GreyImage& image, const ExtractionOptions& method,
+                      RenderingOptions rendering, StageLog* log) {
+  if (log != nullptr) {
+    for (const char* stage : {"sub-bands", "order map", "texture", "control", "filter"}) {
+      log->skip(stage, "the image is flat", image.size() * sizeof(double));
+    }
+  }
+  rendering.filter_mm = 0.0;
+  return {rendered(flat_texture(image, method), rendering, log)};
+}
+
+void take_texture(const GreyImage& image, const ExtractionOptions& method,
+                  std::optional<TakenTexture>& taken, StageLog* log) {
+  if (taken && taken->method == method) {
+    if (log != nullptr) {
+      log->reuse("texture", "taken for another stimulus of this image",
+                 image.size() * sizeof(double));
+    }
+    return;
+  }
+  taken.reset();
+  taken = TakenTexture{method, extract_texture<double>(image, method, {}, log)};
+}
+
 }  // namespace
 
 Digest input_tag(const SecretKey& master, const GreyImage& image, const ExtractionOptions& method,
                  const RenderingOptions& rendering) {
-  const Digest input = FieldHasher()
-                           .add(kComputation)
-                           .add(std::int64_t{image.height()})
-                           .add(std::int64_t{image.width()})
-                           .add(ByteView(image.samples()))
-                           .add(to_json(method).dump())
-                           .add(rendering_text(rendering))
-                           .finish();
+  FieldHasher hasher;
+  hasher.add(kComputation).add(std::int64_t{image.height()}).add(std::int64_t{image.width()});
+  hasher.add(ByteView(image.samples())).add(to_json(method).dump()).add(rendering_text(rendering));
+  if (method.control != Control::none) {
+    hasher.add(static_cast<std::int64_t>(method.control_seed));
+  }
+  const Digest input = hasher.finish();
   return keyed_hash(derive_key(master, "input"), ByteView(input));
 }
 
+ExtractionOptions method_of(const Study& study, const StimulusIndex& stimulus) {
+  const auto& method = study.methods[static_cast<std::size_t>(stimulus.method)];
+  ExtractionOptions options = method;
+  if (options.control == Control::none) return options;
+  const StudyClass& shown = study.classes[static_cast<std::size_t>(stimulus.class_index)];
+  const auto& image = shown.images[static_cast<std::size_t>(stimulus.exemplar)];
+  const Digest identity =
+      FieldHasher().add(shown.label).add(image.string()).add(method.label).finish();
+  options.control_seed = RandomStream(study.seed, "control of " + to_hex(identity)).bits();
+  return options;
+}
+
+ExtractionOptions without_control(ExtractionOptions method) {
+  method.control = Control::none;
+  method.control_seed = 0;
+  return method;
+}
+
 BuiltField build_field(const GreyImage& image, const ExtractionOptions& method,
-                       const RenderingOptions& rendering) {
-  const Extraction<double> extraction = extract_texture<double>(image, method);
-  return {make_texture_field(extraction.texture, rendering), extraction.gap, extraction.steps,
+                       const RenderingOptions& rendering, std::optional<TakenTexture>& taken,
+                       bool keep, StageLog* log) {
+  if (is_flat(image)) return flat_field(image, method, rendering, log);
+  take_texture(image, without_control(method), taken, log);
+  Extraction<double> extraction;
+  if (keep) {
+    extraction = taken->extraction;
+  } else {
+    extraction = std::move(taken->extraction);
+    taken.reset();
+  }
+  if (method.control == Control::none && log != nullptr) {
+    log->skip("control", "none asked for", image.size() * sizeof(double));
+  }
+  apply_control(method, extraction.texture, log);
+  return {rendered(std::move(extraction.texture), rendering, log), extraction.gap, extraction.steps,
           extraction.converged};
 }
 

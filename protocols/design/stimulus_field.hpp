@@ -4,8 +4,18 @@
 #include "core/cipher.hpp"
 #include "engine/extraction.hpp"
 #include "engine/rendering/texture_field.hpp"
+#include "engine/stage_log.hpp"
+#include "protocols/design/schedule.hpp"
+#include "protocols/design/study.hpp"
+
+#include <optional>
 
 namespace touchtrial {
+
+/// A stimulus' method with the seed of its control, which is its own: derived from the study's seed
+/// and from what the stimulus is, so that exemplars and methods differ, and that a stimulus keeps
+/// its phases when others come or go.
+[[nodiscard]] ExtractionOptions method_of(const Study& study, const StimulusIndex& stimulus);
 
 /// A keyed hash of everything that decides a field's bytes: pixels, method, pitch, filter,
 /// neighbourhood, and the version of this computation. Equal tags: the field need not be built.
@@ -20,8 +30,23 @@ struct BuiltField {
   bool converged = true;
 };
 
+/// The same method without a control.
+[[nodiscard]] ExtractionOptions without_control(ExtractionOptions method);
+
+/// A texture that has been taken from an image, for stimuli of the same image that differ in their
+/// control only.
+struct TakenTexture {
+  ExtractionOptions method;  ///< without its control
+  Extraction<double> extraction;
+};
+
+/// \param taken  used if it is of this method, replaced if not; nothing may have been taken yet. A
+///   flat image needs none, and changes nothing of it.
+/// \param keep  whether the texture is to be left there: another stimulus needs it
+/// \param log  takes the stages, if there is one
 [[nodiscard]] BuiltField build_field(const GreyImage& image, const ExtractionOptions& method,
-                                     const RenderingOptions& rendering);
+                                     const RenderingOptions& rendering,
+                                     std::optional<TakenTexture>& taken, bool keep, StageLog* log);
 
 /// Whether nothing can be felt in the field but a smooth wall.
 [[nodiscard]] bool is_flat(FieldView field) noexcept;

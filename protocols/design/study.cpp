@@ -15,8 +15,9 @@ constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{16} << 20U;
 constexpr std::int64_t kMaxSeed = std::int64_t{1} << 53U;  // what every JSON reader holds exactly
 constexpr std::array kBlindingNames = {Named<int>{"double", 0}};
 
-/// The name goes into file names, tables and BIDS labels.
-std::string read_study_name(const JsonValue& place) {
+}  // namespace
+
+std::string read_plain_name(const JsonValue& place) {
   constexpr std::size_t kLongest = 64;
   const std::string& name = place.text();
   const bool plain = std::all_of(name.begin(), name.end(), [](char c) {
@@ -28,6 +29,8 @@ std::string read_study_name(const JsonValue& place) {
   }
   return name;
 }
+
+namespace {
 
 void check_protocol(const JsonValue& place, const Study& study) {
   if (study.protocol == Protocol::comparison && study.methods.size() < 2) {
@@ -61,7 +64,7 @@ Study read_study(const JsonValue& place) {
   const JsonObject root = place.object(
       {"study", "protocol", "classes", "methods", "rendering", "trials", "blinding", "seed"});
   Study study;
-  study.name = read_study_name(root.at("study"));
+  study.name = read_plain_name(root.at("study"));
   study.protocol = root.at("protocol").choice(kProtocolNames);
   study.classes = read_classes(root.at("classes"));
   study.methods = read_methods(root.at("methods"));

@@ -22,6 +22,16 @@ struct StudyClass {
   std::vector<std::filesystem::path> images;  ///< as written in the file
 };
 
+/// A way of taking textures, and what tables and files call it.
+struct StudyMethod : ExtractionOptions {
+  std::string label;  ///< unique in the study
+
+  friend bool operator==(const StudyMethod&, const StudyMethod&) = default;
+};
+
+/// The label of a method that is given none: its name, and its control's if it has one.
+[[nodiscard]] std::string default_label(const ExtractionOptions& method);
+
 enum class TrialOrder { shuffled, de_bruijn, uniform };
 enum class OnTimeout { fade, no_response };
 enum class Blocks { by_method, mixed };
@@ -45,8 +55,8 @@ struct TrialOptions {
 struct Study {
   std::string name;
   Protocol protocol = Protocol::classification;
-  std::vector<StudyClass> classes;         ///< >= 2, labels unique
-  std::vector<ExtractionOptions> methods;  ///< >= 1, names unique
+  std::vector<StudyClass> classes;   ///< >= 2, labels unique
+  std::vector<StudyMethod> methods;  ///< >= 1, labels unique
   RenderingOptions rendering;
   TrialOptions trials;
   std::uint64_t seed = 0;

@@ -25,7 +25,7 @@ std::string code_for(const SecretKey& code_key, const Study& study, const Stimul
                               .add("touchtrial code 1")
                               .add(shown.label)
                               .add(image.string())
-                              .add(name_of(method.method))
+                              .add(method.label)
                               .finish();
   return first_hex(keyed_hash(code_key, ByteView(identity)), kCodeBytes);
 }

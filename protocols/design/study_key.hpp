@@ -37,7 +37,7 @@ struct StudyKey {
 
 /// A new key: secrets from `entropy` (asked for "touchtrial study key master" and "touchtrial study
 /// key nonce"), codes derived from them. A code depends on master, label, image path as written and
-/// method name alone, so it stays with its stimulus when others come or go.
+/// method label alone, so it stays with its stimulus when others come or go.
 /// \throws StudyError if two stimuli got one code (2^-64 a pair)
 [[nodiscard]] StudyKey make_study_key(const Study& study, Entropy& entropy, bool simulated);
 

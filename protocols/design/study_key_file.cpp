@@ -61,7 +61,7 @@ json stimuli_to_json(const StudyKey& key) {
         {{"code", code},
          {"label", shown.label},
          {"image", shown.images[static_cast<std::size_t>(stimulus.exemplar)].string()},
-         {"method", name_of(key.study.methods[static_cast<std::size_t>(stimulus.method)].method)}});
+         {"method", key.study.methods[static_cast<std::size_t>(stimulus.method)].label}});
   }
   return list;
 }

@@ -3,6 +3,7 @@
 #include "protocols/design/study_sections.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace touchtrial {
 namespace {
@@ -34,7 +35,7 @@ const std::vector<MethodKey>& method_keys() {
 }
 
 std::vector<std::string_view> known_keys() {
-  std::vector<std::string_view> keys = {"name"};
+  std::vector<std::string_view> keys = {"name", "label", "control"};
   for (const MethodKey& entry : method_keys()) keys.push_back(entry.key);
   return keys;
 }
@@ -117,11 +118,11 @@ TvGaborOptions read_tv_gabor(const JsonObject& object) {
   return options;
 }
 
-ExtractionOptions read_method(const JsonValue& place) {
+StudyMethod read_method(const JsonValue& place) {
   using Options = ExtractionOptions;
   const std::vector<std::string_view> known = known_keys();
   const JsonObject object = place.object(std::span<const std::string_view>(known));
-  ExtractionOptions options;
+  StudyMethod options;
   options.method = read_name(object.at("name"));
   refuse_foreign_keys(object, options.method);
   read_integer(object, "radius", 1, Options::kMaxRadius, options.radius);
@@ -136,6 +137,9 @@ ExtractionOptions read_method(const JsonValue& place) {
   read_number(object, "divisor", {.low = Options::kMinDivisor, .high = Options::kMaxDivisor},
               options.divisor);
   options.tv_gabor = read_tv_gabor(object);
+  read_choice(object, "control", kControlNames, options.control);
+  const auto label = object.find("label");
+  options.label = label ? read_plain_name(*label) : default_label(options);
   return options;
 }
 
@@ -151,15 +155,22 @@ nlohmann::json components_json(const TvGaborOptions& options) {
 
 }  // namespace
 
-std::vector<ExtractionOptions> read_methods(const JsonValue& place) {
-  std::vector<ExtractionOptions> methods;
+std::string default_label(const ExtractionOptions& method) {
+  std::string label(name_of(method.method));
+  if (method.control != Control::none)
+    label += "-" + std::string(name_among(kControlNames, method.control));
+  return label;
+}
+
+std::vector<StudyMethod> read_methods(const JsonValue& place) {
+  std::vector<StudyMethod> methods;
   for (const JsonValue& item : place.items(1, kMaxMethods)) {
-    const ExtractionOptions options = read_method(item);
-    const bool taken = std::any_of(methods.begin(), methods.end(), [&](const auto& other) {
-      return other.method == options.method;
-    });
-    if (taken) item.refuse(in_quotes(name_of(options.method)) + " is there twice; list it once");
-    methods.push_back(options);
+    StudyMethod method = read_method(item);
+    if (std::ranges::count(methods, method.label, &StudyMethod::label) > 0) {
+      item.refuse(in_quotes(method.label) +
+                  " is there twice; list it once, or give one of the two another label");
+    }
+    methods.push_back(std::move(method));
   }
   return methods;
 }
@@ -182,6 +193,14 @@ nlohmann::json to_json(const ExtractionOptions& method) {
   for (const MethodKey& entry : method_keys()) {
     if (belongs_to(method.method, entry)) object[std::string(entry.key)] = all.at(entry.key);
   }
+  if (method.control != Control::none)
+    object["control"] = name_among(kControlNames, method.control);
+  return object;
+}
+
+nlohmann::json to_json(const StudyMethod& method) {
+  nlohmann::json object = to_json(static_cast<const ExtractionOptions&>(method));
+  if (method.label != default_label(method)) object["label"] = method.label;
   return object;
 }
 

@@ -9,7 +9,7 @@ namespace touchtrial {
 std::string blinded_configuration(const StudyKey& key) {
   const Study& study = key.study;
   nlohmann::json methods = nlohmann::json::array();
-  for (const ExtractionOptions& method : study.methods) methods.push_back(to_json(method));
+  for (const StudyMethod& method : study.methods) methods.push_back(to_json(method));
   std::vector<std::string> codes;
   for (const KeyedStimulus& stimulus : key.stimuli) codes.push_back(stimulus.code);
   std::ranges::sort(codes);
@@ -34,7 +34,7 @@ Digest study_seal(const StudyKey& key) {
     const auto& method = key.study.methods[static_cast<std::size_t>(stimulus.method)];
     hasher.add(code).add(shown.label);
     hasher.add(shown.images[static_cast<std::size_t>(stimulus.exemplar)].string());
-    hasher.add(name_of(method.method));
+    hasher.add(method.label);
   }
   hasher.add(schedule_rule(key.study)).add(static_cast<std::int64_t>(key.study.seed));
   hasher.add(blinded_configuration(key)).add(ByteView(key.nonce));

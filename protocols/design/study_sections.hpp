@@ -18,15 +18,21 @@ inline constexpr std::size_t kMaxMethods = 8;
 inline constexpr int kMaxStimuli = 10'000;
 inline constexpr int kMaxScoredTrials = 10'000;
 
+/// A text that may stand in file names, tables and BIDS labels: 1 to 64 of 0-9 A-Z a-z _ -
+/// \throws StudyError if it is not such
+[[nodiscard]] std::string read_plain_name(const JsonValue& place);
+
 /// All throw StudyError with the place of what they cannot accept.
 [[nodiscard]] std::vector<StudyClass> read_classes(const JsonValue& place);
-[[nodiscard]] std::vector<ExtractionOptions> read_methods(const JsonValue& place);
+[[nodiscard]] std::vector<StudyMethod> read_methods(const JsonValue& place);
 [[nodiscard]] RenderingOptions read_rendering(const JsonValue& place);
 [[nodiscard]] TrialOptions read_trials(const JsonValue& place);
 
 /// The sections as the study file writes them, every key explicit; a method has the keys that
-/// belong to it and no others. Equal options give equal JSON.
+/// belong to it and no others, "control" if it has one, and "label" if it is not the default. Equal
+/// options give equal JSON.
 [[nodiscard]] nlohmann::json to_json(const ExtractionOptions& method);
+[[nodiscard]] nlohmann::json to_json(const StudyMethod& method);
 [[nodiscard]] nlohmann::json to_json(const RenderingOptions& rendering);
 [[nodiscard]] nlohmann::json to_json(const TrialOptions& trials);
 

@@ -22,7 +22,7 @@ TEST_CASE("the classification study is the paper's: five textures, 25 trials, on
   CHECK(study.name == "classification");
   CHECK(labels_of(study) == std::vector<std::string>{"bark", "cloth", "pebbles", "straw", "brick"});
   CHECK(study.presented_methods() == 1);
-  CHECK(study.methods == std::vector<ExtractionOptions>(1));
+  CHECK(study.methods == std::vector<StudyMethod>{{{}, "adaptive"}});
   CHECK(study.scored_trials() == 25);
   CHECK(make_schedule(study, 1).presentations.size() == 25);
   CHECK(study.rendering == RenderingOptions{});
@@ -61,9 +61,19 @@ TEST_CASE("the comparison without outlines differs from the other in its picture
   CHECK(textures.seed != objects.seed);
 }
 
+TEST_CASE("the control study holds the adaptive method against its phase-scrambled control") {
+  const Study study = load_study(kConfig / "control.json");
+  CHECK(study.name == "control");
+  REQUIRE(study.presented_methods() == 2);
+  CHECK(study.methods[0] == StudyMethod{{}, "adaptive"});
+  CHECK(study.methods[1].label == "adaptive-phase-scrambled");
+  CHECK(study.methods[1].control == Control::phase_scrambled);
+  CHECK(study.rendering.equalise == Equalise::rms);
+}
+
 TEST_CASE("every image of the studies that come with the program is there") {
   for (const char* name : {"classification.json", "classification-exemplars.json",
-                           "comparison.json", "comparison-textures.json"}) {
+                           "comparison.json", "comparison-textures.json", "control.json"}) {
     const Study study = load_study(kConfig / name);
     for (const StudyClass& study_class : study.classes) {
       for (const std::filesystem::path& image : study_class.images) {

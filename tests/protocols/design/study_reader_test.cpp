@@ -180,10 +180,32 @@ TEST_CASE("every method is read with its options, and written again as it was re
   CHECK(study.methods[5].method == Method::luminance);
   json again = document;
   again["methods"] = json::array();
-  for (const ExtractionOptions& method : study.methods) again["methods"].push_back(to_json(method));
+  for (const StudyMethod& method : study.methods) again["methods"].push_back(to_json(method));
   CHECK(again["methods"][1]["components"] == "auto");
   CHECK(again["methods"][5] == json{{"name", "luminance"}});
   CHECK(parsed(again).methods == study.methods);
+}
+
+TEST_CASE("a method and its control, or two settings of one method, are told apart by labels") {
+  json document = comparison_of(2);
+  document["methods"] = {{{"name", "adaptive"}},
+                         {{"name", "adaptive"}, {"control", "phase-scrambled"}},
+                         {{"name", "adaptive"}, {"radius", 7}, {"label", "wide"}}};
+  const Study study = parsed(document);
+  CHECK(study.methods[0].label == "adaptive");
+  CHECK(study.methods[1].label == "adaptive-phase-scrambled");
+  CHECK(study.methods[1].control == Control::phase_scrambled);
+  CHECK(study.methods[2].label == "wide");
+  json again = document;
+  again["methods"] = json::array();
+  for (const StudyMethod& method : study.methods) again["methods"].push_back(to_json(method));
+  CHECK_FALSE(again["methods"][0].contains("label"));
+  CHECK_FALSE(again["methods"][0].contains("control"));
+  CHECK(parsed(again).methods == study.methods);
+  document["methods"][2]["label"] = "adaptive";
+  contains(refusal(document), "/methods/2: \"adaptive\" is there twice");
+  document["methods"][2]["label"] = "a b";
+  contains(refusal(document), "/methods/2/label: \"a b\" must have 1 to 64 of the characters");
 }
 
 TEST_CASE("a key that belongs to another method is refused with the reason") {
@@ -223,7 +245,9 @@ TEST_CASE("a comparison of one method is refused") {
 TEST_CASE("a method listed twice is refused") {
   json document = comparison_of(2);
   document["methods"][1] = {{"name", "adaptive"}, {"radius", 3}};
-  CHECK(refusal(document) == "study.json: /methods/1: \"adaptive\" is there twice; list it once");
+  CHECK(refusal(document) ==
+        "study.json: /methods/1: \"adaptive\" is there twice; list it once, or "
+        "give one of the two another label");
 }
 
 TEST_CASE("labels that tables could not tell apart or print are refused") {
