@@ -80,6 +80,7 @@ TEST_CASE("extract takes the texture by every method and option") {
       {"--method", "median", "--radius", "1", "--threshold", "0"},
       {"--method", "edge", "--divisor", "2"},
       {"--method", "luminance", "--precision", "double"},
+      {"--method", "edge", "--control", "phase-scrambled", "--seed", "7"},
       {"--method", "tv-gabor", "--components", "0.2,0;0.3,-45.5"}};
   for (const auto& variant : variants) {
     std::vector<std::string> arguments = {"extract", path};
@@ -123,6 +124,31 @@ TEST_CASE("extract maps the picture as asked, and never the forces") {
   CHECK(plane("offset", "force_tangential.npy") == plane("stretch", "force_tangential.npy"));
 }
 
+TEST_CASE("extract dumps the control's texture, picture and force, and the method's orders") {
+  const TempFolder folder;
+  const auto path = (folder.path() / "noise.png").string();
+  write_png(path, noise(12, 17));
+  const auto dumped = [&](const std::string& name, const std::vector<std::string>& options) {
+    const auto dump = folder.path() / name;
+    std::vector<std::string> arguments = {"extract", path, "--dump", dump.string()};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    REQUIRE(run_touchtrial(folder.path(), arguments).exit_code == 0);
+    return dump;
+  };
+  const auto plain = dumped("plain", {});
+  const auto control = dumped("control", {"--control", "phase-scrambled", "--seed", "3"});
+  const auto again = dumped("again", {"--control", "phase-scrambled", "--seed", "3"});
+  const auto wide = dumped("wide", {"--neighbourhood", "5"});
+  for (const char* name : {"texture.npy", "texture_u8.npy", "force_tangential.npy"}) {
+    INFO(name);
+    CHECK(read_file(control / name) != read_file(plain / name));
+    CHECK(read_file(control / name) == read_file(again / name));
+  }
+  CHECK(read_file(control / "order.npy") == read_file(plain / "order.npy"));
+  CHECK(read_file(wide / "texture.npy") == read_file(plain / "texture.npy"));
+  CHECK(read_file(wide / "force_tangential.npy") != read_file(plain / "force_tangential.npy"));
+}
+
 TEST_CASE("extract draws the force field over an enlarged patch") {
   const TempFolder folder;
   const auto path = folder.path() / "noise.png";
@@ -163,6 +189,9 @@ TEST_CASE("extract refuses bad arguments with exit 2 and one line") {
       {"extract", path, "--radius", "64"},
       {"extract", path, "--neighbourhood", "4"},
       {"extract", path, "--precision", "half"},
+      {"extract", path, "--control", "scrambled"},
+      {"extract", path, "--control", "phase-scrambled", "--seed", "-1"},
+      {"extract", path, "--seed", "7"},
       {"extract", path, "--no-such-option"},
       {"no-such-command"},
       {},
