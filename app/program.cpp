@@ -4,6 +4,7 @@
 #include "core/errors.hpp"
 #include "core/nearest_name.hpp"
 #include "core/version.hpp"
+#include "engine/fourier/planning.hpp"
 #include "protocols/store/damaged_store.hpp"
 
 #include <algorithm>
@@ -63,6 +64,7 @@ std::string unknown_command(const CLI::App& program, int argc, char** argv) {
 
 int parse_and_run(int argc, char** argv) {
   set_up_log();
+  use_measured_plans(user_cache_folder());
   CLI::App program("A psychophysics runner for textures that are felt.", "touchtrial");
   program.set_version_flag("--version", std::string(program_version()));
   program.require_subcommand(1);

@@ -1,9 +1,14 @@
 #include "engine/fourier/real_fft.hpp"
 
+#include "engine/fourier/wisdom_files.hpp"
+
 #include <cstddef>
+#include <cstdlib>
 #include <mutex>
 #include <new>
 #include <stdexcept>
+#include <string>
+#include <utility>
 
 #include <fftw3.h>
 
@@ -24,6 +29,11 @@ struct Fftw<double> {
   static constexpr auto* plan_inverse = &fftw_plan_dft_c2r_2d;
   static constexpr auto* execute = &fftw_execute;
   static constexpr auto* destroy = &fftw_destroy_plan;
+  static constexpr auto* forget = &fftw_forget_wisdom;
+  static constexpr auto* learned = &fftw_export_wisdom_to_string;
+  static constexpr auto* import = &fftw_import_wisdom_from_string;
+  static std::string version() { return fftw_version; }
+  static constexpr const char* kPrecision = "f64";
 };
 
 template <>
@@ -36,6 +46,11 @@ struct Fftw<float> {
   static constexpr auto* plan_inverse = &fftwf_plan_dft_c2r_2d;
   static constexpr auto* execute = &fftwf_execute;
   static constexpr auto* destroy = &fftwf_destroy_plan;
+  static constexpr auto* forget = &fftwf_forget_wisdom;
+  static constexpr auto* learned = &fftwf_export_wisdom_to_string;
+  static constexpr auto* import = &fftwf_import_wisdom_from_string;
+  static std::string version() { return fftwf_version; }
+  static constexpr const char* kPrecision = "f32";
 };
 
 /// FFTW's planner keeps global state: only executing a plan is thread-safe.
@@ -69,23 +84,72 @@ class FftwBuffer {
 
 template <typename Real>
 struct RealFft<Real>::State {
-  State(int height, int width)
-      : plane(static_cast<std::size_t>(height) * static_cast<std::size_t>(width)),
+  State(int height, int width, FftPlan way)
+      : height_(height),
+        width_(width),
+        plane(static_cast<std::size_t>(height) * static_cast<std::size_t>(width)),
         spectrum(static_cast<std::size_t>(height) * static_cast<std::size_t>(width / 2 + 1)) {
-    // std::complex<Real> is laid out as FFTW's pair of reals (C++ standard, [complex.numbers]).
-    auto* coefficients = reinterpret_cast<typename Fftw<Real>::Complex*>(spectrum.data());
     const std::lock_guard lock(planner_mutex());
-    forward = Fftw<Real>::plan_forward(height, width, plane.data(), coefficients, FFTW_ESTIMATE);
-    inverse = Fftw<Real>::plan_inverse(height, width, coefficients, plane.data(), FFTW_ESTIMATE);
+    Fftw<Real>::forget();
+    if (way == FftPlan::estimated || !plan_by_file()) plan(FFTW_ESTIMATE);
+    // What one transform taught must not shape the plan of another: that would depend on the order.
+    Fftw<Real>::forget();
   }
   ~State() {
     const std::lock_guard lock(planner_mutex());
-    Fftw<Real>::destroy(forward);
-    Fftw<Real>::destroy(inverse);
+    drop_plans();
   }
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
+  [[nodiscard]] bool is_planned() const { return forward != nullptr && inverse != nullptr; }
+
+ private:
+  int height_, width_;
+
+  [[nodiscard]] std::string file_name() const {
+    return as_file_name(Fftw<Real>::version() + '-' + Fftw<Real>::kPrecision + '-' +
+                        std::to_string(height_) + 'x' + std::to_string(width_) + '-' +
+                        processor_name() + ".wisdom");
+  }
+
+  bool plan_by_file() {
+    const auto text = wisdom_files().text_for(
+        file_name(), plane.span().size(),
+        [this](const std::string& wisdom) { return fits(wisdom); }, [this] { return learned(); });
+    if (text && fits(*text)) return true;
+    Fftw<Real>::forget();
+    return false;
+  }
+
+  void drop_plans() {
+    Fftw<Real>::destroy(std::exchange(forward, nullptr));
+    Fftw<Real>::destroy(std::exchange(inverse, nullptr));
+  }
+
+  void plan(unsigned flags) {
+    drop_plans();
+    // std::complex<Real> is laid out as FFTW's pair of reals (C++ standard, [complex.numbers]).
+    auto* coefficients = reinterpret_cast<typename Fftw<Real>::Complex*>(spectrum.data());
+    forward = Fftw<Real>::plan_forward(height_, width_, plane.data(), coefficients, flags);
+    inverse = Fftw<Real>::plan_inverse(height_, width_, coefficients, plane.data(), flags);
+  }
+
+  bool fits(const std::string& wisdom) {
+    Fftw<Real>::forget();
+    if (Fftw<Real>::import(wisdom.c_str()) == 0) return false;
+    plan(FFTW_MEASURE | FFTW_WISDOM_ONLY);
+    return is_planned();
+  }
+
+  std::string learned() {
+    Fftw<Real>::forget();
+    plan(FFTW_MEASURE);
+    const std::unique_ptr<char, decltype(&std::free)> text(Fftw<Real>::learned(), &std::free);
+    return text == nullptr ? std::string() : std::string(text.get());
+  }
+
+ public:
   FftwBuffer<Real, Real> plane;
   FftwBuffer<Real, std::complex<Real>> spectrum;
   typename Fftw<Real>::Plan forward = nullptr;
@@ -93,8 +157,9 @@ struct RealFft<Real>::State {
 };
 
 template <typename Real>
-RealFft<Real>::RealFft(int height, int width) : state_(std::make_unique<State>(height, width)) {
-  if (state_->forward == nullptr || state_->inverse == nullptr) {
+RealFft<Real>::RealFft(int height, int width, FftPlan plan)
+    : state_(std::make_unique<State>(height, width, plan)) {
+  if (!state_->is_planned()) {
     throw std::invalid_argument("no Fourier transform for this size of plane");
   }
 }

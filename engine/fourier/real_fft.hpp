@@ -7,8 +7,14 @@
 
 namespace touchtrial {
 
+/// How a transform is planned.
+enum class FftPlan {
+  estimated,  ///< for few transforms
+  measured,  ///< for many: if the program measures plans and the size is worth it, see planning.hpp
+};
+
 /// A transform of one size with its buffers. Real is float or double. Results are the same in
-/// every run: plans are estimated, never timed.
+/// every run on a machine: what is measured is measured once, and kept.
 /// One object belongs to one thread at a time; different objects may be made, used and destroyed
 /// at the same time.
 template <typename Real>
@@ -16,7 +22,7 @@ class RealFft {
  public:
   /// \param height,width  samples, >= 1
   /// \throws std::bad_alloc if there is no memory for the buffers
-  RealFft(int height, int width);
+  RealFft(int height, int width, FftPlan plan = FftPlan::estimated);
   ~RealFft();
   RealFft(const RealFft&) = delete;
   RealFft& operator=(const RealFft&) = delete;

@@ -55,7 +55,7 @@ class TvGaborCourse<Real>::OnDual final : public Solver {
  public:
   OnDual(const GreyImage& image, const TvGaborOptions& options)
       : problem_(tv_gabor_problem<Real>(image, options)),
-        fft_(problem_.image.height(), problem_.image.width()),
+        fft_(problem_.image.height(), problem_.image.width(), FftPlan::measured),
         method_(problem_, fft_) {}
 
   void advance(int steps) override {

@@ -17,7 +17,7 @@ TvGaborSolver<Real>::TvGaborSolver(const GreyImage& image, const TvGaborOptions&
     : wanted_gap_(options.gap),
       max_steps_(options.max_steps),
       problem_(tv_gabor_problem<Real>(image, options)),
-      fft_(problem_.image.height(), problem_.image.width()),
+      fft_(problem_.image.height(), problem_.image.width(), FftPlan::measured),
       schedule_(mean_gradient(problem_.image)),
       admm_(problem_, fft_, schedule_.penalty()) {
   admm_.start_again();
