@@ -38,8 +38,6 @@ struct ImageOfStudy {
   Digest pixels{};
   std::int64_t size_px = 0;
   std::exception_ptr failure;
-
-  [[nodiscard]] bool is_large() const noexcept { return size_px > kLargeImagePixels; }
 };
 
 std::vector<ImageOfStudy> images_of(const Study& study) {
@@ -105,7 +103,7 @@ class Preparation {
     tbb::parallel_for(std::size_t{0}, order.size(),
                       [&](std::size_t i) { provide(*order[i], false); });
     for (ImageOfStudy* image : order) {
-      if (image->is_large()) provide(*image, true);
+      if (image->size_px > options_.large_image_px) provide(*image, true);
     }
     if (building_) write_unfinished();
     for (const ImageOfStudy& image : images_) {
@@ -128,7 +126,7 @@ class Preparation {
     StageTimer timer(log_of(image.first_stimulus));
     const GreyImage grey = read(image);
     image.size_px = static_cast<std::int64_t>(grey.size());
-    if (image.is_large() && !large_too) return;
+    if (image.size_px > options_.large_image_px && !large_too) return;
     image.pixels = FieldHasher().add(std::int64_t{grey.width()}).add(grey.samples()).finish();
     timer.done("read image", "its pixels decide what must be built", grey.size());
     std::optional<TakenTexture> taken;
@@ -255,8 +253,9 @@ class Preparation {
 
   [[nodiscard]] StageLog* study_log() { return options_.explain ? &study_log_ : nullptr; }
 
-  static bool is_large(FieldView field) noexcept {
-    return std::int64_t{field.geometry.height_px} * field.geometry.width_px > kLargeImagePixels;
+  [[nodiscard]] bool is_large(FieldView field) const noexcept {
+    return std::int64_t{field.geometry.height_px} * field.geometry.width_px >
+           options_.large_image_px;
   }
 
   void describe(std::size_t i, FieldView field, Gains gains) {

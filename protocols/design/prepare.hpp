@@ -55,17 +55,18 @@ struct PrepareReport {
   std::vector<Stage> study_stages;  ///< of all stimuli together, if an explanation was asked for
 };
 
+inline constexpr std::int64_t kLargeImagePixels = std::int64_t{1} << 22;
+
 /// What is wanted besides the pack.
 struct PrepareOptions {
   bool statistics = true;  ///< PreparedStimulus::statistics: two Fourier transforms a stimulus
   bool explain = false;    ///< the stages, with their times and bytes
+  std::int64_t large_image_px = kLargeImagePixels;  ///< from one more pixel on, one at a time
 };
 
 /// Whether every image that the study presents is there; to be asked before anything is written.
 /// \throws StudyError with the place of the first that is not
 void check_images_exist(const Study& study);
-
-inline constexpr std::int64_t kLargeImagePixels = std::int64_t{1} << 22;
 
 /// Called after each stimulus, from any thread but never twice at a time.
 using Progress = std::function<void(int done, int of)>;

@@ -475,19 +475,20 @@ TEST_CASE("a method's control is made of its texture, which is taken once, and d
   CHECK(reused(laboratory.prepare()) == 3);
 }
 
-TEST_CASE("large images are prepared like small ones") {
+TEST_CASE("large images, which are prepared one at a time, give the pack of small ones") {
   Laboratory laboratory;
-  laboratory.document = study_of(2);
-  laboratory.document["methods"] = {{{"name", "luminance"}}};
-  laboratory.document["rendering"] = {{"filter_mm", 0}};
-  constexpr int kLong = (1 << 22) / 8 + 1;
-  GreyImage image(8, kLong, 7);
-  image.at(3, 5) = 200;
-  write_png(laboratory.image(0), image);
-  const PrepareReport report = laboratory.prepare();
-  CHECK(report.stimuli[0].bytes > image.size() * sizeof(FieldSample));
+  write_png(laboratory.image(1), GreyImage(3, 5, 7));
+  static_cast<void>(laboratory.prepare());
+  const auto whole = laboratory.files();
+  std::filesystem::remove_all(laboratory.pack());
+  int done = 0;
+  const PrepareReport report =
+      prepare_pack(laboratory.key(), laboratory.pack(), [&](int count, int) { done = count; },
+                   {.explain = true, .large_image_px = kSide * kSide - 1});
+  CHECK(laboratory.files() == whole);
+  CHECK(done == 3);
+  CHECK(text_of_stages(report.stimuli[0].stages) == kBuilt);
   CHECK(report.stimuli[0].statistics.tangential_rms_n > 0.0);
-  CHECK(Pack(laboratory.pack()).is_intact(laboratory.key().stimuli[0].code));
 }
 
 TEST_CASE("progress counts every stimulus once") {
