@@ -19,12 +19,13 @@ struct SlopeRow {
   float* weight = nullptr;
 };
 
-/// Takes a row of a surface and gives the tangential force of the row above it, by the
-/// neighbourhood of 3 x 3: x = across + (across above + across below) / 2, y = weight above -
-/// weight below. \param surface  `width` samples, and a zero before and behind them \param
-/// above,centre  slopes of the two rows above the surface \param below  receives the slopes of the
-/// surface; a vector behind them may be overwritten \param force_x,force_y  receive `width` samples
-/// and no more \param beside  a row of at most `width` samples that is moved meanwhile
+/// Takes a row of a surface and gives the tangential force of the row above it, 3 x 3 neighbours:
+/// x = across + (across above + across below) / 2, y = weight above - weight below.
+/// \param surface  `width` samples, and a zero before and behind them
+/// \param above,centre  slopes of the two rows above the surface
+/// \param below  receives the slopes of the surface; a vector behind them may be overwritten
+/// \param force_x,force_y  receive `width` samples and no more
+/// \param beside  a row of at most `width` samples that is moved meanwhile
 void force_row(const float* surface, int width, const SlopeRow& above, const SlopeRow& centre,
                const SlopeRow& below, float* force_x, float* force_y, const StreamedRow& beside);
 

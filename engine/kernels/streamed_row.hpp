@@ -11,7 +11,7 @@
 namespace touchtrial {
 
 /// Samples 0 .. count - 1 are still to be moved; `to` is a multiple of a cache line.
-/// \pre std::atomic_thread_fence or hwy::FlushStream() before another thread reads them
+/// \pre hwy::FlushStream() before another thread reads them
 struct StreamedRow {
   const float* from = nullptr;
   float* to = nullptr;
