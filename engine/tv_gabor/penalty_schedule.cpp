@@ -28,6 +28,10 @@ constexpr double kHardlyAnyProgress = 0.95;
 PenaltySchedule::PenaltySchedule(double mean_gradient)
     : first_penalty_(kFirst / mean_gradient), penalty_(first_penalty_) {}
 
+bool PenaltySchedule::wants_residuals() const noexcept {
+  return checks_ >= kChecksOfFall;
+}
+
 void PenaltySchedule::next(double gap, const AdmmResiduals& residuals) {
   ++checks_;
   pace_ =

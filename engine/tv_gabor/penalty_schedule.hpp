@@ -19,6 +19,8 @@ class PenaltySchedule {
   /// After every check. \param gap  >= 0 \param residuals  of the last step
   void next(double gap, const AdmmResiduals& residuals);
 
+  /// Whether the next check looks at the residuals.
+  [[nodiscard]] bool wants_residuals() const noexcept;
   [[nodiscard]] double penalty() const noexcept { return penalty_; }
   /// Momentum, unless the last check showed hardly any progress.
   [[nodiscard]] AdmmPace pace() const noexcept { return pace_; }

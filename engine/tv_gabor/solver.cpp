@@ -53,7 +53,12 @@ void TvGaborSolver<Real>::step_to_check(int last) {
   const int left = PenaltySchedule::kStepsBetweenChecks;
   const int check = std::min(last, steps_ + left - steps_ % left);
   for (; steps_ < check - 1; ++steps_) admm_.step(schedule_.pace());
-  const AdmmResiduals residuals = admm_.measured_step();
+  AdmmResiduals residuals;
+  if (schedule_.wants_residuals()) {
+    residuals = admm_.measured_step();
+  } else {
+    admm_.step(AdmmPace::cautious);  // momentum without a pause can go round in circles
+  }
   ++steps_;
   certificate_ = certify(problem_, admm_.z(), admm_.penalty(), fft_);
   gaps_.push_back(certificate_.gap);

@@ -1,0 +1,70 @@
+#include "engine/tv_gabor/row_kernels.hpp"
+
+#include "core/random.hpp"
+#include "engine/every_simd_target.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace touchtrial {
+namespace {
+
+template <typename Real>
+std::vector<Real> noise(std::size_t width, const char* name) {
+  RandomStream random(3, name);
+  std::vector<Real> row(width);
+  for (Real& sample : row) sample = static_cast<Real>(random.uniform(-2.0, 2.0));
+  return row;
+}
+
+/// The definition, in double.
+double target_of(double gradient, double z, double other_z, double limit) {
+  return gradient - z + 2.0 * z * limit / std::max(limit, std::hypot(z, other_z));
+}
+
+TEMPLATE_TEST_CASE("TV-Gabor's row kernels do what defines them on every target", "", float,
+                   double) {
+  on_every_simd_target([] {
+    for (const std::size_t width : {1U, 2U, 5U, 16U, 37U}) {
+      const auto f = noise<TestType>(width, "f"), below = noise<TestType>(width, "below");
+      const auto v = noise<TestType>(width, "v"), v_below = noise<TestType>(width, "v below");
+      const auto old_x = noise<TestType>(width, "x"), old_y = noise<TestType>(width, "y");
+      const auto was_x = noise<TestType>(width, "was x"), was_y = noise<TestType>(width, "was y");
+      auto z_x = old_x, z_y = old_y, former_x = was_x, former_y = was_y;
+      std::vector<TestType> target_x(width), target_y(width);
+      const AdmmNumbers<TestType> numbers{TestType(1.5), TestType(0.75), TestType(0.25)};
+      admm_row<TestType>({f.data(), below.data(), v.data(), v_below.data(), z_x.data(), z_y.data(),
+                          former_x.data(), former_y.data(), target_x.data(), target_y.data()},
+                         width, numbers);
+      for (std::size_t i = 0; i < width; ++i) {
+        const std::size_t right = i + 1 == width ? 0 : i + 1;
+        const double f_x = static_cast<double>(f[right]) - f[i];
+        const double v_x = static_cast<double>(v[right]) - v[i];
+        const double b_x = old_x[i] * 0.75 / std::max<double>(0.75, std::hypot(old_x[i], old_y[i]));
+        const double next_x = 1.5 * (f_x - v_x) - 0.5 * (old_x[i] - b_x) + b_x;
+        REQUIRE(former_x[i] == Approx(next_x).margin(1e-5));
+        REQUIRE(z_x[i] == Approx(next_x + 0.25 * (next_x - was_x[i])).margin(1e-5));
+        REQUIRE(target_x[i] == Approx(target_of(f_x, z_x[i], z_y[i], 0.75)).margin(1e-5));
+        REQUIRE(target_y[i] ==
+                Approx(target_of(static_cast<double>(below[i]) - f[i], z_y[i], z_x[i], 0.75))
+                    .margin(1e-5));
+      }
+    }
+  });
+}
+
+TEMPLATE_TEST_CASE("a clipped row is nowhere longer than 1 on any target", "", float, double) {
+  on_every_simd_target([] {
+    const auto x = noise<TestType>(41, "x"), y = noise<TestType>(41, "y");
+    std::vector<TestType> out_x(41), out_y(41), norms(41);
+    clip_row(x.data(), y.data(), 41, TestType(3), out_x.data(), out_y.data());
+    norm_row(out_x.data(), out_y.data(), 41, norms.data());
+    for (const TestType norm : norms) CHECK(norm <= Approx(1.0).epsilon(1e-6));
+  });
+}
+
+}  // namespace
+}  // namespace touchtrial
