@@ -47,7 +47,7 @@ struct OurExtraction {
   }
 
   [[nodiscard]] double error(Extras extras) const {
-    const ExtractionTruth truth(image, options.radius, extras == Extras::force);
+    const ExtractionTruth& truth = remembered_truth(image, options.radius, extras == Extras::force);
     double error = truth.texture_error(result.texture);
     if (extras == Extras::force) {
       error = std::max(error, truth.force_error(result.force.x, result.force.y));
@@ -72,7 +72,7 @@ struct PeerExtraction {
   }
 
   [[nodiscard]] double error(int radius, Extras extras) const {
-    const ExtractionTruth truth(image, radius, extras == Extras::force);
+    const ExtractionTruth& truth = remembered_truth(image, radius, extras == Extras::force);
     double error = truth.texture_error(plane_of<float>(pipeline.texture()));
     if (extras == Extras::force) {
       error = std::max(error, truth.force_error(plane_of<float>(pipeline.force_x()),

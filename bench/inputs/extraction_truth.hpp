@@ -29,4 +29,8 @@ class ExtractionTruth {
   Extraction<double> truth_;
 };
 
+/// The same, kept until another is asked for: in double a large image takes seconds.
+[[nodiscard]] const ExtractionTruth& remembered_truth(const GreyImage& image, int radius,
+                                                      bool with_force);
+
 }  // namespace touchtrial::bench
