@@ -6,12 +6,8 @@
 #include "bench/peers/naive_mask.hpp"
 #include "engine/extraction.hpp"
 #include "engine/gl_texture.hpp"
-#include "engine/kernels/aligned_rows.hpp"
-#include "engine/kernels/extended_rows.hpp"
-#include "engine/kernels/gl_row.hpp"
+#include "engine/kernels/float_extraction.hpp"
 
-#include <algorithm>
-#include <cstddef>
 #include <memory>
 
 #include <opencv2/imgproc.hpp>
@@ -58,41 +54,22 @@ Case our_case(const std::string& work, int size_px, int radius, const std::strin
   return one;
 }
 
-/// The filter alone, with an order for each pixel in a plane whose rows may be read past their end.
+/// The filter alone, with an order for each pixel.
 struct AdaptiveFilter {
-  AdaptiveFilter(int size_px, int with_radius)
-      : input(size_px),
-        radius(with_radius),
-        orders(static_cast<std::size_t>(size_px), static_cast<std::size_t>(size_px), 0,
-               RowUse::plane),
-        texture(size_px, size_px) {
-    for (int y = 0; y < size_px; ++y) {
-      std::copy_n(input.orders.row(y).data(), size_px, orders.row(static_cast<std::size_t>(y)));
-    }
-  }
-
-  void run() {
-    ExtendedRows rows(input.image, radius);
-    for (int y = 0; y < texture.height(); ++y) {
-      rows.next_row();
-      gl_row(rows, radius, orders.row(static_cast<std::size_t>(y)), texture.row(y).data());
-    }
-  }
-
+  explicit AdaptiveFilter(int size_px) : input(size_px) {}
   OrderedImage input;
-  int radius;
-  AlignedRows<float> orders;
   Plane<float> texture;
 };
 
 Job adaptive_job(int size_px, int radius) {
-  const auto filter = std::make_shared<AdaptiveFilter>(size_px, radius);
-  return {[=] { filter->run(); },
-          [=] {
-            const auto truth =
-                gl_texture<double>(filter->input.image, radius, filter->input.half_orders());
-            return largest_difference(filter->texture, truth);
-          }};
+  const auto filter = std::make_shared<AdaptiveFilter>(size_px);
+  return {
+      [=] { filter_adaptive(filter->input.image, radius, filter->input.orders, filter->texture); },
+      [=] {
+        const auto truth =
+            gl_texture<double>(filter->input.image, radius, filter->input.half_orders());
+        return largest_difference(filter->texture, truth);
+      }};
 }
 
 struct FixedFilter {

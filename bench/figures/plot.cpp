@@ -17,8 +17,8 @@ constexpr const char* kStyle = R"(set encoding utf8
 set border 3 lw 1.2
 set tics nomirror out scale 0.6
 set grid lc rgb '#e4e4e4' lw 1
-set key at screen 0.6, screen 0.95 left top vertical Left reverse noenhanced samplen 2 spacing 1.3
-set lmargin at screen 0.085
+set key at screen 0.59, screen 0.95 left top vertical Left reverse noenhanced samplen 2 spacing 1.3
+set lmargin at screen 0.095
 set rmargin at screen 0.575
 set tmargin at screen 0.96
 set bmargin 3.6
