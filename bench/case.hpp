@@ -34,6 +34,7 @@ struct Case {
   int radius = 0;      ///< K; 0 if it has no meaning
   std::string target;  ///< the SIMD target to run on; "": the best
   Accuracy accuracy;
+  bool is_slow = false;  ///< a few repetitions must do
   std::function<Job()> make;
 };
 

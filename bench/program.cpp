@@ -53,6 +53,7 @@ Scope scope_for(const Arguments& arguments, const std::vector<std::string>& targ
 
 std::vector<GoalResult> take_goals(const std::vector<std::string>& targets, const Effort& effort) {
   std::vector<Goal> goals = kernel_goals(targets);
+  for (Goal& goal : tv_gabor_goals()) goals.push_back(std::move(goal));
   for (Goal& goal : error_goals(targets)) goals.push_back(std::move(goal));
   for (Goal& goal : study_goals()) goals.push_back(std::move(goal));
   std::vector<GoalResult> results;
@@ -94,7 +95,11 @@ void run(const Arguments& arguments) {
   if (!arguments.json.empty()) {
     replace_file(arguments.json, results_json(this_machine(), goals, rows));
   }
-  if (arguments.docs) publish(this_machine(), goals, rows, kDocs);
+  if (arguments.docs) {
+    const std::vector<SolverCourse> courses =
+        solver_courses(square_of(timed_picture(), kUsualSize_px));
+    publish(this_machine(), {goals, rows, courses}, kDocs);
+  }
 }
 
 void set_up(CLI::App& program, Arguments& arguments) {

@@ -23,6 +23,7 @@ Cases all_cases(const Scope& scope) {
   append(ms_ssim_cases(scope), cases);
   append(glcm_cases(scope), cases);
   append(fft_cases(scope), cases);
+  append(tv_gabor_cases(scope), cases);
   append(force_cases(), cases);
   return cases;
 }

@@ -54,6 +54,11 @@ template <typename Real>
 
 [[nodiscard]] Cases fft_cases(const Scope& scope);
 
+/// ADMM in single precision, set-up included, and so many steps.
+[[nodiscard]] Case admm_case(int size_px, int steps);
+[[nodiscard]] Case fixed_point_case(int size_px, int steps);
+[[nodiscard]] Cases tv_gabor_cases(const Scope& scope);
+
 [[nodiscard]] Case paper_force_case();
 [[nodiscard]] Cases force_cases();
 

@@ -12,17 +12,16 @@
 
 namespace touchtrial::bench {
 
-void publish(const Machine& machine, const std::vector<GoalResult>& goals,
-             const std::vector<Row>& rows, const std::filesystem::path& folder) {
+void publish(const Machine& machine, const Results& results, const std::filesystem::path& folder) {
   const std::filesystem::path page = folder / "README.md";
   const Bytes bytes = read_file(page);
   const std::string text(bytes.begin(), bytes.end());
   const std::string section =
       fmt::format("{}; {}, OpenCV {}; {}.\n\n{}", machine.processor, machine.compiler,
-                  machine.opencv, machine.date, goals_table(goals));
+                  machine.opencv, machine.date, goals_table(results.goals));
   const std::string updated = with_section(text, "goals", section);
-  draw_figures(rows, Format::svg, folder);
-  replace_file(folder / "results.json", results_json(machine, goals, rows));
+  draw_figures(results.rows, results.courses, Format::svg, folder);
+  replace_file(folder / "results.json", results_json(machine, results.goals, results.rows));
   replace_file(page, updated);
 }
 

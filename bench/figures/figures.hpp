@@ -2,6 +2,7 @@
 #pragma once
 
 #include "bench/measure/rows.hpp"
+#include "bench/measure/tv_gabor_courses.hpp"
 
 #include <filesystem>
 #include <string>
@@ -18,8 +19,13 @@ enum class Format { svg, png };
 /// Time a pixel of whole extractions against the image's side.
 [[nodiscard]] std::string size_figure(const std::vector<Row>& rows, Format format);
 
-/// Draws all of them into a folder: filters.svg, ms-ssim.svg, sizes.svg.
+/// Error of v and gap of TV-Gabor's solvers over time, side by side.
+[[nodiscard]] std::string tv_gabor_figure(const std::vector<SolverCourse>& courses, Format format);
+
+/// Draws all of them into a folder: filters, ms-ssim, sizes and tv-gabor, .svg or
+/// .png.
 /// \throws Error without gnuplot, FileError if a file cannot be written
-void draw_figures(const std::vector<Row>& rows, Format format, const std::filesystem::path& folder);
+void draw_figures(const std::vector<Row>& rows, const std::vector<SolverCourse>& courses,
+                  Format format, const std::filesystem::path& folder);
 
 }  // namespace touchtrial::bench

@@ -48,6 +48,8 @@ using Goal = std::function<std::vector<GoalResult>(const Effort& effort)>;
 /// How exact textures and MS-SSIM are, on every one of the targets.
 [[nodiscard]] std::vector<Goal> error_goals(const std::vector<std::string>& targets);
 
+/// How soon TV-Gabor is close to its texture.
+[[nodiscard]] std::vector<Goal> tv_gabor_goals();
 /// The time of a simulated study, and what its database takes.
 [[nodiscard]] std::vector<Goal> study_goals();
 

@@ -1,7 +1,8 @@
-/// \file How far an output is from the same in double.
+/// \file How far an output is from the same in double, where that can be asked.
 #pragma once
 
 #include "core/plane.hpp"
+#include "tests/engine/plane_comparison.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,9 +11,9 @@
 
 namespace touchtrial::bench {
 
-/// The largest |a - b| at least `border` samples away from the edge; infinite if the shapes differ
-/// or a sample is not a number.
-/// \param counts  called with a sample's place (y, x); false leaves it out
+/// The largest |a - b| of the samples at least `border` samples away from the edge; infinite if the
+/// shapes differ or a sample is not a number. \param counts  called with a sample's place (y, x);
+/// false leaves it out
 template <typename A, typename B, typename Counts>
 [[nodiscard]] double largest_difference(const Plane<A>& a, const Plane<B>& b, int border,
                                         Counts counts) {
@@ -29,11 +30,6 @@ template <typename A, typename B, typename Counts>
     }
   }
   return largest;
-}
-
-template <typename A, typename B>
-[[nodiscard]] double largest_difference(const Plane<A>& a, const Plane<B>& b, int border = 0) {
-  return largest_difference(a, b, border, [](int, int) { return true; });
 }
 
 }  // namespace touchtrial::bench

@@ -54,8 +54,9 @@ constexpr int kLargeSize_px = 2048;
 constexpr int kLeastRepetitions = 3;
 
 int repetitions_of(const Case& one, const Effort& effort) {
-  return one.size_px >= kLargeSize_px ? std::min(kLeastRepetitions, effort.repetitions)
-                                      : effort.repetitions;
+  return one.is_slow || one.size_px >= kLargeSize_px
+             ? std::min(kLeastRepetitions, effort.repetitions)
+             : effort.repetitions;
 }
 
 void register_case(const Case& one, int repetitions, Operations& operations,

@@ -1,0 +1,74 @@
+#include "bench/cases/cases.hpp"
+#include "bench/inputs/pictures.hpp"
+#include "bench/inputs/tv_gabor_truth.hpp"
+#include "engine/tv_gabor/course.hpp"
+#include "engine/tv_gabor/tv_gabor.hpp"
+#include "tests/engine/plane_comparison.hpp"
+
+#include <memory>
+
+namespace touchtrial::bench {
+namespace {
+
+/// In double, a larger image takes a minute.
+constexpr int kLargest_px = 1024;
+constexpr int kFistaSteps = 200;
+/// Relative to v; solvers that are stopped before the end are far from it.
+constexpr double kTolerance = 0.2;
+
+struct Decomposition {
+  explicit Decomposition(int size_px) : image(square_of(timed_picture(), size_px)) {}
+  [[nodiscard]] double error() const { return distance_relative_to(v, tv_gabor_truth(image)); }
+  GreyImage image;
+  Plane<float> v;
+};
+
+/// \param decompose  from an image to v
+template <class Decompose>
+Case tv_gabor_case_of(const std::string& who, int size_px, Decompose decompose) {
+  Case one = case_on_image("TV-Gabor", who, "u8", size_px, 0, {"of v, relative", kTolerance});
+  one.is_slow = true;
+  one.make = [=] {
+    const auto work = std::make_shared<Decomposition>(size_px);
+    return Job{[=] { work->v = decompose(work->image); }, [=] { return work->error(); }};
+  };
+  return one;
+}
+
+Case solver_case(const std::string& who, TvGaborAlgorithm algorithm, int size_px, int steps) {
+  return tv_gabor_case_of(who + ", " + std::to_string(steps) + " steps", size_px,
+                          [=](const GreyImage& image) {
+                            TvGaborCourse<float> course(image, {}, algorithm);
+                            course.advance(steps);
+                            return course.point().texture;
+                          });
+}
+
+/// As extraction calls it, until the gap is 1e-5.
+Case default_stop_case(int size_px) {
+  return tv_gabor_case_of(our_name() + ", default stop", size_px, [](const GreyImage& image) {
+    return tv_gabor<float>(image, {}).texture;
+  });
+}
+
+}  // namespace
+
+Case admm_case(int size_px, int steps) {
+  return solver_case(our_name(), TvGaborAlgorithm::admm, size_px, steps);
+}
+
+Case fixed_point_case(int size_px, int steps) {
+  return solver_case("fixed point", TvGaborAlgorithm::fixed_point, size_px, steps);
+}
+
+Cases tv_gabor_cases(const Scope& scope) {
+  Cases cases;
+  for (const int size_px : scope.sizes_px) {
+    if (size_px > kLargest_px) continue;
+    cases.push_back(default_stop_case(size_px));
+    cases.push_back(solver_case("FISTA", TvGaborAlgorithm::fista, size_px, kFistaSteps));
+  }
+  return cases;
+}
+
+}  // namespace touchtrial::bench

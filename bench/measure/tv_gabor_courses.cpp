@@ -1,0 +1,71 @@
+#include "bench/measure/tv_gabor_courses.hpp"
+
+#include "bench/inputs/tv_gabor_truth.hpp"
+#include "bench/measure/cpu_clock.hpp"
+#include "tests/engine/plane_comparison.hpp"
+
+namespace touchtrial::bench {
+namespace {
+
+/// ADMM looks at its own gap every tenth step: no other rhythm is free.
+constexpr int kAdmmRhythm = 10;
+constexpr int kMostAdmmLooks = 30;
+
+/// A solver under a stop-watch.
+template <typename Real>
+class TimedCourse {
+ public:
+  TimedCourse(const GreyImage& image, TvGaborAlgorithm algorithm)
+      : truth_(tv_gabor_truth(image)),
+        start_us_(cpu_clock_us()),
+        course_(image, {}, algorithm),
+        us_(cpu_clock_us() - start_us_) {}
+
+  [[nodiscard]] CoursePoint after(int steps) {
+    const double start_us = cpu_clock_us();
+    course_.advance(steps);
+    us_ += cpu_clock_us() - start_us;
+    const TvGaborPoint<Real> point = course_.point();
+    return {point.steps, us_, distance_relative_to(point.texture, truth_), point.gap};
+  }
+
+ private:
+  const Plane<double>& truth_;
+  double start_us_;
+  TvGaborCourse<Real> course_;
+  double us_;
+};
+
+}  // namespace
+
+template <typename Real>
+std::vector<CoursePoint> watch_course(const GreyImage& image, TvGaborAlgorithm algorithm, int steps,
+                                      int looks) {
+  TimedCourse<Real> course(image, algorithm);
+  std::vector<CoursePoint> points;
+  for (int look = 0; look < looks; ++look) points.push_back(course.after(steps));
+  return points;
+}
+
+std::optional<CoursePoint> admm_until(const GreyImage& image, double error) {
+  TimedCourse<float> course(image, TvGaborAlgorithm::admm);
+  for (int look = 0; look < kMostAdmmLooks; ++look) {
+    const CoursePoint point = course.after(kAdmmRhythm);
+    if (point.error <= error) return point;
+  }
+  return std::nullopt;
+}
+
+std::vector<SolverCourse> solver_courses(const GreyImage& image) {
+  using enum TvGaborAlgorithm;
+  return {{"ADMM", watch_course<float>(image, admm, kAdmmRhythm, 15)},
+          {"ADMM, double", watch_course<double>(image, admm, kAdmmRhythm, 15)},
+          {"FISTA", watch_course<float>(image, fista, 50, 20)},
+          {"fixed point", watch_course<float>(image, fixed_point, 50, 20)}};
+}
+
+template std::vector<CoursePoint> watch_course<float>(const GreyImage&, TvGaborAlgorithm, int, int);
+template std::vector<CoursePoint> watch_course<double>(const GreyImage&, TvGaborAlgorithm, int,
+                                                       int);
+
+}  // namespace touchtrial::bench
