@@ -5,7 +5,9 @@
 #include "engine/symmetric_extension.hpp"
 #include "stimuli/generator.hpp"
 
+#include <algorithm>
 #include <cstdint>
+#include <utility>
 
 namespace touchtrial::bench {
 namespace {
@@ -20,7 +22,7 @@ Picture drawn(const std::string& name, int size_px, LevelAt level_at) {
       image.at(y, x) = static_cast<std::uint8_t>(level_at(y, x));
     }
   }
-  return {name, std::move(image)};
+  return {name, false, std::move(image)};
 }
 
 GreyImage& chosen_picture() {
@@ -33,9 +35,13 @@ GreyImage& chosen_picture() {
 std::vector<Picture> shipped_pictures() {
   std::vector<Picture> pictures;
   for (const StimulusRecipe& recipe : stimulus_recipes()) {
+    if (recipe.kind == StimulusKind::flat) continue;
     const std::string label(recipe.label);
-    pictures.push_back({label, read_grey_image(kStimuli / (label + ".png"))});
+    pictures.push_back(
+        {label, recipe.kind == StimulusKind::object, read_grey_image(kStimuli / (label + ".png"))});
   }
+  std::stable_partition(pictures.begin(), pictures.end(),
+                        [](const Picture& picture) { return !picture.has_ground; });
   return pictures;
 }
 

@@ -12,10 +12,11 @@ namespace touchtrial::bench {
 
 struct Picture {
   std::string name;
+  bool has_ground = false;  ///< an object on a plain ground: no photograph of a texture
   GreyImage image;
 };
 
-/// The pictures of stimuli/, 500 x 500.
+/// The pictures of stimuli/ but the flat one, 500 x 500; those that fill their frame first.
 /// \throws FileError if one is missing
 [[nodiscard]] std::vector<Picture> shipped_pictures();
 
