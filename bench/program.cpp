@@ -11,6 +11,7 @@
 #include "bench/results_json.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "engine/fourier/planning.hpp"
 #include "engine/simd/targets.hpp"
 
 #include <cstdio>
@@ -81,6 +82,7 @@ void run_only(const Arguments& arguments, const Scope& scope) {
 
 void run(const Arguments& arguments) {
   cv::setNumThreads(1);
+  use_measured_plans(user_cache_folder());  // as the program does
   if (!arguments.image.empty()) choose_timed_picture(arguments.image);
   choose_usual_target(arguments.target);
   const std::vector<std::string> targets =
@@ -104,7 +106,6 @@ void run(const Arguments& arguments) {
 
 void set_up(CLI::App& program, Arguments& arguments) {
   program.add_option("--json", arguments.json, "Measure every kernel at every size, write FILE");
-  program.add_flag("--docs", arguments.docs, "The same, into docs/benchmarks with its figures");
   program.add_option("--image", arguments.image, "Take times on this picture, not on bark.png");
   program.add_option("--target", arguments.target, "Use this SIMD target only, for instance AVX2")
       ->check(CLI::IsMember(simd_targets()));
@@ -114,7 +115,10 @@ void set_up(CLI::App& program, Arguments& arguments) {
       ->check(CLI::Range(0, 1000000))
       ->needs(only)
       ->capture_default_str();
-  program.add_flag("--quick", arguments.quick, "Smallest sizes, few repetitions: does all work?");
+  CLI::Option* const docs =
+      program.add_flag("--docs", arguments.docs, "The same, into docs/benchmarks with its figures");
+  program.add_flag("--quick", arguments.quick, "One size, few repetitions: does all work?")
+      ->excludes(docs);
 }
 
 }  // namespace

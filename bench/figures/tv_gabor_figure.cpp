@@ -28,13 +28,13 @@ std::vector<Curve> curves_of(const std::vector<SolverCourse>& courses, Figure fi
 
 std::string tv_gabor_figure(const std::vector<SolverCourse>& courses, Format format) {
   return figure_head(format, kSize) +
-         "set logscale xy\nset format y '10^{%L}'\nset xlabel 'time, milliseconds'\n"
-         "set multiplot\nset lmargin at screen 0.085\nset rmargin at screen 0.42\n"
+         "set logscale xy\nset format xy '10^{%L}'\nset xlabel 'time, milliseconds'\n"
+         "set multiplot\nset lmargin at screen 0.085\nset rmargin at screen 0.405\n"
          "set ylabel 'error of v, relative' offset 1\nset key off\n" +
          plot_of(curves_of(courses, [](const CoursePoint& point) { return point.error; }),
                  "linespoints") +
-         "set lmargin at screen 0.51\nset rmargin at screen 0.845\nset ylabel 'gap' offset 1\n"
-         "set key on at screen 0.86, screen 0.95 left top vertical Left reverse\n" +
+         "set lmargin at screen 0.49\nset rmargin at screen 0.81\nset ylabel 'gap' offset 1\n"
+         "set key on at screen 0.82, screen 0.95 left top vertical Left reverse\n" +
          plot_of(curves_of(courses, [](const CoursePoint& point) { return point.gap; }),
                  "linespoints") +
          "unset multiplot\n";
