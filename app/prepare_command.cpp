@@ -4,6 +4,7 @@
 #include "core/cipher.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "protocols/design/loop_work_report.hpp"
 #include "protocols/design/prepare.hpp"
 
 #include <algorithm>
@@ -24,6 +25,7 @@ struct PrepareArguments {
   fs::path pack;
   bool explain = false;
   bool json = false;
+  bool loop_work = false;
 };
 
 /// A database that was sealed with the study as it was needs the key as it was.
@@ -92,6 +94,10 @@ std::string gains_of(const PrepareReport& report) {
   const bool shared = std::all_of(report.stimuli.begin(), report.stimuli.end(),
                                   [&](const PreparedStimulus& s) { return s.gains == first; });
   if (!shared) return "gains: each stimulus has its own, so that all are equally strong\n";
+  if (first.height_mm > 0.0) {
+    return fmt::format("gain: height {:.6g} mm per grey level; forces at a load of {} N\n",
+                       first.height_mm, kStatedLoadN);
+  }
   return fmt::format(
       "gains: tangential {:.6g} N per grey level and pixel, normal {:.6g} N per grey level\n",
       first.tangential_n, first.normal_n);
@@ -106,6 +112,19 @@ std::string totals_of(const PrepareReport& report) {
     text += fmt::format("\nskipped {}: {}", skipped.what, skipped.why);
   }
   return text + "\n";
+}
+
+/// What a hand could gain by going in circles, under the study's model and the other.
+std::string loop_work_table(const Study& study) {
+  std::string text = fmt::format("\n{:<8} {:>6} {:>12} {:>12} {:>14} {:>14}\n", "model", "loops",
+                                 "plane median", "plane worst", "press median", "press worst");
+  for (const ModelLoopWork& work : loop_work_of(study)) {
+    text += fmt::format("{:<8} {:>6} {:>9.2g} mJ {:>9.2g} mJ {:>11.2g} mJ {:>11.2g} mJ\n",
+                        work.model == ModelKind::paper ? "paper" : "surface",
+                        work.loops_of_each_kind, work.planar.median_mj, work.planar.worst_mj,
+                        work.press_slide_lift.median_mj, work.press_slide_lift.worst_mj);
+  }
+  return text + "work round closed loops: circles at a constant depth, and press, slide, lift\n";
 }
 
 int prepare(const PrepareArguments& arguments) {
@@ -131,6 +150,7 @@ int prepare(const PrepareArguments& arguments) {
         gains_of(report) + totals_of(report) +
         fmt::format("pack {}\nkey  {} (keep it to yourself)\n", place.pack.string(),
                     place.key.string()));
+  if (arguments.loop_work) print(loop_work_table(study));
   return 0;
 }
 
@@ -146,7 +166,12 @@ void add_prepare_command(CLI::App& program, Action& action) {
   command->add_flag("--explain", arguments->explain,
                     "Say stage by stage what was computed, reused or skipped, why, and what it "
                     "cost");
-  command->add_flag("--json", arguments->json, "One JSON object in place of the tables");
+  auto* json =
+      command->add_flag("--json", arguments->json, "One JSON object in place of the tables");
+  command
+      ->add_flag("--loop-work", arguments->loop_work,
+                 "Say how much energy a hand could gain round closed loops under each model")
+      ->excludes(json);
   command->callback([=, &action] { action = [=] { return prepare(*arguments); }; });
 }
 

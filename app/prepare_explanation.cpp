@@ -106,16 +106,17 @@ Json statistics_json(const FieldStatistics& figures) {
 }
 
 Json stimulus_json(const PreparedStimulus& stimulus) {
-  Json object = {
-      {"class", stimulus.class_label},
-      {"exemplar", stimulus.exemplar + 1},
-      {"method", stimulus.method},
-      {"state", stimulus.reused ? "reused" : "built"},
-      {"seconds", stimulus.seconds},
-      {"bytes", stimulus.bytes},
-      {"gains",
-       {{"tangential_n", stimulus.gains.tangential_n}, {"normal_n", stimulus.gains.normal_n}}},
-      {"statistics", statistics_json(stimulus.statistics)}};
+  Json object = {{"class", stimulus.class_label},
+                 {"exemplar", stimulus.exemplar + 1},
+                 {"method", stimulus.method},
+                 {"state", stimulus.reused ? "reused" : "built"},
+                 {"seconds", stimulus.seconds},
+                 {"bytes", stimulus.bytes},
+                 {"gains",
+                  {{"tangential_n", stimulus.gains.tangential_n},
+                   {"normal_n", stimulus.gains.normal_n},
+                   {"height_mm", stimulus.gains.height_mm}}},
+                 {"statistics", statistics_json(stimulus.statistics)}};
   if (!stimulus.stages.empty()) object["stages"] = stages_json(stimulus.stages);
   return object;
 }

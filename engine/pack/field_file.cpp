@@ -7,7 +7,9 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -21,17 +23,20 @@ static_assert(sizeof(FieldSample) == 3 * sizeof(float) && alignof(FieldSample) =
                   std::is_trivially_copyable_v<FieldSample>,
               "FieldSample is the file's sample layout");
 
-constexpr std::uint32_t kVersion = 1;
-constexpr std::uint32_t kSurfaceAndForce = 1;
+constexpr std::uint32_t kVersion = 2;
+
+/// What a file's samples are.
+enum class Layout : std::uint32_t { surface_and_force = 1, coefficients = 2 };
 
 struct Header {
   std::array<char, 8> magic = {'T', 'T', 'F', 'I', 'E', 'L', 'D', '1'};
   std::uint32_t version = kVersion;
-  std::uint32_t sample_layout = kSurfaceAndForce;
+  Layout layout = Layout::surface_and_force;
   std::uint32_t height_px = 0;
   std::uint32_t width_px = 0;
   double pitch_mm = 0.0;
-  std::array<std::uint8_t, 32> reserved{};
+  double highest = 0.0;
+  std::array<std::uint8_t, 24> reserved{};
 };
 static_assert(sizeof(Header) == 64, "samples start on a cache line");
 
@@ -53,32 +58,57 @@ Header checked_header(ByteView file, const std::filesystem::path& path) {
     refuse(path, "has field version " + std::to_string(header.version) + ", not " +
                      std::to_string(kVersion));
   }
-  if (header.sample_layout != kSurfaceAndForce) {
-    refuse(path, "has the unknown sample layout " + std::to_string(header.sample_layout));
+  if (header.layout != Layout::surface_and_force && header.layout != Layout::coefficients) {
+    refuse(path, "has the unknown sample layout " +
+                     std::to_string(static_cast<std::uint32_t>(header.layout)));
   }
   if (!is_pitch(header.pitch_mm)) refuse(path, "has no pitch that is a finite number > 0");
+  if (!std::isfinite(header.highest)) refuse(path, "has no highest point that is a finite number");
   if (header.reserved != Header{}.reserved) refuse(path, "has reserved bytes that are not zero");
+  return header;
+}
+
+std::size_t sample_size(Layout layout) {
+  return layout == Layout::coefficients ? sizeof(float) : sizeof(FieldSample);
+}
+
+/// The bytes of a view's samples, of either kind.
+std::span<const std::byte> samples_of(FieldView field) {
+  return field.model() == ModelKind::surface ? std::as_bytes(field.coefficients)
+                                             : std::as_bytes(field.samples);
+}
+
+Header header_for(FieldView field) {
+  const PlaneGeometry& geometry = field.geometry;
+  if (geometry.height_px < 1 || geometry.width_px < 1 || !is_pitch(geometry.pitch_mm)) {
+    throw std::invalid_argument("encode_field: the field has no size or no pitch");
+  }
+  Header header;
+  header.layout =
+      field.model() == ModelKind::surface ? Layout::coefficients : Layout::surface_and_force;
+  const std::int64_t pixels = std::int64_t{geometry.height_px} * geometry.width_px;
+  if (pixels > kMaxImagePixels ||
+      samples_of(field).size() != static_cast<std::size_t>(pixels) * sample_size(header.layout)) {
+    throw std::invalid_argument("encode_field: the samples do not fill the geometry");
+  }
+  header.height_px = static_cast<std::uint32_t>(geometry.height_px);
+  header.width_px = static_cast<std::uint32_t>(geometry.width_px);
+  header.pitch_mm = geometry.pitch_mm;
+  header.highest = highest_of(field);
+  if (!std::isfinite(header.highest)) {
+    throw std::invalid_argument("encode_field: the field has heights that are not finite");
+  }
   return header;
 }
 
 }  // namespace
 
 Bytes encode_field(FieldView field) {
-  const PlaneGeometry& geometry = field.geometry;
-  if (geometry.height_px < 1 || geometry.width_px < 1 || !is_pitch(geometry.pitch_mm)) {
-    throw std::invalid_argument("encode_field: the field has no size or no pitch");
-  }
-  const std::int64_t pixels = std::int64_t{geometry.height_px} * geometry.width_px;
-  if (pixels > kMaxImagePixels || field.samples.size() != static_cast<std::size_t>(pixels)) {
-    throw std::invalid_argument("encode_field: the samples do not fill the geometry");
-  }
-  Header header;
-  header.height_px = static_cast<std::uint32_t>(geometry.height_px);
-  header.width_px = static_cast<std::uint32_t>(geometry.width_px);
-  header.pitch_mm = geometry.pitch_mm;
-  Bytes file(sizeof header + field.samples.size_bytes());
+  const Header header = header_for(field);
+  const std::span<const std::byte> samples = samples_of(field);
+  Bytes file(sizeof header + samples.size());
   std::memcpy(file.data(), &header, sizeof header);
-  std::memcpy(file.data() + sizeof header, field.samples.data(), field.samples.size_bytes());
+  std::memcpy(file.data() + sizeof header, samples.data(), samples.size());
   return file;
 }
 
@@ -90,12 +120,21 @@ FieldView decode_field(ByteView file, const std::filesystem::path& path) {
     refuse(path, "has the impossible size " + std::to_string(header.width_px) + " x " +
                      std::to_string(header.height_px));
   }
-  if (file.size() - sizeof header != pixels * sizeof(FieldSample)) {
+  if (file.size() - sizeof header != pixels * sample_size(header.layout)) {
     refuse(path, "is truncated or overlong");
   }
-  const auto* samples = reinterpret_cast<const FieldSample*>(file.data() + sizeof header);
-  return {{header.pitch_mm, static_cast<int>(header.height_px), static_cast<int>(header.width_px)},
-          {samples, static_cast<std::size_t>(pixels)}};
+  FieldView view;
+  view.geometry = {header.pitch_mm, static_cast<int>(header.height_px),
+                   static_cast<int>(header.width_px)};
+  view.highest = header.highest;
+  const std::uint8_t* first = file.data() + sizeof header;
+  const auto count = static_cast<std::size_t>(pixels);
+  if (header.layout == Layout::coefficients) {
+    view.coefficients = {reinterpret_cast<const float*>(first), count};
+  } else {
+    view.samples = {reinterpret_cast<const FieldSample*>(first), count};
+  }
+  return view;
 }
 
 }  // namespace touchtrial

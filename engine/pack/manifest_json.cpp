@@ -17,7 +17,7 @@ using Json = nlohmann::json;
 using Pointer = Json::json_pointer;
 
 constexpr std::string_view kFormat = "touchtrial-pack";
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr int kDeepest = 4;  // of nesting in a manifest; more is refused while reading
 
 bool is_study_id(std::string_view id) {
@@ -123,16 +123,19 @@ PackEntry entry_from(const Node& node) {
   entry.checksum = node.at("checksum").digest();
   entry.input_tag = node.at("input_tag").digest();
   const Node gains = node.at("gains");
-  gains.check_keys({"normal_n", "tangential_n"});
-  entry.gains = {gains.at("tangential_n").gain(), gains.at("normal_n").gain()};
+  gains.check_keys({"height_mm", "normal_n", "tangential_n"});
+  entry.gains = {gains.at("tangential_n").gain(), gains.at("normal_n").gain(),
+                 gains.at("height_mm").gain()};
   return entry;
 }
 
 PackManifest manifest_from(const Node& root) {
   root.check_keys({"fields", "format", "study_id", "version"});
   if (!root.at("format").is(kFormat)) root.at("format").refuse("must be \"touchtrial-pack\"");
-  if (!root.at("version").is(kVersion))
-    root.at("version").refuse("must be 1, the only version that this program reads");
+  if (!root.at("version").is(kVersion)) {
+    root.at("version").refuse("is not " + std::to_string(kVersion) +
+                              ", the only version that this program reads");
+  }
   PackManifest manifest;
   manifest.study_id = root.at("study_id").text();
   if (!is_study_id(manifest.study_id)) root.at("study_id").refuse("must be hexadecimal");
@@ -148,11 +151,13 @@ PackManifest manifest_from(const Node& root) {
 }
 
 Json json_of(const PackEntry& entry) {
-  return {
-      {"checksum", to_hex(entry.checksum)},
-      {"code", entry.code},
-      {"gains", {{"normal_n", entry.gains.normal_n}, {"tangential_n", entry.gains.tangential_n}}},
-      {"input_tag", to_hex(entry.input_tag)}};
+  return {{"checksum", to_hex(entry.checksum)},
+          {"code", entry.code},
+          {"gains",
+           {{"height_mm", entry.gains.height_mm},
+            {"normal_n", entry.gains.normal_n},
+            {"tangential_n", entry.gains.tangential_n}}},
+          {"input_tag", to_hex(entry.input_tag)}};
 }
 
 void check(const PackManifest& manifest) {
@@ -161,7 +166,7 @@ void check(const PackManifest& manifest) {
   }
   for (const PackEntry& entry : manifest.entries) {
     if (!is_pack_code(entry.code) || !is_gain(entry.gains.tangential_n) ||
-        !is_gain(entry.gains.normal_n)) {
+        !is_gain(entry.gains.normal_n) || !is_gain(entry.gains.height_mm)) {
       throw std::invalid_argument("write_manifest: an entry has no valid code or gains");
     }
   }

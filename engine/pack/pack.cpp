@@ -57,11 +57,12 @@ Pack::Pack(std::filesystem::path folder)
 
 Digest Pack::digest() const {
   FieldHasher hasher;
-  hasher.add("touchtrial pack 1").add(manifest_.study_id);
+  hasher.add("touchtrial pack 2").add(manifest_.study_id);
   for (const PackEntry& entry : manifest_.entries) {
     hasher.add(entry.code).add(ByteView(entry.checksum)).add(ByteView(entry.input_tag));
     hasher.add(std::bit_cast<std::int64_t>(entry.gains.tangential_n));
     hasher.add(std::bit_cast<std::int64_t>(entry.gains.normal_n));
+    hasher.add(std::bit_cast<std::int64_t>(entry.gains.height_mm));
   }
   return hasher.finish();
 }

@@ -36,11 +36,12 @@ struct PackManifest {
 /// both are, so that no code can be a path.
 [[nodiscard]] bool is_pack_code(std::string_view code) noexcept;
 
-/// Writes one field file durably; its size depends on height and width alone. Write the fields of a
-/// pack in the order of their codes, so that the files' times tell nothing either.
+/// Writes one field file durably; its size depends on height, width and model alone. Write the
+/// fields of a pack in the order of their codes, so that the files' times tell nothing either.
 /// \return its SHA-256
 /// \throws FileError if it cannot be written; std::invalid_argument if the code is none, or the
-///   view is empty or has another number of samples than its geometry, or more than kMaxImagePixels
+///   view is empty or has another number of samples than its geometry, heights that are not finite,
+///   or more than kMaxImagePixels
 Digest write_field(const std::filesystem::path& folder, const std::string& code, FieldView field);
 
 /// Writes `pack.json` durably, after the fields it names; entries may come in any order. The same

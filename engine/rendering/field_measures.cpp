@@ -61,6 +61,18 @@ void append_normal_stiffness(FieldView field, double scale, std::vector<float>& 
   });
 }
 
+double mean_of_nonzero(std::span<const double> values) {
+  const auto zeros = std::ranges::count(values, 0.0);
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum == 0.0 ? 0.0 : sum / static_cast<double>(std::ssize(values) - zeros);
+}
+
+double typical_stiffness(std::vector<float>& pool) {
+  const double typical = percentile(pool, 0.99);
+  return typical > 0.0 ? typical : percentile(pool, 1.0);
+}
+
 double percentile(std::vector<float>& pool, double share) {
   if (pool.empty()) return 0.0;
   const double position = share * static_cast<double>(pool.size() - 1);

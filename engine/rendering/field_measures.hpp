@@ -1,9 +1,10 @@
 /// \file Strength and steepness of a field before gains: what gains and figures are computed from.
-/// Private to engine/rendering. Source: docs/method.md, "Rendering models".
+/// Private to engine/rendering. Source: docs/method.md, "Rendering".
 #pragma once
 
 #include "engine/rendering/texture_field.hpp"
 
+#include <span>
 #include <vector>
 
 namespace touchtrial {
@@ -22,6 +23,13 @@ void append_tangential_stiffness(FieldView field, double scale, std::vector<floa
 
 /// The same with the norm of the surface's gradient: grey levels per mm.
 void append_normal_stiffness(FieldView field, double scale, std::vector<float>& pool);
+
+/// Mean of the values that are not 0; 0 if there is none.
+[[nodiscard]] double mean_of_nonzero(std::span<const double> values);
+
+/// The 99th percentile, by which stiffness is judged. Where more than 99 % of the pool is flat it
+/// would bound nothing, and the maximum takes its place. Reorders the pool.
+[[nodiscard]] double typical_stiffness(std::vector<float>& pool);
 
 /// Percentile by linear interpolation between order statistics (NumPy's default); 0 if the pool is
 /// empty. Reorders the pool. \param share  0 .. 1

@@ -1,6 +1,7 @@
 #include "engine/rendering/gains.hpp"
 
 #include "engine/rendering/field_measures.hpp"
+#include "engine/rendering/surface_gains.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +11,6 @@
 namespace touchtrial {
 namespace {
 
-constexpr double kPercentile = 0.99;
 constexpr double kRounding = 1e-9;  // relative; what is over the budget by less is on it
 
 /// One of the two forces that a gain scales.
@@ -34,15 +34,7 @@ std::vector<double> rms_of_fields(std::span<const FieldView> fields, const Chann
   return rms;
 }
 
-double mean_of_nonzero(const std::vector<double>& values) {
-  const auto zeros = std::ranges::count(values, 0.0);
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return sum == 0.0 ? 0.0 : sum / static_cast<double>(values.size() - zeros);
-}
-
-/// The pooled percentile of the stiffness of all fields that are not flat, each scaled. Where more
-/// than 99 % of the pool is flat the percentile bounds nothing, and the maximum takes its place.
+/// The pooled stiffness of all fields that are not flat, each scaled.
 double pooled_stiffness(std::span<const FieldView> fields, const std::vector<double>& rms,
                         const std::vector<double>& scale, const Channel& channel) {
   std::size_t pixels = 0;
@@ -52,8 +44,7 @@ double pooled_stiffness(std::span<const FieldView> fields, const std::vector<dou
   for (std::size_t i = 0; i < fields.size(); ++i) {
     if (rms[i] > 0.0) channel.append_stiffness(fields[i], scale[i], pool);
   }
-  const double typical = percentile(pool, kPercentile);
-  return typical > 0.0 ? typical : percentile(pool, 1.0);
+  return typical_stiffness(pool);
 }
 
 ChannelGains channel_gains(std::span<const FieldView> fields, const RenderingOptions& options,
@@ -86,9 +77,13 @@ void check(std::span<const FieldView> fields, const RenderingOptions& options) {
   if (!std::isfinite(budget) || budget <= 0.0) {
     throw std::invalid_argument("choose_gains: the budget must be a finite number > 0");
   }
-  if (options.gains &&
-      !(is_gain(options.gains->tangential_n) && is_gain(options.gains->normal_n))) {
+  if (options.gains && !(is_gain(options.gains->tangential_n) && is_gain(options.gains->normal_n) &&
+                         is_gain(options.gains->height_mm))) {
     throw std::invalid_argument("choose_gains: explicit gains must be finite numbers >= 0");
+  }
+  if (!std::ranges::all_of(
+          fields, [&](const FieldView& field) { return field.model() == options.model; })) {
+    throw std::invalid_argument("choose_gains: a field is of another rendering model");
   }
 }
 
@@ -96,6 +91,7 @@ void check(std::span<const FieldView> fields, const RenderingOptions& options) {
 
 StudyGains choose_gains(std::span<const FieldView> fields, const RenderingOptions& options) {
   check(fields, options);
+  if (options.model == ModelKind::surface) return choose_surface_gains(fields, options);
   Channel tangential{tangential_rms, append_tangential_stiffness, std::nullopt};
   Channel normal{normal_rms, append_normal_stiffness, std::nullopt};
   if (options.gains) {

@@ -1,20 +1,12 @@
 #include "engine/rendering/paper_model.hpp"
 
+#include "engine/rendering/force_limit.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 namespace touchtrial {
 namespace {
-
-/// Also for forces whose squares overflow; what is not finite becomes zero.
-Vec3 limited_in_norm(Vec3 force_n, double limit_n) noexcept {
-  const double squares = force_n.x * force_n.x + force_n.y * force_n.y + force_n.z * force_n.z;
-  if (squares <= limit_n * limit_n) return force_n;
-  if (!is_finite(force_n)) return {};
-  const double largest = std::max({std::abs(force_n.x), std::abs(force_n.y), std::abs(force_n.z)});
-  const Vec3 direction = (1.0 / largest) * force_n;
-  return (limit_n / norm(direction)) * direction;
-}
 
 /// Texture values at a point between pixels.
 struct Texture {
@@ -48,12 +40,6 @@ Texture texture_at(const FieldView& field, double x_mm, double y_mm) noexcept {
   return {mixed(&FieldSample::surface), mixed(&FieldSample::force_x), mixed(&FieldSample::force_y)};
 }
 
-double highest(FieldView field) noexcept {
-  float surface = 0.0F;
-  for (const FieldSample& sample : field.samples) surface = std::max(surface, sample.surface);
-  return surface;
-}
-
 }  // namespace
 
 PaperModel::PaperModel(FieldView field, const RenderingOptions& options, Gains gains) noexcept
@@ -62,8 +48,7 @@ PaperModel::PaperModel(FieldView field, const RenderingOptions& options, Gains g
       damping_n_s_per_mm_(options.damping_n_s_per_mm),
       reference_grey_(options.reference_grey),
       max_force_n_(options.max_force_n),
-      gains_(gains),
-      highest_surface_(highest(field)) {}
+      gains_(gains) {}
 
 Vec3 PaperModel::force_n(Vec3 position_mm, Vec3 velocity_mm_s) const noexcept {
   if (!is_finite(position_mm) || !is_finite(velocity_mm_s)) return {};
@@ -83,7 +68,7 @@ Vec3 PaperModel::force_n(Vec3 position_mm, Vec3 velocity_mm_s) const noexcept {
 
 bool PaperModel::is_out_of_reach(double wall_n) const noexcept {
   if (reference_grey_ == 0.0 && wall_n <= 0.0) return true;
-  return wall_n + gains_.normal_n * (highest_surface_ - reference_grey_) <= 0.0;
+  return wall_n + gains_.normal_n * (field_.highest - reference_grey_) <= 0.0;
 }
 
 }  // namespace touchtrial

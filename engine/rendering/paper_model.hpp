@@ -12,8 +12,7 @@ namespace touchtrial {
 /// towards the hand; depth = -z.
 class PaperModel {
  public:
-  /// Reads every sample once (a fraction of a millisecond for 500 x 500): a mapped field is in
-  /// memory before the servo asks for it.
+  /// Reads no sample: of a mapped field only the pages that the stylus touches come into memory.
   /// \param field  its samples must outlive the model; height_px * width_px of them
   /// \param options,gains  finite, in the ranges of their types
   PaperModel(FieldView field, const RenderingOptions& options, Gains gains) noexcept;
@@ -39,7 +38,6 @@ class PaperModel {
   double reference_grey_;
   double max_force_n_;
   Gains gains_;
-  double highest_surface_;  ///< the largest G of the field: nothing is felt above its height
 };
 
 }  // namespace touchtrial

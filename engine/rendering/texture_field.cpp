@@ -3,7 +3,9 @@
 #include "engine/finite_plane.hpp"
 #include "engine/force_field.hpp"
 #include "engine/gaussian_filter.hpp"
+#include "engine/rendering/cubic_spline.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -19,23 +21,66 @@ void check_options(const RenderingOptions& options) {
   }
 }
 
-}  // namespace
-
-TextureField make_texture_field(const Plane<double>& texture, const RenderingOptions& options) {
-  check_options(options);
-  if (texture.empty()) throw std::invalid_argument("make_texture_field: the texture is empty");
-  require_finite(texture, "make_texture_field", "texture");
-  // Filter and force see only differences, so the level of 128 joins last and costs no digits.
-  const Plane<double> smooth =
-      gaussian_filtered(texture, to_px(options.filter_mm, options.pitch_mm));
-  const ForceField<double> force = tangential_force(smooth, options.neighbourhood);
-  Plane<FieldSample> samples(texture.height(), texture.width());
+/// Filter and force see only differences, so the level of 128 joins last and costs no digits.
+Plane<FieldSample> surface_and_force(const Plane<double>& smooth, int neighbourhood) {
+  const ForceField<double> force = tangential_force(smooth, neighbourhood);
+  Plane<FieldSample> samples(smooth.height(), smooth.width());
   for (std::size_t i = 0; i < samples.size(); ++i) {
     samples.samples()[i] = {static_cast<float>(128.0 + smooth.samples()[i]),
                             static_cast<float>(force.x.samples()[i]),
                             static_cast<float>(force.y.samples()[i])};
   }
-  return {{options.pitch_mm, texture.height(), texture.width()}, std::move(samples)};
+  return samples;
+}
+
+Plane<float> as_float(const Plane<double>& plane) {
+  Plane<float> rounded(plane.height(), plane.width());
+  std::ranges::transform(plane.samples(), rounded.samples().begin(),
+                         [](double value) { return static_cast<float>(value); });
+  return rounded;
+}
+
+/// The largest, or the first that is not a number.
+template <typename Range, typename HeightOf>
+double highest_in(const Range& range, HeightOf height_of) noexcept {
+  float highest = height_of(range.front());
+  for (const auto& entry : range) {
+    const float height = height_of(entry);
+    if (!std::isfinite(height)) return height;
+    highest = std::max(highest, height);
+  }
+  return highest;
+}
+
+}  // namespace
+
+double highest_of(FieldView field) noexcept {
+  if (!field.coefficients.empty()) {
+    return highest_in(field.coefficients, [](float coefficient) { return coefficient; });
+  }
+  return highest_in(field.samples, [](const FieldSample& sample) { return sample.surface; });
+}
+
+TextureField::TextureField(PlaneGeometry geometry, Plane<FieldSample> samples)
+    : geometry_(geometry),
+      samples_(std::move(samples)),
+      highest_(highest_of({geometry, samples_.samples()})) {}
+
+TextureField::TextureField(PlaneGeometry geometry, Plane<float> coefficients)
+    : geometry_(geometry),
+      coefficients_(std::move(coefficients)),
+      highest_(highest_of({geometry, {}, coefficients_.samples()})) {}
+
+TextureField make_texture_field(const Plane<double>& texture, const RenderingOptions& options) {
+  check_options(options);
+  if (texture.empty()) throw std::invalid_argument("make_texture_field: the texture is empty");
+  require_finite(texture, "make_texture_field", "texture");
+  const PlaneGeometry geometry{options.pitch_mm, texture.height(), texture.width()};
+  Plane<double> smooth = gaussian_filtered(texture, to_px(options.filter_mm, options.pitch_mm));
+  if (options.model == ModelKind::paper) {
+    return {geometry, surface_and_force(smooth, options.neighbourhood)};
+  }
+  return {geometry, as_float(cubic_spline_coefficients(std::move(smooth)))};
 }
 
 }  // namespace touchtrial

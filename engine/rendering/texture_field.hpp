@@ -1,17 +1,17 @@
-/// \file A texture as the stylus meets it: the filtered surface and its tangential force, on a
-/// plane.
+/// \file A texture as the stylus meets it, on a plane: what a rendering model reads.
 #pragma once
 
 #include "core/plane.hpp"
 #include "core/plane_geometry.hpp"
 #include "engine/rendering/rendering_options.hpp"
 
+#include <limits>
 #include <span>
 #include <utility>
 
 namespace touchtrial {
 
-/// One pixel of a field, before gains.
+/// One pixel of a field for the model `paper`, before gains.
 struct FieldSample {
   float surface = 128.0F;  ///< G after the reconstruction filter, grey levels
   float force_x = 0.0F;    ///< tangential force, grey levels per pixel, to the right
@@ -19,26 +19,49 @@ struct FieldSample {
 };
 
 /// A field that somebody else owns (a mapped file of a pack, or a TextureField). It holds no name.
+/// It has either samples (`paper`) or spline coefficients (`surface`), row-major,
+/// geometry.height_px x geometry.width_px of them; a flat wall without texture has neither.
 struct FieldView {
   PlaneGeometry geometry;
-  std::span<const FieldSample> samples;  ///< row-major, geometry.height_px x geometry.width_px
+  std::span<const FieldSample> samples = {};
+  /// Coefficients of the cubic B-spline through T after the reconstruction filter, grey levels
+  std::span<const float> coefficients = {};
+  /// No surface (or coefficient) is higher than this, grey levels: models need not read the field
+  /// above. Infinite if nobody has looked.
+  double highest = std::numeric_limits<double>::infinity();
+
+  /// The model that can render the field.
+  [[nodiscard]] ModelKind model() const noexcept {
+    return coefficients.empty() ? ModelKind::paper : ModelKind::surface;
+  }
+  [[nodiscard]] bool empty() const noexcept { return samples.empty() && coefficients.empty(); }
 };
+
+/// The largest surface or coefficient of a field; not finite if a number of it is not. Reads all
+/// of it. \pre the field is not empty
+[[nodiscard]] double highest_of(FieldView field) noexcept;
 
 /// A field in memory.
 class TextureField {
  public:
-  TextureField(PlaneGeometry geometry, Plane<FieldSample> samples)
-      : geometry_(geometry), samples_(std::move(samples)) {}
+  TextureField(PlaneGeometry geometry, Plane<FieldSample> samples);
+  /// \param coefficients  as FieldView::coefficients
+  TextureField(PlaneGeometry geometry, Plane<float> coefficients);
 
-  [[nodiscard]] FieldView view() const noexcept { return {geometry_, samples_.samples()}; }
+  [[nodiscard]] FieldView view() const noexcept {
+    return {geometry_, samples_.samples(), coefficients_.samples(), highest_};
+  }
 
  private:
   PlaneGeometry geometry_;
   Plane<FieldSample> samples_;
+  Plane<float> coefficients_;
+  double highest_;
 };
 
-/// Builds a field from an extracted texture T: surface 128 + T, reconstruction filter, tangential
-/// force with the options' neighbourhood. Computed in double, stored as float.
+/// Builds a field for the options' model from an extracted texture T. `paper`: surface 128 + T,
+/// reconstruction filter, tangential force with the options' neighbourhood. `surface`: the filtered
+/// T as a spline; force planes are not computed. Computed in double, stored as float.
 /// \param texture  T, grey levels, finite, at least 1 x 1
 /// \throws std::invalid_argument if the texture is empty or not finite, or pitch, filter or
 /// neighbourhood is out

@@ -266,7 +266,7 @@ class Preparation {
     flat_[i] = is_flat(field) ? 1 : 0;
     if (options_.statistics) {
       StageTimer timer(log_of(i));
-      prepared.statistics = field_statistics(field, gains);
+      prepared.statistics = field_statistics(field, gains, key_.study.rendering);
       timer.done("statistics", "they follow the gains of the study", sizeof(FieldStatistics));
     } else if (options_.explain) {
       logs_[i].skip("statistics", "nobody asked for them", sizeof(FieldStatistics));

@@ -2,6 +2,7 @@
 
 #include "core/random.hpp"
 #include "engine/cited_textures.hpp"
+#include "protocols/design/study_names.hpp"
 #include "protocols/design/study_sections.hpp"
 
 #include <algorithm>
@@ -11,15 +12,16 @@ namespace touchtrial {
 namespace {
 
 /// To be raised with every change of the engine that changes fields: all packs are built anew then.
-constexpr std::string_view kComputation = "touchtrial field 1";
+constexpr std::string_view kComputation = "touchtrial field 2";
 
 /// The rendering options that the field's bytes depend on. Gains are not among them: they are
 /// applied when the field is felt.
 std::string rendering_text(const RenderingOptions& rendering) {
-  return nlohmann::json{{"pitch_mm", rendering.pitch_mm},
-                        {"filter_mm", rendering.filter_mm},
-                        {"neighbourhood", rendering.neighbourhood}}
-      .dump();
+  nlohmann::json text{{"model", word_for(kModelNames, rendering.model)},
+                      {"pitch_mm", rendering.pitch_mm},
+                      {"filter_mm", rendering.filter_mm}};
+  if (rendering.model == ModelKind::paper) text["neighbourhood"] = rendering.neighbourhood;
+  return text.dump();
 }
 
 bool is_flat(const GreyImage& image) {
@@ -31,10 +33,15 @@ TextureField rendered(Plane<double> texture, const RenderingOptions& rendering, 
   StageTimer timer(log);
   TextureField field = make_texture_field(texture, rendering);
   const double sigma_px = to_px(rendering.filter_mm, rendering.pitch_mm);
-  timer.done("filter, forces",
+  const bool has_forces = rendering.model == ModelKind::paper;
+  timer.done(has_forces ? "filter, forces" : "filter, spline",
              sigma_px > 0.0 ? "a Gaussian of " + number_text(sigma_px) + " px first"
                             : "unfiltered: there is nothing to filter, or filter_mm is 0",
-             field.view().samples.size_bytes());
+             field.view().samples.size_bytes() + field.view().coefficients.size_bytes());
+  if (!has_forces && log != nullptr) {
+    log->skip("force planes", "the model surface needs the height alone",
+              texture.size() * (sizeof(FieldSample) - sizeof(float)));
+  }
   return field;
 }
 
@@ -123,6 +130,10 @@ BuiltField build_field(const GreyImage& image, const ExtractionOptions& method,
 }
 
 bool is_flat(FieldView field) noexcept {
+  if (field.model() == ModelKind::surface) {
+    const float level = field.coefficients.front();
+    return std::ranges::all_of(field.coefficients, [level](float c) { return c == level; });
+  }
   const float level = field.samples.front().surface;
   return std::ranges::all_of(field.samples, [level](const FieldSample& sample) {
     return sample.force_x == 0.0F && sample.force_y == 0.0F && sample.surface == level;

@@ -17,8 +17,9 @@ namespace touchtrial {
 /// its phases when others come or go.
 [[nodiscard]] ExtractionOptions method_of(const Study& study, const StimulusIndex& stimulus);
 
-/// A keyed hash of everything that decides a field's bytes: pixels, method, pitch, filter,
-/// neighbourhood, and the version of this computation. Equal tags: the field need not be built.
+/// A keyed hash of everything that decides a field's bytes: pixels, method, model, pitch, filter,
+/// neighbourhood (`paper`), and the version of this computation. Equal tags: the field need not be
+/// built.
 [[nodiscard]] Digest input_tag(const SecretKey& master, const GreyImage& image,
                                const ExtractionOptions& method, const RenderingOptions& rendering);
 

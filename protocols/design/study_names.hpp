@@ -25,6 +25,9 @@ inline constexpr std::array kOnTimeoutNames = {
 inline constexpr std::array kBlocksNames = {Named<Blocks>{"by-method", Blocks::by_method},
                                             Named<Blocks>{"mixed", Blocks::mixed}};
 
+inline constexpr std::array kModelNames = {Named<ModelKind>{"paper", ModelKind::paper},
+                                           Named<ModelKind>{"surface", ModelKind::surface}};
+
 inline constexpr std::array kEqualiseNames = {Named<Equalise>{"none", Equalise::none},
                                               Named<Equalise>{"rms", Equalise::rms}};
 

@@ -5,17 +5,19 @@
 namespace touchtrial {
 namespace {
 
-constexpr std::array kModelNames = {Named<int>{"paper", 0}};
-
-Gains read_explicit_gains(const JsonValue& place) {
-  const JsonObject object = place.object({"tangential_n", "normal_n"});
+Gains read_explicit_gains(const JsonValue& place, ModelKind model) {
   const NumberRange range{.low = 0.0, .high = 10.0};
-  return {object.at("tangential_n").number(range), object.at("normal_n").number(range)};
+  if (model == ModelKind::surface) {
+    return {.height_mm = place.object({"height_mm"}).at("height_mm").number(range)};
+  }
+  const JsonObject object = place.object({"tangential_n", "normal_n"});
+  return {.tangential_n = object.at("tangential_n").number(range),
+          .normal_n = object.at("normal_n").number(range)};
 }
 
-std::optional<Gains> read_gains(const JsonValue& place) {
+std::optional<Gains> read_gains(const JsonValue& place, ModelKind model) {
   constexpr std::array kNames = {Named<int>{"budget", 0}};
-  if (!place.is_text()) return read_explicit_gains(place);
+  if (!place.is_text()) return read_explicit_gains(place, model);
   static_cast<void>(place.choice(kNames));
   return std::nullopt;
 }
@@ -40,12 +42,29 @@ void read_wall(const JsonObject& object, RenderingOptions& options) {
               options.max_force_n);
 }
 
+void read_friction(const JsonObject& object, RenderingOptions& options) {
+  const auto friction = object.find("friction");
+  if (!friction) return;
+  options.friction = friction->number({.low = 0.0, .high = 10.0});
+  if (options.model == ModelKind::paper && options.friction != 0.0) {
+    friction->refuse(
+        "must be 0: the rendering model paper has no friction; leave it out or give \"model\": "
+        "\"surface\"");
+  }
+}
+
+nlohmann::json gains_json(const RenderingOptions& rendering) {
+  if (!rendering.gains) return "budget";
+  if (rendering.model == ModelKind::surface) return {{"height_mm", rendering.gains->height_mm}};
+  return {{"tangential_n", rendering.gains->tangential_n}, {"normal_n", rendering.gains->normal_n}};
+}
+
 void read_texture(const JsonObject& object, RenderingOptions& options) {
   read_number(object, "filter_mm", {.low = 0.0, .high = 10.0}, options.filter_mm);
   read_number(object, "texture_stiffness_n_per_mm", {.low = 0.0, .high = 100.0, .open_low = true},
               options.texture_stiffness_n_per_mm);
   read_number(object, "reference_grey", {.low = 0.0, .high = 255.0}, options.reference_grey);
-  if (const auto member = object.find("gains")) options.gains = read_gains(*member);
+  if (const auto member = object.find("gains")) options.gains = read_gains(*member, options.model);
   if (const auto member = object.find("equalise"))
     options.equalise = member->choice(kEqualiseNames);
   if (const auto member = object.find("neighbourhood")) {
@@ -60,34 +79,25 @@ RenderingOptions read_rendering(const JsonValue& place) {
       place.object({"model", "pitch_mm", "stiffness_n_per_mm", "damping_n_s_per_mm", "filter_mm",
                     "texture_stiffness_n_per_mm", "gains", "equalise", "reference_grey", "friction",
                     "neighbourhood", "max_force_n"});
-  if (const auto model = object.find("model")) static_cast<void>(model->choice(kModelNames));
-  if (const auto friction = object.find("friction")) {
-    if (friction->number({.low = 0.0, .high = 10.0}) != 0.0) {
-      friction->refuse("must be 0: the rendering model paper has no friction");
-    }
-  }
   RenderingOptions options;
+  if (const auto model = object.find("model")) options.model = model->choice(kModelNames);
+  read_friction(object, options);
   read_wall(object, options);
   read_texture(object, options);
   return options;
 }
 
 nlohmann::json to_json(const RenderingOptions& rendering) {
-  nlohmann::json gains = "budget";
-  if (rendering.gains) {
-    gains = {{"tangential_n", rendering.gains->tangential_n},
-             {"normal_n", rendering.gains->normal_n}};
-  }
-  return {{"model", "paper"},
+  return {{"model", word_for(kModelNames, rendering.model)},
           {"pitch_mm", rendering.pitch_mm},
           {"stiffness_n_per_mm", rendering.stiffness_n_per_mm},
           {"damping_n_s_per_mm", rendering.damping_n_s_per_mm},
           {"filter_mm", rendering.filter_mm},
           {"texture_stiffness_n_per_mm", rendering.texture_stiffness_n_per_mm},
-          {"gains", gains},
+          {"gains", gains_json(rendering)},
           {"equalise", word_for(kEqualiseNames, rendering.equalise)},
           {"reference_grey", rendering.reference_grey},
-          {"friction", 0},
+          {"friction", rendering.friction},
           {"neighbourhood", rendering.neighbourhood},
           {"max_force_n", rendering.max_force_n}};
 }

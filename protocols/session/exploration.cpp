@@ -1,6 +1,6 @@
 #include "protocols/session/exploration.hpp"
 
-#include "protocols/session/paper_force.hpp"
+#include "protocols/session/model_force.hpp"
 
 namespace touchtrial {
 namespace {
@@ -27,14 +27,14 @@ class TrialSink final : public SampleSink {
 
 }  // namespace
 
-Exploration explore(const PaperModel& model, const PlaneGeometry& plane, Participant& participant,
-                    const ServoOptions& options, Trace& trace) {
+Exploration explore(const RenderingModel& model, const PlaneGeometry& plane,
+                    Participant& participant, const ServoOptions& options, Trace& trace) {
   trace.rate_hz = kServoRateHz;
   trace.samples.clear();
   // Room for every tick there can be: the loop itself never asks for memory.
   trace.samples.reserve(static_cast<std::size_t>(options.limit_ticks + options.fade_ticks));
   HapticDevice& device = participant.begin_exploring(plane);
-  PaperForce force(model);
+  ModelForce force(model);
   TrialSink sink(participant, trace);
   Exploration exploration;
   exploration.servo = run_servo_in_virtual_time(device, force, sink, options);

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "device/servo.hpp"
-#include "engine/rendering/paper_model.hpp"
+#include "engine/rendering/rendering_model.hpp"
 #include "protocols/session/participant.hpp"
 #include "protocols/store/trace.hpp"
 
@@ -25,7 +25,7 @@ struct Exploration {
 /// Puts a plane before a participant until the hand stops or time is up. The participant gets the
 /// plane's extent and the samples, and nothing else.
 /// \param trace  gets every sample; its memory is used again
-[[nodiscard]] Exploration explore(const PaperModel& model, const PlaneGeometry& plane,
+[[nodiscard]] Exploration explore(const RenderingModel& model, const PlaneGeometry& plane,
                                   Participant& participant, const ServoOptions& options,
                                   Trace& trace);
 

@@ -4,7 +4,7 @@
 #include "device/servo.hpp"
 #include "engine/perception/texture_sense.hpp"
 #include "protocols/session/job_arena.hpp"
-#include "protocols/session/paper_force.hpp"
+#include "protocols/session/model_force.hpp"
 #include "protocols/session/simulated_exploration.hpp"
 
 #include <cmath>
@@ -24,11 +24,11 @@ class SensingSink final : public SampleSink {
   TextureSense sense;
 };
 
-std::vector<double> feel_once(const PaperModel& model, const PlaneGeometry& plane,
+std::vector<double> feel_once(const RenderingModel& model, const PlaneGeometry& plane,
                               const SubjectModel& subject, double max_force_n,
                               RandomStream random) {
   SimulatedHand hand = make_exploring_hand(subject, plane, random);
-  PaperForce force(model);
+  ModelForce force(model);
   SensingSink sink(plane);
   const auto ticks = static_cast<std::int64_t>(std::ceil(subject.explore_s * kServoRateHz)) + 1;
   const ServoOptions options{.limit_ticks = ticks, .fade_ticks = 0, .max_force_n = max_force_n};

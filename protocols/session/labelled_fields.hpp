@@ -13,7 +13,7 @@ namespace touchtrial {
 /// One thing that can be felt under a name: a class by one of its images and one method.
 struct LabelledField {
   std::string label;
-  const PaperModel* model = nullptr;
+  const RenderingModel* model = nullptr;
 };
 
 /// Every presented stimulus of a study with its label, by class, image and method. Refers to the

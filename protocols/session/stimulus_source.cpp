@@ -11,7 +11,12 @@ StimulusSource::StimulusSource(const Pack& pack, const RenderingOptions& renderi
   for (const PackEntry& entry : pack.manifest().entries) {
     fields_.push_back(pack.map(entry.code));
     const FieldView view = fields_.back().view();
-    models_.emplace(entry.code, PaperModel(view, rendering, entry.gains));
+    if (view.model() != rendering.model) {
+      throw FileError(one_line(folder_ + ": field " + entry.code +
+                               " is of another rendering model than the study; run `touchtrial "
+                               "prepare`"));
+    }
+    models_.emplace(entry.code, RenderingModel(view, rendering, entry.gains));
     if (models_.size() == 1) plane_ = view.geometry;
     plane_.height_px = std::min(plane_.height_px, view.geometry.height_px);
     plane_.width_px = std::min(plane_.width_px, view.geometry.width_px);
@@ -21,7 +26,7 @@ StimulusSource::StimulusSource(const Pack& pack, const RenderingOptions& renderi
   }
 }
 
-const PaperModel& StimulusSource::model(const std::string& code) const {
+const RenderingModel& StimulusSource::model(const std::string& code) const {
   const auto found = models_.find(code);
   if (found == models_.end()) {
     throw FileError(

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "engine/pack/pack.hpp"
-#include "engine/rendering/paper_model.hpp"
+#include "engine/rendering/rendering_model.hpp"
 
 #include <map>
 #include <string>
@@ -10,15 +10,17 @@
 
 namespace touchtrial {
 
-/// Maps every field of a pack and makes its force model once. Thread-safe once made.
+/// Maps every field of a pack and makes its force model once. Of a field, this reads the header;
+/// pages of samples are read when a stylus first touches them. Thread-safe once made.
 class StimulusSource {
  public:
   /// \param rendering  of the study; gains come from the pack
-  /// \throws FileError if a field is missing, truncated or no field, or the pack is empty
+  /// \throws FileError if a field is missing, truncated, no field or of another model, or the pack
+  ///   is empty
   StimulusSource(const Pack& pack, const RenderingOptions& rendering);
 
   /// \throws FileError if the pack has no such code
-  [[nodiscard]] const PaperModel& model(const std::string& code) const;
+  [[nodiscard]] const RenderingModel& model(const std::string& code) const;
 
   /// The part of the plane that all stimuli have: what a participant is told to explore, so that
   /// its extent tells nothing.
@@ -27,7 +29,7 @@ class StimulusSource {
  private:
   std::string folder_;
   std::vector<MappedField> fields_;
-  std::map<std::string, PaperModel, std::less<>> models_;
+  std::map<std::string, RenderingModel, std::less<>> models_;
   PlaneGeometry plane_;
 };
 

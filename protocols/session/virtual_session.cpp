@@ -61,7 +61,7 @@ class VirtualSession {
   }
 
   void run_trial() {
-    const PaperModel& model = source_.model(key_.code_of(session_.current()->stimulus));
+    const RenderingModel& model = source_.model(key_.code_of(session_.current()->stimulus));
     session_.present(now_);
     const Exploration done = explore(model, source_.plane(), participant_, servo_, trace_);
     ++tally_.presentations;

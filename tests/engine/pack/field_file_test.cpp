@@ -1,8 +1,10 @@
 #include "engine/pack/field_file.hpp"
 
 #include "core/errors.hpp"
+#include "engine/rendering/rendering_model.hpp"
 #include "engine/rendering/sample_fields.hpp"
 #include "support/catch.hpp"
+#include "support/guarded_bytes.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -36,9 +38,10 @@ TEST_CASE("encode_field lays the header and the samples out as documented") {
   const Bytes file = encode_field({{0.25, 1, 2}, samples});
   REQUIRE(file.size() == 64 + 2 * 12);
   CHECK(text_of(ByteView(file).first(8)) == "TTFIELD1");
-  CHECK(to_hex(ByteView(file).subspan(8, 16)) == "01000000010000000100000002000000");
+  CHECK(to_hex(ByteView(file).subspan(8, 16)) == "02000000010000000100000002000000");
   CHECK(to_hex(ByteView(file).subspan(24, 8)) == "000000000000d03f");
-  CHECK(std::all_of(file.begin() + 32, file.begin() + 64, [](std::uint8_t b) { return b == 0; }));
+  CHECK(to_hex(ByteView(file).subspan(32, 8)) == "0000000000001040");
+  CHECK(std::all_of(file.begin() + 40, file.begin() + 64, [](std::uint8_t b) { return b == 0; }));
   CHECK(to_hex(ByteView(file).subspan(64, 12)) == "0000803f0000004000004040");
 }
 
@@ -56,6 +59,54 @@ TEST_CASE("decode_field gives back what encode_field was given") {
         0);
 }
 
+TEST_CASE("a surface's file holds coefficients alone, a third of the bytes") {
+  const TextureField surface = random_surface(20, 17, 1);
+  const Bytes file = encode_field(surface.view());
+  REQUIRE(file.size() == 64 + 20 * 17 * 4);
+  CHECK(encode_field(random_field(20, 17, 1).view()).size() == 64 + 20 * 17 * 12);
+  const FieldView read = decode_field(file, kName);
+  CHECK(read.model() == ModelKind::surface);
+  CHECK(read.samples.empty());
+  CHECK(read.highest == surface.view().highest);
+  CHECK(std::ranges::equal(read.coefficients, surface.view().coefficients));
+}
+
+TEST_CASE("decode_field and the model of what it finds read the header's page alone") {
+  const TextureField field =
+      GENERATE(0, 1) == 0 ? random_field(80, 90, 1) : random_surface(80, 90, 1);
+  const Bytes file = encode_field(field.view());
+  GuardedBytes guarded(std::as_bytes(std::span(file)));
+  guarded.leave_only({0});
+  const FieldView read = decode_field(guarded.as<std::uint8_t>(), kName);
+  RenderingOptions options;
+  options.model = read.model();
+  const RenderingModel model(read, options, {0.01, 0.01, 0.01});
+  Bristle touch;
+  CHECK(model.force_n({9.0, 8.0, 50.0}, {}, touch) == Vec3{});
+  CHECK(guarded.pages() > 4);
+}
+
+TEST_CASE("the header says how high a field reaches") {
+  const TextureField field = random_field(9, 8, 3);
+  float highest = 0.0F;
+  for (const FieldSample& sample : field.view().samples)
+    highest = std::max(highest, sample.surface);
+  CHECK(decode_field(encode_field(field.view()), kName).highest == double{highest});
+  FieldView unlooked = field.view();
+  unlooked.highest = std::numeric_limits<double>::infinity();
+  CHECK(decode_field(encode_field(unlooked), kName).highest == double{highest});
+}
+
+TEST_CASE("decode_field refuses a field of the former version, and a height that is no number") {
+  const Bytes file = encode_field(random_field(2, 3, 4).view());
+  CHECK(refusal_of(with_value(file, 8, std::uint32_t{1})) ==
+        kName.string() +
+            ": has field version 1, not 2; copy the pack again or rebuild it with `touchtrial "
+            "prepare`");
+  CHECK(refusal_of(with_value(file, 32, std::nan(""))).find("no highest point") !=
+        std::string::npos);
+}
+
 TEST_CASE("encode_field makes files of one size from fields of one size") {
   const TextureField flat = flat_field(30, 20);
   const TextureField rough = random_field(30, 20, 2, 100.0);
@@ -69,6 +120,8 @@ TEST_CASE("encode_field refuses a view that is not a field") {
   CHECK_THROWS_AS(encode_field({{0.2, -2, -3}, samples}), std::invalid_argument);
   CHECK_THROWS_AS(encode_field({{0.0, 2, 3}, samples}), std::invalid_argument);
   CHECK_THROWS_AS(encode_field({{std::nan(""), 2, 3}, samples}), std::invalid_argument);
+  samples[4].surface = std::numeric_limits<float>::quiet_NaN();
+  CHECK_THROWS_AS(encode_field({{0.2, 2, 3}, samples}), std::invalid_argument);
 }
 
 TEST_CASE("decode_field refuses a file cut anywhere, or with more behind it") {
@@ -85,7 +138,7 @@ TEST_CASE("decode_field refuses a file cut anywhere, or with more behind it") {
 TEST_CASE("decode_field refuses any other magic, version, layout and reserved byte") {
   const Bytes file = encode_field(random_field(2, 3, 4).view());
   for (std::size_t at = 0; at < 64; ++at) {
-    if (at >= 24 && at < 32) continue;  // the pitch may be any number > 0
+    if (at >= 24 && at < 40) continue;  // pitch and highest point may be other numbers
     Bytes changed = file;
     changed[at] ^= 0x41U;
     CAPTURE(at);

@@ -56,7 +56,7 @@ TEST_CASE("a manifest's text has sorted keys and says everything once") {
   const PackManifest manifest{"00ff", {entry("aaaaaaaaaaaaaaaa", 1, {0.1, 0.5})}};
   CHECK(manifest_to_json({"00ff", {}}) ==
         "{\n  \"fields\": [],\n  \"format\": \"touchtrial-pack\",\n  \"study_id\": \"00ff\",\n"
-        "  \"version\": 1\n}\n");
+        "  \"version\": 2\n}\n");
   CHECK(manifest_to_json(manifest).find("\"normal_n\": 0.5,\n        \"tangential_n\": 0.1\n") !=
         std::string::npos);
 }
@@ -101,11 +101,11 @@ TEST_CASE("manifest_from_json names the place of what it refuses") {
   };
   const auto tried = GENERATE(values<Case>({
       {"touchtrial-pack", "zip", "/format: must be"},
-      {"\"version\": 1", "\"version\": 2", "/version: must be 1"},
-      {"\"version\": 1", "\"version\": \"1\"", "/version: must be 1"},
-      {"\"version\": 1", "\"version\": 1, \"note\": 0", "/note: is not a key"},
-      {"\"version\": 1", "\"version\": 1, \"a/b~c\": 0", "/a~1b~0c: is not a key"},
-      {",\n  \"version\": 1", "", "/version: is missing"},
+      {"\"version\": 2", "\"version\": 1", "/version: is not 2"},
+      {"\"version\": 2", "\"version\": \"2\"", "/version: is not 2"},
+      {"\"version\": 2", "\"version\": 2, \"note\": 0", "/note: is not a key"},
+      {"\"version\": 2", "\"version\": 2, \"a/b~c\": 0", "/a~1b~0c: is not a key"},
+      {",\n  \"version\": 2", "", "/version: is missing"},
       {"\"00ff\"", "\"bark\"", "/study_id: must be hexadecimal"},
       {"\"00ff\"", "17", "/study_id: must be a string"},
       {"aaaaaaaaaaaaaaaa", "../aaaaaaaaaaaaa", "/fields/0/code: must be 16"},
@@ -121,6 +121,8 @@ TEST_CASE("manifest_from_json names the place of what it refuses") {
       {"0.1", "-0.1", "/fields/0/gains/tangential_n: must be a number >= 0"},
       {"0.1", "null", "/fields/0/gains/tangential_n: must be a number >= 0"},
       {"0.1", "true", "/fields/0/gains/tangential_n: must be a number >= 0"},
+      {"\"height_mm\": 0.0", "\"height_mm\": -1.0", "/fields/0/gains/height_mm: must be a number"},
+      {"\"height_mm\": 0.0,", "", "/fields/0/gains/height_mm: is missing"},
       {"0.1", "0.1, \"spring_n\": 1", "/fields/0/gains/spring_n: is not a key"},
   }));
   const std::string message = refusal_of(with(tried.part, tried.other));
@@ -140,7 +142,7 @@ TEST_CASE("manifest_from_json refuses what is no manifest at all") {
 }
 
 TEST_CASE("manifest_from_json refuses a key that stands twice in one object") {
-  CHECK(is_refused(with("\"version\": 1", "\"version\": 1, \"version\": 1"),
+  CHECK(is_refused(with("\"version\": 2", "\"version\": 2, \"version\": 2"),
                    "has the key \"version\" twice"));
   CHECK(is_refused(with("\"normal_n\"", "\"tangential_n\": 9, \"normal_n\""),
                    "has the key \"tangential_n\" twice"));

@@ -123,6 +123,7 @@ TEST_CASE("a pack's digest depends on everything that pack.json says") {
   CHECK(digest_with([](PackManifest& m) {
           m.entries[0].gains.normal_n = std::nextafter(0.023, 1.0);
         }) != original);
+  CHECK(digest_with([](PackManifest& m) { m.entries[0].gains.height_mm = 1e-300; }) != original);
 }
 
 TEST_CASE("a pack's digest does not depend on the layout of pack.json") {

@@ -163,7 +163,7 @@ TEST_CASE("PaperModel without contact has no force of any kind") {
 
 TEST_CASE("PaperModel does not read the field above the reach of any surface") {
   std::vector<FieldSample> samples(100);
-  const FieldView view{{0.2, 10, 10}, samples};
+  const FieldView view{.geometry = {0.2, 10, 10}, .samples = samples, .highest = 128.0};
   const PaperModel model(view, {}, kGains);
   for (FieldSample& sample : samples) sample.surface = 1e6F;
   CHECK(model.force_n({1.0, 1.0, 0.1}, kStill) == Vec3{});

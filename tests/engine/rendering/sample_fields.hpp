@@ -27,6 +27,21 @@ inline TextureField flat_field(int height, int width) {
   return make_texture_field(Plane<double>(height, width, 0.0), {});
 }
 
+inline RenderingOptions surface_options() {
+  RenderingOptions options;
+  options.model = ModelKind::surface;
+  return options;
+}
+
+inline TextureField random_surface(int height, int width, std::uint64_t seed,
+                                   double amplitude = 40.0) {
+  return make_texture_field(random_texture(height, width, seed, amplitude), surface_options());
+}
+
+inline TextureField flat_surface(int height, int width) {
+  return make_texture_field(Plane<double>(height, width, 0.0), surface_options());
+}
+
 inline std::vector<FieldView> views_of(const std::vector<TextureField>& fields) {
   std::vector<FieldView> views;
   for (const TextureField& field : fields) views.push_back(field.view());

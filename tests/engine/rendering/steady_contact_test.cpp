@@ -1,6 +1,6 @@
 /// \file The law that decides whether a rendering model can be used at all: a hand that rests on a
 /// flat texture feels a steady force.
-#include "engine/rendering/paper_model.hpp"
+#include "engine/rendering/rendering_model.hpp"
 #include "engine/rendering/sample_fields.hpp"
 #include "support/catch.hpp"
 
@@ -41,14 +41,15 @@ struct Contact {
 };
 
 /// Lands, and watches the force from 0.5 s after first contact for a second.
-Contact land(const PaperModel& model, double push_n, double stiffness_n_per_mm) {
+Contact land(const RenderingModel& model, double push_n, double stiffness_n_per_mm) {
   Hand hand;
   hand.push(push_n, stiffness_n_per_mm);
   Contact contact;
+  Bristle bristle;
   bool touching = false;
   int since_landing = -1;
   while (since_landing < 1500) {
-    const double force_n = model.force_n(hand.position_mm, hand.velocity_mm_s).z;
+    const double force_n = model.force_n(hand.position_mm, hand.velocity_mm_s, bristle).z;
     if (force_n > 0.0 && !touching) ++contact.landings;
     touching = force_n > 0.0;
     if (contact.landings > 0) ++since_landing;
@@ -63,9 +64,12 @@ Contact land(const PaperModel& model, double push_n, double stiffness_n_per_mm) 
 
 TEST_CASE("a hand that pushes on a flat texture keeps contact with a steady force") {
   const double push_n = GENERATE(0.3, 0.7, 2.0);
-  const TextureField field = flat_field(500, 1000);
-  const PaperModel model(field.view(), {}, {0.012, 0.01});
-  const Contact contact = land(model, push_n, RenderingOptions{}.stiffness_n_per_mm);
+  RenderingOptions options;
+  options.model = GENERATE(ModelKind::paper, ModelKind::surface);
+  options.friction = options.model == ModelKind::surface ? GENERATE(0.0, 0.3) : 0.0;
+  const TextureField field = make_texture_field(Plane<double>(500, 1000), options);
+  const RenderingModel model(field.view(), options, {0.012, 0.01, 0.01});
+  const Contact contact = land(model, push_n, options.stiffness_n_per_mm);
   CAPTURE(push_n, contact.worst_deviation_n);
   CHECK(contact.kept);
   CHECK(contact.worst_deviation_n < 0.02);
@@ -75,7 +79,7 @@ TEST_CASE("the same hand bounces on the literal reading, which is why it is not 
   const TextureField field = flat_field(500, 1000);
   RenderingOptions options;
   options.reference_grey = 0.0;
-  const PaperModel model(field.view(), options, {0.012, 0.01});
+  const RenderingModel model(field.view(), options, {0.012, 0.01});
   const Contact contact = land(model, 1.0, options.stiffness_n_per_mm);
   CHECK_FALSE(contact.kept);
   CHECK(contact.landings > 20);

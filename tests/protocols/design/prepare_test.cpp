@@ -195,6 +195,41 @@ TEST_CASE("only what changed is built again") {
   CHECK(reused(laboratory.prepare()) == 3);
 }
 
+TEST_CASE("a study with the surface model has packs of coefficients, a third of the size") {
+  Laboratory laboratory;
+  const PrepareReport paper = laboratory.prepare();
+  laboratory.document["rendering"] = {{"model", "surface"}};
+  const PrepareReport report = laboratory.prepare();
+  CHECK(reused(report) == 0);
+  CHECK(reused(laboratory.prepare()) == 3);
+  const Pack pack(laboratory.pack());
+  for (std::size_t i = 0; i < report.stimuli.size(); ++i) {
+    const MappedField field = pack.map(laboratory.key().stimuli[i].code);
+    CHECK(field.view().model() == ModelKind::surface);
+    CHECK(report.stimuli[i].gains.height_mm > 0.0);
+    CHECK(report.stimuli[i].statistics.tangential_rms_n > 0.0);
+    CHECK(3 * (report.stimuli[i].bytes - 64) == paper.stimuli[i].bytes - 64);
+  }
+  laboratory.document["rendering"]["neighbourhood"] = 5;  // of no consequence to a surface
+  CHECK(reused(laboratory.prepare()) == 3);
+}
+
+TEST_CASE("a pack of the former format is built again, with a warning") {
+  const Laboratory laboratory;
+  static_cast<void>(laboratory.prepare());
+  const auto whole = laboratory.files();
+  const std::filesystem::path path = laboratory.pack() / "pack.json";
+  json former = json::parse(text_of(read_file(path)));
+  former["version"] = 1;
+  for (json& field : former["fields"]) field["gains"].erase("height_mm");
+  replace_file(path, std::string_view(former.dump(2)));
+  CHECK_THROWS_WITH(Pack(laboratory.pack()), holds_text("/version: is not 2, the only version"));
+  const PrepareReport report = laboratory.prepare();
+  CHECK(reused(report) == 0);
+  CHECK(warns(report, "all fields were built anew"));
+  CHECK(laboratory.files() == whole);
+}
+
 TEST_CASE("a damaged or missing field is built again") {
   const Laboratory laboratory;
   static_cast<void>(laboratory.prepare());
@@ -432,6 +467,19 @@ TEST_CASE("of a flat image nothing is extracted, and its field is what an extrac
     CHECK(std::ranges::equal(std::as_bytes(field.view().samples),
                              std::as_bytes(expected.view().samples)));
   }
+}
+
+TEST_CASE("the surface model makes no force planes, and says how many bytes that saves") {
+  Laboratory laboratory;
+  laboratory.document["rendering"] = {{"model", "surface"}};
+  CHECK(explained(laboratory)[0] ==
+        "read image computed; sub-bands computed; order map computed; texture computed; control "
+        "skipped; filter, spline computed; force planes skipped; write field computed; statistics "
+        "computed; ");
+  laboratory.document["rendering"]["filter_mm"] = 0.3;
+  const PrepareReport report =
+      prepare_pack(laboratory.key(), laboratory.pack(), {}, {.explain = true});
+  CHECK(report.stimuli[0].stages[6].bytes == kSide * kSide * 8);
 }
 
 TEST_CASE("a method without sub-bands skips them, and statistics are skipped unasked") {

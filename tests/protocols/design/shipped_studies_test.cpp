@@ -43,6 +43,17 @@ TEST_CASE("the comparison study has four objects and both methods at the same rm
   CHECK(study.scored_trials() == 40);
 }
 
+TEST_CASE("the surface study is the classification study under the other model") {
+  const Study study = load_study(kConfig / "classification-surface.json");
+  const Study paper = load_study(kConfig / "classification.json");
+  CHECK(study.name == "classification-surface");
+  CHECK(study.rendering == RenderingOptions{.model = ModelKind::surface, .gains = {}});
+  CHECK(labels_of(study) == labels_of(paper));
+  CHECK(study.methods == paper.methods);
+  CHECK(study.trials == paper.trials);
+  CHECK(study.seed != paper.seed);
+}
+
 TEST_CASE("the study of exemplars has the same classes with five pictures each") {
   const Study study = load_study(kConfig / "classification-exemplars.json");
   CHECK(labels_of(study) == labels_of(load_study(kConfig / "classification.json")));
@@ -72,8 +83,9 @@ TEST_CASE("the control study holds the adaptive method against its phase-scrambl
 }
 
 TEST_CASE("every image of the studies that come with the program is there") {
-  for (const char* name : {"classification.json", "classification-exemplars.json",
-                           "comparison.json", "comparison-textures.json", "control.json"}) {
+  for (const char* name :
+       {"classification.json", "classification-exemplars.json", "classification-surface.json",
+        "comparison.json", "comparison-textures.json", "control.json"}) {
     const Study study = load_study(kConfig / name);
     for (const StudyClass& study_class : study.classes) {
       for (const std::filesystem::path& image : study_class.images) {

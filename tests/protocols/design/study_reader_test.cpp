@@ -218,11 +218,31 @@ TEST_CASE("a key that belongs to another method is refused with the reason") {
   contains(refusal(document), "belongs to the methods adaptive, fixed and median, not to tv-gabor");
 }
 
+TEST_CASE("a study with the surface model has its own gains and friction") {
+  json document = minimal_study();
+  document["rendering"] = {
+      {"model", "surface"}, {"gains", {{"height_mm", 0.004}}}, {"friction", 0.25}};
+  const RenderingOptions expected{
+      .model = ModelKind::surface, .gains = Gains{.height_mm = 0.004}, .friction = 0.25};
+  CHECK(parsed(document).rendering == expected);
+  document["rendering"]["gains"] = "budget";
+  CHECK_FALSE(parsed(document).rendering.gains);
+}
+
+TEST_CASE("the gains of one model are refused for the other, with their place") {
+  json document = minimal_study();
+  document["rendering"] = {{"model", "surface"}, {"gains", {{"normal_n", 0.01}}}};
+  contains(refusal(document), "/rendering/gains/normal_n: is not a known key");
+  document["rendering"] = {{"model", "paper"}, {"gains", {{"height_mm", 0.01}}}};
+  contains(refusal(document), "/rendering/gains/height_mm: is not a known key");
+  document["rendering"] = {{"model", "surface"}, {"gains", json::object()}};
+  contains(refusal(document), "/rendering/gains/height_mm: ");
+  document["rendering"] = {{"model", "surface"}, {"friction", -0.1}};
+  contains(refusal(document), "/rendering/friction: ");
+}
+
 TEST_CASE("what this version does not do is refused honestly") {
   json document = minimal_study();
-  document["rendering"]["model"] = "surface";
-  contains(refusal(document), "/rendering/model: \"surface\" is not known to this version");
-  document = minimal_study();
   document["rendering"]["friction"] = 0.3;
   contains(refusal(document), "/rendering/friction: must be 0: the rendering model paper");
   document = minimal_study();

@@ -23,6 +23,18 @@ json schema() {
   return json::parse(text_of(read_file(root / "config/schema/study.schema.json")));
 }
 
+/// The schema with what it says of one rendering model only laid over the rest.
+json schema_for(const std::string& model) {
+  json whole = schema();
+  json& rendering = whole["properties"]["rendering"];
+  const bool of_surface = model == rendering["if"]["properties"]["model"]["const"];
+  const json branch = rendering[of_surface ? "then" : "else"];
+  for (const auto& [key, property] : branch["properties"].items()) {
+    rendering["properties"][key].update(property);
+  }
+  return whole;
+}
+
 /// The error that a study is refused with; empty if it is accepted.
 std::string refusal(const json& study) {
   try {
@@ -33,23 +45,25 @@ std::string refusal(const json& study) {
   return "";
 }
 
+const json kPaper = {
+    {"model", "paper"}, {"gains", {{"tangential_n", 0.01}, {"normal_n", 0.01}}}, {"friction", 0}};
+const json kSurface = {{"model", "surface"}, {"gains", {{"height_mm", 0.01}}}, {"friction", 0.2}};
+
 /// A study in which every key that can be there is there, with room to change any one alone.
-json full_study(const json& method) {
+json full_study(const json& method, const json& model = kPaper) {
   json study = comparison_of(2);
   const char* other = method["name"] == "adaptive" ? "fixed" : "adaptive";
   study["methods"] = {method, {{"name", other}}};
-  study["rendering"] = {{"model", "paper"},
-                        {"pitch_mm", 0.2},
+  study["rendering"] = {{"pitch_mm", 0.2},
                         {"stiffness_n_per_mm", 0.4},
                         {"damping_n_s_per_mm", 0},
                         {"filter_mm", 0.4},
                         {"texture_stiffness_n_per_mm", 0.4},
-                        {"gains", {{"tangential_n", 0.01}, {"normal_n", 0.01}}},
                         {"equalise", "none"},
                         {"reference_grey", 128},
-                        {"friction", 0},
                         {"neighbourhood", 3},
                         {"max_force_n", 3.3}};
+  study["rendering"].update(model);
   study["trials"] = {{"repeats", 2},         {"order", "shuffled"}, {"explore_limit_s", 60},
                      {"on_timeout", "fade"}, {"practice", 0},       {"break_every", 0},
                      {"catch", 0},           {"lead_in", 0},        {"blocks", "by-method"}};
@@ -73,6 +87,13 @@ const json kEdge = {{"name", "edge"}, {"divisor", 4}};
 const json kLuminance = {{"name", "luminance"}};
 const std::vector<json> kMethods = {kAdaptive, kFixed, kTvGabor,  kGaussian,
                                     kMedian,   kEdge,  kLuminance};
+
+/// A full study for each method and for each model.
+std::vector<json> full_studies() {
+  std::vector<json> studies = {full_study(kAdaptive, kSurface)};
+  for (const json& method : kMethods) studies.push_back(full_study(method));
+  return studies;
+}
 
 /// One property of the schema at its place in one of the full studies.
 struct Property {
@@ -121,9 +142,9 @@ void for_each_object(const json& node, const json& study, const Pointer& place,
 
 std::vector<Property> all_properties() {
   std::vector<Property> properties;
-  for (const json& method : kMethods) {
-    const json study = full_study(method);
-    for_each_object(schema(), study, Pointer(), [&](const json& object, const Pointer& place) {
+  for (const json& study : full_studies()) {
+    const json schema = schema_for(study["rendering"]["model"]);
+    for_each_object(schema, study, Pointer(), [&](const json& object, const Pointer& place) {
       const json required = object.value("required", json::array());
       for (const auto& [key, property] : object["properties"].items()) {
         if (!study[place].contains(key)) continue;
@@ -170,17 +191,18 @@ double step_of(const json& property) {
 TEST_CASE("the schema speaks of every section of the study file") {
   std::set<std::string> places;
   for (const Property& property : all_properties()) places.insert(property.place.to_string());
-  CHECK(places.size() == 8 + 2 + 18 + 14 + 9);
-  for (const char* place : {"/seed", "/rendering/gains/normal_n", "/trials/catch",
-                            "/methods/0/components/0/direction", "/classes/0/images"}) {
+  CHECK(places.size() == 8 + 2 + 18 + 15 + 9);
+  for (const char* place :
+       {"/seed", "/rendering/gains/normal_n", "/rendering/gains/height_mm", "/trials/catch",
+        "/methods/0/components/0/direction", "/classes/0/images"}) {
     CHECK(places.count(place) == 1);
   }
 }
 
 TEST_CASE("the reader knows exactly the schema's keys in every object") {
-  for (const json& method : kMethods) {
-    const json study = full_study(method);
-    for_each_object(schema(), study, Pointer(), [&](const json& object, const Pointer& place) {
+  for (const json& study : full_studies()) {
+    const json schema = schema_for(study["rendering"]["model"]);
+    for_each_object(schema, study, Pointer(), [&](const json& object, const Pointer& place) {
       INFO("object at " << place.to_string());
       CHECK(object["additionalProperties"] == false);
       json changed = study;
@@ -194,6 +216,7 @@ TEST_CASE("the reader knows exactly the schema's keys in every object") {
 
 TEST_CASE("the reader requires exactly what the schema requires") {
   for (const Property& property : all_properties()) {
+    if (property.place.back() == "model") continue;  // others depend on it
     INFO(property.place.to_string() << ": " << property.refusal_without());
     CHECK(property.refusal_without().empty() != property.required);
   }
@@ -216,7 +239,8 @@ TEST_CASE("the reader accepts exactly the schema's words") {
     json words = property.schema.value("enum", json::array());
     if (property.schema.contains("oneOf")) words = property.schema["oneOf"][0]["enum"];
     if (words.empty()) continue;
-    if (property.place.back() == "name") continue;  // the methods have a test of their own
+    // Methods and models have tests of their own.
+    if (property.place.back() == "name" || property.place.back() == "model") continue;
     INFO(property.place.to_string());
     std::set<std::string> expected;
     for (const json& word : words) {
@@ -225,6 +249,18 @@ TEST_CASE("the reader accepts exactly the schema's words") {
     }
     CHECK(listed_after(property.refusal_with("qqqqqqqq"), "possible: ") == expected);
   }
+}
+
+TEST_CASE("the reader knows exactly the schema's rendering models") {
+  const json model = schema()["properties"]["rendering"]["properties"]["model"];
+  const std::set<std::string> expected = model["enum"];
+  json study = minimal_study();
+  for (const std::string& word : expected) {
+    study["rendering"] = {{"model", word}};
+    CHECK(refusal(study).empty());
+  }
+  study["rendering"] = {{"model", "qqqqqqqq"}};
+  CHECK(listed_after(refusal(study), "possible: ") == expected);
 }
 
 TEST_CASE("the reader keeps the schema's bounds") {
@@ -264,7 +300,7 @@ TEST_CASE("the reader keeps the schema's constants and multiples") {
       CHECK_FALSE(property.refusal_with(6).empty());
     }
   }
-  CHECK(rules == 4 * static_cast<int>(kMethods.size()));
+  CHECK(rules == 4 * static_cast<int>(kMethods.size()) + 3);
 }
 
 TEST_CASE("the reader keeps the schema's lengths of lists") {
@@ -306,7 +342,7 @@ TEST_CASE("the schema's defaults are the reader's") {
     CHECK(parsed(study).trials == bare.trials);
     CHECK(parsed(study).seed == bare.seed);
   }
-  CHECK(defaults == 23 * static_cast<int>(kMethods.size()));
+  CHECK(defaults == 23 * (static_cast<int>(kMethods.size()) + 1));
 }
 
 TEST_CASE("the schema's defaults of the methods' keys are the reader's") {

@@ -11,10 +11,13 @@ namespace {
 
 const std::filesystem::path kConfig = std::filesystem::path(TOUCHTRIAL_SOURCE_DIR) / "config";
 
-/// The default classification study, prepared.
+/// A study that comes with the program, prepared.
 class DefaultStudy {
  public:
-  DefaultStudy() { prepare_pack(key_, folder_.path() / "default.sim.pack"); }
+  explicit DefaultStudy(const char* study_file = "classification.json")
+      : key_(make_key(study_file)) {
+    prepare_pack(key_, folder_.path() / "default.sim.pack");
+  }
 
   [[nodiscard]] double accuracy_of(const char* subject_file, int participants) const {
     const Pack pack(folder_.path() / "default.sim.pack");
@@ -29,19 +32,27 @@ class DefaultStudy {
   }
 
  private:
-  [[nodiscard]] static StudyKey make_key() {
+  [[nodiscard]] static StudyKey make_key(const char* study_file) {
     SeededEntropy entropy(1);
-    return make_study_key(load_study(kConfig / "classification.json"), entropy, true);
+    return make_study_key(load_study(kConfig / study_file), entropy, true);
   }
 
   TempFolder folder_;
-  StudyKey key_ = make_key();
+  StudyKey key_;
 };
 
 TEST_CASE("the default subject's mean accuracy in the default study is like people's") {
   const double accuracy = DefaultStudy().accuracy_of("default.json", 20);
   CHECK(accuracy >= 0.70);
   CHECK(accuracy <= 0.95);
+}
+
+TEST_CASE("the surface model's textures are told apart about as well as the paper's") {
+  const DefaultStudy surface("classification-surface.json");
+  const double accuracy = surface.accuracy_of("default.json", 10);
+  CHECK(accuracy >= 0.70);
+  CHECK(accuracy <= 0.95);
+  CHECK(surface.accuracy_of("ideal.json", 4) >= 0.98);
 }
 
 TEST_CASE("without noise the default study is answered almost without errors") {

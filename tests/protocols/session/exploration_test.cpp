@@ -38,7 +38,7 @@ TEST_CASE("on a flat texture a hand keeps contact, steady to 0.02 N, 0.5 s after
   subject.explore_s = 3.0;
   const RenderingOptions rendering;
   const TextureField field = make_texture_field(Plane<double>(120, 120), rendering);
-  const PaperModel model(field.view(), rendering, {0.01, 0.01});
+  const RenderingModel model(field.view(), rendering, {0.01, 0.01});
   Explorer explorer(subject);
   Trace trace;
   const Exploration done = explore(model, field.view().geometry, explorer, {}, trace);
@@ -58,7 +58,7 @@ TEST_CASE("the trace and the participant get the same samples") {
   subject.explore_s = 0.5;
   Explorer explorer(subject);
   Trace trace;
-  const PaperModel& model = source.model(study.key().stimuli.front().code);
+  const RenderingModel& model = source.model(study.key().stimuli.front().code);
   static_cast<void>(explore(model, source.plane(), explorer, {}, trace));
   REQUIRE(trace.samples.size() == explorer.felt.size());
   for (std::size_t i = 0; i < trace.samples.size(); ++i) {
@@ -90,7 +90,7 @@ TEST_CASE("when time is up the plane fades under the hand") {
   SubjectModel subject;
   const RenderingOptions rendering;
   const TextureField field = make_texture_field(Plane<double>(120, 120), rendering);
-  const PaperModel model(field.view(), rendering, {});
+  const RenderingModel model(field.view(), rendering, {});
   Explorer explorer(subject);
   Trace trace;
   const ServoOptions options{.limit_ticks = 2000, .fade_ticks = 100};
@@ -115,6 +115,14 @@ TEST_CASE("stimuli of different sizes are explored on the part that all have") {
   const StimulusSource source(Pack(folder.path()), rendering);
   CHECK(source.plane().height_px == 40);
   CHECK(source.plane().width_px == 60);
+}
+
+TEST_CASE("a pack of one model is refused by a study of the other") {
+  const TinyStudy study;
+  RenderingOptions rendering = study.key().study.rendering;
+  rendering.model = ModelKind::surface;
+  CHECK_THROWS_WITH(StimulusSource(study.pack(), rendering),
+                    Catch::Contains("is of another rendering model than the study"));
 }
 
 TEST_CASE("a code that the pack does not have is an error that names it") {

@@ -1,0 +1,32 @@
+/// \file The cubic B-spline through the samples of a plane: twice continuously differentiable,
+/// with the plane mirrored at its edges. Private to engine/rendering.
+/// Source: docs/method.md, "Rendering" (Unser, Aldroubi and Eden 1993).
+#pragma once
+
+#include "core/plane.hpp"
+
+#include <span>
+
+namespace touchtrial {
+
+/// Coefficients of the spline that takes each sample's value at its pixel centre, under half-sample
+/// symmetric extension. By recursive filtering, exact to double rounding; a constant plane is
+/// its own coefficients. Thread-safe. Cost: some 5 ns a pixel.
+/// \param samples  at least 1 x 1, finite, any unit
+[[nodiscard]] Plane<double> cubic_spline_coefficients(Plane<double> samples);
+
+/// Value and gradient of a spline at a point.
+struct SplinePoint {
+  double value = 0.0;
+  double along_x = 0.0;  ///< per pixel
+  double along_y = 0.0;  ///< per pixel
+};
+
+/// The spline at a point in continuous pixel coordinates (pixel centres are whole numbers), also
+/// beyond the edges, where it is mirrored. Reads 16 coefficients. No allocation, lock or exception.
+/// \param coefficients  row-major, height_px x width_px, each >= 1
+/// \param x_px,y_px  not NaN; beyond a magnitude of 2^29, taken to lie there
+[[nodiscard]] SplinePoint spline_at(std::span<const float> coefficients, int height_px,
+                                    int width_px, double x_px, double y_px) noexcept;
+
+}  // namespace touchtrial

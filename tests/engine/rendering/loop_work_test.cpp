@@ -1,0 +1,118 @@
+/// \file The law that sets the rendering models apart: whoever goes round a closed path under
+/// `surface` comes back with the energy that they had.
+#include "engine/rendering/loop_work.hpp"
+
+#include "engine/rendering/gains.hpp"
+#include "engine/rendering/sample_fields.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace touchtrial {
+namespace {
+
+/// One of the textures that a law must survive.
+Plane<double> hostile_texture(int which) {
+  if (which == 0) return random_texture(40, 50, 1, 127.0);
+  Plane<double> texture(40, 50);
+  for (int y = 0; y < 40; ++y) {
+    for (int x = 0; x < 50; ++x) {
+      if (which == 1) texture.at(y, x) = x < 25 ? -127.0 : 127.0;
+      if (which == 2) texture.at(y, x) = x == 25 && y == 20 ? 127.0 : 0.0;
+      if (which == 3) texture.at(y, x) = (x + y) % 2 == 0 ? -127.0 : 127.0;
+    }
+  }
+  return texture;
+}
+
+RenderingModel model_at_budget(FieldView field, const RenderingOptions& options) {
+  return {field, options, choose_gains({&field, 1}, options).of_field[0]};
+}
+
+/// A closed path of random corners over, beside and above the plane, as deep as the stated load.
+std::vector<Vec3> random_loop(std::uint64_t seed) {
+  RandomStream random(seed, "loop");
+  std::vector<Vec3> corners;
+  for (int i = 0; i < 5; ++i) {
+    corners.push_back(
+        {random.uniform(-3.0, 13.0), random.uniform(-3.0, 11.0), random.uniform(-2.5, 1.0)});
+  }
+  return corners;
+}
+
+double largest_loop_mj(const RenderingModel& model) {
+  double largest_mj = 0.0;
+  for (std::uint64_t seed = 0; seed < 15; ++seed) {
+    largest_mj = std::max(largest_mj, std::abs(loop_work_mj(model, random_loop(seed))));
+    RandomStream random(seed, "planar and pressing loops");
+    const Vec3 centre_mm{random.uniform(0.0, 10.0), random.uniform(0.0, 8.0), -1.75};
+    const double radius_mm = random.uniform(0.1, 4.0);
+    const Vec2 from_mm{centre_mm.x, centre_mm.y};
+    const Vec2 to_mm{random.uniform(0.0, 10.0), random.uniform(0.0, 8.0)};
+    for (const auto& loop :
+         {circle_path(centre_mm, radius_mm), press_slide_lift_path(from_mm, to_mm, 2.0, -1.75)}) {
+      largest_mj = std::max(largest_mj, std::abs(loop_work_mj(model, loop)));
+    }
+  }
+  return largest_mj;
+}
+
+TEST_CASE("surface does no work round closed loops, also across the plane's edge") {
+  RenderingOptions options = surface_options();
+  options.filter_mm = GENERATE(0.0, 0.4);
+  const TextureField field = make_texture_field(hostile_texture(GENERATE(0, 1, 2, 3)), options);
+  CHECK(largest_loop_mj(model_at_budget(field.view(), options)) < 1e-6);
+}
+
+TEST_CASE("what is left of surface's work is the quadrature's, and goes with the step") {
+  const TextureField field = random_surface(40, 50, 2, 80.0);
+  const RenderingModel model = model_at_budget(field.view(), surface_options());
+  const std::vector<Vec3> loop = circle_path({5.0, 4.0, -1.75}, 3.0);
+  CHECK(std::abs(loop_work_mj(model, loop, 0.001)) < 1e-11);
+}
+
+TEST_CASE("paper does work round the same loops, which is why there is a second model") {
+  const TextureField field = random_field(40, 50, 1, 127.0);
+  const double largest_mj = largest_loop_mj(model_at_budget(field.view(), {}));
+  CHECK(largest_mj > 1e-3);
+  CHECK(largest_mj < 1.0);
+}
+
+TEST_CASE("loop_work of a constant force is zero, and of a known curl is its flux") {
+  // Force planes of a vortex: F = (-y, x) grey levels per pixel has a curl of 2 per pixel.
+  std::vector<FieldSample> samples(50 * 50);
+  for (int y = 0; y < 50; ++y) {
+    for (int x = 0; x < 50; ++x) {
+      samples[static_cast<std::size_t>(y) * 50 + x] = {128.0F, static_cast<float>(-y),
+                                                       static_cast<float>(x)};
+    }
+  }
+  RenderingOptions options;
+  options.max_force_n = 1e6;
+  const RenderingModel model({{0.2, 50, 50}, samples}, options, {0.01, 0.0});
+  const double curl_n_per_mm = 0.01 * 2.0 / 0.2;
+  const std::vector<Vec3> square = {
+      {2.0, 3.0, -1.0}, {6.0, 3.0, -1.0}, {6.0, 8.0, -1.0}, {2.0, 8.0, -1.0}};
+  CHECK(loop_work_mj(model, square) == Approx(curl_n_per_mm * 20.0).epsilon(1e-9));
+  const std::vector<Vec3> back(square.rbegin(), square.rend());
+  CHECK(loop_work_mj(model, back) == Approx(-curl_n_per_mm * 20.0).epsilon(1e-9));
+  const RenderingModel wall({{0.2, 50, 50}, samples}, options, {});
+  CHECK(loop_work_mj(wall, random_loop(3)) == Approx(0.0).margin(1e-7));
+}
+
+TEST_CASE("with friction a hand loses energy round every loop, and never gains") {
+  RenderingOptions options = surface_options();
+  options.friction = GENERATE(0.01, 0.3);
+  const TextureField field = random_surface(40, 50, 3, 80.0);
+  const RenderingModel model = model_at_budget(field.view(), options);
+  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+    CHECK(loop_work_mj(model, random_loop(seed)) < 1e-6);
+  }
+  // Kinetic friction over a long circle: about mu * load * way.
+  const double lost_mj = -loop_work_mj(model, circle_path({5.0, 4.0, -1.75}, 3.0));
+  CHECK(lost_mj == Approx(options.friction * 0.7 * 6.0 * 3.14159).epsilon(0.15));
+}
+
+}  // namespace
+}  // namespace touchtrial

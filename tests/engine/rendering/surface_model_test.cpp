@@ -1,0 +1,209 @@
+#include "engine/rendering/surface_model.hpp"
+
+#include "engine/rendering/gains.hpp"
+#include "engine/rendering/sample_fields.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace touchtrial {
+namespace {
+
+constexpr Gains kGains{.height_mm = 0.004};
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Force on a hand at rest, from a presentation of its own.
+Vec3 still_force_n(const SurfaceModel& model, Vec3 position_mm) {
+  Bristle bristle;
+  return model.force_n(position_mm, {}, bristle);
+}
+
+RenderingOptions unlimited() {
+  RenderingOptions options = surface_options();
+  options.max_force_n = 1e30;
+  return options;
+}
+
+/// Points on, beside and above a plane of this size, as deep as 3 mm.
+Vec3 random_point(RandomStream& random, const PlaneGeometry& plane) {
+  return {random.uniform(-3.0, plane.width_mm() + 3.0),
+          random.uniform(-3.0, plane.height_mm() + 3.0), random.uniform(-3.0, 0.2)};
+}
+
+TEST_CASE("SurfaceModel's force is minus the gradient of its potential, everywhere") {
+  const int height = GENERATE(1, 3, 30);
+  const int width = GENERATE(1, 40);
+  const TextureField field = random_surface(height, width, 1, 60.0);
+  const SurfaceModel model(field.view(), unlimited(), kGains);
+  RandomStream random(2, "points");
+  constexpr double kStepMm = 1e-5;
+  double strongest_n = 0.0;
+  for (int i = 0; i < 500; ++i) {
+    const Vec3 at_mm = random_point(random, field.view().geometry);
+    const auto slope_along = [&](Vec3 axis) {
+      return (model.potential_mj(at_mm + kStepMm * axis) -
+              model.potential_mj(at_mm - kStepMm * axis)) /
+             (2.0 * kStepMm);
+    };
+    const Vec3 force_n = still_force_n(model, at_mm);
+    CAPTURE(height, width, at_mm.x, at_mm.y, at_mm.z);
+    REQUIRE(force_n.x == Approx(-slope_along({1.0, 0.0, 0.0})).margin(1e-6));
+    REQUIRE(force_n.y == Approx(-slope_along({0.0, 1.0, 0.0})).margin(1e-6));
+    REQUIRE(force_n.z == Approx(-slope_along({0.0, 0.0, 1.0})).margin(1e-6));
+    strongest_n = std::max(strongest_n, std::hypot(force_n.x, force_n.y));
+  }
+  if (height * width > 1) CHECK(strongest_n > 0.01);
+}
+
+TEST_CASE("SurfaceModel's lateral force grows in proportion to the load") {
+  const TextureField field = random_surface(20, 20, 3);
+  const SurfaceModel model(field.view(), unlimited(), kGains);
+  const Vec3 light_n = still_force_n(model, {1.77, 2.31, -1.0});
+  const Vec3 heavy_n = still_force_n(model, {1.77, 2.31, -4.0});
+  REQUIRE(std::abs(light_n.x) > 1e-4);
+  CHECK(heavy_n.x / light_n.x == Approx(heavy_n.z / light_n.z).epsilon(1e-12));
+  CHECK(heavy_n.y / light_n.y == Approx(heavy_n.z / light_n.z).epsilon(1e-12));
+}
+
+TEST_CASE("SurfaceModel's surface goes through the texture at pixel centres") {
+  RenderingOptions options = unlimited();
+  options.filter_mm = 0.0;
+  const Plane<double> texture = random_texture(8, 11, 4);
+  const TextureField field = make_texture_field(texture, options);
+  const SurfaceModel model(field.view(), options, kGains);
+  for (int y = 0; y < 8; ++y) {
+    for (int x = 0; x < 11; ++x) {
+      const Vec2 at_mm = field.view().geometry.to_mm(x, y);
+      const double force_n = still_force_n(model, {at_mm.x, at_mm.y, -2.0}).z;
+      REQUIRE(force_n == Approx(0.4 * (2.0 + 0.004 * texture.at(y, x))).margin(1e-7));
+    }
+  }
+}
+
+TEST_CASE("SurfaceModel is a Hooke wall on a flat texture, without gain and without a field") {
+  const TextureField flat = flat_surface(20, 20);
+  const TextureField rough = random_surface(20, 20, 5);
+  for (const SurfaceModel& model :
+       {SurfaceModel(flat.view(), surface_options(), kGains),
+        SurfaceModel(rough.view(), surface_options(), {}),
+        SurfaceModel(random_field(20, 20, 5).view(), surface_options(), kGains),
+        SurfaceModel({}, surface_options(), kGains)}) {
+    CHECK(still_force_n(model, {2.0, 2.0, -1.5}) == Vec3{0.0, 0.0, 0.4 * 1.5});
+    CHECK(still_force_n(model, {2.0, 2.0, 0.0}) == Vec3{});
+    CHECK(still_force_n(model, {2.0, 2.0, 3.0}) == Vec3{});
+  }
+}
+
+TEST_CASE("SurfaceModel fades beyond the edge and is the flat wall beyond its rim") {
+  const TextureField field = random_surface(20, 30, 6);
+  const SurfaceModel model(field.view(), surface_options(), kGains);
+  for (const double beyond_mm : {-kRimMm, -50.0, 6.0 + kRimMm, 1e9, 1e300}) {
+    CHECK(still_force_n(model, {beyond_mm, 1.0, -1.0}) == Vec3{0.0, 0.0, 0.4});
+    CHECK(still_force_n(model, {beyond_mm, beyond_mm, -1.0}) == Vec3{0.0, 0.0, 0.4});
+  }
+  CHECK(still_force_n(model, {-0.5, 1.0, -1.0}).z != 0.4);
+}
+
+TEST_CASE("SurfaceModel's force is continuous across the plane's edges and the rim's") {
+  const TextureField field = random_surface(10, 10, 7, 60.0);
+  const SurfaceModel model(field.view(), unlimited(), kGains);
+  constexpr double kStepMm = 1e-4;
+  constexpr double kSteepestNPerMm = 10.0;
+  double steepest = 0.0;
+  Vec3 before = still_force_n(model, {-3.0, 1.0, -2.0});
+  for (double t = -3.0 + kStepMm; t < 5.0; t += kStepMm) {
+    const Vec3 force_n = still_force_n(model, {t, 1.0 + 0.4 * t, -2.0});
+    steepest = std::max(steepest, norm(force_n - before) / kStepMm);
+    before = force_n;
+  }
+  CHECK(steepest > 0.01);
+  CHECK(steepest < kSteepestNPerMm);
+}
+
+TEST_CASE("SurfaceModel's damping slows a hand, never pulls it and leaves the lateral force") {
+  const TextureField field = random_surface(20, 20, 8);
+  RenderingOptions options = unlimited();
+  options.damping_n_s_per_mm = 0.002;
+  const SurfaceModel model(field.view(), options, kGains);
+  const Vec3 at_mm{1.77, 2.31, -1.0};
+  const Vec3 elastic_n = still_force_n(model, at_mm);
+  Bristle bristle;
+  const auto moving_n = [&](double up_mm_s) {
+    return model.force_n(at_mm, {30.0, -20.0, up_mm_s}, bristle);
+  };
+  CHECK(moving_n(50.0).z == Approx(elastic_n.z - 0.1));
+  CHECK(moving_n(-50.0).z == Approx(elastic_n.z + 0.1));
+  CHECK(moving_n(1000.0).z == 0.0);
+  CHECK(moving_n(1000.0).x == elastic_n.x);
+  CHECK(moving_n(1000.0).y == elastic_n.y);
+  CHECK(model.force_n({1.0, 1.0, 2.0}, {0.0, 0.0, -500.0}, bristle) == Vec3{});
+}
+
+TEST_CASE("SurfaceModel does not read the field above the reach of any surface") {
+  std::vector<float> coefficients(100, 0.0F);
+  const FieldView view{{0.2, 10, 10}, {}, coefficients, 10.0};
+  const SurfaceModel model(view, surface_options(), {.height_mm = 0.01});
+  std::ranges::fill(coefficients, 1e6F);
+  CHECK(still_force_n(model, {1.0, 1.0, 0.1}) == Vec3{});
+  CHECK(still_force_n(model, {1.0, 1.0, 0.0999}).z == Approx(3.3));
+}
+
+TEST_CASE("SurfaceModel limits the norm of the force and keeps its direction") {
+  const TextureField field = random_surface(10, 10, 9, 100.0);
+  const Gains strong{.height_mm = 0.02};
+  const SurfaceModel limited(field.view(), surface_options(), strong);
+  const SurfaceModel free(field.view(), unlimited(), strong);
+  const double depth_mm = GENERATE(2.0, 8.0, 20.0, 1e6);
+  RandomStream random(10, "points");
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 at{random.uniform(0.0, 2.0), random.uniform(0.0, 2.0), -depth_mm};
+    const Vec3 full_n = still_force_n(free, at);
+    const Vec3 force_n = still_force_n(limited, at);
+    REQUIRE(norm(force_n) <= 3.3 * (1.0 + 1e-15));
+    REQUIRE(norm(force_n - std::min(1.0, 3.3 / norm(full_n)) * full_n) < 1e-9);
+  }
+}
+
+TEST_CASE("SurfaceModel gives zero force for positions and velocities that are not finite") {
+  const TextureField field = random_surface(10, 10, 11);
+  RenderingOptions options = surface_options();
+  options.friction = GENERATE(0.0, 0.5);
+  const SurfaceModel model(field.view(), options, kGains);
+  const double bad = GENERATE(std::nan(""), kInfinity, -kInfinity);
+  Bristle bristle;
+  for (const Vec3 where : {Vec3{bad, 1.0, -1.0}, Vec3{1.0, bad, -1.0}, Vec3{1.0, 1.0, bad}}) {
+    CHECK(model.force_n(where, {}, bristle) == Vec3{});
+  }
+  for (const Vec3 speed : {Vec3{bad, 0.0, 0.0}, Vec3{0.0, bad, 0.0}, Vec3{0.0, 0.0, bad}}) {
+    CHECK(model.force_n({1.0, 1.0, -1.0}, speed, bristle) == Vec3{});
+  }
+  CHECK(is_finite(model.force_n({1.0, 1.0, -1.0}, {}, bristle)));
+  CHECK(model.force_n({1.0, 1.0, -1.0}, {}, bristle).z > 0.0);
+}
+
+TEST_CASE("SurfaceModel stays finite and within its limit whatever the gain, field and place") {
+  const float odd = GENERATE(1e-30F, 1.0F, 1e30F, std::numeric_limits<float>::quiet_NaN(),
+                             std::numeric_limits<float>::infinity());
+  const double gain = GENERATE(0.0, 1e-12, 1.0, 1e12);
+  RenderingOptions options = surface_options();
+  options.friction = GENERATE(0.0, 10.0);
+  std::vector<float> coefficients(12, 1.0F);
+  coefficients[5] = odd;
+  const int height = GENERATE(1, 3, 12);
+  const FieldView view{{0.2, height, 12 / height}, {}, coefficients};
+  const SurfaceModel model(view, options, {.height_mm = gain});
+  RandomStream random(12, "points");
+  Bristle bristle;
+  for (int i = 0; i < 100; ++i) {
+    Vec3 at_mm = random_point(random, view.geometry);
+    if (i % 10 == 0) at_mm = 1e200 * at_mm;
+    const Vec3 force_n = model.force_n(at_mm, {}, bristle);
+    REQUIRE(is_finite(force_n));
+    REQUIRE(norm(force_n) <= 3.3 * (1.0 + 1e-12));
+  }
+}
+
+}  // namespace
+}  // namespace touchtrial
