@@ -60,6 +60,7 @@ template <typename Real>
 [[nodiscard]] Cases tv_gabor_cases(const Scope& scope);
 
 [[nodiscard]] Case paper_force_case();
+[[nodiscard]] Case surface_force_case();
 [[nodiscard]] Cases force_cases();
 
 /// All of the above.

@@ -3,7 +3,7 @@
 #include "core/random.hpp"
 #include "engine/extraction.hpp"
 #include "engine/rendering/gains.hpp"
-#include "engine/rendering/paper_model.hpp"
+#include "engine/rendering/rendering_model.hpp"
 #include "engine/rendering/texture_field.hpp"
 
 #include <array>
@@ -39,16 +39,23 @@ TextureField field_of(const GreyImage& image, const RenderingOptions& options) {
   return make_texture_field(extract_texture<double>(image, {}).texture, options);
 }
 
-struct PaperStroke {
-  PaperStroke()
-      : image(square_of(timed_picture(), kUsualSize_px)),
+RenderingOptions options_of(ModelKind model) {
+  RenderingOptions options;
+  options.model = model;
+  return options;
+}
+
+struct ModelStroke {
+  explicit ModelStroke(ModelKind kind)
+      : options(options_of(kind)),
+        image(square_of(timed_picture(), kUsualSize_px)),
         field(field_of(image, options)),
         model(field.view(), options, choose_gains(std::array{field.view()}, options).of_field[0]),
         stroke(kUsualSize_px * options.pitch_mm) {}
 
   void run() {
     for (const Vec3& place_mm : stroke.places_mm) {
-      const Vec3 force_n = model.force_n(place_mm, {});
+      const Vec3 force_n = model.force_n(place_mm, {}, touch);
       sum_n.x += force_n.x;
       sum_n.y += force_n.y;
       sum_n.z += force_n.z;
@@ -58,26 +65,35 @@ struct PaperStroke {
   RenderingOptions options;
   GreyImage image;
   TextureField field;
-  PaperModel model;
+  RenderingModel model;
+  Bristle touch;
   Stroke stroke;
   Vec3 sum_n;  ///< so that no evaluation can be left out
 };
 
-}  // namespace
-
-Case paper_force_case() {
+Case force_case(ModelKind model, const char* name) {
   Case one;
   one.work = "force evaluation";
-  one.who = our_name() + ", paper";
-  one.make = [] {
-    const auto stroke = std::make_shared<PaperStroke>();
+  one.who = our_name() + ", " + name;
+  one.make = [model] {
+    const auto stroke = std::make_shared<ModelStroke>(model);
     return Job{[=] { stroke->run(); }, {}, kPlaces};
   };
   return one;
 }
 
+}  // namespace
+
+Case paper_force_case() {
+  return force_case(ModelKind::paper, "paper");
+}
+
+Case surface_force_case() {
+  return force_case(ModelKind::surface, "surface");
+}
+
 Cases force_cases() {
-  return {paper_force_case()};
+  return {paper_force_case(), surface_force_case()};
 }
 
 }  // namespace touchtrial::bench

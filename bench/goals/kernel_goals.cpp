@@ -101,6 +101,7 @@ std::vector<Goal> kernel_goals(const std::vector<std::string>& targets) {
   goals.push_back(ratio_goal("GLCM and statistics", glcm_case(kUsualSize_px),
                              pair_loop_case(kUsualSize_px), kGlcmTarget));
   goals.push_back(time_goal("force evaluation, paper", paper_force_case(), kForceTarget_us));
+  goals.push_back(time_goal("force evaluation, surface", surface_force_case(), kForceTarget_us));
   return goals;
 }
 

@@ -64,8 +64,7 @@ class TextureField {
 /// T as a spline; force planes are not computed. Computed in double, stored as float.
 /// \param texture  T, grey levels, finite, at least 1 x 1
 /// \throws std::invalid_argument if the texture is empty or not finite, or pitch, filter or
-/// neighbourhood is out
-///   of range
+///   neighbourhood is out of range
 /// Thread-safe.
 [[nodiscard]] TextureField make_texture_field(const Plane<double>& texture,
                                               const RenderingOptions& options);
