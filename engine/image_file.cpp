@@ -7,15 +7,14 @@
 #include "engine/image_formats/image_kind.hpp"
 #include "engine/image_formats/pnm.hpp"
 #include "engine/image_formats/quiet_decoder.hpp"
+#include "engine/pictures/colour_image.hpp"
 
 #include <new>
 #include <stdexcept>
 #include <string>
 #include <system_error>
-#include <vector>
 
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 
 namespace touchtrial {
 namespace {
@@ -46,19 +45,6 @@ FileError error_about(const std::string& name, const std::string& what, const st
   return FileError(one_line(name + ": " + what + "; " + remedy));
 }
 
-/// Filtered rows and zlib's best effort: textures pack poorly, so every per cent is welcome.
-std::vector<std::uint8_t> png_bytes(const GreyImage& image) {
-  cv::Mat pixels(image.height(), image.width(), CV_8UC1);
-  for (int y = 0; y < image.height(); ++y) {
-    std::copy(image.row(y).begin(), image.row(y).end(), pixels.ptr(y));
-  }
-  std::vector<std::uint8_t> bytes;
-  const std::vector<int> options = {cv::IMWRITE_PNG_COMPRESSION, 9, cv::IMWRITE_PNG_STRATEGY,
-                                    cv::IMWRITE_PNG_STRATEGY_FILTERED};
-  if (!cv::imencode(".png", pixels, bytes, options)) bytes.clear();
-  return bytes;
-}
-
 }  // namespace
 
 GreyImage read_grey_image(const std::filesystem::path& path) {
@@ -87,14 +73,12 @@ GreyImage decode_grey_image(ByteView file, const std::string& name) {
 
 void write_png(const std::filesystem::path& path, const GreyImage& image) {
   if (image.empty()) throw std::invalid_argument("write_png: the image has no pixels");
-  std::vector<std::uint8_t> bytes;
+  Bytes bytes;
   try {
     bytes = png_bytes(image);
-  } catch (const cv::Exception&) {
-    bytes.clear();
-  }
-  if (bytes.empty())
+  } catch (const FileError&) {
     throw error_about(path.string(), "cannot be encoded as PNG", "give a smaller image");
+  }
   replace_file(path, bytes);
 }
 

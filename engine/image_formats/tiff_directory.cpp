@@ -6,6 +6,7 @@ namespace {
 constexpr std::size_t kEntrySize = 12;
 constexpr std::uint32_t kPrivateTag = 65000;
 constexpr std::uint32_t kLong = 4;
+constexpr std::uint32_t kRational = 5;
 
 /// Bytes of one value; 0 for types that no entry of ours has.
 std::size_t size_of_type(std::uint32_t type) {
@@ -58,6 +59,18 @@ std::vector<std::uint32_t> TiffDirectory::values(TiffTag tag) const {
 std::uint32_t TiffDirectory::value(TiffTag tag, std::uint32_t otherwise) const {
   const std::vector<std::uint32_t> all = values(tag);
   return all.empty() ? otherwise : all.front();
+}
+
+std::optional<double> TiffDirectory::fraction(TiffTag tag) const {
+  const auto entry = entries_.find(tag);
+  if (entry == entries_.end()) return std::nullopt;
+  const std::size_t at = entry->second;
+  if (number_at(file_, at + 2, 2, order_) != kRational) return std::nullopt;
+  const std::size_t place = number_at(file_, at + 8, 4, order_);
+  const std::uint32_t numerator = number_at(file_, place, 4, order_);
+  const std::uint32_t denominator = number_at(file_, place + 4, 4, order_);
+  if (denominator == 0) return std::nullopt;
+  return static_cast<double>(numerator) / denominator;
 }
 
 void TiffDirectory::set(Bytes& copy, TiffTag tag, std::uint32_t number) const {

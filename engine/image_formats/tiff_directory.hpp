@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 namespace touchtrial {
@@ -22,7 +23,10 @@ enum class TiffTag : std::uint32_t {
   samples_per_pixel = 277,
   rows_per_strip = 278,
   strip_byte_counts = 279,
+  x_resolution = 282,
+  y_resolution = 283,
   planar = 284,
+  resolution_unit = 296,
   predictor = 317,
   tile_width = 322,
   tile_height = 323,
@@ -42,6 +46,8 @@ class TiffDirectory {
   [[nodiscard]] std::vector<std::uint32_t> values(TiffTag tag) const;
   /// The first value of an entry, or `otherwise`.
   [[nodiscard]] std::uint32_t value(TiffTag tag, std::uint32_t otherwise) const;
+  /// The first value of a RATIONAL entry; nothing if it is absent, of another type, or over zero.
+  [[nodiscard]] std::optional<double> fraction(TiffTag tag) const;
 
   /// In a copy of the file: makes an entry hold one number. An absent entry stays absent.
   void set(Bytes& copy, TiffTag tag, std::uint32_t number) const;

@@ -6,12 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <stdexcept>
+#include <string>
 #include <vector>
 
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 namespace touchtrial {
@@ -108,12 +107,13 @@ cv::Mat overview(const cv::Mat& texture, const ArrowPatch& patch) {
   return panel;
 }
 
-cv::Mat close_up(const cv::Mat& texture, const ForceField<double>& force, const ArrowPatch& patch) {
-  const double scale = static_cast<double>(kPanel_px) / std::max(patch.height, patch.width);
-  cv::Mat panel(kPanel_px, kPanel_px, CV_8UC3, kWhite);
+cv::Mat close_up(const cv::Mat& texture, const ForceField<double>& force, const ArrowPatch& patch,
+                 int side_px) {
+  const double scale = static_cast<double>(side_px) / std::max(patch.height, patch.width);
+  cv::Mat panel(side_px, side_px, CV_8UC3, kWhite);
   cv::Mat picture = enlarged(texture(cv::Rect(patch.x, patch.y, patch.width, patch.height)), scale);
   draw_arrows(picture, force, patch, scale);
-  picture.copyTo(panel(cv::Rect((kPanel_px - picture.cols) / 2, (kPanel_px - picture.rows) / 2,
+  picture.copyTo(panel(cv::Rect((side_px - picture.cols) / 2, (side_px - picture.rows) / 2,
                                 picture.cols, picture.rows)));
   return panel;
 }
@@ -133,9 +133,26 @@ cv::Mat two_panels(const GreyImage& texture, const ForceField<double>& force,
   const cv::Mat picture = in_colour(texture);
   cv::Mat sheet(kPanel_px, 2 * kPanel_px + kMargin_px, CV_8UC3, kWhite);
   overview(picture, patch).copyTo(sheet(cv::Rect(0, 0, kPanel_px, kPanel_px)));
-  close_up(picture, force, patch)
+  close_up(picture, force, patch, kPanel_px)
       .copyTo(sheet(cv::Rect(kPanel_px + kMargin_px, 0, kPanel_px, kPanel_px)));
   return sheet;
+}
+
+ColourImage out_of_opencv(const cv::Mat& picture) {
+  ColourImage image(picture.rows, picture.cols);
+  for (int y = 0; y < picture.rows; ++y) {
+    for (int x = 0; x < picture.cols; ++x) {
+      const auto& pixel = picture.at<cv::Vec3b>(y, x);
+      image.at(y, x) = {pixel[2], pixel[1], pixel[0]};
+    }
+  }
+  return image;
+}
+
+void require_same_shape(const GreyImage& texture, const ForceField<double>& force,
+                        const char* who) {
+  if (texture.height() == force.x.height() && texture.width() == force.x.width()) return;
+  throw std::invalid_argument(std::string(who) + ": texture and field differ in size");
 }
 
 }  // namespace
@@ -161,16 +178,27 @@ ArrowPatch strongest_patch(const ForceField<double>& force) {
   return best;
 }
 
+ColourImage force_arrows(const GreyImage& texture, const ForceField<double>& force,
+                         const ArrowPatch& patch, int side_px) {
+  require_same_shape(texture, force, "force_arrows");
+  const bool inside = patch.y >= 0 && patch.x >= 0 && patch.height >= 1 && patch.width >= 1 &&
+                      patch.height <= texture.height() - patch.y &&
+                      patch.width <= texture.width() - patch.x;
+  if (!inside || side_px < 1) {
+    throw std::invalid_argument("force_arrows: the patch is not within the texture, or no side");
+  }
+  return out_of_opencv(close_up(in_colour(texture), force, patch, side_px));
+}
+
 ArrowPatch write_force_arrows(const std::filesystem::path& path, const GreyImage& texture,
                               const ForceField<double>& force) {
-  if (texture.height() != force.x.height() || texture.width() != force.x.width()) {
-    throw std::invalid_argument("write_force_arrows: texture and field differ in size");
-  }
+  require_same_shape(texture, force, "write_force_arrows");
   const ArrowPatch patch = strongest_patch(force);
-  std::vector<std::uint8_t> bytes;
-  if (!cv::imencode(".png", two_panels(texture, force, patch), bytes,
-                    {cv::IMWRITE_PNG_COMPRESSION, 9})) {
-    throw FileError(one_line(path.string()) + ": cannot be encoded as PNG; give a smaller image");
+  Bytes bytes;
+  try {
+    bytes = png_bytes(out_of_opencv(two_panels(texture, force, patch)));
+  } catch (const FileError& error) {
+    throw FileError(one_line(path.string()) + ": " + error.what());
   }
   replace_file(path, bytes);
   return patch;

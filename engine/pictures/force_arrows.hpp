@@ -3,6 +3,7 @@
 
 #include "core/plane.hpp"
 #include "engine/force_field.hpp"
+#include "engine/pictures/colour_image.hpp"
 
 #include <filesystem>
 
@@ -27,9 +28,18 @@ struct ArrowPatch {
 /// \throws std::invalid_argument if the field is empty
 [[nodiscard]] ArrowPatch strongest_patch(const ForceField<double>& force);
 
+/// A patch of a texture enlarged to fill a square, centred on white if it is none, with an arrow in
+/// the direction of the force at each pixel. Arrows have their middle at the centres of their
+/// pixels; their length is proportional to the force.
+/// \param texture  8-bit picture of the same shape as the field, at least 1 x 1
+/// \param patch  within the texture
+/// \param side_px  of the square, >= 1
+/// \throws std::invalid_argument if the shapes differ, or the patch is not within them
+[[nodiscard]] ColourImage force_arrows(const GreyImage& texture, const ForceField<double>& force,
+                                       const ArrowPatch& patch, int side_px);
+
 /// Writes a PNG of two parts: the whole texture with a frame round the strongest patch, and that
-/// patch enlarged, with an arrow in the direction of the force at each pixel. Arrows have
-/// their middle at the centres of their pixels; their length is proportional to the force.
+/// patch as by force_arrows.
 /// \param texture  8-bit picture of the same shape as the field, at least 1 x 1
 /// \return the patch
 /// \throws std::invalid_argument if the shapes differ or are empty

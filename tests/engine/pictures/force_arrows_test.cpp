@@ -89,5 +89,23 @@ TEST_CASE("force arrows refuse a field of another size and a folder that is not 
   CHECK_THROWS_AS(write_force_arrows("/no/such/folder/x.png", image, force_of(image)), FileError);
 }
 
+TEST_CASE("arrows are drawn over a patch that fills the square") {
+  const GreyImage texture(30, 40, 100);
+  ForceField<double> force{Plane<double>(30, 40), Plane<double>(30, 40)};
+  force.x.at(12, 12) = 5.0;
+  const ArrowPatch patch = strongest_patch(force);
+  const ColourImage picture = force_arrows(texture, force, patch, 120);
+  REQUIRE(picture.height() == 120);
+  REQUIRE(picture.width() == 120);
+  const auto coloured = std::ranges::count_if(picture.samples(), [](const Rgb& pixel) {
+    return pixel.red != pixel.green || pixel.green != pixel.blue;
+  });
+  CHECK(coloured > 0);
+  CHECK(coloured < 300);
+  CHECK_THROWS_AS((void)force_arrows(GreyImage(3, 3), force, patch, 120), std::invalid_argument);
+  CHECK_THROWS_AS((void)force_arrows(texture, force, ArrowPatch{20, 0, 24, 24, 1.0}, 120),
+                  std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace touchtrial

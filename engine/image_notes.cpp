@@ -1,0 +1,147 @@
+#include "engine/image_notes.hpp"
+
+#include "engine/image_formats/byte_order.hpp"
+#include "engine/image_formats/image_kind.hpp"
+#include "engine/image_formats/tiff_directory.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+
+namespace touchtrial {
+namespace {
+
+constexpr double kMmPerInch = 25.4;
+constexpr double kMmPerCm = 10.0;
+constexpr double kMmPerMetre = 1000.0;
+
+bool is_placeholder(double pixels_per_mm) {
+  constexpr std::array kDotsPerInch = {72.0, 96.0};
+  return std::ranges::any_of(
+      kDotsPerInch, [&](double dots) { return std::abs(pixels_per_mm * kMmPerInch - dots) < 0.1; });
+}
+
+std::optional<double> resolution(double x, double y, double unit_mm) {
+  const bool is_square = std::abs(x - y) <= 0.01 * std::max(x, y);
+  // A whole picture within a micrometre, or a pixel wider than a hand, is nobody's measurement.
+  if (!is_square || !(x / unit_mm >= 0.01) || !(x / unit_mm <= 1000.0)) return std::nullopt;
+  if (is_placeholder(x / unit_mm)) return std::nullopt;
+  return x / unit_mm;
+}
+
+ImageNotes notes_of_tiff(ByteView file) {
+  const TiffDirectory directory(file);
+  ImageNotes notes;
+  notes.orientation = static_cast<int>(directory.value(TiffTag::orientation, 1));
+  const auto x = directory.fraction(TiffTag::x_resolution);
+  const auto y = directory.fraction(TiffTag::y_resolution);
+  constexpr std::uint32_t kInch = 2;
+  constexpr std::uint32_t kCentimetre = 3;
+  const std::uint32_t unit = directory.value(TiffTag::resolution_unit, kInch);
+  if (x && y && unit == kInch) notes.pixels_per_mm = resolution(*x, *y, kMmPerInch);
+  if (x && y && unit == kCentimetre) notes.pixels_per_mm = resolution(*x, *y, kMmPerCm);
+  return notes;
+}
+
+/// Exif is a TIFF directory within another file.
+void take_exif(ByteView exif, ImageNotes& notes) {
+  try {
+    const ImageNotes said = notes_of_tiff(exif);
+    notes.orientation = said.orientation;
+    if (said.pixels_per_mm) notes.pixels_per_mm = said.pixels_per_mm;
+  } catch (const ImageFault&) {
+    // Damaged notes count as not there; the rest of the file may still have some.
+  }
+}
+
+bool starts_with(ByteView bytes, std::string_view text) {
+  return text_of(bytes.first(std::min(bytes.size(), text.size()))) == text;
+}
+
+void take_jfif(ByteView data, ImageNotes& notes) {
+  const double x = big16(data, 8);
+  const double y = big16(data, 10);
+  if (data[7] == 1) notes.pixels_per_mm = resolution(x, y, kMmPerInch);
+  if (data[7] == 2) notes.pixels_per_mm = resolution(x, y, kMmPerCm);
+}
+
+/// Segments before the first scan.
+void take_jpeg(ByteView file, ImageNotes& notes) {
+  using namespace std::string_view_literals;
+  constexpr std::uint32_t kScan = 0xFFDA;
+  for (std::size_t at = 2; big16(file, at) >= 0xFFC0 && big16(file, at) != kScan;) {
+    const ByteView data = bytes_at(file, at + 4, std::max(big16(file, at + 2), 2U) - 2);
+    if (big16(file, at) == 0xFFE0 && starts_with(data, "JFIF\0"sv)) take_jfif(data, notes);
+    if (big16(file, at) == 0xFFE1 && starts_with(data, "Exif\0\0"sv)) {
+      take_exif(data.subspan(6), notes);
+    }
+    at += 4 + data.size();
+  }
+}
+
+void take_png(ByteView file, ImageNotes& notes) {
+  for (std::size_t at = 8; at < file.size();) {
+    const ByteView data = bytes_at(file, at + 8, big32(file, at));
+    const std::string type = text_of(bytes_at(file, at + 4, 4));
+    if (type == "pHYs" && data.size() == 9 && data[8] == 1) {
+      notes.pixels_per_mm = resolution(big32(data, 0), big32(data, 4), kMmPerMetre);
+    }
+    if (type == "eXIf") take_exif(data, notes);
+    at += 12 + data.size();
+  }
+}
+
+void take_bmp(ByteView file, ImageNotes& notes) {
+  notes.pixels_per_mm = resolution(little32(file, 38), little32(file, 42), kMmPerMetre);
+}
+
+void take_notes(ByteView file, ImageNotes& notes) {
+  switch (kind_of_image(file)) {
+    case ImageKind::png:
+      return take_png(file, notes);
+    case ImageKind::jpeg:
+      return take_jpeg(file, notes);
+    case ImageKind::tiff:
+      return take_exif(file, notes);
+    case ImageKind::bmp:
+      return take_bmp(file, notes);
+    case ImageKind::pnm:
+      return;  // a PNM file has no place for notes
+  }
+}
+
+}  // namespace
+
+ImageNotes notes_of_image(ByteView file) {
+  ImageNotes notes;
+  try {
+    take_notes(file, notes);
+  } catch (const ImageFault&) {
+    // What was said before the damage stands.
+  }
+  if (notes.orientation < 1 || notes.orientation > 8) notes.orientation = 1;
+  return notes;
+}
+
+GreyImage upright(const GreyImage& image, int orientation) {
+  if (orientation < 2 || orientation > 8) return image;
+  const bool transposed = orientation >= 5;
+  const bool from_right =
+      orientation == 2 || orientation == 3 || orientation == 7 || orientation == 8;
+  const bool from_bottom =
+      orientation == 3 || orientation == 4 || orientation == 6 || orientation == 7;
+  GreyImage turned(transposed ? image.width() : image.height(),
+                   transposed ? image.height() : image.width());
+  for (int y = 0; y < turned.height(); ++y) {
+    for (int x = 0; x < turned.width(); ++x) {
+      const int row = transposed ? x : y;
+      const int column = transposed ? y : x;
+      turned.at(y, x) = image.at(from_bottom ? image.height() - 1 - row : row,
+                                 from_right ? image.width() - 1 - column : column);
+    }
+  }
+  return turned;
+}
+
+}  // namespace touchtrial

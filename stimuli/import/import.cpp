@@ -1,0 +1,228 @@
+#include "stimuli/import/import.hpp"
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "engine/image_file.hpp"
+#include "stimuli/import/draft_folder.hpp"
+#include "stimuli/import/import_advice.hpp"
+#include "stimuli/import/import_checks.hpp"
+#include "stimuli/import/import_files.hpp"
+#include "stimuli/manifest.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace touchtrial {
+namespace {
+
+namespace fs = std::filesystem;
+
+ImportOptions completed(ImportOptions options) {
+  if (options.pictures.empty()) options.pictures = default_pictures_folder(options.study);
+  // "pictures/" ends in an empty file name; the folder is what comes before.
+  if (!options.pictures.has_filename()) options.pictures = options.pictures.parent_path();
+  return options;
+}
+
+/// Study names go into file names, tables and BIDS labels.
+std::string study_name(const fs::path& study) {
+  constexpr std::size_t kLongest = 64;
+  std::string name = study.stem().string().substr(0, kLongest);
+  std::ranges::replace_if(
+      name,
+      [](char c) {
+        return !((c >= '0' && c <= '9') || (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') ||
+                 c == '_' || c == '-');
+      },
+      '-');
+  return name;
+}
+
+GreyImage cut(const GreyImage& photo, CropPlace place, int side_px) {
+  GreyImage crop(side_px, side_px);
+  for (int y = 0; y < side_px; ++y) {
+    const auto row =
+        photo.row(place.y + y)
+            .subspan(static_cast<std::size_t>(place.x), static_cast<std::size_t>(side_px));
+    std::ranges::copy(row, crop.row(y).begin());
+  }
+  return crop;
+}
+
+/// Refuses a photograph that is there already, as a file or as a picture.
+class Duplicates {
+ public:
+  void check(const Photograph& photo) {
+    check(photo.sha256, photo.path, "is the same file as ");
+    check(photo.pixels_sha256, photo.path, "has the same pixels as ");
+  }
+
+ private:
+  void check(const Digest& digest, const fs::path& path, const char* what) {
+    const auto [first, is_new] = seen_.emplace(digest, path);
+    if (is_new) return;
+    throw FileError(
+        one_line(path.string() + ": " + what + first->second.string() + "; remove one of them"));
+  }
+  std::map<Digest, fs::path> seen_;
+};
+
+/// One run: everything is read once to be checked, then again to be cut.
+class Import {
+ public:
+  Import(const ImportOptions& options, const ImportProgress& progress)
+      : options_(completed(options)), progress_(progress) {}
+
+  ImportReport run() {
+    check_import(options_);
+    PhotoFolder folder = list_photographs(options_.photographs);
+    check_classes(folder, options_);
+    total_ = 0;
+    for (const PhotoClass& one : folder.classes) total_ += 2 * static_cast<int>(one.files.size());
+    survey(folder);
+    const auto shares = plan_shares(classes_, options_);
+    DraftFolder draft(options_.pictures);
+    for (std::size_t c = 0; c < classes_.size(); ++c) cut_class(draft.path(), c, shares[c]);
+    equalise(draft.path());
+    finish(draft);
+    return report(std::move(folder.ignored), shares);
+  }
+
+ private:
+  void survey(const PhotoFolder& folder) {
+    Duplicates duplicates;
+    for (const PhotoClass& one : folder.classes) {
+      SizedClass sized{one.label, one.files, {}};
+      for (const fs::path& file : one.files) {
+        Photograph photo = read_photograph(file, options_);
+        duplicates.check(photo);
+        const PhotoSize size{photo.image.height(), photo.image.width()};
+        photo.image = {};
+        sized.sizes.push_back(size);
+        record_.photographs.push_back({name_of(file), std::move(photo), size});
+        note_done();
+      }
+      classes_.push_back(std::move(sized));
+    }
+  }
+
+  /// As the manifest writes it.
+  [[nodiscard]] std::string name_of(const fs::path& file) const {
+    return file.lexically_relative(options_.photographs).generic_string();
+  }
+
+  void cut_class(const fs::path& draft, std::size_t class_index, const std::vector<int>& shares) {
+    const SizedClass& one = classes_[class_index];
+    for (std::size_t i = 0; i < one.files.size(); ++i) {
+      if (shares[i] > 0) cut_photograph(draft, one, one.files[i], shares[i]);
+      ++next_photograph_;
+      note_done();
+    }
+  }
+
+  void cut_photograph(const fs::path& draft, const SizedClass& one, const fs::path& file,
+                      int count) {
+    const Photograph photo = read_photograph(file, options_);
+    if (photo.sha256 != record_.photographs[next_photograph_].photo.sha256) {
+      throw FileError(one_line(file.string()) + ": changed while it was imported; try again");
+    }
+    // The stream hangs on the photograph's name alone: other photographs come and go.
+    const Digest name = sha256(bytes_of(record_.photographs[next_photograph_].file));
+    RandomStream random(options_.seed, "import crops of " + to_hex(name));
+    const PhotoSize size{photo.image.height(), photo.image.width()};
+    for (const CropPlace& place : crop_places(size, options_.size_px, count, random)) {
+      write_crop(draft, one.label, place, cut(photo.image, place, options_.size_px));
+    }
+  }
+
+  void write_crop(const fs::path& draft, const std::string& label, CropPlace place,
+                  const GreyImage& crop) {
+    number_of_label_ = label == last_label_ ? number_of_label_ + 1 : 1;
+    last_label_ = label;
+    ImportedPicture picture;
+    picture.label = label;
+    picture.file = label + "-" + std::to_string(number_of_label_) + ".png";
+    picture.photograph = next_photograph_;
+    picture.place = place;
+    picture.levels = levels_of(crop);
+    if (picture.levels.rms_grey == 0.0) {
+      throw FileError(one_line(record_.photographs[next_photograph_].photo.path.string()) +
+                      ": has one grey level all over the crop at x " + std::to_string(place.x) +
+                      ", y " + std::to_string(place.y) +
+                      ", where nothing can be felt; trim the photograph, or remove it");
+    }
+    put_down(draft, picture, crop);
+    record_.pictures.push_back(std::move(picture));
+  }
+
+  static void put_down(const fs::path& draft, ImportedPicture& picture, const GreyImage& pixels) {
+    write_png(draft / picture.file, pixels);
+    picture.sha256 = sha256_of_file(draft / picture.file);
+    picture.pixels_sha256 = sha256(pixels.samples());
+  }
+
+  void equalise(const fs::path& draft) {
+    if (options_.equalise == LevelEqualising::none) return;
+    std::vector<PictureLevels> set;
+    for (const ImportedPicture& picture : record_.pictures) set.push_back(picture.levels);
+    record_.equal = equal_levels(set, options_.equalise);
+    for (ImportedPicture& picture : record_.pictures) {
+      const EqualisedPicture result =
+          equalised(read_grey_image(draft / picture.file), picture.levels, record_.equal);
+      picture.clipped_share = result.clipped_share;
+      put_down(draft, picture, result.picture);
+    }
+  }
+
+  /// The study is written last, and what was there before comes back if that fails.
+  void finish(DraftFolder& draft) {
+    replace_file(draft.path() / kStimulusManifestFile, import_manifest(record_, options_));
+    const fs::path from = fs::absolute(options_.study).lexically_normal().parent_path();
+    const fs::path pictures =
+        fs::absolute(options_.pictures).lexically_normal().lexically_relative(from);
+    const std::string study = import_study(record_, options_, study_name(options_.study), pictures);
+    draft.put_in_place();
+    replace_file(options_.study, study);
+    draft.keep();
+  }
+
+  ImportReport report(std::vector<std::string> ignored,
+                      const std::vector<std::vector<int>>& shares) {
+    ImportReport report;
+    report.study_name = study_name(options_.study);
+    report.study = options_.study;
+    report.pictures = options_.pictures;
+    report.ignored = std::move(ignored);
+    for (std::size_t c = 0; c < classes_.size(); ++c) {
+      report.classes.push_back(class_figures(classes_[c], shares[c], record_, options_));
+    }
+    report.warnings = import_warnings(report.classes, record_, options_);
+    return report;
+  }
+
+  void note_done() {
+    if (progress_) progress_(++done_, total_);
+  }
+
+  ImportOptions options_;
+  const ImportProgress& progress_;
+  std::vector<SizedClass> classes_;
+  ImportRecord record_;
+  std::size_t next_photograph_ = 0;
+  std::string last_label_;
+  int number_of_label_ = 0;
+  int done_ = 0;
+  int total_ = 0;
+};
+
+}  // namespace
+
+fs::path default_pictures_folder(const fs::path& study) {
+  return study.parent_path() / (study.stem().string() + ".pictures");
+}
+
+ImportReport import_photographs(const ImportOptions& options, const ImportProgress& progress) {
+  return Import(options, progress).run();
+}
+
+}  // namespace touchtrial

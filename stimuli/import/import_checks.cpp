@@ -1,0 +1,174 @@
+#include "stimuli/import/import_checks.hpp"
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/strict_json.hpp"
+#include "stimuli/import/import_files.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <system_error>
+
+namespace touchtrial {
+namespace {
+
+namespace fs = std::filesystem;
+
+// As in study files.
+constexpr std::size_t kMostClasses = 64;
+constexpr int kMostStimuli = 10'000;
+constexpr NumberRange kPitchMm{0.001, 10.0};
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw UsageError("stimuli import: " + what);
+}
+
+void check_numbers(const ImportOptions& options) {
+  const auto outside = [](int number, int low, int high) { return number < low || number > high; };
+  if (outside(options.size_px, kMinCropSizePx, kMaxCropSizePx)) {
+    refuse("--size must be 16 to 4096, not " + std::to_string(options.size_px));
+  }
+  if (outside(options.crops, 1, kMaxCropsOfClass)) {
+    refuse("--crops must be 1 to 1000, not " + std::to_string(options.crops));
+  }
+  if (!kPitchMm.contains(options.pitch_mm)) {
+    refuse("--pitch-mm must be 0.001 to 10, not " + number_text(options.pitch_mm));
+  }
+  const bool positive = !options.pixels_per_mm ||
+                        (*options.pixels_per_mm > 0.0 && std::isfinite(*options.pixels_per_mm));
+  if (!positive) refuse("--pixels-per-mm must be a number above 0, or the word file");
+}
+
+/// Whether `path` is `folder` or lies below it, links resolved as far as they exist.
+bool is_within(const fs::path& path, const fs::path& folder) {
+  std::error_code error;
+  const fs::path inner = fs::weakly_canonical(fs::absolute(path), error);
+  const fs::path outer = fs::weakly_canonical(fs::absolute(folder), error);
+  const auto [end, unused] = std::ranges::mismatch(outer, inner);
+  return end == outer.end() || (std::next(end) == outer.end() && end->empty());
+}
+
+void check_writable(const fs::path& path, const ImportOptions& options, const std::string& option) {
+  std::error_code ignored;
+  const fs::path above = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  if (!fs::is_directory(above, ignored)) {
+    refuse(one_line(above.string()) + " is not a folder; make it first, or give another " + option);
+  }
+  if (is_within(path, options.photographs) || is_within(options.photographs, path)) {
+    refuse(one_line(path.string()) +
+           " and the folder of photographs lie within one another; give "
+           "another " +
+           option);
+  }
+  if (!is_there(path) || options.replace) return;
+  refuse(one_line(path.string()) + " exists already; give another " + option +
+         ", or --force to replace what an earlier import wrote");
+}
+
+void check_places(const ImportOptions& options) {
+  if (options.study.extension() != ".json" || options.study.stem().empty()) {
+    refuse("the study file must end in .json, not be " + in_quotes(options.study.string()) +
+           "; give another --study");
+  }
+  for (const std::string& text :
+       {options.study.string(), options.pictures.string(), options.licence, options.source}) {
+    if (!is_utf8(text)) {
+      refuse("a path or text is not UTF-8 and cannot go into a JSON file; write it in UTF-8");
+    }
+  }
+  check_writable(options.study, options, "--study");
+  check_writable(options.pictures, options, "--out");
+  std::error_code ignored;
+  if (fs::is_directory(options.study, ignored)) {
+    refuse(one_line(options.study.string()) + " is a folder; give another --study");
+  }
+  if (is_there(options.pictures) && !is_imported(options.pictures)) {
+    refuse(one_line(options.pictures.string()) +
+           " was not written by an import and is not "
+           "replaced; move it away, or give another --out");
+  }
+}
+
+std::string times(int side_px) {
+  return std::to_string(side_px) + " x " + std::to_string(side_px) + " pixels";
+}
+
+bool all_fit(const std::vector<SizedClass>& classes, int side_px, int crops) {
+  return std::ranges::all_of(classes, [&](const SizedClass& one) {
+    return !shared_out(one.sizes, side_px, crops).empty();
+  });
+}
+
+/// The remedy in numbers: fewer crops of this size, or smaller ones.
+std::string what_would_do(const std::vector<SizedClass>& classes, const ImportOptions& options) {
+  int crops = options.crops;
+  while (crops > 0 && !all_fit(classes, options.size_px, crops)) --crops;
+  int side_px = options.size_px;
+  while (side_px >= kMinCropSizePx && !all_fit(classes, side_px, options.crops)) --side_px;
+  std::string remedy = "give ";
+  if (crops > 0) remedy += "--crops " + std::to_string(crops) + ", ";
+  if (side_px >= kMinCropSizePx) remedy += "--size " + std::to_string(side_px) + ", ";
+  return remedy + "or more or larger photographs";
+}
+
+void check_photo_sizes(const SizedClass& one, const std::vector<SizedClass>& classes,
+                       const ImportOptions& options) {
+  for (std::size_t i = 0; i < one.files.size(); ++i) {
+    const PhotoSize& size = one.sizes[i];
+    if (std::min(size.height_px, size.width_px) >= options.size_px) continue;
+    const bool resampled = options.pixels_per_mm_of_files || options.pixels_per_mm.has_value();
+    throw FileError(one_line(one.files[i].string()) + ": has " + std::to_string(size.width_px) +
+                    " x " + std::to_string(size.height_px) + " pixels" +
+                    (resampled ? " after resampling" : "") + ", too few for a crop of " +
+                    times(options.size_px) + "; " + what_would_do(classes, options));
+  }
+}
+
+}  // namespace
+
+void check_import(const ImportOptions& options) {
+  check_numbers(options);
+  check_places(options);
+}
+
+void check_classes(const PhotoFolder& folder, const ImportOptions& options) {
+  const std::size_t classes = folder.classes.size();
+  const std::string name = one_line(options.photographs.string());
+  if (classes < 2) {
+    throw FileError(name + ": holds 1 class, \"" + folder.classes.front().label +
+                    "\"; a study needs 2 at least: add a folder, or a photograph, of another");
+  }
+  if (classes > kMostClasses) {
+    throw FileError(name + ": holds " + std::to_string(classes) + " classes, more than " +
+                    std::to_string(kMostClasses) +
+                    "; to make several photographs one class, put them into a folder of its name");
+  }
+  const int methods = options.protocol == ImportProtocol::comparison ? 2 : 1;
+  if (static_cast<int>(classes) * options.crops * methods > kMostStimuli) {
+    throw FileError(name + ": " + std::to_string(classes) + " classes of " +
+                    std::to_string(options.crops) + " crops make more than " +
+                    std::to_string(kMostStimuli) + " stimuli; give fewer --crops");
+  }
+}
+
+std::vector<std::vector<int>> plan_shares(const std::vector<SizedClass>& classes,
+                                          const ImportOptions& options) {
+  for (const SizedClass& one : classes) check_photo_sizes(one, classes, options);
+  std::vector<std::vector<int>> shares;
+  for (const SizedClass& one : classes) {
+    shares.push_back(shared_out(one.sizes, options.size_px, options.crops));
+    if (!shares.back().empty()) continue;
+    const int room = std::accumulate(
+        one.sizes.begin(), one.sizes.end(), 0,
+        [&](int sum, PhotoSize size) { return sum + overlapping_crops(size, options.size_px); });
+    throw FileError(one_line(options.photographs.string()) + ": class \"" + one.label + "\" has " +
+                    std::to_string(one.files.size()) + " photograph(s), which give " +
+                    std::to_string(room) + " crop(s) of " + times(options.size_px) +
+                    " that share at most half their side, not " + std::to_string(options.crops) +
+                    "; " + what_would_do(classes, options));
+  }
+  return shares;
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,164 @@
+#include "stimuli/import/import_files.hpp"
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/version.hpp"
+#include "stimuli/manifest.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kImportVersion = 1;
+
+const char* name_of(LevelEqualising which) {
+  switch (which) {
+    case LevelEqualising::none:
+      return "none";
+    case LevelEqualising::mean:
+      return "mean";
+    case LevelEqualising::rms:
+      return "rms";
+    case LevelEqualising::both:
+      return "both";
+  }
+  return "";
+}
+
+Json or_null(const std::optional<double>& number) {
+  return number ? Json(*number) : Json();
+}
+
+Json or_null(const std::string& text) {
+  return text.empty() ? Json() : Json(text);
+}
+
+Json to_json(const ImportedPhotograph& photograph) {
+  const Photograph& photo = photograph.photo;
+  return {{"file", photograph.file},
+          {"sha256", to_hex(photo.sha256)},
+          {"pixels_sha256", to_hex(photo.pixels_sha256)},
+          {"width_px", photo.width_px},
+          {"height_px", photo.height_px},
+          {"orientation", photo.orientation},
+          {"pixels_per_mm", or_null(photo.said_pixels_per_mm)},
+          {"scale", photo.scale}};
+}
+
+Json to_json(const ImportedPicture& picture, const ImportRecord& record,
+             const ImportOptions& options) {
+  return {{"label", picture.label},
+          {"file", picture.file},
+          {"photograph", record.photographs[picture.photograph].file},
+          {"crop",
+           {{"x", picture.place.x},
+            {"y", picture.place.y},
+            {"width", options.size_px},
+            {"height", options.size_px}}},
+          {"mean_grey", picture.levels.mean_grey},
+          {"rms_grey", picture.levels.rms_grey},
+          {"feature_mm", picture.levels.feature_px * options.pitch_mm},
+          {"clipped_share", picture.clipped_share},
+          {"sha256", to_hex(picture.sha256)},
+          {"pixels_sha256", to_hex(picture.pixels_sha256)}};
+}
+
+/// Decides every participant's schedule: another set of pictures, other schedules.
+std::uint64_t study_seed(const ImportRecord& record, std::uint64_t seed) {
+  FieldHasher hasher;
+  hasher.add("touchtrial import seed").add(static_cast<std::int64_t>(seed));
+  for (const ImportedPicture& picture : record.pictures) {
+    hasher.add(picture.label).add(ByteView(picture.pixels_sha256));
+  }
+  std::uint64_t number = 0;
+  const Digest digest = hasher.finish();
+  for (std::size_t i = 0; i < 6; ++i) number = number << 8U | digest[i];
+  return number + 1;  // 0 would count as not chosen
+}
+
+Json methods_of(ImportProtocol protocol) {
+  Json methods = Json::array({{{"name", "adaptive"}, {"radius", 2}}});
+  if (protocol == ImportProtocol::comparison) {
+    methods.push_back({{"name", "tv-gabor"}, {"lambda", 0.01}});
+  }
+  return methods;
+}
+
+Json rendering_of(const ImportOptions& options) {
+  const bool comparing = options.protocol == ImportProtocol::comparison;
+  return {{"model", "paper"},
+          {"pitch_mm", options.pitch_mm},
+          {"gains", "budget"},
+          // Methods that differ in strength would be told apart by strength.
+          {"equalise", comparing ? "rms" : "none"}};
+}
+
+Json classes_of(const ImportRecord& record, const std::filesystem::path& folder) {
+  Json classes = Json::array();
+  for (const ImportedPicture& picture : record.pictures) {
+    if (classes.empty() || classes.back().at("label") != picture.label) {
+      classes.push_back({{"label", picture.label}, {"images", Json::array()}});
+    }
+    classes.back()["images"].push_back((folder / picture.file).generic_string());
+  }
+  return classes;
+}
+
+}  // namespace
+
+std::string import_manifest(const ImportRecord& record, const ImportOptions& options) {
+  Json json = {{"format", kImportFormat},
+               {"version", kImportVersion},
+               {"program_version", program_version()},
+               {"licence", or_null(options.licence)},
+               {"source", or_null(options.source)},
+               {"seed", options.seed},
+               {"size_px", options.size_px},
+               {"crops", options.crops},
+               {"pitch_mm", options.pitch_mm},
+               {"pixels_per_mm", or_null(options.pixels_per_mm)},
+               {"equalise", name_of(options.equalise)},
+               {"equal_mean_grey", or_null(record.equal.mean_grey)},
+               {"equal_rms_grey", or_null(record.equal.rms_grey)},
+               {"photographs", Json::array()},
+               {"pictures", Json::array()}};
+  if (options.pixels_per_mm_of_files) json["pixels_per_mm"] = "file";
+  for (const auto& photograph : record.photographs) {
+    json["photographs"].push_back(to_json(photograph));
+  }
+  for (const auto& picture : record.pictures) {
+    json["pictures"].push_back(to_json(picture, record, options));
+  }
+  return json.dump(2) + "\n";
+}
+
+std::string import_study(const ImportRecord& record, const ImportOptions& options,
+                         const std::string& name, const std::filesystem::path& folder) {
+  const bool comparing = options.protocol == ImportProtocol::comparison;
+  const Json study = {{"study", name},
+                      {"protocol", comparing ? "comparison" : "classification"},
+                      {"classes", classes_of(record, folder)},
+                      {"methods", methods_of(options.protocol)},
+                      {"rendering", rendering_of(options)},
+                      {"trials", {{"repeats", 5}, {"order", "shuffled"}, {"explore_limit_s", 60}}},
+                      {"blinding", "double"},
+                      {"seed", study_seed(record, options.seed)}};
+  return study.dump(2) + "\n";
+}
+
+bool is_imported(const std::filesystem::path& folder) {
+  try {
+    const Bytes bytes = read_file(folder / kStimulusManifestFile);
+    const Json json = Json::parse(bytes.begin(), bytes.end(), nullptr, false);
+    return json.is_object() && json.value("format", "") == kImportFormat;
+  } catch (const FileError&) {
+    return false;
+  } catch (const nlohmann::json::exception&) {
+    return false;
+  }
+}
+
+}  // namespace touchtrial

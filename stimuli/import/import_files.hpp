@@ -1,0 +1,57 @@
+/// \file The two JSON files that an import writes. Private to stimuli/import.
+/// Format: docs/data-dictionary.md, "Imported pictures", and docs/study-file.md.
+#pragma once
+
+#include "core/hash.hpp"
+#include "stimuli/import/crop_plan.hpp"
+#include "stimuli/import/photograph.hpp"
+#include "stimuli/import/picture_levels.hpp"
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace touchtrial {
+
+inline constexpr std::string_view kImportFormat = "touchtrial-import";
+
+/// A photograph without its pixels.
+struct ImportedPhotograph {
+  std::string file;   ///< relative to the folder of photographs, with forward slashes
+  Photograph photo;   ///< the image is empty
+  PhotoSize size_px;  ///< after resampling
+};
+
+/// A crop as it was written.
+struct ImportedPicture {
+  std::string label;
+  std::string file;  ///< name in the folder of pictures
+  std::size_t photograph = 0;
+  CropPlace place;
+  PictureLevels levels;  ///< before equalising
+  double clipped_share = 0.0;
+  Digest sha256{};
+  Digest pixels_sha256{};  ///< of the grey levels, row-major
+};
+
+struct ImportRecord {
+  std::vector<ImportedPhotograph> photographs;
+  std::vector<ImportedPicture> pictures;  ///< class by class
+  EqualLevels equal;
+};
+
+/// manifest.json, indented, with a line feed at the end.
+[[nodiscard]] std::string import_manifest(const ImportRecord& record, const ImportOptions& options);
+
+/// A complete study file.
+/// \param name  of the study, as study files allow it
+/// \param folder  of the pictures, as the study file is to write it
+[[nodiscard]] std::string import_study(const ImportRecord& record, const ImportOptions& options,
+                                       const std::string& name,
+                                       const std::filesystem::path& folder);
+
+/// Whether a folder is what an earlier import wrote.
+[[nodiscard]] bool is_imported(const std::filesystem::path& folder);
+
+}  // namespace touchtrial

@@ -1,0 +1,79 @@
+#include "stimuli/import/crop_plan.hpp"
+
+#include "support/catch.hpp"
+
+#include <cstdlib>
+
+using namespace touchtrial;
+
+namespace {
+
+bool share_a_pixel(CropPlace a, CropPlace b, int side_px) {
+  return std::abs(a.x - b.x) < side_px && std::abs(a.y - b.y) < side_px;
+}
+
+bool lies_within(CropPlace place, PhotoSize photo, int side_px) {
+  return place.x >= 0 && place.y >= 0 && place.x + side_px <= photo.width_px &&
+         place.y + side_px <= photo.height_px;
+}
+
+}  // namespace
+
+TEST_CASE("crops do not share a pixel while there is room, and never lie outside") {
+  const PhotoSize photo{73, 101};
+  REQUIRE(separate_crops(photo, 20) == 15);
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    RandomStream random(seed, "crop plan test");
+    const auto places = crop_places(photo, 20, 15, random);
+    REQUIRE(places.size() == 15);
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      CHECK(lies_within(places[i], photo, 20));
+      for (std::size_t j = 0; j < i; ++j) CHECK_FALSE(share_a_pixel(places[i], places[j], 20));
+    }
+  }
+}
+
+TEST_CASE("crops that must overlap share half their side at most and are all different") {
+  const PhotoSize photo{50, 64};
+  for (const int side_px : {30, 31}) {
+    const int most = overlapping_crops(photo, side_px);
+    REQUIRE(most > separate_crops(photo, side_px));
+    for (int count = separate_crops(photo, side_px) + 1; count <= most; ++count) {
+      RandomStream random(3, "crop plan test");
+      const auto places = crop_places(photo, side_px, count, random);
+      REQUIRE(static_cast<int>(places.size()) == count);
+      for (std::size_t i = 0; i < places.size(); ++i) {
+        CHECK(lies_within(places[i], photo, side_px));
+        for (std::size_t j = 0; j < i; ++j) {
+          CHECK_FALSE(share_a_pixel(places[i], places[j], side_px / 2));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("a photograph as large as a crop gives one, and a smaller one none") {
+  RandomStream random(1, "crop plan test");
+  CHECK(crop_places({20, 20}, 20, 1, random) == std::vector<CropPlace>{{0, 0}});
+  CHECK(overlapping_crops({20, 20}, 20) == 1);
+  CHECK(overlapping_crops({20, 19}, 20) == 0);
+  CHECK(separate_crops({19, 200}, 20) == 0);
+}
+
+TEST_CASE("a seed decides where crops are cut") {
+  const auto places = [](std::uint64_t seed) {
+    RandomStream random(seed, "crop plan test");
+    return crop_places({200, 200}, 20, 4, random);
+  };
+  CHECK(places(1) == places(1));
+  CHECK(places(1) != places(2));
+}
+
+TEST_CASE("photographs share the crops out evenly, and separate ones come first") {
+  const std::vector<PhotoSize> photos = {{20, 20}, {40, 40}, {30, 60}};
+  CHECK(shared_out(photos, 20, 3) == std::vector<int>{1, 1, 1});
+  CHECK(shared_out(photos, 20, 5) == std::vector<int>{1, 2, 2});
+  CHECK(shared_out(photos, 20, 8) == std::vector<int>{1, 4, 3});
+  CHECK(shared_out(photos, 20, 9) == std::vector<int>{1, 5, 3});
+  CHECK(shared_out(photos, 20, 21).empty());
+}

@@ -1,0 +1,369 @@
+#include "stimuli/import/import.hpp"
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/hash.hpp"
+#include "core/random.hpp"
+#include "engine/image_file.hpp"
+#include "stimuli/import/photo_folder.hpp"
+#include "support/catch.hpp"
+#include "support/temp_folder.hpp"
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+using namespace touchtrial;
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+namespace {
+
+/// Each number another picture; no two parts of one are alike.
+GreyImage noise(int height, int width, std::uint64_t number) {
+  RandomStream random(number, "import test");
+  GreyImage image(height, width);
+  for (std::uint8_t& sample : image.samples()) {
+    sample = static_cast<std::uint8_t>(random.below(200));
+  }
+  return image;
+}
+
+/// A temporary folder with photographs in `album/`.
+struct Album {
+  Album() { fs::create_directory(photographs()); }
+  [[nodiscard]] fs::path photographs() const { return folder.path() / "album"; }
+  void add(const std::string& name, const GreyImage& image) const {
+    make_folder((photographs() / name).parent_path());
+    write_png(photographs() / name, image);
+  }
+  [[nodiscard]] ImportOptions options() const {
+    ImportOptions options;
+    options.photographs = photographs();
+    options.study = folder.path() / "study.json";
+    options.size_px = 20;
+    options.crops = 3;
+    return options;
+  }
+  /// Everything but the album, by name.
+  [[nodiscard]] std::set<std::string> written() const {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder.path())) {
+      names.insert(entry.path().filename().string());
+    }
+    names.erase("album");
+    return names;
+  }
+  /// Imports, expects that it is refused with nothing written, and gives the reason.
+  [[nodiscard]] std::string refusal(const ImportOptions& options) const {
+    const std::set<std::string> before = written();
+    std::string reason = "not refused";
+    try {
+      static_cast<void>(import_photographs(options));
+    } catch (const Error& error) {
+      reason = error.what();
+    }
+    CHECK(written() == before);
+    CHECK(std::ranges::count(reason, '\n') == 0);
+    return reason;
+  }
+  [[nodiscard]] std::string refusal() const { return refusal(options()); }
+  [[nodiscard]] json read(const std::string& name) const {
+    return json::parse(text_of(read_file(folder.path() / name)));
+  }
+
+  TempFolder folder;
+};
+
+/// Two photographs that are fit for three crops of 20 pixels.
+struct TwoPhotographs : Album {
+  TwoPhotographs() {
+    add("D9.png", noise(50, 70, 1));
+    add("D10.png", noise(60, 45, 2));
+  }
+};
+
+GreyImage part(const GreyImage& image, const json& crop) {
+  GreyImage piece(crop.at("height").get<int>(), crop.at("width").get<int>());
+  for (int y = 0; y < piece.height(); ++y) {
+    for (int x = 0; x < piece.width(); ++x) {
+      piece.at(y, x) = image.at(crop.at("y").get<int>() + y, crop.at("x").get<int>() + x);
+    }
+  }
+  return piece;
+}
+
+}  // namespace
+
+TEST_CASE("a flat folder makes a class of every file, in the order of their numbers") {
+  const TwoPhotographs album;
+  replace_file(album.photographs() / "notes.txt", "not a photograph");
+  replace_file(album.photographs() / ".hidden.png", "not shown");
+  const ImportReport report = import_photographs(album.options());
+  CHECK(report.study_name == "study");
+  REQUIRE(report.classes.size() == 2);
+  CHECK(report.classes[0].label == "D9");
+  CHECK(report.classes[1].label == "D10");
+  CHECK(report.classes[0].crops == 3);
+  CHECK_FALSE(report.classes[0].overlapping);
+  CHECK(report.ignored == std::vector<std::string>{"notes.txt"});
+  CHECK(album.written() == std::set<std::string>{"study.json", "study.pictures"});
+  const json study = album.read("study.json");
+  CHECK(study.at("classes")[0].at("images")[2] == "study.pictures/D9-3.png");
+  CHECK(study.at("seed") > 0);
+}
+
+TEST_CASE("crops are the parts of their photographs that the manifest says, and none is repeated") {
+  const TwoPhotographs album;
+  ImportOptions options = album.options();
+  options.licence = "CC0-1.0";
+  options.source = "a test";
+  static_cast<void>(import_photographs(options));
+  const json manifest = album.read("study.pictures/manifest.json");
+  CHECK(manifest.at("format") == "touchtrial-import");
+  CHECK(manifest.at("licence") == "CC0-1.0");
+  CHECK(manifest.at("source") == "a test");
+  REQUIRE(manifest.at("photographs").size() == 2);
+  for (const json& photograph : manifest.at("photographs")) {
+    const fs::path file = album.photographs() / photograph.at("file").get<std::string>();
+    CHECK(photograph.at("sha256") == to_hex(sha256_of_file(file)));
+  }
+  REQUIRE(manifest.at("pictures").size() == 6);
+  std::set<std::string> digests;
+  for (const json& picture : manifest.at("pictures")) {
+    const fs::path file =
+        album.folder.path() / "study.pictures" / picture.at("file").get<std::string>();
+    const GreyImage photograph =
+        read_grey_image(album.photographs() / picture.at("photograph").get<std::string>());
+    CHECK(read_grey_image(file) == part(photograph, picture.at("crop")));
+    CHECK(picture.at("sha256") == to_hex(sha256_of_file(file)));
+    digests.insert(picture.at("pixels_sha256").get<std::string>());
+  }
+  CHECK(digests.size() == 6);
+}
+
+TEST_CASE("a folder of folders makes a class of every folder and uses all its photographs") {
+  const Album album;
+  album.add("bark/one.png", noise(40, 40, 1));
+  album.add("bark/two.png", noise(20, 20, 2));
+  album.add("tree rings/a.png", noise(64, 30, 3));
+  const ImportReport report = import_photographs(album.options());
+  REQUIRE(report.classes.size() == 2);
+  CHECK(report.classes[0].label == "bark");
+  CHECK(report.classes[0].photographs == 2);
+  CHECK(report.classes[1].label == "tree rings");
+  const json manifest = album.read("study.pictures/manifest.json");
+  std::set<std::string> used;
+  for (const json& picture : manifest.at("pictures")) used.insert(picture.at("photograph"));
+  CHECK(used == std::set<std::string>{"bark/one.png", "bark/two.png", "tree rings/a.png"});
+}
+
+TEST_CASE("the same photographs and seed give the same files, another seed other crops") {
+  const TwoPhotographs album;
+  std::vector<std::string> manifests;
+  for (const std::uint64_t seed : {5, 5, 6}) {
+    ImportOptions options = album.options();
+    options.seed = seed;
+    options.replace = true;
+    static_cast<void>(import_photographs(options));
+    manifests.push_back(text_of(read_file(album.folder.path() / "study.pictures/manifest.json")) +
+                        text_of(read_file(options.study)));
+  }
+  CHECK(manifests[0] == manifests[1]);
+  CHECK(manifests[0] != manifests[2]);
+}
+
+TEST_CASE("photographs of known resolution are resampled to be felt as large as life") {
+  const Album album;
+  album.add("a.png", noise(160, 200, 1));
+  album.add("b.png", noise(200, 160, 2));
+  ImportOptions options = album.options();
+  options.pixels_per_mm = 10.0;  // at 0.2 mm a pixel: half the size
+  static_cast<void>(import_photographs(options));
+  const json manifest = album.read("study.pictures/manifest.json");
+  CHECK(manifest.at("photographs")[0].at("scale") == 0.5);
+  CHECK(manifest.at("photographs")[0].at("width_px") == 200);
+  // Means of four independent pixels vary half as much.
+  CHECK(manifest.at("pictures")[0].at("rms_grey").get<double>() ==
+        Approx(200 / std::sqrt(12.0) / 2).epsilon(0.1));
+  options.pixels_per_mm = 0.1;
+  options.replace = true;
+  CHECK_THAT(album.refusal(options), holds_text("check --pixels-per-mm"));
+  options.pixels_per_mm.reset();
+  options.pixels_per_mm_of_files = true;
+  CHECK_THAT(album.refusal(options), holds_text("does not say how many pixels a millimetre has"));
+}
+
+TEST_CASE("equalised pictures have the levels that the manifest promises") {
+  const TwoPhotographs album;
+  ImportOptions options = album.options();
+  options.equalise = LevelEqualising::both;
+  static_cast<void>(import_photographs(options));
+  const json manifest = album.read("study.pictures/manifest.json");
+  CHECK(manifest.at("equal_mean_grey") == 128.0);
+  const GreyImage picture = read_grey_image(album.folder.path() / "study.pictures/D10-1.png");
+  double sum = 0.0;
+  for (const std::uint8_t grey : picture.samples()) sum += grey;
+  CHECK(sum / static_cast<double>(picture.size()) == Approx(128.0).margin(0.5));
+}
+
+TEST_CASE("crops that overlap, or features of an odd size, are warned about") {
+  const Album album;
+  album.add("fine.png", noise(30, 50, 1));
+  GreyImage ramp(60, 60);
+  for (int y = 0; y < 60; ++y) {
+    for (int x = 0; x < 60; ++x) ramp.at(y, x) = static_cast<std::uint8_t>(2 * x + y);
+  }
+  album.add("ramp.png", ramp);
+  const ImportReport report = import_photographs(album.options());
+  std::string all;
+  for (const std::string& warning : report.warnings) all += warning + "\n";
+  CHECK_THAT(all, holds_text("class \"fine\": some crops share a part"));
+  CHECK_THAT(all, holds_text("class \"fine\": features of about 0.6"));
+  CHECK_THAT(all, holds_text("class \"ramp\": features of about"));
+  CHECK_THAT(all, holds_text("coarse for a picture of 4 mm"));
+}
+
+TEST_CASE("photographs that are too small or too few are refused with what would do") {
+  const TwoPhotographs album;
+  ImportOptions options = album.options();
+  options.size_px = 40;
+  CHECK_THAT(album.refusal(options), holds_text("share at most half their side, not 3; give "
+                                                "--crops 2, --size 30, or more or larger"));
+  options.size_px = 46;
+  CHECK_THAT(album.refusal(options),
+             holds_text("D10.png: has 45 x 60 pixels, too few for a crop of 46 x 46 pixels"));
+  fs::remove(album.photographs() / "D9.png");
+  CHECK_THAT(album.refusal(), holds_text("holds 1 class, \"D10\"; a study needs 2"));
+  fs::remove(album.photographs() / "D10.png");
+  CHECK_THAT(album.refusal(), holds_text("holds no photograph"));
+  options.photographs = album.folder.path() / "nowhere";
+  CHECK_THAT(album.refusal(options), holds_text("does not exist"));
+}
+
+TEST_CASE("photographs that are there twice are refused, as files and as pictures") {
+  const TwoPhotographs album;
+  fs::copy_file(album.photographs() / "D9.png", album.photographs() / "E.png");
+  CHECK_THAT(album.refusal(), holds_text("E.png: is the same file as"));
+  const GreyImage twin = read_grey_image(album.photographs() / "D9.png");
+  std::string pgm = "P5 70 50 255\n";
+  pgm.append(twin.samples().begin(), twin.samples().end());
+  fs::remove(album.photographs() / "E.png");
+  replace_file(album.photographs() / "E.pgm", pgm);
+  CHECK_THAT(album.refusal(), holds_text("E.pgm: has the same pixels as"));
+}
+
+TEST_CASE("photographs that cannot be read or felt are refused by name") {
+  const TwoPhotographs album;
+  replace_file(album.photographs() / "E.heic", std::string("\0\0\0\x18"
+                                                           "ftypheic",
+                                                           12));
+  CHECK_THAT(album.refusal(), holds_text("E.heic: is a HEIF, AVIF or video file"));
+  fs::remove(album.photographs() / "E.heic");
+  replace_file(album.photographs() / "E.jpg", "hostile");
+  CHECK_THAT(album.refusal(), holds_text("E.jpg: is not an image of a known kind"));
+  fs::remove(album.photographs() / "E.jpg");
+  album.add("E.png", GreyImage(40, 40, 77));
+  CHECK_THAT(album.refusal(), holds_text("E.png: has one grey level all over the crop at x"));
+}
+
+TEST_CASE("names that cannot be labels are refused, and labels equal but for capitals") {
+  const TwoPhotographs album;
+  const auto refused = [&](const std::string& name) {
+    album.add(name, noise(50, 50, 9));
+    const std::string reason = album.refusal();
+    fs::remove(album.photographs() / name);
+    return reason;
+  };
+  CHECK_THAT(refused("d9.png"), holds_text("would be the class"));
+  CHECK_THAT(refused("D9.PNG"), holds_text("would be the class \"D9\" like"));
+  CHECK_THAT(refused("line\nbreak.png"), holds_text("has a control character"));
+  CHECK_THAT(refused("c1\xc2\x85.png"), holds_text("has a control character"));
+  CHECK_THAT(refused(" D.png"), holds_text("begins or ends with a blank"));
+  CHECK_THAT(refused("latin\xe9.png"), holds_text("is not UTF-8"));
+  CHECK_THAT(refused(std::string(65, 'x') + ".png"), holds_text("more than 64 bytes"));
+  album.add("folder/E.png", noise(50, 50, 9));
+  CHECK_THAT(album.refusal(), holds_text("D9.png: lies beside folders"));
+}
+
+TEST_CASE("folders of classes that are empty or nested are refused") {
+  const Album album;
+  album.add("a/one.png", noise(50, 50, 1));
+  fs::create_directory(album.photographs() / "b");
+  CHECK_THAT(album.refusal(), holds_text("b: holds no photograph"));
+  album.add("b/c/two.png", noise(50, 50, 2));
+  CHECK_THAT(album.refusal(), holds_text("is a folder within a class"));
+}
+
+TEST_CASE("nothing is replaced unasked, and nothing that no import wrote at all") {
+  const TwoPhotographs album;
+  ImportOptions options = album.options();
+  static_cast<void>(import_photographs(options));
+  CHECK_THAT(album.refusal(options), holds_text("study.json exists already"));
+  fs::remove(options.study);
+  CHECK_THAT(album.refusal(options), holds_text("study.pictures exists already"));
+  options.replace = true;
+  options.crops = 2;
+  CHECK_NOTHROW(import_photographs(options));
+  CHECK_FALSE(is_there(album.folder.path() / "study.pictures/D9-3.png"));
+  options.pictures = album.folder.path() / "precious";
+  fs::create_directory(options.pictures);
+  CHECK_THAT(album.refusal(options), holds_text("was not written by an import"));
+}
+
+TEST_CASE("a failed replacement leaves the earlier import as it was") {
+  const TwoPhotographs album;
+  ImportOptions options = album.options();
+  static_cast<void>(import_photographs(options));
+  const std::string before = text_of(read_file(options.study));
+  album.add("E.png", GreyImage(40, 40, 77));
+  options.replace = true;
+  CHECK_THAT(album.refusal(options), holds_text("one grey level"));
+  CHECK(text_of(read_file(options.study)) == before);
+  CHECK(is_there(album.folder.path() / "study.pictures/D9-3.png"));
+}
+
+TEST_CASE("places that would mix with the photographs, or are no places, are refused") {
+  const TwoPhotographs album;
+  ImportOptions options = album.options();
+  options.study = album.photographs() / "study.json";
+  CHECK_THAT(album.refusal(options), holds_text("lie within one another"));
+  options.study = album.folder.path() / "study.txt";
+  CHECK_THAT(album.refusal(options), holds_text("must end in .json"));
+  options.study = album.folder.path() / "missing" / "study.json";
+  CHECK_THAT(album.refusal(options), holds_text("missing is not a folder"));
+  options = album.options();
+  options.pictures = album.folder.path();
+  options.replace = true;
+  CHECK_THAT(album.refusal(options), holds_text("lie within one another"));
+  options = album.options();
+  options.licence = "\xff";
+  CHECK_THAT(album.refusal(options), holds_text("not UTF-8"));
+}
+
+TEST_CASE("options out of range are refused") {
+  const TwoPhotographs album;
+  const auto refused = [&](const auto& change) {
+    ImportOptions options = album.options();
+    change(options);
+    return album.refusal(options);
+  };
+  CHECK_THAT(refused([](ImportOptions& o) { o.size_px = 15; }), holds_text("--size"));
+  CHECK_THAT(refused([](ImportOptions& o) { o.crops = 0; }), holds_text("--crops"));
+  CHECK_THAT(refused([](ImportOptions& o) { o.pitch_mm = 0.0; }), holds_text("--pitch-mm"));
+  CHECK_THAT(refused([](ImportOptions& o) { o.pixels_per_mm = -1.0; }),
+             holds_text("--pixels-per-mm"));
+}
+
+TEST_CASE("numbers in names count as numbers") {
+  CHECK(naturally_before("D2", "D10"));
+  CHECK_FALSE(naturally_before("D10", "D2"));
+  CHECK(naturally_before("D02", "D10"));
+  CHECK(naturally_before("a", "b2"));
+  CHECK(naturally_before("D", "D1"));
+  CHECK(naturally_before("D01", "D1"));
+  CHECK_FALSE(naturally_before("D1", "D1"));
+}
