@@ -20,8 +20,9 @@ using Action = std::function<int()>;
 void add_extract_command(CLI::App& program, Action& action);
 void add_evaluate_command(CLI::App& program, Action& action);
 void add_stimuli_command(CLI::App& program, Action& action);
-/// Adds itself to the command "stimuli".
+/// These add themselves to the command "stimuli".
 void add_stimuli_import_command(CLI::App& stimuli, Action& action);
+void add_stimuli_sheet_command(CLI::App& stimuli, Action& action);
 void add_prepare_command(CLI::App& program, Action& action);
 void add_simulate_command(CLI::App& program, Action& action);
 void add_close_command(CLI::App& program, Action& action);

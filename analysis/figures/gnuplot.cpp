@@ -122,10 +122,11 @@ void require_gnuplot() {
   static_cast<void>(run_gnuplot("--version", ""));
 }
 
-void draw_with_gnuplot(const std::string& script, const std::filesystem::path& picture) {
+void draw_with_gnuplot(const std::string& script, const std::filesystem::path& picture,
+                       FileMode mode) {
   const std::string drawn = run_gnuplot("", script);
   if (drawn.empty()) throw Error("gnuplot: drew nothing; try version 5.2 or later");
-  replace_file(picture, drawn);
+  replace_file(picture, drawn, mode);
 }
 
 std::string gnuplot_string(const std::string& text) {

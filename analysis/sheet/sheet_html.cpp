@@ -1,0 +1,149 @@
+#include "analysis/sheet/sheet_rows.hpp"
+#include "core/base64.hpp"
+
+#include <fmt/format.h>
+
+namespace touchtrial {
+namespace {
+
+constexpr const char* kHead = R"(<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; img-src data:; style-src 'unsafe-inline'">
+<style>
+:root { color-scheme: light; }
+body { font: 14px/1.4 system-ui, "DejaVu Sans", sans-serif; color: #1a1a1a; background: #fff;
+       margin: 24px auto; max-width: 1500px; padding: 0 20px; }
+h1 { font-size: 24px; margin: 0 0 4px; }
+.about { color: #555; margin: 0 0 12px; overflow-wrap: anywhere; }
+.unblinds { border-left: 5px solid #b3261e; background: #fdf0ef; color: #7a1a14; padding: 8px 12px;
+            margin: 0 0 20px; font-weight: 600; }
+table { border-collapse: collapse; margin: 0 0 36px; width: 100%; table-layout: fixed; }
+col.names { width: 230px; }
+th, td { padding: 4px 7px; vertical-align: top; text-align: left; }
+thead th { font-weight: normal; padding-bottom: 8px; }
+thead strong { display: block; font-size: 17px; overflow-wrap: anywhere; }
+thead small, figcaption { display: block; color: #555; font-size: 12px; overflow-wrap: anywhere; }
+code { font: 12px "DejaVu Sans Mono", ui-monospace, monospace; color: #7a1a14; }
+tbody th { font-weight: normal; color: #333; }
+tbody th small { display: block; color: #777; font-size: 12px; }
+tr.figure td { font-variant-numeric: tabular-nums; }
+tr.figure td, tr.figure th { border-top: 1px solid #e4e4e4; padding: 3px 7px; }
+tr.figure th small { display: inline; }
+figure { margin: 0; }
+img { display: block; width: 100%; max-width: 300px; height: auto; border: 1px solid #ddd; }
+@page { size: A4 landscape; margin: 10mm; }
+@media print {
+  body { font-size: 7.5pt; line-height: 1.25; margin: 0; padding: 0; max-width: none; }
+  h1 { font-size: 13pt; }
+  .about { margin-bottom: 1.5mm; }
+  .unblinds { margin-bottom: 2mm; padding: 1mm 2mm; }
+  table { break-inside: avoid; break-after: page; margin: 0; }
+  table:last-of-type { break-after: auto; }
+  col.names { width: 50mm; }
+  thead strong { font-size: 10pt; }
+  thead th { padding-bottom: 1mm; }
+  th, td { padding: 0.5mm 1mm; }
+  tr.figure td, tr.figure th { padding: 0.2mm 1mm; }
+  img { max-width: 30mm; }
+  code, thead small, figcaption, tbody th small { font-size: 6.5pt; }
+}
+</style>
+)";
+
+std::string escaped(const std::string& text) {
+  std::string safe;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        safe += "&amp;";
+        break;
+      case '<':
+        safe += "&lt;";
+        break;
+      case '>':
+        safe += "&gt;";
+        break;
+      case '"':
+        safe += "&quot;";
+        break;
+      default:
+        safe += c;
+    }
+  }
+  return safe;
+}
+
+std::string figure(const Bytes& png, const std::string& what, const std::string& caption) {
+  return "<td><figure><img alt=\"" + escaped(what) + "\" src=\"data:image/png;base64," +
+         to_base64(png) + "\"><figcaption>" + escaped(caption) + "</figcaption></figure></td>";
+}
+
+std::string head_of(const SheetCard& card) {
+  return "<th scope=\"col\"><strong>" + escaped(title_of(card)) + "</strong>" +
+         escaped(card.method) + "<small>" + escaped(card.image) + "</small><code>" + card.code +
+         "</code></th>";
+}
+
+/// A row of pictures; `cell` makes one of a card.
+template <typename Cell>
+std::string picture_row(const std::vector<SheetCard>& line, const char* name, const char* note,
+                        const Cell& cell) {
+  std::string row = fmt::format("<tr><th scope=\"row\">{}<small>{}</small></th>", name, note);
+  for (const SheetCard& card : line) row += cell(card) + "\n";
+  return row + "</tr>\n";
+}
+
+std::string picture_rows(const std::vector<SheetCard>& line) {
+  const auto named = [](const SheetCard& card) { return title_of(card) + ", " + card.method; };
+  return picture_row(line, "picture", "as participants see it",
+                     [&](const SheetCard& card) {
+                       return figure(png_bytes(card.picture), "picture of " + title_of(card),
+                                     size_of(card));
+                     }) +
+         picture_row(line, "texture",
+                     "mid-grey is none; contrast times 3; the frame is enlarged below",
+                     [&](const SheetCard& card) {
+                       return figure(png_bytes(card.texture), "texture of " + named(card), "");
+                     }) +
+         picture_row(line, "lateral force",
+                     "in the frame, as the pack holds it, from bright to dark",
+                     [&](const SheetCard& card) {
+                       return figure(png_bytes(card.arrows), "force arrows of " + named(card),
+                                     patch_of(card));
+                     });
+}
+
+std::string table_of(const std::vector<SheetCard>& line) {
+  std::string table = "<table>\n<colgroup><col class=\"names\">";
+  // Short lines keep the columns of long ones.
+  for (std::size_t i = 0; i < kMaxSheetColumns; ++i) table += "<col>";
+  table += "</colgroup>\n<thead><tr><td></td>";
+  for (const SheetCard& card : line) table += head_of(card);
+  for (std::size_t i = line.size(); i < kMaxSheetColumns; ++i) table += "<td></td>";
+  table += "</tr></thead>\n<tbody>\n" + picture_rows(line);
+  for (const SheetRow& row : figure_rows(line)) {
+    table += "<tr class=\"figure\"><th scope=\"row\">" + row.name + " <small>" + row.unit +
+             "</small></th>";
+    for (const std::string& value : row.values) table += "<td>" + value + "</td>";
+    table += "</tr>\n";
+  }
+  return table + "</tbody>\n</table>\n";
+}
+
+}  // namespace
+
+std::string sheet_html(const StimulusSheet& sheet) {
+  const std::string heading = escaped(heading_of(sheet));
+  std::string html = kHead;
+  html += "<title>" + heading + "</title>\n</head>\n<body>\n<h1>" + heading + "</h1>\n";
+  html += "<p class=\"about\">" + escaped(sheet.protocol + "; " + sheet.rendering) + "<br>seal " +
+          sheet.seal + "</p>\n";
+  html += "<p class=\"unblinds\" role=\"note\">" + std::string(kUnblinds) + "</p>\n";
+  for (const auto& line : sheet.lines) html += table_of(line);
+  return html + "</body>\n</html>\n";
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,107 @@
+#include "analysis/figures/gnuplot.hpp"
+#include "analysis/sheet/stimulus_sheet.hpp"
+#include "app/commands.hpp"
+#include "app/console.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "protocols/design/prepare.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <system_error>
+
+namespace touchtrial {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Side of the pictures; smaller where there are many, for documents that open.
+constexpr int kSidePx = 480;
+constexpr int kSideOfManyPx = 240;
+constexpr std::size_t kMany = 100;
+
+struct SheetArguments {
+  fs::path study;
+  fs::path output;
+  fs::path key;
+  fs::path pack;
+};
+
+std::string kind_of(const fs::path& output) {
+  std::string ending = output.extension().string();
+  std::ranges::transform(ending, ending.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (ending == ".png" || ending == ".pdf" || ending == ".html") return ending;
+  throw UsageError("stimuli sheet: " + one_line(output.string()) +
+                   ": sheets are PNG, PDF or HTML; end it in .png, .pdf or .html");
+}
+
+void refuse_input(const fs::path& output, const fs::path& input) {
+  std::error_code ignored;
+  if (!fs::equivalent(output, input, ignored)) return;
+  throw UsageError("stimuli sheet: " + one_line(output.string()) +
+                   " is a file that the sheet is made of; give another -o");
+}
+
+StudyKey key_of(const Study& study, const fs::path& path) {
+  if (!is_there(path)) {
+    throw FileError(one_line(path.string()) +
+                    ": there is no key, and a sheet is made with the study's key only; run "
+                    "touchtrial prepare, or name it with --key");
+  }
+  StudyKey key = load_study_key(path);
+  if (study_seal(rekeyed(key, study)) != study_seal(key)) {
+    throw VerificationError(one_line(path.string()) + ": is not the key of " + study.source +
+                            " as it is now; run touchtrial prepare, or name another with --key");
+  }
+  return key;
+}
+
+/// Whatever is missing is said before hours are spent on pictures.
+void check_output(const SheetArguments& arguments, const Study& study, const fs::path& key) {
+  const std::string kind = kind_of(arguments.output);
+  refuse_input(arguments.output, arguments.study);
+  refuse_input(arguments.output, key);
+  for (const StudyClass& one : study.classes) {
+    for (const fs::path& image : one.images) refuse_input(arguments.output, study.folder / image);
+  }
+  if (kind != ".html") require_gnuplot();
+}
+
+int draw_sheet(const SheetArguments& arguments) {
+  const Study study = load_study(arguments.study);
+  const PackPlace place =
+      arguments.pack.empty() ? default_pack_place(arguments.study) : pack_place_at(arguments.pack);
+  const fs::path key_path = arguments.key.empty() ? place.key : arguments.key;
+  check_output(arguments, study, key_path);
+  const StudyKey key = key_of(study, key_path);
+  check_images_exist(key.study);
+  const std::string kind = kind_of(arguments.output);
+  const int side_px = key.stimuli.size() > kMany ? kSideOfManyPx : kSidePx;
+  const StimulusSheet sheet =
+      make_stimulus_sheet(key, Pack(place.pack), side_px, progress_bar("drawing"));
+  if (kind == ".png") draw_sheet_png(sheet, arguments.output);
+  if (kind == ".pdf") draw_sheet_pdf(sheet, arguments.output);
+  if (kind == ".html") replace_file(arguments.output, sheet_html(sheet), FileMode::owner_only);
+  print("sheet " + arguments.output.string() +
+        " (unblinds whoever reads it; keep it with the key)\n");
+  return 0;
+}
+
+}  // namespace
+
+void add_stimuli_sheet_command(CLI::App& stimuli, Action& action) {
+  auto arguments = std::make_shared<SheetArguments>();
+  CLI::App* command = stimuli.add_subcommand(
+      "sheet", "A contact sheet of a prepared study for the lab book; it unblinds");
+  command->add_option("STUDY", arguments->study, "Study file")->required();
+  command->add_option("-o,--output", arguments->output, "PNG, PDF or HTML file to write")
+      ->required();
+  command->add_option("--key", arguments->key, "Key of the study (default: the pack's)");
+  command->add_option("--pack", arguments->pack, "Folder of the pack (default: <study>.pack)");
+  command->callback([=, &action] { action = [=] { return draw_sheet(*arguments); }; });
+}
+
+}  // namespace touchtrial
