@@ -31,7 +31,7 @@ std::vector<Curve> points_of(std::vector<Row> rows, bool names_work) {
   for (const Row& row : rows) {
     if (!curves.empty() && curves.back().colour != colour_of(row)) mark = 0;
     const std::string what = names_work ? row.what.work.substr(row.what.work.rfind(' ') + 1) : "";
-    const std::string input = row.what.input == "u8" ? "" : ", " + row.what.input;
+    const std::string input = colour_of(row) == Colour::vermilion ? ", " + row.what.input : "";
     curves.push_back({row.what.who + (what.empty() ? "" : ", " + what) + input,
                       colour_of(row),
                       kMarks[mark++ % std::size(kMarks)],

@@ -35,7 +35,8 @@ std::string size_figure(const std::vector<Row>& rows, Format format) {
   return figure_head(format, kSize) +
          "set logscale xy\nset xlabel 'side of the image, pixels'\n"
          "set ylabel 'time, nanoseconds a pixel' offset 1\n"
-         "set xtics (64, 128, 256, 500, 1024, 2048, 4096, 8192)\nset xrange [56:9400]\n"
+         "set xtics (64, 128, 256, 500, 1024, 2048, 4096, 8192)\nset xrange [56:9400]\nset yrange "
+         "[0.5:50]\n"
          "set ytics add (0.5, 1, 2, 5, 10, 20, 50)\n" +
          plot_of(curves, "linespoints");
 }
