@@ -16,6 +16,14 @@ void put_stamp(nlohmann::ordered_json& object, bool simulated) {
   if (simulated) object["stamp"] = "SIMULATED";
 }
 
+nlohmann::ordered_json statistics_json(const GlcmStatistics& statistics) {
+  return {{"asm", statistics.angular_second_moment},
+          {"energy", statistics.energy},
+          {"entropy", statistics.entropy},
+          {"contrast", statistics.contrast},
+          {"correlation", statistics.correlation}};
+}
+
 std::string json_text(const nlohmann::ordered_json& object) {
   using ErrorHandler = nlohmann::ordered_json::error_handler_t;
   return object.dump(2, ' ', false, ErrorHandler::replace) + '\n';

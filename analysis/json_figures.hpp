@@ -4,6 +4,7 @@
 #include "analysis/proportion.hpp"
 #include "analysis/quality.hpp"
 #include "analysis/report.hpp"
+#include "engine/metrics/glcm.hpp"
 
 #include <optional>
 #include <string>
@@ -17,6 +18,8 @@ namespace touchtrial {
 
 /// [low, high]
 [[nodiscard]] nlohmann::ordered_json interval_json(const Interval& interval);
+
+[[nodiscard]] nlohmann::ordered_json statistics_json(const GlcmStatistics& statistics);
 
 /// Says whether the figures come from simulated participants; if so, twice.
 void put_stamp(nlohmann::ordered_json& object, bool simulated);

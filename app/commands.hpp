@@ -23,6 +23,7 @@ void add_stimuli_command(CLI::App& program, Action& action);
 /// These add themselves to the command "stimuli".
 void add_stimuli_import_command(CLI::App& stimuli, Action& action);
 void add_stimuli_sheet_command(CLI::App& stimuli, Action& action);
+void add_stimuli_measure_command(CLI::App& stimuli, Action& action);
 void add_prepare_command(CLI::App& program, Action& action);
 void add_simulate_command(CLI::App& program, Action& action);
 void add_close_command(CLI::App& program, Action& action);

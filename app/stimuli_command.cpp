@@ -36,6 +36,7 @@ void add_stimuli_command(CLI::App& program, Action& action) {
   stimuli->require_subcommand(1);
   add_stimuli_import_command(*stimuli, action);
   add_stimuli_sheet_command(*stimuli, action);
+  add_stimuli_measure_command(*stimuli, action);
   CLI::App* command = stimuli->add_subcommand(
       "generate", "Make the default pictures: textures, objects, their materials, practice, flat");
   command->add_option("-o,--out", arguments->folder, "Folder to write into")->capture_default_str();

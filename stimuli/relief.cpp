@@ -174,7 +174,7 @@ double light_quantile(std::vector<double>& samples, double share) {
   return samples[static_cast<std::size_t>(rank)];
 }
 
-GreyImage developed(const Plane<double>& light, double mean_grey, const GreyImage& counts) {
+GreyImage developed(const Plane<double>& light, const Print& print, const GreyImage& counts) {
   std::vector<double> tones;
   for (std::size_t i = 0; i < light.size(); ++i) {
     if (counts.samples()[i] != 0) tones.push_back(light.samples()[i]);
@@ -184,23 +184,30 @@ GreyImage developed(const Plane<double>& light, double mean_grey, const GreyImag
   const double span = std::max(1e-9, light_quantile(tones, 0.998) - dark);
   const auto tone = [&](double value) { return std::clamp((value - dark) / span, 0.0, 1.0); };
   for (double& value : tones) value = tone(value);
-  const double bend = find_bend(tones, (mean_grey - kBlack) / (kWhite - kBlack));
+  const double bend = find_bend(tones, (print.mean_grey - kBlack) / (kWhite - kBlack));
+  const double black = mix(print.mean_grey, kBlack, print.contrast);
+  const double white = mix(print.mean_grey, kWhite, print.contrast);
   GreyImage picture(light.height(), light.width());
   for (std::size_t i = 0; i < light.size(); ++i) {
-    const double grey = mix(kBlack, kWhite, bent(tone(light.samples()[i]), bend));
+    const double grey = mix(black, white, bent(tone(light.samples()[i]), bend));
     picture.samples()[i] = static_cast<std::uint8_t>(std::floor(grey + 0.5));
   }
   return picture;
 }
 
-GreyImage developed(const Plane<double>& light, double mean_grey) {
-  return developed(light, mean_grey, GreyImage(light.height(), light.width(), 1));
+GreyImage developed(const Plane<double>& light, const Print& print) {
+  return developed(light, print, GreyImage(light.height(), light.width(), 1));
+}
+
+Print print_for(const Specimen& specimen, Print print) {
+  print.mean_grey += specimen.shift("print/mean", 9.0);
+  print.contrast = std::min(1.0, print.contrast * specimen.factor("print/contrast", 0.15));
+  return print;
 }
 
 GreyImage photographed(const Specimen& specimen, const Relief& relief, const Lamp& lamp,
-                       double mean_grey) {
-  return developed(averaged(lit(relief, lamp_for(specimen, lamp))),
-                   mean_grey + specimen.shift("development", 9.0));
+                       const Print& print) {
+  return developed(averaged(lit(relief, lamp_for(specimen, lamp))), print_for(specimen, print));
 }
 
 }  // namespace touchtrial

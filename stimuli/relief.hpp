@@ -80,16 +80,24 @@ struct Lamp {
 /// The value below which a share of the samples lies; reorders them. \pre not empty
 [[nodiscard]] double light_quantile(std::vector<double>& samples, double share);
 
-/// Exposure and tone: stretches the light between its extremes (but for a few in a thousand) over
-/// the grey levels, and bends it so that the mean is `mean_grey`.
-/// \param counts  which pixels decide about exposure: those that are not 0; same shape as light
-[[nodiscard]] GreyImage developed(const Plane<double>& light, double mean_grey,
-                                  const GreyImage& counts);
-[[nodiscard]] GreyImage developed(const Plane<double>& light, double mean_grey);
+/// How a picture is printed.
+struct Print {
+  double mean_grey = 120.0;
+  double contrast = 1.0;  ///< 1: over all grey levels; less draws them towards the mean
+};
 
-/// Sets up the lamp for the piece, lights the relief and develops the picture, some of them darker
-/// or lighter than `mean_grey`.
+/// Exposure and tone: stretches the light between its extremes (but for a few in a thousand) over
+/// the print's range of grey levels, and bends it so that the mean is the print's.
+/// \param counts  which pixels decide about exposure: those that are not 0; same shape as light
+[[nodiscard]] GreyImage developed(const Plane<double>& light, const Print& print,
+                                  const GreyImage& counts);
+[[nodiscard]] GreyImage developed(const Plane<double>& light, const Print& print);
+
+/// The print of a piece: some are darker or lighter, harder or softer than others.
+[[nodiscard]] Print print_for(const Specimen& specimen, Print print);
+
+/// Sets up the lamp for the piece, lights the relief and prints the picture as fits the piece.
 [[nodiscard]] GreyImage photographed(const Specimen& specimen, const Relief& relief,
-                                     const Lamp& lamp, double mean_grey);
+                                     const Lamp& lamp, const Print& print);
 
 }  // namespace touchtrial

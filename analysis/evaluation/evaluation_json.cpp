@@ -8,14 +8,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json statistics_json(const GlcmStatistics& statistics) {
-  return {{"asm", statistics.angular_second_moment},
-          {"energy", statistics.energy},
-          {"entropy", statistics.entropy},
-          {"contrast", statistics.contrast},
-          {"correlation", statistics.correlation}};
-}
-
 Json picture_json(const PictureFigures& picture) {
   Json glcm = Json::object();
   for (std::size_t i = 0; i < kGlcmOffsets.size(); ++i) {

@@ -143,7 +143,7 @@ GreyImage make_basket(const Specimen& specimen, int size_px) {
   const Lamp lamp{{-0.5, -0.55, 0.8}, 0.34, 70.0, 4.0, 9.0, 0.78};
   return photographed(specimen,
                       laid_out(Basket(specimen.noise_seed()), size_px, object_view(specimen)), lamp,
-                      112.0);
+                      {112.0});
 }
 
 GreyImage make_wicker(const Specimen& specimen, int size_px) {
@@ -164,7 +164,7 @@ GreyImage make_wicker(const Specimen& specimen, int size_px) {
   view.scale *= 1.3;
   fill(relief, wall, view);
   const Lamp lamp{{-0.5, -0.55, 0.8}, 0.34, 40.0, 4.0, 9.0};
-  return photographed(specimen, relief, lamp, 118.0);
+  return photographed(specimen, relief, lamp, {118.0});
 }
 
 }  // namespace touchtrial

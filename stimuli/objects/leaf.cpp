@@ -135,8 +135,9 @@ class Leaf {
 
 GreyImage make_leaf(const Specimen& specimen, int size_px) {
   const Lamp lamp{{-0.72, -0.42, 0.75}, 0.36, 40.0, 5.0, 9.0, 0.78};
-  return photographed(
-      specimen, laid_out(Leaf(specimen.noise_seed()), size_px, object_view(specimen)), lamp, 112.0);
+  return photographed(specimen,
+                      laid_out(Leaf(specimen.noise_seed()), size_px, object_view(specimen)), lamp,
+                      {112.0});
 }
 
 GreyImage make_venation(const Specimen& specimen, int size_px) {
@@ -164,7 +165,7 @@ GreyImage make_venation(const Specimen& specimen, int size_px) {
       },
       view);
   const Lamp lamp{{-0.72, -0.42, 0.75}, 0.36, 30.0, 5.0, 9.0};
-  return photographed(specimen, relief, lamp, 118.0);
+  return photographed(specimen, relief, lamp, {118.0});
 }
 
 }  // namespace touchtrial

@@ -120,7 +120,7 @@ GreyImage make_log(const Specimen& specimen, int size_px) {
   const Lamp lamp{{-0.62, -0.5, 0.62}, 0.32, 55.0, 4.0, 7.0, 0.78};
   return photographed(specimen,
                       laid_out(LogEnd(specimen.noise_seed()), size_px, object_view(specimen)), lamp,
-                      116.0);
+                      {116.0});
 }
 
 GreyImage make_endgrain(const Specimen& specimen, int size_px) {
@@ -141,7 +141,7 @@ GreyImage make_endgrain(const Specimen& specimen, int size_px) {
       relief, [&](double x, double y) { return log(x, y).surface; },
       view_of(specimen, {0.12, 0.2, 0.2}));
   const Lamp lamp{{-0.62, -0.5, 0.62}, 0.32, 30.0, 4.0, 7.0};
-  return photographed(specimen, relief, lamp, 118.0);
+  return photographed(specimen, relief, lamp, {118.0});
 }
 
 }  // namespace touchtrial

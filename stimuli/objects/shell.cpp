@@ -110,7 +110,7 @@ GreyImage make_shell(const Specimen& specimen, int size_px) {
   const Lamp lamp{{-0.62, -0.42, 0.8}, 0.36, 60.0, 5.0, 9.0, 0.78};
   return photographed(specimen,
                       laid_out(Shell(specimen.noise_seed()), size_px, object_view(specimen)), lamp,
-                      112.0);
+                      {112.0});
 }
 
 GreyImage make_ribs(const Specimen& specimen, int size_px) {
@@ -135,7 +135,7 @@ GreyImage make_ribs(const Specimen& specimen, int size_px) {
       },
       view_of(specimen, {0.12, 0.15, 0.2}));
   const Lamp lamp{{-0.62, -0.42, 0.8}, 0.36, 40.0, 5.0, 9.0};
-  return photographed(specimen, relief, lamp, 118.0);
+  return photographed(specimen, relief, lamp, {118.0});
 }
 
 }  // namespace touchtrial

@@ -31,7 +31,7 @@ View object_view(const Specimen& specimen) {
 }
 
 GreyImage photographed(const Specimen& specimen, const StillLife& scene, Lamp lamp,
-                       double mean_grey) {
+                       const Print& print) {
   const double scale = scene.relief.side() / (kOversampling * kObjectUnits);
   lamp.shadow_reach_px *= scale;
   lamp.shadow_blur_px *= scale;
@@ -44,7 +44,7 @@ GreyImage photographed(const Specimen& specimen, const StillLife& scene, Lamp la
   for (std::size_t i = 0; i < share.size(); ++i) {
     counts.samples()[i] = share.samples()[i] > 0.5 ? 1 : 0;
   }
-  return developed(averaged(light), mean_grey + specimen.shift("development", 9.0), counts);
+  return developed(averaged(light), print_for(specimen, print), counts);
 }
 
 }  // namespace touchtrial

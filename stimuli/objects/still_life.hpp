@@ -22,9 +22,9 @@ struct StillLife {
 
 /// Lights the scene and develops it for the object's sake; the ground is as light as the object's
 /// lighter parts.
-/// \param mean_grey  mean grey level of the object
+/// \param print  its mean is that of the object
 [[nodiscard]] GreyImage photographed(const Specimen& specimen, const StillLife& scene, Lamp lamp,
-                                     double mean_grey);
+                                     const Print& print);
 
 /// How a further piece lies: turned a little about the middle, and not larger than the first.
 [[nodiscard]] View object_view(const Specimen& specimen);

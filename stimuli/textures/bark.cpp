@@ -57,7 +57,7 @@ GreyImage make_bark(const Specimen& specimen, int size_px) {
   Relief relief(size_px);
   fill(relief, Bark(specimen), view_of(specimen));
   const Lamp lamp{{-0.75, -0.35, 0.62}, 0.32, 30.0, 3.0, 9.0};
-  return photographed(specimen, relief, lamp, 122.0);
+  return photographed(specimen, relief, lamp, {122.0, 0.84});
 }
 
 }  // namespace touchtrial

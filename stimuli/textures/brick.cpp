@@ -154,7 +154,7 @@ GreyImage make_brick(const Specimen& specimen, int size_px) {
   Relief relief(size_px);
   fill(relief, BrickWall(specimen), view_of(specimen, {0.18, 0.05, 0.15}));
   const Lamp lamp{{-0.5, -0.66, 0.6}, 0.34, 26.0, 2.5, 8.0};
-  return photographed(specimen, relief, lamp, 116.0);
+  return photographed(specimen, relief, lamp, {116.0, 0.92});
 }
 
 }  // namespace touchtrial

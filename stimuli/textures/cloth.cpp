@@ -113,7 +113,7 @@ GreyImage make_cloth(const Specimen& specimen, int size_px) {
   Relief relief(size_px);
   fill(relief, Cloth(specimen), view_of(specimen, {0.15, 0.3, 0.2}));
   const Lamp lamp{{-0.5, -0.62, 0.8}, 0.42, 14.0, 2.0, 5.0};
-  return photographed(specimen, relief, lamp, 126.0);
+  return photographed(specimen, relief, lamp, {126.0, 0.75});
 }
 
 }  // namespace touchtrial

@@ -58,7 +58,7 @@ GreyImage make_cork(const Specimen& specimen, int size_px) {
   Relief relief(size_px);
   fill(relief, Cork(specimen), view_of(specimen, {0.25, 0.4, 0.2}));
   const Lamp lamp{{-0.55, -0.6, 0.75}, 0.4, 12.0, 2.0, 6.0};
-  return photographed(specimen, relief, lamp, 124.0);
+  return photographed(specimen, relief, lamp, {124.0});
 }
 
 }  // namespace touchtrial

@@ -59,7 +59,7 @@ GreyImage make_leather(const Specimen& specimen, int size_px) {
   Relief relief(size_px);
   fill(relief, Leather(specimen), view_of(specimen, {0.22, 0.4, 0.25}));
   const Lamp lamp{{-0.6, -0.55, 0.9}, 0.4, 16.0, 3.0, 8.0};
-  return photographed(specimen, relief, lamp, 116.0);
+  return photographed(specimen, relief, lamp, {116.0});
 }
 
 }  // namespace touchtrial

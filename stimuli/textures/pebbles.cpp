@@ -185,7 +185,7 @@ GreyImage make_pebbles(const Specimen& specimen, int size_px) {
   painter.sand();
   for (const Pebble& pebble : heap_of_pebbles(specimen, size_px)) painter.paint(pebble);
   const Lamp lamp{{-0.55, -0.6, 0.7}, 0.34, 40.0, 4.0, 12.0};
-  return photographed(specimen, relief, lamp, 118.0);
+  return photographed(specimen, relief, lamp, {118.0, 0.95});
 }
 
 }  // namespace touchtrial

@@ -76,7 +76,7 @@ GreyImage make_sand(const Specimen& specimen, int size_px) {
   Relief relief(size_px);
   fill(relief, Sand(specimen), view_of(specimen, {0.2, 0.3, 0.2}));
   const Lamp lamp{{-0.42, -0.74, 0.5}, 0.34, 24.0, 2.0, 9.0};
-  return photographed(specimen, relief, lamp, 120.0);
+  return photographed(specimen, relief, lamp, {120.0});
 }
 
 }  // namespace touchtrial

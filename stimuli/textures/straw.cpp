@@ -142,7 +142,7 @@ GreyImage make_straw(const Specimen& specimen, int size_px) {
     painter.paint(random_stalk(random, size_px, strewing, strewing.pile_height_px * i / count));
   }
   const Lamp lamp{{-0.45, -0.7, 0.78}, 0.42, 24.0, 3.5, 8.0};
-  return photographed(specimen, relief, lamp, 122.0);
+  return photographed(specimen, relief, lamp, {122.0, 0.75});
 }
 
 }  // namespace touchtrial

@@ -70,7 +70,7 @@ TEST_CASE("development reaches the mean that is asked for and keeps the order of
   for (std::size_t i = 0; i < light.size(); ++i) {
     light.samples()[i] = static_cast<double>(i * i);
   }
-  const GreyImage picture = developed(light, 120.0);
+  const GreyImage picture = developed(light, {120.0});
   double sum = 0.0;
   for (std::size_t i = 0; i < picture.size(); ++i) {
     sum += picture.samples()[i];
@@ -80,6 +80,6 @@ TEST_CASE("development reaches the mean that is asked for and keeps the order of
 }
 
 TEST_CASE("development of an even light, or with nothing that counts, does not fail") {
-  CHECK(developed(Plane<double>(4, 4, 0.5), 120.0).width() == 4);
-  CHECK(developed(Plane<double>(4, 4, 0.5), 120.0, GreyImage(4, 4)).width() == 4);
+  CHECK(developed(Plane<double>(4, 4, 0.5), {120.0}).width() == 4);
+  CHECK(developed(Plane<double>(4, 4, 0.5), {120.0}, GreyImage(4, 4)).width() == 4);
 }

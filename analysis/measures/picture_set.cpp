@@ -1,0 +1,194 @@
+#include "analysis/measures/picture_set.hpp"
+
+#include "engine/metrics/spectrum_slope.hpp"
+#include "engine/metrics/ssim.hpp"
+#include "engine/perception/texture_sense.hpp"
+#include "engine/rendering/field_statistics.hpp"
+#include "engine/rendering/gains.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+
+namespace touchtrial {
+namespace {
+
+constexpr int kLargestSet = 5;
+
+/// A picture with what is made of it.
+struct Worked {
+  const LabelledPicture* picture;
+  GreyImage texture;
+  TextureField field;
+};
+
+GlcmStatistics mean_over_directions(const GreyImage& image) {
+  GlcmStatistics mean{};
+  const GlcmTable table = glcm_statistics(image);
+  const double share = 1.0 / static_cast<double>(table.size());
+  for (const GlcmStatistics& statistics : table) {
+    mean.angular_second_moment += share * statistics.angular_second_moment;
+    mean.energy += share * statistics.energy;
+    mean.entropy += share * statistics.entropy;
+    mean.contrast += share * statistics.contrast;
+    mean.correlation += share * statistics.correlation;
+  }
+  return mean;
+}
+
+Worked worked(const LabelledPicture& picture, const ExtractionOptions& method,
+              const RenderingOptions& rendering) {
+  const Extraction<double> extraction = extract_texture<double>(picture.image, method);
+  return {&picture, texture_picture(extraction.texture),
+          make_texture_field(extraction.texture, rendering)};
+}
+
+PictureMeasures measures_of(const Worked& work, Gains gains) {
+  PictureMeasures measures;
+  measures.set = work.picture->set;
+  measures.label = work.picture->label;
+  measures.name = work.picture->name;
+  const auto samples = work.picture->image.samples();
+  const auto count = static_cast<double>(samples.size());
+  double squares = 0.0;
+  for (const std::uint8_t grey : samples) measures.mean += grey / count;
+  for (const std::uint8_t grey : samples) {
+    squares += (grey - measures.mean) * (grey - measures.mean);
+  }
+  measures.deviation = std::sqrt(squares / count);
+  measures.slope = spectrum_slope(work.picture->image);
+  measures.original = mean_over_directions(work.picture->image);
+  measures.texture = mean_over_directions(work.texture);
+  const FieldStatistics statistics = field_statistics(work.field.view(), gains);
+  measures.force_rms_n = statistics.tangential_rms_n;
+  measures.renderable_share = 1.0 - statistics.share_below_1_mm;
+  return measures;
+}
+
+GreyImage corner_of(const GreyImage& image, int height, int width) {
+  if (image.height() == height && image.width() == width) return image;
+  GreyImage corner(height, width);
+  for (int y = 0; y < height; ++y) {
+    std::ranges::copy(image.row(y).first(static_cast<std::size_t>(width)), corner.row(y).begin());
+  }
+  return corner;
+}
+
+double likeness_of(const GreyImage& a, const GreyImage& b) {
+  const int height = std::min(a.height(), b.height());
+  const int width = std::min(a.width(), b.width());
+  return ms_ssim<float>(corner_of(a, height, width), corner_of(b, height, width)).unit;
+}
+
+void add_pair(PairMean& mean, double value) {
+  ++mean.pairs;
+  mean.mean += (value - mean.mean) / mean.pairs;
+}
+
+using WorkedSet = std::vector<const Worked*>;
+
+bool large_enough(const WorkedSet& set) {
+  return std::ranges::all_of(set, [](const Worked* work) {
+    const GreyImage& image = work->picture->image;
+    return std::min(image.height(), image.width()) >= kMsSsimSmallestSide;
+  });
+}
+
+template <typename PairDone>
+Likeness likeness_in(const WorkedSet& set, const PairDone& pair_done) {
+  Likeness likeness;
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const bool within = set[i]->picture->label == set[j]->picture->label;
+      add_pair(within ? likeness.original_within : likeness.original_between,
+               likeness_of(set[i]->picture->image, set[j]->picture->image));
+      add_pair(within ? likeness.texture_within : likeness.texture_between,
+               likeness_of(set[i]->texture, set[j]->texture));
+      pair_done();
+    }
+  }
+  return likeness;
+}
+
+std::vector<PatchStrengths> strengths_in(const WorkedSet& set, double tangential_n) {
+  std::map<std::string, int> numbers;
+  std::vector<PatchStrengths> strengths;
+  for (const Worked* work : set) {
+    const auto next = static_cast<int>(numbers.size());
+    strengths.push_back(
+        {numbers.try_emplace(work->picture->label, next).first->second,
+         patch_strengths(work->field.view(), tangential_n, SenseOptions{}.threshold_n)});
+  }
+  return strengths;
+}
+
+std::vector<std::pair<std::string, WorkedSet>> sets_of(const std::vector<Worked>& all) {
+  std::vector<std::pair<std::string, WorkedSet>> sets;
+  for (const Worked& work : all) {
+    const auto has_name = [&](const auto& set) { return set.first == work.picture->set; };
+    auto set = std::ranges::find_if(sets, has_name);
+    if (set == sets.end()) set = sets.insert(set, {work.picture->set, {}});
+    set->second.push_back(&work);
+  }
+  return sets;
+}
+
+Gains gains_of(const WorkedSet& set, const RenderingOptions& rendering) {
+  std::vector<FieldView> fields;
+  for (const Worked* work : set) fields.push_back(work->field.view());
+  return choose_gains(fields, rendering).of_field.front();
+}
+
+template <typename PairDone>
+SetMeasures measures_of_set(const std::string& name, const WorkedSet& set, double tangential_n,
+                            const PairDone& pair_done) {
+  SetMeasures measures;
+  measures.set = name;
+  measures.pictures = static_cast<int>(set.size());
+  const std::vector<PatchStrengths> strengths = strengths_in(set, tangential_n);
+  for (const PatchStrengths& picture : strengths) {
+    measures.classes = std::max(measures.classes, picture.label + 1);
+  }
+  for (int k = 2; k <= std::min(measures.classes, kLargestSet); ++k) {
+    measures.rms_alone.push_back(rms_alone(strengths, k));
+  }
+  if (large_enough(set)) measures.likeness = likeness_in(set, pair_done);
+  return measures;
+}
+
+int pairs_in(const std::vector<std::pair<std::string, WorkedSet>>& sets) {
+  int pairs = 0;
+  for (const auto& [name, set] : sets) {
+    const auto count = static_cast<int>(set.size());
+    if (large_enough(set)) pairs += count * (count - 1) / 2;
+  }
+  return pairs;
+}
+
+}  // namespace
+
+MeasuredPictures measure_pictures(std::span<const LabelledPicture> pictures,
+                                  const ExtractionOptions& method, RenderingOptions rendering,
+                                  const std::function<void(int done, int of)>& progress) {
+  if (pictures.empty()) throw std::invalid_argument("measure_pictures: there is no picture");
+  rendering.equalise = Equalise::none;
+  std::vector<Worked> all;
+  for (const LabelledPicture& picture : pictures) all.push_back(worked(picture, method, rendering));
+  const auto sets = sets_of(all);
+  const int steps = pairs_in(sets);
+  int done = 0;
+  const auto pair_done = [&] {
+    if (progress) progress(++done, steps);
+  };
+  const Gains gains = gains_of(sets.front().second, rendering);
+  MeasuredPictures measured;
+  measured.tangential_gain_n = gains.tangential_n;
+  for (const Worked& work : all) measured.pictures.push_back(measures_of(work, gains));
+  for (const auto& [name, set] : sets) {
+    measured.sets.push_back(measures_of_set(name, set, gains.tangential_n, pair_done));
+  }
+  return measured;
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,80 @@
+/// \file A set of pictures in figures: each by itself, how alike they are, and what their strength
+/// gives away. Definitions: docs/stimuli.md, "Figures".
+#pragma once
+
+#include "analysis/measures/rms_alone.hpp"
+#include "core/plane.hpp"
+#include "engine/extraction.hpp"
+#include "engine/metrics/glcm.hpp"
+#include "engine/rendering/rendering_options.hpp"
+
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+
+/// A picture to be measured.
+struct LabelledPicture {
+  std::string set;    ///< which set it belongs to: figures of sets never mix sets
+  std::string label;  ///< its class in the set
+  std::string name;   ///< to report it by
+  GreyImage image;
+};
+
+/// One picture in figures.
+struct PictureMeasures {
+  std::string set, label, name;
+  double mean = 0.0;              ///< grey levels
+  double deviation = 0.0;         ///< standard deviation, grey levels
+  double slope = 0.0;             ///< spectrum_slope() of the picture
+  GlcmStatistics original{};      ///< mean over the four directions
+  GlcmStatistics texture{};       ///< the same of the texture picture
+  double force_rms_n = 0.0;       ///< of the tangential force, with the gain of the first set
+  double renderable_share = 0.0;  ///< of the tangential force's power, at wavelengths >= 1 mm
+};
+
+/// Mean MS-SSIM (unit exponents) over pairs of pictures.
+struct PairMean {
+  int pairs = 0;
+  double mean = 0.0;  ///< 0 without a pair
+};
+
+/// How alike pictures of one class are, and pictures of two.
+struct Likeness {
+  PairMean original_within, original_between;
+  PairMean texture_within, texture_between;
+};
+
+struct SetMeasures {
+  std::string set;
+  int classes = 0;
+  int pictures = 0;
+  /// Empty if a picture is too small for MS-SSIM.
+  std::optional<Likeness> likeness;
+  std::vector<RmsAlone> rms_alone;  ///< for sets of 2, 3 .. min(classes, 5)
+};
+
+struct MeasuredPictures {
+  double tangential_gain_n = 0.0;
+  std::vector<PictureMeasures> pictures;  ///< in the order given
+  std::vector<SetMeasures> sets;          ///< by first appearance
+};
+
+/// Measures pictures under a method and rendering. The gain is what the stiffness budget (or the
+/// rendering) gives the first picture's set; `equalise` is left out of account, since it would hide
+/// what is measured. Pairs of different size are compared where they overlap, laid corner to
+/// corner. \throws std::invalid_argument if there is no picture or one is below kSlopeSmallestSide
+/// Thread-safe. A pair of 500 x 500 pictures takes some 20 ms.
+[[nodiscard]] MeasuredPictures measure_pictures(
+    std::span<const LabelledPicture> pictures, const ExtractionOptions& method,
+    RenderingOptions rendering, const std::function<void(int done, int of)>& progress = {});
+
+/// Tables for a terminal.
+[[nodiscard]] std::string measures_text(const MeasuredPictures& measured);
+/// docs/stimuli.md, "Figures", explains the keys.
+[[nodiscard]] std::string measures_json(const MeasuredPictures& measured);
+
+}  // namespace touchtrial

@@ -1,0 +1,163 @@
+#include "analysis/measures/picture_set.hpp"
+#include "app/commands.hpp"
+#include "app/console.hpp"
+#include "core/errors.hpp"
+#include "engine/image_file.hpp"
+#include "engine/metrics/spectrum_slope.hpp"
+#include "protocols/design/study.hpp"
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+namespace touchtrial {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct MeasureArguments {
+  std::vector<fs::path> inputs;
+  fs::path photographs;
+  bool json = false;
+};
+
+/// Pictures, and by whose rules forces are made of them.
+struct MeasureJob {
+  std::vector<LabelledPicture> pictures;
+  std::optional<Study> rules;  ///< the first study that was given
+};
+
+bool is_folder(const fs::path& path) {
+  std::error_code error;
+  return fs::is_directory(path, error);
+}
+
+bool has_ending(const fs::path& path, std::string_view wanted) {
+  std::string ending = path.extension().string();
+  std::ranges::transform(ending, ending.begin(), [](unsigned char letter) {
+    return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a')
+                                          : static_cast<char>(letter);
+  });
+  return ending == wanted;
+}
+
+bool is_picture(const fs::path& path) {
+  constexpr std::array<std::string_view, 9> kEndings = {".png", ".jpg", ".jpeg", ".tif", ".tiff",
+                                                        ".bmp", ".pgm", ".ppm",  ".pnm"};
+  return std::ranges::any_of(kEndings, [&](auto ending) { return has_ending(path, ending); });
+}
+
+void add_picture(MeasureJob& job, const std::string& set, const std::string& label,
+                 const fs::path& path) {
+  job.pictures.push_back(
+      {set, label, one_line(path.lexically_normal().string()), read_grey_image(path)});
+}
+
+void add_study(MeasureJob& job, const fs::path& path) {
+  const Study study = load_study(path);
+  for (const StudyClass& study_class : study.classes) {
+    for (const fs::path& image : study_class.images) {
+      add_picture(job, study.name, study_class.label, study.folder / image);
+    }
+  }
+  if (!job.rules) job.rules = study;
+}
+
+std::vector<fs::path> sorted_entries(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> entries;
+  for (fs::directory_iterator i(folder, error); !error && i != fs::directory_iterator();
+       i.increment(error)) {
+    entries.push_back(i->path());
+  }
+  if (error) {
+    throw FileError(one_line(folder.string()) + ": cannot be read (" + error.message() +
+                    "); check the path");
+  }
+  std::ranges::sort(entries);
+  return entries;
+}
+
+/// A folder in it is a class of its name; a picture in it is a class by itself.
+void add_folder(MeasureJob& job, const fs::path& folder, const std::string& set) {
+  const std::size_t before = job.pictures.size();
+  for (const fs::path& entry : sorted_entries(folder)) {
+    if (is_folder(entry)) {
+      for (const fs::path& file : sorted_entries(entry)) {
+        if (is_picture(file)) add_picture(job, set, entry.filename().string(), file);
+      }
+    } else if (is_picture(entry)) {
+      add_picture(job, set, entry.stem().string(), entry);
+    }
+  }
+  if (job.pictures.size() == before) {
+    throw FileError(one_line(folder.string()) + ": holds no picture; give a folder of photographs");
+  }
+}
+
+MeasureJob job_of(const MeasureArguments& arguments) {
+  MeasureJob job;
+  for (const fs::path& input : arguments.inputs) {
+    if (is_folder(input)) {
+      add_folder(job, input, input.string());
+    } else if (has_ending(input, ".json")) {
+      add_study(job, input);
+    } else {
+      add_picture(job, "pictures", input.stem().string(), input);
+    }
+  }
+  if (!arguments.photographs.empty()) add_folder(job, arguments.photographs, "photographs");
+  return job;
+}
+
+void refuse_too_small(const LabelledPicture& picture) {
+  if (std::min(picture.image.height(), picture.image.width()) >= kSlopeSmallestSide) return;
+  throw FileError(picture.name + ": has " + std::to_string(picture.image.width()) + " x " +
+                  std::to_string(picture.image.height()) + " px; give pictures of at least " +
+                  std::to_string(kSlopeSmallestSide) + " px on each side");
+}
+
+int measure(const MeasureArguments& arguments) {
+  const MeasureJob job = job_of(arguments);
+  for (const LabelledPicture& picture : job.pictures) refuse_too_small(picture);
+  ExtractionOptions method;
+  RenderingOptions rendering;
+  if (job.rules) {
+    method = job.rules->methods.front();
+    rendering = job.rules->rendering;
+  }
+  const MeasuredPictures measured =
+      measure_pictures(job.pictures, method, rendering, progress_bar("measuring"));
+  print(arguments.json ? measures_json(measured) : measures_text(measured));
+  return 0;
+}
+
+}  // namespace
+
+void add_stimuli_measure_command(CLI::App& stimuli, Action& action) {
+  auto arguments = std::make_shared<MeasureArguments>();
+  CLI::App* command = stimuli.add_subcommand(
+      "measure",
+      "Figures of pictures: co-occurrence, spectrum, likeness, force, and how well force "
+      "alone tells classes apart");
+  command
+      ->add_option("STUDY|IMAGE|FOLDER", arguments->inputs,
+                   "Study files, pictures (each a class), or folders of them (folders in a folder "
+                   "are classes)")
+      ->required()
+      ->check(CLI::ExistingPath);
+  command
+      ->add_option("--photographs", arguments->photographs,
+                   "A folder of photographs to put beside them")
+      ->check(CLI::ExistingDirectory);
+  command->add_flag("--json", arguments->json, "One JSON object in place of tables");
+  command->callback([=, &action] { action = [=] { return measure(*arguments); }; });
+}
+
+}  // namespace touchtrial
