@@ -11,7 +11,7 @@
 
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
-// clang-format off: the next oness are compiled for the target that those two have set.
+// clang-format off: the next ones are compiled for the target that those two have set.
 #include "engine/kernels/real_pairs-inl.hpp"
 #include "engine/kernels/streamed_row-inl.hpp"
 // clang-format on
@@ -115,17 +115,38 @@ class OneOrder {
   const FixedFactors& factors_;
 };
 
-/// Blocks that lie at whole multiples of kBlock columns from the tile's first one.
+/// The first of the blocks that a ring's column sums take. Blocks lie at whole multiples of kBlock
+/// columns from the tile's first one.
+constexpr int first_block(int k) {
+  return -(k + kBlock - 1) / kBlock * kBlock;
+}
+
 HWY_INLINE void sum_columns(const ExtendedRows& rows, int k, Tile tile, Workspace& work) {
   const Integers d;
   const std::int16_t* const above = rows.row(-k) + tile.x0;
   const std::int16_t* const centre = rows.row(0) + tile.x0;
   const std::int16_t* const below = rows.row(k) + tile.x0;
   std::int16_t* const sums = work.sums[k - 1] + kFront;
-  const int first = -(k + kBlock - 1) / kBlock * kBlock;
-  for (int i = first; i < tile.width + k; i += kBlock) {
+  for (int i = first_block(k); i < tile.width + k; i += kBlock) {
     const auto wings = hn::Add(hn::Load(d, above + i), hn::Load(d, below + i));
     hn::Store(hn::Add(wings, hn::Load(d, centre + i)), d, sums + i);
+  }
+}
+
+/// Both rings of radius 2 at once, which loads the centre once.
+HWY_INLINE void sum_columns_of_two(const ExtendedRows& rows, Tile tile, Workspace& work) {
+  const Integers d;
+  const std::array<const std::int16_t*, 5> from = {rows.row(-2) + tile.x0, rows.row(-1) + tile.x0,
+                                                   rows.row(0) + tile.x0, rows.row(1) + tile.x0,
+                                                   rows.row(2) + tile.x0};
+  std::int16_t* const inner = work.sums[0] + kFront;
+  std::int16_t* const outer = work.sums[1] + kFront;
+  for (int i = first_block(2); i < tile.width + 2; i += kBlock) {
+    const auto centre = hn::Load(d, from[2] + i);
+    const auto near = hn::Add(hn::Load(d, from[1] + i), hn::Load(d, from[3] + i));
+    const auto far = hn::Add(hn::Load(d, from[0] + i), hn::Load(d, from[4] + i));
+    hn::Store(hn::Add(near, centre), d, inner + i);
+    hn::Store(hn::Add(far, centre), d, outer + i);
   }
 }
 
@@ -153,21 +174,35 @@ HWY_INLINE RealPair texture_block(const Workspace& work, const std::int16_t* cen
   return orders.finish(order, sum);
 }
 
-template <int kRadius, class Orders>
-HWY_INLINE void texture_tile(const Workspace& work, const std::int16_t* centres, int radius,
-                             Tile tile, const Orders& orders, float* texture,
-                             std::span<const StreamedRow> beside) {
+/// \param before_block  called with the column before each block
+template <int kRadius, class Orders, class BeforeBlock>
+HWY_INLINE void texture_blocks(const Workspace& work, const std::int16_t* centres, int radius,
+                               Tile tile, const Orders& orders, float* texture,
+                               const BeforeBlock& before_block) {
   int i = 0;
   for (; i + kBlock <= tile.width; i += kBlock) {
-    for (const StreamedRow& row : beside) move_samples(row, tile.x0 + i, kBlock);
+    before_block(tile.x0 + i);
     store_pair(texture_block<kRadius>(work, centres, radius, tile.x0, i, orders),
                texture + tile.x0 + i);
   }
   if (i == tile.width) return;
-  for (const StreamedRow& row : beside) move_samples(row, tile.x0 + i, kBlock);
+  before_block(tile.x0 + i);
   alignas(64) float rest[kBlock];
   store_pair(texture_block<kRadius>(work, centres, radius, tile.x0, i, orders), rest);
   std::copy_n(rest, tile.width - i, texture + tile.x0 + i);
+}
+
+template <int kRadius, class Orders>
+HWY_INLINE void texture_tile(const Workspace& work, const std::int16_t* centres, int radius,
+                             Tile tile, const Orders& orders, float* texture,
+                             std::span<const StreamedRow> beside) {
+  if (beside.empty()) {
+    texture_blocks<kRadius>(work, centres, radius, tile, orders, texture, [](int) {});
+    return;
+  }
+  texture_blocks<kRadius>(work, centres, radius, tile, orders, texture, [=](int x) {
+    for (const StreamedRow& row : beside) move_samples(row, x, kBlock);
+  });
 }
 
 template <class Orders>
@@ -176,10 +211,11 @@ HWY_INLINE void texture_row(const ExtendedRows& rows, int radius, const Orders& 
   Workspace work;
   for (int x0 = 0; x0 < rows.width(); x0 += kTile) {
     const Tile tile{x0, std::min(kTile, rows.width() - x0)};
-    for (int k = 1; k <= radius; ++k) sum_columns(rows, k, tile, work);
     if (radius == 2) {  // the usual one, worth its own code
+      sum_columns_of_two(rows, tile, work);
       texture_tile<2>(work, rows.row(0), radius, tile, orders, texture, beside);
     } else {
+      for (int k = 1; k <= radius; ++k) sum_columns(rows, k, tile, work);
       texture_tile<0>(work, rows.row(0), radius, tile, orders, texture, beside);
     }
   }

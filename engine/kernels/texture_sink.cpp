@@ -11,9 +11,11 @@
 namespace touchtrial {
 namespace {
 
-/// From this size on it pays, although the planes might stay in the second-level cache: what they
-/// would drive out of it is worth more. Measured; see docs/decisions/0011.
-constexpr std::size_t kStreamFromBytes = std::size_t{1} << 18;
+/// From these sizes on it pays to write past the caches: for three planes long before they would
+/// fill the second-level cache, as what they would drive out of it is worth more. Measured; see
+/// docs/decisions/0011.
+constexpr std::size_t kStreamTextureFromBytes = std::size_t{3} << 19;
+constexpr std::size_t kStreamForceFromBytes = std::size_t{1} << 18;
 
 }  // namespace
 
@@ -25,7 +27,8 @@ TextureSink::TextureSink(int height, int width, const WantedPlanes& wanted,
   reshape_if(wanted.force, result.force.x, height, width);
   reshape_if(wanted.force, result.force.y, height, width);
   const std::size_t samples = result.texture.size() + 2 * result.force.x.size();
-  past_caches_ = samples * sizeof(float) >= kStreamFromBytes;
+  past_caches_ =
+      samples * sizeof(float) >= (wanted.force ? kStreamForceFromBytes : kStreamTextureFromBytes);
   if (past_caches_ || wanted.force) scratch_.emplace(2, static_cast<std::size_t>(width), 0);
   if (wanted.force) force_.emplace(width);
 }
