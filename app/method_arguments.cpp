@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <stdexcept>
 #include <system_error>
 
@@ -86,7 +85,7 @@ std::vector<GaborComponent> components_from(const std::string& text) {
 
 void read_components(const std::string& text, TvGaborOptions& options) {
   options.automatic = text == "auto";
-  if (!text.empty() && !options.automatic) options.components = components_from(text);
+  if (!options.automatic) options.components = components_from(text);
 }
 
 void check(const ExtractionOptions& options) {
@@ -130,8 +129,8 @@ void add_number(CLI::App& command, const char* option, double& number, const cha
 
 void add_numbers(CLI::App& command, ExtractionOptions& numbers) {
   using Options = ExtractionOptions;
-  command.add_option("--order", numbers.order, "Fractional order, 0 <= V < 1 (fixed)")
-      ->check(CLI::Range(0.0, std::nextafter(1.0, 0.0)));
+  // Of a half-open range the parser would say that its end is not in it; check_options says why.
+  command.add_option("--order", numbers.order, "Fractional order, 0 <= V < 1 (fixed)");
   command
       .add_option("--radius", numbers.radius,
                   "Radius K of the mask (adaptive, fixed) or of the window (median)")
@@ -140,8 +139,10 @@ void add_numbers(CLI::App& command, ExtractionOptions& numbers) {
   command.add_option("--levels", numbers.levels, "Levels of sub-bands (adaptive)")
       ->check(CLI::Range(1, Options::kMaxLevels))
       ->capture_default_str();
-  add_number(command, "--sigma", numbers.sigma_px, "Standard deviation, pixels (gaussian)",
-             std::nextafter(0.0, 1.0), Options::kMaxSigma_px);
+  command
+      .add_option("--sigma", numbers.sigma_px,
+                  "Standard deviation, pixels, 0 < S <= 1000 (gaussian)")
+      ->capture_default_str();
   add_number(command, "--threshold", numbers.threshold_grey,
              "Difference that is no texture yet, grey levels (median)", 0.0, 255.0);
   add_number(command, "--divisor", numbers.divisor, "Of the norm of the gradient (edge)",
@@ -172,7 +173,7 @@ ExtractionOptions extraction_options(const CLI::App& command, const MethodArgume
   options.combine = *choice_named<Combine>(kCombineNames, arguments.combine);
   options.control = *choice_named<Control>(kControlNames, arguments.control);
   refuse_unused_seed(command, options.control);
-  read_components(arguments.components, options.tv_gabor);
+  if (command.count("--components") > 0) read_components(arguments.components, options.tv_gabor);
   check(options);
   return options;
 }

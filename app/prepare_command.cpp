@@ -88,13 +88,13 @@ std::string table_of(const PrepareReport& report) {
 }
 
 /// One line where all stimuli share their gains, as they do unless they are equalised.
-std::string gains_of(const PrepareReport& report) {
+std::string gains_of(const PrepareReport& report, ModelKind model) {
   if (report.stimuli.empty()) return "";
   const Gains first = report.stimuli.front().gains;
   const bool shared = std::all_of(report.stimuli.begin(), report.stimuli.end(),
                                   [&](const PreparedStimulus& s) { return s.gains == first; });
   if (!shared) return "gains: each stimulus has its own, so that all are equally strong\n";
-  if (first.height_mm > 0.0) {
+  if (model == ModelKind::surface) {
     return fmt::format("gain: height {:.6g} mm per grey level; forces at a load of {} N\n",
                        first.height_mm, kStatedLoadN);
   }
@@ -147,7 +147,7 @@ int prepare(const PrepareArguments& arguments) {
     return 0;
   }
   print((arguments.explain ? explanation_text(report) + "\n" : "") + table_of(report) +
-        gains_of(report) + totals_of(report) +
+        gains_of(report, study.rendering.model) + totals_of(report) +
         fmt::format("pack {}\nkey  {} (keep it to yourself)\n", place.pack.string(),
                     place.key.string()));
   if (arguments.loop_work) print(loop_work_table(study));

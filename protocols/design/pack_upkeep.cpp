@@ -45,15 +45,25 @@ std::string unfinished_id(const StudyKey& key) {
   return to_hex(ByteView(derive_key(key.master, "identity of an unfinished pack")).first(16));
 }
 
-const PackEntry* EarlierPack::reusable(const std::string& code, const Digest& tag) const {
+const PackEntry* EarlierPack::recorded(const std::string& code, const Digest& tag) const {
   if (!pack || !names_code(pack->manifest(), code)) return nullptr;
   const PackEntry& entry = pack->entry(code);
-  if (entry.input_tag != tag) return nullptr;
+  return entry.input_tag == tag ? &entry : nullptr;
+}
+
+const PackEntry* EarlierPack::reusable(const std::string& code, const Digest& tag) const {
+  const PackEntry* entry = recorded(code, tag);
+  if (entry == nullptr) return nullptr;
   try {
-    return pack->is_intact(code) ? &entry : nullptr;
+    return pack->is_intact(code) ? entry : nullptr;
   } catch (const FileError&) {
     return nullptr;  // missing or unreadable: it is written anew
   }
+}
+
+std::string_view EarlierPack::why_not_reusable(const std::string& code, const Digest& tag) const {
+  return recorded(code, tag) != nullptr ? "the pack's own was damaged or missing"
+                                        : "the pack had none of this picture and these options";
 }
 
 EarlierPack earlier_pack(const std::filesystem::path& folder, const StudyKey& key) {

@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace touchtrial {
 
@@ -22,6 +23,12 @@ struct EarlierPack {
 
   /// The entry whose field is whole and made from this input.
   [[nodiscard]] const PackEntry* reusable(const std::string& code, const Digest& tag) const;
+  /// Of a field that is not reusable, for people who ask what was built.
+  [[nodiscard]] std::string_view why_not_reusable(const std::string& code, const Digest& tag) const;
+
+ private:
+  /// The entry of a field made from this input, whole or not.
+  [[nodiscard]] const PackEntry* recorded(const std::string& code, const Digest& tag) const;
 };
 
 /// \throws FileError if the folder holds another study's pack. A simulated study replaces it:

@@ -191,8 +191,7 @@ class Preparation {
         build_field(image, method, key_.study.rendering, taken, is_needed_again(i), log_of(i));
     StageTimer timer(log_of(i));
     entries_[i] = {code, write_field(folder_, code, built.field.view()), tag, {}};
-    timer.done("write field", "the pack had none of this picture and these options",
-               size_of_field(code));
+    timer.done("write field", earlier_.why_not_reusable(code, tag), size_of_field(code));
     solver_warnings_[i] = solver_warning(key_.study, stimulus, built);
   }
 

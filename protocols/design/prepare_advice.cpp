@@ -48,7 +48,7 @@ std::vector<std::string> rendering_warnings(const RenderingOptions& rendering,
     warnings.emplace_back(
         "/rendering/equalise: rms has no effect beside explicit gains; give gains \"budget\"");
   }
-  if (rendering.reference_grey == 0.0) {
+  if (rendering.model == ModelKind::paper && rendering.reference_grey == 0.0) {
     warnings.emplace_back(
         "/rendering/reference_grey: 0 is the paper's literal reading, a step of force at the "
         "surface from which a hand bounces; 128 has none");

@@ -56,8 +56,11 @@ Plane<double> flat_texture(const GreyImage& image, const ExtractionOptions& meth
 BuiltField flat_field(const GreyImage& image, const ExtractionOptions& method,
                       RenderingOptions rendering, StageLog* log) {
   if (log != nullptr) {
-    for (const char* stage : {"sub-bands", "order map", "texture", "control", "filter"}) {
-      log->skip(stage, "the image is flat", image.size() * sizeof(double));
+    const std::uint64_t plane = image.size() * sizeof(double);
+    log->skip("sub-bands", "the image is flat", plane);
+    log->skip("order map", "the image is flat", plane / 4);
+    for (const char* stage : {"texture", "control", "filter"}) {
+      log->skip(stage, "the image is flat", plane);
     }
   }
   rendering.filter_mm = 0.0;

@@ -162,6 +162,15 @@ TEST_CASE("extract draws the force field over an enlarged patch") {
   CHECK(read_grey_image(arrows).height() == 720);
 }
 
+TEST_CASE("extract says of an order of 1 that the range ends before it") {
+  const TempFolder folder;
+  const auto path = (folder.path() / "noise.png").string();
+  write_png(path, noise(5, 7));
+  const ProgramResult result =
+      run_touchtrial(folder.path(), {"extract", path, "--method", "fixed", "--order", "1"});
+  CHECK(result.errors == "touchtrial: extract: --order: must be in [0, 1), not 1\n");
+}
+
 TEST_CASE("extract refuses bad arguments with exit 2 and one line") {
   const TempFolder folder;
   const auto path = (folder.path() / "noise.png").string();
@@ -171,6 +180,7 @@ TEST_CASE("extract refuses bad arguments with exit 2 and one line") {
       {"extract", path, "--method", "magic"},
       {"extract", path, "--method", "fixed"},
       {"extract", path, "--method", "fixed", "--order", "1"},
+      {"extract", path, "--method", "fixed", "--order", "-0.1"},
       {"extract", path, "--method", "fixed", "--order", "nan"},
       {"extract", path, "--order", "0.5"},
       {"extract", path, "--norm", "max"},
@@ -178,6 +188,7 @@ TEST_CASE("extract refuses bad arguments with exit 2 and one line") {
       {"extract", path, "--sigma", "2"},
       {"extract", path, "--components", "auto"},
       {"extract", path, "--method", "gaussian", "--sigma", "0"},
+      {"extract", path, "--method", "gaussian", "--sigma", "1001"},
       {"extract", path, "--method", "gaussian", "--norm", "sum"},
       {"extract", path, "--method", "edge", "--divisor", "nan"},
       {"extract", path, "--method", "tv-gabor", "--mapping", "square"},
@@ -185,6 +196,7 @@ TEST_CASE("extract refuses bad arguments with exit 2 and one line") {
       {"extract", path, "--method", "tv-gabor", "--components", "0.6,0"},
       {"extract", path, "--method", "tv-gabor", "--components", "0.2,nan"},
       {"extract", path, "--method", "tv-gabor", "--components", "0.2,0;"},
+      {"extract", path, "--method", "tv-gabor", "--components", ""},
       {"extract", path, "--radius", "0"},
       {"extract", path, "--radius", "64"},
       {"extract", path, "--neighbourhood", "4"},

@@ -426,6 +426,16 @@ TEST_CASE("prepare explains what it did for each stimulus") {
         std::string::npos);
 }
 
+TEST_CASE("prepare prints the gain of the study's model, zero too") {
+  const StudyFolder study;
+  json document = study_of("classification");
+  document["rendering"] = {{"model", "surface"}, {"gains", {{"height_mm", 0}}}};
+  replace_file(study.path() / "cloths.json", document.dump());
+  const ProgramResult result = study.run({"prepare", study.in("cloths.json")});
+  CHECK(result.exit_code == 0);
+  CHECK(result.output.find("gain: height 0 mm per grey level") != std::string::npos);
+}
+
 TEST_CASE("a seed that is no whole number of 64 bits is refused") {
   const StudyFolder study;
   for (const std::string seed : {"-1", "18446744073709551616", "0x10", "1.5", ""}) {

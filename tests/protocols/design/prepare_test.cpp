@@ -392,6 +392,12 @@ TEST_CASE("a comparison prepares every method, and equalised, all have the same 
   CHECK(report.stimuli[0].gains.tangential_n != report.stimuli[1].gains.tangential_n);
 }
 
+TEST_CASE("the reference grey is not warned of where it has no effect") {
+  Laboratory laboratory;
+  laboratory.document["rendering"] = {{"model", "surface"}, {"reference_grey", 0}};
+  CHECK(laboratory.prepare().warnings.empty());
+}
+
 TEST_CASE("what is probably not meant is warned of") {
   Laboratory laboratory;
   laboratory.document["rendering"] = {{"gains", {{"tangential_n", 5}, {"normal_n", 5}}},
@@ -431,6 +437,20 @@ TEST_CASE("an explanation tells what was computed and what was reused, and costs
   CHECK(explained(laboratory) == std::vector<std::string>{kReused, kReused, kReused, written});
   laboratory.document["methods"][0]["radius"] = 3;
   CHECK(explained(laboratory) == std::vector<std::string>{kBuilt, kBuilt, kBuilt, written});
+}
+
+TEST_CASE("an explanation tells a damaged field from one that was never there") {
+  const Laboratory laboratory;
+  const StudyKey key = laboratory.key();
+  const auto why_written = [&] {
+    const PrepareReport report = prepare_pack(key, laboratory.pack(), {}, {.explain = true});
+    const auto& stages = report.stimuli[0].stages;
+    const auto written = std::ranges::find(stages, "write field", &Stage::name);
+    return written == stages.end() ? std::string() : written->why;
+  };
+  CHECK(why_written() == "the pack had none of this picture and these options");
+  std::filesystem::remove(laboratory.pack() / (key.stimuli[0].code + ".field"));
+  CHECK(why_written() == "the pack's own was damaged or missing");
 }
 
 TEST_CASE("an explanation gives reasons and bytes, and never a code") {
