@@ -75,9 +75,9 @@ void run_only(const Arguments& arguments, const Scope& scope) {
     for (int i = 0; i < arguments.runs; ++i) job.run();
     return;
   }
-  std::string names;
-  for (const Case& one : all_cases(scope)) names += "\n  " + name_of(one);
-  throw UsageError("--only: there is no such case; there are" + names);
+  throw UsageError("--only: there is no case \"" + arguments.only +
+                   "\"; a case is called WORK/WHO/INPUT/SIZE/K=RADIUS, as the rows of "
+                   "docs/benchmarks/results.json");
 }
 
 void run(const Arguments& arguments) {

@@ -4,6 +4,8 @@
 
 #include <cstddef>
 #include <cstdlib>
+#include <map>
+#include <memory>
 #include <mutex>
 #include <new>
 #include <stdexcept>
@@ -27,7 +29,8 @@ struct Fftw<double> {
   static constexpr auto* release = &fftw_free;
   static constexpr auto* plan_forward = &fftw_plan_dft_r2c_2d;
   static constexpr auto* plan_inverse = &fftw_plan_dft_c2r_2d;
-  static constexpr auto* execute = &fftw_execute;
+  static constexpr auto* forward = &fftw_execute_dft_r2c;
+  static constexpr auto* inverse = &fftw_execute_dft_c2r;
   static constexpr auto* destroy = &fftw_destroy_plan;
   static constexpr auto* forget = &fftw_forget_wisdom;
   static constexpr auto* learned = &fftw_export_wisdom_to_string;
@@ -44,7 +47,8 @@ struct Fftw<float> {
   static constexpr auto* release = &fftwf_free;
   static constexpr auto* plan_forward = &fftwf_plan_dft_r2c_2d;
   static constexpr auto* plan_inverse = &fftwf_plan_dft_c2r_2d;
-  static constexpr auto* execute = &fftwf_execute;
+  static constexpr auto* forward = &fftwf_execute_dft_r2c;
+  static constexpr auto* inverse = &fftwf_execute_dft_c2r;
   static constexpr auto* destroy = &fftwf_destroy_plan;
   static constexpr auto* forget = &fftwf_forget_wisdom;
   static constexpr auto* learned = &fftwf_export_wisdom_to_string;
@@ -57,6 +61,35 @@ struct Fftw<float> {
 std::mutex& planner_mutex() {
   static std::mutex mutex;
   return mutex;
+}
+
+/// The two plans of a size; nullptr where FFTW has none. They serve any buffers of FftwBuffer. To
+/// be made and destroyed under the planner's mutex.
+template <typename Real>
+struct Plans {
+  using Plan = typename Fftw<Real>::Plan;
+
+  Plans(Plan there, Plan back) : forward(there), inverse(back) {}
+  ~Plans() {
+    Fftw<Real>::destroy(forward);
+    Fftw<Real>::destroy(inverse);
+  }
+  Plans(const Plans&) = delete;
+  Plans& operator=(const Plans&) = delete;
+
+  Plan forward;
+  Plan inverse;
+};
+
+/// Transforms that are quicker than their planning keep their estimated plans for whoever comes
+/// next: a sense of touch is made anew for every exploration.
+constexpr std::size_t kKeptUpToSamples = 4096;
+
+/// By height and width; to be used under the planner's mutex.
+template <typename Real>
+std::shared_ptr<Plans<Real>>& kept_plans(int height, int width) {
+  static std::map<std::pair<int, int>, std::shared_ptr<Plans<Real>>> kept;
+  return kept[{height, width}];
 }
 
 /// Memory with the alignment that FFTW's plans count on.
@@ -90,19 +123,29 @@ struct RealFft<Real>::State {
         plane(static_cast<std::size_t>(height) * static_cast<std::size_t>(width)),
         spectrum(static_cast<std::size_t>(height) * static_cast<std::size_t>(width / 2 + 1)) {
     const std::lock_guard lock(planner_mutex());
+    const bool keep = way == FftPlan::estimated && plane.span().size() <= kKeptUpToSamples;
+    if (keep) plans = kept_plans<Real>(height, width);
+    if (plans) return;
     Fftw<Real>::forget();
     if (way == FftPlan::estimated || !plan_by_file()) plan(FFTW_ESTIMATE);
     // What one transform taught must not shape the plan of another: that would depend on the order.
     Fftw<Real>::forget();
+    if (keep) kept_plans<Real>(height, width) = plans;
   }
   ~State() {
     const std::lock_guard lock(planner_mutex());
-    drop_plans();
+    plans.reset();
   }
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
-  [[nodiscard]] bool is_planned() const { return forward != nullptr && inverse != nullptr; }
+  [[nodiscard]] bool is_planned() const {
+    return plans->forward != nullptr && plans->inverse != nullptr;
+  }
+  /// std::complex<Real> is laid out as FFTW's pair of reals (C++ standard, [complex.numbers]).
+  [[nodiscard]] typename Fftw<Real>::Complex* coefficients() const {
+    return reinterpret_cast<typename Fftw<Real>::Complex*>(spectrum.data());
+  }
 
  private:
   int height_, width_;
@@ -122,17 +165,10 @@ struct RealFft<Real>::State {
     return false;
   }
 
-  void drop_plans() {
-    Fftw<Real>::destroy(std::exchange(forward, nullptr));
-    Fftw<Real>::destroy(std::exchange(inverse, nullptr));
-  }
-
   void plan(unsigned flags) {
-    drop_plans();
-    // std::complex<Real> is laid out as FFTW's pair of reals (C++ standard, [complex.numbers]).
-    auto* coefficients = reinterpret_cast<typename Fftw<Real>::Complex*>(spectrum.data());
-    forward = Fftw<Real>::plan_forward(height_, width_, plane.data(), coefficients, flags);
-    inverse = Fftw<Real>::plan_inverse(height_, width_, coefficients, plane.data(), flags);
+    plans = std::make_shared<Plans<Real>>(
+        Fftw<Real>::plan_forward(height_, width_, plane.data(), coefficients(), flags),
+        Fftw<Real>::plan_inverse(height_, width_, coefficients(), plane.data(), flags));
   }
 
   bool fits(const std::string& wisdom) {
@@ -152,8 +188,7 @@ struct RealFft<Real>::State {
  public:
   FftwBuffer<Real, Real> plane;
   FftwBuffer<Real, std::complex<Real>> spectrum;
-  typename Fftw<Real>::Plan forward = nullptr;
-  typename Fftw<Real>::Plan inverse = nullptr;
+  std::shared_ptr<Plans<Real>> plans;
 };
 
 template <typename Real>
@@ -179,12 +214,12 @@ std::span<std::complex<Real>> RealFft<Real>::spectrum() noexcept {
 
 template <typename Real>
 void RealFft<Real>::forward() noexcept {
-  Fftw<Real>::execute(state_->forward);
+  Fftw<Real>::forward(state_->plans->forward, state_->plane.data(), state_->coefficients());
 }
 
 template <typename Real>
 void RealFft<Real>::inverse() noexcept {
-  Fftw<Real>::execute(state_->inverse);
+  Fftw<Real>::inverse(state_->plans->inverse, state_->coefficients(), state_->plane.data());
 }
 
 template class RealFft<float>;
