@@ -6,6 +6,9 @@
 namespace touchtrial {
 namespace {
 
+/// A 99th percentile below this share of the maximum says where a filter or a spline fades out.
+constexpr double kLeastShareOfMaximum = 1e-3;
+
 constexpr double square(double value) noexcept {
   return value * value;
 }
@@ -70,7 +73,8 @@ double mean_of_nonzero(std::span<const double> values) {
 
 double typical_stiffness(std::vector<float>& pool) {
   const double typical = percentile(pool, 0.99);
-  return typical > 0.0 ? typical : percentile(pool, 1.0);
+  const double largest = percentile(pool, 1.0);
+  return typical > kLeastShareOfMaximum * largest ? typical : largest;
 }
 
 double percentile(std::vector<float>& pool, double share) {

@@ -27,8 +27,9 @@ void append_normal_stiffness(FieldView field, double scale, std::vector<float>& 
 /// Mean of the values that are not 0; 0 if there is none.
 [[nodiscard]] double mean_of_nonzero(std::span<const double> values);
 
-/// The 99th percentile, by which stiffness is judged. Where more than 99 % of the pool is flat it
-/// would bound nothing, and the maximum takes its place. Reorders the pool.
+/// The 99th percentile, by which stiffness is judged. Where more than 99 % of the pool is flat, or
+/// holds what a filter or a spline leaves far from any texture (under a thousandth of the maximum),
+/// it would bound nothing, and the maximum takes its place. Reorders the pool.
 [[nodiscard]] double typical_stiffness(std::vector<float>& pool);
 
 /// Percentile by linear interpolation between order statistics (NumPy's default); 0 if the pool is

@@ -128,6 +128,22 @@ TEST_CASE("choose_gains leaves flat surfaces without height, and out of the pool
   CHECK(choose_gains(views_of(thin), surface_options()).of_field[0] == Gains{});
 }
 
+TEST_CASE(
+    "choose_gains goes by the maximum where almost all of a surface is a spline's faint tail") {
+  RenderingOptions options = surface_options();
+  options.filter_mm = 0.0;
+  Plane<double> texture(200, 200, 0.0);
+  for (int x = 100; x < 110; ++x) texture.at(100, x) = x % 2 == 0 ? 40.0 : -30.0;
+  const std::vector<TextureField> fields = {make_texture_field(texture, options)};
+  const Gains gains = choose_gains(views_of(fields), options).of_field[0];
+  Stiffness all;
+  append_stiffness(fields[0].view(), options, gains, all);
+  const auto stiffest =
+      std::max(std::ranges::max(all.lateral_n_per_mm), std::ranges::max(all.normal_n_per_mm));
+  CHECK(percentile_slowly(all.lateral_n_per_mm, 0.99) > 0.0);
+  CHECK(stiffest == Approx(0.4).epsilon(1e-4));
+}
+
 TEST_CASE("choose_gains bounds surfaces of any amplitude") {
   const double amplitude = GENERATE(1e-12, 1e-3, 1e12);
   const std::vector<TextureField> fields = {random_surface(30, 30, 7, amplitude)};
