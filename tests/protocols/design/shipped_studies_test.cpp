@@ -72,20 +72,22 @@ TEST_CASE("the comparison without outlines differs from the other in its picture
   CHECK(textures.seed != objects.seed);
 }
 
-TEST_CASE("the control study holds the adaptive method against its phase-scrambled control") {
-  const Study study = load_study(kConfig / "control.json");
-  CHECK(study.name == "control");
-  REQUIRE(study.presented_methods() == 2);
+TEST_CASE("the study of controls has its adaptive method beside what could stand in for it") {
+  const Study study = load_study(kConfig / "controls.json");
+  CHECK(labels_of(study) == labels_of(load_study(kConfig / "comparison-textures.json")));
+  REQUIRE(study.presented_methods() == 4);
   CHECK(study.methods[0] == StudyMethod{{}, "adaptive"});
   CHECK(study.methods[1].label == "adaptive-phase-scrambled");
   CHECK(study.methods[1].control == Control::phase_scrambled);
+  CHECK(study.methods[2].method == Method::edge);
+  CHECK(study.methods[3].method == Method::luminance);
   CHECK(study.rendering.equalise == Equalise::rms);
 }
 
 TEST_CASE("every image of the studies that come with the program is there") {
   for (const char* name :
        {"classification.json", "classification-exemplars.json", "classification-surface.json",
-        "comparison.json", "comparison-textures.json", "control.json"}) {
+        "comparison.json", "comparison-textures.json", "controls.json"}) {
     const Study study = load_study(kConfig / name);
     for (const StudyClass& study_class : study.classes) {
       for (const std::filesystem::path& image : study_class.images) {
