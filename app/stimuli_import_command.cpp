@@ -71,6 +71,8 @@ std::string summary_text(const ImportReport& report, const ImportOptions& option
     text += fmt::format("{:<20} {:>11} {:>6} {:>11.2f} {:>10.1f} {:>9.1f}\n", one.label,
                         one.photographs, one.crops, one.feature_mm, one.mean_grey, one.rms_grey);
   }
+  if (options.equalise != LevelEqualising::none)
+    text += "levels   as they were before equalising\n";
   if (!report.ignored.empty()) {
     text += fmt::format(
         "ignored  {}{}\n", one_line(report.ignored.front()),

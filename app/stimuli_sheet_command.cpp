@@ -51,8 +51,10 @@ StudyKey key_of(const Study& study, const fs::path& path) {
                     ": there is no key, and a sheet is made with the study's key only; run "
                     "touchtrial prepare, or name it with --key");
   }
-  StudyKey key = load_study_key(path);
-  if (study_seal(rekeyed(key, study)) != study_seal(key)) {
+  const StudyKey stored = load_study_key(path);
+  // The key may lie elsewhere by now, on a stick in a drawer: pictures are found from the study.
+  StudyKey key = rekeyed(stored, study);
+  if (study_seal(key) != study_seal(stored)) {
     throw VerificationError(one_line(path.string()) + ": is not the key of " + study.source +
                             " as it is now; run touchtrial prepare, or name another with --key");
   }

@@ -135,9 +135,19 @@ class Page {
   std::string pictures_;
 };
 
+/// Mean advance of a character, in sizes of the font as the page draws it.
+constexpr double kAdvance = 0.72;
+
+/// The size, or as much less, down to the smallest that is read on paper, as lets the words fit.
+double fitting(const std::string& words, double width, double size) {
+  constexpr double kSmallest = 9.5;
+  const double length = std::max(1.0, static_cast<double>(words.size()));
+  return std::clamp(width / (kAdvance * length), std::min(kSmallest, size), size);
+}
+
 /// So many characters of a size fit between a column and the next.
 std::string shortened(const std::string& words, double width, double size) {
-  const auto most = static_cast<std::size_t>(width / (0.62 * size));
+  const auto most = static_cast<std::size_t>(width / (kAdvance * size) + 1e-6);
   if (words.size() <= most) return words;
   std::size_t end = most - 3;
   while (end > 0 && (static_cast<unsigned char>(words[end]) & 0xC0U) == 0x80U) --end;
@@ -175,7 +185,9 @@ void add_names(Page& page, const std::vector<SheetRow>& rows) {
 void add_card(Page& page, const SheetCard& card, double x, double width, int side_px) {
   const double room = width - kGap / 2.0;
   page.text(x, kHeadTop, 18, shortened(title_of(card), room, 18), "#1a1a1a", Weight::bold);
-  page.text(x, kHeadTop + 24, 13, shortened(card.method + ", " + card.image, room, 13), "#333333");
+  const std::string origin = card.method + ", " + card.image;
+  const double size = fitting(origin, room, 13);
+  page.text(x, kHeadTop + 24, size, shortened(origin, room, size), "#333333");
   page.text(x, kHeadTop + 46, 13, card.code, "#b3261e", Weight::code);
   page.text(x + 180, kHeadTop + 46, 11, size_of(card), "#555555");
   page.picture(x, kPanelTop, in_colour(card.picture), side_px);

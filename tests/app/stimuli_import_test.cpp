@@ -132,6 +132,30 @@ TEST_CASE("a contact sheet is drawn as PNG, PDF and HTML, readable by its owner 
   CHECK_THAT(html, holds_text("alt=\"texture of D2, 2 of 2, adaptive, radius 2\""));
 }
 
+TEST_CASE("a contact sheet is drawn with a key that is kept elsewhere") {
+  const Album album;
+  REQUIRE(album.import_with({}).exit_code == 0);
+  REQUIRE(album.run({"prepare", album.in("mine.json")}).exit_code == 0);
+  fs::create_directories(album.in("drawer/stick"));
+  fs::rename(album.in("mine.key"), album.in("drawer/stick/away.key"));
+  check_refused(album.sheet("sheet.html"), 1, "a sheet is made with the study's key only");
+  const ProgramResult drawn =
+      album.sheet("sheet.html", {"--key", album.in("drawer/stick/away.key")});
+  INFO(drawn.errors);
+  CHECK(drawn.exit_code == 0);
+  CHECK(is_there(album.in("sheet.html")));
+}
+
+TEST_CASE("the table of an import says when its levels are those before equalising") {
+  const Album album;
+  const ProgramResult plain = album.import_with({});
+  REQUIRE(plain.exit_code == 0);
+  CHECK(plain.output.find("before equalising") == std::string::npos);
+  const ProgramResult equal = album.import_with({"--force", "--equalise", "both"});
+  REQUIRE(equal.exit_code == 0);
+  CHECK_THAT(equal.output, holds_text("levels   as they were before equalising"));
+}
+
 TEST_CASE("without its key, or with another study's, there is no sheet") {
   const Album album;
   REQUIRE(album.import_with({}).exit_code == 0);
