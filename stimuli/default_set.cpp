@@ -4,6 +4,8 @@
 #include "core/files.hpp"
 #include "engine/image_file.hpp"
 
+#include <algorithm>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -45,6 +47,40 @@ void write_stimulus(const std::filesystem::path& folder, StimulusEntry& entry) {
   entry.pixels_sha256 = sha256(picture.samples());
 }
 
+/// What an earlier set in the folder lists; nothing where there is none.
+StimulusManifest earlier_set(const std::filesystem::path& folder) {
+  const auto manifest = folder / kStimulusManifestFile;
+  return is_there(manifest) ? read_stimulus_manifest(manifest) : StimulusManifest{};
+}
+
+bool lists(const StimulusManifest& manifest, const std::string& file) {
+  return std::ranges::find(manifest.entries, file, &StimulusEntry::file) != manifest.entries.end();
+}
+
+void refuse_foreign_pictures(const std::filesystem::path& folder, const StimulusManifest& earlier,
+                             const StimulusManifest& wanted) {
+  for (const StimulusEntry& entry : wanted.entries) {
+    const auto file = folder / entry.file;
+    if (!is_there(file) || lists(earlier, entry.file)) continue;
+    throw FileError(one_line(file.string()) +
+                    ": is in the way and belongs to no generated set; move it, or choose another "
+                    "folder with -o");
+  }
+}
+
+/// Removes what the earlier set had and the new one has not, if it is as it was made.
+void remove_left_over(const std::filesystem::path& folder, const StimulusManifest& earlier,
+                      const StimulusManifest& made) {
+  for (const StimulusEntry& entry : earlier.entries) {
+    const auto file = folder / entry.file;
+    const bool ours = std::ranges::find(stimulus_recipes(), entry.label, &StimulusRecipe::label) !=
+                          stimulus_recipes().end() &&
+                      entry.file == file_of(entry.label, entry.exemplar);
+    if (!ours || lists(made, entry.file) || !is_there(file)) continue;
+    if (sha256_of_file(file) == entry.sha256) std::filesystem::remove(file);
+  }
+}
+
 }  // namespace
 
 StimulusManifest generate_default_stimuli(const std::filesystem::path& folder,
@@ -59,12 +95,15 @@ StimulusManifest generate_default_stimuli(const std::filesystem::path& folder,
   make_folder(folder);
   StimulusManifest manifest;
   manifest.entries = chosen_entries(choice);
+  const StimulusManifest earlier = earlier_set(folder);
+  refuse_foreign_pictures(folder, earlier, manifest);
   int done = 0;
   for (StimulusEntry& entry : manifest.entries) {
     write_stimulus(folder, entry);
     if (progress) progress(++done, static_cast<int>(manifest.entries.size()));
   }
   write_stimulus_manifest(folder / kStimulusManifestFile, manifest);
+  remove_left_over(folder, earlier, manifest);
   return manifest;
 }
 

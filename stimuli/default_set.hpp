@@ -24,14 +24,15 @@ struct StimuliChoice {
 };
 
 /// Makes every recipe and writes <label>.png files, further exemplars as
-/// exemplars/<label>-<number>.png, and manifest.json. Each file replaces an older one only when it
-/// is complete, the manifest last; other files in the folder stay.
+/// exemplars/<label>-<number>.png, and manifest.json. Each file replaces an older one of the same
+/// set only when it is complete, the manifest last; then what the older set had more is removed,
+/// where nobody has changed it. Other files in the folder stay.
 /// \param folder  is made if it does not exist
 /// \return the manifest that was written; its entries are in the order of `stimulus_recipes()`,
 ///   exemplars of a label together
-/// \throws FileError if the folder or a file cannot be written, UsageError if the size or the
-/// number
-///   of exemplars is out of range
+/// \throws FileError if the folder or a file cannot be written, its manifest cannot be read, or a
+///   picture is in the way that the manifest does not list; UsageError if the size or the number of
+///   exemplars is out of range
 StimulusManifest generate_default_stimuli(const std::filesystem::path& folder,
                                           const StimuliChoice& choice = {},
                                           const StimuliProgress& progress = {});

@@ -82,6 +82,24 @@ TEST_CASE("making the set again replaces it by the same bytes and leaves other f
   CHECK(text_of(read_file(folder.path() / "own.txt")) == "own");
 }
 
+TEST_CASE("a smaller set takes away what the one before it had more, unless it was changed") {
+  const TempFolder folder;
+  generate_default_stimuli(folder.path(), {5, kTiny, 2});
+  replace_file(folder.path() / "exemplars" / "bark-2.png", "own");
+  generate_default_stimuli(folder.path(), {5, kTiny, 1});
+  CHECK_FALSE(is_there(folder.path() / "exemplars" / "cloth-2.png"));
+  CHECK(text_of(read_file(folder.path() / "exemplars" / "bark-2.png")) == "own");
+}
+
+TEST_CASE("somebody's own picture is not replaced, and nothing is made beside it") {
+  const TempFolder folder;
+  replace_file(folder.path() / "straw.png", "own");
+  CHECK_THROWS_WITH(generate_default_stimuli(folder.path(), {5, kTiny, 1}),
+                    holds_text("straw.png: is in the way"));
+  CHECK(text_of(read_file(folder.path() / "straw.png")) == "own");
+  CHECK_FALSE(is_there(folder.path() / "bark.png"));
+}
+
 TEST_CASE("progress is told after each picture") {
   const TempFolder folder;
   int last = 0;
