@@ -62,6 +62,16 @@ std::string unknown_command(const CLI::App& program, int argc, char** argv) {
          (nearest ? "did you mean " + std::string(*nearest) + "?" : "see touchtrial --help");
 }
 
+/// The command that the words so far name, for instance "touchtrial stimuli import".
+std::string command_so_far(const CLI::App& program) {
+  std::string words = program.get_name();
+  for (auto commands = program.get_subcommands(); !commands.empty();
+       commands = commands.front()->get_subcommands()) {
+    words += " " + commands.front()->get_name();
+  }
+  return words;
+}
+
 int parse_and_run(int argc, char** argv) {
   set_up_log();
   use_measured_plans(user_cache_folder());
@@ -78,7 +88,8 @@ int parse_and_run(int argc, char** argv) {
   } catch (const CLI::Success& help) {
     return program.exit(help);
   } catch (const CLI::ParseError& error) {
-    return complain(kBadInput, std::string(error.what()) + "; see touchtrial --help");
+    return complain(kBadInput,
+                    std::string(error.what()) + "; see " + command_so_far(program) + " --help");
   }
   return action();
 }

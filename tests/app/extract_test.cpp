@@ -265,3 +265,14 @@ TEST_CASE("every command has help that exits with 0") {
     CHECK(result.output.find("Usage") != std::string::npos);
   }
 }
+
+TEST_CASE("a bad argument points to the help of its own command") {
+  const TempFolder folder;
+  const auto errors_of = [&](const std::vector<std::string>& arguments) {
+    return run_touchtrial(folder.path(), arguments).errors;
+  };
+  CHECK_THAT(errors_of({"extract"}), holds_text("see touchtrial extract --help"));
+  CHECK_THAT(errors_of({"stimuli", "import", "--crops", "x"}),
+             holds_text("see touchtrial stimuli import --help"));
+  CHECK_THAT(errors_of({"--no-such-option"}), holds_text("see touchtrial --help"));
+}
