@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 #include "core/strict_json.hpp"
 
+#include <algorithm>
 #include <map>
 
 namespace touchtrial {
@@ -43,6 +44,13 @@ std::vector<std::string> rendering_warnings(const RenderingOptions& rendering,
     warnings.push_back("/rendering/gains: the explicit gains exceed the stiffness budget of " +
                        number_text(rendering.texture_stiffness_n_per_mm) +
                        " N/mm, where devices may buzz; lower them or give \"budget\"");
+  }
+  const auto is_nothing = [](const Gains& of_field) { return of_field == Gains{}; };
+  if (!rendering.gains && std::ranges::all_of(gains.of_field, is_nothing)) {
+    warnings.emplace_back(
+        "/rendering/gains: all are 0, and nothing will be felt: every picture is flat, or has a "
+        "side "
+        "of less than 3 pixels, too thin for a stiffness budget; take other pictures");
   }
   if (rendering.gains && rendering.equalise == Equalise::rms) {
     warnings.emplace_back(

@@ -336,6 +336,15 @@ TEST_CASE("what is probably not meant is warned of") {
   CHECK(report.warnings.size() == 5);
 }
 
+TEST_CASE("gains that leave nothing to feel are warned of, unless somebody asked for them") {
+  Laboratory laboratory;
+  for (std::uint64_t c = 0; c < 3; ++c) write_png(laboratory.image(c), GreyImage(1, 7, 50));
+  CHECK(warns(laboratory.prepare(), "nothing will be felt"));
+  laboratory.document["rendering"]["gains"] = {{"tangential_n", 0}, {"normal_n", 0}};
+  CHECK_FALSE(warns(laboratory.prepare(), "nothing will be felt"));
+  CHECK_FALSE(warns(Laboratory().prepare(), "nothing will be felt"));
+}
+
 TEST_CASE("a solver that gives up is warned of with the gap it reached") {
   Laboratory laboratory;
   laboratory.document["methods"] = {{{"name", "tv-gabor"}, {"max_steps", 1}, {"gap", 1e-12}}};
