@@ -1,10 +1,6 @@
 // A study from its file to its tables, run as a user runs it.
-#include "app/touchtrial_process.hpp"
-#include "core/files.hpp"
-#include "core/random.hpp"
-#include "engine/image_file.hpp"
+#include "app/study_folder.hpp"
 #include "support/catch.hpp"
-#include "support/temp_folder.hpp"
 
 #include <filesystem>
 #include <map>
@@ -12,78 +8,7 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 using namespace touchtrial;
-using nlohmann::json;
-namespace fs = std::filesystem;
-
-namespace {
-
-/// Rough noise, smooth noise and stripes: three textures that a hand can tell apart.
-GreyImage texture_number(int number) {
-  RandomStream random(7, "study test", static_cast<std::uint64_t>(number));
-  GreyImage image(120, 120);
-  for (int y = 0; y < image.height(); ++y) {
-    for (int x = 0; x < image.width(); ++x) {
-      const auto noise = static_cast<int>(random.below(number == 0 ? 200 : 20));
-      const int stripes = number == 2 ? 120 * ((x / 9) % 2) : 60 * ((x / 3 + y / 3) % 2);
-      image.at(y, x) = static_cast<std::uint8_t>(number == 0 ? noise : 40 + stripes + noise);
-    }
-  }
-  return image;
-}
-
-const std::vector<std::string> kLabels = {"granite", "linen", "corduroy"};
-
-json study_of(const std::string& protocol) {
-  json classes = json::array();
-  for (const std::string& label : kLabels) {
-    classes.push_back({{"label", label}, {"images", {label + "-photo.png"}}});
-  }
-  json methods = json::array({{{"name", "adaptive"}}});
-  if (protocol == "comparison") methods.push_back({{"name", "fixed"}, {"order", 0.3}});
-  return {{"study", "cloths"},
-          {"protocol", protocol},
-          {"classes", classes},
-          {"methods", methods},
-          {"trials", {{"repeats", 2}, {"explore_limit_s", 2.0}}},
-          {"seed", 11}};
-}
-
-/// A folder with a study file, its pictures, and a quick subject.
-struct StudyFolder {
-  explicit StudyFolder(const std::string& protocol = "classification") {
-    for (std::size_t i = 0; i < kLabels.size(); ++i) {
-      write_png(path() / (kLabels[i] + "-photo.png"), texture_number(static_cast<int>(i)));
-    }
-    replace_file(path() / "cloths.json", study_of(protocol).dump());
-    replace_file(path() / "quick.json",
-                 R"({"weber": 0.1, "explore_s": 1.5, "training_passes": 2})");
-  }
-  [[nodiscard]] const fs::path& path() const { return folder.path(); }
-  [[nodiscard]] std::string in(const std::string& name) const { return (path() / name).string(); }
-
-  ProgramResult run(const std::vector<std::string>& arguments) const {
-    return run_touchtrial(path(), arguments);
-  }
-  ProgramResult simulate(const std::string& db, const std::vector<std::string>& more = {},
-                         const std::string& seed = "3") const {
-    std::vector<std::string> arguments = {
-        "simulate", in("cloths.json"), "--participants", "4", "--seed", seed, "--db",
-        in(db),     "--subject",       in("quick.json")};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return run(arguments);
-  }
-
-  TempFolder folder;
-};
-
-std::string content(const fs::path& path) {
-  return text_of(read_file(path));
-}
-
-}  // namespace
 
 TEST_CASE("a study goes from its file to an accuracy table that adds up") {
   const StudyFolder study;
@@ -306,61 +231,6 @@ TEST_CASE("a bad study file is refused with exit 2, its name and the place") {
   CHECK_FALSE(fs::exists(study.path() / "bad.db"));
 }
 
-TEST_CASE("prepare builds once, reuses afterwards, and rebuilds what changed") {
-  const StudyFolder study;
-  const auto prepared = [&] { return study.run({"prepare", study.in("cloths.json")}); };
-  const ProgramResult first = prepared();
-  INFO(first.errors);
-  REQUIRE(first.exit_code == 0);
-  CHECK(first.output.find("built 3, reused 0") != std::string::npos);
-  CHECK(fs::exists(study.path() / "cloths.key"));
-  const std::string manifest = content(study.path() / "cloths.pack" / "pack.json");
-  CHECK(prepared().output.find("built 0, reused 3") != std::string::npos);
-  CHECK(content(study.path() / "cloths.pack" / "pack.json") == manifest);
-  write_png(study.path() / "linen-photo.png", texture_number(5));
-  CHECK(prepared().output.find("built 1, reused 2") != std::string::npos);
-}
-
-TEST_CASE("prepare says which method the protocol does not present, and does not compute it") {
-  const StudyFolder study;
-  json two = study_of("classification");
-  two["methods"].push_back({{"name", "tv-gabor"}});
-  replace_file(study.path() / "cloths.json", two.dump());
-  const ProgramResult result = study.run({"prepare", study.in("cloths.json")});
-  REQUIRE(result.exit_code == 0);
-  CHECK(result.output.find("built 3") != std::string::npos);
-  CHECK(result.output.find("skipped") != std::string::npos);
-  CHECK(result.output.find("tv-gabor") != std::string::npos);
-}
-
-TEST_CASE("prepare explains stage by stage, in text and as JSON, without a code") {
-  const StudyFolder study;
-  json two = study_of("comparison");
-  two["methods"] = {{{"name", "adaptive"}}, {{"name", "adaptive"}, {"control", "phase-scrambled"}}};
-  replace_file(study.path() / "cloths.json", two.dump());
-  const ProgramResult text = study.run({"prepare", study.in("cloths.json"), "--explain"});
-  INFO(text.errors);
-  REQUIRE(text.exit_code == 0);
-  CHECK_THAT(text.output, holds_text("linen, exemplar 1, adaptive-phase-scrambled: built"));
-  CHECK_THAT(text.output, holds_text("taken for another stimulus of this image"));
-  CHECK_THAT(text.output, holds_text("computed "));
-  const ProgramResult result =
-      study.run({"prepare", study.in("cloths.json"), "--explain", "--json"});
-  REQUIRE(result.exit_code == 0);
-  const json object = json::parse(result.output);
-  REQUIRE(object["stimuli"].size() == 6);
-  CHECK(object["stimuli"][1]["method"] == "adaptive-phase-scrambled");
-  CHECK(object["stimuli"][1]["state"] == "reused");
-  CHECK(object["stimuli"][1]["stages"][1]["stage"] == "field");
-  CHECK(object["totals"]["bytes_written"] == 0);
-  CHECK(object["totals"]["reused"]["stages"] == 6 + 3 + 1);
-  const json manifest = json::parse(content(study.path() / "cloths.pack" / "pack.json"));
-  for (const json& field : manifest["fields"]) {
-    CHECK(text.output.find(field["code"].get<std::string>()) == std::string::npos);
-    CHECK(result.output.find(field["code"].get<std::string>()) == std::string::npos);
-  }
-}
-
 TEST_CASE("simulate does not replace a key that belongs to something else") {
   const StudyFolder study;
   REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
@@ -377,63 +247,6 @@ TEST_CASE("a removed database can be made again beside the key it left") {
   REQUIRE(study.simulate("a.db").exit_code == 0);
   fs::remove(study.path() / "a.db");
   CHECK(study.simulate("a.db").exit_code == 0);
-}
-
-TEST_CASE("prepare keeps the key of a study that changed, and refuses that of another study") {
-  const StudyFolder study;
-  REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
-  const std::string key = content(study.path() / "cloths.key");
-  json changed = study_of("classification");
-  changed["trials"]["repeats"] = 3;
-  replace_file(study.path() / "cloths.json", changed.dump());
-  const ProgramResult again = study.run({"prepare", study.in("cloths.json")});
-  CHECK(again.exit_code == 0);
-  bool kept = false;
-  for (const auto& entry : fs::directory_iterator(study.path())) {
-    kept = kept ||
-           (entry.path().filename() != "cloths.key" &&
-            entry.path().filename().string().starts_with("cloths.key.") &&
-            json::parse(content(entry.path())).at("study_id") == json::parse(key).at("study_id"));
-  }
-  CHECK(kept);
-
-  changed["study"] = "other";
-  replace_file(study.path() / "other.json", changed.dump());
-  const std::string present = content(study.path() / "cloths.key");
-  const ProgramResult other =
-      study.run({"prepare", study.in("other.json"), "--pack", study.in("cloths.pack")});
-  CHECK(other.exit_code == 2);
-  CHECK(content(study.path() / "cloths.key") == present);
-}
-
-TEST_CASE("prepare touches nothing when a picture of the study is missing") {
-  const StudyFolder study;
-  fs::remove(study.path() / "linen-photo.png");
-  const ProgramResult result = study.run({"prepare", study.in("cloths.json")});
-  CHECK(result.exit_code == 2);
-  CHECK(line_count(result.errors) == 1);
-  CHECK(result.errors.find("/classes/1/images/0") != std::string::npos);
-  CHECK(result.errors.find("cloths.json") != std::string::npos);
-  CHECK_FALSE(fs::exists(study.path() / "cloths.key"));
-}
-
-TEST_CASE("prepare explains what it did for each stimulus") {
-  const StudyFolder study;
-  const ProgramResult result = study.run({"prepare", study.in("cloths.json"), "--explain"});
-  CHECK(result.exit_code == 0);
-  CHECK(result.output.find(" kB  ") != std::string::npos);
-  CHECK(result.output.find("the pack had none of this picture and these options") !=
-        std::string::npos);
-}
-
-TEST_CASE("prepare prints the gain of the study's model, zero too") {
-  const StudyFolder study;
-  json document = study_of("classification");
-  document["rendering"] = {{"model", "surface"}, {"gains", {{"height_mm", 0}}}};
-  replace_file(study.path() / "cloths.json", document.dump());
-  const ProgramResult result = study.run({"prepare", study.in("cloths.json")});
-  CHECK(result.exit_code == 0);
-  CHECK(result.output.find("gain: height 0 mm per grey level") != std::string::npos);
 }
 
 TEST_CASE("a seed that is no whole number of 64 bits is refused") {

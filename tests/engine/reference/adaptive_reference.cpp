@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 namespace touchtrial::reference {
@@ -50,23 +51,27 @@ double difference_at(const GreyImage& image, int y, int x, double order, int rad
 
 }  // namespace
 
-Plane<double> sub_band(const GreyImage& image, Tap along_x, Tap along_y) {
+template <typename Sample>
+Plane<double> sub_band(const Plane<Sample>& plane, Tap along_x, Tap along_y) {
   const auto filter_x = taps(along_x);
   const auto filter_y = taps(along_y);
-  Plane<double> band((image.height() + 1) / 2, (image.width() + 1) / 2);
+  Plane<double> band((plane.height() + 1) / 2, (plane.width() + 1) / 2);
   for (int y = 0; y < band.height(); ++y) {
     for (int x = 0; x < band.width(); ++x) {
       for (int j = 0; j < 4; ++j) {
         for (int i = 0; i < 4; ++i) {
           band.at(y, x) += filter_y[static_cast<std::size_t>(j)] *
                            filter_x[static_cast<std::size_t>(i)] *
-                           mirrored_sample(image, 2 * y + j, 2 * x + i);
+                           mirrored_sample(plane, 2 * y + j, 2 * x + i);
         }
       }
     }
   }
   return band;
 }
+
+template Plane<double> sub_band<std::uint8_t>(const GreyImage&, Tap, Tap);
+template Plane<double> sub_band<double>(const Plane<double>&, Tap, Tap);
 
 Plane<double> csgv(const GreyImage& image) {
   const std::vector<Plane<double>> bands = {

@@ -8,8 +8,10 @@ namespace touchtrial::reference {
 
 enum class Tap { low, high };
 
-/// One sub-band: `along_x` and `along_y` say which filter runs in which direction.
-[[nodiscard]] Plane<double> sub_band(const GreyImage& image, Tap along_x, Tap along_y);
+/// One sub-band of an image, or of a sub-band of doubles: `along_x` and `along_y` say which filter
+/// runs in which direction.
+template <typename Sample>
+[[nodiscard]] Plane<double> sub_band(const Plane<Sample>& plane, Tap along_x, Tap along_y);
 
 /// Eqs. 2-3, at the image's resolution.
 [[nodiscard]] Plane<double> csgv(const GreyImage& image);

@@ -12,33 +12,7 @@
 namespace touchtrial::reference {
 namespace {
 
-using Taps = std::array<double, 4>;
 using Mask = std::array<std::array<double, 3>, 3>;
-
-Taps taps(Tap tap) {
-  const double s = std::sqrt(3.0);
-  const double norm = 4.0 * std::sqrt(2.0);
-  const Taps h = {(1 + s) / norm, (3 + s) / norm, (3 - s) / norm, (1 - s) / norm};
-  return tap == Tap::low ? h : Taps{h[3], -h[2], h[1], -h[0]};
-}
-
-Plane<double> band_of(const Plane<double>& plane, Tap along_x, Tap along_y) {
-  const Taps filter_x = taps(along_x);
-  const Taps filter_y = taps(along_y);
-  Plane<double> band((plane.height() + 1) / 2, (plane.width() + 1) / 2);
-  for (int y = 0; y < band.height(); ++y) {
-    for (int x = 0; x < band.width(); ++x) {
-      for (int j = 0; j < 4; ++j) {
-        for (int i = 0; i < 4; ++i) {
-          band.at(y, x) += filter_y[static_cast<std::size_t>(j)] *
-                           filter_x[static_cast<std::size_t>(i)] *
-                           mirrored_sample(plane, 2 * y + j, 2 * x + i);
-        }
-      }
-    }
-  }
-  return band;
-}
 
 /// The mask along x; along y it is transposed.
 Mask mask_of(const std::string& gradient) {
@@ -80,16 +54,16 @@ Plane<double> doubled(const Plane<double>& plane, int height, int width) {
 /// The gradient norms of the details of this level and of all below it, at this plane's size.
 std::vector<Plane<double>> norms_below(const Plane<double>& plane, int levels,
                                        const std::string& gradient) {
-  const Plane<double> low = band_of(plane, Tap::low, Tap::low);
+  const Plane<double> low = sub_band(plane, Tap::low, Tap::low);
   std::vector<Plane<double>> norms;
   if (levels == 1) {
     norms.push_back(gradient_norm(low, gradient));
   } else {
     norms = norms_below(low, levels - 1, gradient);
   }
-  norms.push_back(gradient_norm(band_of(plane, Tap::low, Tap::high), gradient));
-  norms.push_back(gradient_norm(band_of(plane, Tap::high, Tap::low), gradient));
-  norms.push_back(gradient_norm(band_of(plane, Tap::high, Tap::high), gradient));
+  norms.push_back(gradient_norm(sub_band(plane, Tap::low, Tap::high), gradient));
+  norms.push_back(gradient_norm(sub_band(plane, Tap::high, Tap::low), gradient));
+  norms.push_back(gradient_norm(sub_band(plane, Tap::high, Tap::high), gradient));
   for (Plane<double>& norm : norms) norm = doubled(norm, plane.height(), plane.width());
   return norms;
 }

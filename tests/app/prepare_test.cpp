@@ -1,0 +1,122 @@
+// Packs and keys, made as a user makes them.
+#include "app/study_folder.hpp"
+#include "support/catch.hpp"
+
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+using namespace touchtrial;
+
+TEST_CASE("prepare builds once, reuses afterwards, and rebuilds what changed") {
+  const StudyFolder study;
+  const auto prepared = [&] { return study.run({"prepare", study.in("cloths.json")}); };
+  const ProgramResult first = prepared();
+  INFO(first.errors);
+  REQUIRE(first.exit_code == 0);
+  CHECK(first.output.find("built 3, reused 0") != std::string::npos);
+  CHECK(fs::exists(study.path() / "cloths.key"));
+  const std::string manifest = content(study.path() / "cloths.pack" / "pack.json");
+  CHECK(prepared().output.find("built 0, reused 3") != std::string::npos);
+  CHECK(content(study.path() / "cloths.pack" / "pack.json") == manifest);
+  write_png(study.path() / "linen-photo.png", texture_number(5));
+  CHECK(prepared().output.find("built 1, reused 2") != std::string::npos);
+}
+
+TEST_CASE("prepare says which method the protocol does not present, and does not compute it") {
+  const StudyFolder study;
+  json two = study_of("classification");
+  two["methods"].push_back({{"name", "tv-gabor"}});
+  replace_file(study.path() / "cloths.json", two.dump());
+  const ProgramResult result = study.run({"prepare", study.in("cloths.json")});
+  REQUIRE(result.exit_code == 0);
+  CHECK(result.output.find("built 3") != std::string::npos);
+  CHECK(result.output.find("skipped") != std::string::npos);
+  CHECK(result.output.find("tv-gabor") != std::string::npos);
+}
+
+TEST_CASE("prepare explains stage by stage, in text and as JSON, without a code") {
+  const StudyFolder study;
+  json two = study_of("comparison");
+  two["methods"] = {{{"name", "adaptive"}}, {{"name", "adaptive"}, {"control", "phase-scrambled"}}};
+  replace_file(study.path() / "cloths.json", two.dump());
+  const ProgramResult text = study.run({"prepare", study.in("cloths.json"), "--explain"});
+  INFO(text.errors);
+  REQUIRE(text.exit_code == 0);
+  CHECK_THAT(text.output, holds_text("linen, exemplar 1, adaptive-phase-scrambled: built"));
+  CHECK_THAT(text.output, holds_text("taken for another stimulus of this image"));
+  CHECK_THAT(text.output, holds_text("computed "));
+  const ProgramResult result =
+      study.run({"prepare", study.in("cloths.json"), "--explain", "--json"});
+  REQUIRE(result.exit_code == 0);
+  const json object = json::parse(result.output);
+  REQUIRE(object["stimuli"].size() == 6);
+  CHECK(object["stimuli"][1]["method"] == "adaptive-phase-scrambled");
+  CHECK(object["stimuli"][1]["state"] == "reused");
+  CHECK(object["stimuli"][1]["stages"][1]["stage"] == "field");
+  CHECK(object["totals"]["bytes_written"] == 0);
+  CHECK(object["totals"]["reused"]["stages"] == 6 + 3 + 1);
+  const json manifest = json::parse(content(study.path() / "cloths.pack" / "pack.json"));
+  for (const json& field : manifest["fields"]) {
+    CHECK(text.output.find(field["code"].get<std::string>()) == std::string::npos);
+    CHECK(result.output.find(field["code"].get<std::string>()) == std::string::npos);
+  }
+}
+TEST_CASE("prepare keeps the key of a study that changed, and refuses that of another study") {
+  const StudyFolder study;
+  REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
+  const std::string key = content(study.path() / "cloths.key");
+  json changed = study_of("classification");
+  changed["trials"]["repeats"] = 3;
+  replace_file(study.path() / "cloths.json", changed.dump());
+  const ProgramResult again = study.run({"prepare", study.in("cloths.json")});
+  CHECK(again.exit_code == 0);
+  bool kept = false;
+  for (const auto& entry : fs::directory_iterator(study.path())) {
+    kept = kept ||
+           (entry.path().filename() != "cloths.key" &&
+            entry.path().filename().string().starts_with("cloths.key.") &&
+            json::parse(content(entry.path())).at("study_id") == json::parse(key).at("study_id"));
+  }
+  CHECK(kept);
+
+  changed["study"] = "other";
+  replace_file(study.path() / "other.json", changed.dump());
+  const std::string present = content(study.path() / "cloths.key");
+  const ProgramResult other =
+      study.run({"prepare", study.in("other.json"), "--pack", study.in("cloths.pack")});
+  CHECK(other.exit_code == 2);
+  CHECK(content(study.path() / "cloths.key") == present);
+}
+
+TEST_CASE("prepare touches nothing when a picture of the study is missing") {
+  const StudyFolder study;
+  fs::remove(study.path() / "linen-photo.png");
+  const ProgramResult result = study.run({"prepare", study.in("cloths.json")});
+  CHECK(result.exit_code == 2);
+  CHECK(line_count(result.errors) == 1);
+  CHECK(result.errors.find("/classes/1/images/0") != std::string::npos);
+  CHECK(result.errors.find("cloths.json") != std::string::npos);
+  CHECK_FALSE(fs::exists(study.path() / "cloths.key"));
+}
+
+TEST_CASE("prepare explains what it did for each stimulus") {
+  const StudyFolder study;
+  const ProgramResult result = study.run({"prepare", study.in("cloths.json"), "--explain"});
+  CHECK(result.exit_code == 0);
+  CHECK(result.output.find(" kB  ") != std::string::npos);
+  CHECK(result.output.find("the pack had none of this picture and these options") !=
+        std::string::npos);
+}
+
+TEST_CASE("prepare prints the gain of the study's model, zero too") {
+  const StudyFolder study;
+  json document = study_of("classification");
+  document["rendering"] = {{"model", "surface"}, {"gains", {{"height_mm", 0}}}};
+  replace_file(study.path() / "cloths.json", document.dump());
+  const ProgramResult result = study.run({"prepare", study.in("cloths.json")});
+  CHECK(result.exit_code == 0);
+  CHECK(result.output.find("gain: height 0 mm per grey level") != std::string::npos);
+}
