@@ -22,6 +22,14 @@ pkg_check_modules(fftw3 REQUIRED IMPORTED_TARGET GLOBAL fftw3)
 pkg_check_modules(fftw3f REQUIRED IMPORTED_TARGET GLOBAL fftw3f)
 pkg_check_modules(libsodium REQUIRED IMPORTED_TARGET GLOBAL libsodium)
 
+pkg_check_modules(libusb REQUIRED IMPORTED_TARGET GLOBAL libusb-1.0)
+
+find_package(glfw3 REQUIRED)
+find_package(OpenGL REQUIRED)
+# Debian's Dear ImGui holds the GLFW and OpenGL 3 backends, and leaves these two to whoever links it.
+pkg_check_modules(imgui REQUIRED IMPORTED_TARGET GLOBAL imgui)
+pkg_check_modules(freetype REQUIRED IMPORTED_TARGET GLOBAL freetype2)
+
 find_package(hwy QUIET)
 if(TARGET hwy::hwy)
   add_library(touchtrial_hwy ALIAS hwy::hwy)

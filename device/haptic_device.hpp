@@ -3,42 +3,95 @@
 
 #include "core/vec.hpp"
 
-#include <chrono>
+#include <cstdint>
+#include <optional>
 #include <string>
 
 namespace touchtrial {
 
-/// One reading, in the plane frame: x and y along the texture from its top-left corner, z out of
-/// the plane towards the hand.
+/// One reading. A driver gives it in the device frame: right-handed, x to the right, y up, z
+/// towards the person, origin in the middle of the workspace. A PlacedDevice turns it into the
+/// plane frame: x and y along the texture from its top-left corner, z out of the plane towards the
+/// hand. Devices that have no frame of their own (simulated, mouse, replay) speak the plane frame
+/// from the start.
 struct DeviceSample {
   Vec3 position_mm;
   Vec3 velocity_mm_s;
+  /// Counts the device's own readings: the same number again means that nothing newer has come.
+  std::uint64_t sequence = 0;
+  std::uint32_t buttons = 0;  ///< bit i is button i, set while it is down
+  bool ready = true;          ///< homed and calibrated: the position holds and force may be sent
 };
 
 /// The outcome of talking to a device inside the servo, where nothing may throw.
 enum class DeviceStatus { ok, stopped, fault };
 
-/// What a session records of its device.
-struct DeviceInfo {
-  std::string name;    ///< driver name, for instance "simulated"
-  std::string serial;  ///< empty if the device has none
-  double max_force_n = 0.0;
-  bool simulated = false;
+/// Why a device reported DeviceStatus::fault.
+enum class DeviceFault {
+  none,
+  link_lost,     ///< unplugged, or no answer
+  bad_data,      ///< it answers, but not sense
+  warm_motors,   ///< the vendor's library or the device says that its motors are too warm
+  limit_passed,  ///< the vendor's library tripped on force, velocity or impulse
+  driver,        ///< any other failure of the vendor's library or the operating system
 };
 
-/// A force-feedback device. `read` and `write` belong to the servo thread alone; `info` may be
-/// called from any thread.
+/// What a device still needs from the person before force may be sent.
+enum class DeviceReadiness {
+  ready,
+  needs_homing,       ///< move the handle through its whole range until every axis is homed
+  needs_inkwell,      ///< put the stylus into its inkwell
+  needs_calibration,  ///< the vendor's own calibration has to be run
+};
+
+/// Extent of the positions that a device can reach, in the device frame.
+struct Workspace {
+  Vec3 least_mm;
+  Vec3 greatest_mm;
+};
+
+/// What a session records of its device.
+struct DeviceInfo {
+  std::string name;          ///< driver name, for instance "simulated"
+  std::string serial;        ///< empty if the device has none
+  double max_force_n = 0.0;  ///< peak
+  bool simulated = false;
+  double continuous_force_n = 0.0;  ///< that it can hold for ever; 0 if no limit is known
+  double max_rate_hz = 1000.0;      ///< of useful servo ticks
+  std::string model{};              ///< as the device or its library tells it; may be empty
+  std::string firmware{};           ///< version, likewise
+  std::optional<Workspace> workspace = std::nullopt;  ///< nothing: as large as any plane
+  /// Shown on a screen instead of felt: not blind, so for pilot sessions and demonstration alone.
+  bool visual = false;
+};
+
+/// A force-feedback device. It is open once constructed (constructors throw DeviceError) and closes
+/// in its destructor, with zero force sent last.
+///
+/// `read` and `write` belong to the servo thread alone and never block, allocate, lock, log or do
+/// I/O: a driver with a link talks to it on a thread of its own and exchanges with the servo
+/// through a DeviceLink. All other functions may be called from any thread.
 class HapticDevice {
  public:
   virtual ~HapticDevice() = default;
 
   [[nodiscard]] virtual DeviceInfo info() const = 0;
 
-  /// The state at this tick. \return stopped when the hand is done, fault when the link is lost
+  /// The newest state. \return stopped when the hand is done, fault when the device is lost
   [[nodiscard]] virtual DeviceStatus read(DeviceSample& sample) noexcept = 0;
 
   /// The force on the hand for this tick, N; the servo has checked and limited it.
   [[nodiscard]] virtual DeviceStatus write(Vec3 force_n) noexcept = 0;
+
+  /// Zero force at once and until `rearm`, whatever `write` is given. Safe in a signal handler.
+  virtual void halt() noexcept = 0;
+  /// Lets forces pass again after `halt`; a person's decision.
+  virtual void rearm() noexcept = 0;
+
+  [[nodiscard]] virtual DeviceFault fault() const noexcept { return DeviceFault::none; }
+  [[nodiscard]] virtual DeviceReadiness readiness() const noexcept {
+    return DeviceReadiness::ready;
+  }
 };
 
 }  // namespace touchtrial

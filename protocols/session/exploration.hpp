@@ -1,7 +1,7 @@
 /// \file One exploration in virtual time: servo, force model, participant, trace.
 #pragma once
 
-#include "device/servo.hpp"
+#include "device/servo/servo.hpp"
 #include "engine/rendering/rendering_model.hpp"
 #include "protocols/session/participant.hpp"
 #include "protocols/store/trace.hpp"

@@ -1,7 +1,7 @@
 #include "protocols/session/felt_knowledge.hpp"
 
 #include "core/random.hpp"
-#include "device/servo.hpp"
+#include "device/servo/servo.hpp"
 #include "engine/perception/texture_sense.hpp"
 #include "protocols/session/job_arena.hpp"
 #include "protocols/session/model_force.hpp"
@@ -31,7 +31,8 @@ std::vector<double> feel_once(const RenderingModel& model, const PlaneGeometry& 
   ModelForce force(model);
   SensingSink sink(plane);
   const auto ticks = static_cast<std::int64_t>(std::ceil(subject.explore_s * kServoRateHz)) + 1;
-  const ServoOptions options{.limit_ticks = ticks, .fade_ticks = 0, .max_force_n = max_force_n};
+  const ServoOptions options{
+      .limit_ticks = ticks, .fade_ticks = 0, .limits = {.max_force_n = max_force_n}};
   // Virtual time and the simulated hand have no faults; a force that is not finite ends the pass,
   // and what was felt until then is what is remembered.
   static_cast<void>(run_servo_in_virtual_time(hand, force, sink, options));

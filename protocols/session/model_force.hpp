@@ -1,7 +1,7 @@
 /// \file The rendering model as the servo asks for it.
 #pragma once
 
-#include "device/servo.hpp"
+#include "device/servo/servo.hpp"
 #include "engine/rendering/rendering_model.hpp"
 
 namespace touchtrial {

@@ -3,7 +3,7 @@
 
 #include "core/plane_geometry.hpp"
 #include "device/haptic_device.hpp"
-#include "device/servo.hpp"
+#include "device/servo/servo.hpp"
 
 #include <chrono>
 #include <string>

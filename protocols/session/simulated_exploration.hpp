@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/random.hpp"
-#include "device/simulated_hand.hpp"
+#include "device/simulated/simulated_hand.hpp"
 #include "protocols/session/subject_model.hpp"
 
 namespace touchtrial {

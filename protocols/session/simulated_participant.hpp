@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/random.hpp"
-#include "device/simulated_hand.hpp"
+#include "device/simulated/simulated_hand.hpp"
 #include "engine/perception/felt_classifier.hpp"
 #include "engine/perception/texture_sense.hpp"
 #include "protocols/session/felt_knowledge.hpp"

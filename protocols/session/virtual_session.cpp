@@ -27,7 +27,7 @@ class VirtualSession {
     const TrialOptions& trials = key.study.trials;
     servo_.limit_ticks = std::llround(trials.explore_limit_s * kServoRateHz);
     servo_.fade_ticks = kFadeTicks;
-    servo_.max_force_n = key.study.rendering.max_force_n;
+    servo_.limits.max_force_n = key.study.rendering.max_force_n;
   }
 
   SessionTally run() {

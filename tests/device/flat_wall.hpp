@@ -1,7 +1,7 @@
 /// \file A wall by Hooke's law and a sink that keeps everything: what the device tests feel with.
 #pragma once
 
-#include "device/servo.hpp"
+#include "device/servo/servo.hpp"
 
 #include <algorithm>
 #include <vector>

@@ -16,10 +16,13 @@ class RestingStylus final : public HapticDevice {
   [[nodiscard]] DeviceInfo info() const override { return {"resting", "", 3.3, true}; }
   [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override {
     sample.position_mm = {10.0, 10.0, -1.0};
+    sample.sequence = static_cast<std::uint64_t>(tick_) + 1;
     if (is_lost_ && tick_ == 50) return DeviceStatus::fault;
     return ++tick_ <= 100 ? DeviceStatus::ok : DeviceStatus::stopped;
   }
   [[nodiscard]] DeviceStatus write(Vec3) noexcept override { return DeviceStatus::ok; }
+  void halt() noexcept override {}
+  void rearm() noexcept override {}
 
  private:
   bool is_lost_;

@@ -1,4 +1,4 @@
-#include "device/servo.hpp"
+#include "device/servo/servo.hpp"
 
 #include "device/flat_wall.hpp"
 #include "support/catch.hpp"
@@ -14,6 +14,7 @@ class ScriptedDevice final : public HapticDevice {
  public:
   [[nodiscard]] DeviceInfo info() const override { return {"scripted", "", max_force_n, true}; }
   [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override {
+    sample.sequence = static_cast<std::uint64_t>(reads) + 1;
     sample.position_mm = {static_cast<double>(reads), 0.0, -1.0};
     return reads++ < ticks ? DeviceStatus::ok : end;
   }
@@ -22,6 +23,8 @@ class ScriptedDevice final : public HapticDevice {
     return static_cast<int>(written.size()) == fails_at_write ? DeviceStatus::fault
                                                               : DeviceStatus::ok;
   }
+  void halt() noexcept override {}
+  void rearm() noexcept override {}
 
   double max_force_n = 3.3;
   int ticks = 1'000'000;
@@ -73,7 +76,8 @@ TEST_CASE("the smaller of the device's and the study's force limits holds") {
   const double limit_n = std::min(device.max_force_n, 2.0);
   ConstantForce force({0.0, 3.0, 0.0});
   KeptSamples kept;
-  const ServoReport report = run_servo_in_virtual_time(device, force, kept, {.max_force_n = 2.0});
+  const ServoReport report =
+      run_servo_in_virtual_time(device, force, kept, {.limits = {.max_force_n = 2.0}});
   CHECK(report.limited_ticks == 2);
   CHECK(report.force_limit_n == limit_n);
   CHECK(device.written[0] == Vec3{0.0, limit_n, 0.0});

@@ -1,8 +1,8 @@
 /// \file A device that nobody holds: a hand that follows a path, pushes, and yields to forces.
 #pragma once
 
-#include "device/exploration_path.hpp"
 #include "device/haptic_device.hpp"
+#include "device/simulated/exploration_path.hpp"
 
 #include <chrono>
 #include <cstdint>
@@ -38,6 +38,9 @@ class SimulatedHand final : public HapticDevice {
   [[nodiscard]] DeviceInfo info() const override;
   [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override;
   [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override;
+  /// Nothing to do: a force lasts for the tick that it is written in.
+  void halt() noexcept override {}
+  void rearm() noexcept override {}
 
   /// Virtual time since the hand was made.
   [[nodiscard]] std::chrono::nanoseconds now() const noexcept;

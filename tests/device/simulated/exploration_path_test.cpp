@@ -1,4 +1,4 @@
-#include "device/exploration_path.hpp"
+#include "device/simulated/exploration_path.hpp"
 
 #include "support/catch.hpp"
 

@@ -1,4 +1,4 @@
-#include "device/simulated_hand.hpp"
+#include "device/simulated/simulated_hand.hpp"
 
 #include "device/flat_wall.hpp"
 #include "support/catch.hpp"

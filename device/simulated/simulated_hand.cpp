@@ -1,6 +1,6 @@
-#include "device/simulated_hand.hpp"
+#include "device/simulated/simulated_hand.hpp"
 
-#include "device/servo.hpp"
+#include "device/servo/servo.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -50,6 +50,7 @@ DeviceInfo SimulatedHand::info() const {
 
 DeviceStatus SimulatedHand::read(DeviceSample& sample) noexcept {
   sample = state_;
+  sample.sequence = static_cast<std::uint64_t>(tick_) + 1;
   return tick_ < last_tick_ ? DeviceStatus::ok : DeviceStatus::stopped;
 }
 

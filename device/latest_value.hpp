@@ -1,0 +1,45 @@
+/// \file The newest of a row of values, handed from one thread to another without a lock.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <type_traits>
+
+namespace touchtrial {
+
+/// A triple buffer: one writer, one reader, each on a thread of its own, neither ever waiting for
+/// the other. The reader sees whole values only, the newest one, and may miss those between.
+template <typename T>
+class LatestValue {
+  static_assert(std::is_trivially_copyable_v<T>, "copies must not allocate");
+  static_assert(std::atomic<std::uint8_t>::is_always_lock_free);
+
+ public:
+  explicit LatestValue(const T& first = {}) : slots_{first, first, first} {}
+
+  /// Writer's thread.
+  void set(const T& value) noexcept {
+    slots_[back_] = value;
+    back_ = shared_.exchange(back_ | kFresh, std::memory_order_acq_rel) & kIndex;
+  }
+
+  /// Reader's thread: the newest value; the same one again if nothing came since.
+  [[nodiscard]] const T& get() noexcept {
+    if ((shared_.load(std::memory_order_relaxed) & kFresh) != 0) {
+      front_ = shared_.exchange(front_, std::memory_order_acq_rel) & kIndex;
+    }
+    return slots_[front_];
+  }
+
+ private:
+  static constexpr std::uint8_t kFresh = 4;
+  static constexpr std::uint8_t kIndex = 3;
+
+  std::array<T, 3> slots_;
+  std::uint8_t back_ = 0;                ///< the writer's slot
+  std::atomic<std::uint8_t> shared_{1};  ///< the slot between them, and whether it is news
+  std::uint8_t front_ = 2;               ///< the reader's slot
+};
+
+}  // namespace touchtrial

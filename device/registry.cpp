@@ -1,0 +1,52 @@
+#include "device/registry.hpp"
+
+#include "core/errors.hpp"
+#include "core/nearest_name.hpp"
+
+#include <string_view>
+
+namespace touchtrial {
+namespace {
+
+std::vector<std::string_view> driver_names() {
+  std::vector<std::string_view> names;
+  for (const DeviceDriver& driver : device_drivers()) names.push_back(driver.name);
+  return names;
+}
+
+/// A driver that cannot even list says why, in place of its devices.
+std::vector<DeviceListing> listings_of(const DeviceDriver& driver, const DeviceSettings& settings) {
+  try {
+    return driver.list(settings);
+  } catch (const Error& error) {
+    return {{driver.name, "", "", "", false, {error.what()}}};
+  }
+}
+
+}  // namespace
+
+const std::vector<DeviceDriver>& device_drivers() {
+  static const std::vector<DeviceDriver> kDrivers = {};
+  return kDrivers;
+}
+
+std::vector<DeviceListing> list_devices(const DeviceSettings& settings) {
+  std::vector<DeviceListing> all;
+  for (const DeviceDriver& driver : device_drivers()) {
+    for (DeviceListing& listing : listings_of(driver, settings)) all.push_back(std::move(listing));
+  }
+  return all;
+}
+
+std::unique_ptr<HapticDevice> open_device(const std::string& driver,
+                                          const DeviceSettings& settings) {
+  for (const DeviceDriver& known : device_drivers()) {
+    if (known.name == driver) return known.open(settings);
+  }
+  const auto nearest = nearest_name(driver, driver_names());
+  throw UsageError(
+      driver + ": there is no such device driver; " +
+      (nearest ? "did you mean " + std::string(*nearest) + "?" : "see touchtrial device list"));
+}
+
+}  // namespace touchtrial

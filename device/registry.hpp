@@ -1,0 +1,45 @@
+/// \file Every driver by its name: what is plugged in, what is missing, and how to open it.
+#pragma once
+
+#include "device/device_settings.hpp"
+#include "device/haptic_device.hpp"
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+
+/// One device that is there, or a driver that has none.
+struct DeviceListing {
+  std::string driver;  ///< the name that opens it
+  std::string model;   ///< "Novint Falcon"; empty if none is there
+  std::string serial;
+  std::string where;  ///< bus and address, or the library's path
+  bool present = false;
+  /// What stands between it and use, a line each with its remedy (permission, firmware, library);
+  /// empty: `open_device` will do.
+  std::vector<std::string> missing;
+};
+
+/// What one driver offers the registry; each driver's folder defines one in its `driver.hpp`.
+struct DeviceDriver {
+  std::string name;
+  std::string what;  ///< a line for help
+  std::function<std::vector<DeviceListing>(const DeviceSettings&)> list;
+  std::function<std::unique_ptr<HapticDevice>(const DeviceSettings&)> open;
+};
+
+/// All drivers, in the order in which they are listed.
+[[nodiscard]] const std::vector<DeviceDriver>& device_drivers();
+
+/// What is plugged in, and what each driver misses. Never throws for a device's sake.
+[[nodiscard]] std::vector<DeviceListing> list_devices(const DeviceSettings& settings);
+
+/// \throws UsageError naming the nearest driver if there is none of this name, DeviceError with the
+///   remedy if it cannot be opened
+[[nodiscard]] std::unique_ptr<HapticDevice> open_device(const std::string& driver,
+                                                        const DeviceSettings& settings);
+
+}  // namespace touchtrial

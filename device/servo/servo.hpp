@@ -1,0 +1,112 @@
+/// \file The servo loop: read, force, safety, write, record, a thousand times a second or more.
+#pragma once
+
+#include "device/haptic_device.hpp"
+#include "device/latest_value.hpp"
+#include "device/safety/safety_chain.hpp"
+#include "device/servo/servo_clock.hpp"
+#include "device/servo/servo_control.hpp"
+
+#include <atomic>
+#include <chrono>
+#include <cstdint>
+
+namespace touchtrial {
+
+/// One tick of the servo at its usual rate.
+constexpr std::chrono::nanoseconds kServoTick{1'000'000};
+constexpr double kServoRateHz = 1000.0;
+constexpr double kServoTickS = 1.0 / kServoRateHz;
+
+/// What the servo asks for a force. Called on the servo thread: no heap, lock, log or I/O.
+class ForceSource {
+ public:
+  virtual ~ForceSource() = default;
+  /// The force on the hand in this state, N, in the plane frame.
+  [[nodiscard]] virtual Vec3 force_n(const DeviceSample& sample) noexcept = 0;
+};
+
+/// One tick as it was: where the stylus was, and the force that was sent.
+struct ServoSample {
+  Vec3 position_mm;
+  Vec3 force_n;
+  std::int64_t tick = 0;  ///< place in time since plane-on; an overrun leaves out numbers
+};
+
+/// Who keeps the samples. Called on the servo thread: room for all of them is reserved before.
+class SampleSink {
+ public:
+  virtual ~SampleSink() = default;
+  virtual void record(const ServoSample& sample) noexcept = 0;
+};
+
+struct ServoOptions {
+  /// Ticks until time is up, >= 0.
+  std::int64_t limit_ticks = 60'000;
+  /// Ticks in which the force fades to nothing when time is up, >= 0; recorded like the others.
+  std::int64_t fade_ticks = 100;
+  /// The device's own maximum and continuous force hold as well.
+  SafetyLimits limits{};
+  double rate_hz = kServoRateHz;  ///< 1,000 to 10,000
+};
+
+/// Why the loop ended.
+enum class ServoEnd {
+  hand_stopped,  ///< the device said, or ServoControl::finish, that the hand is done
+  time_limit,    ///< time was up, and the force has faded
+  comfort_stop,  ///< somebody asked for it, and the force has faded
+  fault,         ///< see SafetyFault
+};
+
+/// How late ticks began, by a histogram whose bins are at most 5 % wide.
+struct Lateness {
+  double p50_us = 0.0;
+  double p99_us = 0.0;
+  double p999_us = 0.0;
+  double worst_us = 0.0;
+};
+
+struct ServoReport {
+  ServoEnd end = ServoEnd::fault;
+  SafetyFault fault = SafetyFault::none;
+  DeviceFault device_fault = DeviceFault::none;
+  std::int64_t ticks = 0;          ///< recorded samples
+  std::int64_t limited_ticks = 0;  ///< changed by the safety chain
+  std::int64_t contact_ticks = 0;  ///< with a force out of the plane
+  std::int64_t overruns = 0;       ///< ticks left out because the one before took too long
+  double force_limit_n = 0.0;      ///< that held: the smaller of the options' and the device's
+  double rate_hz = 0.0;            ///< that was had; the options' in virtual time
+  Lateness lateness;               ///< zeros in virtual time
+};
+
+/// What a watcher sees of the loop.
+struct ServoState {
+  DeviceSample sample;
+  Vec3 force_n;  ///< as sent
+  SafetyVerdict verdict = SafetyVerdict::passed;
+  std::int64_t tick = 0;
+  double lateness_us = 0.0;  ///< of this tick
+};
+
+class FlightRecorder;
+
+/// Who else looks at the loop or has a say; null where nobody does.
+struct ServoHooks {
+  ServoControl* control = nullptr;
+  LatestValue<ServoState>* state = nullptr;        ///< set every tick, for one reader
+  std::atomic<std::int64_t>* heartbeat = nullptr;  ///< counts ticks, for a watchdog
+  FlightRecorder* recorder = nullptr;
+};
+
+/// Runs the loop until it ends: tick i is at i / rate_hz after the first. Every force goes through
+/// the safety chain; the last one written is zero. No allocation, lock or exception inside the
+/// loop. Blocks; call on the thread that is to be the servo's.
+[[nodiscard]] ServoReport run_servo(HapticDevice& device, ForceSource& force, SampleSink& sink,
+                                    const ServoOptions& options, ServoClock& clock,
+                                    const ServoHooks& hooks = {});
+
+/// The same in virtual time, as fast as the processor goes: there is nothing to be late for.
+[[nodiscard]] ServoReport run_servo_in_virtual_time(HapticDevice& device, ForceSource& force,
+                                                    SampleSink& sink, const ServoOptions& options);
+
+}  // namespace touchtrial

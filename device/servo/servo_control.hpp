@@ -1,0 +1,42 @@
+/// \file What other threads, and signal handlers, may ask of a running servo.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+
+namespace touchtrial {
+
+/// Requests to one run of the servo. Every function may be called from any thread and from a signal
+/// handler; none waits. A request holds until `reset`.
+class ServoControl {
+ public:
+  /// The person is done: the force fades as when time is up; the run ends as hand_stopped.
+  void finish() noexcept { ask(kFinish); }
+  /// The force goes to zero within 100 ms, without a step; the run ends as comfort_stop.
+  void comfort_stop() noexcept { ask(kComfortStop); }
+  /// Zero from the next tick on; the run ends as a fault.
+  void emergency_stop() noexcept { ask(kEmergencyStop); }
+  /// Before a new run. An emergency stop is only taken back by this.
+  void reset() noexcept { requests_.store(0, std::memory_order_release); }
+
+  [[nodiscard]] bool finish_asked() const noexcept { return is_asked(kFinish); }
+  [[nodiscard]] bool comfort_stop_asked() const noexcept { return is_asked(kComfortStop); }
+  [[nodiscard]] bool emergency_stop_asked() const noexcept { return is_asked(kEmergencyStop); }
+
+ private:
+  static constexpr std::uint32_t kFinish = 1;
+  static constexpr std::uint32_t kComfortStop = 2;
+  static constexpr std::uint32_t kEmergencyStop = 4;
+  static_assert(std::atomic<std::uint32_t>::is_always_lock_free, "signal handlers set it");
+
+  void ask(std::uint32_t request) noexcept {
+    requests_.fetch_or(request, std::memory_order_acq_rel);
+  }
+  [[nodiscard]] bool is_asked(std::uint32_t request) const noexcept {
+    return (requests_.load(std::memory_order_acquire) & request) != 0;
+  }
+
+  std::atomic<std::uint32_t> requests_{0};
+};
+
+}  // namespace touchtrial
