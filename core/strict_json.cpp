@@ -209,6 +209,11 @@ const std::string& JsonValue::text() const {
   return node_->value->get_ref<const std::string&>();
 }
 
+bool JsonValue::truth() const {
+  if (!node_->value->is_boolean()) refuse_type("true or false");
+  return node_->value->get<bool>();
+}
+
 double JsonValue::number(const NumberRange& range) const {
   if (!node_->value->is_number()) refuse_type("a number");
   const double number = node_->value->get<double>();

@@ -53,6 +53,8 @@ class JsonValue {
 
   [[nodiscard]] bool is_text() const;
   [[nodiscard]] const std::string& text() const;
+  /// true or false.
+  [[nodiscard]] bool truth() const;
   [[nodiscard]] double number(const NumberRange& range) const;
   /// A whole number; 5.0 is one.
   [[nodiscard]] std::int64_t integer(std::int64_t low, std::int64_t high) const;

@@ -2,10 +2,15 @@
 #pragma once
 
 #include "core/vec.hpp"
+#include "device/placed_device.hpp"
+#include "device/safety/safety_chain.hpp"
 
 #include <array>
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <string>
+#include <string_view>
 
 namespace touchtrial {
 
@@ -35,20 +40,55 @@ struct ReplaySettings {
   std::filesystem::path trace;  ///< CSV: time_s, x_mm, y_mm, z_mm; plane frame
 };
 
+/// Limits that a lab sets for one of its devices. They only ever make a limit stricter: those of
+/// the study and of the device hold as well. Nothing: no limit of the lab's own.
+struct LabLimits {
+  std::optional<double> max_force_n;         ///< SafetyLimits::max_force_n, > 0
+  std::optional<double> continuous_force_n;  ///< SafetyLimits::continuous_force_n, > 0
+  std::optional<double> max_slew_n_per_s;    ///< SafetyLimits::max_slew_n_per_s, > 0
+  std::optional<double> max_speed_mm_s;      ///< SafetyLimits::max_speed_mm_s, > 0
+};
+
+/// How a lab uses one of its devices, whatever the driver.
+struct DeviceUse {
+  LabLimits limits;
+  /// How planes stand on it; nothing: horizontal.
+  std::optional<PlaneOrientation> orientation;
+  /// Where the middle of a plane lies, device frame; nothing: in the middle of the workspace.
+  std::optional<Vec3> centre_mm;
+};
+
 struct DeviceSettings {
   FalconSettings falcon;
   OpenHapticsSettings openhaptics;
   DhdSettings dhd;
   ReplaySettings replay;
+  std::map<std::string, DeviceUse> uses;  ///< by driver; those that the file speaks of
+
+  /// \return the defaults for a driver that the file does not speak of
+  [[nodiscard]] DeviceUse use_of(const std::string& driver) const;
 };
+
+/// The stricter of each limit.
+[[nodiscard]] SafetyLimits stricter_of(SafetyLimits limits, const LabLimits& lab) noexcept;
 
 /// Reads a settings file, by the schema config/schema/devices.schema.json; paths are relative to
 /// it. \throws StudyError with the JSON pointer if it breaks the schema, FileError if it cannot be
 /// read
 [[nodiscard]] DeviceSettings read_device_settings(const std::filesystem::path& file);
 
+/// The same from text. \param folder  that paths are relative to; \param source  names the origin
+/// in errors
+[[nodiscard]] DeviceSettings parse_device_settings(std::string_view text,
+                                                   const std::filesystem::path& folder,
+                                                   const std::string& source);
+
 /// Where the settings are unless the user names another file: the user's configuration folder
-/// (XDG_CONFIG_HOME, else ~/.config), touchtrial/devices.json.
+/// (XDG_CONFIG_HOME, else ~/.config), touchtrial/devices.json. Empty if the system knows no home.
 [[nodiscard]] std::filesystem::path default_device_settings_path();
+
+/// What commands use: the file that the user named, else the one at the default path, else the
+/// defaults. \param named  empty if the user named none \throws as read_device_settings
+[[nodiscard]] DeviceSettings device_settings_for(const std::filesystem::path& named);
 
 }  // namespace touchtrial

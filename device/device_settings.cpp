@@ -1,0 +1,228 @@
+#include "device/device_settings.hpp"
+
+#include "core/files.hpp"
+#include "core/strict_json.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+
+namespace touchtrial {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr NumberRange kForceN{.low = 0.0, .high = 100.0, .open_low = true};
+constexpr NumberRange kForceOrNoneN{.low = 0.0, .high = 100.0};
+constexpr NumberRange kBiasN{.low = -1.0, .high = 1.0};
+constexpr NumberRange kPlaceMm{.low = -1000.0, .high = 1000.0};
+constexpr NumberRange kMassKg{.low = 0.0, .high = 10.0};
+constexpr std::int64_t kMostDevices = 64;
+constexpr std::int64_t kFastestRateHz = 10'000;
+constexpr std::int64_t kSlowestRateHz = 500;
+constexpr std::array kOrientations = {
+    Named<PlaneOrientation>{"horizontal", PlaneOrientation::horizontal},
+    Named<PlaneOrientation>{"vertical", PlaneOrientation::vertical}};
+
+Vec3 read_vec3(const JsonValue& place, const NumberRange& range) {
+  const std::vector<JsonValue> items = place.items(3, 3);
+  return {items[0].number(range), items[1].number(range), items[2].number(range)};
+}
+
+void read_text(const JsonObject& object, std::string_view key, std::string& text) {
+  if (const auto member = object.find(key)) text = member->text();
+}
+
+/// A file of the user's; an empty text is none.
+void read_path(const JsonObject& object, std::string_view key, const fs::path& folder,
+               fs::path& path) {
+  const auto member = object.find(key);
+  if (member && !member->text().empty()) path = folder / member->text();
+}
+
+/// A library: a path if there is a slash in it, else a name that the system looks up.
+void read_library(const JsonObject& object, const fs::path& folder, fs::path& path) {
+  const auto member = object.find("library");
+  if (!member) return;
+  const std::string& name = member->text();
+  if (name.empty()) member->refuse("is empty; give the library's path, or leave the key out");
+  path = name.find('/') == std::string::npos ? fs::path(name) : folder / name;
+}
+
+void read_limit(const JsonObject& object, std::string_view key, double highest,
+                std::optional<double>& limit) {
+  if (const auto member = object.find(key)) {
+    limit = member->number({.low = 0.0, .high = highest, .open_low = true});
+  }
+}
+
+LabLimits read_limits(const JsonValue& place) {
+  const JsonObject object =
+      place.object({"max_force_n", "continuous_force_n", "max_slew_n_per_s", "max_speed_mm_s"});
+  const SafetyLimits usual;
+  LabLimits limits;
+  read_limit(object, "max_force_n", kForceN.high, limits.max_force_n);
+  read_limit(object, "continuous_force_n", kForceN.high, limits.continuous_force_n);
+  read_limit(object, "max_slew_n_per_s", usual.max_slew_n_per_s, limits.max_slew_n_per_s);
+  read_limit(object, "max_speed_mm_s", usual.max_speed_mm_s, limits.max_speed_mm_s);
+  return limits;
+}
+
+void read_placement(const JsonValue& place, DeviceUse& use) {
+  const JsonObject object = place.object({"orientation", "centre_mm"});
+  if (const auto member = object.find("orientation"))
+    use.orientation = member->choice(kOrientations);
+  if (const auto member = object.find("centre_mm")) use.centre_mm = read_vec3(*member, kPlaceMm);
+}
+
+DeviceUse read_use(const JsonObject& object) {
+  DeviceUse use;
+  if (const auto member = object.find("limits")) use.limits = read_limits(*member);
+  if (const auto member = object.find("placement")) read_placement(*member, use);
+  return use;
+}
+
+std::array<int, 3> read_led_order(const JsonValue& place) {
+  std::array<int, 3> order{};
+  const std::vector<JsonValue> items = place.items(3, 3);
+  for (std::size_t i = 0; i < 3; ++i) order[i] = static_cast<int>(items[i].integer(0, 2));
+  if (order[0] == order[1] || order[1] == order[2] || order[0] == order[2]) {
+    place.refuse("has a bit twice; give each of 0, 1 and 2 once");
+  }
+  return order;
+}
+
+Vec3 read_gravity_bias(const JsonValue& place) {
+  const Vec3 bias_n = read_vec3(place, kBiasN);
+  if (norm(bias_n) > kBiasN.high) {
+    place.refuse("has a norm of " + number_text(norm(bias_n)) + " N, must be at most 1");
+  }
+  return bias_n;
+}
+
+DeviceUse read_falcon(const JsonValue& place, const fs::path& folder, DeviceSettings& settings) {
+  const JsonObject object =
+      place.object({"firmware", "serial", "gravity_bias_n", "led_order", "limits", "placement"});
+  FalconSettings& falcon = settings.falcon;
+  read_path(object, "firmware", folder, falcon.firmware);
+  read_text(object, "serial", falcon.serial);
+  if (const auto bias = object.find("gravity_bias_n")) {
+    falcon.gravity_bias_n = read_gravity_bias(*bias);
+  }
+  if (const auto order = object.find("led_order")) falcon.led_order = read_led_order(*order);
+  return read_use(object);
+}
+
+DeviceUse read_openhaptics(const JsonValue& place, const fs::path& folder,
+                           DeviceSettings& settings) {
+  const JsonObject object = place.object({"library", "device", "rate_hz", "limits", "placement"});
+  read_library(object, folder, settings.openhaptics.library);
+  read_text(object, "device", settings.openhaptics.device);
+  if (const auto rate = object.find("rate_hz")) {
+    settings.openhaptics.rate_hz =
+        static_cast<unsigned long>(rate->integer(kSlowestRateHz, kFastestRateHz));
+  }
+  return read_use(object);
+}
+
+DeviceUse read_dhd(const JsonValue& place, const fs::path& folder, DeviceSettings& settings) {
+  const JsonObject object =
+      place.object({"library", "index", "gravity_compensation", "effector_mass_kg", "max_force_n",
+                    "continuous_force_n", "limits", "placement"});
+  DhdSettings& dhd = settings.dhd;
+  read_library(object, folder, dhd.library);
+  if (const auto index = object.find("index")) {
+    dhd.index = static_cast<int>(index->integer(0, kMostDevices - 1));
+  }
+  if (const auto on = object.find("gravity_compensation")) dhd.gravity_compensation = on->truth();
+  if (const auto mass = object.find("effector_mass_kg")) {
+    dhd.effector_mass_kg = mass->number(kMassKg);
+  }
+  if (const auto force = object.find("max_force_n")) dhd.max_force_n = force->number(kForceN);
+  if (const auto force = object.find("continuous_force_n")) {
+    dhd.continuous_force_n = force->number(kForceOrNoneN);
+  }
+  return read_use(object);
+}
+
+DeviceUse read_replay(const JsonValue& place, const fs::path& folder, DeviceSettings& settings) {
+  const JsonObject object = place.object({"trace", "limits"});
+  read_path(object, "trace", folder, settings.replay.trace);
+  return read_use(object);
+}
+
+DeviceUse read_limits_alone(const JsonValue& place, const fs::path& /*folder*/,
+                            DeviceSettings& /*settings*/) {
+  return read_use(place.object({"limits"}));
+}
+
+using ReadDriver = DeviceUse (*)(const JsonValue&, const fs::path&, DeviceSettings&);
+constexpr std::array kDrivers = {Named<ReadDriver>{"falcon", read_falcon},
+                                 Named<ReadDriver>{"openhaptics", read_openhaptics},
+                                 Named<ReadDriver>{"dhd", read_dhd},
+                                 Named<ReadDriver>{"mouse", read_limits_alone},
+                                 Named<ReadDriver>{"simulated", read_limits_alone},
+                                 Named<ReadDriver>{"replay", read_replay}};
+
+std::optional<fs::path> absolute_path_in(const char* variable) {
+  const char* text = std::getenv(variable);
+  if (text == nullptr || !fs::path(text).is_absolute()) return std::nullopt;
+  return fs::path(text);
+}
+
+void tighten(double& limit, const std::optional<double>& lab) {
+  if (lab) limit = std::min(limit, *lab);
+}
+
+}  // namespace
+
+DeviceUse DeviceSettings::use_of(const std::string& driver) const {
+  const auto found = uses.find(driver);
+  return found == uses.end() ? DeviceUse{} : found->second;
+}
+
+SafetyLimits stricter_of(SafetyLimits limits, const LabLimits& lab) noexcept {
+  tighten(limits.max_force_n, lab.max_force_n);
+  tighten(limits.max_slew_n_per_s, lab.max_slew_n_per_s);
+  tighten(limits.max_speed_mm_s, lab.max_speed_mm_s);
+  if (limits.continuous_force_n > 0.0) {
+    tighten(limits.continuous_force_n, lab.continuous_force_n);
+  } else {
+    limits.continuous_force_n = lab.continuous_force_n.value_or(0.0);
+  }
+  return limits;
+}
+
+DeviceSettings parse_device_settings(std::string_view text, const fs::path& folder,
+                                     const std::string& source) {
+  std::vector<std::string_view> names;
+  for (const auto& driver : kDrivers) names.push_back(driver.name);
+  const JsonObject root = parse_strict_json(text, source).object(names);
+  DeviceSettings settings;
+  for (const auto& driver : kDrivers) {
+    if (const auto member = root.find(driver.name)) {
+      settings.uses[std::string(driver.name)] = driver.value(*member, folder, settings);
+    }
+  }
+  return settings;
+}
+
+DeviceSettings read_device_settings(const fs::path& file) {
+  constexpr std::uintmax_t kLargest = 1U << 20U;
+  const Bytes content = read_file(file, kLargest);
+  return parse_device_settings(text_of(content), file.parent_path(), file.string());
+}
+
+fs::path default_device_settings_path() {
+  const fs::path file = fs::path("touchtrial") / "devices.json";
+  if (const auto config = absolute_path_in("XDG_CONFIG_HOME")) return *config / file;
+  const auto home = absolute_path_in("HOME");
+  return home ? *home / ".config" / file : fs::path();
+}
+
+DeviceSettings device_settings_for(const fs::path& named) {
+  if (!named.empty()) return read_device_settings(named);
+  const fs::path usual = default_device_settings_path();
+  return !usual.empty() && is_there(usual) ? read_device_settings(usual) : DeviceSettings{};
+}
+
+}  // namespace touchtrial

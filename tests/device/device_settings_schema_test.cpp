@@ -1,0 +1,211 @@
+/// The JSON Schema of device settings and their reader are held to each other: every statement of
+/// the schema is tried on the reader, and what the reader says it knows is looked up in the schema.
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "device/device_settings.hpp"
+#include "support/catch.hpp"
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+namespace {
+
+using nlohmann::json;
+using Pointer = json::json_pointer;
+
+const json& schema() {
+  static const json kSchema = json::parse(text_of(read_file(
+      std::filesystem::path(TOUCHTRIAL_SOURCE_DIR) / "config/schema/devices.schema.json")));
+  return kSchema;
+}
+
+json resolved(const json& node) {
+  if (!node.contains("$ref")) return node;
+  return schema().at(Pointer(node.at("$ref").get<std::string>().substr(1)));
+}
+
+/// One leaf of the schema and its place in a settings file.
+struct Leaf {
+  Pointer place;
+  json rule;
+};
+
+struct ObjectPlace {
+  Pointer place;
+  json rule;
+};
+
+void collect(const json& node, const Pointer& place, std::vector<Leaf>& leaves,
+             std::vector<ObjectPlace>& objects) {
+  const json rule = resolved(node);
+  if (rule.at("type") != "object") {
+    leaves.push_back({place, rule});
+    return;
+  }
+  CHECK(rule.at("additionalProperties") == false);
+  objects.push_back({place, rule});
+  for (const auto& [key, property] : rule.at("properties").items()) {
+    collect(property, place / key, leaves, objects);
+  }
+}
+
+std::vector<Leaf> all_leaves() {
+  std::vector<Leaf> leaves;
+  std::vector<ObjectPlace> objects;
+  collect(schema(), Pointer(), leaves, objects);
+  return leaves;
+}
+
+/// The error that a file with this value alone is refused with; empty if it is accepted.
+std::string refusal(const Pointer& place, const json& value) {
+  json file = json::object();
+  file[place] = value;
+  try {
+    static_cast<void>(parse_device_settings(file.dump(), "/lab", "devices.json"));
+  } catch (const StudyError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+/// The keys that the reader says it knows in an object.
+std::set<std::string> keys_of_reader(const Pointer& place) {
+  const std::string mark = "known here: ";
+  const std::string message = refusal(place / "qqqqqqqqqqqqqqqqqqqq", 1);
+  REQUIRE(message.find(mark) != std::string::npos);
+  std::string list = message.substr(message.find(mark) + mark.size()) + ", ";
+  std::set<std::string> keys;
+  for (auto end = list.find(", "); end != std::string::npos; end = list.find(", ")) {
+    keys.insert(list.substr(0, end));
+    list.erase(0, end + 2);
+  }
+  return keys;
+}
+
+/// Where a list of three numbers is wanted: `number` first, with others that do not disturb it.
+json in_list(const json& rule, double number) {
+  if (!rule.contains("uniqueItems")) return json::array({number, 0, 0});
+  json list = json::array({number});
+  for (int other = 0; list.size() < 3; ++other) {
+    if (other != number) list.push_back(other);
+  }
+  return list;
+}
+
+double step_of(const json& rule) {
+  return rule.at("type") == "integer" ? 1.0 : 1e-9;
+}
+
+/// Tries one bound, and the nearest number beyond it. \return whether the schema has it
+bool holds_bound(const Leaf& leaf, const char* word, double outwards, bool belongs) {
+  const bool listed = leaf.rule.contains("items");
+  const json rule = listed ? leaf.rule.at("items") : leaf.rule;
+  if (!rule.contains(word)) return false;
+  const double bound = rule.at(word);
+  const auto with = [&](double number) {
+    return refusal(leaf.place, listed ? in_list(leaf.rule, number) : json(number));
+  };
+  INFO(leaf.place.to_string() << " " << word);
+  CHECK(with(bound).empty() == belongs);
+  CHECK_FALSE(with(bound + outwards * step_of(rule)).empty());
+  CHECK(with(bound - outwards * step_of(rule)).empty());
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE("the schema of device settings and the reader know the same keys") {
+  std::vector<Leaf> leaves;
+  std::vector<ObjectPlace> objects;
+  collect(schema(), Pointer(), leaves, objects);
+  for (const ObjectPlace& object : objects) {
+    INFO("in " << object.place.to_string());
+    std::set<std::string> in_schema;
+    for (const auto& [key, unused] : object.rule.at("properties").items()) in_schema.insert(key);
+    CHECK(keys_of_reader(object.place) == in_schema);
+  }
+  CHECK(objects.size() == 1 + 6 + 6 + 3);
+  CHECK(leaves.size() == 4 + 3 + 6 + 1 + 6 * 4 + 3 * 2);
+}
+
+TEST_CASE("the reader keeps the bounds of the schema of device settings") {
+  int bounds = 0;
+  for (const Leaf& leaf : all_leaves()) {
+    bounds += holds_bound(leaf, "minimum", -1.0, true) ? 1 : 0;
+    bounds += holds_bound(leaf, "maximum", 1.0, true) ? 1 : 0;
+    bounds += holds_bound(leaf, "exclusiveMinimum", -1.0, false) ? 1 : 0;
+  }
+  CHECK(bounds == 2 * (1 + 1 + 1 + 4 + 6 * 4 + 3));
+}
+
+TEST_CASE("the reader keeps the types of the schema of device settings") {
+  for (const Leaf& leaf : all_leaves()) {
+    const std::string type = leaf.rule.at("type");
+    const json number = type == "integer" ? leaf.rule.at("default") : json(1);
+    for (const json& value :
+         {json("horizontal"), number, json(true), json::array({0, 1, 2}), json::object(), json()}) {
+      const bool fits = (type == "string" && value.is_string()) ||
+                        ((type == "number" || type == "integer") && value.is_number()) ||
+                        (type == "boolean" && value.is_boolean()) ||
+                        (type == "array" && value.is_array());
+      // [0, 1, 2] is no gravity bias: its numbers are too large.
+      if (fits && leaf.place.back() == "gravity_bias_n") continue;
+      INFO(leaf.place.to_string() << " = " << value.dump());
+      CHECK(refusal(leaf.place, value).empty() == fits);
+    }
+  }
+}
+
+TEST_CASE("the reader keeps the words lengths and defaults of the schema of device settings") {
+  int words = 0;
+  int lists = 0;
+  for (const Leaf& leaf : all_leaves()) {
+    INFO(leaf.place.to_string());
+    if (leaf.rule.contains("enum")) {
+      for (const json& word : leaf.rule.at("enum")) CHECK(refusal(leaf.place, word).empty());
+      CHECK_FALSE(refusal(leaf.place, "diagonal").empty());
+      ++words;
+    }
+    if (leaf.rule.at("type") == "array") {
+      CHECK_FALSE(refusal(leaf.place, json::array({0, 0})).empty());
+      CHECK_FALSE(refusal(leaf.place, json::array({0, 0, 0, 0})).empty());
+      ++lists;
+    }
+    if (leaf.rule.contains("default")) CHECK(refusal(leaf.place, leaf.rule.at("default")).empty());
+  }
+  CHECK(words == 3);
+  CHECK(lists == 5);
+}
+
+TEST_CASE("the defaults of the schema of device settings are the reader's") {
+  json file = json::object();
+  for (const Leaf& leaf : all_leaves()) {
+    if (leaf.rule.contains("default")) file[leaf.place] = leaf.rule.at("default");
+  }
+  const DeviceSettings written = parse_device_settings(file.dump(), "/lab", "devices.json");
+  const DeviceSettings bare;
+  CHECK(written.falcon.serial == bare.falcon.serial);
+  CHECK(written.falcon.gravity_bias_n == bare.falcon.gravity_bias_n);
+  CHECK(written.falcon.led_order == bare.falcon.led_order);
+  CHECK(written.openhaptics.library == bare.openhaptics.library);
+  CHECK(written.openhaptics.device == bare.openhaptics.device);
+  CHECK(written.openhaptics.rate_hz == bare.openhaptics.rate_hz);
+  CHECK(written.dhd.library == bare.dhd.library);
+  CHECK(written.dhd.index == bare.dhd.index);
+  CHECK(written.dhd.gravity_compensation == bare.dhd.gravity_compensation);
+  CHECK(written.dhd.effector_mass_kg == bare.dhd.effector_mass_kg);
+  CHECK(written.dhd.max_force_n == bare.dhd.max_force_n);
+  CHECK(written.dhd.continuous_force_n == bare.dhd.continuous_force_n);
+}
+
+TEST_CASE("examples of the schema of device settings are accepted") {
+  for (const json& example : schema().at("examples")) {
+    CHECK_NOTHROW(parse_device_settings(example.dump(), "/lab", "devices.json"));
+  }
+}
+
+}  // namespace touchtrial
