@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/nearest_name.hpp"
+#include "device/mouse/driver.hpp"
 
 #include <string_view>
 
@@ -26,7 +27,7 @@ std::vector<DeviceListing> listings_of(const DeviceDriver& driver, const DeviceS
 }  // namespace
 
 const std::vector<DeviceDriver>& device_drivers() {
-  static const std::vector<DeviceDriver> kDrivers = {};
+  static const std::vector<DeviceDriver> kDrivers = {mouse_driver()};
   return kDrivers;
 }
 

@@ -1,0 +1,13 @@
+/// \file The mouse in the registry.
+#pragma once
+
+#include "device/registry.hpp"
+
+namespace touchtrial {
+
+/// Lists the mouse as present where a display is named (DISPLAY, WAYLAND_DISPLAY). `open` throws
+/// DeviceError: a window is the app layer's, whose OpenedDevice (app/windows) makes one and the
+/// MouseDevice beside it; whatever opens devices by name for a person goes through that.
+[[nodiscard]] DeviceDriver mouse_driver();
+
+}  // namespace touchtrial
