@@ -1,32 +1,48 @@
-/// \file One exploration in virtual time: servo, force model, participant, trace.
+/// \file One exploration: servo, force model, participant, trace. How time goes is the explorer's.
 #pragma once
 
 #include "device/servo/servo.hpp"
 #include "engine/rendering/rendering_model.hpp"
 #include "protocols/session/participant.hpp"
+#include "protocols/session/trace_builder.hpp"
 #include "protocols/store/trace.hpp"
 
 #include <chrono>
+#include <cstdint>
 #include <optional>
 
 namespace touchtrial {
 
-/// Height above the plane, mm, at which the stylus is taken to have landed. A height, because the
-/// place and time at which a force begins tell of the texture, and first contacts are stored in
-/// clear.
-inline constexpr double kLandingHeightMm = 3.0;
-
-/// What may be known of an exploration without knowing what was felt.
+/// What came of an exploration.
 struct Exploration {
   ServoReport servo;
   std::optional<std::chrono::nanoseconds> landed_at;  ///< since plane-on
+  std::chrono::nanoseconds lasted{};                  ///< on the servo's clock
+  std::int64_t held = 0;             ///< samples of the trace that had to be filled in
+  std::int64_t held_in_contact = 0;  ///< those of them with contact
 };
 
-/// Puts a plane before a participant until the hand stops or time is up. The participant gets the
-/// plane's extent and the samples, and nothing else.
-/// \param trace  gets every sample; its memory is used again
-[[nodiscard]] Exploration explore(const RenderingModel& model, const PlaneGeometry& plane,
-                                  Participant& participant, const ServoOptions& options,
-                                  Trace& trace);
+/// Runs explorations. The participant gets the plane's extent and the samples, and nothing else.
+class Explorer {
+ public:
+  virtual ~Explorer() = default;
+
+  /// Puts a plane before a participant until the hand stops, time is up, or something fails. The
+  /// last force written is zero. \param trace  gets every sample; its memory is used again
+  [[nodiscard]] virtual Exploration explore(const RenderingModel& model, const PlaneGeometry& plane,
+                                            Participant& participant, const ServoOptions& options,
+                                            Trace& trace) = 0;
+};
+
+/// As fast as the processor goes, on the calling thread: for hands that live in virtual time.
+class VirtualExplorer final : public Explorer {
+ public:
+  [[nodiscard]] Exploration explore(const RenderingModel& model, const PlaneGeometry& plane,
+                                    Participant& participant, const ServoOptions& options,
+                                    Trace& trace) override;
+};
+
+/// Samples that an exploration can have.
+[[nodiscard]] std::size_t most_samples(const ServoOptions& options) noexcept;
 
 }  // namespace touchtrial

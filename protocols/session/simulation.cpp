@@ -3,8 +3,8 @@
 #include "protocols/session/felt_knowledge.hpp"
 #include "protocols/session/job_arena.hpp"
 #include "protocols/session/labelled_fields.hpp"
+#include "protocols/session/session_runner.hpp"
 #include "protocols/session/simulated_participant.hpp"
-#include "protocols/session/virtual_session.hpp"
 
 #include <cstddef>
 #include <memory>

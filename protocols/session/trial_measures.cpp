@@ -1,6 +1,6 @@
 #include "protocols/session/trial_measures.hpp"
 
-#include "protocols/session/exploration.hpp"
+#include "protocols/session/trace_builder.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -41,7 +41,8 @@ TEST_CASE("on a flat texture a hand keeps contact, steady to 0.02 N, 0.5 s after
   const RenderingModel model(field.view(), rendering, {0.01, 0.01});
   Explorer explorer(subject);
   Trace trace;
-  const Exploration done = explore(model, field.view().geometry, explorer, {}, trace);
+  const Exploration done =
+      VirtualExplorer().explore(model, field.view().geometry, explorer, {}, trace);
   REQUIRE(done.servo.end == ServoEnd::hand_stopped);
   REQUIRE(trace.samples.size() == 3000);
   std::size_t landed = 0;
@@ -59,7 +60,7 @@ TEST_CASE("the trace and the participant get the same samples") {
   Explorer explorer(subject);
   Trace trace;
   const RenderingModel& model = source.model(study.key().stimuli.front().code);
-  static_cast<void>(explore(model, source.plane(), explorer, {}, trace));
+  static_cast<void>(VirtualExplorer().explore(model, source.plane(), explorer, {}, trace));
   REQUIRE(trace.samples.size() == explorer.felt.size());
   for (std::size_t i = 0; i < trace.samples.size(); ++i) {
     REQUIRE(trace.samples[i].position_mm == explorer.felt[i].position_mm);
@@ -77,7 +78,8 @@ TEST_CASE("the time of landing is the same on every texture") {
   for (const KeyedStimulus& keyed : study.key().stimuli) {
     Explorer explorer(subject);
     Trace trace;
-    const Exploration done = explore(source.model(keyed.code), source.plane(), explorer, {}, trace);
+    const Exploration done =
+        VirtualExplorer().explore(source.model(keyed.code), source.plane(), explorer, {}, trace);
     REQUIRE(done.landed_at);
     landings.push_back(*done.landed_at);
   }
@@ -94,7 +96,8 @@ TEST_CASE("when time is up the plane fades under the hand") {
   Explorer explorer(subject);
   Trace trace;
   const ServoOptions options{.limit_ticks = 2000, .fade_ticks = 100};
-  const Exploration done = explore(model, field.view().geometry, explorer, options, trace);
+  const Exploration done =
+      VirtualExplorer().explore(model, field.view().geometry, explorer, options, trace);
   CHECK(done.servo.end == ServoEnd::time_limit);
   REQUIRE(trace.samples.size() == 2100);
   CHECK(trace.samples[1999].force_n.z == Approx(0.7).margin(0.02));

@@ -72,7 +72,8 @@ class Explorer final : public Participant {
 Trace explored(const RenderingModel& model, const PlaneGeometry& plane) {
   Explorer explorer;
   Trace trace;
-  REQUIRE(explore(model, plane, explorer, {}, trace).servo.end == ServoEnd::hand_stopped);
+  REQUIRE(VirtualExplorer().explore(model, plane, explorer, {}, trace).servo.end ==
+          ServoEnd::hand_stopped);
   return trace;
 }
 

@@ -1,4 +1,4 @@
-#include "protocols/session/virtual_session.hpp"
+#include "protocols/session/session_runner.hpp"
 
 #include "protocols/session/tiny_study.hpp"
 #include "support/catch.hpp"
