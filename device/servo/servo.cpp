@@ -1,11 +1,104 @@
 #include "device/servo/servo.hpp"
 
+#include "device/servo/duration_histogram.hpp"
+#include "device/servo/flight_recorder.hpp"
+#include "device/servo/realtime_region.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <stdexcept>
+#include <type_traits>
 
 namespace touchtrial {
 namespace {
+
+constexpr double kLeastRateHz = 1'000.0;
+constexpr double kGreatestRateHz = 10'000.0;
+
+void check(const ServoOptions& options) {
+  const bool rate_holds = options.rate_hz >= kLeastRateHz && options.rate_hz <= kGreatestRateHz;
+  if (!rate_holds || options.limit_ticks < 0 || options.fade_ticks < 0) {
+    throw std::invalid_argument("run_servo: the rate or a number of ticks is out of range");
+  }
+}
+
+SafetyLimits limits_of(const ServoOptions& options, const DeviceInfo& device) {
+  SafetyLimits limits = options.limits;
+  limits.max_force_n = std::min(limits.max_force_n, device.max_force_n);
+  return limits;
+}
+
+/// When a tick began.
+struct TickStart {
+  std::int64_t tick;
+  ServoClock::Time since_first;
+  ServoClock::Time late;
+};
+
+/// When ticks are due by a clock, and how late they began.
+template <typename Clock>
+class Pacing {
+ public:
+  /// In virtual time nothing is late, so nothing is counted.
+  static constexpr bool kIsVirtual = std::is_same_v<Clock, VirtualClock>;
+
+  Pacing(Clock& clock, double rate_hz) noexcept
+      : clock_(clock), rate_hz_(rate_hz), first_(clock.now()) {}
+
+  /// Waits for this tick. \return the tick that is due then: a later one if this was missed
+  TickStart wait_for(std::int64_t tick) noexcept {
+    const ServoClock::Time due = time_of(tick);
+    clock_.wait_until(first_ + due);
+    if constexpr (kIsVirtual) return {tick, due, {}};
+    const TickStart start = start_of(tick, due, clock_.now() - first_);
+    note(start, tick);
+    return start;
+  }
+
+  [[nodiscard]] const DurationHistogram& lateness() const noexcept { return lateness_; }
+
+  void report_to(ServoReport& report) const noexcept {
+    report.rate_hz = kIsVirtual ? rate_hz_ : rate_had();
+    report.overruns = overruns_;
+    report.lateness = {lateness_.percentile_us(0.5), lateness_.percentile_us(0.99),
+                       lateness_.percentile_us(0.999), lateness_.percentile_us(1.0)};
+  }
+
+ private:
+  [[nodiscard]] ServoClock::Time time_of(std::int64_t tick) const noexcept {
+    return ServoClock::Time(std::llround(static_cast<double>(tick) * 1e9 / rate_hz_));
+  }
+
+  [[nodiscard]] TickStart start_of(std::int64_t tick, ServoClock::Time due,
+                                   ServoClock::Time now) const noexcept {
+    const ServoClock::Time late = now - due;
+    if (now < time_of(tick + 1)) return {tick, now, late};
+    const double ticks = static_cast<double>(now.count()) * 1e-9 * rate_hz_;
+    const auto newest = static_cast<std::int64_t>(ticks);
+    return {std::max(newest, tick), now, late};
+  }
+
+  void note(const TickStart& start, std::int64_t wanted) noexcept {
+    if (lateness_.count() == 0) began_ = start.since_first;
+    overruns_ += start.tick - wanted;
+    lateness_.add(start.late);
+    last_ = start.since_first;
+  }
+
+  [[nodiscard]] double rate_had() const noexcept {
+    const double span_s = std::chrono::duration<double>(last_ - began_).count();
+    return span_s > 0.0 ? static_cast<double>(lateness_.count() - 1) / span_s : 0.0;
+  }
+
+  Clock& clock_;
+  double rate_hz_;
+  ServoClock::Time first_;
+  ServoClock::Time began_{};  ///< the first tick, since first_
+  ServoClock::Time last_{};   ///< the last one
+  std::int64_t overruns_ = 0;
+  DurationHistogram lateness_;
+};
 
 /// One run of the loop.
 class ServoRun {
@@ -15,42 +108,46 @@ class ServoRun {
       : device_(device),
         force_(force),
         sink_(sink),
-        options_(options),
         hooks_(hooks),
         safety_(limits_of(options, device.info()), 1.0 / options.rate_hz),
         fade_from_(options.limit_ticks),
         fade_ticks_(options.fade_ticks) {
     report_.force_limit_n = limits_of(options, device.info()).max_force_n;
-    report_.rate_hz = options.rate_hz;
   }
 
-  ServoReport run(ServoClock& clock) noexcept {
-    const ServoClock::Time first = clock.now();
+  template <typename Clock>
+  ServoReport run(Pacing<Clock> pacing) noexcept {
     std::optional<ServoEnd> end;
-    for (std::int64_t tick = 0; tick < fade_from_ + fade_ticks_ && !end; ++tick) {
-      clock.wait_until(first + time_of(tick));
-      take_requests(tick);
-      end = run_tick(tick);
-      if (hooks_.heartbeat != nullptr) hooks_.heartbeat->fetch_add(1, std::memory_order_release);
+    {
+      const RealtimeRegion region;
+      end = run_ticks(pacing);
+      // The loop has ended either way; a device that is lost cannot take the zero either.
+      static_cast<void>(device_.write({}));
     }
-    // The loop has ended either way; a device that is lost cannot take the zero either.
-    static_cast<void>(device_.write({}));
     report_.end = end.value_or(end_of_fade_);
     report_.fault = safety_.fault();
     report_.device_fault = device_.fault();
+    pacing.report_to(report_);
+    if (hooks_.lateness != nullptr) hooks_.lateness->add(pacing.lateness());
     return report_;
   }
 
  private:
-  static SafetyLimits limits_of(const ServoOptions& options, const DeviceInfo& device) {
-    SafetyLimits limits = options.limits;
-    limits.max_force_n = std::min(limits.max_force_n, device.max_force_n);
-    return limits;
+  template <typename Clock>
+  std::optional<ServoEnd> run_ticks(Pacing<Clock>& pacing) noexcept {
+    for (std::int64_t tick = 0; tick < end_of_ticks(); ++tick) {
+      const TickStart start = pacing.wait_for(tick);
+      tick = start.tick;
+      take_requests(tick);
+      if (tick >= end_of_ticks()) break;
+      const std::optional<ServoEnd> end = run_tick(start);
+      if (hooks_.heartbeat != nullptr) hooks_.heartbeat->fetch_add(1, std::memory_order_release);
+      if (end) return end;
+    }
+    return std::nullopt;
   }
 
-  ServoClock::Time time_of(std::int64_t tick) const noexcept {
-    return ServoClock::Time(std::llround(static_cast<double>(tick) * 1e9 / options_.rate_hz));
-  }
+  [[nodiscard]] std::int64_t end_of_ticks() const noexcept { return fade_from_ + fade_ticks_; }
 
   void take_requests(std::int64_t tick) noexcept {
     if (hooks_.control == nullptr) return;
@@ -73,29 +170,48 @@ class ServoRun {
   }
 
   /// \return why the loop must end, or nothing
-  std::optional<ServoEnd> run_tick(std::int64_t tick) noexcept {
+  std::optional<ServoEnd> run_tick(const TickStart& start) noexcept {
     DeviceSample sample;
     const DeviceStatus state = device_.read(sample);
     if (state == DeviceStatus::stopped) return ServoEnd::hand_stopped;
     if (state == DeviceStatus::fault) safety_.trip(SafetyFault::device);
-    const SafeForce safe = safety_.check(fade_at(tick) * force_.force_n(sample), sample);
-    if (safe.verdict == SafetyVerdict::fault) return ServoEnd::fault;
-    if (safe.verdict == SafetyVerdict::limited) ++report_.limited_ticks;
-    if (device_.write(safe.force_n) != DeviceStatus::ok) {
+    const Vec3 requested_n = fade_at(start.tick) * force_.force_n(sample);
+    SafeForce safe = safety_.check(requested_n, sample);
+    if (safe.verdict != SafetyVerdict::fault && device_.write(safe.force_n) != DeviceStatus::ok) {
       safety_.trip(SafetyFault::device);
-      return ServoEnd::fault;
+      safe = {{}, SafetyVerdict::fault};
     }
+    show(start, sample, requested_n, safe);
+    if (safe.verdict == SafetyVerdict::fault) return ServoEnd::fault;
+    count(sample, safe, start.tick);
+    return std::nullopt;
+  }
+
+  void count(const DeviceSample& sample, const SafeForce& safe, std::int64_t tick) noexcept {
     sink_.record({sample.position_mm, safe.force_n, tick});
     ++report_.ticks;
+    if (safe.verdict == SafetyVerdict::limited) ++report_.limited_ticks;
     report_.contact_ticks += safe.force_n.z > 0.0 ? 1 : 0;
-    if (hooks_.state != nullptr) hooks_.state->set({sample, safe.force_n, safe.verdict, tick, 0.0});
-    return std::nullopt;
+  }
+
+  /// Lets those who look at the loop see this tick.
+  void show(const TickStart& start, const DeviceSample& sample, Vec3 requested_n,
+            const SafeForce& safe) noexcept {
+    const double late_us = static_cast<double>(start.late.count()) * 1e-3;
+    if (hooks_.state != nullptr) {
+      hooks_.state->set({sample, safe.force_n, safe.verdict, start.tick, late_us});
+    }
+    if (hooks_.recorder != nullptr) {
+      const bool fault = safe.verdict == SafetyVerdict::fault;
+      hooks_.recorder->record({start.tick, start.since_first, sample, requested_n, safe.force_n,
+                               safe.verdict, safety_.fault(),
+                               fault ? device_.fault() : DeviceFault::none, late_us});
+    }
   }
 
   HapticDevice& device_;
   ForceSource& force_;
   SampleSink& sink_;
-  const ServoOptions& options_;
   const ServoHooks& hooks_;
   SafetyChain safety_;
   std::int64_t fade_from_;
@@ -104,17 +220,25 @@ class ServoRun {
   ServoReport report_;
 };
 
+template <typename Clock>
+ServoReport run(HapticDevice& device, ForceSource& force, SampleSink& sink,
+                const ServoOptions& options, Clock& clock, const ServoHooks& hooks) {
+  check(options);
+  ServoRun servo(device, force, sink, options, hooks);
+  return servo.run(Pacing<Clock>(clock, options.rate_hz));
+}
+
 }  // namespace
 
 ServoReport run_servo(HapticDevice& device, ForceSource& force, SampleSink& sink,
                       const ServoOptions& options, ServoClock& clock, const ServoHooks& hooks) {
-  return ServoRun(device, force, sink, options, hooks).run(clock);
+  return run(device, force, sink, options, clock, hooks);
 }
 
 ServoReport run_servo_in_virtual_time(HapticDevice& device, ForceSource& force, SampleSink& sink,
                                       const ServoOptions& options) {
   VirtualClock clock;
-  return run_servo(device, force, sink, options, clock);
+  return run(device, force, sink, options, clock, {});
 }
 
 }  // namespace touchtrial

@@ -58,7 +58,8 @@ enum class ServoEnd {
   fault,         ///< see SafetyFault
 };
 
-/// How late ticks began, by a histogram whose bins are at most 5 % wide.
+/// How late ticks began, from a DurationHistogram. A tick for which others were left out counts
+/// from the first of those: however long the loop stood still, the worst shows it.
 struct Lateness {
   double p50_us = 0.0;
   double p99_us = 0.0;
@@ -73,10 +74,12 @@ struct ServoReport {
   std::int64_t ticks = 0;          ///< recorded samples
   std::int64_t limited_ticks = 0;  ///< changed by the safety chain
   std::int64_t contact_ticks = 0;  ///< with a force out of the plane
-  std::int64_t overruns = 0;       ///< ticks left out because the one before took too long
+  std::int64_t overruns = 0;       ///< ticks left out because the loop stood still too long
   double force_limit_n = 0.0;      ///< that held: the smaller of the options' and the device's
-  double rate_hz = 0.0;            ///< that was had; the options' in virtual time
-  Lateness lateness;               ///< zeros in virtual time
+  /// That was had, from the first tick to the last; 0 with fewer than two. The options' in virtual
+  /// time.
+  double rate_hz = 0.0;
+  Lateness lateness;  ///< zeros in virtual time
 };
 
 /// What a watcher sees of the loop.
@@ -88,6 +91,7 @@ struct ServoState {
   double lateness_us = 0.0;  ///< of this tick
 };
 
+class DurationHistogram;
 class FlightRecorder;
 
 /// Who else looks at the loop or has a say; null where nobody does.
@@ -95,17 +99,21 @@ struct ServoHooks {
   ServoControl* control = nullptr;
   LatestValue<ServoState>* state = nullptr;        ///< set every tick, for one reader
   std::atomic<std::int64_t>* heartbeat = nullptr;  ///< counts ticks, for a watchdog
-  FlightRecorder* recorder = nullptr;
+  FlightRecorder* recorder = nullptr;              ///< every tick, that of a fault included
+  DurationHistogram* lateness = nullptr;  ///< what this run's ticks are added to at its end
 };
 
-/// Runs the loop until it ends: tick i is at i / rate_hz after the first. Every force goes through
-/// the safety chain; the last one written is zero. No allocation, lock or exception inside the
-/// loop. Blocks; call on the thread that is to be the servo's.
+/// Runs the loop until it ends: tick i is at i / rate_hz after the first. A loop that is so late
+/// that the next tick is due as well leaves out the ticks that it missed, so that they never come
+/// in a burst. Every force goes through the safety chain; the last one written is zero. No
+/// allocation, lock or exception inside the loop. Blocks; call on the thread that is to be the
+/// servo's. \throws std::invalid_argument before the first tick if an option is out of its range
 [[nodiscard]] ServoReport run_servo(HapticDevice& device, ForceSource& force, SampleSink& sink,
                                     const ServoOptions& options, ServoClock& clock,
                                     const ServoHooks& hooks = {});
 
 /// The same in virtual time, as fast as the processor goes: there is nothing to be late for.
+/// \throws std::invalid_argument as run_servo
 [[nodiscard]] ServoReport run_servo_in_virtual_time(HapticDevice& device, ForceSource& force,
                                                     SampleSink& sink, const ServoOptions& options);
 

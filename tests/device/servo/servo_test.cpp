@@ -1,6 +1,7 @@
 #include "device/servo/servo.hpp"
 
 #include "device/flat_wall.hpp"
+#include "device/servo/servo_fakes.hpp"
 #include "support/catch.hpp"
 
 #include <cmath>
@@ -8,40 +9,6 @@
 
 namespace touchtrial {
 namespace {
-
-/// Stays where it is, keeps what it was sent, and ends or fails at a chosen tick.
-class ScriptedDevice final : public HapticDevice {
- public:
-  [[nodiscard]] DeviceInfo info() const override { return {"scripted", "", max_force_n, true}; }
-  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override {
-    sample.sequence = static_cast<std::uint64_t>(reads) + 1;
-    sample.position_mm = {static_cast<double>(reads), 0.0, -1.0};
-    return reads++ < ticks ? DeviceStatus::ok : end;
-  }
-  [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override {
-    written.push_back(force_n);
-    return static_cast<int>(written.size()) == fails_at_write ? DeviceStatus::fault
-                                                              : DeviceStatus::ok;
-  }
-  void halt() noexcept override {}
-  void rearm() noexcept override {}
-
-  double max_force_n = 3.3;
-  int ticks = 1'000'000;
-  int fails_at_write = 0;
-  DeviceStatus end = DeviceStatus::stopped;
-  int reads = 0;
-  std::vector<Vec3> written;
-};
-
-class ConstantForce final : public ForceSource {
- public:
-  explicit ConstantForce(Vec3 force_n) : force_n_(force_n) {}
-  [[nodiscard]] Vec3 force_n(const DeviceSample&) noexcept override { return force_n_; }
-
- private:
-  Vec3 force_n_;
-};
 
 TEST_CASE("the servo runs until the hand stops and records what it sent where") {
   ScriptedDevice device;

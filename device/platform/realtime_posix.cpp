@@ -1,0 +1,105 @@
+#include "device/platform/realtime.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstddef>
+#include <system_error>
+
+#include <pthread.h>
+#include <sched.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+#include <time.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
+
+namespace touchtrial {
+namespace {
+
+constexpr std::size_t kStackTouched = std::size_t{256} * 1024;
+constexpr long kNanosecondsPerSecond = 1'000'000'000;
+
+std::string because(int error) {
+  return std::generic_category().message(error);
+}
+
+void add_reason(SchedulingObtained& obtained, const std::string& reason) {
+  obtained.reason += (obtained.reason.empty() ? "" : "; ") + reason;
+}
+
+/// Writes to every page below this call, which the loop will use later.
+[[gnu::noinline]] void touch_stack() noexcept {
+  std::array<volatile std::byte, kStackTouched> room;
+  constexpr std::size_t kLeastPage = 4096;
+  for (std::size_t i = 0; i < room.size(); i += kLeastPage) room[i] = std::byte{};
+}
+
+void ask_for_fifo(int priority, SchedulingObtained& obtained) {
+  sched_param param{};
+  param.sched_priority =
+      std::clamp(priority, sched_get_priority_min(SCHED_FIFO), sched_get_priority_max(SCHED_FIFO));
+  const int error = pthread_setschedparam(pthread_self(), SCHED_FIFO, &param);
+  if (error != 0) {
+    add_reason(obtained, "SCHED_FIFO was refused (" + because(error) +
+                             "): give the user an rtprio limit in /etc/security/limits.d");
+    return;
+  }
+  obtained.policy = SchedulingPolicy::fifo;
+  obtained.priority = param.sched_priority;
+}
+
+/// Under a limit, later mappings that would pass it fail: then only what is there now is locked.
+/// A privileged process may take the limit off.
+int what_to_lock() noexcept {
+  const rlimit none{RLIM_INFINITY, RLIM_INFINITY};
+  rlimit limit{};
+  const bool unlimited =
+      setrlimit(RLIMIT_MEMLOCK, &none) == 0 ||
+      (getrlimit(RLIMIT_MEMLOCK, &limit) == 0 && limit.rlim_cur == RLIM_INFINITY);
+  return unlimited ? MCL_CURRENT | MCL_FUTURE : MCL_CURRENT;
+}
+
+void lock_memory(SchedulingObtained& obtained) {
+  if (mlockall(what_to_lock()) == 0) {
+    obtained.memory_locked = true;
+    return;
+  }
+  add_reason(obtained, "memory could not be locked (" + because(errno) +
+                           "): raise the user's memlock limit in /etc/security/limits.d");
+}
+
+/// Ordinary threads are woken up to 50 us late to save power, unless they object.
+void sharpen_timers() noexcept {
+#ifdef __linux__
+  static_cast<void>(prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL));
+#endif
+}
+
+}  // namespace
+
+SchedulingObtained request_scheduling(const SchedulingRequest& request) {
+  SchedulingObtained obtained;
+  if (request.policy == SchedulingPolicy::fifo) ask_for_fifo(request.priority, obtained);
+  if (obtained.policy == SchedulingPolicy::other) sharpen_timers();
+  if (request.lock_memory) lock_memory(obtained);
+  touch_stack();
+  return obtained;
+}
+
+std::chrono::nanoseconds monotonic_now() noexcept {
+  timespec now{};
+  static_cast<void>(clock_gettime(CLOCK_MONOTONIC, &now));
+  return std::chrono::seconds(now.tv_sec) + std::chrono::nanoseconds(now.tv_nsec);
+}
+
+void sleep_until(std::chrono::nanoseconds time) noexcept {
+  timespec until{};
+  until.tv_sec = static_cast<time_t>(time.count() / kNanosecondsPerSecond);
+  until.tv_nsec = static_cast<long>(time.count() % kNanosecondsPerSecond);
+  while (clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
+  }
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,62 @@
+#include "device/servo/duration_histogram.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+namespace touchtrial {
+namespace {
+
+/// Bins of one octave, and the width of the first ones: below it every nanosecond has its own.
+constexpr std::int64_t kSteps = 32;
+constexpr int kStepBits = 5;
+
+std::size_t bin_of(std::int64_t ns) noexcept {
+  if (ns < kSteps) return static_cast<std::size_t>(ns);
+  const int octave =
+      static_cast<int>(std::bit_width(static_cast<std::uint64_t>(ns))) - 1 - kStepBits;
+  const auto step = static_cast<std::size_t>(ns >> octave);  // in [kSteps, 2 kSteps)
+  return std::min(static_cast<std::size_t>(octave * kSteps) + step, DurationHistogram::kBins - 1);
+}
+
+std::int64_t least_of(std::size_t index) noexcept {
+  const auto i = static_cast<std::int64_t>(index);
+  if (i < kSteps) return i;
+  const std::int64_t octave = i / kSteps - 1;
+  return (i - octave * kSteps) << octave;
+}
+
+}  // namespace
+
+void DurationHistogram::add(Duration duration) noexcept {
+  const std::int64_t ns = std::max<std::int64_t>(duration.count(), 0);
+  ++counts_[bin_of(ns)];
+  ++count_;
+  worst_ns_ = std::max(worst_ns_, ns);
+}
+
+void DurationHistogram::add(const DurationHistogram& other) noexcept {
+  for (std::size_t i = 0; i < kBins; ++i) counts_[i] += other.counts_[i];
+  count_ += other.count_;
+  worst_ns_ = std::max(worst_ns_, other.worst_ns_);
+}
+
+double DurationHistogram::percentile_us(double share) const noexcept {
+  const double rank = std::max(1.0, std::ceil(share * static_cast<double>(count_)));
+  std::uint64_t below = 0;
+  for (std::size_t i = 0; i < kBins; ++i) {
+    below += counts_[i];
+    if (static_cast<double>(below) < rank) continue;
+    // The bin holds whole nanoseconds, the last of them one before its end.
+    return static_cast<double>(std::min(bin(i).end_ns - 1, worst_ns_)) * 1e-3;
+  }
+  return static_cast<double>(worst_ns_) * 1e-3;
+}
+
+DurationHistogram::Bin DurationHistogram::bin(std::size_t index) const noexcept {
+  const bool last = index + 1 == kBins;
+  const std::int64_t end_ns = last ? std::max(least_of(kBins), worst_ns_ + 1) : least_of(index + 1);
+  return {least_of(index), end_ns, counts_[index]};
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,46 @@
+#include "device/servo/sample_ring.hpp"
+
+#include <array>
+#include <stdexcept>
+
+#include <boost/lockfree/spsc_queue.hpp>
+
+namespace touchtrial {
+
+struct SampleRing::Queue {
+  explicit Queue(std::size_t room) : capacity(room), samples(room) {}
+
+  std::size_t capacity;
+  boost::lockfree::spsc_queue<ServoSample> samples;
+};
+
+SampleRing::SampleRing(std::size_t capacity) {
+  if (capacity == 0) throw std::invalid_argument("SampleRing: capacity must be at least 1");
+  queue_ = std::make_unique<Queue>(capacity);
+  // The first round would otherwise fetch page after page inside the loop.
+  while (push({})) {
+  }
+  std::array<ServoSample, 256> read;
+  while (pop(read) != 0) {
+  }
+}
+
+SampleRing::~SampleRing() = default;
+
+std::size_t SampleRing::capacity() const noexcept {
+  return queue_->capacity;
+}
+
+bool SampleRing::push(const ServoSample& sample) noexcept {
+  return queue_->samples.push(sample);
+}
+
+std::size_t SampleRing::pop(std::span<ServoSample> into) noexcept {
+  return queue_->samples.pop(into.data(), into.size());
+}
+
+std::size_t SampleRing::waiting() const noexcept {
+  return queue_->samples.read_available();
+}
+
+}  // namespace touchtrial

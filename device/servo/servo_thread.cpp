@@ -1,0 +1,89 @@
+#include "device/servo/servo_thread.hpp"
+
+#include <chrono>
+#include <condition_variable>
+#include <future>
+#include <mutex>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+
+namespace touchtrial {
+
+struct ServoThread::State {
+  using Work = std::packaged_task<void()>;
+
+  /// The thread itself: takes work until it is told to end.
+  void serve(const SchedulingRequest& request, std::promise<SchedulingObtained> scheduled) {
+    scheduled.set_value(request_scheduling(request));
+    for (Work work = next(); work.valid(); work = next()) work();
+  }
+
+  /// \return no work when the thread is to end
+  Work next() {
+    std::unique_lock lock(mutex);
+    changed.wait(lock, [this] { return given.valid() || ending; });
+    return std::exchange(given, Work());
+  }
+
+  void give(Work work) {
+    const std::lock_guard lock(mutex);
+    given = std::move(work);
+    changed.notify_one();
+  }
+
+  void end() {
+    const std::lock_guard lock(mutex);
+    ending = true;
+    changed.notify_one();
+  }
+
+  std::mutex mutex;
+  std::condition_variable changed;
+  Work given;
+  bool ending = false;
+  std::future<void> result;
+  SchedulingObtained scheduling;
+  std::thread thread;
+};
+
+ServoThread::ServoThread(const SchedulingRequest& request) : state_(std::make_unique<State>()) {
+  std::promise<SchedulingObtained> scheduled;
+  std::future<SchedulingObtained> scheduling = scheduled.get_future();
+  state_->thread = std::thread(&State::serve, state_.get(), request, std::move(scheduled));
+  state_->scheduling = scheduling.get();
+}
+
+ServoThread::~ServoThread() {
+  state_->end();
+  state_->thread.join();
+}
+
+const SchedulingObtained& ServoThread::scheduling() const noexcept {
+  return state_->scheduling;
+}
+
+void ServoThread::start(std::function<void()> work) {
+  if (state_->result.valid()) {
+    throw std::logic_error("ServoThread: the work before has not been waited for");
+  }
+  State::Work task(std::move(work));
+  state_->result = task.get_future();
+  state_->give(std::move(task));
+}
+
+bool ServoThread::running() const noexcept {
+  const auto& result = state_->result;
+  return result.valid() && result.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+}
+
+void ServoThread::wait() {
+  if (state_->result.valid()) state_->result.get();
+}
+
+void ServoThread::run(std::function<void()> work) {
+  start(std::move(work));
+  wait();
+}
+
+}  // namespace touchtrial
