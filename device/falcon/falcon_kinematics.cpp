@@ -1,0 +1,233 @@
+#include "device/falcon/falcon_kinematics.hpp"
+
+#include "device/falcon/falcon_geometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace touchtrial::falcon {
+namespace {
+
+constexpr double kDegPerCount = 0.0364347;
+constexpr double kDegAtCountZero = 35.0;
+
+/// A little beyond what any position in reach needs (-75.4 to 113.5 degrees were found).
+constexpr double kLeastTheta1Rad = -90.0 * kRadPerDeg;
+constexpr double kGreatestTheta1Rad = 120.0 * kRadPerDeg;
+
+/// Of the three pulls, which are about unit vectors: -0.80 at the centre, nowhere nearer to zero
+/// than -0.24 within a cube of 80 mm. It is zero where the legs cannot hold the hand, and positive
+/// beyond, where the legs would have to pass through one another.
+constexpr double kLeastDeterminant = -0.02;
+
+double dot(Vec3 a, Vec3 b) noexcept {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+Vec3 cross(Vec3 a, Vec3 b) noexcept {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+double determinant(const std::array<Vec3, 3>& rows) noexcept {
+  return dot(rows[0], cross(rows[1], rows[2]));
+}
+
+std::optional<LegAngles> angles_of_leg(const LegPoint& p) noexcept {
+  const double side = p.side_m / kParallelogramM;
+  if (!(std::abs(side) < 1.0) || !(p.along_m > 0.0)) return std::nullopt;
+  const double theta3 = std::acos(side);
+  const double reach = 2.0 * kEndLinkM + kParallelogramM * std::sin(theta3);
+  const double a2 = 2.0 * kArmM * p.across_m;
+  const double sum =
+      p.along_m * p.along_m + p.across_m * p.across_m + kArmM * kArmM - reach * reach;
+  const double half = 4.0 * kArmM * p.along_m;
+  const double discriminant = half * half - 4.0 * (sum - a2) * (sum + a2);
+  if (!(discriminant >= 0.0)) return std::nullopt;
+  // The smaller root of (sum + a2) t^2 - half t + (sum - a2) = 0, t = tan(theta1 / 2), in the form
+  // that stays exact where sum + a2 is zero.
+  const double theta1 = 2.0 * std::atan(2.0 * (sum - a2) / (half + std::sqrt(discriminant)));
+  const double across = p.across_m - kArmM * std::cos(theta1);
+  const double along = p.along_m - kArmM * std::sin(theta1);
+  if (!(along > 0.0)) return std::nullopt;
+  return LegAngles{theta1, std::atan2(along, across), theta3};
+}
+
+/// The arms' ends, in the legs' planes.
+struct Arms {
+  PerLeg across_m;
+  PerLeg along_m;
+};
+
+Arms arms_at(const PerLeg& theta1_rad) noexcept {
+  Arms arms{};
+  for (std::size_t i = 0; i < 3; ++i) {
+    arms.across_m[i] = kArmM * std::cos(theta1_rad[i]);
+    arms.along_m[i] = kArmM * std::sin(theta1_rad[i]);
+  }
+  return arms;
+}
+
+/// How far the legs are from closing at a position, and which way that changes.
+struct Closure {
+  PerLeg gap_m{};
+  std::array<Vec3, 3> pull;  ///< its gradient
+  PerLeg lever_m{};
+  bool exists = false;  ///< the parallelograms reach as far to the side
+  bool upright = true;  ///< every parallelogram leads away from the base
+};
+
+Closure closure_at(Vec3 native_m, const Arms& arms) noexcept {
+  Closure c;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const LegPoint p = seen_by_leg(native_m, kLegDirections[i]);
+    const double upright_square = kParallelogramM * kParallelogramM - p.side_m * p.side_m;
+    const double across = p.across_m - arms.across_m[i];
+    const double along = p.along_m - arms.along_m[i];
+    const double length = std::sqrt(across * across + along * along);
+    if (!(upright_square > 1e-12) || !(length > 1e-6)) return c;
+    const double upright = std::sqrt(upright_square);
+    c.gap_m[i] = length - (2.0 * kEndLinkM + upright);
+    c.pull[i] =
+        to_native_axes({across / length, p.side_m / upright, along / length}, kLegDirections[i]);
+    c.lever_m[i] = (arms.across_m[i] * along - arms.along_m[i] * across) / length;
+    c.upright = c.upright && along > 0.0;
+  }
+  c.exists = true;
+  return c;
+}
+
+double sum_of_squares(const PerLeg& gap_m) noexcept {
+  return gap_m[0] * gap_m[0] + gap_m[1] * gap_m[1] + gap_m[2] * gap_m[2];
+}
+
+bool is_closed(const Closure& c) noexcept {
+  constexpr double kTolerance = 1e-12;
+  return std::abs(c.gap_m[0]) < kTolerance && std::abs(c.gap_m[1]) < kTolerance &&
+         std::abs(c.gap_m[2]) < kTolerance;
+}
+
+/// The capped Newton step; nothing where the gradients do not span the space.
+std::optional<Vec3> newton_step(const Closure& c) noexcept {
+  constexpr double kLongestM = 0.020;
+  const double det = determinant(c.pull);
+  if (!(std::abs(det) > 1e-9)) return std::nullopt;
+  const Vec3 sum = c.gap_m[0] * cross(c.pull[1], c.pull[2]) +
+                   c.gap_m[1] * cross(c.pull[2], c.pull[0]) +
+                   c.gap_m[2] * cross(c.pull[0], c.pull[1]);
+  const Vec3 step = (-1.0 / det) * sum;
+  const double length = norm(step);
+  if (!std::isfinite(length)) return std::nullopt;
+  return length > kLongestM ? (kLongestM / length) * step : step;
+}
+
+/// Halves the step until the legs come nearer to closing. \return whether they did
+bool advance(Vec3& position_m, Closure& closure, Vec3 step, const Arms& arms) noexcept {
+  constexpr int kMostHalvings = 20;
+  const double before = sum_of_squares(closure.gap_m);
+  for (int halving = 0; halving < kMostHalvings; ++halving, step = 0.5 * step) {
+    const Closure next = closure_at(position_m + step, arms);
+    if (!next.exists || !(sum_of_squares(next.gap_m) < before)) continue;
+    position_m = position_m + step;
+    closure = next;
+    return true;
+  }
+  return false;
+}
+
+/// The legs of a Falcon, put together as they are in its housing.
+bool is_falcon(const Closure& c) noexcept {
+  return c.upright && c.lever_m[0] >= 0.0 && c.lever_m[1] >= 0.0 && c.lever_m[2] >= 0.0 &&
+         determinant(c.pull) < 0.0;
+}
+
+/// Newton from a start. \return out of reach if that does not close the legs
+Pose solve_from(Vec3 start_m, const Arms& arms) noexcept {
+  constexpr int kMostSteps = 50;
+  Pose pose;
+  Vec3 position_m = start_m;
+  Closure closure = closure_at(position_m, arms);
+  if (!closure.exists) return pose;
+  while (!is_closed(closure)) {
+    if (pose.iterations == kMostSteps) return pose;
+    ++pose.iterations;
+    const std::optional<Vec3> step = newton_step(closure);
+    if (!step || !advance(position_m, closure, *step, arms)) return pose;
+  }
+  if (!is_falcon(closure)) return pose;
+  pose.native_m = position_m;
+  pose.jacobian = {closure.pull, closure.lever_m};
+  const bool holds = determinant(closure.pull) <= kLeastDeterminant;
+  pose.status = holds ? PoseStatus::ok : PoseStatus::singular;
+  return pose;
+}
+
+bool are_possible(const PerLeg& theta1_rad) noexcept {
+  return std::all_of(theta1_rad.begin(), theta1_rad.end(), [](double theta1) {
+    return theta1 >= kLeastTheta1Rad && theta1 <= kGreatestTheta1Rad;
+  });
+}
+
+}  // namespace
+
+double theta1_of_count(std::int16_t count) noexcept {
+  return (kDegPerCount * count + kDegAtCountZero) * kRadPerDeg;
+}
+
+PerLeg theta1_of_counts(const EncoderCounts& counts) noexcept {
+  return {theta1_of_count(counts[0]), theta1_of_count(counts[1]), theta1_of_count(counts[2])};
+}
+
+std::int16_t count_of_theta1(double theta1_rad) noexcept {
+  using Limits = std::numeric_limits<std::int16_t>;
+  const double count = std::round((theta1_rad / kRadPerDeg - kDegAtCountZero) / kDegPerCount);
+  if (std::isnan(count)) return 0;
+  return static_cast<std::int16_t>(std::clamp<double>(count, Limits::min(), Limits::max()));
+}
+
+std::optional<Legs> inverse_kinematics(Vec3 native_m) noexcept {
+  Legs legs;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto angles = angles_of_leg(seen_by_leg(native_m, kLegDirections[i]));
+    if (!angles) return std::nullopt;
+    legs[i] = *angles;
+  }
+  return legs;
+}
+
+LegJacobian leg_jacobian(const Legs& legs) noexcept {
+  LegJacobian jacobian;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto& [theta1, theta2, theta3] = legs[i];
+    const Vec3 in_leg = {std::cos(theta2), std::cos(theta3) / std::sin(theta3), std::sin(theta2)};
+    jacobian.pull[i] = to_native_axes(in_leg, kLegDirections[i]);
+    jacobian.lever_m[i] = kArmM * std::sin(theta2 - theta1);
+  }
+  return jacobian;
+}
+
+std::optional<PerLeg> torques_nm(const LegJacobian& jacobian, Vec3 force_n) noexcept {
+  const auto& pull = jacobian.pull;
+  const double det = determinant(pull);
+  if (!(det <= kLeastDeterminant)) return std::nullopt;
+  // The legs' forces along their pulls add up to the force on the hand.
+  const PerLeg torques = {jacobian.lever_m[0] * dot(force_n, cross(pull[1], pull[2])) / det,
+                          jacobian.lever_m[1] * dot(force_n, cross(pull[2], pull[0])) / det,
+                          jacobian.lever_m[2] * dot(force_n, cross(pull[0], pull[1])) / det};
+  if (!is_finite({torques[0], torques[1], torques[2]})) return std::nullopt;
+  return torques;
+}
+
+Pose forward_kinematics(const PerLeg& theta1_rad, Vec3 start_m) noexcept {
+  if (!are_possible(theta1_rad)) return {};
+  const Arms arms = arms_at(theta1_rad);
+  Pose pose = solve_from(start_m, arms);
+  if (pose.status != PoseStatus::out_of_reach || start_m == kCentreM) return pose;
+  const int wasted = pose.iterations;
+  pose = solve_from(kCentreM, arms);
+  pose.iterations += wasted;
+  return pose;
+}
+
+}  // namespace touchtrial::falcon

@@ -1,0 +1,120 @@
+/// \file The 16 bytes that go to a running Falcon, and the 16 that it answers with.
+///
+/// '<', three int16 as four nibbles each (least significant first, plus 0x41), a byte of flags plus
+/// 0x41, a byte that nobody uses, '>'. To the Falcon: motor values; flags: homing, three LEDs. From
+/// it: encoder counts; flags: four buttons, three axes homed. Source: the open drivers. Not
+/// verified on hardware.
+///
+/// Nothing here allocates or throws. Pure functions may be called by any thread; a FalconStream
+/// belongs to one.
+#pragma once
+
+#include "core/vec.hpp"
+#include "device/falcon/falcon_kinematics.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace touchtrial::falcon {
+
+inline constexpr std::size_t kPacketSize = 16;
+using Packet = std::array<std::uint8_t, kPacketSize>;
+
+/// \name To the Falcon
+///@{
+using MotorValues = std::array<std::int16_t, 3>;  ///< -10,000 for 1 N m
+
+/// Motor values of torques. If one is beyond the motors' range, all three shrink by one scale, so
+/// that the force keeps its direction. Torques that are not finite give zeros.
+[[nodiscard]] MotorValues motor_values(const PerLeg& torques_nm) noexcept;
+
+/// Which lights are on.
+struct Lights {
+  bool red = false;
+  bool green = false;
+  bool blue = false;
+};
+
+/// The flags' bits 0 to 2 of the lights. \param order  the bits of red, green and blue, each 0 to
+/// 2: sources disagree on them. A bit out of range lights nothing.
+[[nodiscard]] std::uint8_t led_bits(const Lights& lights, const std::array<int, 3>& order) noexcept;
+
+struct Command {
+  MotorValues motors{};
+  std::uint8_t leds = 0;  ///< as `led_bits` gives them
+  bool homing = true;     ///< lets the axes home when they are moved; always on
+};
+
+[[nodiscard]] Packet encode_command(const Command& command) noexcept;
+///@}
+
+/// \name From the Falcon
+///@{
+/// Bits of Reply::buttons.
+enum Button : std::uint32_t {
+  kButtonPlus = 1U << 0U,
+  kButtonForward = 1U << 1U,
+  kButtonCentre = 1U << 2U,
+  kButtonMinus = 1U << 3U,
+};
+
+struct Reply {
+  EncoderCounts counts{};
+  std::uint32_t buttons = 0;    ///< of Button, set while down
+  std::array<bool, 3> homed{};  ///< one for each leg
+  [[nodiscard]] bool all_homed() const noexcept { return homed[0] && homed[1] && homed[2]; }
+};
+
+/// \return nothing unless both marks and all twelve nibbles are as they must be
+[[nodiscard]] std::optional<Reply> decode_reply(
+    std::span<const std::uint8_t, kPacketSize> packet) noexcept;
+///@}
+
+/// \name The FTDI chip's share
+///@{
+inline constexpr std::size_t kUsbPacketSize = 64;
+inline constexpr std::size_t kFtdiStatusSize = 2;  ///< at the front of every USB packet from it
+
+/// Takes the status bytes out of what one bulk transfer brought: USB packets of 64 bytes, the last
+/// one shorter perhaps.
+/// \param payload  where the rest goes; what does not fit is left out
+/// \return how many bytes were written
+[[nodiscard]] std::size_t ftdi_payload(std::span<const std::uint8_t> transfer,
+                                       std::span<std::uint8_t> payload) noexcept;
+///@}
+
+/// Finds replies in the bytes from a Falcon, whatever else is among them, and finds back to them
+/// after bytes were lost. Holds one unfinished packet and no more.
+class FalconStream {
+ public:
+  /// Reads what one bulk transfer brought, with the FTDI's status bytes.
+  /// \return how many replies it finished; `newest` is the last of them
+  int push_transfer(std::span<const std::uint8_t> transfer) noexcept;
+
+  /// The last reply; the default one before the first.
+  [[nodiscard]] const Reply& newest() const noexcept { return newest_; }
+  [[nodiscard]] std::uint64_t replies() const noexcept { return replies_; }
+  /// Bytes that belonged to no reply: a measure of how bad the link is.
+  [[nodiscard]] std::uint64_t discarded_bytes() const noexcept { return discarded_; }
+  /// Forgets the unfinished packet, after a purge of the chip's buffers. The counters stay.
+  void restart() noexcept;
+
+ private:
+  bool push_byte(std::uint8_t byte) noexcept;
+  void start_packet_at(std::uint8_t byte) noexcept;
+
+  Packet packet_{};
+  std::size_t size_ = 0;
+  Reply newest_;
+  std::uint64_t replies_ = 0;
+  std::uint64_t discarded_ = 0;
+};
+
+/// The force to send: what the servo asks for and a constant one that carries the grip.
+/// \param bias_n  device frame; a norm beyond 1 N is cut to that
+[[nodiscard]] Vec3 with_gravity_bias(Vec3 force_n, Vec3 bias_n) noexcept;
+
+}  // namespace touchtrial::falcon

@@ -1,0 +1,329 @@
+#include "device/falcon/falcon_kinematics.hpp"
+
+#include "core/random.hpp"
+#include "device/falcon/emulator/falcon_legs.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace touchtrial::falcon {
+namespace {
+
+constexpr int kPoses = 5000;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Vec3 random_vector(RandomStream& random, double most) {
+  return {random.uniform(-most, most), random.uniform(-most, most), random.uniform(-most, most)};
+}
+
+/// Somewhere in the sphere that the device promises.
+Vec3 random_position_m(RandomStream& random) {
+  while (true) {
+    const Vec3 device_mm = random_vector(random, kWorkspaceRadiusMm);
+    if (norm(device_mm) <= kWorkspaceRadiusMm) return to_native_m(device_mm);
+  }
+}
+
+PerLeg theta1_at(Vec3 native_m) {
+  const auto legs = inverse_kinematics(native_m);
+  REQUIRE(legs);
+  return {(*legs)[0].theta1_rad, (*legs)[1].theta1_rad, (*legs)[2].theta1_rad};
+}
+
+LegJacobian jacobian_at(Vec3 native_m) {
+  const auto legs = inverse_kinematics(native_m);
+  REQUIRE(legs);
+  return leg_jacobian(*legs);
+}
+
+double dot(Vec3 a, Vec3 b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+double largest_difference(const PerLeg& a, const PerLeg& b) {
+  return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
+}
+
+/// How far a grip that stands at theta1 is from the position, along the leg's parallelogram.
+double gap_m(Vec3 p, double phi_rad, double theta1_rad) {
+  const double across = p.x * std::cos(phi_rad) + p.y * std::sin(phi_rad) - 0.040 + 0.01443 -
+                        0.060 * std::cos(theta1_rad);
+  const double side = -p.x * std::sin(phi_rad) + p.y * std::cos(phi_rad) + 0.02309 - 0.025;
+  const double along = p.z - 0.060 * std::sin(theta1_rad);
+  return std::hypot(across, along) - 0.0225 - std::sqrt(0.1025 * 0.1025 - side * side);
+}
+
+/// Turns the arm from far back until the parallelogram reaches, then halves the interval.
+double theta1_by_bisection(Vec3 p, double phi_deg) {
+  constexpr double kDeg = 3.14159265358979323846 / 180.0;
+  double open = -100.0 * kDeg;
+  while (gap_m(p, phi_deg * kDeg, open + 0.1 * kDeg) > 0.0) open += 0.1 * kDeg;
+  double closed = open + 0.1 * kDeg;
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (open + closed);
+    (gap_m(p, phi_deg * kDeg, middle) > 0.0 ? open : closed) = middle;
+  }
+  return closed;
+}
+
+TEST_CASE("falcon frames: the device frame is the native one from the centre, in millimetres") {
+  CHECK(to_device_mm(kCentreM) == Vec3{0.0, 0.0, 0.0});
+  const Vec3 device_mm = to_device_mm({0.010, -0.020, 0.1315});
+  CHECK(device_mm.x == Approx(10.0));
+  CHECK(device_mm.y == Approx(-20.0));
+  CHECK(device_mm.z == Approx(10.0));
+  const Vec3 there_and_back = to_device_mm(to_native_m({1.0, 2.0, 3.0}));
+  CHECK(norm(there_and_back - Vec3{1.0, 2.0, 3.0}) < 1e-12);
+}
+
+TEST_CASE("falcon frames: the centre is the middle of what the legs reach on the axis") {
+  const auto reached = [](double z_m) { return inverse_kinematics({0.0, 0.0, z_m}).has_value(); };
+  double nearest = kCentreM.z;
+  double farthest = kCentreM.z;
+  while (reached(nearest)) nearest -= 1e-5;
+  while (reached(farthest)) farthest += 1e-5;
+  CHECK(nearest == Approx(0.0598).margin(1e-4));
+  CHECK(farthest == Approx(0.1832).margin(1e-4));
+  CHECK(0.5 * (nearest + farthest) == Approx(kCentreM.z).margin(1e-4));
+}
+
+TEST_CASE("falcon encoders: 35 degrees at count 0, 0.0364347 degrees a count") {
+  constexpr double kDeg = 3.14159265358979323846 / 180.0;
+  CHECK(theta1_of_count(0) == Approx(35.0 * kDeg));
+  CHECK(theta1_of_count(-1000) == Approx((35.0 - 36.4347) * kDeg));
+  for (int count = -32768; count <= 32767; ++count) {
+    const auto value = static_cast<std::int16_t>(count);
+    if (count_of_theta1(theta1_of_count(value)) != value) FAIL("count " << count);
+  }
+  CHECK(count_of_theta1(1e9) == 32767);
+  CHECK(count_of_theta1(-kInfinity) == -32768);
+  CHECK(count_of_theta1(kNan) == 0);
+}
+
+TEST_CASE("falcon inverse kinematics agrees with bisection and with the law of cosines") {
+  RandomStream random(1, "falcon inverse");
+  for (int i = 0; i < kPoses / 10; ++i) {
+    const Vec3 position = random_position_m(random);
+    const PerLeg angles = theta1_at(position);
+    const PerLeg bisected = {theta1_by_bisection(position, 105.0),
+                             theta1_by_bisection(position, -15.0),
+                             theta1_by_bisection(position, -135.0)};
+    REQUIRE(largest_difference(angles, bisected) < 1e-12);
+    REQUIRE(largest_difference(angles, reference_theta1(position).value()) < 1e-12);
+  }
+}
+
+TEST_CASE("falcon inverse kinematics: the three angles of a leg lead from the base to the grip") {
+  RandomStream random(2, "falcon chain");
+  const double phi = 105.0 * 3.14159265358979323846 / 180.0;
+  for (int i = 0; i < 500; ++i) {
+    const Vec3 p = random_position_m(random);
+    const LegAngles leg = inverse_kinematics(p).value()[0];
+    const double reach = 0.0225 + 0.1025 * std::sin(leg.theta3_rad);
+    const double outwards =
+        0.040 - 0.01443 + 0.060 * std::cos(leg.theta1_rad) + reach * std::cos(leg.theta2_rad);
+    const double sideways = -0.02309 + 0.025 + 0.1025 * std::cos(leg.theta3_rad);
+    REQUIRE(std::abs(p.x * std::cos(phi) + p.y * std::sin(phi) - outwards) < 1e-14);
+    REQUIRE(std::abs(-p.x * std::sin(phi) + p.y * std::cos(phi) - sideways) < 1e-14);
+    REQUIRE(std::abs(p.z - 0.060 * std::sin(leg.theta1_rad) - reach * std::sin(leg.theta2_rad)) <
+            1e-14);
+  }
+}
+
+TEST_CASE("falcon forward kinematics undoes the inverse to 1e-9 m from a cold start") {
+  RandomStream random(3, "falcon forward");
+  std::vector<int> iterations;
+  double worst_m = 0.0;
+  for (int i = 0; i < kPoses; ++i) {
+    const Vec3 position = random_position_m(random);
+    const Pose pose = forward_kinematics(theta1_at(position));
+    REQUIRE(pose.status == PoseStatus::ok);
+    worst_m = std::max(worst_m, norm(pose.native_m - position));
+    iterations.push_back(pose.iterations);
+  }
+  CHECK(worst_m < 1e-9);
+  CHECK(*std::max_element(iterations.begin(), iterations.end()) <= 8);
+}
+
+TEST_CASE("falcon forward kinematics needs at most three steps from a millisecond ago") {
+  RandomStream random(4, "falcon warm");
+  for (int i = 0; i < kPoses; ++i) {
+    const Vec3 position = random_position_m(random);
+    const Vec3 before = position + random_vector(random, 0.0005);  // up to 0.9 m/s
+    const Pose pose = forward_kinematics(theta1_at(position), before);
+    REQUIRE(pose.status == PoseStatus::ok);
+    REQUIRE(norm(pose.native_m - position) < 1e-9);
+    REQUIRE(pose.iterations <= 3);
+  }
+}
+
+TEST_CASE("falcon forward kinematics finds the pose from any start, sensible or not") {
+  RandomStream random(5, "falcon starts");
+  for (int i = 0; i < kPoses; ++i) {
+    const Vec3 position = random_position_m(random);
+    const Vec3 start = random_position_m(random);
+    REQUIRE(norm(forward_kinematics(theta1_at(position), start).native_m - position) < 1e-9);
+    const Vec3 far = random_vector(random, 1.0);
+    REQUIRE(norm(forward_kinematics(theta1_at(position), far).native_m - position) < 1e-9);
+  }
+  const Vec3 position = to_native_m({10.0, 20.0, -10.0});
+  for (const double bad : {kNan, kInfinity, -kInfinity, 1e308, 0.0}) {
+    const Pose pose = forward_kinematics(theta1_at(position), {bad, bad, bad});
+    REQUIRE(pose.status == PoseStatus::ok);
+    REQUIRE(norm(pose.native_m - position) < 1e-9);
+  }
+}
+
+TEST_CASE("falcon forward kinematics: what is out of reach gives a status in bounded time") {
+  for (const double bad : {kNan, kInfinity, -kInfinity, 10.0, -10.0, 3.0}) {
+    const Pose pose = forward_kinematics({bad, 0.5, 0.5});
+    CHECK(pose.status == PoseStatus::out_of_reach);
+    CHECK(pose.native_m == kCentreM);
+    CHECK(pose.iterations == 0);
+  }
+  const Pose torn = forward_kinematics({-1.5, 2.0, -1.5});
+  CHECK(torn.status == PoseStatus::out_of_reach);
+  CHECK(torn.native_m == kCentreM);
+}
+
+/// What may be relied on, whatever the counts are.
+void check_sane(const Pose& pose, const PerLeg& theta1_rad) {
+  REQUIRE(pose.iterations <= 100);
+  REQUIRE(is_finite(pose.native_m));
+  if (pose.status == PoseStatus::out_of_reach) {
+    REQUIRE(pose.native_m == kCentreM);
+    REQUIRE_FALSE(torques_nm(pose.jacobian, {1.0, 1.0, 1.0}));
+    return;
+  }
+  const auto legs = inverse_kinematics(pose.native_m);
+  // At the very edge of the reach rounding may put the position outside.
+  if (legs) {
+    REQUIRE(std::abs((*legs)[0].theta1_rad - theta1_rad[0]) < 1e-4);
+  }
+  const auto torques = torques_nm(pose.jacobian, {8.0, -8.0, 8.0});
+  REQUIRE(torques.has_value() == (pose.status == PoseStatus::ok));
+  if (torques) REQUIRE(is_finite({(*torques)[0], (*torques)[1], (*torques)[2]}));
+}
+
+TEST_CASE("falcon forward kinematics stays finite and bounded on hostile encoder counts") {
+  RandomStream random(6, "falcon hostile");
+  int found = 0;
+  Vec3 last = kCentreM;
+  for (int i = 0; i < 20000; ++i) {
+    const double spread = i % 2 == 0 ? 32768.0 : 3500.0;
+    EncoderCounts counts{};
+    for (auto& count : counts) {
+      count = static_cast<std::int16_t>(random.uniform(-spread, spread));
+    }
+    const PerLeg angles = theta1_of_counts(counts);
+    const Pose pose = forward_kinematics(angles, last);
+    check_sane(pose, angles);
+    if (pose.status == PoseStatus::ok) ++found;
+    last = pose.native_m;
+  }
+  CHECK(found > 500);
+  CHECK(found < 15000);
+}
+
+TEST_CASE("falcon Jacobian agrees with numerical differentiation") {
+  RandomStream random(7, "falcon jacobian");
+  for (int i = 0; i < kPoses; ++i) {
+    const Vec3 position = random_position_m(random);
+    const LegJacobian jacobian = jacobian_at(position);
+    const auto rows = reference_rows(position);
+    REQUIRE(rows);
+    for (std::size_t leg = 0; leg < 3; ++leg) {
+      const Vec3 row = (1.0 / jacobian.lever_m[leg]) * jacobian.pull[leg];
+      REQUIRE(norm(row - (*rows)[leg]) < 1e-7 * norm(row));
+    }
+  }
+}
+
+TEST_CASE("falcon forward kinematics brings the Jacobian of its pose") {
+  RandomStream random(8, "falcon both jacobians");
+  for (int i = 0; i < 500; ++i) {
+    const Vec3 position = random_position_m(random);
+    const LegJacobian expected = jacobian_at(position);
+    const LegJacobian found = forward_kinematics(theta1_at(position)).jacobian;
+    CHECK(largest_difference(found.lever_m, expected.lever_m) < 1e-9);
+    for (std::size_t leg = 0; leg < 3; ++leg) {
+      REQUIRE(norm(found.pull[leg] - expected.pull[leg]) < 1e-9);
+    }
+  }
+}
+
+TEST_CASE("falcon torques: torque times joint speed is force times hand speed") {
+  RandomStream random(9, "falcon power");
+  for (int i = 0; i < kPoses; ++i) {
+    const Vec3 position = random_position_m(random);
+    const Vec3 force_n = random_vector(random, 8.0);
+    const Vec3 speed_m_s = random_vector(random, 1.0);
+    const PerLeg torques = torques_nm(jacobian_at(position), force_n).value();
+    const auto rows = reference_rows(position);
+    REQUIRE(rows);
+    double joints_w = 0.0;
+    for (std::size_t leg = 0; leg < 3; ++leg)
+      joints_w += torques[leg] * dot((*rows)[leg], speed_m_s);
+    REQUIRE(joints_w == Approx(dot(force_n, speed_m_s)).margin(1e-6));
+  }
+}
+
+TEST_CASE("falcon torques make the force that was asked for, along z as along x and y") {
+  RandomStream random(10, "falcon force");
+  for (int i = 0; i < 500; ++i) {
+    const Vec3 position = random_position_m(random);
+    const Vec3 force_n = random_vector(random, 8.0);
+    const PerLeg torques = torques_nm(jacobian_at(position), force_n).value();
+    REQUIRE(norm(reference_force_n(position, torques).value() - force_n) < 1e-6);
+  }
+  // At the centre each motor carries a third of a force along the axis.
+  const PerLeg torques = torques_nm(jacobian_at(kCentreM), {0.0, 0.0, 1.0}).value();
+  CHECK(torques[0] == Approx(torques[1]));
+  CHECK(torques[1] == Approx(torques[2]));
+  CHECK(torques[0] > 0.0);
+}
+
+TEST_CASE("falcon torques: a pose that cannot be held, or no number, gives none") {
+  LegJacobian flat = jacobian_at(kCentreM);
+  CHECK(torques_nm(flat, {0.0, 0.0, 1.0}));
+  CHECK_FALSE(torques_nm(flat, {kNan, 0.0, 0.0}));
+  CHECK_FALSE(torques_nm(flat, {0.0, kInfinity, 0.0}));
+  for (Vec3& pull : flat.pull) pull.z = 0.0;
+  CHECK_FALSE(torques_nm(flat, {0.0, 0.0, 1.0}));
+  CHECK_FALSE(torques_nm(LegJacobian{}, {0.0, 0.0, 1.0}));
+  LegJacobian broken = jacobian_at(kCentreM);
+  broken.lever_m[1] = kNan;
+  CHECK_FALSE(torques_nm(broken, {0.0, 0.0, 1.0}));
+}
+
+TEST_CASE("falcon inverse kinematics refuses what is out of reach, and what is no number") {
+  CHECK_FALSE(inverse_kinematics({0.0, 0.0, 0.25}));
+  CHECK_FALSE(inverse_kinematics({0.0, 0.0, 0.02}));
+  CHECK_FALSE(inverse_kinematics({0.0, 0.0, -0.12}));
+  CHECK_FALSE(inverse_kinematics({0.2, 0.0, 0.12}));
+  for (const double bad : {kNan, kInfinity, -kInfinity, 1e200}) {
+    CHECK_FALSE(inverse_kinematics({bad, 0.0, 0.12}));
+    CHECK_FALSE(inverse_kinematics({0.0, bad, 0.12}));
+    CHECK_FALSE(inverse_kinematics({0.0, 0.0, bad}));
+  }
+  RandomStream random(11, "falcon far");
+  int reached = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 position = random_vector(random, 0.3);
+    const auto legs = inverse_kinematics(position);
+    if (!legs) continue;
+    REQUIRE(reference_theta1(position));
+    ++reached;
+    for (const LegAngles& leg : *legs) {
+      REQUIRE(is_finite({leg.theta1_rad, leg.theta2_rad, leg.theta3_rad}));
+    }
+  }
+  CHECK(reached > 100);
+}
+
+}  // namespace
+}  // namespace touchtrial::falcon
