@@ -16,11 +16,15 @@ function(touchtrial_library name)
   target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE touchtrial_settings ${ARG_PRIVATE})
 endfunction()
 
-# touchtrial_test(NAME [LIBRARIES ...])
-# One test program a folder, of every *_test.cpp file in and below it; each test case is a CTest test.
+# touchtrial_test(NAME [EXCEPT folders...] [LIBRARIES ...])
+# One test program a folder, of every *_test.cpp file in and below it, except those of folders that
+# have a program of their own; each test case is a CTest test.
 function(touchtrial_test name)
-  cmake_parse_arguments(ARG "" "" "LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "" "" "EXCEPT;LIBRARIES" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*_test.cpp")
+  foreach(folder ${ARG_EXCEPT})
+    list(FILTER sources EXCLUDE REGEX "^${CMAKE_CURRENT_SOURCE_DIR}/${folder}/")
+  endforeach()
   add_executable(${name} ${sources})
   target_include_directories(${name} PRIVATE "${CMAKE_SOURCE_DIR}/tests")
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} touchtrial_test_support touchtrial_settings)

@@ -1,0 +1,35 @@
+/// \file Loading the vendor's firmware into a Falcon, which forgets it without power. The image is
+/// the user's: none comes with this program.
+#pragma once
+
+#include "device/falcon/ftdi_transport.hpp"
+
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <vector>
+
+namespace touchtrial::falcon {
+
+/// Sizes of a file that can be an image: those known have 7,914 and 8,492 bytes.
+constexpr std::size_t kLeastFirmwareBytes = 4'096;
+constexpr std::size_t kMostFirmwareBytes = 16'384;
+
+/// \throws FileError, with the remedy, if no file is named, it cannot be read, or it has a size
+///   that no image has
+[[nodiscard]] std::vector<std::uint8_t> read_falcon_firmware(const std::filesystem::path& file);
+
+/// How often to try before giving up: loading is known to fail now and then.
+constexpr int kFirmwareLoads = 10;
+constexpr int kFirmwareHandshakes = 100;
+
+/// Resets the device into its loader and sends the image, comparing every byte with its echo; then
+/// sets the chip up for running. Takes about 2.5 s where nothing fails.
+/// \throws DeviceError with the last failure and the remedy after `kFirmwareLoads` loads, or at
+///   once if the device is gone
+void load_falcon_firmware(FtdiTransport& transport, std::span<const std::uint8_t> image);
+
+/// Sets the chip up for talking to loaded firmware: latency 1 ms, running speed, empty buffers.
+void set_up_running_falcon(FtdiTransport& transport);
+
+}  // namespace touchtrial::falcon

@@ -1,0 +1,29 @@
+/// \file Novint Falcons on the USB, found and opened by libusb.
+#pragma once
+
+#include "device/falcon/ftdi_transport.hpp"
+
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace touchtrial::falcon {
+
+/// A Falcon that is plugged in.
+struct UsbFalcon {
+  std::string where;    ///< "USB bus 1 port 2, address 7"
+  std::string serial;   ///< empty if it has none or may not be opened
+  std::string trouble;  ///< why it cannot be opened, with the remedy, one line; empty if it can
+};
+
+/// Every Falcon that is plugged in. Opens each for a moment, and moves nothing.
+/// \throws DeviceError if USB cannot be used at all
+[[nodiscard]] std::vector<UsbFalcon> find_usb_falcons();
+
+/// Opens and claims one; a kernel driver that holds it is detached for as long.
+/// \param serial  of the one to open; empty: the only one
+/// \throws DeviceError, with the remedy, if there is none, more than one, no permission, or if
+///   another program has it
+[[nodiscard]] std::unique_ptr<FtdiTransport> open_usb_falcon(const std::string& serial);
+
+}  // namespace touchtrial::falcon

@@ -1,0 +1,53 @@
+/// \file libusb's objects, released by their owners. Private to this folder.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <libusb.h>
+
+namespace touchtrial::falcon {
+
+struct UsbRelease {
+  void operator()(libusb_context* context) const noexcept { libusb_exit(context); }
+  void operator()(libusb_device* device) const noexcept { libusb_unref_device(device); }
+  void operator()(libusb_device_handle* handle) const noexcept { libusb_close(handle); }
+  void operator()(libusb_transfer* transfer) const noexcept { libusb_free_transfer(transfer); }
+};
+using UsbContext = std::unique_ptr<libusb_context, UsbRelease>;
+using UsbDevice = std::unique_ptr<libusb_device, UsbRelease>;
+using UsbHandle = std::unique_ptr<libusb_device_handle, UsbRelease>;
+using UsbTransfer = std::unique_ptr<libusb_transfer, UsbRelease>;
+
+/// \throws DeviceError if libusb cannot start
+[[nodiscard]] UsbContext make_usb_context();
+/// \throws DeviceError if there is no memory for it
+[[nodiscard]] UsbTransfer make_usb_transfer();
+
+/// The interface of a handle, claimed from whoever has it; a kernel driver gets it back.
+class UsbClaim {
+ public:
+  /// \throws DeviceError naming `where` if another program has it
+  UsbClaim(libusb_device_handle* handle, const std::string& where);
+  ~UsbClaim();
+  UsbClaim(const UsbClaim&) = delete;
+  UsbClaim& operator=(const UsbClaim&) = delete;
+
+ private:
+  libusb_device_handle* handle_;
+};
+
+/// Falcons on the bus, in the order of the bus. \throws DeviceError if it cannot be read
+[[nodiscard]] std::vector<UsbDevice> falcons_on_bus(libusb_context* context);
+/// "USB bus 1 port 2, address 7"
+[[nodiscard]] std::string place_of(libusb_device* device);
+/// Empty if it has none, or does not tell.
+[[nodiscard]] std::string serial_of(libusb_device_handle* handle);
+/// \throws DeviceError with the remedy if it may not be opened or is gone
+[[nodiscard]] UsbHandle open_usb_device(libusb_device* device);
+
+/// What to do about an error of libusb's, as the end of a message: "LIBUSB_ERROR_ACCESS: ...".
+[[nodiscard]] std::string usb_remedy(int error);
+
+}  // namespace touchtrial::falcon

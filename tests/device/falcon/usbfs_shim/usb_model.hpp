@@ -1,0 +1,45 @@
+/// \file What a stand-in for a USB device does, whatever brings it the transfers: the usbfs shim or
+/// umockdev.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace touchtrial::testing {
+
+/// A device with vendor requests and one bulk endpoint each way, as the FTDI chip is one.
+class UsbModel {
+ public:
+  virtual ~UsbModel() = default;
+  virtual void vendor_request(std::uint8_t request, std::uint16_t value) = 0;
+  virtual void bulk_out(std::span<const std::uint8_t> bytes) = 0;
+  /// \return the length of what came into `bytes`; 0 if there is nothing yet
+  virtual std::size_t bulk_in(std::span<std::uint8_t> bytes) = 0;
+};
+
+/// How a device presents itself on the bus.
+struct UsbIdentity {
+  int bus = 1;
+  int address = 7;
+  std::string port = "1-2";  ///< as in /sys/bus/usb/devices
+  std::string serial = "FALCON1";
+  std::uint16_t vendor = 0x0403;
+  std::uint16_t product = 0xcb48;
+
+  [[nodiscard]] std::string node() const;  ///< /dev/bus/usb/001/007
+};
+
+/// Device descriptor and configuration, as the kernel shows them in sysfs.
+[[nodiscard]] std::vector<std::uint8_t> usb_descriptors(const UsbIdentity& identity);
+
+/// Answers a control transfer. \param setup  8 bytes of set-up, then data
+/// \return how many bytes of data were put after the set-up; nothing: the device stalls
+[[nodiscard]] std::optional<std::size_t> answer_control(const UsbIdentity& identity,
+                                                        UsbModel& model,
+                                                        std::span<std::uint8_t> setup);
+
+}  // namespace touchtrial::testing
