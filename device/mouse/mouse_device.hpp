@@ -16,8 +16,8 @@ namespace touchtrial {
 /// How the stylus yields. The defaults let coarse textures be told apart: docs/devices/mouse.md.
 struct MouseOptions {
   double pull_n_per_mm = 0.025;   ///< of the spring back to the pointer: 0.1 N shows as 4 mm; > 0
-  double greatest_pull_n = 0.4;   ///< more tangential force displaces no further, > 0
-  double pull_time_s = 0.013;     ///< of the stylus on that spring: 12 Hz, > 0
+  double greatest_pull_n = 0.3;   ///< more tangential force displaces no further, > 0
+  double pull_time_s = 0.010;     ///< of the stylus on that spring: 16 Hz, > 0
   double pointer_time_s = 0.006;  ///< smooths the steps in which a pointer comes, > 0
   double greatest_speed_mm_s = 800.0;  ///< of the pointer as the stylus follows it, > 0
   double push_n = 0.7;                 ///< on the plane while the button is held, > 0

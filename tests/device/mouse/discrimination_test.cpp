@@ -1,0 +1,43 @@
+// Whether what the window shows is enough to tell coarse textures apart: docs/devices/mouse.md.
+#include "device/mouse/path_observer.hpp"
+#include "support/catch.hpp"
+
+#include <memory>
+
+namespace touchtrial {
+namespace {
+
+constexpr int kStrokes = 40;
+
+TextureMaker gratings(std::vector<Grating> of_texture) {
+  return [of_texture = std::move(of_texture)](std::size_t index) {
+    return std::make_unique<Grating>(of_texture[index]);
+  };
+}
+
+TEST_CASE("an observer of the drawn path tells two coarse gratings of one strength apart") {
+  const double right = share_named_rightly(2, kStrokes, gratings({{4.0, 0.05}, {7.0, 0.05}}));
+  CHECK(right >= 0.9);
+}
+
+TEST_CASE("an observer of the drawn path tells a weak grating from a strong one") {
+  const double right = share_named_rightly(2, kStrokes, gratings({{5.0, 0.03}, {5.0, 0.06}}));
+  CHECK(right >= 0.9);
+}
+
+TEST_CASE("an observer of the drawn path guesses where two textures are the same") {
+  const double right = share_named_rightly(2, kStrokes, gratings({{5.0, 0.05}, {5.0, 0.05}}));
+  CHECK(right == 0.5);
+}
+
+TEST_CASE("without displacement there is nothing to see, and the observer guesses") {
+  MouseOptions stiff;
+  stiff.pull_n_per_mm = 100.0;
+  const double right =
+      share_named_rightly(2, kStrokes, gratings({{4.0, 0.05}, {7.0, 0.05}}), stiff);
+  CHECK(right > 0.3);
+  CHECK(right < 0.7);
+}
+
+}  // namespace
+}  // namespace touchtrial
