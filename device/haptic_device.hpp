@@ -63,6 +63,8 @@ struct DeviceInfo {
   std::optional<Workspace> workspace = std::nullopt;  ///< nothing: as large as any plane
   /// Shown on a screen instead of felt: not blind, so for pilot sessions and demonstration alone.
   bool visual = false;
+  /// Of a wall that it renders stably, by its maker's word; 0 if not told.
+  double max_stiffness_n_per_mm = 0.0;
 };
 
 /// A force-feedback device. It is open once constructed (constructors throw DeviceError) and closes

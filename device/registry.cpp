@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 #include "core/nearest_name.hpp"
 #include "device/mouse/driver.hpp"
+#include "device/openhaptics/driver.hpp"
 
 #include <string_view>
 
@@ -27,7 +28,7 @@ std::vector<DeviceListing> listings_of(const DeviceDriver& driver, const DeviceS
 }  // namespace
 
 const std::vector<DeviceDriver>& device_drivers() {
-  static const std::vector<DeviceDriver> kDrivers = {mouse_driver()};
+  static const std::vector<DeviceDriver> kDrivers = {openhaptics_driver(), mouse_driver()};
   return kDrivers;
 }
 

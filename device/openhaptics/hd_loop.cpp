@@ -1,0 +1,112 @@
+#include "device/openhaptics/hd_loop.hpp"
+
+#include "device/platform/realtime.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <thread>
+
+namespace touchtrial::hd {
+namespace {
+
+constexpr std::int64_t kTicksBetweenTemperatures = 100;
+/// The library takes a moment over a calibration; asking again at once would only begin it anew.
+constexpr std::int64_t kTicksBetweenCalibrations = 100;
+
+DeviceReadiness readiness_of(Enum calibration, int style) noexcept {
+  if (calibration == kCalibrationOk) return DeviceReadiness::ready;
+  return (style & kStyleInkwell) != 0 ? DeviceReadiness::needs_inkwell
+                                      : DeviceReadiness::needs_calibration;
+}
+
+Vec3 vec_from(const std::array<double, 3>& values) noexcept {
+  return {values[0], values[1], values[2]};
+}
+
+}  // namespace
+
+std::uint32_t Loop::callback(void* loop) noexcept {
+  return static_cast<Loop*>(loop)->enter();
+}
+
+/// `inside_` is set before `closed_` is read, and `close` does it the other way round: with
+/// sequentially consistent atomics one of the two sees the other.
+std::uint32_t Loop::enter() noexcept {
+  inside_.store(true);
+  const bool closed = closed_.load();
+  if (!closed) tick();
+  inside_.store(false);
+  return closed ? kCallbackDone : kCallbackContinue;
+}
+
+bool Loop::close(std::chrono::milliseconds patience) noexcept {
+  closed_.store(true);
+  for (auto waited = std::chrono::milliseconds(0); inside_.load(); ++waited) {
+    if (waited >= patience) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return true;
+}
+
+void Loop::tick() noexcept {
+  api_.make_current_device(device_);
+  run_frame(check_calibration());
+  const Errors errors = drain_errors(api_);
+  if (errors.fault != DeviceFault::none) link_.fail(errors.fault);
+  ++tick_;
+}
+
+bool Loop::check_calibration() noexcept {
+  const Enum state = api_.check_calibration();
+  if (state == kCalibrationNeedsUpdate && options_.calibration_style != 0 &&
+      tick_ % kTicksBetweenCalibrations == 0) {
+    api_.update_calibration(static_cast<Enum>(options_.calibration_style));
+  }
+  readiness_.store(readiness_of(state, options_.calibration_style), std::memory_order_release);
+  return state == kCalibrationOk;
+}
+
+void Loop::run_frame(bool calibrated) noexcept {
+  api_.begin_frame(device_);
+  DeviceSample sample = read_sample();
+  sample.ready = calibrated;
+  if (tick_ % kTicksBetweenTemperatures == 0) watch_temperature();
+  if (!is_finite(sample.position_mm) || !is_finite(sample.velocity_mm_s)) {
+    link_.fail(DeviceFault::bad_data);
+  } else {
+    link_.publish(sample);
+  }
+  const Vec3 force_n = link_.force_to_send(monotonic_now());
+  send(calibrated ? force_n : Vec3{});
+  api_.end_frame(device_);
+}
+
+DeviceSample Loop::read_sample() noexcept {
+  std::array<double, 3> position{};
+  std::array<double, 3> velocity{};
+  int buttons = 0;
+  api_.get_doublev(kPosition, position.data());
+  api_.get_doublev(kVelocity, velocity.data());
+  api_.get_integerv(kButtons, &buttons);
+  return {vec_from(position), vec_from(velocity), 0, static_cast<std::uint32_t>(buttons)};
+}
+
+void Loop::watch_temperature() noexcept {
+  if (!options_.has_motor_temperature) return;
+  std::array<double, 6> warmth{};
+  api_.get_doublev(kMotorTemperature, warmth.data());
+  const bool warm =
+      std::any_of(warmth.begin(), warmth.end(), [](double motor) { return motor > kWarmestMotor; });
+  if (warm) link_.fail(DeviceFault::warm_motors);
+}
+
+void Loop::send(Vec3 force_n) noexcept {
+  const std::array<double, 3> force = {force_n.x, force_n.y, force_n.z};
+  api_.set_doublev(kCurrentForce, force.data());
+  const bool zero = force_n == Vec3{};
+  zeros_sent_.store(zero ? std::min(zeros_sent_.load(std::memory_order_relaxed) + 1, 1'000'000) : 0,
+                    std::memory_order_release);
+}
+
+}  // namespace touchtrial::hd

@@ -1,0 +1,300 @@
+// A stand-in for the vendor's libHD with its real names. It is written from the same facts as the
+// driver but shares no declaration with it, so that a slip in either shows.
+#include "device/fakes/fake_hd.hpp"
+
+#include "device/fakes/pace.hpp"
+
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+namespace touchtrial::fakes {
+namespace {
+
+using Callback = std::uint32_t (*)(void*);
+constexpr std::uint32_t kDevice = 7;
+constexpr std::uint32_t kNoDevice = 0xFFFFFFFF;
+
+FakeHd* state = new FakeHd;  // never freed: the driver keeps the library loaded for ever
+
+/// What is the scheduler's and the library's own.
+struct Inside {
+  std::mutex mutex;  ///< of calls, errors and callbacks; not of anything inside a frame
+  std::string calls;
+  std::vector<std::uint32_t> errors;
+  std::vector<std::pair<Callback, void*>> callbacks;
+  std::thread scheduler;
+  Pace pace;
+  bool open = false;
+  bool force_on = false;
+  bool in_frame = false;  ///< scheduler's thread alone
+  Vec3 force_n;           ///< likewise
+};
+Inside& inside() {
+  static Inside* const kInside = new Inside;
+  return *kInside;
+}
+
+void note(const char* call) {
+  const std::lock_guard lock(inside().mutex);
+  inside().calls += std::string(call) + ' ';
+}
+
+void push_error(std::uint32_t code) {
+  const std::lock_guard lock(inside().mutex);
+  inside().errors.push_back(code);
+}
+
+void misuse(std::uint32_t code) {
+  ++state->misuses;
+  push_error(code);
+}
+
+void run_callbacks() {
+  std::vector<std::pair<Callback, void*>> callbacks;
+  {
+    const std::lock_guard lock(inside().mutex);
+    callbacks = inside().callbacks;
+  }
+  for (const auto& [callback, data] : callbacks) (void)callback(data);
+}
+
+void schedule() {
+  while (inside().pace.begin_step()) {
+    run_callbacks();
+    inside().pace.end_step();
+  }
+}
+
+void join_scheduler() {
+  if (inside().scheduler.joinable()) inside().scheduler.join();
+}
+
+unsigned name_bit(const char* name) {
+  if (name == nullptr) return kHdNull;
+  if (std::strcmp(name, "Default Device") == 0) return kHdDefaultDevice;
+  if (std::strcmp(name, "Default PHANToM") == 0) return kHdDefaultPhantom;
+  return std::strcmp(name, "Lab Touch") == 0 ? kHdLabTouch : 0U;
+}
+
+void copy(Vec3 from, double* to) {
+  to[0] = from.x;
+  to[1] = from.y;
+  to[2] = from.z;
+}
+
+void hold_if_asked() {
+  while (state->hold_callback) {
+    state->callback_held = true;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  state->callback_held = false;
+}
+
+void reset() {
+  const std::lock_guard lock(inside().mutex);
+  inside().calls.clear();
+  inside().errors.clear();
+  state->~FakeHd();
+  new (state) FakeHd;
+}
+
+std::string calls() {
+  const std::lock_guard lock(inside().mutex);
+  return inside().calls;
+}
+
+void give_temperatures(double* values) {
+  if (!state->tells_temperature) return push_error(0x100);
+  for (std::size_t i = 0; i < 6; ++i) values[i] = state->warmth[i];
+}
+
+}  // namespace
+}  // namespace touchtrial::fakes
+
+using namespace touchtrial::fakes;  // NOLINT: what follows is the library's C interface
+
+extern "C" {
+
+struct FakeErrorInfo {
+  std::uint32_t code;
+  int internal;
+  std::uint32_t device;
+};
+
+FakeHdExports* fake_hd_exports() {
+  static FakeHdExports exports{state, reset, [](int ticks) { return inside().pace.step(ticks); },
+                               [] { inside().pace.run_freely(); }, calls};
+  return &exports;
+}
+
+std::uint32_t hdInitDevice(const char* name) {
+  note("init");
+  if ((name_bit(name) & state->opens_by) == 0) {
+    push_error(0x301);
+    return kNoDevice;
+  }
+  if (inside().open) {
+    misuse(0x301);
+    return kNoDevice;
+  }
+  inside().open = true;
+  return kDevice;
+}
+
+void hdDisableDevice(std::uint32_t device) {
+  note("disable_device");
+  join_scheduler();
+  if (device != kDevice || !inside().open) misuse(0x101);
+  inside().open = false;
+  inside().force_on = false;
+}
+
+void hdMakeCurrentDevice(std::uint32_t device) {
+  if (device != kDevice || !inside().open) misuse(0x101);
+}
+
+void hdBeginFrame(std::uint32_t device) {
+  if (device != kDevice || !inside().open) return misuse(0x400);
+  if (inside().in_frame) return misuse(0x402);
+  inside().in_frame = true;
+  hold_if_asked();
+}
+
+void hdEndFrame(std::uint32_t device) {
+  if (device != kDevice || !inside().in_frame) return misuse(0x401);
+  inside().in_frame = false;
+  const touchtrial::Vec3 force_n = inside().force_on ? inside().force_n : touchtrial::Vec3{};
+  state->force_n.set(force_n);
+  state->zero_forces_last = force_n == touchtrial::Vec3{} ? state->zero_forces_last + 1 : 0;
+  state->hand.step(force_n);
+  inside().force_n = {};  // a force holds for its frame
+  if (state->lost) push_error(0x302);
+  if (const std::uint32_t error = state->next_error.exchange(0); error != 0) push_error(error);
+  ++state->frames;
+}
+
+void hdEnable(std::uint32_t what) {
+  if (what < 0x4000 || what > 0x4002) push_error(0x100);
+  if (what == 0x4000) inside().force_on = true;
+  note(what == 0x4000 ? "force_on" : what == 0x4001 ? "clamping_on" : "ramping_on");
+}
+
+void hdDisable(std::uint32_t what) {
+  if (what != 0x4000) misuse(0x100);
+  inside().force_on = false;
+  note("force_off");
+}
+
+void hdGetDoublev(std::uint32_t what, double* values) {
+  switch (what) {
+    case 0x2050:
+      return copy(state->hand.position_mm.get(), values);
+    case 0x2051:
+      return copy(state->hand.velocity.get(), values);
+    case 0x2505:
+      values[0] = 1.25;
+      return;
+    case 0x2550:
+      copy({-210.0, -110.0, -85.0}, values);
+      return copy({210.0, 205.0, 130.0}, values + 3);
+    case 0x2602:
+      values[0] = 0.75;
+      return;
+    case 0x2603:
+      values[0] = 3.25;
+      return;
+    case 0x2604:
+      values[0] = 0.875;
+      return;
+    case 0x2605:
+      return give_temperatures(values);
+    default:
+      return misuse(0x100);
+  }
+}
+
+void hdGetIntegerv(std::uint32_t what, int* values) {
+  if (what == 0x2000) {
+    values[0] = state->buttons;
+  } else if (what == 0x2555) {
+    values[0] = state->calibration_styles;
+  } else {
+    misuse(0x100);
+  }
+}
+
+void hdSetDoublev(std::uint32_t what, const double* values) {
+  if (what != 0x2700) return misuse(0x100);
+  if (!inside().in_frame) return misuse(0x402);
+  inside().force_n = {values[0], values[1], values[2]};
+}
+
+const char* hdGetString(std::uint32_t what) {
+  if (what == 0x2501) return "Touch";
+  if (what == 0x2503) return "3D Systems";
+  if (what == 0x2504) return "SN-4711";
+  push_error(0x100);
+  return nullptr;
+}
+
+const char* hdGetErrorString(std::uint32_t code) {
+  return code == 0x301 ? "no such device" : "fake error";
+}
+
+FakeErrorInfo hdGetError() {
+  const std::lock_guard lock(inside().mutex);
+  if (inside().errors.empty()) return {0, 0, kNoDevice};
+  const std::uint32_t code = inside().errors.back();
+  inside().errors.pop_back();
+  return {code, -1, kDevice};
+}
+
+std::uint32_t hdCheckCalibration() {
+  return state->calibration;
+}
+
+void hdUpdateCalibration(std::uint32_t style) {
+  ++state->calibration_updates;
+  state->last_style = static_cast<int>(style);
+  std::uint32_t needs_update = 0x5001;
+  state->calibration.compare_exchange_strong(needs_update, 0x5000);
+}
+
+void hdStartScheduler() {
+  note("start");
+  inside().pace.start();
+  inside().scheduler = std::thread(schedule);
+}
+
+void hdStopScheduler() {
+  note("stop");
+  inside().pace.stop();
+  if (!state->lazy_stop) join_scheduler();
+}
+
+void hdSetSchedulerRate(unsigned long rate_hz) {
+  if (rate_hz != 500 && rate_hz != 1000) push_error(0x101);
+}
+
+unsigned long hdScheduleAsynchronous(std::uint32_t (*callback)(void*), void* data,
+                                     std::uint16_t /*priority*/) {
+  note("schedule");
+  const std::lock_guard lock(inside().mutex);
+  inside().callbacks.emplace_back(callback, data);
+  return 1;
+}
+
+#ifndef FAKE_WITHOUT_UNSCHEDULE
+void hdUnschedule(unsigned long handle) {
+  note("unschedule");
+  if (handle != 1) misuse(0x101);
+  const std::lock_guard lock(inside().mutex);
+  inside().callbacks.clear();
+}
+#endif
+
+}  // extern "C"

@@ -1,0 +1,56 @@
+/// \file What a test may ask of the fake libHD, and what the fake saw.
+#pragma once
+
+#include "device/fakes/fake_hand.hpp"
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <string>
+
+namespace touchtrial::fakes {
+
+/// The names by which the fake's one device opens, as bits.
+enum HdName : unsigned {
+  kHdNull = 1,
+  kHdDefaultDevice = 2,
+  kHdDefaultPhantom = 4,
+  kHdLabTouch = 8
+};
+
+struct FakeHd {
+  // What it is to do.
+  std::atomic<unsigned> opens_by{kHdNull};
+  std::atomic<std::uint32_t> calibration{0x5000};
+  std::atomic<int> calibration_styles{4};
+  std::atomic<std::uint32_t> next_error{0};  ///< pushed once, at the end of a frame
+  std::atomic<bool> lost{false};             ///< every frame is a communication error
+  std::atomic<bool> tells_temperature{true};
+  std::array<std::atomic<double>, 6> warmth{};
+  std::atomic<int> buttons{0};
+  std::atomic<bool> hold_callback{false};  ///< inside the library, until taken back
+  std::atomic<bool> lazy_stop{false};      ///< stopping the scheduler does not wait for callbacks
+  FakeHand hand;
+
+  // What it saw.
+  std::atomic<bool> callback_held{false};
+  std::atomic<long> frames{0};
+  std::atomic<long> zero_forces_last{0};  ///< in a row, until now
+  std::atomic<long> misuses{0};           ///< nested frames, forces outside, calls after the end
+  std::atomic<int> calibration_updates{0};
+  std::atomic<int> last_style{0};
+  SharedVec force_n;
+};
+
+/// What the fake exports beside libHD's own names.
+struct FakeHdExports {
+  FakeHd* state;
+  void (*reset)();
+  bool (*step)(int ticks);
+  void (*run_freely)();
+  std::string (*calls)();  ///< the names of opening and closing calls, in order
+};
+
+}  // namespace touchtrial::fakes
+
+extern "C" touchtrial::fakes::FakeHdExports* fake_hd_exports();

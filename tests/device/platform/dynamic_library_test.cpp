@@ -1,0 +1,44 @@
+#include "device/platform/dynamic_library.hpp"
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "support/catch.hpp"
+
+#include <string_view>
+
+namespace touchtrial {
+namespace {
+
+TEST_CASE("a library that is not there is named with the remedy, on one line") {
+  const auto load = [] { DynamicLibrary("/nowhere/lib\nHD.so", Unload::when_closed, "do this"); };
+  CHECK_THROWS_AS(load(), DeviceError);
+  CHECK_THROWS_WITH(load(), holds_text("/nowhere/lib HD.so: cannot be loaded") &&
+                                holds_text("; do this") && !holds_text("\n"));
+}
+
+TEST_CASE("a file that is no library is refused with the linker's reason") {
+  const auto content = GENERATE(std::string_view(""), std::string_view("no library"),
+                                std::string_view("\x7f"
+                                                 "ELF and nothing more"));
+  const auto file = std::filesystem::temp_directory_path() / "touchtrial-no-library.so";
+  replace_file(file, content);
+  CHECK_THROWS_WITH(DynamicLibrary(file, Unload::when_closed, "do this"),
+                    holds_text(file.string() + ": cannot be loaded") && holds_text("do this"));
+  std::filesystem::remove(file);
+}
+
+TEST_CASE("an empty name is no library, and not the program itself") {
+  CHECK_THROWS_WITH(DynamicLibrary("", Unload::when_closed, "do this"),
+                    holds_text("no library is named"));
+}
+
+TEST_CASE("functions are found by name, and a missing one is named") {
+  const DynamicLibrary library(TOUCHTRIAL_FAKE_HD, Unload::when_closed, "do this");
+  CHECK(library.function<void()>("fake_hd_exports") != nullptr);
+  CHECK(library.function_if_any<void()>("hdNoSuchThing") == nullptr);
+  CHECK_THROWS_WITH(library.function<void()>("hdNoSuchThing"),
+                    holds_text("has no function hdNoSuchThing; do this"));
+}
+
+}  // namespace
+}  // namespace touchtrial
