@@ -1,6 +1,5 @@
 #include "device/openhaptics/openhaptics_device.hpp"
 
-#include "core/errors.hpp"
 #include "device/openhaptics/hd_session.hpp"
 #include "device/platform/realtime.hpp"
 
