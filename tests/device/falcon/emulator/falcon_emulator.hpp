@@ -1,0 +1,114 @@
+/// \file A whole Falcon at the other end of a USB cable that is not there: FTDI chip, boot loader,
+/// firmware, legs, and a hand on the grip. It knows nothing of the driver and shares no code with
+/// it; whoever carries transfers (a shim of usbfs, a test) calls `control`, `bulk_out` and
+/// `bulk_in`.
+///
+/// Time is virtual: each command that the running Falcon takes is one millisecond of the hand's.
+///
+/// Threads: every function may be called from any thread; one mutex guards the whole. The hand's
+/// function is called with it held, on the thread that calls `bulk_out`, and must not call back.
+#pragma once
+
+#include "device/falcon/emulator/boot_loader.hpp"
+#include "device/falcon/emulator/ftdi_chip.hpp"
+#include "device/falcon/emulator/running_falcon.hpp"
+
+#include <mutex>
+
+namespace touchtrial::falcon {
+
+/// How a transfer ended.
+enum class UsbStatus {
+  ok,
+  stall,  ///< refused (EPIPE)
+  gone,   ///< unplugged (ENODEV)
+};
+
+struct EmulatorOptions {
+  bool firmware_runs = false;  ///< as after a load by another program
+  bool homed = false;          ///< likewise; only with firmware that runs
+  BootLoaderOptions boot_loader{};
+};
+
+class FalconEmulator {
+ public:
+  using Bytes = std::vector<std::uint8_t>;
+
+  /// \param hand  without one the grip stands still in the middle
+  explicit FalconEmulator(EmulatorOptions options = {}, HandModel hand = {});
+
+  /// \name The cable
+  ///@{
+  [[nodiscard]] UsbStatus control(const ControlRequest& request);
+  [[nodiscard]] UsbStatus bulk_out(std::span<const std::uint8_t> bytes);
+  /// What an IN transfer for `most` bytes brings now. With nothing but status bytes to bring, a
+  /// real chip waits for its latency time first: see `waiting`.
+  [[nodiscard]] UsbStatus bulk_in(std::size_t most, Bytes& bytes);
+  /// Bytes for the host, without status bytes.
+  [[nodiscard]] std::size_t waiting() const;
+  [[nodiscard]] bool plugged() const;
+  ///@}
+
+  /// \name Mishaps. Those of replies begin with the next reply.
+  ///@{
+  void drop_replies(int count);
+  /// So many replies lose their ends. \param kept  bytes of each, 0 to 15
+  void shorten_replies(int count, std::size_t kept);
+  /// Bytes to the host at once, out of the blue.
+  void send_garbage(std::span<const std::uint8_t> bytes);
+  void stick_encoders(bool stuck);
+  void unplug();
+  /// \param keeps_power  the Falcon has its own supply: then firmware and homing survive
+  void replug(bool keeps_power);
+  void forget_homing();
+  ///@}
+
+  /// \name The person
+  ///@{
+  void press(std::uint32_t buttons);  ///< bits 0 to 3: plus, forward, centre, minus
+  void set_hand(HandModel hand);
+  ///@}
+
+  /// \name What a test may look at
+  ///@{
+  [[nodiscard]] bool firmware_runs() const;
+  [[nodiscard]] bool all_homed() const;
+  [[nodiscard]] std::uint64_t exchanges() const;  ///< since the firmware runs
+  [[nodiscard]] Vec3 position_mm() const;         ///< of the grip, device frame
+  [[nodiscard]] Vec3 force_n() const;             ///< of the motors on the hand, device frame
+  [[nodiscard]] std::array<std::int16_t, 3> motors() const;
+  [[nodiscard]] unsigned leds() const;  ///< three bits
+  [[nodiscard]] int loads() const;      ///< of firmware, begun since power came on
+  [[nodiscard]] Bytes image() const;    ///< that was loaded last
+  /// Every control request that was not stalled, in order.
+  [[nodiscard]] std::vector<ControlRequest> requests() const;
+  /// What a real device would suffer under or silently mistake: one line each. Empty at the end of
+  /// any test of a driver that does no wrong.
+  [[nodiscard]] std::vector<std::string> complaints() const;
+  ///@}
+
+ private:
+  void reset_to_boot_loader();
+  void start_if_loaded();
+  void check_greeting_order();
+  void serve_boot_loader(std::span<const std::uint8_t> bytes);
+  void serve_firmware(std::span<const std::uint8_t> bytes);
+  void deliver(const RunningFalcon::Packet& reply);
+  void complain(const std::string& what);
+  [[nodiscard]] bool runs() const { return running_.has_value(); }
+
+  mutable std::mutex mutex_;
+  EmulatorOptions options_;
+  HandModel hand_;
+  FtdiChip chip_;
+  BootLoader boot_loader_;
+  std::optional<RunningFalcon> running_;
+  bool plugged_ = true;
+  int to_drop_ = 0;
+  int to_shorten_ = 0;
+  std::size_t kept_of_short_ = 0;
+  std::vector<ControlRequest> requests_;
+  std::vector<std::string> complaints_;
+};
+
+}  // namespace touchtrial::falcon

@@ -1,0 +1,56 @@
+/// \file A simulated hand on an emulated Falcon: homes the grip, explores the plane, lets go.
+#pragma once
+
+#include "device/placed_device.hpp"
+#include "device/simulated/simulated_hand.hpp"
+
+#include <mutex>
+#include <optional>
+
+namespace touchtrial::falcon {
+
+/// Gives the emulator its hand: `emulator.set_hand([&](Vec3 force_n) { return hand.tick(force_n);
+/// })`. Every tick is a millisecond, as the simulated hand's own. Positions and forces of the
+/// emulator are in the device frame, those of the simulated hand in the plane's.
+///
+/// Threads: `tick` on the emulator's, all else on any. A mutex guards the whole.
+class HandOnFalcon {
+ public:
+  /// \param rest_mm  where the grip waits between explorations, device frame
+  HandOnFalcon(const PlanePlacement& placement, Vec3 rest_mm);
+
+  /// One millisecond. \return where the grip then is, device frame, mm
+  [[nodiscard]] Vec3 tick(Vec3 force_n);
+
+  /// Moves the grip through 20 mm to either side along the device's axis, which homes all three.
+  void home();
+  /// Carries the grip to the hand's start at 100 mm/s, lets the hand explore until it stops, and
+  /// carries the grip back to rest. What was being done before ends there.
+  void explore(SimulatedHand hand);
+  /// Whether the grip is at rest: nothing left to do.
+  [[nodiscard]] bool at_rest() const;
+  /// Explorations that ended because their hand stopped.
+  [[nodiscard]] int explorations() const;
+
+ private:
+  enum class Doing { resting, homing, approaching, exploring, returning };
+
+  void carry_to(Vec3 target_mm, Doing doing);
+  void carry();
+  void explore_on(Vec3 force_n);
+  [[nodiscard]] Vec3 hand_position_mm();
+
+  mutable std::mutex mutex_;
+  PlanePlacement placement_;
+  Vec3 rest_mm_;
+  Vec3 position_mm_;
+  Vec3 from_mm_;
+  Vec3 to_mm_;
+  Doing doing_ = Doing::resting;
+  int tick_ = 0;   ///< of what it is doing
+  int ticks_ = 0;  ///< that this takes
+  int explorations_ = 0;
+  std::optional<SimulatedHand> hand_;
+};
+
+}  // namespace touchtrial::falcon

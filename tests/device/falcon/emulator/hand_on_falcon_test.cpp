@@ -1,0 +1,126 @@
+#include "device/falcon/emulator/hand_on_falcon.hpp"
+
+#include "device/falcon/emulator/falcon_host.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace touchtrial::falcon {
+namespace {
+
+constexpr PlaneGeometry kPlane{0.08, 500, 500};  // 40 mm
+const PlanePlacement kTable{PlaneOrientation::horizontal, {-20.0, -10.0, -20.0}};
+const PlanePlacement kWall{PlaneOrientation::vertical, {-20.0, 20.0, -10.0}};
+constexpr double kWallNPerMm = 0.4;
+
+SimulatedHand hand_for(double explore_s) {
+  RandomStream random(1, "hand_on_falcon_test");
+  HandOptions options;
+  options.explore_s = explore_s;
+  return {options, ExplorationPath(kPlane, {.duration_s = explore_s}, random)};
+}
+
+Vec3 wall_force_n(Vec3 plane_mm) {
+  return {0.0, 0.0, plane_mm.z < 0.0 ? -kWallNPerMm * plane_mm.z : 0.0};
+}
+
+/// The plainest servo: reads, computes a flat wall, writes.
+struct FlatWallServo {
+  FalconHost& host;
+  PlanePlacement placement;
+  MotorValues motors{};
+  Vec3 last_m = kCentreM;
+
+  /// \return where the hand is on the plane
+  Vec3 tick() {
+    const auto reply = host.exchange({motors, 0, true});
+    REQUIRE(reply);
+    motors = {};
+    if (!reply->all_homed()) return {0.0, 0.0, 1000.0};
+    const Pose pose = forward_kinematics(theta1_of_counts(reply->counts), last_m);
+    REQUIRE(pose.status == PoseStatus::ok);
+    last_m = pose.native_m;
+    const Vec3 plane_mm = to_plane_position_mm(to_device_mm(pose.native_m), placement);
+    const Vec3 force_n = to_device_direction(wall_force_n(plane_mm), placement.orientation);
+    motors = motor_values(torques_nm(pose.jacobian, force_n).value());
+    return plane_mm;
+  }
+};
+
+struct Rig {
+  explicit Rig(const PlanePlacement& placement, bool homed)
+      : hand(placement, {0.0, 15.0, 0.0}),
+        falcon({.firmware_runs = true, .homed = homed, .boot_loader = {}},
+               [this](Vec3 force_n) { return hand.tick(force_n); }),
+        host(falcon),
+        servo{host, placement} {
+    host.set_up_for_running();
+  }
+
+  HandOnFalcon hand;
+  FalconEmulator falcon;
+  FalconHost host;
+  FlatWallServo servo;
+};
+
+TEST_CASE("hand on falcon: homing moves every axis far enough, and the grip returns to rest") {
+  Rig rig(kTable, false);
+  rig.hand.home();
+  CHECK_FALSE(rig.hand.at_rest());
+  for (int i = 0; i < 1000; ++i) rig.servo.tick();
+  CHECK(rig.falcon.all_homed());
+  CHECK(rig.hand.at_rest());
+  CHECK(norm(rig.falcon.position_mm() - Vec3{0.0, 15.0, 0.0}) < 1e-9);
+  CHECK(rig.falcon.complaints().empty());
+}
+
+TEST_CASE("hand on falcon: a wall through packets and legs feels as a wall written directly") {
+  const PlanePlacement placement = GENERATE(kTable, kWall);
+  Rig rig(placement, true);
+  rig.hand.explore(hand_for(2.0));
+  std::vector<Vec3> felt;
+  int ticks = 0;
+  for (; !rig.hand.at_rest(); ++ticks) {
+    REQUIRE(ticks < 10000);
+    felt.push_back(rig.servo.tick());
+  }
+  CHECK(rig.hand.explorations() == 1);
+  CHECK(rig.falcon.complaints().empty());
+
+  SimulatedHand direct = hand_for(2.0);
+  std::vector<Vec3> expected;
+  DeviceSample sample;
+  while (direct.read(sample) == DeviceStatus::ok) {
+    expected.push_back(sample.position_mm);
+    CHECK(direct.write(wall_force_n(sample.position_mm)) == DeviceStatus::ok);
+  }
+  // Steady on the wall, both: the same depth and the same place along the path.
+  const auto landed = std::ranges::find_if(felt, [](Vec3 p) { return p.z < 0.0; });
+  const auto landed_directly = std::ranges::find_if(expected, [](Vec3 p) { return p.z < 0.0; });
+  REQUIRE(landed != felt.end());
+  REQUIRE(landed_directly != expected.end());
+  for (int i = 500; i < 1000; i += 10) {
+    REQUIRE(norm(*(landed + i) - *(landed_directly + i)) < 0.3);
+  }
+}
+
+TEST_CASE("hand on falcon: one exploration after another, without a jump") {
+  Rig rig(kTable, true);
+  Vec3 last = rig.falcon.position_mm();
+  for (int round = 1; round <= 3; ++round) {
+    rig.hand.explore(hand_for(0.3));
+    for (int i = 0; !rig.hand.at_rest(); ++i) {
+      REQUIRE(i < 10000);
+      rig.servo.tick();
+      REQUIRE(norm(rig.falcon.position_mm() - last) < 1.0);
+      last = rig.falcon.position_mm();
+    }
+    CHECK(rig.hand.explorations() == round);
+  }
+  CHECK(norm(last - Vec3{0.0, 15.0, 0.0}) < 1e-9);
+}
+
+}  // namespace
+}  // namespace touchtrial::falcon

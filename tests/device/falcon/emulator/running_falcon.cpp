@@ -1,0 +1,157 @@
+#include "device/falcon/emulator/running_falcon.hpp"
+
+#include "device/falcon/emulator/falcon_legs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace touchtrial::falcon {
+namespace {
+
+constexpr double kCentreM = 0.1215;
+/// Where the encoders happen to begin before they are homed.
+constexpr std::array<int, 3> kUnhomedOrigin = {1234, -777, 2468};
+
+Vec3 native_of_mm(Vec3 mm) {
+  return {mm.x / 1000.0, mm.y / 1000.0, mm.z / 1000.0 + kCentreM};
+}
+
+int count_of(double theta1_rad) {
+  return static_cast<int>(std::lround((theta1_rad * 180.0 / std::numbers::pi - 35.0) / 0.0364347));
+}
+
+int nibble(std::uint8_t byte) {
+  return byte >= 0x41 && byte <= 0x50 ? byte - 0x41 : -1;
+}
+
+/// A motor value of four nibbles. \return nothing if one is none
+std::optional<std::int16_t> motor_value(std::span<const std::uint8_t> nibbles) {
+  int value = 0;
+  for (std::size_t i = 4; i-- > 0;) {
+    const int digit = nibble(nibbles[i]);
+    if (digit < 0) return std::nullopt;
+    value = value * 16 + digit;
+  }
+  return static_cast<std::int16_t>(value >= 0x8000 ? value - 0x10000 : value);
+}
+
+}  // namespace
+
+RunningFalcon::RunningFalcon(HandModel hand, bool homed) : hand_(std::move(hand)) {
+  native_m_ = {0.0, 0.0, kCentreM};
+  move_hand();
+  if (homed) {
+    homed_.fill(true);
+  } else {
+    forget_homing();
+  }
+}
+
+void RunningFalcon::forget_homing() {
+  homed_.fill(false);
+  travel_begun_ = false;
+  origin_ = kUnhomedOrigin;
+}
+
+void RunningFalcon::cut_cable() {
+  received_.clear();
+  motors_.fill(0);
+  force_n_ = {};
+}
+
+Vec3 RunningFalcon::position_mm() const {
+  return 1000.0 * (native_m_ - Vec3{0.0, 0.0, kCentreM});
+}
+
+std::vector<RunningFalcon::Packet> RunningFalcon::receive(std::span<const std::uint8_t> bytes) {
+  std::vector<Packet> replies;
+  for (const std::uint8_t byte : bytes) {
+    if (received_.empty() && byte != '<') {
+      complain("a byte outside a command");
+      continue;
+    }
+    received_.push_back(byte);
+    if (received_.size() < kPacketSize) continue;
+    if (byte == '>') {
+      replies.push_back(exchange());
+    } else {
+      complain("a command without its end mark");
+    }
+    received_.clear();
+  }
+  return replies;
+}
+
+RunningFalcon::Packet RunningFalcon::exchange() {
+  take_command();
+  const auto force =
+      reference_force_n(native_m_, {-1e-4 * motors_[0], -1e-4 * motors_[1], -1e-4 * motors_[2]});
+  force_n_ = force.value_or(Vec3{});
+  move_hand();
+  home_axes();
+  ++exchanges_;
+  return reply();
+}
+
+void RunningFalcon::take_command() {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto value = motor_value(std::span(received_).subspan(1 + 4 * axis, 4));
+    if (!value) complain("a motor value that is none");
+    motors_[axis] = value.value_or(0);
+  }
+  const int flags = nibble(received_[13]);
+  if (flags < 0) complain("flags that are none");
+  homing_ = flags >= 0 && flags % 2 == 1;
+  leds_ = flags < 0 ? 0U : static_cast<unsigned>(flags) >> 1U;
+  if (!homing_) complain("a command without homing");
+  if (!all_homed() && motors_ != std::array<std::int16_t, 3>{}) complain("force before homing");
+}
+
+void RunningFalcon::move_hand() {
+  const Vec3 wanted_m = native_of_mm(hand_(force_n_));
+  const auto angles = reference_theta1(wanted_m);
+  if (!angles) {
+    complain("the hand pulls beyond the reach");
+    return;
+  }
+  native_m_ = wanted_m;
+  if (stuck_) return;
+  for (std::size_t axis = 0; axis < 3; ++axis) counts_[axis] = count_of((*angles)[axis]);
+}
+
+void RunningFalcon::home_axes() {
+  const bool begins = !homing_ || !travel_begun_;
+  travel_begun_ = homing_;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    least_[axis] = begins ? counts_[axis] : std::min(least_[axis], counts_[axis]);
+    greatest_[axis] = begins ? counts_[axis] : std::max(greatest_[axis], counts_[axis]);
+    if (greatest_[axis] - least_[axis] >= kHomingTravel) homed_[axis] = true;
+  }
+}
+
+RunningFalcon::Packet RunningFalcon::reply() const {
+  Packet packet;
+  packet.fill(0x41);
+  packet[0] = '<';
+  unsigned flags = buttons_;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int count = counts_[axis] + (homed_[axis] ? 0 : origin_[axis]);
+    for (std::size_t i = 0; i < 4; ++i) {
+      packet[1 + 4 * axis + i] =
+          static_cast<std::uint8_t>(0x41U + (static_cast<unsigned>(count) >> (4 * i) & 15U));
+    }
+    if (homed_[axis]) flags += 16U << axis;
+  }
+  packet[13] = static_cast<std::uint8_t>(0x41U + flags);
+  packet[15] = '>';
+  return packet;
+}
+
+void RunningFalcon::complain(const std::string& what) {
+  if (std::find(complaints_.begin(), complaints_.end(), what) == complaints_.end()) {
+    complaints_.push_back(what);
+  }
+}
+
+}  // namespace touchtrial::falcon

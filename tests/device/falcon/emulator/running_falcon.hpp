@@ -1,0 +1,85 @@
+/// \file A Falcon whose firmware runs: motors and encoders, with a hand on its grip.
+#pragma once
+
+#include "core/vec.hpp"
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace touchtrial::falcon {
+
+/// Called once for every exchange, one millisecond of the hand's time: takes the force on it, N,
+/// and tells where it then is, mm, both in the device frame.
+using HandModel = std::function<Vec3(Vec3 force_n)>;
+
+/// Not thread-safe.
+class RunningFalcon {
+ public:
+  static constexpr std::size_t kPacketSize = 16;
+  using Packet = std::array<std::uint8_t, kPacketSize>;
+  /// An axis is homed when it has been moved over so many counts: 11 degrees.
+  static constexpr int kHomingTravel = 300;
+
+  /// The hand is asked for its first position.
+  explicit RunningFalcon(HandModel hand, bool homed);
+
+  /// Bytes from the host. \return a reply for every command among them
+  [[nodiscard]] std::vector<Packet> receive(std::span<const std::uint8_t> bytes);
+  /// Throws a command away that has not come whole.
+  void purge() { received_.clear(); }
+
+  /// \name What a test may do
+  ///@{
+  void press(std::uint32_t buttons) { buttons_ = buttons & 15U; }
+  void stick_encoders(bool stuck) { stuck_ = stuck; }
+  void set_hand(HandModel hand) { hand_ = std::move(hand); }
+  void forget_homing();
+  /// The motors go limp when the host is gone, and half a command is forgotten.
+  void cut_cable();
+  ///@}
+
+  /// \name What a test may look at
+  ///@{
+  [[nodiscard]] std::uint64_t exchanges() const { return exchanges_; }
+  [[nodiscard]] Vec3 position_mm() const;  ///< of the grip, device frame
+  [[nodiscard]] Vec3 force_n() const { return force_n_; }
+  [[nodiscard]] const std::array<std::int16_t, 3>& motors() const { return motors_; }
+  [[nodiscard]] unsigned leds() const { return leds_; }
+  [[nodiscard]] bool all_homed() const { return homed_[0] && homed_[1] && homed_[2]; }
+  /// What a real device would suffer under or silently mistake: one line each.
+  [[nodiscard]] const std::vector<std::string>& complaints() const { return complaints_; }
+  ///@}
+
+ private:
+  [[nodiscard]] Packet exchange();
+  void take_command();
+  void move_hand();
+  void home_axes();
+  [[nodiscard]] Packet reply() const;
+  void complain(const std::string& what);
+
+  HandModel hand_;
+  std::vector<std::uint8_t> received_;
+  Vec3 native_m_;
+  Vec3 force_n_;
+  std::array<std::int16_t, 3> motors_{};
+  std::array<int, 3> counts_{};    ///< from the true origin
+  std::array<int, 3> origin_{};    ///< what is added before an axis is homed
+  std::array<int, 3> least_{};     ///< since homing began
+  std::array<int, 3> greatest_{};  ///< likewise
+  std::array<bool, 3> homed_{};
+  bool homing_ = false;
+  bool travel_begun_ = false;
+  bool stuck_ = false;
+  unsigned leds_ = 0;
+  std::uint32_t buttons_ = 0;
+  std::uint64_t exchanges_ = 0;
+  std::vector<std::string> complaints_;
+};
+
+}  // namespace touchtrial::falcon
