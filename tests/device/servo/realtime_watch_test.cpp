@@ -1,0 +1,151 @@
+// Nothing in the servo's loop asks for memory or a lock; and the watch that proves it sees those
+// who do.
+#include "support/realtime_watch.hpp"
+
+#include "device/device_link.hpp"
+#include "device/flat_wall.hpp"
+#include "device/placed_device.hpp"
+#include "device/servo/duration_histogram.hpp"
+#include "device/servo/flight_recorder.hpp"
+#include "device/servo/paced_clock.hpp"
+#include "device/servo/realtime_region.hpp"
+#include "device/servo/sample_ring.hpp"
+#include "device/simulated/simulated_hand.hpp"
+#include "support/catch.hpp"
+
+#include <cstdlib>
+#include <functional>
+#include <mutex>
+#include <shared_mutex>
+#include <string>
+#include <thread>
+
+namespace touchtrial {
+namespace {
+
+SimulatedHand stroking_hand() {
+  RandomStream random(1, "realtime watch");
+  return SimulatedHand({}, ExplorationPath(PlaneGeometry{0.2, 200, 200}, {}, random));
+}
+
+/// A wall that does something else besides.
+class BusyWall final : public ForceSource {
+ public:
+  explicit BusyWall(std::function<void()> work) : work_(std::move(work)) {}
+  [[nodiscard]] Vec3 force_n(const DeviceSample& sample) noexcept override {
+    work_();
+    return FlatWall().force_n(sample);
+  }
+
+ private:
+  std::function<void()> work_;
+};
+
+RealtimeOffences offences_of(HapticDevice& device, ForceSource& force, ServoClock& clock,
+                             std::int64_t ticks) {
+  SampleRing ring(20'000);
+  RingSink sink(ring);
+  ServoControl control;
+  LatestValue<ServoState> state;
+  std::atomic<std::int64_t> heartbeat{0};
+  FlightRecorder recorder(0.5, kServoRateHz);
+  DurationHistogram lateness;
+  const ServoHooks hooks{&control, &state, &heartbeat, &recorder, &lateness};
+  static_cast<void>(take_realtime_offences());
+  const ServoReport report = run_servo(device, force, sink, {.limit_ticks = ticks}, clock, hooks);
+  const RealtimeOffences offences = take_realtime_offences();
+  CHECK(report.ticks > 0);
+  return offences;
+}
+
+TEST_CASE("the loop with every hook and a simulated hand asks for no memory and no lock") {
+  SimulatedHand hand = stroking_hand();
+  FlatWall wall;
+  SECTION("in virtual time") {
+    VirtualClock clock;
+    CHECK(offences_of(hand, wall, clock, 5000) == RealtimeOffences{});
+  }
+  SECTION("in real time") {
+    PacedClock clock(std::chrono::microseconds(50));
+    CHECK(offences_of(hand, wall, clock, 100) == RealtimeOffences{});
+  }
+  SECTION("placed in the frame of a device") {
+    PlacedDevice placed(hand, {});
+    VirtualClock clock;
+    CHECK(offences_of(placed, wall, clock, 100) == RealtimeOffences{});
+  }
+}
+
+TEST_CASE("a driver's link asks for no memory and no lock") {
+  DeviceLink link;
+  DeviceSample sample;
+  static_cast<void>(take_realtime_offences());
+  {
+    const RealtimeRegion region;
+    link.publish({});
+    static_cast<void>(link.read(sample));
+    static_cast<void>(link.write({}, {}));
+    static_cast<void>(link.force_to_send({}));
+    link.fail(DeviceFault::link_lost);
+  }
+  CHECK(take_realtime_offences() == RealtimeOffences{});
+}
+
+TEST_CASE("a force source that asks for memory in the loop is caught") {
+  SimulatedHand hand = stroking_hand();
+  VirtualClock clock;
+  SECTION("by growing") {
+    std::vector<std::string> grown;
+    BusyWall wall([&] { grown.emplace_back(100, 'x'); });
+    CHECK(offences_of(hand, wall, clock, 10).allocations >= 100);
+  }
+  SECTION("by malloc") {
+    void* volatile block = nullptr;
+    BusyWall wall([&] { block = block == nullptr ? std::malloc(10) : block; });
+    CHECK(offences_of(hand, wall, clock, 10).allocations == 1);
+    std::free(block);
+  }
+  SECTION("by giving it back") {
+    void* volatile block = std::malloc(10);
+    BusyWall wall([&] {
+      std::free(block);
+      block = nullptr;
+    });
+    CHECK(offences_of(hand, wall, clock, 10).frees == 1);
+  }
+}
+
+TEST_CASE("a force source that locks in the loop is caught") {
+  if (!locks_are_watched()) return;
+  SimulatedHand hand = stroking_hand();
+  VirtualClock clock;
+  SECTION("a mutex") {
+    std::mutex mutex;
+    BusyWall wall([&] { const std::lock_guard lock(mutex); });
+    CHECK(offences_of(hand, wall, clock, 10).locks >= 10);
+  }
+  SECTION("a shared mutex") {
+    std::shared_mutex mutex;
+    BusyWall wall([&] { const std::shared_lock lock(mutex); });
+    CHECK(offences_of(hand, wall, clock, 10).locks >= 10);
+  }
+}
+
+TEST_CASE(
+    "memory and locks outside the loop, and of several threads at once, are nobody's offence") {
+  static_cast<void>(take_realtime_offences());
+  std::mutex mutex;
+  const auto work = [&] {
+    const std::lock_guard lock(mutex);
+    CHECK(std::string(100, 'x').size() == 100);
+  };
+  {
+    std::thread other(work);
+    other.join();
+  }
+  work();
+  CHECK(take_realtime_offences() == RealtimeOffences{});
+}
+
+}  // namespace
+}  // namespace touchtrial
