@@ -4,6 +4,8 @@
 #include "core/nearest_name.hpp"
 #include "device/mouse/driver.hpp"
 #include "device/openhaptics/driver.hpp"
+#include "device/replay/driver.hpp"
+#include "device/simulated/driver.hpp"
 
 #include <string_view>
 
@@ -28,7 +30,8 @@ std::vector<DeviceListing> listings_of(const DeviceDriver& driver, const DeviceS
 }  // namespace
 
 const std::vector<DeviceDriver>& device_drivers() {
-  static const std::vector<DeviceDriver> kDrivers = {openhaptics_driver(), mouse_driver()};
+  static const std::vector<DeviceDriver> kDrivers = {openhaptics_driver(), mouse_driver(),
+                                                     simulated_driver(), replay_driver()};
   return kDrivers;
 }
 

@@ -1,0 +1,11 @@
+/// \file Replay in the registry.
+#pragma once
+
+#include "device/registry.hpp"
+
+namespace touchtrial {
+
+/// Replays the file of DeviceSettings::replay. `list` reads it, to tell whether it can be replayed.
+[[nodiscard]] DeviceDriver replay_driver();
+
+}  // namespace touchtrial
