@@ -14,7 +14,7 @@ std::string variable(const char* name) {
 
 std::vector<DeviceListing> list_mouse(const DeviceSettings&) {
   DeviceListing listing;
-  listing.driver = "mouse";
+  listing.driver = kMouseDriver;
   const std::string wayland = variable("WAYLAND_DISPLAY");
   listing.where = wayland.empty() ? variable("DISPLAY") : wayland;
   listing.present = !listing.where.empty();
@@ -35,7 +35,8 @@ std::unique_ptr<HapticDevice> refuse_without_window(const DeviceSettings&) {
 }  // namespace
 
 DeviceDriver mouse_driver() {
-  return {"mouse", "pointer on a screen, for demonstration and pilot sessions: visual, not blind",
+  return {kMouseDriver,
+          "pointer on a screen, for demonstration and pilot sessions: visual, not blind",
           list_mouse, refuse_without_window};
 }
 

@@ -5,6 +5,9 @@
 
 namespace touchtrial {
 
+/// The name of the driver.
+inline constexpr const char* kMouseDriver = "mouse";
+
 /// Lists the mouse as present where a display is named (DISPLAY, WAYLAND_DISPLAY). `open` throws
 /// DeviceError: a window is the app layer's, whose OpenedDevice (app/windows) makes one and the
 /// MouseDevice beside it; whatever opens devices by name for a person goes through that.

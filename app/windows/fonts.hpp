@@ -1,0 +1,15 @@
+/// \file The letters of all windows.
+#pragma once
+
+namespace touchtrial {
+
+/// Two sizes of one face in Dear ImGui's current context: text first, then what is read from afar.
+/// DejaVu Sans or a face like it where one is installed, else ImGui's own, enlarged.
+/// \param density  window units for each at 96 per inch, >= 1
+void load_fonts(float density);
+
+/// Index of a size in ImGui's list of fonts.
+inline constexpr int kTextFont = 0;
+inline constexpr int kLargeFont = 1;
+
+}  // namespace touchtrial

@@ -1,0 +1,215 @@
+#include "app/windows/glfw_window.hpp"
+
+#include "app/windows/fonts.hpp"
+#include "app/windows/screen_scale.hpp"
+#include "core/errors.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+
+namespace touchtrial {
+namespace {
+
+/// Of a frame's time that is spent waiting for events; the screen itself paces the rest, where it
+/// can.
+constexpr double kShareForEvents = 0.8;
+
+[[noreturn]] void refuse(const std::string& remedy) {
+  const char* reason = nullptr;
+  glfwGetError(&reason);
+  throw DeviceError(one_line(
+      "window: " + std::string(reason == nullptr ? "unknown error" : reason) + "; " + remedy));
+}
+
+/// GLFW itself, for as long as there is a window.
+class Library {
+ public:
+  Library() {
+    if (glfwInit() != GLFW_TRUE) {
+      refuse("run in a graphical session (DISPLAY or WAYLAND_DISPLAY), or under xvfb-run");
+    }
+  }
+  ~Library() { glfwTerminate(); }
+  Library(const Library&) = delete;
+  Library& operator=(const Library&) = delete;
+};
+
+/// The size asked for at this density, cut to what the screen has room for.
+std::pair<int, int> size_on_screen(const WindowOptions& options, float density) {
+  int width = static_cast<int>(static_cast<float>(options.width_px) * density);
+  int height = static_cast<int>(static_cast<float>(options.height_px) * density);
+  int x = 0;
+  int y = 0;
+  int most_wide = 0;
+  int most_high = 0;
+  if (GLFWmonitor* monitor = glfwGetPrimaryMonitor()) {
+    glfwGetMonitorWorkarea(monitor, &x, &y, &most_wide, &most_high);
+  }
+  if (most_wide > 0) width = std::min(width, most_wide);
+  if (most_high > 0) height = std::min(height, most_high);
+  return {std::max(width, 1), std::max(height, 1)};
+}
+
+GLFWwindow* make_window(const WindowOptions& options) {
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 2);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+  const auto [width, height] = size_on_screen(options, primary_density());
+  GLFWwindow* window = glfwCreateWindow(width, height, options.title.c_str(), nullptr, nullptr);
+  if (window == nullptr) {
+    refuse("OpenGL 3.2 is needed; install the graphics driver, or Mesa (libgl1-mesa-dri)");
+  }
+  return window;
+}
+
+}  // namespace
+
+struct GlfwWindow::State {
+  explicit State(const WindowOptions& options) : window(make_window(options)) {
+    glfwMakeContextCurrent(window);
+    glfwSwapInterval(1);
+    if (options.hide_cursor) glfwSetInputMode(window, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
+    glfwSetWindowUserPointer(window, this);
+    // ImGui's backend passes events on to the callbacks that it finds.
+    glfwSetCursorPosCallback(window, [](GLFWwindow* w, double, double) { tell_pointer(w); });
+    glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int, int, int) { tell_pointer(w); });
+    glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int) {
+      if (key == GLFW_KEY_SPACE && action == GLFW_PRESS) tell_stop(w);
+    });
+    ImGui::CreateContext();
+    ImGui::GetIO().IniFilename = nullptr;
+    scale = screen_scale(window);
+    load_fonts(scale.density);
+    ImGui_ImplGlfw_InitForOpenGL(window, true);
+    ImGui_ImplOpenGL3_Init("#version 150");
+  }
+  ~State() {
+    ImGui_ImplOpenGL3_Shutdown();
+    ImGui_ImplGlfw_Shutdown();
+    ImGui::DestroyContext();
+    glfwDestroyWindow(window);
+  }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  static void tell_pointer(GLFWwindow* window) {
+    const auto* state = static_cast<State*>(glfwGetWindowUserPointer(window));
+    if (!state->listener) return;
+    WindowPointer pointer;
+    glfwGetCursorPos(window, &pointer.position.x, &pointer.position.y);
+    pointer.pressed = glfwGetMouseButton(window, GLFW_MOUSE_BUTTON_LEFT) == GLFW_PRESS;
+    state->listener(pointer);
+  }
+
+  static void tell_stop(GLFWwindow* window) {
+    const auto* state = static_cast<State*>(glfwGetWindowUserPointer(window));
+    if (state->stop_listener) state->stop_listener();
+  }
+
+  void take_events() {
+    const double due_s = frame_began_s + kShareForEvents / scale.refresh_hz;
+    glfwPollEvents();
+    for (double left_s = due_s - glfwGetTime(); left_s > 0.0; left_s = due_s - glfwGetTime()) {
+      glfwWaitEventsTimeout(left_s);
+    }
+    frame_began_s = glfwGetTime();
+  }
+
+  void read_picture(int width, int height) {
+    std::vector<unsigned char> bytes(static_cast<std::size_t>(width) * height * 3);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, bytes.data());
+    picture = ColourImage(height, width);
+    for (int y = 0; y < height; ++y) {
+      const unsigned char* row =
+          bytes.data() + static_cast<std::size_t>(height - 1 - y) * width * 3;
+      for (int x = 0; x < width; ++x)
+        picture.at(y, x) = {row[3 * x], row[3 * x + 1], row[3 * x + 2]};
+    }
+  }
+
+  Library library;
+  GLFWwindow* window;
+  ScreenScale scale;
+  std::function<void(const WindowPointer&)> listener;
+  std::function<void()> stop_listener;
+  double frame_began_s = 0.0;
+  bool keeps_pictures = false;
+  ColourImage picture;
+};
+
+GlfwWindow::GlfwWindow(const WindowOptions& options) : state_(std::make_unique<State>(options)) {}
+GlfwWindow::~GlfwWindow() = default;
+
+void GlfwWindow::on_pointer(std::function<void(const WindowPointer&)> listener) {
+  state_->listener = std::move(listener);
+}
+
+void GlfwWindow::on_stop_key(std::function<void()> listener) {
+  state_->stop_listener = std::move(listener);
+}
+
+void GlfwWindow::begin_frame() {
+  state_->take_events();
+  State::tell_pointer(state_->window);
+  state_->scale = screen_scale(state_->window);
+  ImGui_ImplOpenGL3_NewFrame();
+  ImGui_ImplGlfw_NewFrame();
+  ImGui::NewFrame();
+}
+
+void GlfwWindow::end_frame() {
+  ImGui::Render();
+  int width = 0;
+  int height = 0;
+  glfwGetFramebufferSize(state_->window, &width, &height);
+  glViewport(0, 0, width, height);
+  glClearColor(1.0F, 1.0F, 1.0F, 1.0F);
+  glClear(GL_COLOR_BUFFER_BIT);
+  ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+  if (state_->keeps_pictures) state_->read_picture(width, height);
+  glfwSwapBuffers(state_->window);
+}
+
+bool GlfwWindow::close_asked() const {
+  return glfwWindowShouldClose(state_->window) == GLFW_TRUE;
+}
+
+Vec2 GlfwWindow::size() const {
+  int width = 0;
+  int height = 0;
+  glfwGetWindowSize(state_->window, &width, &height);
+  return {static_cast<double>(width), static_cast<double>(height)};
+}
+
+double GlfwWindow::mm_per_unit() const {
+  return state_->scale.mm_per_unit;
+}
+
+bool GlfwWindow::scale_is_known() const {
+  return state_->scale.is_known;
+}
+
+float GlfwWindow::density() const {
+  return state_->scale.density;
+}
+
+void GlfwWindow::keep_pictures() {
+  state_->keeps_pictures = true;
+}
+
+const ColourImage& GlfwWindow::picture() {
+  if (state_->picture.empty()) throw std::logic_error("GlfwWindow: no picture was kept");
+  return state_->picture;
+}
+
+}  // namespace touchtrial

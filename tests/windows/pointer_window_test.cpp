@@ -1,0 +1,153 @@
+#include "app/windows/pointer_window.hpp"
+
+#include "app/windows/screen_scale.hpp"
+#include "core/errors.hpp"
+#include "device/flat_wall.hpp"
+#include "device/mouse/mouse_device.hpp"
+#include "device/servo/paced_clock.hpp"
+#include "device/servo/servo_thread.hpp"
+#include "support/catch.hpp"
+#include "windows/virtual_screen.hpp"
+
+#include <chrono>
+#include <functional>
+#include <memory>
+
+#include <stdlib.h>
+
+namespace touchtrial {
+namespace {
+
+/// Keeps the last force that the servo wrote.
+class LastWritten final : public HapticDevice {
+ public:
+  explicit LastWritten(HapticDevice& device) : device_(device) {}
+  [[nodiscard]] DeviceInfo info() const override { return device_.info(); }
+  [[nodiscard]] DeviceStatus read(DeviceSample& s) noexcept override { return device_.read(s); }
+  [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override {
+    force_n_ = force_n;
+    return device_.write(force_n);
+  }
+  void halt() noexcept override { device_.halt(); }
+  void rearm() noexcept override { device_.rearm(); }
+  [[nodiscard]] DeviceFault fault() const noexcept override { return device_.fault(); }
+
+  Vec3 force_n_{1.0, 1.0, 1.0};
+
+ private:
+  HapticDevice& device_;
+};
+
+class NoSink final : public SampleSink {
+ public:
+  void record(const ServoSample&) noexcept override {}
+};
+
+/// A mouse under its window, a flat wall, and the servo in real time on a thread of its own.
+struct PilotStation {
+  PilotStation() {
+    thread.start([this] {
+      PacedClock servo_clock{std::chrono::microseconds(50)};
+      // Long enough that only a test that hangs would see it end by itself.
+      const ServoOptions options = {.limit_ticks = 300'000};
+      report = run_servo(last, wall, sink, options, servo_clock, {.state = &states});
+    });
+  }
+
+  /// Lets the window live until the servo's state is as wanted. \return false if it never is
+  bool attend_until(const std::function<bool(const ServoState&)>& is_as_wanted) {
+    const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    while (std::chrono::steady_clock::now() < give_up) {
+      window->draw_frame();
+      if (is_as_wanted(states.get())) return true;
+    }
+    return false;
+  }
+
+  PointerExchange exchange;
+  std::unique_ptr<PointerWindow> window =
+      std::make_unique<PointerWindow>(exchange, Vec2{100.0, 80.0});
+  PacedClock clock{PacedClock::Time{}};
+  MouseDevice mouse{exchange, clock};
+  LastWritten last{mouse};
+  FlatWall wall;
+  NoSink sink;
+  LatestValue<ServoState> states;
+  ServoReport report;
+  ServoThread thread{{SchedulingPolicy::other, 0, false}};
+};
+
+bool is_near(Vec3 position_mm, Vec2 where_mm) {
+  return norm(Vec2{position_mm.x, position_mm.y} - where_mm) < 0.5;
+}
+
+TEST_CASE(
+    "injected motion moves the stylus of the running servo, a press makes contact, letting "
+    "go ends it") {
+  const auto screen = VirtualScreen::open();
+  if (!screen) return;
+  PilotStation station;
+  const Vec2 corner = station.window->plane_corner();
+  const double mm_per_unit = station.window->mm_per_unit();
+  const Vec2 where_mm = {30.0, 50.0};
+  const Vec2 at = corner + (1.0 / mm_per_unit) * where_mm;
+  screen->move_pointer(static_cast<int>(at.x), static_cast<int>(at.y));
+  CHECK(station.attend_until(
+      [&](const ServoState& s) { return is_near(s.sample.position_mm, where_mm); }));
+  screen->press();
+  CHECK(station.attend_until(
+      [](const ServoState& s) { return s.sample.buttons == 1U && s.force_n.z > 0.65; }));
+  CHECK(is_near(station.states.get().sample.position_mm, where_mm));
+  screen->release();
+  CHECK(station.attend_until(
+      [](const ServoState& s) { return s.sample.buttons == 0U && s.force_n.z == 0.0; }));
+  station.window.reset();
+  station.thread.wait();
+}
+
+TEST_CASE("a window that closes under a pressed stylus ends the servo with zero force") {
+  const auto screen = VirtualScreen::open();
+  if (!screen) return;
+  PilotStation station;
+  const Vec2 at = station.window->plane_corner() + Vec2{50.0, 50.0};
+  screen->move_pointer(static_cast<int>(at.x), static_cast<int>(at.y));
+  screen->press();
+  CHECK(station.attend_until([](const ServoState& s) { return s.force_n.z > 0.65; }));
+  station.window.reset();
+  station.thread.wait();
+  CHECK(station.report.end == ServoEnd::fault);
+  CHECK(station.report.device_fault == DeviceFault::link_lost);
+  CHECK(station.last.force_n_ == Vec3{});
+  screen->release();
+}
+
+TEST_CASE("the space bar asks to stop") {
+  const auto screen = VirtualScreen::open();
+  if (!screen) return;
+  PilotStation station;
+  screen->move_pointer(100, 100);
+  CHECK(station.attend_until([](const ServoState& s) { return s.sample.ready; }));
+  CHECK_FALSE(station.window->stop_asked());
+  screen->type("space");
+  CHECK(station.attend_until([&](const ServoState&) { return station.window->stop_asked(); }));
+  station.window.reset();
+  station.thread.wait();
+}
+
+TEST_CASE("without a display the window says what to do about it") {
+  ::unsetenv("DISPLAY");
+  ::unsetenv("WAYLAND_DISPLAY");
+  PointerExchange exchange;
+  CHECK_THROWS_WITH(PointerWindow(exchange, {50.0, 50.0}), holds_text("graphical session"));
+}
+
+TEST_CASE("a monitor's own size is believed only where it can be true") {
+  CHECK(stated_mm_per_unit(508, 1920) == Approx(0.26458).epsilon(1e-4));
+  CHECK(stated_mm_per_unit(0, 1920) == 0.0);
+  CHECK(stated_mm_per_unit(160, 1920) == Approx(0.0833).epsilon(1e-3));
+  CHECK(stated_mm_per_unit(16, 1920) == 0.0);
+  CHECK(stated_mm_per_unit(1600, 800) == 0.0);
+}
+
+}  // namespace
+}  // namespace touchtrial
