@@ -20,7 +20,7 @@ bool is_installed(const std::string& program) {
   const std::string descriptor = std::to_string(number_to);
   const std::string screen = size + "x24";
   ::execlp("Xvfb", "Xvfb", "-displayfd", descriptor.c_str(), "-screen", "0", screen.c_str(),
-           "-nolisten", "tcp", static_cast<char*>(nullptr));
+           "-nolisten", "tcp", "-noreset", static_cast<char*>(nullptr));
   ::_exit(127);
 }
 
