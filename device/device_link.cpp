@@ -24,11 +24,11 @@ void DeviceLink::publish(DeviceSample sample) noexcept {
   samples_.set(sample);
 }
 
-Vec3 DeviceLink::force_to_send(Time now) noexcept {
+std::optional<Vec3> DeviceLink::live_force(Time now) noexcept {
   const TimedForce& newest = forces_.get();
   const bool usable = newest.any && now - newest.written_at <= kForceLifetime &&
                       !halted_.load(std::memory_order_acquire) && fault() == DeviceFault::none;
-  return usable ? newest.force_n : Vec3{};
+  return usable ? std::optional(newest.force_n) : std::nullopt;
 }
 
 }  // namespace touchtrial

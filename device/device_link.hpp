@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <optional>
 
 namespace touchtrial {
 
@@ -42,7 +43,9 @@ class DeviceLink {
   void publish(DeviceSample sample) noexcept;
   /// What to send now, device frame, N: the servo's newest force, or zero if there is none, if it
   /// is too old, or after `halt` or `fail`.
-  [[nodiscard]] Vec3 force_to_send(Time now) noexcept;
+  [[nodiscard]] Vec3 force_to_send(Time now) noexcept { return live_force(now).value_or(Vec3{}); }
+  /// The same, but nothing where there is none: for drivers that add to a force.
+  [[nodiscard]] std::optional<Vec3> live_force(Time now) noexcept;
   ///@}
 
  private:

@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 
 namespace touchtrial::falcon {
 
@@ -36,6 +37,9 @@ class FtdiStreamSink {
 class FtdiTransport {
  public:
   virtual ~FtdiTransport() = default;
+
+  /// Empty if the device has none.
+  [[nodiscard]] virtual std::string serial() const = 0;
 
   /// \name Setting up: each waits, and throws DeviceError if the device is gone
   ///@{

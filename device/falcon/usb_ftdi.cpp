@@ -21,6 +21,7 @@ UsbFtdi::UsbFtdi(UsbContext context, UsbHandle handle)
     : context_(std::move(context)),
       handle_(std::move(handle)),
       where_(place_of(libusb_get_device(handle_.get()))),
+      serial_(serial_of(handle_.get())),
       claim_(handle_.get(), where_),
       read_(make_usb_transfer()),
       send_(make_usb_transfer()) {}

@@ -15,6 +15,7 @@ class UsbFtdi final : public FtdiTransport {
   UsbFtdi(UsbContext context, UsbHandle handle);
   ~UsbFtdi() override;
 
+  [[nodiscard]] std::string serial() const override { return serial_; }
   void control(FtdiRequest request, std::uint16_t value) override;
   [[nodiscard]] std::size_t send(std::span<const std::uint8_t> bytes,
                                  std::chrono::milliseconds limit) override;
@@ -40,6 +41,7 @@ class UsbFtdi final : public FtdiTransport {
   UsbContext context_;
   UsbHandle handle_;
   std::string where_;
+  std::string serial_;
   UsbClaim claim_;
   UsbTransfer read_;
   UsbTransfer send_;

@@ -1,0 +1,143 @@
+#include "device/falcon/falcon_device.hpp"
+
+#include "core/errors.hpp"
+#include "device/falcon/falcon_firmware.hpp"
+
+namespace touchtrial::falcon {
+namespace {
+
+using std::chrono::milliseconds;
+
+class RealPace final : public FalconPace {
+ public:
+  [[nodiscard]] Time now() noexcept override { return monotonic_now(); }
+  void rest_until(Time time) noexcept override { sleep_until(time); }
+};
+
+constexpr double kMaxForceN = 8.0;
+/// Half the side of the square that fits into the middle of the workspace's sphere.
+constexpr double kHalfSideMm = 28.0;
+
+constexpr int kProbes = 5;
+/// At a latency of 1 ms the chip sends a packet each millisecond, mostly without anything in it.
+constexpr int kPacketsPerProbe = 20;
+constexpr milliseconds kPacketLimit{20};
+
+/// One question. \return whether a reply came before the device had nothing to say
+bool answers_once(FtdiTransport& transport) {
+  const Packet question = FalconExchange::farewell();
+  if (transport.send(question, kPacketLimit) != question.size()) return false;
+  FalconStream stream;
+  std::array<std::uint8_t, kUsbPacketSize> packet{};
+  for (int i = 0; i < kPacketsPerProbe; ++i) {
+    const std::size_t length = transport.receive(packet, kPacketLimit);
+    if (length == 0) return false;
+    if (stream.push_transfer(std::span(packet).first(length)) > 0) return true;
+  }
+  return false;
+}
+
+/// Makes the device run, loading its firmware if need be.
+void make_run(FtdiTransport& transport, const FalconSettings& settings) {
+  set_up_running_falcon(transport);
+  if (falcon_answers(transport)) return;
+  load_falcon_firmware(transport, read_falcon_firmware(settings.firmware));
+  if (falcon_answers(transport)) return;
+  throw DeviceError("falcon: its firmware is loaded, but it does not answer; " +
+                    one_line(settings.firmware.string()) +
+                    " may not be a Falcon's firmware: correct falcon/firmware in the device "
+                    "settings");
+}
+
+}  // namespace
+
+bool falcon_answers(FtdiTransport& transport) {
+  for (int i = 0; i < kProbes; ++i) {
+    if (answers_once(transport)) return true;
+  }
+  return false;
+}
+
+std::unique_ptr<FalconPace> real_falcon_pace() {
+  return std::make_unique<RealPace>();
+}
+
+FalconDevice::FalconDevice(std::unique_ptr<FtdiTransport> transport, const FalconSettings& settings,
+                           FalconOptions options)
+    : transport_(std::move(transport)), options_(std::move(options)), exchange_(settings, link_) {
+  make_run(*transport_, settings);
+  transport_->start_stream(exchange_);
+  thread_ = std::thread([this] {
+    scheduling_ = request_scheduling(options_.scheduling);
+    started_.count_down();
+    exchange_until_stopped();
+  });
+  started_.wait();
+}
+
+FalconDevice::~FalconDevice() {
+  stopping_.store(true, std::memory_order_release);
+  options_.pace->end();
+  thread_.join();
+}
+
+DeviceInfo FalconDevice::info() const {
+  DeviceInfo info;
+  info.name = "falcon";
+  info.serial = transport_->serial();
+  info.model = "Novint Falcon";
+  info.max_force_n = kMaxForceN;
+  info.workspace = Workspace{{-kHalfSideMm, -kHalfSideMm, -kHalfSideMm},
+                             {kHalfSideMm, kHalfSideMm, kHalfSideMm}};
+  return info;
+}
+
+DeviceStatus FalconDevice::read(DeviceSample& sample) noexcept {
+  return link_.read(sample);
+}
+
+DeviceStatus FalconDevice::write(Vec3 force_n) noexcept {
+  return link_.write(force_n, options_.pace->now());
+}
+
+DeviceReadiness FalconDevice::readiness() const noexcept {
+  return homed_.load(std::memory_order_acquire) ? DeviceReadiness::ready
+                                                : DeviceReadiness::needs_homing;
+}
+
+void FalconDevice::exchange_until_stopped() noexcept {
+  FalconPace::Time next = options_.pace->now();
+  while (!stopping_.load(std::memory_order_acquire) && link_.fault() == DeviceFault::none) {
+    options_.pace->rest_until(next);
+    next = options_.pace->now() + kPeriod;
+    exchange();
+  }
+  say_farewell();
+}
+
+void FalconDevice::exchange() noexcept {
+  const Packet command = exchange_.command(options_.pace->now());
+  // One that is not taken is missing a reply soon.
+  static_cast<void>(transport_->post(command));
+  // The device's own time, whatever the pace says.
+  const FalconPace::Time until = monotonic_now() + kReplyLimit;
+  do {
+    transport_->serve(std::chrono::duration_cast<std::chrono::microseconds>(kReplyLimit));
+  } while (!exchange_.has_reply() && !transport_->lost() && monotonic_now() < until);
+  exchange_.finish(options_.pace->now());
+  homed_.store(exchange_.homed(), std::memory_order_release);
+  if (transport_->lost()) link_.fail(DeviceFault::link_lost);
+}
+
+void FalconDevice::say_farewell() noexcept {
+  transport_->stop_stream();
+  try {
+    for (int i = 0; i < kFarewells && !transport_->lost(); ++i) {
+      static_cast<void>(transport_->send(FalconExchange::farewell(), milliseconds(20)));
+    }
+  } catch (const DeviceError&) {
+    // It is gone: nobody is left to tell.
+  }
+}
+
+}  // namespace touchtrial::falcon

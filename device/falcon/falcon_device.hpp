@@ -1,0 +1,89 @@
+/// \file The driver "falcon": a Novint Falcon over USB. Tested against an emulator through the
+/// unmodified libusb; not verified on hardware.
+#pragma once
+
+#include "device/device_link.hpp"
+#include "device/device_settings.hpp"
+#include "device/falcon/falcon_exchange.hpp"
+#include "device/falcon/ftdi_transport.hpp"
+#include "device/haptic_device.hpp"
+#include "device/platform/realtime.hpp"
+
+#include <atomic>
+#include <latch>
+#include <memory>
+#include <thread>
+
+namespace touchtrial::falcon {
+
+/// Time and rest of the USB thread, so that tests own them.
+class FalconPace {
+ public:
+  using Time = DeviceLink::Time;
+  virtual ~FalconPace() = default;
+  /// Monotonic. Any thread.
+  [[nodiscard]] virtual Time now() noexcept = 0;
+  /// The USB thread rests here before each exchange until it is time for it.
+  virtual void rest_until(Time time) noexcept = 0;
+  /// Ends the rest, now and for good: the device is being closed. Any thread.
+  virtual void end() noexcept {}
+};
+
+/// Real time.
+[[nodiscard]] std::unique_ptr<FalconPace> real_falcon_pace();
+
+struct FalconOptions {
+  std::unique_ptr<FalconPace> pace = real_falcon_pace();
+  /// Of the USB thread: a little before the servo, which waits for what it brings.
+  SchedulingRequest scheduling{SchedulingPolicy::fifo, 81, true};
+};
+
+/// Exchanges one packet each way at up to 1 kHz on a thread of its own. No force is sent before all
+/// three axes are homed; the gravity bias is added while a servo runs.
+class FalconDevice final : public HapticDevice {
+ public:
+  /// Least time from one exchange to the next: the device manages about 1 kHz.
+  static constexpr FalconPace::Time kPeriod = std::chrono::milliseconds(1);
+  /// How long a reply may take.
+  static constexpr FalconPace::Time kReplyLimit = std::chrono::milliseconds(5);
+  /// Packets without force that are sent on closing.
+  static constexpr int kFarewells = 5;
+
+  /// Loads the firmware unless the device answers already; returns once exchanges go on.
+  /// \throws DeviceError or FileError with the remedy
+  FalconDevice(std::unique_ptr<FtdiTransport> transport, const FalconSettings& settings,
+               FalconOptions options = {});
+  ~FalconDevice() override;
+
+  [[nodiscard]] DeviceInfo info() const override;
+  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override;
+  [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override;
+  void halt() noexcept override { link_.halt(); }
+  void rearm() noexcept override { link_.rearm(); }
+  [[nodiscard]] DeviceFault fault() const noexcept override { return link_.fault(); }
+  [[nodiscard]] DeviceReadiness readiness() const noexcept override;
+
+  /// What the USB thread got.
+  [[nodiscard]] const SchedulingObtained& scheduling() const noexcept { return scheduling_; }
+
+ private:
+  void exchange_until_stopped() noexcept;
+  void exchange() noexcept;
+  void say_farewell() noexcept;
+
+  std::unique_ptr<FtdiTransport> transport_;
+  FalconOptions options_;
+  DeviceLink link_;
+  FalconExchange exchange_;
+  std::atomic<bool> homed_{false};
+  std::atomic<bool> stopping_{false};
+  SchedulingObtained scheduling_;
+  std::latch started_{1};  ///< its scheduling is known
+  std::thread thread_;
+};
+
+/// Whether loaded firmware answers. Moves nothing.
+/// \throws DeviceError if the device is gone
+[[nodiscard]] bool falcon_answers(FtdiTransport& transport);
+
+}  // namespace touchtrial::falcon
