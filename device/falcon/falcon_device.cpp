@@ -113,6 +113,7 @@ void FalconDevice::exchange_until_stopped() noexcept {
     exchange();
   }
   say_farewell();
+  options_.pace->end();
 }
 
 void FalconDevice::exchange() noexcept {

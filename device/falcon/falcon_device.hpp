@@ -25,7 +25,8 @@ class FalconPace {
   [[nodiscard]] virtual Time now() noexcept = 0;
   /// The USB thread rests here before each exchange until it is time for it.
   virtual void rest_until(Time time) noexcept = 0;
-  /// Ends the rest, now and for good: the device is being closed. Any thread.
+  /// Ends the rest, now and for good: the device is being closed, or the USB thread has ended. Any
+  /// thread.
   virtual void end() noexcept {}
 };
 

@@ -23,7 +23,7 @@ class FalconExchange final : public FtdiStreamSink {
   /// ... and after which the device counts as lost.
   static constexpr int kLostAfter = 20;
   /// A hand does not move faster: a reply that says so is a broken one, unless the next ones agree.
-  static constexpr double kMostSpeedMmS = 10'000.0;
+  static constexpr double kMostSpeedMmS = 5'000.0;
   static constexpr int kMostJumps = 3;
 
   /// \param link  must outlive this

@@ -18,8 +18,9 @@ using testing::UsbIdentity;
 /// Gives back what it is sent, behind two status bytes.
 class Loopback final : public testing::UsbModel {
  public:
-  void vendor_request(std::uint8_t request, std::uint16_t value) override {
-    requests.emplace_back(request, value);
+  bool vendor_request(std::uint8_t request, std::uint16_t value, std::uint16_t index) override {
+    if (index == 0) requests.emplace_back(request, value);
+    return index == 0;
   }
   void bulk_out(std::span<const std::uint8_t> bytes) override {
     if (!silent) packets.emplace_back(bytes.begin(), bytes.end());

@@ -53,8 +53,9 @@ std::optional<std::size_t> answer_control(const UsbIdentity& identity, UsbModel&
   if (setup.size() < kSetupBytes) return std::nullopt;
   const auto value = static_cast<std::uint16_t>(setup[2] | setup[3] << 8);
   if (setup[0] == 0x40) {
-    model.vendor_request(setup[1], value);
-    return 0;
+    const auto index = static_cast<std::uint16_t>(setup[4] | setup[5] << 8);
+    return model.vendor_request(setup[1], value, index) ? std::optional<std::size_t>(0)
+                                                        : std::nullopt;
   }
   if (setup[0] != 0x80 || setup[1] != kGetDescriptor || setup[3] != kStringDescriptor) {
     return std::nullopt;

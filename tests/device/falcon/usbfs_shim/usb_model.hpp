@@ -15,10 +15,12 @@ namespace touchtrial::testing {
 class UsbModel {
  public:
   virtual ~UsbModel() = default;
-  virtual void vendor_request(std::uint8_t request, std::uint16_t value) = 0;
+  /// \return false for a stall
+  [[nodiscard]] virtual bool vendor_request(std::uint8_t request, std::uint16_t value,
+                                            std::uint16_t index) = 0;
   virtual void bulk_out(std::span<const std::uint8_t> bytes) = 0;
   /// \return the length of what came into `bytes`; 0 if there is nothing yet
-  virtual std::size_t bulk_in(std::span<std::uint8_t> bytes) = 0;
+  [[nodiscard]] virtual std::size_t bulk_in(std::span<std::uint8_t> bytes) = 0;
 };
 
 /// How a device presents itself on the bus.

@@ -1,0 +1,65 @@
+#include "device/falcon/velocity_estimate.hpp"
+
+#include "support/catch.hpp"
+
+#include <cmath>
+
+namespace touchtrial::falcon {
+namespace {
+
+using std::chrono::microseconds;
+using std::chrono::milliseconds;
+
+TEST_CASE("one reading says nothing of the velocity") {
+  VelocityEstimate estimate;
+  CHECK(estimate.add({5.0, 6.0, 7.0}, milliseconds(3)) == Vec3{});
+}
+
+TEST_CASE("steady motion is found exactly, however unevenly its readings come") {
+  VelocityEstimate estimate;
+  const Vec3 velocity_mm_s = {100.0, -50.0, 20.0};
+  Vec3 found;
+  for (const int us : {0, 900, 2100, 2950, 4400, 5000, 6300}) {
+    found = estimate.add(1e-6 * us * velocity_mm_s, microseconds(us));
+  }
+  CHECK(found.x == Approx(100.0).epsilon(1e-9));
+  CHECK(found.y == Approx(-50.0).epsilon(1e-9));
+  CHECK(found.z == Approx(20.0).epsilon(1e-9));
+}
+
+TEST_CASE("under acceleration the estimate is the velocity of two readings ago") {
+  VelocityEstimate estimate;
+  double found = 0.0;
+  for (int ms = 0; ms < 20; ++ms) {
+    found = estimate.add({0.5 * 1000.0 * 1e-6 * ms * ms, 0.0, 0.0}, milliseconds(ms)).x;
+  }
+  CHECK(found == Approx(1000.0 * 0.017).epsilon(1e-9));
+}
+
+TEST_CASE("one encoder count of 0.04 mm back and forth stays below 12 mm per second") {
+  VelocityEstimate estimate;
+  double most = 0.0;
+  for (int ms = 0; ms < 100; ++ms) {
+    const Vec3 found = estimate.add({0.04 * (ms % 2), 0.0, 0.0}, milliseconds(ms));
+    if (ms > 5) most = std::max(most, std::abs(found.x));
+  }
+  CHECK(most > 0.0);
+  CHECK(most < 12.0);
+}
+
+TEST_CASE("readings from before a long pause are forgotten") {
+  VelocityEstimate estimate;
+  static_cast<void>(estimate.add({0.0, 0.0, 0.0}, milliseconds(0)));
+  static_cast<void>(estimate.add({1.0, 0.0, 0.0}, milliseconds(1)));
+  CHECK(estimate.add({1.0, 0.0, 0.0}, milliseconds(100)) == Vec3{});
+  CHECK(estimate.add({2.0, 0.0, 0.0}, milliseconds(101)).x == Approx(1000.0));
+}
+
+TEST_CASE("readings at one moment have no velocity, rather than an infinite one") {
+  VelocityEstimate estimate;
+  static_cast<void>(estimate.add({0.0, 0.0, 0.0}, milliseconds(1)));
+  CHECK(estimate.add({1.0, 0.0, 0.0}, milliseconds(1)) == Vec3{});
+}
+
+}  // namespace
+}  // namespace touchtrial::falcon
