@@ -2,15 +2,19 @@
 
 #include "core/errors.hpp"
 #include "core/npy.hpp"
+#include "device/falcon/falcon_kinematics.hpp"
+#include "device/falcon/falcon_packet.hpp"
 #include "engine/image_file.hpp"
 #include "protocols/design/study.hpp"
 #include "protocols/session/subject_model.hpp"
 #include "protocols/store/trace.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace touchtrial::fuzz {
 namespace {
@@ -55,6 +59,24 @@ bool claims_a_long_trace(ByteView bytes) {
   return count > kLong && count <= kRefused;
 }
 
+/// Counts replies by looking at every place, not only where the stream would look.
+std::uint64_t replies_in(ByteView payload) {
+  std::uint64_t found = 0;
+  for (std::size_t at = 0; at + falcon::kPacketSize <= payload.size(); ++at) {
+    if (falcon::decode_reply(payload.subspan(at).first<falcon::kPacketSize>())) ++found;
+  }
+  return found;
+}
+
+/// Whatever the counts are, a pose and what it would send to the motors are sensible.
+void check_pose(const falcon::Reply& reply) {
+  const falcon::Pose pose = falcon::forward_kinematics(falcon::theta1_of_counts(reply.counts));
+  require(is_finite(pose.native_m), "a pose is finite");
+  const auto torques = falcon::torques_nm(pose.jacobian, {8.0, -8.0, 8.0});
+  const bool holds = pose.status == falcon::PoseStatus::ok;
+  require(torques.has_value() == holds, "torques belong to poses that can be held");
+}
+
 }  // namespace
 
 void read_as_image(ByteView bytes) {
@@ -95,6 +117,23 @@ void read_as_trace(ByteView bytes) {
     const Trace trace = decode_trace(bytes);
     require(equal(decode_trace(encode_trace(trace)), trace), "a trace survives being stored");
   });
+}
+
+void read_as_falcon(ByteView bytes) {
+  falcon::FalconStream stream;
+  std::vector<std::uint8_t> payload;
+  while (!bytes.empty()) {
+    const std::size_t size = std::min<std::size_t>(bytes[0], bytes.size() - 1);
+    const ByteView transfer = bytes.subspan(1, size);
+    std::vector<std::uint8_t> part(size);
+    part.resize(falcon::ftdi_payload(transfer, part));
+    payload.insert(payload.end(), part.begin(), part.end());
+    if (stream.push_transfer(transfer) > 0) check_pose(stream.newest());
+    bytes = bytes.subspan(1 + size);
+  }
+  require(stream.replies() == replies_in(payload), "a stream finds every reply and no other");
+  require(stream.discarded_bytes() + stream.replies() * falcon::kPacketSize <= payload.size(),
+          "no byte belongs to two things");
 }
 
 }  // namespace touchtrial::fuzz

@@ -17,16 +17,19 @@ void read_as_npy(ByteView bytes);
 void read_as_study(ByteView bytes);
 void read_as_subject(ByteView bytes);
 void read_as_trace(ByteView bytes);
+/// What a Falcon sends: bulk transfers, each after a byte that tells its size.
+void read_as_falcon(ByteView bytes);
 
 struct Entry {
   std::string_view name;  ///< of the fuzzer, and of its folder in fuzz/corpus
   void (*read)(ByteView bytes);
 };
 
-inline constexpr std::array<Entry, 5> kEntries = {{{"image", read_as_image},
+inline constexpr std::array<Entry, 6> kEntries = {{{"image", read_as_image},
                                                    {"npy", read_as_npy},
                                                    {"study", read_as_study},
                                                    {"subject", read_as_subject},
-                                                   {"trace", read_as_trace}}};
+                                                   {"trace", read_as_trace},
+                                                   {"falcon", read_as_falcon}}};
 
 }  // namespace touchtrial::fuzz
