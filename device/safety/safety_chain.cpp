@@ -1,11 +1,20 @@
 #include "device/safety/safety_chain.hpp"
 
+#include "device/safety/finite_check.hpp"
+#include "device/safety/norm_limit.hpp"
+
+#include <algorithm>
 #include <cmath>
 
 namespace touchtrial {
-
 SafetyChain::SafetyChain(const SafetyLimits& limits, double tick_s) noexcept
-    : limits_(limits), tick_s_(tick_s) {}
+    : may_engage_(is_sound(limits) && tick_s > 0.0 && std::isfinite(tick_s)),
+      gate_(limits.engage_force_n),
+      freshness_(limits.stale_s, tick_s),
+      velocity_(limits.max_speed_mm_s, tick_s),
+      thermal_(limits, tick_s),
+      ramp_(limits.ramp_up_s, tick_s),
+      slew_(limits.max_slew_n_per_s, tick_s) {}
 
 void SafetyChain::trip(SafetyFault fault) noexcept {
   if (fault_ == SafetyFault::none) fault_ = fault;
@@ -13,16 +22,46 @@ void SafetyChain::trip(SafetyFault fault) noexcept {
 
 void SafetyChain::rearm() noexcept {
   fault_ = SafetyFault::none;
+  gate_.close();
+  slew_.drop();
 }
 
-SafeForce SafetyChain::check(Vec3 force_n, const DeviceSample& sample) noexcept {
-  const double strength_n = norm(force_n);
-  // The norm also overflows to infinity for a force that is absurd without being infinite.
-  if (!std::isfinite(strength_n) || !is_finite(sample.position_mm)) trip(SafetyFault::not_finite);
-  if (faulted()) return {{}, SafetyVerdict::fault};
-  if (strength_n <= limits_.max_force_n) return {force_n, SafetyVerdict::passed};
-  if (!(limits_.max_force_n > 0.0)) return {{}, SafetyVerdict::limited};
-  return {(limits_.max_force_n / strength_n) * force_n, SafetyVerdict::limited};
+SafeForce SafetyChain::stopped() noexcept {
+  slew_.drop();
+  return {{}, SafetyVerdict::fault};
+}
+
+bool SafetyChain::is_engaged(double force_squared_n2, const DeviceSample& sample) noexcept {
+  if (gate_.is_open()) return true;
+  if (!may_engage_ || !sample.ready || !gate_.try_open(force_squared_n2)) return false;
+  freshness_.start(sample.sequence);
+  velocity_.start(sample);
+  ramp_.start();
+  return true;
+}
+
+SafetyFault SafetyChain::fault_in(const DeviceSample& sample, double ticks) noexcept {
+  if (!sample.ready) return SafetyFault::not_ready;
+  if (velocity_.is_exceeded(sample, ticks)) return SafetyFault::overspeed;
+  if (freshness_.is_stale(sample.sequence, ticks)) return SafetyFault::stale_sample;
+  return SafetyFault::none;
+}
+
+SafeForce SafetyChain::check(Vec3 force_n, const DeviceSample& sample,
+                             std::int64_t ticks) noexcept {
+  const auto elapsed = static_cast<double>(std::max<std::int64_t>(ticks, 1));
+  const double force_squared_n2 = squared_norm(force_n);
+  thermal_.heat(squared_norm(slew_.sent_n()), elapsed);
+  if (!is_finite_state(force_squared_n2, sample)) trip(SafetyFault::not_finite);
+  if (faulted()) return stopped();
+  const bool was_engaged = gate_.is_open();
+  if (!is_engaged(force_squared_n2, sample)) {
+    return {{}, force_n == Vec3{} ? SafetyVerdict::passed : SafetyVerdict::limited};
+  }
+  if (was_engaged) trip(fault_in(sample, elapsed));
+  if (faulted()) return stopped();
+  const Vec3 safe_n = slew_.towards(within_norm(ramp_.of(force_n), thermal_.limit_n()));
+  return {safe_n, safe_n == force_n ? SafetyVerdict::passed : SafetyVerdict::limited};
 }
 
 }  // namespace touchtrial

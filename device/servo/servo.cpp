@@ -23,12 +23,6 @@ void check(const ServoOptions& options) {
   }
 }
 
-SafetyLimits limits_of(const ServoOptions& options, const DeviceInfo& device) {
-  SafetyLimits limits = options.limits;
-  limits.max_force_n = std::min(limits.max_force_n, device.max_force_n);
-  return limits;
-}
-
 /// When a tick began.
 struct TickStart {
   std::int64_t tick;
@@ -109,10 +103,10 @@ class ServoRun {
         force_(force),
         sink_(sink),
         hooks_(hooks),
-        safety_(limits_of(options, device.info()), 1.0 / options.rate_hz),
+        safety_(limits_on(device.info(), options.limits), 1.0 / options.rate_hz),
         fade_from_(options.limit_ticks),
         fade_ticks_(options.fade_ticks) {
-    report_.force_limit_n = limits_of(options, device.info()).max_force_n;
+    report_.force_limit_n = limits_on(device.info(), options.limits).max_force_n;
   }
 
   template <typename Clock>
@@ -176,7 +170,8 @@ class ServoRun {
     if (state == DeviceStatus::stopped) return ServoEnd::hand_stopped;
     if (state == DeviceStatus::fault) safety_.trip(SafetyFault::device);
     const Vec3 requested_n = fade_at(start.tick) * force_.force_n(sample);
-    SafeForce safe = safety_.check(requested_n, sample);
+    SafeForce safe = safety_.check(requested_n, sample, start.tick - last_tick_);
+    last_tick_ = start.tick;
     if (safe.verdict != SafetyVerdict::fault && device_.write(safe.force_n) != DeviceStatus::ok) {
       safety_.trip(SafetyFault::device);
       safe = {{}, SafetyVerdict::fault};
@@ -214,6 +209,7 @@ class ServoRun {
   SampleSink& sink_;
   const ServoHooks& hooks_;
   SafetyChain safety_;
+  std::int64_t last_tick_ = -1;
   std::int64_t fade_from_;
   std::int64_t fade_ticks_;
   ServoEnd end_of_fade_ = ServoEnd::time_limit;

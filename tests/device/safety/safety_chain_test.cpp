@@ -1,5 +1,6 @@
 #include "device/safety/safety_chain.hpp"
 
+#include "device/safety/norm_limit_alone.hpp"
 #include "support/catch.hpp"
 
 #include <limits>
@@ -8,14 +9,14 @@ namespace touchtrial {
 namespace {
 
 TEST_CASE("a force within the limit passes unchanged") {
-  SafetyChain safety({.max_force_n = 3.3});
+  SafetyChain safety(norm_limit_alone());
   const SafeForce safe = safety.check({1.0, -2.0, 2.0}, {});
   CHECK(safe.verdict == SafetyVerdict::passed);
   CHECK(safe.force_n == Vec3{1.0, -2.0, 2.0});
 }
 
 TEST_CASE("a force past the limit is shortened in its direction") {
-  SafetyChain safety({.max_force_n = 2.5});
+  SafetyChain safety(norm_limit_alone(2.5));
   const SafeForce safe = safety.check({3.0, 0.0, 4.0}, {});
   CHECK(safe.verdict == SafetyVerdict::limited);
   CHECK(safe.force_n == Vec3{1.5, 0.0, 2.0});
@@ -25,7 +26,7 @@ TEST_CASE("a force past the limit is shortened in its direction") {
 TEST_CASE("a force that is not finite sends zero and latches until it is re-armed") {
   const double bad = GENERATE(std::numeric_limits<double>::quiet_NaN(),
                               -std::numeric_limits<double>::infinity(), 1e300);
-  SafetyChain safety({.max_force_n = 3.3});
+  SafetyChain safety(norm_limit_alone());
   CHECK(safety.check({bad, 0.0, 0.0}, {}).verdict == SafetyVerdict::fault);
   CHECK(safety.check({0.0, 0.0, 1.0}, {}).force_n == Vec3{});
   CHECK(safety.faulted());
@@ -35,7 +36,164 @@ TEST_CASE("a force that is not finite sends zero and latches until it is re-arme
 
 TEST_CASE("a limit that is no positive number lets no force pass") {
   const double limit_n = GENERATE(0.0, -1.0, std::numeric_limits<double>::quiet_NaN());
-  CHECK(SafetyChain({.max_force_n = limit_n}).check({0.0, 0.1, 0.0}, {}).force_n == Vec3{});
+  CHECK(SafetyChain(norm_limit_alone(limit_n)).check({0.0, 0.1, 0.0}, {}).force_n == Vec3{});
+}
+
+/// A device in which nothing is wrong: it rests, and numbers its readings.
+class Readings {
+ public:
+  DeviceSample next() {
+    ++sample.sequence;
+    return sample;
+  }
+  DeviceSample sample{{1.0, 2.0, -1.0}, {}};
+};
+
+/// Past gate and ramp, under a force. \return the force that is sent
+Vec3 engage(SafetyChain& safety, Readings& device, Vec3 force_n) {
+  static_cast<void>(safety.check({}, device.next()));
+  for (int tick = 0; tick < 200; ++tick) {
+    REQUIRE_FALSE(safety.check(force_n, device.next()).verdict == SafetyVerdict::fault);
+  }
+  return safety.sent_n();
+}
+
+TEST_CASE("no force passes before the computed one was small, and then it grows from nothing") {
+  SafetyChain safety({});
+  Readings device;
+  for (int tick = 0; tick < 50; ++tick) {
+    const SafeForce held = safety.check({0.0, 0.0, 0.6}, device.next());
+    REQUIRE(held.force_n == Vec3{});
+    REQUIRE(held.verdict == SafetyVerdict::limited);
+  }
+  CHECK(safety.check({0.0, 0.0, 0.4}, device.next()).force_n == Vec3{});
+  for (int tick = 1; tick < 100; ++tick) {
+    REQUIRE(safety.check({0.0, 0.0, 2.0}, device.next()).force_n.z == Approx(0.02 * tick));
+  }
+}
+
+TEST_CASE("a device that is not ready yet gets zero, without a fault and however it jumps") {
+  SafetyChain safety({});
+  Readings device;
+  device.sample.ready = false;
+  for (int tick = 0; tick < 50; ++tick) {
+    device.sample.position_mm.x = tick % 2 == 0 ? -40.0 : 40.0;
+    REQUIRE(safety.check({0.0, 0.0, 0.1}, device.next()).force_n == Vec3{});
+  }
+  device.sample.ready = true;
+  CHECK(engage(safety, device, {0.0, 0.0, 1.0}) == Vec3{0.0, 0.0, 1.0});
+}
+
+TEST_CASE("while force is on, each of these is a fault: zero at once, latched") {
+  SafetyChain safety({});
+  Readings device;
+  REQUIRE(engage(safety, device, {0.0, 0.0, 3.0}) == Vec3{0.0, 0.0, 3.0});
+  DeviceSample bad = device.next();
+  SafetyFault fault = SafetyFault::none;
+  SECTION("losing readiness") {
+    bad.ready = false;
+    fault = SafetyFault::not_ready;
+  }
+  SECTION("a jump of the position") {
+    bad.position_mm.y += 3.0;
+    fault = SafetyFault::overspeed;
+  }
+  SECTION("a speed that no hand has") {
+    bad.velocity_mm_s.z = -2500.0;
+    fault = SafetyFault::overspeed;
+  }
+  SECTION("a velocity that is no number") {
+    bad.velocity_mm_s.z = std::numeric_limits<double>::quiet_NaN();
+    fault = SafetyFault::not_finite;
+  }
+  SECTION("a position that is no number") {
+    bad.position_mm.x = std::numeric_limits<double>::infinity();
+    fault = SafetyFault::not_finite;
+  }
+  SECTION("a reading that never changes") {
+    for (int tick = 0; tick < 10; ++tick) {
+      REQUIRE(safety.check({0.0, 0.0, 3.0}, bad).verdict == SafetyVerdict::passed);
+    }
+    fault = SafetyFault::stale_sample;
+  }
+  SECTION("one that was seen elsewhere") {
+    safety.trip(SafetyFault::emergency_stop);
+    fault = SafetyFault::emergency_stop;
+  }
+  const SafeForce safe = safety.check({0.0, 0.0, 3.0}, bad);
+  CHECK(safe.force_n == Vec3{});
+  CHECK(safe.verdict == SafetyVerdict::fault);
+  CHECK(safety.fault() == fault);
+  safety.trip(SafetyFault::device);
+  CHECK(safety.fault() == fault);
+  CHECK(safety.check({0.0, 0.0, 0.1}, device.next()).force_n == Vec3{});
+}
+
+TEST_CASE("after re-arming gate and ramp begin anew, from where the hand is now") {
+  SafetyChain safety({});
+  Readings device;
+  REQUIRE(engage(safety, device, {0.0, 0.0, 3.0}) == Vec3{0.0, 0.0, 3.0});
+  safety.trip(SafetyFault::emergency_stop);
+  REQUIRE(safety.check({0.0, 0.0, 3.0}, device.next()).force_n == Vec3{});
+  device.sample.position_mm.x += 100.0;
+  safety.rearm();
+  CHECK(safety.check({0.0, 0.0, 3.0}, device.next()).force_n == Vec3{});
+  CHECK(safety.check({0.0, 0.0, 0.3}, device.next()).force_n == Vec3{});
+  CHECK(safety.check({0.0, 0.0, 3.0}, device.next()).force_n.z == Approx(0.03));
+  CHECK_FALSE(safety.faulted());
+}
+
+TEST_CASE("motors that are warm get less than the norm limit") {
+  SafetyChain safety({.max_force_n = 3.0, .continuous_force_n = 1.0, .thermal_budget_s = 1.0});
+  Readings device;
+  REQUIRE(engage(safety, device, {0.0, 0.0, 3.0}) == Vec3{0.0, 0.0, 3.0});
+  for (int tick = 0; tick < 60'000; ++tick) {
+    static_cast<void>(safety.check({0.0, 0.0, 3.0}, device.next()));
+  }
+  CHECK(safety.sent_n().z == Approx(1.0).epsilon(0.05));
+  CHECK_FALSE(safety.faulted());
+}
+
+TEST_CASE("the force changes by at most the slew limit, also after an overrun") {
+  SafetyChain safety({.max_slew_n_per_s = 200.0});
+  Readings device;
+  static_cast<void>(engage(safety, device, {0.0, 0.0, 1.0}));
+  CHECK(safety.check({0.0, 0.0, 2.0}, device.next()).force_n.z == Approx(1.2));
+  CHECK(safety.check({0.0, 0.0, 2.0}, device.next(), 5).force_n.z == Approx(1.4));
+}
+
+TEST_CASE("an overrun counts as the time that it took") {
+  SafetyChain safety({});
+  Readings device;
+  static_cast<void>(engage(safety, device, {}));
+  device.sample.position_mm.x += 10.0;
+  CHECK(safety.check({}, device.next(), 20).verdict == SafetyVerdict::passed);
+  device.sample.position_mm.x += 10.0;
+  CHECK(safety.check({}, device.next()).verdict == SafetyVerdict::fault);
+}
+
+TEST_CASE("limits or a tick that make no sense let no force pass") {
+  SafetyLimits limits;
+  double tick_s = 0.001;
+  SECTION("a slew that is no number") {
+    limits.max_slew_n_per_s = std::numeric_limits<double>::quiet_NaN();
+  }
+  SECTION("a negative time") {
+    limits.stale_s = -1.0;
+  }
+  SECTION("a tick of no length") {
+    tick_s = 0.0;
+  }
+  SECTION("a tick that is no number") {
+    tick_s = std::numeric_limits<double>::quiet_NaN();
+  }
+  SafetyChain safety(limits, tick_s);
+  Readings device;
+  for (int tick = 0; tick < 300; ++tick) {
+    const SafeForce safe = safety.check({0.0, 0.0, 0.2}, device.next());
+    REQUIRE(safe.force_n == Vec3{});
+    REQUIRE(safe.verdict == SafetyVerdict::limited);
+  }
 }
 
 }  // namespace

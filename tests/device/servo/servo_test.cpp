@@ -1,6 +1,7 @@
 #include "device/servo/servo.hpp"
 
 #include "device/flat_wall.hpp"
+#include "device/safety/norm_limit_alone.hpp"
 #include "device/servo/servo_fakes.hpp"
 #include "support/catch.hpp"
 
@@ -27,8 +28,8 @@ TEST_CASE("when time is up the force fades to nothing, and zero is written last"
   ScriptedDevice device;
   ConstantForce force({0.0, 0.0, 1.0});
   KeptSamples kept;
-  const ServoReport report =
-      run_servo_in_virtual_time(device, force, kept, {.limit_ticks = 3, .fade_ticks = 4});
+  const ServoReport report = run_servo_in_virtual_time(
+      device, force, kept, {.limit_ticks = 3, .fade_ticks = 4, .limits = norm_limit_alone()});
   CHECK(report.end == ServoEnd::time_limit);
   CHECK(report.ticks == 7);
   const std::vector<Vec3> expected = {{0, 0, 1},   {0, 0, 1},    {0, 0, 1}, {0, 0, 0.75},
@@ -44,7 +45,7 @@ TEST_CASE("the smaller of the device's and the study's force limits holds") {
   ConstantForce force({0.0, 3.0, 0.0});
   KeptSamples kept;
   const ServoReport report =
-      run_servo_in_virtual_time(device, force, kept, {.limits = {.max_force_n = 2.0}});
+      run_servo_in_virtual_time(device, force, kept, {.limits = norm_limit_alone(2.0)});
   CHECK(report.limited_ticks == 2);
   CHECK(report.force_limit_n == limit_n);
   CHECK(device.written[0] == Vec3{0.0, limit_n, 0.0});
