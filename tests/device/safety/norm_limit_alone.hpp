@@ -12,6 +12,7 @@ namespace touchtrial {
   SafetyLimits limits;
   limits.max_force_n = max_force_n;
   limits.max_slew_n_per_s = std::numeric_limits<double>::infinity();
+  limits.max_speed_mm_s = std::numeric_limits<double>::infinity();
   limits.engage_force_n = std::numeric_limits<double>::infinity();
   limits.ramp_up_s = 0.0;
   return limits;

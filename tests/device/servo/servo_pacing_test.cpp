@@ -1,5 +1,6 @@
 // When ticks come, how late they were, and what is left out: by a clock that is late by script.
 #include "device/flat_wall.hpp"
+#include "device/safety/norm_limit_alone.hpp"
 #include "device/servo/duration_histogram.hpp"
 #include "device/servo/servo.hpp"
 #include "device/servo/servo_fakes.hpp"
@@ -26,6 +27,7 @@ PacedRun run(LateClock clock, ServoOptions options, const ServoHooks& hooks = {}
   ScriptedDevice device;
   ConstantForce force({0.0, 0.0, 0.5});
   KeptSamples kept;
+  options.limits = norm_limit_alone();
   PacedRun run{run_servo(device, force, kept, options, clock, hooks), {}};
   for (const ServoSample& sample : kept.samples) run.ticks.push_back(sample.tick);
   return run;
@@ -73,8 +75,8 @@ TEST_CASE("a loop that stood still until time was up sends no more than the zero
   ConstantForce force({0.0, 0.0, 0.5});
   KeptSamples kept;
   LateClock clock({kOnTime, std::chrono::seconds(2)});
-  const ServoReport report =
-      run_servo(device, force, kept, {.limit_ticks = 1000, .fade_ticks = 100}, clock);
+  const ServoOptions options{.limit_ticks = 1000, .fade_ticks = 100, .limits = norm_limit_alone()};
+  const ServoReport report = run_servo(device, force, kept, options, clock);
   CHECK(report.end == ServoEnd::time_limit);
   CHECK(report.ticks == 1);
   CHECK(device.written == std::vector<Vec3>{{0.0, 0.0, 0.5}, {}});
