@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/nearest_name.hpp"
+#include "device/dhd/driver.hpp"
 #include "device/falcon/driver.hpp"
 #include "device/mouse/driver.hpp"
 #include "device/openhaptics/driver.hpp"
@@ -31,8 +32,9 @@ std::vector<DeviceListing> listings_of(const DeviceDriver& driver, const DeviceS
 }  // namespace
 
 const std::vector<DeviceDriver>& device_drivers() {
-  static const std::vector<DeviceDriver> kDrivers = {
-      falcon_driver(), openhaptics_driver(), mouse_driver(), simulated_driver(), replay_driver()};
+  static const std::vector<DeviceDriver> kDrivers = {falcon_driver(),    openhaptics_driver(),
+                                                     dhd_driver(),       mouse_driver(),
+                                                     simulated_driver(), replay_driver()};
   return kDrivers;
 }
 

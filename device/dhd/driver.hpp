@@ -1,0 +1,12 @@
+/// \file Force Dimension devices in the registry.
+#pragma once
+
+#include "device/registry.hpp"
+
+namespace touchtrial {
+
+/// `list` loads the library and opens each connected device for a moment, to read its name; no
+/// force is switched on.
+[[nodiscard]] DeviceDriver dhd_driver();
+
+}  // namespace touchtrial
