@@ -3,6 +3,7 @@
 /// Private to app: it shows the parser's type.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <string>
 
@@ -31,5 +32,11 @@ void add_unblind_command(CLI::App& program, Action& action);
 void add_verify_command(CLI::App& program, Action& action);
 void add_report_command(CLI::App& program, Action& action);
 void add_export_command(CLI::App& program, Action& action);
+void add_device_command(CLI::App& program, Action& action);
+/// These add themselves to the command "device".
+void add_device_list_command(CLI::App& device, Action& action);
+
+/// The option --settings of commands that open devices; see device_settings_for.
+void add_settings_option(CLI::App& command, std::filesystem::path& settings);
 
 }  // namespace touchtrial

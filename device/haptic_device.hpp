@@ -44,10 +44,16 @@ enum class DeviceReadiness {
   needs_calibration,  ///< the vendor's own calibration has to be run
 };
 
+enum class WorkspaceShape {
+  box,        ///< everything between the two corners
+  ellipsoid,  ///< the one that touches the box from inside: devices that reach a ball
+};
+
 /// Extent of the positions that a device can reach, in the device frame.
 struct Workspace {
   Vec3 least_mm;
   Vec3 greatest_mm;
+  WorkspaceShape shape = WorkspaceShape::box;
 };
 
 /// What a session records of its device.
@@ -60,7 +66,8 @@ struct DeviceInfo {
   double max_rate_hz = 1000.0;      ///< of useful servo ticks
   std::string model{};              ///< as the device or its library tells it; may be empty
   std::string firmware{};           ///< version, likewise
-  std::optional<Workspace> workspace = std::nullopt;  ///< nothing: as large as any plane
+  /// Nothing: the device speaks the plane frame and reaches all of any plane.
+  std::optional<Workspace> workspace = std::nullopt;
   /// Shown on a screen instead of felt: not blind, so for pilot sessions and demonstration alone.
   bool visual = false;
   /// Of a wall that it renders stably, by its maker's word; 0 if not told.

@@ -46,15 +46,19 @@ std::vector<DeviceListing> list_devices(const DeviceSettings& settings) {
   return all;
 }
 
+const DeviceDriver& device_driver(const std::string& name) {
+  for (const DeviceDriver& known : device_drivers()) {
+    if (known.name == name) return known;
+  }
+  const auto nearest = nearest_name(name, driver_names());
+  throw UsageError(one_line(
+      name + ": there is no such device driver; " +
+      (nearest ? "did you mean " + std::string(*nearest) + "?" : "see touchtrial device list")));
+}
+
 std::unique_ptr<HapticDevice> open_device(const std::string& driver,
                                           const DeviceSettings& settings) {
-  for (const DeviceDriver& known : device_drivers()) {
-    if (known.name == driver) return known.open(settings);
-  }
-  const auto nearest = nearest_name(driver, driver_names());
-  throw UsageError(
-      driver + ": there is no such device driver; " +
-      (nearest ? "did you mean " + std::string(*nearest) + "?" : "see touchtrial device list"));
+  return device_driver(driver).open(settings);
 }
 
 }  // namespace touchtrial

@@ -6,6 +6,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,11 @@ struct DeviceDriver {
   std::string what;  ///< a line for help
   std::function<std::vector<DeviceListing>(const DeviceSettings&)> list;
   std::function<std::unique_ptr<HapticDevice>(const DeviceSettings&)> open;
+  /// The workspace that its maker states, for planning while no device is there. Nothing: any
+  /// plane, as for a DeviceInfo without one, or that `workspace_is_known` is false.
+  std::optional<Workspace> nominal_workspace = std::nullopt;
+  /// False where models differ and only the device itself can tell.
+  bool workspace_is_known = true;
 };
 
 /// All drivers, in the order in which they are listed.
@@ -36,6 +42,9 @@ struct DeviceDriver {
 
 /// What is plugged in, and what each driver misses. Never throws for a device's sake.
 [[nodiscard]] std::vector<DeviceListing> list_devices(const DeviceSettings& settings);
+
+/// \throws UsageError naming the nearest driver if there is none of this name
+[[nodiscard]] const DeviceDriver& device_driver(const std::string& name);
 
 /// \throws UsageError naming the nearest driver if there is none of this name, DeviceError with the
 ///   remedy if it cannot be opened

@@ -1,0 +1,126 @@
+#include "device/workspace_fit.hpp"
+
+#include "core/errors.hpp"
+#include "core/strict_json.hpp"
+
+#include <cmath>
+#include <cstdint>
+
+namespace touchtrial {
+namespace {
+
+/// Rounding must not refuse a plane that fits exactly.
+constexpr double kToleranceMm = 1e-9;
+
+Vec3 middle_of(const Workspace& workspace) {
+  return 0.5 * (workspace.least_mm + workspace.greatest_mm);
+}
+
+/// The workspace as one octant sees it that holds the point furthest from the middle: it is
+/// symmetric about its middle, so of a box's corners only that one matters.
+struct Reach {
+  Vec3 offset_mm;  ///< of the plane's middle from the workspace's, each >= 0
+  Vec3 half_mm;    ///< of the workspace
+  WorkspaceShape shape;
+
+  /// \param half_extent_mm  of a box about the plane's middle, device frame
+  [[nodiscard]] bool holds(Vec3 half_extent_mm) const {
+    const Vec3 corner = offset_mm + half_extent_mm;
+    if (shape == WorkspaceShape::box) {
+      return corner.x <= half_mm.x + kToleranceMm && corner.y <= half_mm.y + kToleranceMm &&
+             corner.z <= half_mm.z + kToleranceMm;
+    }
+    const Vec3 share{corner.x / (half_mm.x + kToleranceMm), corner.y / (half_mm.y + kToleranceMm),
+                     corner.z / (half_mm.z + kToleranceMm)};
+    return norm(share) <= 1.0;
+  }
+};
+
+Reach reach_about(Vec3 centre_mm, const Workspace& workspace) {
+  const Vec3 offset = centre_mm - middle_of(workspace);
+  return {{std::abs(offset.x), std::abs(offset.y), std::abs(offset.z)},
+          0.5 * (workspace.greatest_mm - workspace.least_mm),
+          workspace.shape};
+}
+
+/// Half of the plane's box with its margins, device frame; a direction without its sign.
+Vec3 half_extent_mm(const PlaneGeometry& plane, PlaneOrientation orientation) {
+  const Vec3 half =
+      to_device_direction({plane.width_mm() / 2.0, plane.height_mm() / 2.0, 0.0}, orientation);
+  return Vec3{std::abs(half.x), std::abs(half.y), std::abs(half.z)} +
+         Vec3{kWorkspaceMarginMm, kWorkspaceMarginMm, kWorkspaceMarginMm};
+}
+
+std::int64_t pixels_of(const PlaneGeometry& plane) {
+  return std::int64_t{plane.width_px} * plane.height_px;
+}
+
+/// Of all parts with whole pixels that fit, the one of the largest area. The wider, the lower: one
+/// walk along the border of what fits finds it.
+PlaneGeometry largest_part(const PlaneGeometry& plane, const Reach& reach,
+                           PlaneOrientation orientation) {
+  PlaneGeometry best{plane.pitch_mm, 0, 0};
+  PlaneGeometry part{plane.pitch_mm, plane.height_px, 1};
+  for (; part.width_px <= plane.width_px; ++part.width_px) {
+    while (part.height_px > 0 && !reach.holds(half_extent_mm(part, orientation))) --part.height_px;
+    if (part.height_px == 0) break;
+    if (pixels_of(part) > pixels_of(best)) best = part;
+  }
+  return best;
+}
+
+std::string rounded_text(double number) {
+  return number_text(std::round(number * 10.0) / 10.0);
+}
+
+std::string size_text(const PlaneGeometry& plane) {
+  return rounded_text(plane.width_mm()) + " x " + rounded_text(plane.height_mm()) + " mm (" +
+         std::to_string(plane.width_px) + " x " + std::to_string(plane.height_px) + " px)";
+}
+
+std::string workspace_text(const Workspace& workspace) {
+  const Vec3 size = workspace.greatest_mm - workspace.least_mm;
+  return rounded_text(size.x) + " x " + rounded_text(size.y) + " x " + rounded_text(size.z) +
+         " mm" + (workspace.shape == WorkspaceShape::ellipsoid ? " (rounded)" : "");
+}
+
+}  // namespace
+
+WorkspaceFit fit_plane(const PlaneGeometry& plane, const std::optional<Workspace>& workspace,
+                       const DeviceUse& use, std::optional<PlaneOrientation> orientation) {
+  if (!workspace) return {true, std::nullopt, plane};
+  PlanePlacement placement;
+  placement.orientation =
+      orientation.value_or(use.orientation.value_or(PlaneOrientation::horizontal));
+  const Vec3 centre_mm = use.centre_mm.value_or(middle_of(*workspace));
+  placement.origin_mm =
+      centre_mm - to_device_direction({plane.width_mm() / 2.0, plane.height_mm() / 2.0, 0.0},
+                                      placement.orientation);
+  const Reach reach = reach_about(centre_mm, *workspace);
+  const bool fits = reach.holds(half_extent_mm(plane, placement.orientation));
+  return {fits, placement, fits ? plane : largest_part(plane, reach, placement.orientation)};
+}
+
+std::string misfit_text(const std::string& device, const PlaneGeometry& plane,
+                        const Workspace& workspace, const WorkspaceFit& fit) {
+  const std::string offer =
+      fit.largest.width_px == 0
+          ? "nothing fits about that middle; move placement/centre_mm in the device settings"
+          : "crop the pictures to " + std::to_string(fit.largest.width_px) + " x " +
+                std::to_string(fit.largest.height_px) + " px about their middle (" +
+                rounded_text(fit.largest.width_mm()) + " x " +
+                rounded_text(fit.largest.height_mm()) +
+                " mm), turn the plane, or use a larger device";
+  return one_line(device + ": the plane of " + size_text(plane) +
+                  " does not fit its workspace of " + workspace_text(workspace) + " with " +
+                  number_text(kWorkspaceMarginMm) + " mm around it; " + offer);
+}
+
+std::optional<PlanePlacement> placement_of(const PlaneGeometry& plane, const DeviceInfo& device,
+                                           const DeviceUse& use) {
+  const WorkspaceFit fit = fit_plane(plane, device.workspace, use);
+  if (!fit.fits) throw DeviceError(misfit_text(device.name, plane, *device.workspace, fit));
+  return fit.placement;
+}
+
+}  // namespace touchtrial

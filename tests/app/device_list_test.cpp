@@ -1,0 +1,66 @@
+#include "app/touchtrial_process.hpp"
+#include "core/files.hpp"
+#include "support/catch.hpp"
+#include "support/temp_folder.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+using namespace touchtrial;
+using nlohmann::json;
+
+namespace {
+
+/// Settings of the test's own, so that those of whoever runs it do not matter.
+std::string settings_in(const TempFolder& folder, const std::string& text = "{}") {
+  const auto file = folder.path() / "devices.json";
+  replace_file(file, text);
+  return file.string();
+}
+
+}  // namespace
+
+TEST_CASE("device list names every driver and which devices are ready") {
+  const TempFolder folder;
+  const ProgramResult result =
+      run_touchtrial(folder.path(), {"device", "list", "--settings", settings_in(folder)});
+  INFO(result.errors);
+  REQUIRE(result.exit_code == 0);
+  CHECK_THAT(result.output, holds_text("driver") && holds_text("state"));
+  CHECK_THAT(result.output, holds_text("simulated") && holds_text("ready"));
+}
+
+TEST_CASE("device list gives the same as JSON") {
+  const TempFolder folder;
+  const ProgramResult result = run_touchtrial(
+      folder.path(), {"device", "list", "--json", "--settings", settings_in(folder)});
+  REQUIRE(result.exit_code == 0);
+  const json devices = json::parse(result.output).at("devices");
+  const auto simulated = std::ranges::find_if(
+      devices, [](const json& device) { return device.at("driver") == "simulated"; });
+  REQUIRE(simulated != devices.end());
+  CHECK(simulated->at("present") == true);
+  CHECK(simulated->at("ready") == true);
+  CHECK(simulated->at("missing").empty());
+  for (const char* key : {"model", "serial", "where"}) CHECK(simulated->at(key).is_string());
+}
+
+TEST_CASE("device list refuses settings that break their schema with the place") {
+  const TempFolder folder;
+  const std::string settings = settings_in(folder, R"({"falcon": {"firmwear": "x"}})");
+  const ProgramResult result =
+      run_touchtrial(folder.path(), {"device", "list", "--settings", settings});
+  CHECK(result.exit_code == 2);
+  CHECK(line_count(result.errors) == 1);
+  CHECK_THAT(result.errors, holds_text("/falcon/firmwear") && holds_text("firmware"));
+}
+
+TEST_CASE("the command device wants to know what to do") {
+  const TempFolder folder;
+  CHECK(run_touchtrial(folder.path(), {"device"}).exit_code == 2);
+  const ProgramResult help = run_touchtrial(folder.path(), {"device", "--help"});
+  CHECK(help.exit_code == 0);
+  CHECK_THAT(help.output, holds_text("list"));
+}

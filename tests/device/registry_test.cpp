@@ -1,0 +1,54 @@
+#include "device/registry.hpp"
+
+#include "core/errors.hpp"
+#include "protocols/design/refusal.hpp"
+#include "support/catch.hpp"
+
+#include <set>
+
+namespace touchtrial {
+
+TEST_CASE("every driver has a name of its own and says what it is") {
+  std::set<std::string> names;
+  for (const DeviceDriver& driver : device_drivers()) {
+    INFO(driver.name);
+    CHECK(names.insert(driver.name).second);
+    CHECK_FALSE(driver.what.empty());
+    CHECK(device_driver(driver.name).name == driver.name);
+  }
+  CHECK(names.count("simulated") == 1);
+}
+
+TEST_CASE("every driver is listed whether it has a device or not") {
+  std::set<std::string> listed;
+  for (const DeviceListing& listing : list_devices({})) {
+    INFO(listing.driver);
+    CHECK((listing.present || listing.serial.empty()));
+    listed.insert(listing.driver);
+  }
+  for (const DeviceDriver& driver : device_drivers()) CHECK(listed.count(driver.name) == 1);
+}
+
+TEST_CASE("a driver that does not exist is refused with the nearest that does") {
+  const auto opened = [](const char* name) { return [=] { return open_device(name, {}); }; };
+  CHECK(refuses<UsageError>(opened("simulatd"),
+                            "simulatd: there is no such device driver; did "
+                            "you mean simulated?"));
+  CHECK(refuses<UsageError>(opened("theremin"), "device list"));
+}
+
+TEST_CASE("the simulated device opens and gives positions that move") {
+  const auto device = open_device("simulated", {});
+  CHECK(device->info().name == "simulated");
+  CHECK(device->info().simulated);
+  CHECK_FALSE(device->info().workspace.has_value());
+  DeviceSample first;
+  REQUIRE(device->read(first) == DeviceStatus::ok);
+  for (int i = 0; i < 500; ++i) REQUIRE(device->write({}) == DeviceStatus::ok);
+  DeviceSample later;
+  REQUIRE(device->read(later) == DeviceStatus::ok);
+  CHECK(norm(later.position_mm - first.position_mm) > 1.0);
+  CHECK(later.sequence > first.sequence);
+}
+
+}  // namespace touchtrial
