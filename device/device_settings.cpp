@@ -183,6 +183,7 @@ DeviceUse DeviceSettings::use_of(const std::string& driver) const {
 SafetyLimits stricter_of(SafetyLimits limits, const LabLimits& lab) noexcept {
   tighten(limits.max_force_n, lab.max_force_n);
   tighten(limits.max_slew_n_per_s, lab.max_slew_n_per_s);
+  limits.max_slew_n_per_s = std::max(limits.max_slew_n_per_s, limits.max_force_n / kLongestLetGoS);
   tighten(limits.max_speed_mm_s, lab.max_speed_mm_s);
   if (limits.continuous_force_n > 0.0) {
     tighten(limits.continuous_force_n, lab.continuous_force_n);

@@ -69,7 +69,7 @@ struct DeviceSettings {
   [[nodiscard]] DeviceUse use_of(const std::string& driver) const;
 };
 
-/// The stricter of each limit.
+/// The stricter of each limit; the slew limit not below what lets go in kLongestLetGoS.
 [[nodiscard]] SafetyLimits stricter_of(SafetyLimits limits, const LabLimits& lab) noexcept;
 
 /// Reads a settings file, by the schema config/schema/devices.schema.json; paths are relative to

@@ -86,6 +86,14 @@ TEST_CASE("a lab's limits make limits stricter and never looser") {
   CHECK(limits.continuous_force_n == 0.0);
 }
 
+TEST_CASE("a lab's slew limit does not keep a force from being let go") {
+  LabLimits lab;
+  lab.max_slew_n_per_s = 1.0;
+  const SafetyLimits limits = stricter_of({}, lab);
+  CHECK(limits.max_slew_n_per_s == limits.max_force_n / kLongestLetGoS);
+  CHECK(is_sound(limits));
+}
+
 TEST_CASE("a lab's continuous force holds where none is known and beside a larger one") {
   LabLimits lab;
   lab.continuous_force_n = 0.9;

@@ -100,12 +100,12 @@ TEST_CASE("a ball is smaller than the box around it") {
   CHECK(fit_plane(plane_of(51.2, 51.2), box_of(80.0, 80.0, 80.0)).fits);
 }
 
-TEST_CASE("the offered crop of a ball is the largest square that fits") {
+TEST_CASE("the offered crop of a ball is the largest part that fits to the pixel") {
   const PlaneGeometry plane = plane_of(51.2, 51.2);
   const WorkspaceFit fit = fit_plane(plane, ball_of(40.0));
-  // sqrt((40^2 - 5^2) / 2) - 5 = 23.06 mm is half a side: 230 px of 0.1 mm.
+  // Half sides of 23.0 and 23.1 mm: (28.0^2 + 28.1^2 + 5^2) = 1598.6; 23.1 twice would be 1604.2.
   CHECK(fit.largest.width_px == 230);
-  CHECK(fit.largest.height_px == 230);
+  CHECK(fit.largest.height_px == 231);
   CHECK(fit.largest.pitch_mm == plane.pitch_mm);
   CHECK(fit_plane(fit.largest, ball_of(40.0)).fits);
 }
@@ -145,8 +145,8 @@ TEST_CASE("a session on a device that is too small is refused with numbers and a
   CHECK(placement_of(plane_of(40.0, 40.0), device, {}).has_value());
   CHECK(message_of<DeviceError>([&] { return placement_of(plane_of(51.2, 51.2), device, {}); }) ==
         "falcon: the plane of 51.2 x 51.2 mm (256 x 256 px) does not fit its workspace of 80 x 80 "
-        "x 80 mm (rounded) with 5 mm around it; crop the pictures to 230 x 230 px about their "
-        "middle (46 x 46 mm), turn the plane, or use a larger device");
+        "x 80 mm (rounded) with 5 mm around it; crop the pictures to 230 x 231 px about their "
+        "middle (46 x 46.2 mm), turn the plane, or use a larger device");
   CHECK(refuses<DeviceError>(
       [&] {
         return placement_of(plane_of(40.0, 40.0), device, use_at({60.0, 0.0, 0.0}));
