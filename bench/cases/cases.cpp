@@ -25,6 +25,7 @@ Cases all_cases(const Scope& scope) {
   append(fft_cases(scope), cases);
   append(tv_gabor_cases(scope), cases);
   append(force_cases(), cases);
+  append(falcon_cases(), cases);
   return cases;
 }
 

@@ -63,6 +63,9 @@ template <typename Real>
 [[nodiscard]] Case surface_force_case();
 [[nodiscard]] Cases force_cases();
 
+/// What a Falcon's driver computes for each of its readings.
+[[nodiscard]] Cases falcon_cases();
+
 /// All of the above.
 [[nodiscard]] Cases all_cases(const Scope& scope);
 

@@ -124,7 +124,7 @@ std::optional<Vec3> newton_step(const Closure& c) noexcept {
 
 /// Halves the step until the legs come nearer to closing. \return whether they did
 bool advance(Vec3& position_m, Closure& closure, Vec3 step, const Arms& arms) noexcept {
-  constexpr int kMostHalvings = 20;
+  constexpr int kMostHalvings = 10;
   const double before = sum_of_squares(closure.gap_m);
   for (int halving = 0; halving < kMostHalvings; ++halving, step = 0.5 * step) {
     const Closure next = closure_at(position_m + step, arms);
@@ -144,7 +144,7 @@ bool is_falcon(const Closure& c) noexcept {
 
 /// Newton from a start. \return out of reach if that does not close the legs
 Pose solve_from(Vec3 start_m, const Arms& arms) noexcept {
-  constexpr int kMostSteps = 50;
+  constexpr int kMostSteps = 25;
   Pose pose;
   Vec3 position_m = start_m;
   Closure closure = closure_at(position_m, arms);

@@ -15,7 +15,9 @@ constexpr std::size_t kLastAt = kPacketSize - 1;
 constexpr std::size_t kNibbles = 4;
 
 constexpr double kMotorValuePerNm = -1e4;
-constexpr double kMostMotorValue = 32767.0;
+/// 1 N m. A force of 8 N takes up to 0.67 N m within the workspace, and without bound towards the
+/// singular poses beyond it.
+constexpr double kMostMotorValue = 10'000.0;
 constexpr double kMostBiasN = 1.0;
 
 void put_nibbles(Packet& packet, std::size_t axis, std::int16_t value) noexcept {

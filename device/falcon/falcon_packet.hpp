@@ -27,8 +27,9 @@ using Packet = std::array<std::uint8_t, kPacketSize>;
 ///@{
 using MotorValues = std::array<std::int16_t, 3>;  ///< -10,000 for 1 N m
 
-/// Motor values of torques. If one is beyond the motors' range, all three shrink by one scale, so
-/// that the force keeps its direction. Torques that are not finite give zeros.
+/// Motor values of torques. If one is beyond 1 N m, all three shrink by one scale, so that the
+/// force keeps its direction; no force that a Falcon can make within its workspace needs as much.
+/// Torques that are not finite give zeros.
 [[nodiscard]] MotorValues motor_values(const PerLeg& torques_nm) noexcept;
 
 /// Which lights are on.

@@ -192,7 +192,7 @@ TEST_CASE("falcon forward kinematics: what is out of reach gives a status in bou
 
 /// What may be relied on, whatever the counts are.
 void check_sane(const Pose& pose, const PerLeg& theta1_rad) {
-  REQUIRE(pose.iterations <= 100);
+  REQUIRE(pose.iterations <= 50);
   REQUIRE(is_finite(pose.native_m));
   if (pose.status == PoseStatus::out_of_reach) {
     REQUIRE(pose.native_m == kCentreM);
@@ -285,6 +285,40 @@ TEST_CASE("falcon torques make the force that was asked for, along z as along x 
   CHECK(torques[0] == Approx(torques[1]));
   CHECK(torques[1] == Approx(torques[2]));
   CHECK(torques[0] > 0.0);
+}
+
+TEST_CASE("falcon torques: 8 N anywhere in the workspace stay within 0.7 N m") {
+  RandomStream random(12, "falcon strength");
+  double most_nm = 0.0;
+  for (int i = 0; i < kPoses; ++i) {
+    const Vec3 position = random_position_m(random);
+    const Vec3 direction = random_vector(random, 1.0);
+    const Vec3 force_n = (8.0 / norm(direction)) * direction;
+    const PerLeg torques = torques_nm(jacobian_at(position), force_n).value();
+    for (const double torque : torques) {
+      most_nm = std::max(most_nm, std::abs(torque));
+    }
+  }
+  CHECK(most_nm < 0.7);
+  CHECK(most_nm > 0.5);
+}
+
+TEST_CASE("falcon forward kinematics: where the legs cannot hold the hand a pose is singular") {
+  RandomStream random(13, "falcon singular");
+  int found = 0;
+  for (int i = 0; i < 100000; ++i) {
+    const Vec3 position = kCentreM + random_vector(random, 0.12);
+    const auto legs = inverse_kinematics(position);
+    // Torques are refused a little before the determinant is zero, never beyond.
+    if (!legs || torques_nm(leg_jacobian(*legs), {0.0, 0.0, 1.0})) continue;
+    const Pose pose = forward_kinematics(theta1_at(position), position);
+    if (pose.status == PoseStatus::out_of_reach) continue;
+    ++found;
+    REQUIRE(pose.status == PoseStatus::singular);
+    REQUIRE(norm(pose.native_m - position) < 1e-9);
+    REQUIRE_FALSE(torques_nm(pose.jacobian, {0.0, 0.0, 1.0}));
+  }
+  CHECK(found > 20);
 }
 
 TEST_CASE("falcon torques: a pose that cannot be held, or no number, gives none") {
