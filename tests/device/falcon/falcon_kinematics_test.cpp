@@ -146,7 +146,7 @@ TEST_CASE("falcon forward kinematics undoes the inverse to 1e-9 m from a cold st
     iterations.push_back(pose.iterations);
   }
   CHECK(worst_m < 1e-9);
-  CHECK(*std::max_element(iterations.begin(), iterations.end()) <= 8);
+  CHECK(*std::max_element(iterations.begin(), iterations.end()) <= 6);
 }
 
 TEST_CASE("falcon forward kinematics needs at most three steps from a millisecond ago") {
