@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kLeastRateHz = 1'000.0;
 constexpr double kGreatestRateHz = 10'000.0;
+constexpr double kComfortStopS = 0.1;  ///< from the first tick that knows of it
 
 void check(const ServoOptions& options) {
   const bool rate_holds = options.rate_hz >= kLeastRateHz && options.rate_hz <= kGreatestRateHz;
@@ -104,6 +105,8 @@ class ServoRun {
         sink_(sink),
         hooks_(hooks),
         safety_(limits_on(device.info(), options.limits), 1.0 / options.rate_hz),
+        rate_hz_(options.rate_hz),
+        comfort_ticks_(comfort_ticks(limits_on(device.info(), options.limits), options.rate_hz)),
         fade_from_(options.limit_ticks),
         fade_ticks_(options.fade_ticks) {
     report_.force_limit_n = limits_on(device.info(), options.limits).max_force_n;
@@ -117,6 +120,9 @@ class ServoRun {
       end = run_ticks(pacing);
       // The loop has ended either way; a device that is lost cannot take the zero either.
       static_cast<void>(device_.write({}));
+      if (hooks_.heartbeat != nullptr) {
+        hooks_.heartbeat->store(kServoAtRest, std::memory_order_release);
+      }
     }
     report_.end = end.value_or(end_of_fade_);
     report_.fault = safety_.fault();
@@ -141,12 +147,18 @@ class ServoRun {
     return std::nullopt;
   }
 
-  [[nodiscard]] std::int64_t end_of_ticks() const noexcept { return fade_from_ + fade_ticks_; }
+  /// A comfort stop goes on until the slew limit has let go as well.
+  [[nodiscard]] std::int64_t end_of_ticks() const noexcept {
+    const bool lets_go = safety_.sent_n() != Vec3{};
+    return lets_go ? std::max(end_of_fade(), end_of_comfort_stop_) : end_of_fade();
+  }
+  [[nodiscard]] std::int64_t end_of_fade() const noexcept { return fade_from_ + fade_ticks_; }
 
   void take_requests(std::int64_t tick) noexcept {
     if (hooks_.control == nullptr) return;
     if (hooks_.control->emergency_stop_asked()) safety_.trip(SafetyFault::emergency_stop);
-    if (hooks_.control->comfort_stop_asked()) fade_out(tick, ServoEnd::comfort_stop);
+    if (hooks_.control->stall_seen()) safety_.trip(SafetyFault::stalled);
+    if (hooks_.control->comfort_stop_asked()) stop_in_comfort(tick);
     if (hooks_.control->finish_asked()) fade_out(tick, ServoEnd::hand_stopped);
   }
 
@@ -157,10 +169,29 @@ class ServoRun {
     end_of_fade_ = end;
   }
 
+  /// Fades from where a fade may already be, unless that one is over sooner. The fade leaves as
+  /// much of the 100 ms as the slew limit may need.
+  void stop_in_comfort(std::int64_t tick) noexcept {
+    const bool fades = tick >= fade_from_;
+    if (fades && end_of_fade() <= tick + comfort_ticks_) return;
+    fade_share_ = fades ? fade_at(tick - 1) : 1.0;
+    fade_from_ = tick;
+    fade_ticks_ = comfort_ticks_;
+    end_of_comfort_stop_ = tick + std::llround(std::floor(kComfortStopS * rate_hz_));
+    end_of_fade_ = ServoEnd::comfort_stop;
+  }
+
+  static std::int64_t comfort_ticks(const SafetyLimits& limits, double rate_hz) noexcept {
+    if (!is_sound(limits)) return 1;
+    return std::llround(std::floor((kComfortStopS - let_go_s(limits)) * rate_hz)) - 1;
+  }
+
   /// 1 until the fade begins, then falling to 0.
   double fade_at(std::int64_t tick) const noexcept {
     if (tick < fade_from_) return 1.0;
-    return 1.0 - static_cast<double>(tick + 1 - fade_from_) / static_cast<double>(fade_ticks_);
+    if (tick + 1 >= end_of_fade()) return 0.0;
+    const double gone = static_cast<double>(tick + 1 - fade_from_);
+    return fade_share_ * (1.0 - gone / static_cast<double>(fade_ticks_));
   }
 
   /// \return why the loop must end, or nothing
@@ -209,9 +240,13 @@ class ServoRun {
   SampleSink& sink_;
   const ServoHooks& hooks_;
   SafetyChain safety_;
+  double rate_hz_;
+  std::int64_t comfort_ticks_;
   std::int64_t last_tick_ = -1;
   std::int64_t fade_from_;
   std::int64_t fade_ticks_;
+  double fade_share_ = 1.0;  ///< at which the fade begins
+  std::int64_t end_of_comfort_stop_ = 0;
   ServoEnd end_of_fade_ = ServoEnd::time_limit;
   ServoReport report_;
 };

@@ -94,12 +94,16 @@ struct ServoState {
 class DurationHistogram;
 class FlightRecorder;
 
+/// A heartbeat outside of a run.
+inline constexpr std::int64_t kServoAtRest = -1;
+
 /// Who else looks at the loop or has a say; null where nobody does.
 struct ServoHooks {
   ServoControl* control = nullptr;
-  LatestValue<ServoState>* state = nullptr;        ///< set every tick, for one reader
-  std::atomic<std::int64_t>* heartbeat = nullptr;  ///< counts ticks, for a watchdog
-  FlightRecorder* recorder = nullptr;              ///< every tick, that of a fault included
+  LatestValue<ServoState>* state = nullptr;  ///< set every tick, for one reader
+  /// Counts ticks, for a Watchdog; kServoAtRest once the run has ended.
+  std::atomic<std::int64_t>* heartbeat = nullptr;
+  FlightRecorder* recorder = nullptr;     ///< every tick, that of a fault included
   DurationHistogram* lateness = nullptr;  ///< what this run's ticks are added to at its end
 };
 

@@ -16,17 +16,21 @@ class ServoControl {
   void comfort_stop() noexcept { ask(kComfortStop); }
   /// Zero from the next tick on; the run ends as a fault.
   void emergency_stop() noexcept { ask(kEmergencyStop); }
-  /// Before a new run. An emergency stop is only taken back by this.
+  /// The servo stood still (Watchdog): as an emergency stop, but the run ends as stalled.
+  void stall() noexcept { ask(kStall); }
+  /// Before a new run. Emergency stops and stalls are only taken back by this.
   void reset() noexcept { requests_.store(0, std::memory_order_release); }
 
   [[nodiscard]] bool finish_asked() const noexcept { return is_asked(kFinish); }
   [[nodiscard]] bool comfort_stop_asked() const noexcept { return is_asked(kComfortStop); }
   [[nodiscard]] bool emergency_stop_asked() const noexcept { return is_asked(kEmergencyStop); }
+  [[nodiscard]] bool stall_seen() const noexcept { return is_asked(kStall); }
 
  private:
   static constexpr std::uint32_t kFinish = 1;
   static constexpr std::uint32_t kComfortStop = 2;
   static constexpr std::uint32_t kEmergencyStop = 4;
+  static constexpr std::uint32_t kStall = 8;
   static_assert(std::atomic<std::uint32_t>::is_always_lock_free, "signal handlers set it");
 
   void ask(std::uint32_t request) noexcept {

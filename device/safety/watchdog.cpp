@@ -1,0 +1,88 @@
+#include "device/safety/watchdog.hpp"
+
+#include "device/platform/realtime.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace touchtrial {
+namespace {
+
+constexpr int kLooksInSilence = 5;
+constexpr int kPriority = 85;  ///< of SCHED_FIFO, above the servo's
+
+class SystemTime final : public WatchdogTime {
+ public:
+  [[nodiscard]] Time now() noexcept override { return monotonic_now(); }
+  void pause(Time time) noexcept override { sleep_until(monotonic_now() + time); }
+};
+
+}  // namespace
+
+WatchdogTime& system_watchdog_time() noexcept {
+  static SystemTime time;
+  return time;
+}
+
+Watchdog::Watchdog(HapticDevice& device, ServoControl& control,
+                   const std::atomic<std::int64_t>& heartbeat, std::chrono::nanoseconds silence,
+                   WatchdogTime& time)
+    : device_(device),
+      control_(control),
+      heartbeat_(heartbeat),
+      silence_(silence),
+      pause_(std::max(silence / kLooksInSilence, std::chrono::nanoseconds(1))),
+      time_(time) {
+  if (silence <= std::chrono::nanoseconds(0)) {
+    throw std::invalid_argument("Watchdog: the silence is not > 0");
+  }
+  thread_ = std::thread([this] { watch(); });
+}
+
+Watchdog::~Watchdog() {
+  ends_.store(true, std::memory_order_release);
+  thread_.join();
+}
+
+void Watchdog::arm() {
+  const std::lock_guard lock(mutex_);
+  armed_ = true;
+  tripped_ = false;
+  beating_ = false;
+  last_beat_ = heartbeat_.load(std::memory_order_acquire);
+  silent_ = {};
+}
+
+bool Watchdog::disarm() {
+  const std::lock_guard lock(mutex_);
+  armed_ = false;
+  return tripped_;
+}
+
+void Watchdog::watch() noexcept {
+  // Without the permission it watches as an ordinary thread: nothing that it could do about it.
+  static_cast<void>(request_scheduling(
+      {.policy = SchedulingPolicy::fifo, .priority = kPriority, .lock_memory = false}));
+  WatchdogTime::Time last = time_.now();
+  while (!ends_.load(std::memory_order_acquire)) {
+    time_.pause(pause_);
+    const WatchdogTime::Time now = time_.now();
+    look(now - last);
+    last = now;
+  }
+}
+
+void Watchdog::look(WatchdogTime::Time passed) noexcept {
+  const std::lock_guard lock(mutex_);
+  const std::int64_t beat = heartbeat_.load(std::memory_order_acquire);
+  const bool is_new = beat != last_beat_;
+  last_beat_ = beat;
+  beating_ = (beating_ || is_new) && beat != kServoAtRest;
+  silent_ = is_new || !beating_ ? WatchdogTime::Time{} : silent_ + std::min(passed, 2 * pause_);
+  if (!armed_ || tripped_ || silent_ < silence_) return;
+  tripped_ = true;
+  device_.halt();
+  control_.stall();
+}
+
+}  // namespace touchtrial

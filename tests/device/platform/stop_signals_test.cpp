@@ -1,0 +1,162 @@
+// Every way out of the program, each taken by a child process whose device tells what it sent.
+#include "device/platform/stop_signals.hpp"
+
+#include "device/safety/safety_fakes.hpp"
+#include "support/catch.hpp"
+
+#include <csignal>
+#include <exception>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace touchtrial {
+namespace {
+
+/// Sends from a thread of its own: into a pipe, 'F' for force and 'z' for zero.
+class PipeDevice final : public HapticDevice {
+ public:
+  explicit PipeDevice(int pipe) : sender_([this, pipe] { send_to(pipe); }) {
+    while (!sends_.load()) std::this_thread::yield();
+  }
+  ~PipeDevice() override {
+    ends_.store(true);
+    sender_.join();
+  }
+  [[nodiscard]] DeviceInfo info() const override { return {"pipe", "", 3.3, true}; }
+  [[nodiscard]] DeviceStatus read(DeviceSample&) noexcept override { return DeviceStatus::ok; }
+  [[nodiscard]] DeviceStatus write(Vec3) noexcept override { return DeviceStatus::ok; }
+  void halt() noexcept override { halted_.store(true); }
+  void rearm() noexcept override { halted_.store(false); }
+
+ private:
+  void send_to(int pipe) noexcept {
+    while (!ends_.load()) {
+      const char sent = halted_.load() ? 'z' : 'F';
+      if (::write(pipe, &sent, 1) != 1) return;
+      sends_.store(true);
+      std::this_thread::sleep_for(std::chrono::microseconds(200));
+    }
+  }
+
+  std::atomic<bool> halted_{false};
+  std::atomic<bool> ends_{false};
+  std::atomic<bool> sends_{false};
+  std::thread sender_;
+};
+
+struct WayOut {
+  std::string sent;
+  int status = 0;
+};
+
+void put_things_in_order(const ServoControl& control) {
+  while (!control.emergency_stop_asked()) std::this_thread::yield();
+}
+
+void leave_by(const std::string& way, const ServoControl& control) {
+  if (way == "SIGTERM" || way == "SIGINT" || way == "SIGHUP") {
+    std::raise(way == "SIGTERM" ? SIGTERM : way == "SIGINT" ? SIGINT : SIGHUP);
+    put_things_in_order(control);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    ::_exit(StopOnSignals::exit_code());
+  }
+  if (way == "SIGTERM twice") {
+    std::raise(SIGTERM);
+    put_things_in_order(control);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    std::raise(SIGTERM);
+  }
+  if (way == "abort") std::abort();
+  if (way == "terminate") std::terminate();
+  if (way == "SIGSEGV") std::raise(SIGSEGV);
+  if (way == "SIGFPE") std::raise(SIGFPE);
+}
+
+[[noreturn]] void be_the_child(const std::string& way, int pipe) {
+  const rlimit no_core{0, 0};
+  ::setrlimit(RLIMIT_CORE, &no_core);
+  ::close(STDERR_FILENO);
+  // As the shell starts a program, whatever the test program itself has made of signals.
+  for (const int signal : {SIGTERM, SIGINT, SIGHUP, SIGABRT, SIGSEGV, SIGFPE}) {
+    std::signal(signal, SIG_DFL);
+  }
+  std::set_terminate(nullptr);
+  PipeDevice device(pipe);
+  ServoControl control;
+  const StopOnSignals stop(device, control);
+  leave_by(way, control);
+  ::_exit(99);
+}
+
+WayOut take(const std::string& way) {
+  int ends[2];
+  REQUIRE(::pipe(ends) == 0);
+  const pid_t child = ::fork();
+  REQUIRE(child >= 0);
+  if (child == 0) be_the_child(way, ends[1]);
+  ::close(ends[1]);
+  WayOut out;
+  char sent = 0;
+  while (::read(ends[0], &sent, 1) == 1) out.sent += sent;
+  ::close(ends[0]);
+  REQUIRE(::waitpid(child, &out.status, 0) == child);
+  return out;
+}
+
+TEST_CASE("asked to end, the program sends zero and leaves with the code that a shell expects") {
+  const auto [way, signal] = GENERATE(
+      table<std::string, int>({{"SIGTERM", SIGTERM}, {"SIGINT", SIGINT}, {"SIGHUP", SIGHUP}}));
+  const WayOut out = take(way);
+  CAPTURE(way, out.sent);
+  CHECK(out.sent.front() == 'F');
+  CHECK(out.sent.back() == 'z');
+  REQUIRE(WIFEXITED(out.status));
+  CHECK(WEXITSTATUS(out.status) == 128 + signal);
+}
+
+TEST_CASE("asked twice, the program ends at once, with the force at zero") {
+  const WayOut out = take("SIGTERM twice");
+  CHECK(out.sent.back() == 'z');
+  REQUIRE(WIFSIGNALED(out.status));
+  CHECK(WTERMSIG(out.status) == SIGTERM);
+}
+
+TEST_CASE("a crash sends zero before the program dies of it") {
+  const auto [way, signal] = GENERATE(table<std::string, int>(
+      {{"abort", SIGABRT}, {"terminate", SIGABRT}, {"SIGSEGV", SIGSEGV}, {"SIGFPE", SIGFPE}}));
+  const WayOut out = take(way);
+  CAPTURE(way, out.sent);
+  CHECK(out.sent.front() == 'F');
+  CHECK(out.sent.back() == 'z');
+  REQUIRE(WIFSIGNALED(out.status));
+  CHECK(WTERMSIG(out.status) == signal);
+}
+
+TEST_CASE("without being asked there is nothing to leave for, and signals are handled once") {
+  RestingDevice device;
+  ServoControl control;
+  const StopOnSignals stop(device, control);
+  CHECK_FALSE(StopOnSignals::asked());
+  CHECK(StopOnSignals::exit_code() == 0);
+  CHECK(StopOnSignals::message().empty());
+  CHECK_THROWS_AS(StopOnSignals(device, control), std::logic_error);
+}
+
+TEST_CASE("after it was asked to end, the program knows by what") {
+  RestingDevice device;
+  ServoControl control;
+  const StopOnSignals stop(device, control);
+  std::raise(SIGTERM);
+  CHECK(StopOnSignals::asked());
+  CHECK(StopOnSignals::message() == "stopped by SIGTERM; the force is zero");
+  CHECK(control.emergency_stop_asked());
+  CHECK(device.halts == 1);
+}
+
+}  // namespace
+}  // namespace touchtrial

@@ -1,0 +1,203 @@
+#include "device/safety/watchdog.hpp"
+
+#include "device/safety/safety_fakes.hpp"
+#include "support/catch.hpp"
+
+#include <condition_variable>
+#include <optional>
+#include <stdexcept>
+
+namespace touchtrial {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// Time that goes on by steps of the test: each lets the watchdog look once.
+class SteppedTime final : public WatchdogTime {
+ public:
+  [[nodiscard]] Time now() noexcept override {
+    const std::lock_guard lock(mutex_);
+    return now_;
+  }
+  void pause(Time) noexcept override {
+    std::unique_lock lock(mutex_);
+    ++pauses_;
+    changed_.notify_all();
+    changed_.wait(lock, [this] { return granted_ > 0 || over_; });
+    if (granted_ > 0) --granted_;
+  }
+
+  /// One pause of the watchdog takes so long; returns when it has looked.
+  void step(Time length) {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, [this] { return pauses_ > steps_; });
+    now_ += length;
+    ++steps_;
+    ++granted_;
+    changed_.notify_all();
+    changed_.wait(lock, [this] { return pauses_ > steps_; });
+  }
+  void end() {
+    const std::lock_guard lock(mutex_);
+    over_ = true;
+    changed_.notify_all();
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  Time now_{};
+  int pauses_ = 0;
+  int steps_ = 0;
+  int granted_ = 0;
+  bool over_ = false;
+};
+
+struct Watched {
+  Watched() = default;
+  ~Watched() {
+    time.end();
+    watchdog.reset();
+  }
+  Watched(const Watched&) = delete;
+  Watched& operator=(const Watched&) = delete;
+
+  /// Looks every 2 ms, with or without beats of the servo between.
+  void pass(milliseconds length, bool beats) {
+    for (milliseconds at{0}; at < length; at += milliseconds(2)) {
+      if (beats) heartbeat.fetch_add(2);
+      time.step(milliseconds(2));
+    }
+  }
+  [[nodiscard]] bool is_stopped() const { return device.halts > 0 && control.stall_seen(); }
+
+  RestingDevice device;
+  ServoControl control;
+  std::atomic<std::int64_t> heartbeat{0};
+  SteppedTime time;
+  std::optional<Watchdog> watchdog{std::in_place, device,           control,
+                                   heartbeat,     milliseconds(10), time};
+};
+
+TEST_CASE("a watchdog halts the device of a servo that has been silent for 10 ms") {
+  Watched watched;
+  watched.watchdog->arm();
+  watched.pass(milliseconds(50), true);
+  watched.pass(milliseconds(8), false);
+  CHECK(watched.device.halts == 0);
+  watched.pass(milliseconds(2), false);
+  CHECK(watched.is_stopped());
+  watched.pass(milliseconds(50), false);
+  CHECK(watched.device.halts == 1);
+  CHECK(watched.watchdog->disarm());
+}
+
+TEST_CASE("a watchdog leaves a servo alone that beats, late now and then") {
+  Watched watched;
+  watched.watchdog->arm();
+  for (int i = 0; i < 20; ++i) {
+    watched.pass(milliseconds(2), true);
+    watched.pass(milliseconds(8), false);
+  }
+  CHECK_FALSE(watched.is_stopped());
+  CHECK_FALSE(watched.watchdog->disarm());
+}
+
+TEST_CASE("a watchdog waits for the first beat, and knows the end of a run") {
+  Watched watched;
+  watched.watchdog->arm();
+  watched.pass(milliseconds(100), false);
+  CHECK_FALSE(watched.is_stopped());
+  watched.pass(milliseconds(10), true);
+  watched.heartbeat.store(kServoAtRest);
+  watched.pass(milliseconds(100), false);
+  CHECK_FALSE(watched.is_stopped());
+}
+
+TEST_CASE("a watchdog that is not armed watches nothing, and armed anew begins anew") {
+  Watched watched;
+  watched.pass(milliseconds(10), true);
+  watched.pass(milliseconds(100), false);
+  CHECK_FALSE(watched.is_stopped());
+  watched.watchdog->arm();
+  watched.pass(milliseconds(10), true);
+  CHECK_FALSE(watched.watchdog->disarm());
+  watched.pass(milliseconds(100), false);
+  CHECK_FALSE(watched.is_stopped());
+}
+
+TEST_CASE("a machine that stood still as a whole is no silence of the servo") {
+  Watched watched;
+  watched.watchdog->arm();
+  watched.pass(milliseconds(10), true);
+  watched.time.step(milliseconds(46));
+  CHECK_FALSE(watched.is_stopped());
+  watched.pass(milliseconds(2), true);
+  watched.time.step(milliseconds(46));
+  CHECK_FALSE(watched.is_stopped());
+  watched.time.step(milliseconds(46));
+  watched.time.step(milliseconds(46));
+  CHECK(watched.is_stopped());
+}
+
+/// Stands still at a tick until the watchdog has seen it.
+class StallingForce final : public ForceSource {
+ public:
+  explicit StallingForce(const ServoControl& control) : control_(control) {}
+  [[nodiscard]] Vec3 force_n(const DeviceSample& sample) noexcept override {
+    while (sample.sequence == 200 && !control_.stall_seen()) std::this_thread::yield();
+    return {0.0, 0.0, 0.4};
+  }
+
+ private:
+  const ServoControl& control_;
+};
+
+TEST_CASE("a run whose callback stands still ends as stalled, on the system's clock") {
+  RestingDevice device;
+  ServoControl control;
+  std::atomic<std::int64_t> heartbeat{0};
+  Watchdog watchdog(device, control, heartbeat, milliseconds(50));
+  StallingForce force(control);
+  NoSamples sink;
+  VirtualClock clock;
+  ServoHooks hooks;
+  hooks.control = &control;
+  hooks.heartbeat = &heartbeat;
+  watchdog.arm();
+  // The watchdog needs a beat between arming and the stall, which it sees at its next look.
+  const ServoReport report =
+      run_servo(device, force, sink, {.limit_ticks = 1'000'000}, clock, hooks);
+  CHECK(report.end == ServoEnd::fault);
+  CHECK(report.fault == SafetyFault::stalled);
+  CHECK(device.halts == 1);
+  CHECK(device.written.back() == Vec3{});
+  CHECK(heartbeat == kServoAtRest);
+  CHECK(watchdog.disarm());
+}
+
+TEST_CASE("watchdogs come and go, armed and disarmed, between two threads") {
+  RestingDevice device;
+  ServoControl control;
+  std::atomic<std::int64_t> heartbeat{0};
+  for (int i = 0; i < 20; ++i) {
+    Watchdog watchdog(device, control, heartbeat);
+    std::thread servo([&] {
+      for (int beat = 0; beat < 1000; ++beat) heartbeat.fetch_add(1);
+      heartbeat.store(kServoAtRest);
+    });
+    { const WatchdogGuard guard(watchdog); }
+    servo.join();
+  }
+  CHECK(device.halts == 0);
+}
+
+TEST_CASE("a watchdog refuses a silence of no length") {
+  RestingDevice device;
+  ServoControl control;
+  const std::atomic<std::int64_t> heartbeat{0};
+  CHECK_THROWS_AS(Watchdog(device, control, heartbeat, milliseconds(0)), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace touchtrial
