@@ -47,7 +47,7 @@ class Pacing {
     clock_.wait_until(first_ + due);
     if constexpr (kIsVirtual) return {tick, due, {}};
     const TickStart start = start_of(tick, due, clock_.now() - first_);
-    note(start, tick);
+    note(start);
     return start;
   }
 
@@ -55,7 +55,6 @@ class Pacing {
 
   void report_to(ServoReport& report) const noexcept {
     report.rate_hz = kIsVirtual ? rate_hz_ : rate_had();
-    report.overruns = overruns_;
     report.lateness = {lateness_.percentile_us(0.5), lateness_.percentile_us(0.99),
                        lateness_.percentile_us(0.999), lateness_.percentile_us(1.0)};
   }
@@ -74,9 +73,8 @@ class Pacing {
     return {std::max(newest, tick), now, late};
   }
 
-  void note(const TickStart& start, std::int64_t wanted) noexcept {
+  void note(const TickStart& start) noexcept {
     if (lateness_.count() == 0) began_ = start.since_first;
-    overruns_ += start.tick - wanted;
     lateness_.add(start.late);
     last_ = start.since_first;
   }
@@ -91,7 +89,6 @@ class Pacing {
   ServoClock::Time first_;
   ServoClock::Time began_{};  ///< the first tick, since first_
   ServoClock::Time last_{};   ///< the last one
-  std::int64_t overruns_ = 0;
   DurationHistogram lateness_;
 };
 
@@ -137,6 +134,7 @@ class ServoRun {
   std::optional<ServoEnd> run_ticks(Pacing<Clock>& pacing) noexcept {
     for (std::int64_t tick = 0; tick < end_of_ticks(); ++tick) {
       const TickStart start = pacing.wait_for(tick);
+      report_.overruns += std::min(start.tick, end_of_ticks()) - tick;
       tick = start.tick;
       take_requests(tick);
       if (tick >= end_of_ticks()) break;

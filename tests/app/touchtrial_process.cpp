@@ -13,9 +13,9 @@ extern char** environ;
 
 namespace touchtrial {
 
-ProgramResult run_touchtrial(const std::filesystem::path& folder,
-                             const std::vector<std::string>& arguments) {
-  std::vector<std::string> words = {TOUCHTRIAL_PROGRAM};
+ProgramResult run_program(const std::filesystem::path& program, const std::filesystem::path& folder,
+                          const std::vector<std::string>& arguments) {
+  std::vector<std::string> words = {program.string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
@@ -29,14 +29,18 @@ ProgramResult run_touchtrial(const std::filesystem::path& folder,
   posix_spawn_file_actions_addopen(&actions, 1, out.c_str(), flags, 0600);
   posix_spawn_file_actions_addopen(&actions, 2, err.c_str(), flags, 0600);
   pid_t child = 0;
-  const int failed =
-      posix_spawn(&child, TOUCHTRIAL_PROGRAM, &actions, nullptr, argv.data(), environ);
+  const int failed = posix_spawn(&child, program.c_str(), &actions, nullptr, argv.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   REQUIRE(failed == 0);
   int status = 0;
   REQUIRE(waitpid(child, &status, 0) == child);
   return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(read_file(out)),
           text_of(read_file(err))};
+}
+
+ProgramResult run_touchtrial(const std::filesystem::path& folder,
+                             const std::vector<std::string>& arguments) {
+  return run_program(TOUCHTRIAL_PROGRAM, folder, arguments);
 }
 
 int line_count(const std::string& text) {

@@ -79,6 +79,7 @@ TEST_CASE("a loop that stood still until time was up sends no more than the zero
   const ServoReport report = run_servo(device, force, kept, options, clock);
   CHECK(report.end == ServoEnd::time_limit);
   CHECK(report.ticks == 1);
+  CHECK(report.overruns == 1099);
   CHECK(device.written == std::vector<Vec3>{{0.0, 0.0, 0.5}, {}});
 }
 
