@@ -15,6 +15,7 @@ constexpr NumberRange kForceN{.low = 0.0, .high = 100.0, .open_low = true};
 constexpr NumberRange kForceOrNoneN{.low = 0.0, .high = 100.0};
 constexpr NumberRange kBiasN{.low = -1.0, .high = 1.0};
 constexpr NumberRange kPlaceMm{.low = -1000.0, .high = 1000.0};
+constexpr NumberRange kLengthMm{.low = 1.0, .high = 2000.0};
 constexpr NumberRange kMassKg{.low = 0.0, .high = 10.0};
 constexpr std::int64_t kMostDevices = 64;
 constexpr std::int64_t kFastestRateHz = 10'000;
@@ -127,7 +128,7 @@ DeviceUse read_openhaptics(const JsonValue& place, const fs::path& folder,
 DeviceUse read_dhd(const JsonValue& place, const fs::path& folder, DeviceSettings& settings) {
   const JsonObject object =
       place.object({"library", "index", "gravity_compensation", "effector_mass_kg", "max_force_n",
-                    "continuous_force_n", "limits", "placement"});
+                    "continuous_force_n", "workspace_mm", "limits", "placement"});
   DhdSettings& dhd = settings.dhd;
   read_library(object, folder, dhd.library);
   if (const auto index = object.find("index")) {
@@ -141,6 +142,7 @@ DeviceUse read_dhd(const JsonValue& place, const fs::path& folder, DeviceSetting
   if (const auto force = object.find("continuous_force_n")) {
     dhd.continuous_force_n = force->number(kForceOrNoneN);
   }
+  if (const auto size = object.find("workspace_mm")) dhd.workspace_mm = read_vec3(*size, kLengthMm);
   return read_use(object);
 }
 

@@ -34,6 +34,9 @@ struct DhdSettings {
   double effector_mass_kg = 0.0;    ///< 0: as the device knows it
   double max_force_n = 8.0;         ///< the library does not tell; > 0
   double continuous_force_n = 0.0;  ///< 0: no limit known
+  /// Width, height and depth of the ellipsoid that it reaches, which the library does not tell
+  /// either; each > 0. An omega.3's.
+  Vec3 workspace_mm = {160.0, 160.0, 110.0};
 };
 
 struct ReplaySettings {

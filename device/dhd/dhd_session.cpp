@@ -64,6 +64,8 @@ DeviceInfo Session::info() const {
   info.max_force_n = settings_.max_force_n;
   info.continuous_force_n = settings_.continuous_force_n;
   info.max_rate_hz = kPollRateHz;
+  const Vec3 reach_mm = 0.5 * settings_.workspace_mm;
+  info.workspace = Workspace{-1.0 * reach_mm, reach_mm, WorkspaceShape::ellipsoid};
   const char* name = api().get_system_name ? api().get_system_name(device_) : nullptr;
   info.model = name == nullptr ? "Force Dimension device" : one_line(name);
   unsigned short serial = 0;

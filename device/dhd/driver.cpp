@@ -50,8 +50,9 @@ std::unique_ptr<HapticDevice> open_dhd(const DeviceSettings& settings) {
 }  // namespace
 
 DeviceDriver dhd_driver() {
-  return {"dhd", "Force Dimension omega, delta and sigma, through the vendor's library", list_dhd,
-          open_dhd};
+  return {"dhd",        "Force Dimension omega, delta and sigma, through the vendor's library",
+          list_dhd,     open_dhd,
+          std::nullopt, false};
 }
 
 }  // namespace touchtrial

@@ -47,7 +47,7 @@ std::unique_ptr<HapticDevice> open_falcon(const DeviceSettings& settings) {
 }  // namespace
 
 DeviceDriver falcon_driver() {
-  return {"falcon", "Novint Falcon, over USB", list_falcons, open_falcon};
+  return {"falcon", "Novint Falcon, over USB", list_falcons, open_falcon, falcon::kFalconWorkspace};
 }
 
 }  // namespace touchtrial

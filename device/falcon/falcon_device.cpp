@@ -15,8 +15,6 @@ class RealPace final : public FalconPace {
 };
 
 constexpr double kMaxForceN = 8.0;
-/// Half the side of the square that fits into the middle of the workspace's sphere.
-constexpr double kHalfSideMm = 28.0;
 
 constexpr int kProbes = 5;
 /// At a latency of 1 ms the chip sends a packet each millisecond, mostly without anything in it.
@@ -87,8 +85,7 @@ DeviceInfo FalconDevice::info() const {
   info.serial = transport_->serial();
   info.model = "Novint Falcon";
   info.max_force_n = kMaxForceN;
-  info.workspace = Workspace{{-kHalfSideMm, -kHalfSideMm, -kHalfSideMm},
-                             {kHalfSideMm, kHalfSideMm, kHalfSideMm}};
+  info.workspace = kFalconWorkspace;
   return info;
 }
 

@@ -5,6 +5,7 @@
 #include "device/device_link.hpp"
 #include "device/device_settings.hpp"
 #include "device/falcon/falcon_exchange.hpp"
+#include "device/falcon/falcon_kinematics.hpp"
 #include "device/falcon/ftdi_transport.hpp"
 #include "device/haptic_device.hpp"
 #include "device/platform/realtime.hpp"
@@ -15,6 +16,12 @@
 #include <thread>
 
 namespace touchtrial::falcon {
+
+/// The ball that every Falcon reaches.
+inline constexpr Workspace kFalconWorkspace = {
+    {-kWorkspaceRadiusMm, -kWorkspaceRadiusMm, -kWorkspaceRadiusMm},
+    {kWorkspaceRadiusMm, kWorkspaceRadiusMm, kWorkspaceRadiusMm},
+    WorkspaceShape::ellipsoid};
 
 /// Time and rest of the USB thread, so that tests own them.
 class FalconPace {

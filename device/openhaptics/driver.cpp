@@ -29,8 +29,9 @@ std::unique_ptr<HapticDevice> open_openhaptics(const DeviceSettings& settings) {
 }  // namespace
 
 DeviceDriver openhaptics_driver() {
-  return {"openhaptics", "3D Systems Touch and Phantom, through the vendor's OpenHaptics",
-          list_openhaptics, open_openhaptics};
+  return {"openhaptics",    "3D Systems Touch and Phantom, through the vendor's OpenHaptics",
+          list_openhaptics, open_openhaptics,
+          std::nullopt,     false};
 }
 
 }  // namespace touchtrial

@@ -5,6 +5,7 @@
 #include "device/device_settings.hpp"
 #include "support/catch.hpp"
 
+#include <algorithm>
 #include <set>
 #include <string>
 #include <vector>
@@ -88,7 +89,10 @@ std::set<std::string> keys_of_reader(const Pointer& place) {
 
 /// Where a list of three numbers is wanted: `number` first, with others that do not disturb it.
 json in_list(const json& rule, double number) {
-  if (!rule.contains("uniqueItems")) return json::array({number, 0, 0});
+  if (!rule.contains("uniqueItems")) {
+    const double other = std::max(0.0, rule.at("items").at("minimum").get<double>());
+    return json::array({number, other, other});
+  }
   json list = json::array({number});
   for (int other = 0; list.size() < 3; ++other) {
     if (other != number) list.push_back(other);
@@ -129,7 +133,7 @@ TEST_CASE("the schema of device settings and the reader know the same keys") {
     CHECK(keys_of_reader(object.place) == in_schema);
   }
   CHECK(objects.size() == 1 + 6 + 6 + 3);
-  CHECK(leaves.size() == 4 + 3 + 6 + 1 + 6 * 4 + 3 * 2);
+  CHECK(leaves.size() == 4 + 3 + 7 + 1 + 6 * 4 + 3 * 2);
 }
 
 TEST_CASE("the reader keeps the bounds of the schema of device settings") {
@@ -139,7 +143,7 @@ TEST_CASE("the reader keeps the bounds of the schema of device settings") {
     bounds += holds_bound(leaf, "maximum", 1.0, true) ? 1 : 0;
     bounds += holds_bound(leaf, "exclusiveMinimum", -1.0, false) ? 1 : 0;
   }
-  CHECK(bounds == 2 * (1 + 1 + 1 + 4 + 6 * 4 + 3));
+  CHECK(bounds == 2 * (1 + 1 + 1 + 5 + 6 * 4 + 3));
 }
 
 TEST_CASE("the reader keeps the types of the schema of device settings") {
@@ -152,8 +156,9 @@ TEST_CASE("the reader keeps the types of the schema of device settings") {
                         ((type == "number" || type == "integer") && value.is_number()) ||
                         (type == "boolean" && value.is_boolean()) ||
                         (type == "array" && value.is_array());
-      // [0, 1, 2] is no gravity bias: its numbers are too large.
-      if (fits && leaf.place.back() == "gravity_bias_n") continue;
+      // [0, 1, 2] is no gravity bias and no size: its numbers are too large, or too small.
+      if (fits && (leaf.place.back() == "gravity_bias_n" || leaf.place.back() == "workspace_mm"))
+        continue;
       INFO(leaf.place.to_string() << " = " << value.dump());
       CHECK(refusal(leaf.place, value).empty() == fits);
     }
@@ -178,7 +183,7 @@ TEST_CASE("the reader keeps the words lengths and defaults of the schema of devi
     if (leaf.rule.contains("default")) CHECK(refusal(leaf.place, leaf.rule.at("default")).empty());
   }
   CHECK(words == 3);
-  CHECK(lists == 5);
+  CHECK(lists == 6);
 }
 
 TEST_CASE("the defaults of the schema of device settings are the reader's") {
@@ -199,6 +204,7 @@ TEST_CASE("the defaults of the schema of device settings are the reader's") {
   CHECK(written.dhd.gravity_compensation == bare.dhd.gravity_compensation);
   CHECK(written.dhd.effector_mass_kg == bare.dhd.effector_mass_kg);
   CHECK(written.dhd.max_force_n == bare.dhd.max_force_n);
+  CHECK(written.dhd.workspace_mm == bare.dhd.workspace_mm);
   CHECK(written.dhd.continuous_force_n == bare.dhd.continuous_force_n);
 }
 

@@ -32,7 +32,8 @@ TEST_CASE("device settings say everything about the drivers") {
                "led_order": [2, 0, 1]},
     "openhaptics": {"library": "/opt/libHD.so", "device": "Left", "rate_hz": 2000},
     "dhd": {"library": "libdhd.so.3", "index": 1, "gravity_compensation": false,
-            "effector_mass_kg": 0.2, "max_force_n": 12, "continuous_force_n": 4},
+            "effector_mass_kg": 0.2, "max_force_n": 12, "continuous_force_n": 4,
+            "workspace_mm": [190, 190, 130]},
     "replay": {"trace": "traces/one.csv"}})");
   CHECK(settings.falcon.firmware == "/lab/fw.bin");
   CHECK(settings.falcon.serial == "F7");
@@ -47,6 +48,7 @@ TEST_CASE("device settings say everything about the drivers") {
   CHECK(settings.dhd.effector_mass_kg == 0.2);
   CHECK(settings.dhd.max_force_n == 12.0);
   CHECK(settings.dhd.continuous_force_n == 4.0);
+  CHECK(settings.dhd.workspace_mm == Vec3{190.0, 190.0, 130.0});
   CHECK(settings.replay.trace == "/lab/traces/one.csv");
 }
 

@@ -312,12 +312,14 @@ TEST_CASE("a Falcon tells who it is") {
   CHECK(info.max_force_n == 8.0);
   CHECK_FALSE(info.simulated);
   REQUIRE(info.workspace);
-  // Every corner is in reach.
-  for (const double x : {info.workspace->least_mm.x, info.workspace->greatest_mm.x}) {
-    for (const double y : {info.workspace->least_mm.y, info.workspace->greatest_mm.y}) {
-      for (const double z : {info.workspace->least_mm.z, info.workspace->greatest_mm.z}) {
-        CHECK(inverse_kinematics(to_native_m({x, y, z})).has_value());
-      }
+  REQUIRE(info.workspace->shape == WorkspaceShape::ellipsoid);
+  CHECK(info.workspace->least_mm == Vec3{-40.0, -40.0, -40.0});
+  // Every place on the ball is in reach.
+  for (double turn = 0.0; turn < 6.3; turn += 0.1) {
+    for (double rise = -1.5; rise < 1.6; rise += 0.1) {
+      const Vec3 place_mm{40.0 * std::cos(rise) * std::cos(turn), 40.0 * std::sin(rise),
+                          40.0 * std::cos(rise) * std::sin(turn)};
+      CHECK(inverse_kinematics(to_native_m(place_mm)).has_value());
     }
   }
 }

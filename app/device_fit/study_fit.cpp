@@ -1,0 +1,128 @@
+#include "app/device_fit/study_fit.hpp"
+
+#include "engine/image_file.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+namespace {
+
+using nlohmann::ordered_json;
+
+const char* word_for(PlaneOrientation orientation) {
+  return orientation == PlaneOrientation::horizontal ? "horizontal" : "vertical";
+}
+
+const char* word_for(WorkspaceSource source) {
+  switch (source) {
+    case WorkspaceSource::maker:
+      return "maker";
+    case WorkspaceSource::device:
+      return "device";
+    case WorkspaceSource::none:
+      break;
+  }
+  return "none";
+}
+
+std::string workspace_text(const StudyFit& fit) {
+  if (!fit.workspace) return "takes any plane, as it has no frame of its own\n";
+  const Vec3 size = fit.workspace->greatest_mm - fit.workspace->least_mm;
+  return fmt::format("workspace {:.1f} x {:.1f} x {:.1f} mm{}, {}\n", size.x, size.y, size.z,
+                     fit.workspace->shape == WorkspaceShape::ellipsoid ? " (rounded)" : "",
+                     fit.source == WorkspaceSource::device
+                         ? "as the device tells"
+                         : "as its maker states; the device was not asked");
+}
+
+ordered_json vec_json(Vec3 v) {
+  return ordered_json::array({v.x, v.y, v.z});
+}
+
+ordered_json plane_json(const PlaneGeometry& plane) {
+  return {{"width_px", plane.width_px},
+          {"height_px", plane.height_px},
+          {"width_mm", plane.width_mm()},
+          {"height_mm", plane.height_mm()},
+          {"pitch_mm", plane.pitch_mm}};
+}
+
+ordered_json workspace_json(const StudyFit& fit) {
+  if (!fit.workspace) return nullptr;
+  const bool rounded = fit.workspace->shape == WorkspaceShape::ellipsoid;
+  return {{"from", word_for(fit.source)},
+          {"shape", rounded ? "ellipsoid" : "box"},
+          {"least_mm", vec_json(fit.workspace->least_mm)},
+          {"greatest_mm", vec_json(fit.workspace->greatest_mm)}};
+}
+
+}  // namespace
+
+PlaneGeometry common_plane_of(const Study& study) {
+  PlaneGeometry plane{study.rendering.pitch_mm, 0, 0};
+  for (const StudyClass& shown : study.classes) {
+    for (const auto& image : shown.images) {
+      const GreyImage picture = read_grey_image(study.folder / image);
+      const bool first = plane.height_px == 0;
+      plane.height_px = first ? picture.height() : std::min(plane.height_px, picture.height());
+      plane.width_px = first ? picture.width() : std::min(plane.width_px, picture.width());
+    }
+  }
+  return plane;
+}
+
+StudyFit fit_study(const Study& study, const std::string& driver, const DeviceSettings& settings,
+                   std::optional<PlaneOrientation> orientation) {
+  const DeviceDriver& known = device_driver(driver);
+  StudyFit fit;
+  fit.study = study.name;
+  fit.driver = driver;
+  fit.workspace = known.nominal_workspace;
+  if (fit.workspace) fit.source = WorkspaceSource::maker;
+  if (!known.workspace_is_known) {
+    fit.workspace = known.open(settings)->info().workspace;
+    fit.source = WorkspaceSource::device;
+  }
+  fit.plane = common_plane_of(study);
+  fit.fit = fit_plane(fit.plane, fit.workspace, settings.use_of(driver), orientation);
+  return fit;
+}
+
+std::string fit_text(const StudyFit& fit) {
+  std::string text =
+      fmt::format("{}: plane {:.1f} x {:.1f} mm ({} x {} px of {} mm)\n{}: ", fit.study,
+                  fit.plane.width_mm(), fit.plane.height_mm(), fit.plane.width_px,
+                  fit.plane.height_px, fit.plane.pitch_mm, fit.driver);
+  text += workspace_text(fit);
+  if (!fit.fit.fits) return text;
+  if (!fit.fit.placement) return text + "fits\n";
+  const Vec3 origin = fit.fit.placement->origin_mm;
+  return text + fmt::format(
+                    "fits: {}, top-left corner at {:.1f}, {:.1f}, {:.1f} mm (right, up, "
+                    "towards the person), {:.0f} mm around it\n",
+                    word_for(fit.fit.placement->orientation), origin.x, origin.y, origin.z,
+                    kWorkspaceMarginMm);
+}
+
+std::string fit_json(const StudyFit& fit) {
+  ordered_json object = {{"study", fit.study},
+                         {"driver", fit.driver},
+                         {"fits", fit.fit.fits},
+                         {"margin_mm", kWorkspaceMarginMm},
+                         {"plane", plane_json(fit.plane)},
+                         {"workspace", workspace_json(fit)},
+                         {"orientation", nullptr},
+                         {"origin_mm", nullptr},
+                         {"crop", nullptr}};
+  if (fit.fit.placement) {
+    object["orientation"] = word_for(fit.fit.placement->orientation);
+    object["origin_mm"] = vec_json(fit.fit.placement->origin_mm);
+  }
+  if (!fit.fit.fits && fit.fit.largest.width_px > 0) object["crop"] = plane_json(fit.fit.largest);
+  return object.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace touchtrial

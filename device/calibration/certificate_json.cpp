@@ -1,0 +1,131 @@
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/strict_json.hpp"
+#include "device/calibration/certificate.hpp"
+
+#include <charconv>
+#include <cstdio>
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+namespace {
+
+constexpr std::string_view kKind = "touchtrial device calibration 1";
+constexpr std::array kAxisNames = {Named<CalibrationAxis>{"x", CalibrationAxis::x},
+                                   Named<CalibrationAxis>{"y", CalibrationAxis::y},
+                                   Named<CalibrationAxis>{"z", CalibrationAxis::z}};
+constexpr NumberRange kFigure{.low = 0.0, .high = 1e6};
+
+std::string date_text(std::chrono::sys_seconds time) {
+  const auto day = std::chrono::floor<std::chrono::days>(time);
+  const std::chrono::year_month_day date(day);
+  const std::chrono::hh_mm_ss clock(time - day);
+  char text[32];
+  std::snprintf(text, sizeof text, "%04d-%02u-%02uT%02d:%02d:%02dZ", static_cast<int>(date.year()),
+                static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
+                static_cast<int>(clock.hours().count()), static_cast<int>(clock.minutes().count()),
+                static_cast<int>(clock.seconds().count()));
+  return text;
+}
+
+/// The number at this place of the text, or -1.
+int number_at(const std::string& text, std::size_t at, std::size_t digits) {
+  int number = -1;
+  const char* end = text.data() + at + digits;
+  const auto [stop, error] = std::from_chars(text.data() + at, end, number);
+  return error == std::errc{} && stop == end ? number : -1;
+}
+
+std::chrono::sys_seconds read_date(const JsonValue& place) {
+  const std::string& text = place.text();
+  const std::string form = "0000-00-00T00:00:00Z";
+  if (text.size() == form.size()) {
+    const std::chrono::year_month_day date{
+        std::chrono::year(number_at(text, 0, 4)),
+        std::chrono::month(static_cast<unsigned>(number_at(text, 5, 2))),
+        std::chrono::day(static_cast<unsigned>(number_at(text, 8, 2)))};
+    const auto time = std::chrono::sys_seconds(std::chrono::sys_days(date)) +
+                      std::chrono::hours(number_at(text, 11, 2)) +
+                      std::chrono::minutes(number_at(text, 14, 2)) +
+                      std::chrono::seconds(number_at(text, 17, 2));
+    if (date.ok() && date_text(time) == text) return time;
+  }
+  place.refuse(in_quotes(text) + " is no date of the form 2026-01-31T12:00:00Z");
+}
+
+AxisResult read_axis(const JsonValue& place) {
+  const JsonObject object =
+      place.object({"axis", "mass_g", "expected_n", "measured_n", "cross_n", "passed"});
+  return {object.at("axis").choice(kAxisNames),    object.at("mass_g").number(kFigure),
+          object.at("expected_n").number(kFigure), object.at("measured_n").number(kFigure),
+          object.at("cross_n").number(kFigure),    object.at("passed").truth()};
+}
+
+FreeAirResult read_free_air(const JsonValue& place) {
+  const JsonObject object = place.object({"noise_mm", "drift_mm", "residual_n", "passed"});
+  return {object.at("noise_mm").number(kFigure), object.at("drift_mm").number(kFigure),
+          object.at("residual_n").number(kFigure), object.at("passed").truth()};
+}
+
+Certificate read_object(const JsonValue& place) {
+  const JsonObject object = place.object({"kind", "driver", "model", "serial", "firmware",
+                                          "program", "made", "axes", "free_air", "passed"});
+  if (object.at("kind").text() != kKind) {
+    object.at("kind").refuse("must be " + in_quotes(kKind) + "; give a file of device calibrate");
+  }
+  Certificate certificate;
+  certificate.driver = object.at("driver").text();
+  certificate.model = object.at("model").text();
+  certificate.serial = object.at("serial").text();
+  certificate.firmware = object.at("firmware").text();
+  certificate.program = object.at("program").text();
+  certificate.made = read_date(object.at("made"));
+  for (const JsonValue& axis : object.at("axes").items(3, 3)) {
+    certificate.axes.push_back(read_axis(axis));
+  }
+  certificate.free_air = read_free_air(object.at("free_air"));
+  if (object.at("passed").truth() != certificate.passed()) {
+    object.at("passed").refuse("does not follow from the results; the file was changed by hand");
+  }
+  return certificate;
+}
+
+}  // namespace
+
+std::string certificate_json(const Certificate& certificate) {
+  using nlohmann::ordered_json;
+  ordered_json axes = ordered_json::array();
+  for (const AxisResult& r : certificate.axes) {
+    axes.push_back({{"axis", name_of(r.axis)},
+                    {"mass_g", r.mass_g},
+                    {"expected_n", r.expected_n},
+                    {"measured_n", r.measured_n},
+                    {"cross_n", r.cross_n},
+                    {"passed", r.passed}});
+  }
+  const FreeAirResult& air = certificate.free_air;
+  const ordered_json object = {{"kind", kKind},
+                               {"driver", certificate.driver},
+                               {"model", certificate.model},
+                               {"serial", certificate.serial},
+                               {"firmware", certificate.firmware},
+                               {"program", certificate.program},
+                               {"made", date_text(certificate.made)},
+                               {"axes", axes},
+                               {"free_air",
+                                {{"noise_mm", air.noise_mm},
+                                 {"drift_mm", air.drift_mm},
+                                 {"residual_n", air.residual_n},
+                                 {"passed", air.passed}}},
+                               {"passed", certificate.passed()}};
+  return object.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+ReadCertificate read_certificate(const std::filesystem::path& path) {
+  constexpr std::uintmax_t kLargest = 1U << 20U;
+  const Bytes content = read_file(path, kLargest);
+  return {read_object(parse_strict_json(text_of(content), path.string())), sha256(content)};
+}
+
+}  // namespace touchtrial
