@@ -1,0 +1,231 @@
+// Sweeps of the closed loop of hand and plane: tables on the terminal, pictures into a folder.
+#include "analysis/figures/gnuplot.hpp"
+#include "bench/closed_loop/sampled_wall.hpp"
+#include "bench/closed_loop/texture_loop.hpp"
+#include "engine/extraction.hpp"
+#include "engine/image_file.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace touchtrial::bench {
+namespace {
+
+constexpr std::array kRatesHz = {1000.0, 2000.0, 4000.0, 10'000.0};
+constexpr std::array kStiffnessNPerMm = {0.1, 0.2, 0.4, 0.8, 1.6, 3.2};
+constexpr std::array kWallDampingNSPerM = {-0.8, -0.4, -0.2, 0.0, 0.2, 0.4, 0.8};
+constexpr std::array kTextureNPerMm = {0.1, 0.2, 0.4, 0.8, 1.2, 1.6, 3.2, 6.4, 12.8};
+constexpr double kUsualMmPerS = 100.0;
+constexpr std::array kTextures = {"bark", "cloth", "pebbles", "straw", "brick"};
+constexpr std::array kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7"};
+/// Heavy against the samples: K T^2 / m.
+constexpr double kHeaviness = 0.01;
+
+std::string head(bool png, int width, int height) {
+  const std::string terminal =
+      png ? fmt::format("set terminal pngcairo size {}, {} font 'DejaVu Sans,13'\n", width, height)
+          : fmt::format(
+                "set terminal svg size {}, {} dynamic font 'DejaVu Sans,Arial,sans-serif,13' "
+                "background '#ffffff'\n",
+                width, height);
+  return terminal +
+         "set encoding utf8\nset border 3 lw 1.2\nset tics nomirror out scale 0.6\n"
+         "set grid lc rgb '#e4e4e4' lw 1\nset key left top Left reverse samplen 2 spacing 1.25\n";
+}
+
+/// Rate by stiffness: the bound, and what two ways in the time domain find.
+std::string sweep_wall() {
+  std::string data;
+  std::puts("rate_hz  K N/mm  bound N s/m  by energy  by a mass at rest");
+  for (std::size_t r = 0; r < kRatesHz.size(); ++r) {
+    data += fmt::format("$wall{} << EOD\n", r);
+    for (const double stiffness : kStiffnessNPerMm) {
+      const SampledWall wall{1000.0 * stiffness, 0.0, 1.0 / kRatesHz[r]};
+      const double mass_kg = wall.stiffness_n_per_m * wall.period_s * wall.period_s / kHeaviness;
+      const double bound = passivity_bound(wall);
+      const double energy = damping_by_energy(wall);
+      const double rest = damping_for_rest(wall, mass_kg);
+      data += fmt::format("{} {} {} {}\n", stiffness, bound, energy, rest);
+      fmt::print("{:7} {:7} {:12.5f} {:10.5f} {:10.5f}\n", kRatesHz[r], stiffness, bound, energy,
+                 rest);
+    }
+    data += "EOD\n";
+  }
+  return data;
+}
+
+std::string draw_wall(bool png) {
+  std::string script = head(png, 900, 440) + sweep_wall() +
+                       "set logscale xy\nset xlabel 'stiffness K of the wall, N/mm'\n"
+                       "set ylabel 'physical damping needed, N s/m'\nset xrange [0.085:3.8]\n"
+                       "set xtics (0.1, 0.2, 0.4, 0.8, 1.6, 3.2)\nset yrange [0.003:4]\n"
+                       "set key outside right top\nplot ";
+  for (std::size_t r = 0; r < kRatesHz.size(); ++r) {
+    script += fmt::format(
+        "{0}$wall{1} using 1:2 with lines lw 1.8 lc rgb '{2}' title '{3} kHz: K T/2', "
+        "$wall{1} using 1:4 with points pt 7 ps 0.9 lc rgb '{2}' notitle, "
+        "$wall{1} using 1:3 with points pt 4 ps 1.7 lw 1.4 lc rgb '{2}' notitle",
+        r == 0 ? "" : ", ", r, kColours[r], kRatesHz[r] / 1000.0);
+  }
+  return script +
+         ", NaN with points pt 7 lc rgb '#444444' title 'a mass comes to rest', "
+         "NaN with points pt 4 ps 1.7 lc rgb '#444444' title 'worst motion gives no energy'\n";
+}
+
+std::string sweep_wall_damping() {
+  std::string data = "$damped << EOD\n";
+  std::puts("\nB N s/m  bound N s/m  by frequency  by energy   (K = 0.4 N/mm, 1 kHz)");
+  for (const double damping : kWallDampingNSPerM) {
+    const SampledWall wall{400.0, damping, 0.001};
+    data += fmt::format("{} {} {} {}\n", damping, passivity_bound(wall), damping_by_frequency(wall),
+                        damping_by_energy(wall));
+    fmt::print("{:7} {:12.5f} {:13.5f} {:10.5f}\n", damping, passivity_bound(wall),
+               damping_by_frequency(wall), damping_by_energy(wall));
+  }
+  return data + "EOD\n";
+}
+
+std::string draw_wall_damping(bool png) {
+  return head(png, 760, 420) + sweep_wall_damping() +
+         "set xlabel 'damping B of the wall, N s/m (negative: it drives)'\n"
+         "set ylabel 'physical damping needed, N s/m'\nset xrange [-0.9:0.9]\nset yrange "
+         "[0:1.2]\nset key center top\n"
+         "plot 0.2 + abs(x) with lines lw 1.8 lc rgb '#0072b2' title 'K T/2 + |B|', "
+         "$damped using 1:3 with points pt 7 lc rgb '#d55e00' title 'frequency condition', "
+         "$damped using 1:4 with points pt 4 ps 1.7 lw 1.4 lc rgb '#444444' "
+         "title 'worst motion gives no energy'\n";
+}
+
+struct Worst {
+  double slow_mm_s = 0.0;     ///< vibration of a slow stroke, median over textures
+  double slowest_mm_s = 0.0;  ///< the same, largest
+  double lost_per_s = 0.0;    ///< contacts lost in a usual stroke, median
+  double most_lost_per_s = 0.0;
+};
+
+double median(std::vector<double> values) {
+  std::ranges::sort(values);
+  return values[values.size() / 2];
+}
+
+Worst stroke_all(const std::vector<Plane<double>>& textures, const RenderingOptions& options) {
+  std::vector<double> vibration;
+  std::vector<double> lost;
+  for (const Plane<double>& texture : textures) {
+    for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+      const Chatter slow = stroke_texture(texture, options, {.seed = seed});
+      const Chatter usual =
+          stroke_texture(texture, options, {.speed_mm_s = kUsualMmPerS, .seed = seed});
+      vibration.push_back(slow.vibration_mm_s);
+      lost.push_back(usual.lost_contacts_per_s);
+    }
+  }
+  return {median(vibration), *std::ranges::max_element(vibration), median(lost),
+          *std::ranges::max_element(lost)};
+}
+
+std::string sweep_texture(const std::vector<Plane<double>>& textures) {
+  std::string data;
+  std::puts(
+      "\nmodel    N/mm  vibration mm/s at 2 mm/s: median, largest   "
+      "lost contacts/s at 100 mm/s: median, largest");
+  for (const ModelKind model : {ModelKind::paper, ModelKind::surface}) {
+    const char* name = model == ModelKind::paper ? "paper" : "surface";
+    data += fmt::format("${} << EOD\n", name);
+    for (const double stiffness : kTextureNPerMm) {
+      RenderingOptions options;
+      options.model = model;
+      options.texture_stiffness_n_per_mm = stiffness;
+      const Worst worst = stroke_all(textures, options);
+      data += fmt::format("{} {} {} {} {}\n", stiffness, worst.slow_mm_s, worst.slowest_mm_s,
+                          worst.lost_per_s, worst.most_lost_per_s);
+      fmt::print("{:8} {:5} {:12.4f} {:10.4f} {:20.2f} {:8.2f}\n", name, stiffness, worst.slow_mm_s,
+                 worst.slowest_mm_s, worst.lost_per_s, worst.most_lost_per_s);
+    }
+    data += "EOD\n";
+  }
+  return data;
+}
+
+/// Median and largest of both models, from these columns.
+std::string both_models(int median_column, int largest_column) {
+  std::string plot = "plot ";
+  for (const auto& [name, colour] : {std::pair{"paper", kColours[1]}, {"surface", kColours[0]}}) {
+    plot += fmt::format(
+        "{0}${1} using 1:{2} with linespoints pt 7 lw 1.8 lc rgb '{4}' title 'model {1}, median', "
+        "${1} using 1:{3} with linespoints pt 6 dt 2 lw 1.4 lc rgb '{4}' "
+        "title 'model {1}, largest'",
+        plot.size() > 5 ? ", " : "", name, median_column, largest_column, colour);
+  }
+  return plot + "\n";
+}
+
+std::string draw_texture(bool png, const std::vector<Plane<double>>& textures) {
+  return head(png, 1040, 440) + sweep_texture(textures) +
+         "set multiplot layout 1,2\nset logscale x\nset xrange [0.085:15]\n"
+         "set xlabel 'stiffness budget of the texture, N/mm'\n"
+         "set xtics (0.1, 0.2, 0.4, 0.8, 1.6, 3.2, 6.4, 12.8)\n"
+         "set arrow from 0.4, graph 0 to 0.4, graph 0.62 nohead dt 2 lw 1.4 lc rgb '#888888'\n"
+         "set label 'default' at 0.41, graph 0.6 tc rgb '#666666'\n"
+         "set logscale y\nset format y '%g'\nset yrange [0.0005:1000]\n"
+         "set ylabel 'vibration above 30 Hz, mm/s (rms)'\nset title 'stroked at 2 mm/s'\n" +
+         both_models(2, 3) +
+         "unset logscale y\nset yrange [0:50]\nset ylabel 'contacts lost a second'\n"
+         "set title 'stroked at 100 mm/s'\n" +
+         both_models(4, 5) + "unset multiplot\n";
+}
+
+/// The middle of a texture, 40 mm wide at the default pitch.
+Plane<double> middle_of(const Plane<double>& texture) {
+  constexpr int kSidePx = 200;
+  Plane<double> part(kSidePx, kSidePx);
+  const int top = (texture.height() - kSidePx) / 2;
+  const int left = (texture.width() - kSidePx) / 2;
+  for (int y = 0; y < kSidePx; ++y) {
+    for (int x = 0; x < kSidePx; ++x) part.at(y, x) = texture.at(top + y, left + x);
+  }
+  return part;
+}
+
+std::vector<Plane<double>> textures_of(const std::filesystem::path& stimuli) {
+  std::vector<Plane<double>> textures;
+  for (const char* name : kTextures) {
+    const GreyImage image = read_grey_image(stimuli / (std::string(name) + ".png"));
+    textures.push_back(middle_of(extract_texture<double>(image, {}).texture));
+  }
+  return textures;
+}
+
+void run(const std::filesystem::path& stimuli, const std::filesystem::path& out, bool png) {
+  require_gnuplot();
+  const std::string ending = png ? ".png" : ".svg";
+  draw_with_gnuplot(draw_wall(png), out / ("passivity-stiffness" + ending));
+  draw_with_gnuplot(draw_wall_damping(png), out / ("passivity-damping" + ending));
+  std::fflush(stdout);
+  draw_with_gnuplot(draw_texture(png, textures_of(stimuli)), out / ("chatter" + ending));
+}
+
+}  // namespace
+}  // namespace touchtrial::bench
+
+int main(int argc, char** argv) {
+  if (argc < 3 || argc > 4) {
+    std::fputs("usage: closed_loop STIMULI_FOLDER PICTURE_FOLDER [png]\n", stderr);
+    return 2;
+  }
+  try {
+    touchtrial::bench::run(argv[1], argv[2], argc == 4 && std::string(argv[3]) == "png");
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "closed_loop: {}\n", error.what());
+    return 1;
+  }
+  return 0;
+}

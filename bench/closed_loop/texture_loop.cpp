@@ -1,0 +1,116 @@
+#include "bench/closed_loop/texture_loop.hpp"
+
+#include "device/servo/servo.hpp"
+#include "device/servo/servo_names.hpp"
+#include "device/simulated/simulated_hand.hpp"
+#include "engine/rendering/gains.hpp"
+#include "engine/rendering/rendering_model.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+
+namespace touchtrial::bench {
+namespace {
+
+constexpr double kCutHz = 30.0;
+constexpr double kLandingS = 1.0;
+
+class ModelForce final : public ForceSource {
+ public:
+  explicit ModelForce(const RenderingModel& model) noexcept : model_(model) {}
+  [[nodiscard]] Vec3 force_n(const DeviceSample& sample) noexcept override {
+    return model_.force_n(sample.position_mm, sample.velocity_mm_s, touch_);
+  }
+
+ private:
+  const RenderingModel& model_;
+  Bristle touch_;
+};
+
+/// Two first-order high passes, one after the other.
+class HighPass {
+ public:
+  [[nodiscard]] Vec3 of(Vec3 value) noexcept {
+    for (Vec3& slow : slow_) {
+      slow = slow + kShare * (value - slow);
+      value = value - slow;
+    }
+    return value;
+  }
+
+ private:
+  static constexpr double kShare =
+      2.0 * std::numbers::pi * kCutHz / (2.0 * std::numbers::pi * kCutHz + kServoRateHz);
+  std::array<Vec3, 2> slow_{};
+};
+
+class ChatterSink final : public SampleSink {
+ public:
+  explicit ChatterSink(double push_n) : push_n_(push_n) {}
+
+  void record(const ServoSample& sample) noexcept override {
+    const Vec3 fast = high_pass_.of(kServoRateHz * (sample.position_mm - before_mm_));
+    before_mm_ = sample.position_mm;
+    const bool touches = sample.force_n.z > 0.0;
+    if (static_cast<double>(sample.tick) >= kLandingS * kServoRateHz) {
+      ++ticks_;
+      power_ += fast.x * fast.x + fast.y * fast.y + fast.z * fast.z;
+      lost_ += touched_ && !touches ? 1 : 0;
+      deviation_n_ = std::max(deviation_n_, std::abs(sample.force_n.z - push_n_));
+    }
+    touched_ = touches;
+  }
+
+  [[nodiscard]] Chatter chatter() const {
+    const auto ticks = static_cast<double>(std::max<std::int64_t>(ticks_, 1));
+    return {std::sqrt(power_ / ticks), static_cast<double>(lost_) * kServoRateHz / ticks,
+            deviation_n_};
+  }
+
+ private:
+  double push_n_;
+  HighPass high_pass_;
+  Vec3 before_mm_;
+  bool touched_ = false;
+  std::int64_t ticks_ = 0;
+  std::int64_t lost_ = 0;
+  double power_ = 0.0;
+  double deviation_n_ = 0.0;
+};
+
+SimulatedHand stroking_hand(const PlaneGeometry& plane, const TextureStroke& stroke) {
+  HandOptions hand;
+  hand.push_n = stroke.push_n;
+  hand.explore_s = stroke.time_s;
+  ExplorationOptions path;
+  path.slowest_mm_s = stroke.speed_mm_s;
+  path.fastest_mm_s = stroke.speed_mm_s;
+  path.duration_s = stroke.time_s;
+  RandomStream random(stroke.seed, "closed loop: stroke");
+  return {hand, ExplorationPath(plane, path, random)};
+}
+
+}  // namespace
+
+Chatter stroke_texture(const Plane<double>& texture, const RenderingOptions& options,
+                       const TextureStroke& stroke) {
+  const TextureField field = make_texture_field(texture, options);
+  const FieldView view = field.view();
+  const Gains gains = choose_gains({&view, 1}, options).of_field.front();
+  const RenderingModel model(view, options, gains);
+  SimulatedHand hand = stroking_hand(view.geometry, stroke);
+  ModelForce force(model);
+  ChatterSink sink(stroke.push_n);
+  const ServoReport report = run_servo_in_virtual_time(hand, force, sink, {});
+  if (report.end == ServoEnd::fault) {
+    throw std::runtime_error("closed loop: the run ended as a fault: " +
+                             std::string(name_of(report.fault)));
+  }
+  return sink.chatter();
+}
+
+}  // namespace touchtrial::bench
