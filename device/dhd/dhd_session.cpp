@@ -10,9 +10,6 @@
 namespace touchtrial::dhd {
 namespace {
 
-constexpr const char* kRemedy =
-    "install Force Dimension's SDK, or name the library in the device settings at dhd.library";
-
 char open_device_of(const Library& library, int index) {
   const int count = library.device_count();
   if (index < 0 || index >= count) {

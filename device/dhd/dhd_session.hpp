@@ -9,6 +9,10 @@
 
 namespace touchtrial::dhd {
 
+/// For a library that cannot be used.
+constexpr const char* kRemedy =
+    "install Force Dimension's SDK, or name the library in the device settings at dhd.library";
+
 /// The loaded library, without a device.
 class Library {
  public:

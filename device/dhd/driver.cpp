@@ -32,6 +32,7 @@ DeviceListing listing_of(DhdSettings settings, int index) {
 std::vector<DeviceListing> list_dhd(const DeviceSettings& settings) {
   DeviceListing nothing = empty_listing(settings.dhd);
   try {
+    expect_loading_survived(settings.dhd.library, dhd::kRemedy);
     const int count = dhd::Library(settings.dhd.library).device_count();
     std::vector<DeviceListing> found;
     for (int i = 0; i < count; ++i) found.push_back(listing_of(settings.dhd, i));

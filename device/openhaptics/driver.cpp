@@ -12,6 +12,7 @@ std::vector<DeviceListing> list_openhaptics(const DeviceSettings& settings) {
   listing.driver = "openhaptics";
   listing.where = settings.openhaptics.library.string();
   try {
+    expect_loading_survived(settings.openhaptics.library, hd::kRemedy);
     const DeviceInfo info = hd::Session(settings.openhaptics).info();
     listing.model = info.model;
     listing.serial = info.serial;

@@ -12,9 +12,6 @@
 namespace touchtrial::hd {
 namespace {
 
-constexpr const char* kRemedy =
-    "install the vendor's OpenHaptics and its device driver, or name the library in the device "
-    "settings at openhaptics.library";
 /// Of the Touch, for a library that does not tell.
 constexpr double kTouchMaxForceN = 3.3;
 constexpr double kTouchContinuousForceN = 0.88;

@@ -10,6 +10,11 @@
 
 namespace touchtrial::hd {
 
+/// For a library that cannot be used.
+constexpr const char* kRemedy =
+    "install the vendor's OpenHaptics and its device driver, or name the library in the device "
+    "settings at openhaptics.library";
+
 /// The library keeps a "current device" and breaks when it is loaded twice: one user a process.
 class OnlyUser {
  public:

@@ -2,9 +2,17 @@
 
 #include "core/errors.hpp"
 
+#include <array>
+#include <chrono>
+#include <optional>
+#include <thread>
 #include <utility>
 
 #include <dlfcn.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 namespace touchtrial {
 namespace {
@@ -21,7 +29,43 @@ std::string reason_for(const std::string& library) {
   return reason.starts_with(library + ": ") ? reason.substr(library.size() + 2) : reason;
 }
 
+/// The child's life: crashes stay silent, and nothing of the parent's is run on the way out.
+[[noreturn]] void load_and_end(const char* library) {
+  for (const int crash : std::array{SIGSEGV, SIGBUS, SIGABRT, SIGILL, SIGFPE}) {
+    signal(crash, SIG_DFL);
+  }
+  const rlimit no_core{0, 0};
+  setrlimit(RLIMIT_CORE, &no_core);
+  dlopen(library, load_flags(Unload::never));
+  _exit(0);
+}
+
+/// \return the child's status; nothing if it had to be killed for hanging
+std::optional<int> status_of(pid_t child) {
+  constexpr std::chrono::milliseconds kPatience{10'000};
+  int status = 0;
+  for (std::chrono::milliseconds waited(0); waited < kPatience; ++waited) {
+    if (waitpid(child, &status, WNOHANG) == child) return status;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  kill(child, SIGKILL);
+  waitpid(child, &status, 0);
+  return std::nullopt;
+}
+
 }  // namespace
+
+void expect_loading_survived(const std::filesystem::path& library, const std::string& remedy) {
+  const std::string name = library.string();
+  const pid_t child = fork();
+  if (child == 0) load_and_end(name.c_str());
+  if (child < 0) return;  // no process to be had: the loading itself will tell
+  const std::optional<int> status = status_of(child);
+  if (status && !WIFSIGNALED(*status)) return;
+  throw DeviceError(one_line(name + (status ? ": crashes" : ": hangs") +
+                             " while it is loaded; the file is damaged or of another system; " +
+                             remedy));
+}
 
 DynamicLibrary::DynamicLibrary(const std::filesystem::path& library, Unload unload,
                                std::string remedy)

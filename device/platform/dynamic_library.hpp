@@ -46,4 +46,10 @@ class DynamicLibrary {
   void* handle_;
 };
 
+/// Loads the library in a child process, which ends at once: a truncated or broken one may kill
+/// whoever loads it. For a program that does not want to be killed for asking; costs a fork.
+/// \throws DeviceError naming library and remedy if the child crashes or hangs for ten seconds; not
+///   for what DynamicLibrary itself would throw
+void expect_loading_survived(const std::filesystem::path& library, const std::string& remedy);
+
 }  // namespace touchtrial

@@ -40,5 +40,16 @@ TEST_CASE("functions are found by name, and a missing one is named") {
                     holds_text("has no function hdNoSuchThing; do this"));
 }
 
+TEST_CASE("a library that was cut off is told apart from a whole one without loading it here") {
+  const Bytes whole = read_file(TOUCHTRIAL_FAKE_HD);
+  const auto file = std::filesystem::temp_directory_path() / "touchtrial-cut-library.so";
+  replace_file(file, ByteView(whole).first(whole.size() / 4));
+  CHECK_THROWS_WITH(expect_loading_survived(file, "do this"),
+                    holds_text("crashes while it is loaded") && holds_text("; do this"));
+  std::filesystem::remove(file);
+  CHECK_NOTHROW(expect_loading_survived(TOUCHTRIAL_FAKE_HD, "do this"));
+  CHECK_NOTHROW(expect_loading_survived(file, "do this"));
+}
+
 }  // namespace
 }  // namespace touchtrial
