@@ -87,7 +87,9 @@ bool UsbFtdi::post(std::span<const std::uint8_t> bytes) noexcept {
   std::copy(bytes.begin(), bytes.end(), out_.begin());
   libusb_fill_bulk_transfer(send_.get(), handle_.get(), kOutEndpoint, out_.data(),
                             static_cast<int>(bytes.size()), &on_sent, this, 0);
-  sending_ = libusb_submit_transfer(send_.get()) == 0;
+  const int error = libusb_submit_transfer(send_.get());
+  sending_ = error == 0;
+  if (error == LIBUSB_ERROR_NO_DEVICE) lost_ = true;
   return sending_;
 }
 

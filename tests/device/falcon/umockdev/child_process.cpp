@@ -1,0 +1,93 @@
+#include "device/falcon/umockdev/child_process.hpp"
+
+#include <array>
+#include <csignal>
+#include <cstdlib>
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace touchtrial::testing {
+namespace {
+
+constexpr std::chrono::seconds kPatience{60};
+
+/// In the child. Never returns.
+[[noreturn]] void become(std::vector<char*>& arguments, const std::vector<std::string>& environment,
+                         int input, int output) {
+  dup2(input, STDIN_FILENO);
+  dup2(output, STDOUT_FILENO);
+  dup2(output, STDERR_FILENO);
+  for (const std::string& entry : environment) {
+    const std::size_t equals = entry.find('=');
+    setenv(entry.substr(0, equals).c_str(), entry.substr(equals + 1).c_str(), 1);
+  }
+  execv(arguments.front(), arguments.data());
+  _exit(127);
+}
+
+}  // namespace
+
+ChildProcess::ChildProcess(const std::vector<std::string>& arguments,
+                           const std::vector<std::string>& environment) {
+  std::array<int, 2> to_child{};
+  std::array<int, 2> from_child{};
+  if (pipe2(to_child.data(), O_CLOEXEC) != 0 || pipe2(from_child.data(), O_CLOEXEC) != 0) return;
+  std::vector<std::string> kept = arguments;
+  std::vector<char*> pointers;
+  for (std::string& argument : kept) pointers.push_back(argument.data());
+  pointers.push_back(nullptr);
+  process_ = fork();
+  if (process_ == 0) become(pointers, environment, to_child[0], from_child[1]);
+  ::close(to_child[0]);
+  ::close(from_child[1]);
+  input_ = to_child[1];
+  output_pipe_ = from_child[0];
+}
+
+ChildProcess::~ChildProcess() {
+  if (input_ >= 0) ::close(input_);
+  if (output_pipe_ >= 0) ::close(output_pipe_);
+  if (process_ <= 0) return;
+  kill(process_, SIGKILL);
+  waitpid(process_, nullptr, 0);
+}
+
+void ChildProcess::write(const std::string& text) {
+  [[maybe_unused]] const ssize_t written = ::write(input_, text.data(), text.size());
+}
+
+bool ChildProcess::read_more(std::chrono::steady_clock::time_point until) {
+  const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
+      until - std::chrono::steady_clock::now());
+  pollfd waiting{output_pipe_, POLLIN, 0};
+  if (left.count() <= 0 || poll(&waiting, 1, static_cast<int>(left.count())) <= 0) return false;
+  std::array<char, 4096> bytes{};
+  const ssize_t count = ::read(output_pipe_, bytes.data(), bytes.size());
+  if (count <= 0) return false;
+  output_.append(bytes.data(), static_cast<std::size_t>(count));
+  return true;
+}
+
+bool ChildProcess::says(const std::string& text) {
+  const auto until = std::chrono::steady_clock::now() + kPatience;
+  while (output_.find(text) == std::string::npos) {
+    if (!read_more(until)) return false;
+  }
+  return true;
+}
+
+int ChildProcess::finish() {
+  const auto until = std::chrono::steady_clock::now() + kPatience;
+  while (read_more(until)) {
+  }
+  if (std::chrono::steady_clock::now() >= until) return -1;
+  int status = 0;
+  waitpid(process_, &status, 0);
+  process_ = -1;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+}  // namespace touchtrial::testing

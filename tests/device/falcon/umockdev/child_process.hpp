@@ -1,0 +1,40 @@
+/// \file A program that runs beside the test, spoken to through pipes.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include <sys/types.h>
+
+namespace touchtrial::testing {
+
+class ChildProcess {
+ public:
+  /// Starts it. \param arguments  the program's path first
+  /// \param environment  "NAME=VALUE", on top of this process's
+  ChildProcess(const std::vector<std::string>& arguments,
+               const std::vector<std::string>& environment);
+  ~ChildProcess();  ///< ends it if it still runs
+  ChildProcess(const ChildProcess&) = delete;
+  ChildProcess& operator=(const ChildProcess&) = delete;
+
+  void write(const std::string& text);
+  /// Reads until its output, both streams together, holds this. \return false if it ended first, or
+  ///   after a minute
+  [[nodiscard]] bool says(const std::string& text);
+  /// Reads to its end. \return its exit code; -1 if it died by a signal or did not end in a minute
+  [[nodiscard]] int finish();
+  [[nodiscard]] const std::string& output() const { return output_; }
+
+ private:
+  /// \return false at the end of its output, or when time is up
+  bool read_more(std::chrono::steady_clock::time_point until);
+
+  pid_t process_ = -1;
+  int input_ = -1;
+  int output_pipe_ = -1;
+  std::string output_;
+};
+
+}  // namespace touchtrial::testing
