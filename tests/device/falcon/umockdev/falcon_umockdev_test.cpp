@@ -3,7 +3,6 @@
 #include "device/falcon/umockdev/child_process.hpp"
 #include "device/falcon/umockdev/umockdev_falcon.hpp"
 #include "device/falcon/usbfs_shim/emulator_usb_model.hpp"
-
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 
@@ -33,14 +32,14 @@ bool wait_until_pushed(const FalconEmulator& emulator) {
 
 TEST_CASE("another process finds no Falcon on an empty bus, and one that is plugged in") {
   UmockdevBus bus;
-  ChildProcess before(bus.command({FALCON_PROBE, "list"}), bus.environment());
+  ChildProcess before({FALCON_PROBE, "list"}, bus.environment());
   CHECK(before.finish() == 0);
   CHECK(before.output().empty());
 
   FalconEmulator emulator;
   EmulatorUsbModel model(emulator);
   bus.plug(model);
-  ChildProcess after(bus.command({FALCON_PROBE, "list"}), bus.environment());
+  ChildProcess after({FALCON_PROBE, "list"}, bus.environment());
   CHECK(after.finish() == 0);
   CHECK(after.output() == "USB bus 1 port 2, address 7, serial FALCON1, \n");
 }
@@ -52,7 +51,7 @@ TEST_CASE("another process loads, homes and pushes a Falcon, loses it and finds 
   FalconEmulator emulator({}, swinging_hand());
   EmulatorUsbModel model(emulator);
   bus.plug(model);
-  ChildProcess probe(bus.command({FALCON_PROBE, "push", firmware}), bus.environment());
+  ChildProcess probe({FALCON_PROBE, "push", firmware}, bus.environment());
   INFO(probe.output());
   REQUIRE(probe.says("open FALCON1\nhomed\n"));
   CHECK(emulator.image() == dummy_firmware());

@@ -10,9 +10,8 @@
 
 #include <umockdev.h>
 // Before the next, which lacks it.
-#include <sys/ioctl.h>
-
 #include <linux/usbdevice_fs.h>
+#include <sys/ioctl.h>
 
 namespace touchtrial::testing {
 namespace {
@@ -119,8 +118,7 @@ struct UmockdevBus::State {
 
   static int tell_capabilities(UMockdevIoctlData* argument) {
     const Memory answer = at_pointer(argument, 0, sizeof(std::uint32_t));
-    const std::uint32_t capabilities = USBDEVFS_CAP_ZERO_PACKET |
-                                       USBDEVFS_CAP_NO_PACKET_SIZE_LIM |
+    const std::uint32_t capabilities = USBDEVFS_CAP_ZERO_PACKET | USBDEVFS_CAP_NO_PACKET_SIZE_LIM |
                                        USBDEVFS_CAP_REAP_AFTER_DISCONNECT;
     std::memcpy(answer->data, &capabilities, sizeof(capabilities));
     write_back(answer);
@@ -184,7 +182,12 @@ struct UmockdevBus::State {
   }
 };
 
-UmockdevBus::UmockdevBus() : state_(std::make_unique<State>()) {}
+UmockdevBus::UmockdevBus() : state_(std::make_unique<State>()) {
+  // Asked after the bus is there, as the answer is kept.
+  if (!umockdev_in_mock_environment()) {
+    throw std::runtime_error("run this test with ctest, or under umockdev-wrapper");
+  }
+}
 
 UmockdevBus::~UmockdevBus() {
   if (state_->plugged) unplug();
@@ -227,18 +230,11 @@ void UmockdevBus::unplug() {
   umockdev_testbed_detach_ioctl(state.testbed.get(), identity.node().c_str(), nullptr);
 }
 
-std::vector<std::string> UmockdevBus::command(const std::vector<std::string>& arguments) const {
-  std::vector<std::string> all = {UMOCKDEV_WRAPPER};
-  all.insert(all.end(), arguments.begin(), arguments.end());
-  return all;
-}
-
 std::vector<std::string> UmockdevBus::environment() const {
   gchar* const root = umockdev_testbed_get_root_dir(state_->testbed.get());
-  std::vector<std::string> all = {
-      std::string("UMOCKDEV_DIR=") + root,
-      // umockdev's library has to come before the sanitizer's.
-      "ASAN_OPTIONS=verify_asan_link_order=0:detect_leaks=0"};
+  std::vector<std::string> all = {std::string("UMOCKDEV_DIR=") + root,
+                                  // umockdev's library has to come before the sanitizer's.
+                                  "ASAN_OPTIONS=verify_asan_link_order=0:detect_leaks=0"};
   g_free(root);
   return all;
 }

@@ -1,6 +1,6 @@
-/// \file A USB device on a bus of umockdev's, for programs that are run under umockdev-wrapper. One
-/// at a time in a process. Slow, about a thousand transfers a second: for what is plugged in and
-/// for whole commands, never for rates.
+/// \file A USB device on a bus of umockdev's, for programs that the test starts. The test itself has
+/// to run under umockdev-wrapper, as CTest runs it, and they with it. One bus at a time. Slow, about
+/// a thousand transfers a second: for what is plugged in and for whole commands, never for rates.
 #pragma once
 
 #include "device/falcon/usbfs_shim/usb_model.hpp"
@@ -13,6 +13,7 @@ namespace touchtrial::testing {
 
 class UmockdevBus {
  public:
+  /// \throws std::runtime_error unless umockdev-wrapper is around
   UmockdevBus();
   ~UmockdevBus();
   UmockdevBus(const UmockdevBus&) = delete;
@@ -23,8 +24,7 @@ class UmockdevBus {
   void plug(UsbModel& model, const UsbIdentity& identity = {});
   void unplug();
 
-  /// How to run a program on this bus: what to put before its path, and its environment.
-  [[nodiscard]] std::vector<std::string> command(const std::vector<std::string>& arguments) const;
+  /// Of a program that is to see this bus.
   [[nodiscard]] std::vector<std::string> environment() const;
 
  private:
