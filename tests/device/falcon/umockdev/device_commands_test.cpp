@@ -1,0 +1,65 @@
+// The program itself with a Falcon on a bus of umockdev's: touchtrial device list and test.
+#include "core/files.hpp"
+#include "device/falcon/rig/dummy_firmware.hpp"
+#include "device/falcon/umockdev/child_process.hpp"
+#include "device/falcon/umockdev/umockdev_falcon.hpp"
+#include "device/falcon/usbfs_shim/emulator_usb_model.hpp"
+#include "support/catch.hpp"
+#include "support/temp_folder.hpp"
+
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial::falcon {
+namespace {
+
+using nlohmann::json;
+using testing::ChildProcess;
+using testing::EmulatorUsbModel;
+using testing::UmockdevBus;
+
+/// Settings that name a firmware of dummy bytes, or none.
+std::string settings_in(const TempFolder& folder, bool with_firmware) {
+  json settings = json::object();
+  if (with_firmware) settings["falcon"]["firmware"] = write_dummy_firmware(folder.path()).string();
+  const auto file = folder.path() / "devices.json";
+  replace_file(file, settings.dump());
+  return file.string();
+}
+
+/// The Falcon's entry of `device list --json`.
+json listed(const UmockdevBus& bus, const std::string& settings) {
+  ChildProcess program({TOUCHTRIAL_PROGRAM, "device", "list", "--json", "--settings", settings},
+                       bus.environment());
+  const int code = program.finish();
+  INFO(program.output());
+  REQUIRE(code == 0);
+  for (const json& device : json::parse(program.output()).at("devices")) {
+    if (device.at("driver") == "falcon") return device;
+  }
+  FAIL("device list does not know the falcon");
+  return {};
+}
+
+TEST_CASE("device list tells of a Falcon whether it is there, where, and what it misses") {
+  const TempFolder folder;
+  UmockdevBus bus;
+  CHECK(listed(bus, settings_in(folder, true)).at("present") == false);
+
+  FalconEmulator emulator;
+  EmulatorUsbModel model(emulator);
+  bus.plug(model, {.serial = "AB12"});
+  const json ready = listed(bus, settings_in(folder, true));
+  CHECK(ready.at("ready") == true);
+  CHECK(ready.at("serial") == "AB12");
+  CHECK(ready.at("where") == "USB bus 1 port 2, address 7");
+  const json without = listed(bus, settings_in(folder, false));
+  CHECK(without.at("present") == true);
+  CHECK(without.at("ready") == false);
+  CHECK_THAT(without.at("missing").at(0).get<std::string>(), holds_text("falcon/firmware"));
+  CHECK(emulator.loads() == 0);
+}
+
+}  // namespace
+}  // namespace touchtrial::falcon
