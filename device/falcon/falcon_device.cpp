@@ -43,7 +43,7 @@ void make_run(FtdiTransport& transport, const FalconSettings& settings) {
   if (falcon_answers(transport)) return;
   throw DeviceError("falcon: its firmware is loaded, but it does not answer; " +
                     one_line(settings.firmware.string()) +
-                    " may not be a Falcon's firmware: correct falcon/firmware in the device "
+                    " may not be a Falcon's firmware: correct falcon.firmware in the device "
                     "settings");
 }
 

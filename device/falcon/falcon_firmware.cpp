@@ -128,7 +128,7 @@ std::string try_load(FtdiTransport& transport, std::span<const std::uint8_t> ima
 std::vector<std::uint8_t> read_falcon_firmware(const std::filesystem::path& file) {
   if (file.empty()) {
     throw FileError(
-        "falcon: it needs the vendor's firmware and no file is named; set falcon/firmware in the "
+        "falcon: it needs the vendor's firmware and no file is named; set falcon.firmware in the "
         "device settings (docs/devices/falcon.md)");
   }
   std::ifstream stream(file, std::ios::binary);
@@ -137,12 +137,12 @@ std::vector<std::uint8_t> read_falcon_firmware(const std::filesystem::path& file
   image.resize(static_cast<std::size_t>(stream.gcount()));
   if (stream.bad() || (image.empty() && !stream.is_open())) {
     throw FileError(one_line(file.string()) +
-                    ": cannot be read; correct falcon/firmware in the device settings");
+                    ": cannot be read; correct falcon.firmware in the device settings");
   }
   if (image.size() < kLeastFirmwareBytes || image.size() > kMostFirmwareBytes) {
     throw FileError(one_line(file.string()) +
                     ": is no Falcon firmware, which has 4096 to 16384 bytes; correct "
-                    "falcon/firmware in the device settings");
+                    "falcon.firmware in the device settings");
   }
   return image;
 }

@@ -33,7 +33,7 @@ UsbHandle open_only(const std::vector<UsbDevice>& falcons) {
   std::vector<std::string> places;
   for (const UsbDevice& device : falcons) places.push_back(place_of(device.get()));
   throw DeviceError("falcon: there are several (" + joined(places) +
-                    "); name the serial number of one in the device settings, falcon/serial");
+                    "); name the serial number of one in the device settings, falcon.serial");
 }
 
 /// The handle of the one with this serial number. Those that may not be opened are passed over,
@@ -52,7 +52,7 @@ UsbHandle open_by_serial(const std::vector<UsbDevice>& falcons, const std::strin
   }
   if (!trouble.empty()) throw DeviceError(trouble);
   throw DeviceError("falcon: none has the serial number " + serial + ", but there is " +
-                    joined(seen) + "; correct falcon/serial in the device settings");
+                    joined(seen) + "; correct falcon.serial in the device settings");
 }
 
 }  // namespace

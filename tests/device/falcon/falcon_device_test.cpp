@@ -292,7 +292,7 @@ TEST_CASE("a Falcon without firmware is loaded from the user's file when it is o
 TEST_CASE("a Falcon without firmware and without a file says what to set") {
   FalconEmulator emulator;
   CHECK_THROWS_WITH(FalconDevice(std::make_unique<EmulatorTransport>(emulator), {}),
-                    holds_text("set falcon/firmware"));
+                    holds_text("set falcon.firmware"));
 }
 
 TEST_CASE("a firmware that does not run is told as one") {

@@ -186,9 +186,9 @@ TEST_CASE("a firmware file is read whole") {
 
 TEST_CASE("a firmware file that is not named, not there or of no image's size is refused") {
   const TempFolder folder;
-  CHECK_THROWS_WITH(read_falcon_firmware({}), holds_text("set falcon/firmware"));
+  CHECK_THROWS_WITH(read_falcon_firmware({}), holds_text("set falcon.firmware"));
   CHECK_THROWS_WITH(read_falcon_firmware(folder.path() / "none.bin"), holds_text("cannot be read"));
-  CHECK_THROWS_WITH(read_falcon_firmware(folder.path()), holds_text("falcon/firmware"));
+  CHECK_THROWS_WITH(read_falcon_firmware(folder.path()), holds_text("falcon.firmware"));
   const int size = GENERATE(0, 1, static_cast<int>(kLeastFirmwareBytes) - 1,
                             static_cast<int>(kMostFirmwareBytes) + 1);
   std::ofstream(folder.path() / "odd.bin") << std::string(static_cast<std::size_t>(size), 'x');

@@ -1,6 +1,7 @@
-/// \file A USB device on a bus of umockdev's, for programs that the test starts. The test itself has
-/// to run under umockdev-wrapper, as CTest runs it, and they with it. One bus at a time. Slow, about
-/// a thousand transfers a second: for what is plugged in and for whole commands, never for rates.
+/// \file A USB device on a bus of umockdev's, for programs that the test starts. The test itself
+/// has to run under umockdev-wrapper, as CTest runs it, and they with it. One bus at a time. Slow,
+/// about a thousand transfers a second: for what is plugged in and for whole commands, never for
+/// rates.
 #pragma once
 
 #include "device/falcon/usbfs_shim/usb_model.hpp"

@@ -182,7 +182,7 @@ TEST_CASE("the registry lists a Falcon with what is missing, and opens it") {
   REQUIRE(without_file.size() == 1);
   CHECK(without_file[0].present);
   CHECK(without_file[0].serial == "FALCON1");
-  CHECK_THAT(without_file[0].missing.at(0), holds_text("falcon/firmware"));
+  CHECK_THAT(without_file[0].missing.at(0), holds_text("falcon.firmware"));
 
   const TempFolder folder;
   settings.falcon.firmware = write_dummy_firmware(folder.path());

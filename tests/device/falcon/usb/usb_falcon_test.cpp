@@ -128,7 +128,7 @@ TEST_CASE("of several Falcons the settings have to name one") {
   Loopback first, second;
   const ShimmedUsbDevice one(first, {.serial = "ONE"});
   const ShimmedUsbDevice two(second, {.address = 9, .port = "1-3", .serial = "TWO"});
-  CHECK_THAT(refusal(), holds_text("falcon/serial"));
+  CHECK_THAT(refusal(), holds_text("falcon.serial"));
   CHECK_THAT(refusal("THREE"), holds_text("ONE, TWO"));
   const auto transport = open_usb_falcon("TWO");
   CHECK(two.is_claimed());
