@@ -13,7 +13,9 @@ void add_device_command(CLI::App& program, Action& action) {
       "device", "Force-feedback devices: what is there, does it work, does a study fit");
   device->require_subcommand(1);
   add_device_list_command(*device, action);
+  add_device_test_command(*device, action);
   add_device_fit_command(*device, action);
+  add_device_calibrate_command(*device, action);
 }
 
 }  // namespace touchtrial

@@ -1,0 +1,174 @@
+#include "app/attended_run.hpp"
+
+#include "core/errors.hpp"
+#include "device/servo/paced_clock.hpp"
+#include "device/servo/servo_names.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+namespace touchtrial {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// Between two live lines: a person reads a line that stays in place faster than one that scrolls.
+constexpr std::chrono::nanoseconds kOnTerminal = 250ms;
+constexpr std::chrono::nanoseconds kOnPipe = 1s;
+
+class NobodyKeeps final : public SampleSink {
+ public:
+  void record(const ServoSample& /*sample*/) noexcept override {}
+};
+
+class NoForce final : public ForceSource {
+ public:
+  [[nodiscard]] Vec3 force_n(const DeviceSample& /*sample*/) noexcept override { return {}; }
+};
+
+ServoOptions options_for(const SafetyLimits& limits, double rate_hz) {
+  ServoOptions options;
+  options.limits = limits;
+  options.rate_hz = rate_hz;
+  options.fade_ticks = std::llround(0.1 * rate_hz);
+  return options;
+}
+
+const char* advice_on(DeviceReadiness readiness) {
+  switch (readiness) {
+    case DeviceReadiness::needs_homing:
+      return "move the handle slowly through its whole range: to every side, all the way in, all "
+             "the way out";
+    case DeviceReadiness::needs_inkwell:
+      return "put the stylus into its inkwell, wait, and take it out again";
+    case DeviceReadiness::needs_calibration:
+      return "run the vendor's own calibration, then this again";
+    case DeviceReadiness::ready:
+      break;
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string fault_text(const ServoReport& report) {
+  std::string text(name_of(report.fault));
+  if (report.device_fault != DeviceFault::none) {
+    text += " (" + std::string(name_of(report.device_fault)) + ")";
+  }
+  return text;
+}
+
+AttendedRun::AttendedRun(OpenedDevice& opened, HapticDevice& device, const SafetyLimits& limits,
+                         double rate_hz, bool keys)
+    : opened_(opened),
+      device_(device),
+      options_(options_for(limits, rate_hz)),
+      recorder_(kRecordedS, rate_hz),
+      watchdog_(device, control_, heartbeat_),
+      signals_(device, control_),
+      on_terminal_(::isatty(STDERR_FILENO) != 0) {
+  if (keys) keys_.emplace();
+}
+
+std::optional<ServoReport> AttendedRun::run(const std::string& phase, ForceSource& force,
+                                            double seconds, const std::function<bool()>& is_done,
+                                            SampleSink* sink) {
+  if (StopOnSignals::asked()) stop_ = AttendedStop::signal;
+  if (stop_ != AttendedStop::none) return std::nullopt;
+  options_.limit_ticks = std::llround(seconds * options_.rate_hz);
+  recorder_.clear();
+  shown_tick_ = 0;
+  shown_at_ = monotonic_now();
+  ServoReport report;
+  const WatchdogGuard guard(watchdog_);
+  thread_.start([&] {
+    NobodyKeeps nobody;
+    PacedClock clock(PacedClock::usual_spin(thread_.scheduling().policy));
+    report = run_servo(device_, force, sink == nullptr ? static_cast<SampleSink&>(nobody) : *sink,
+                       options_, clock, {&control_, &state_, &heartbeat_, &recorder_});
+  });
+  while (thread_.running()) {
+    opened_.attend();
+    take_keys();
+    if (is_done && is_done()) control_.finish();
+    show(phase);
+  }
+  thread_.wait();
+  end_line();
+  // A stop holds for good; an end that was only this run's must not end the next one.
+  if (stop_ == AttendedStop::none) control_.reset();
+  return report;
+}
+
+void AttendedRun::wait_until_ready(double limit_s) {
+  const DeviceReadiness readiness = device_.readiness();
+  if (readiness == DeviceReadiness::ready) return;
+  const std::string name = device_.info().name;
+  const std::string advice = advice_on(readiness);
+  std::fprintf(stderr, "%s: %s\n", name.c_str(), advice.c_str());
+  NoForce nothing;
+  const auto report = run("homing", nothing, limit_s,
+                          [&] { return device_.readiness() == DeviceReadiness::ready; });
+  if (stop_ != AttendedStop::none) return;
+  if (report && report->end == ServoEnd::fault) {
+    throw DeviceError(name + ": fault while homing: " + fault_text(*report) +
+                      "; look at cable and power, then try again");
+  }
+  if (device_.readiness() != DeviceReadiness::ready) {
+    throw DeviceError(name + ": is not ready after " + fmt::format("{:.0f}", limit_s) + " s; " +
+                      advice);
+  }
+}
+
+std::string AttendedRun::flight_record() const {
+  return flight_csv(recorder_.ticks());
+}
+
+void AttendedRun::take_keys() {
+  if (StopOnSignals::asked()) stop_ = AttendedStop::signal;
+  if (opened_.stop_asked() && stop_ == AttendedStop::none) {
+    stop_ = AttendedStop::comfort;
+    control_.comfort_stop();
+  }
+  if (!keys_) return;
+  for (auto key = keys_->next(); key; key = keys_->next()) {
+    if (stop_ != AttendedStop::none) continue;
+    if (*key == 'q' || *key == 'Q') {
+      stop_ = AttendedStop::quit;
+      control_.finish();
+    } else if (*key == ' ') {
+      stop_ = AttendedStop::comfort;
+      control_.comfort_stop();
+    }
+  }
+}
+
+void AttendedRun::show(const std::string& phase) {
+  const std::chrono::nanoseconds now = monotonic_now();
+  if (now - shown_at_ < (on_terminal_ ? kOnTerminal : kOnPipe)) return;
+  const ServoState newest = state_.get();
+  const double passed_s = 1e-9 * static_cast<double>((now - shown_at_).count());
+  const double rate_hz = static_cast<double>(newest.tick - shown_tick_) / passed_s;
+  const Vec3 p = newest.sample.position_mm;
+  const Vec3 f = newest.force_n;
+  const std::string line = fmt::format(
+      "{:<8} {:6.0f} ticks/s  late {:5.0f} us  at {:7.1f} {:7.1f} {:7.1f} mm  force {:5.2f} "
+      "{:5.2f} "
+      "{:5.2f} N  [{}]",
+      phase, rate_hz, newest.lateness_us, p.x, p.y, p.z, f.x, f.y, f.z,
+      keys_ ? "q stops, space lets go" : "Ctrl-C stops");
+  std::fprintf(stderr, on_terminal_ ? "\r%s\x1b[K" : "%s\n", line.c_str());
+  std::fflush(stderr);
+  shown_at_ = now;
+  shown_tick_ = newest.tick;
+}
+
+void AttendedRun::end_line() {
+  if (on_terminal_) std::fputs("\r\x1b[K", stderr);
+}
+
+}  // namespace touchtrial

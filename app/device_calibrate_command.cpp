@@ -1,0 +1,188 @@
+#include "app/attended_run.hpp"
+#include "app/commands.hpp"
+#include "app/console.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/version.hpp"
+#include "device/calibration/certificate.hpp"
+
+#include <charconv>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace touchtrial {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kReadyLimitS = 120.0;
+constexpr double kLightestG = 10.0;
+/// Of the largest force that may be sent: the rest holds the handle itself.
+constexpr double kWeightShare = 0.6;
+/// 2 s more than is measured, so that a run never ends before its last sample.
+constexpr double kRunS = HoldMeasurement::kRunS + 2.0;
+constexpr int kNotPassed = 1;
+
+struct CalibrateArguments {
+  std::string driver;
+  fs::path settings;
+  fs::path certificate;
+};
+
+/// Prompts go where results do not, so that both can be piped.
+void tell(const std::string& text) {
+  std::cerr << text << std::flush;
+}
+
+std::string answer_to(const std::string& question) {
+  tell(question);
+  std::string line;
+  if (!std::getline(std::cin, line)) {
+    throw UsageError("standard input ended in the middle of the calibration; answer every prompt");
+  }
+  return line;
+}
+
+double mass_asked_for(CalibrationAxis axis, double heaviest_g) {
+  while (true) {
+    const std::string line = answer_to(fmt::format(
+        "mass for axis {} in g ({:.0f} to {:.0f}): ", name_of(axis), kLightestG, heaviest_g));
+    double mass_g = 0.0;
+    const char* end = line.data() + line.size();
+    const auto [stop, error] = std::from_chars(line.data(), end, mass_g);
+    if (error == std::errc{} && stop == end && mass_g >= kLightestG && mass_g <= heaviest_g) {
+      return mass_g;
+    }
+    tell("that is no mass in this range\n");
+  }
+}
+
+const char* hanging_on(CalibrationAxis axis) {
+  switch (axis) {
+    case CalibrationAxis::x:
+      return "Lead the string level to the right, over a pulley at the handle's height, and hang "
+             "the weight on its end.";
+    case CalibrationAxis::y:
+      return "Hang the weight straight down from the handle.";
+    case CalibrationAxis::z:
+      break;
+  }
+  return "Lead the string level towards you, over a pulley at the handle's height, and hang the "
+         "weight on its end.";
+}
+
+class Calibration {
+ public:
+  explicit Calibration(const CalibrateArguments& arguments)
+      : settings_(device_settings_for(arguments.settings)),
+        opened_(arguments.driver, settings_, {100.0, 100.0}),
+        limits_(limits_on(opened_.device().info(),
+                          stricter_of({}, settings_.use_of(arguments.driver).limits))),
+        run_(opened_, checked(opened_.device()), limits_, kServoRateHz, false) {}
+
+  Certificate measure() {
+    run_.wait_until_ready(kReadyLimitS);
+    const DeviceInfo info = opened_.device().info();
+    Certificate certificate{
+        info.name, info.model, info.serial, info.firmware, std::string(program_version()),
+        {},        {},         {}};
+    answer_to("Let the handle lie or hang still, without a weight, hands off. Then press Enter.\n");
+    const HoldFigures rest = figures("rest", HoldMeasurement::Mode::rest);
+    answer_to("Hold the handle in the middle of its range. Press Enter, then let go slowly.\n");
+    const HoldFigures empty = figures("empty", HoldMeasurement::Mode::hold);
+    certificate.free_air = judge_free_air(rest, empty);
+    for (const CalibrationAxis axis : kCalibrationAxes) {
+      certificate.axes.push_back(measure_axis(axis, empty));
+    }
+    certificate.made = std::chrono::floor<std::chrono::seconds>(std::chrono::sys_time(utc_now()));
+    return certificate;
+  }
+
+ private:
+  static HapticDevice& checked(HapticDevice& device) {
+    const DeviceInfo info = device.info();
+    if (info.simulated || info.visual || !info.workspace) {
+      throw DeviceError(info.name +
+                        ": has no motors whose force could be weighed; calibrate a "
+                        "device that touchtrial device list finds on a cable");
+    }
+    return device;
+  }
+
+  AxisResult measure_axis(CalibrationAxis axis, const HoldFigures& empty) {
+    const double heaviest_g = kWeightShare * limits_.max_force_n / kStandardGravityMS2 * 1000.0;
+    tell(fmt::format("\nAxis {}. {}\n", name_of(axis), hanging_on(axis)));
+    const double mass_g = mass_asked_for(axis, heaviest_g);
+    answer_to(
+        "Hold the handle in the middle of its range with the weight on it. Press Enter, "
+        "then let go slowly.\n");
+    const HoldFigures loaded = figures(std::string(name_of(axis)), HoldMeasurement::Mode::hold);
+    const AxisResult result = judge_axis(axis, mass_g, empty, loaded);
+    tell(fmt::format("axis {}: {:.3f} N commanded for {:.3f} N: {}\n", name_of(axis),
+                     result.measured_n, result.expected_n, result.passed ? "passed" : "FAILED"));
+    return result;
+  }
+
+  HoldFigures figures(const std::string& phase, HoldMeasurement::Mode mode) {
+    HoldMeasurement hold(mode);
+    const auto report = run_.run(phase, hold, kRunS, {}, &hold);
+    if (!report || run_.stop() != AttendedStop::none) {
+      throw DeviceError("calibration was stopped; nothing was written");
+    }
+    if (report->end == ServoEnd::fault) {
+      throw DeviceError("fault while calibrating: " + fault_text(*report) +
+                        "; nothing was written; try again");
+    }
+    return hold.figures();
+  }
+
+  DeviceSettings settings_;
+  OpenedDevice opened_;
+  SafetyLimits limits_;
+  AttendedRun run_;
+};
+
+std::string result_text(const Certificate& certificate, const fs::path& path) {
+  std::string text;
+  for (const AxisResult& r : certificate.axes) {
+    text += fmt::format("axis {}: {:.3f} N for {:.3f} N ({:+.1f} %), {:.3f} N across: {}\n",
+                        name_of(r.axis), r.measured_n, r.expected_n,
+                        100.0 * (r.measured_n / r.expected_n - 1.0), r.cross_n,
+                        r.passed ? "passed" : "failed");
+  }
+  const FreeAirResult& air = certificate.free_air;
+  text += fmt::format("free air: noise {:.3f} mm, drift {:.3f} mm, holding takes {:.3f} N: {}\n",
+                      air.noise_mm, air.drift_mm, air.residual_n, air.passed ? "passed" : "failed");
+  return text + fmt::format("{}\n{}: SHA-256 {}\n", certificate.passed() ? "passed" : "FAILED",
+                            path.string(), to_hex(sha256_of_file(path)));
+}
+
+int calibrate(const CalibrateArguments& arguments) {
+  const Certificate certificate = Calibration(arguments).measure();
+  const fs::path path = arguments.certificate.empty()
+                            ? fs::path(arguments.driver + "-certificate.json")
+                            : arguments.certificate;
+  replace_file(path, certificate_json(certificate));
+  print(result_text(certificate, path));
+  return certificate.passed() ? 0 : kNotPassed;
+}
+
+}  // namespace
+
+void add_device_calibrate_command(CLI::App& device, Action& action) {
+  auto arguments = std::make_shared<CalibrateArguments>();
+  CLI::App* command = device.add_subcommand(
+      "calibrate", "Weigh a device's force with hanging weights, axis by axis, and certify it");
+  command->add_option("NAME", arguments->driver, "Driver, as touchtrial device list names it")
+      ->required();
+  add_settings_option(*command, arguments->settings);
+  command->add_option("--certificate", arguments->certificate,
+                      "Where the certificate goes (default: NAME-certificate.json)");
+  command->callback([=, &action] { action = [=] { return calibrate(*arguments); }; });
+}
+
+}  // namespace touchtrial
