@@ -146,9 +146,10 @@ void Session::time_out(Time at) {
   }
 }
 
-void Session::interrupt(Time at, const std::string& reason) {
+void Session::interrupt(Time at, const std::string& reason,
+                        const std::optional<InterruptionDetail>& detail) {
   require(Input::interrupt, at);
-  recorder_.interrupted(at, current()->trial, reason);
+  recorder_.interrupted(at, current()->trial, reason, detail);
   queue_.push_back(queue_.front());
   queue_.pop_front();
   move_to(Phase::ready, at);

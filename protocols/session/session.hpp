@@ -92,7 +92,9 @@ class Session {
   void time_out(Time at);
   /// The presentation was spoilt (a comfort stop, a device fault): it is repeated, under its trial
   /// number, after all others. Not once its trace is stored.
-  void interrupt(Time at, const std::string& reason);
+  /// \param reason  in clear: must tell nothing of the stimulus  \param detail  sealed
+  void interrupt(Time at, const std::string& reason,
+                 const std::optional<InterruptionDetail>& detail = std::nullopt);
   /// The samples of the presentation; once in each.
   void store_trace(Time at, const TraceBody& body, const TrialMeasures& measures,
                    const Trace& trace);

@@ -4,15 +4,9 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace touchtrial {
-namespace {
-
-[[noreturn]] void refuse(const char* key, const char* why) {
-  throw StoreError(std::string("/") + key + " " + why);
-}
-
-}  // namespace
 
 std::string compact(const nlohmann::json& object) {
   try {
@@ -23,13 +17,23 @@ std::string compact(const nlohmann::json& object) {
 }
 
 double finite(double value, const char* key) {
-  if (!std::isfinite(value)) refuse(key, "to be stored is not a finite number; check the device");
+  if (!std::isfinite(value)) {
+    throw StoreError(std::string("/") + key +
+                     " to be stored is not a finite number; check the device");
+  }
   return value;
 }
 
 JsonObject::JsonObject(const std::string& text)
     : object_(nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false)) {
   if (!object_.is_object()) throw StoreError("the body is not a JSON object");
+}
+
+JsonObject::JsonObject(nlohmann::json object, std::string place)
+    : object_(std::move(object)), place_(std::move(place)) {}
+
+void JsonObject::refuse(const char* key, const char* why) const {
+  throw StoreError(place_ + "/" + key + " " + why);
 }
 
 const nlohmann::json& JsonObject::at(const char* key) const {
@@ -88,6 +92,18 @@ std::optional<int> JsonObject::optional_count(const char* key, int least) const 
 std::optional<std::string> JsonObject::optional_text(const char* key) const {
   if (!object_.contains(key)) return std::nullopt;
   return text(key);
+}
+
+std::optional<std::int64_t> JsonObject::optional_integer(const char* key) const {
+  if (!object_.contains(key)) return std::nullopt;
+  return integer(key, 0, std::numeric_limits<std::int64_t>::max());
+}
+
+std::optional<JsonObject> JsonObject::optional_object(const char* key) const {
+  if (!object_.contains(key)) return std::nullopt;
+  const nlohmann::json& value = at(key);
+  if (!value.is_object()) refuse(key, "is not an object");
+  return JsonObject(value, place_ + "/" + key);
 }
 
 }  // namespace touchtrial

@@ -36,11 +36,17 @@ class JsonObject {
   /// The same, or nothing if the key is absent.
   [[nodiscard]] std::optional<int> optional_count(const char* key, int least) const;
   [[nodiscard]] std::optional<std::string> optional_text(const char* key) const;
+  [[nodiscard]] std::optional<std::int64_t> optional_integer(const char* key) const;
+  /// An object within this one, or nothing if the key is absent. Its errors name both keys.
+  [[nodiscard]] std::optional<JsonObject> optional_object(const char* key) const;
 
  private:
+  JsonObject(nlohmann::json object, std::string place);
   [[nodiscard]] const nlohmann::json& at(const char* key) const;
+  [[noreturn]] void refuse(const char* key, const char* why) const;
 
   nlohmann::json object_;
+  std::string place_;  ///< JSON pointer
 };
 
 }  // namespace touchtrial

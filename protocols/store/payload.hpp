@@ -28,6 +28,19 @@ struct StudyCommitment {
   friend bool operator==(const StudyCommitment&, const StudyCommitment&) = default;
 };
 
+/// `opened`, in real time: what the hand was on. Says nothing of stimuli.
+struct StationRecord {
+  std::string model;          ///< as the device tells it; may be empty
+  std::string firmware;       ///< likewise
+  double max_force_n = 0.0;   ///< the device's own
+  bool visual = false;        ///< shown on a screen instead of felt: pilot sessions alone
+  double rate_hz = 0.0;       ///< of the servo, as asked for
+  std::string scheduling;     ///< that its thread obtained
+  std::string calibration{};  ///< SHA-256 of the device's certificate, hexadecimal; empty: none
+
+  friend bool operator==(const StationRecord&, const StationRecord&) = default;
+};
+
 /// First event of a session's chain. Its sealed part is the schedule and the answer layout.
 struct SessionOpening {
   std::string participant;  ///< 1 to 32 of [0-9A-Za-z+-_]; unique in a study
@@ -39,6 +52,7 @@ struct SessionOpening {
   std::string opened_utc;     ///< ISO 8601, empty for simulated sessions
   bool simulated = false;
   bool pilot = false;
+  std::optional<StationRecord> station{};  ///< real time only
 };
 
 /// `answered`: positions are indices into the participant's layout of pictures, from 0.
@@ -49,6 +63,20 @@ struct AnswerBody {
   std::optional<int> confidence;
 };
 
+/// `trace-stored`, in real time: how the servo kept its time. When a tick begins is up to the
+/// operating system and not to the texture.
+struct ServoHealth {
+  double rate_hz = 0.0;  ///< that was had
+  double lateness_p50_us = 0.0;
+  double lateness_p99_us = 0.0;
+  double lateness_p999_us = 0.0;
+  double lateness_worst_us = 0.0;
+  std::int64_t lost = 0;  ///< samples for which there was no room on their way to the trace
+  std::int64_t held = 0;  ///< samples of the trace that were filled in, for overruns and lost ones
+
+  friend bool operator==(const ServoHealth&, const ServoHealth&) = default;
+};
+
 /// `trace-stored`: servo health in clear; what was felt is in the sealed part (TrialMeasures).
 struct TraceBody {
   int trial = 0;
@@ -57,6 +85,7 @@ struct TraceBody {
   std::int64_t overruns = 0;
   bool valid = true;  ///< by what is in clear: the rest of the validity rule is sealed
   Digest trace{};     ///< SHA-256 of the stored (encrypted) trace
+  std::optional<ServoHealth> servo{};  ///< real time only
 };
 
 /// Sealed part of `trace-stored`: figures that would tell stimuli apart.
@@ -66,8 +95,20 @@ struct TrialMeasures {
   double force_rms_n = 0.0;
   double saturated_share = 0.0;  ///< of the ticks in contact
   bool within_limits = true;     ///< the part of the validity rule that tells of forces
+  /// Ticks whose force the safety chain changed; real time only.
+  std::optional<std::int64_t> limited_ticks{};
 
   friend bool operator==(const TrialMeasures&, const TrialMeasures&) = default;
+};
+
+/// Sealed part of `interrupted`, in real time: what happened, and the last seconds before it.
+struct InterruptionDetail {
+  std::string safety_fault;  ///< name of the device layer's SafetyFault
+  std::string device_fault;  ///< name of its DeviceFault
+  std::int64_t ticks = 0;    ///< rows of the flight record
+  std::string flight;        ///< CSV, one row a tick under a row of names; may be empty
+
+  friend bool operator==(const InterruptionDetail&, const InterruptionDetail&) = default;
 };
 
 /// Sealed part of `closed`: the chain before it. Without the key no other chain can be given this

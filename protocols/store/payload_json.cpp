@@ -17,6 +17,48 @@ json hex(const Digest& digest) {
   return to_hex(digest);
 }
 
+json station_object(const StationRecord& station) {
+  return {{"model", station.model},
+          {"firmware", station.firmware},
+          {"max_force_n", finite(station.max_force_n, "max_force_n")},
+          {"visual", station.visual},
+          {"rate_hz", finite(station.rate_hz, "rate_hz")},
+          {"scheduling", station.scheduling},
+          {"calibration", station.calibration}};
+}
+
+std::optional<StationRecord> station_of(const std::optional<JsonObject>& object) {
+  if (!object) return std::nullopt;
+  return StationRecord{.model = object->text("model"),
+                       .firmware = object->text("firmware"),
+                       .max_force_n = object->number("max_force_n"),
+                       .visual = object->flag("visual"),
+                       .rate_hz = object->number("rate_hz"),
+                       .scheduling = object->text("scheduling"),
+                       .calibration = object->text("calibration")};
+}
+
+json servo_object(const ServoHealth& servo) {
+  return {{"rate_hz", finite(servo.rate_hz, "rate_hz")},
+          {"lateness_p50_us", finite(servo.lateness_p50_us, "lateness_p50_us")},
+          {"lateness_p99_us", finite(servo.lateness_p99_us, "lateness_p99_us")},
+          {"lateness_p999_us", finite(servo.lateness_p999_us, "lateness_p999_us")},
+          {"lateness_worst_us", finite(servo.lateness_worst_us, "lateness_worst_us")},
+          {"lost", servo.lost},
+          {"held", servo.held}};
+}
+
+std::optional<ServoHealth> servo_of(const std::optional<JsonObject>& object) {
+  if (!object) return std::nullopt;
+  return ServoHealth{.rate_hz = object->number("rate_hz"),
+                     .lateness_p50_us = object->number("lateness_p50_us"),
+                     .lateness_p99_us = object->number("lateness_p99_us"),
+                     .lateness_p999_us = object->number("lateness_p999_us"),
+                     .lateness_worst_us = object->number("lateness_worst_us"),
+                     .lost = object->integer("lost", 0, kAny),
+                     .held = object->integer("held", 0, kAny)};
+}
+
 }  // namespace
 
 std::string to_json(const StudyCommitment& body) {
@@ -49,15 +91,17 @@ StudyCommitment commitment_from_json(const std::string& text) {
 }
 
 std::string to_json(const SessionOpening& body) {
-  return compact({{"participant", body.participant},
-                  {"enrolment", body.enrolment},
-                  {"study_id", body.study_id},
-                  {"seal", hex(body.seal)},
-                  {"device", body.device},
-                  {"device_serial", body.device_serial},
-                  {"opened_utc", body.opened_utc},
-                  {"simulated", body.simulated},
-                  {"pilot", body.pilot}});
+  json object = {{"participant", body.participant},
+                 {"enrolment", body.enrolment},
+                 {"study_id", body.study_id},
+                 {"seal", hex(body.seal)},
+                 {"device", body.device},
+                 {"device_serial", body.device_serial},
+                 {"opened_utc", body.opened_utc},
+                 {"simulated", body.simulated},
+                 {"pilot", body.pilot}};
+  if (body.station) object["station"] = station_object(*body.station);
+  return compact(object);
 }
 
 SessionOpening opening_from_json(const std::string& text) {
@@ -70,7 +114,8 @@ SessionOpening opening_from_json(const std::string& text) {
           .device_serial = object.text("device_serial"),
           .opened_utc = object.text("opened_utc"),
           .simulated = object.flag("simulated"),
-          .pilot = object.flag("pilot")};
+          .pilot = object.flag("pilot"),
+          .station = station_of(object.optional_object("station"))};
 }
 
 std::string to_json(const AnswerBody& body) {
@@ -89,12 +134,14 @@ AnswerBody answer_from_json(const std::string& text) {
 }
 
 std::string to_json(const TraceBody& body) {
-  return compact({{"trial", body.trial},
-                  {"samples", body.samples},
-                  {"rate_hz", finite(body.rate_hz, "rate_hz")},
-                  {"overruns", body.overruns},
-                  {"valid", body.valid},
-                  {"trace", hex(body.trace)}});
+  json object = {{"trial", body.trial},
+                 {"samples", body.samples},
+                 {"rate_hz", finite(body.rate_hz, "rate_hz")},
+                 {"overruns", body.overruns},
+                 {"valid", body.valid},
+                 {"trace", hex(body.trace)}};
+  if (body.servo) object["servo"] = servo_object(*body.servo);
+  return compact(object);
 }
 
 TraceBody trace_body_from_json(const std::string& text) {
@@ -104,15 +151,18 @@ TraceBody trace_body_from_json(const std::string& text) {
           .rate_hz = object.number("rate_hz"),
           .overruns = object.integer("overruns", 0, kAny),
           .valid = object.flag("valid"),
-          .trace = object.digest("trace")};
+          .trace = object.digest("trace"),
+          .servo = servo_of(object.optional_object("servo"))};
 }
 
 std::string to_json(const TrialMeasures& body) {
-  return compact({{"contact_s", finite(body.contact_s, "contact_s")},
-                  {"path_mm", finite(body.path_mm, "path_mm")},
-                  {"force_rms_n", finite(body.force_rms_n, "force_rms_n")},
-                  {"saturated_share", finite(body.saturated_share, "saturated_share")},
-                  {"within_limits", body.within_limits}});
+  json object = {{"contact_s", finite(body.contact_s, "contact_s")},
+                 {"path_mm", finite(body.path_mm, "path_mm")},
+                 {"force_rms_n", finite(body.force_rms_n, "force_rms_n")},
+                 {"saturated_share", finite(body.saturated_share, "saturated_share")},
+                 {"within_limits", body.within_limits}};
+  if (body.limited_ticks) object["limited_ticks"] = *body.limited_ticks;
+  return compact(object);
 }
 
 TrialMeasures measures_from_json(const std::string& text) try {
@@ -121,10 +171,26 @@ TrialMeasures measures_from_json(const std::string& text) try {
           .path_mm = object.number("path_mm"),
           .force_rms_n = object.number("force_rms_n"),
           .saturated_share = object.number("saturated_share"),
-          .within_limits = object.flag("within_limits")};
+          .within_limits = object.flag("within_limits"),
+          .limited_ticks = object.optional_integer("limited_ticks")};
 } catch (const StoreError& error) {
   throw StoreError(std::string("sealed measures of a trial: ") + error.what() +
                    "; the database is damaged or of another version, restore it from a backup");
+}
+
+std::string to_json(const InterruptionDetail& body) {
+  return compact({{"safety_fault", body.safety_fault},
+                  {"device_fault", body.device_fault},
+                  {"ticks", body.ticks},
+                  {"flight", body.flight}});
+}
+
+InterruptionDetail interruption_from_json(const std::string& text) {
+  const JsonObject object(text);
+  return {.safety_fault = object.text("safety_fault"),
+          .device_fault = object.text("device_fault"),
+          .ticks = object.integer("ticks", 0, kAny),
+          .flight = object.text("flight")};
 }
 
 std::string to_json(const ChainEnd& body) {

@@ -47,6 +47,7 @@ struct UnblindingBody {
 [[nodiscard]] std::string to_json(const AnswerBody& body);
 [[nodiscard]] std::string to_json(const TraceBody& body);
 [[nodiscard]] std::string to_json(const TrialMeasures& body);
+[[nodiscard]] std::string to_json(const InterruptionDetail& body);
 [[nodiscard]] std::string to_json(const ChainEnd& body);
 [[nodiscard]] std::string to_json(const SessionOpenedBody& body);
 [[nodiscard]] std::string to_json(const SessionClosedBody& body);
@@ -63,6 +64,7 @@ struct UnblindingBody {
 [[nodiscard]] SessionOpening opening_from_json(const std::string& text);
 [[nodiscard]] AnswerBody answer_from_json(const std::string& text);
 [[nodiscard]] TraceBody trace_body_from_json(const std::string& text);
+[[nodiscard]] InterruptionDetail interruption_from_json(const std::string& text);
 [[nodiscard]] ChainEnd chain_end_from_json(const std::string& text);
 [[nodiscard]] SessionOpenedBody session_opened_from_json(const std::string& text);
 [[nodiscard]] SessionClosedBody session_closed_from_json(const std::string& text);

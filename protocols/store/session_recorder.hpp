@@ -7,6 +7,8 @@
 #include "protocols/store/trace.hpp"
 
 #include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,6 +40,13 @@ class BufferedEvents final : public EventSink {
   std::vector<SealedTrace> traces;
 };
 
+/// Events' sealed parts are padded to a multiple of this many bytes.
+inline constexpr std::size_t kEventPadding = 256;
+
+/// That of an interruption: a function of its flight record's ticks alone, so that the size does
+/// not tell rough textures from smooth ones. A multiple of kEventPadding.
+[[nodiscard]] std::size_t interruption_padding(std::int64_t ticks);
+
 /// One session's chain, growing. Not thread-safe; any number may run beside each other.
 /// Times must not be negative nor decrease. Every function that records throws StoreError if the
 /// time does, if a text is not UTF-8, or if the sink refuses: the chain is then as it was.
@@ -53,7 +62,10 @@ class SessionRecorder {
   void presented(std::chrono::nanoseconds at, int trial, int block);
   void first_contact(std::chrono::nanoseconds at, int trial);
   void answered(std::chrono::nanoseconds at, const AnswerBody& answer);
-  void interrupted(std::chrono::nanoseconds at, int trial, const std::string& reason);
+  /// \param reason  in clear: must tell nothing of the stimulus  \param detail  sealed, under
+  ///   a padding that follows from the flight record's number of ticks
+  void interrupted(std::chrono::nanoseconds at, int trial, const std::string& reason,
+                   const std::optional<InterruptionDetail>& detail = std::nullopt);
   void timed_out(std::chrono::nanoseconds at, int trial);
   /// Encodes, seals and stores a trace; fills `body.trace` and `body.samples` itself.
   void trace_stored(std::chrono::nanoseconds at, TraceBody body, const TrialMeasures& measures,
@@ -69,8 +81,13 @@ class SessionRecorder {
   [[nodiscard]] std::int64_t length() const noexcept { return length_; }
 
  private:
-  void append(std::chrono::nanoseconds at, EventKind kind, std::string body,
-              const std::string& secret, const std::optional<SealedTrace>& trace = std::nullopt);
+  /// An event's secret part, and the padding under which it is sealed.
+  struct Secret {
+    std::string text;
+    std::size_t padding = kEventPadding;
+  };
+  void append(std::chrono::nanoseconds at, EventKind kind, std::string body, const Secret& secret,
+              const std::optional<SealedTrace>& trace = std::nullopt);
 
   int session_;
   SecretKey participant_key_;

@@ -31,6 +31,10 @@ std::optional<Event> last_event(const Database& database, int session) {
   return read_event(database, session, query.integer(0));
 }
 
+bool is_visual(const SessionOpening& opening) {
+  return opening.station && opening.station->visual;
+}
+
 bool is_closed(const Database& database) {
   return database.query("SELECT 1 FROM events WHERE session = 0 AND kind = 'study-closed'").step();
 }
@@ -160,7 +164,27 @@ void StoredStudy::check_opening(const SessionOpening& opening) const {
     refuse("'" + opening.participant +
            "' is no participant id; use 1 to 32 of 0-9, A-Z, a-z, '+', '-', '_'");
   }
+  refuse_mixture(opening);
   refuse_if_taken(opening);
+}
+
+void StoredStudy::refuse_mixture(const SessionOpening& opening) const {
+  if (opening.pilot != commitment().pilot) {
+    refuse(commitment().pilot ? "is the database of a pilot; give the study's own sessions another"
+                              : "is no pilot's database; give pilot sessions another");
+  }
+  const bool visual = is_visual(opening);
+  if (visual && !opening.pilot) {
+    refuse("device '" + opening.device +
+           "' is seen on a screen and not felt, which is not blind; use it in a pilot's database, "
+           "or choose a device that is felt");
+  }
+  const std::optional<Event> earlier = read_event(database_, 1, 0);
+  if (earlier && is_visual(body_of(*earlier, opening_from_json)) != visual) {
+    refuse(std::string("its sessions are ") + (visual ? "felt" : "seen on a screen") +
+           ", and device '" + opening.device + "' is " + (visual ? "seen" : "felt") +
+           ": they are never pooled; use another database");
+  }
 }
 
 void StoredStudy::refuse_if_taken(const SessionOpening& opening) const {

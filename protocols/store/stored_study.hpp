@@ -36,7 +36,8 @@ class StoredStudy {
 
   /// Lets a session in: its key, and its opening on the file's chain.
   /// \throws StoreError if the study is closed, the session is not the next, belongs to another
-  ///   study, or its participant or enrolment is taken (by which session)
+  ///   study, or its participant or enrolment is taken (by which session), or it would mix pilots
+  ///   with others or what is seen with what is felt
   void admit(const Event& opened, const Bytes& wrapped_key, std::chrono::nanoseconds at);
   /// A session's end on the file's chain. \param closed  its last event
   void conclude(const Event& closed, std::chrono::nanoseconds at);
@@ -48,6 +49,8 @@ class StoredStudy {
 
  private:
   void check_opening(const SessionOpening& opening) const;
+  /// Pilots and others, what is seen and what is felt: one database holds one kind.
+  void refuse_mixture(const SessionOpening& opening) const;
   void refuse_if_taken(const SessionOpening& opening) const;
 
   Database database_;

@@ -135,7 +135,8 @@ class StudyStore {
   /// closing on the file's chain, and its derived rows.
   /// \param wrapped_key  wrap_participant_key's result
   /// \throws StoreError if participant or enrolment is already taken (by which session), the study
-  ///   is closed, or the chain does not hold; nothing is stored then
+  ///   is closed, the session is a pilot and the study not (or the other way round), its device is
+  ///   seen and others' are felt, or the chain does not hold; nothing is stored then
   void add_session(const BufferedEvents& session, const Bytes& wrapped_key,
                    std::chrono::nanoseconds at);
 

@@ -124,7 +124,6 @@ void FakeStudy::add(const FakeSession& session) {
   opening.seal = study_seal(key_);
   opening.device = "simulated";
   opening.simulated = key_.simulated;
-  opening.pilot = session.pilot;
   recorder.opened(milliseconds(0), opening, schedule_to_json(schedule, key_));
   int shown = 0;
   for (const Presentation& presentation : schedule.presentations) {

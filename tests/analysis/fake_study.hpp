@@ -20,7 +20,6 @@ struct FakeSession {
   int enrolment = 1;
   FakeAnswers answers;
   bool complete = true;
-  bool pilot = false;
   bool valid = true;
   bool within_limits = true;  ///< by the sealed measures
   int interrupt_trial = 0;    ///< presented twice, the first time interrupted; 0: none

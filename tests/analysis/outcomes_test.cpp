@@ -67,21 +67,19 @@ TEST_CASE("Of a trial that was interrupted and repeated the repetition counts on
   CHECK(outcomes.trials[4].row.presented_at == std::chrono::seconds(50));
 }
 
-TEST_CASE("Sessions that were stopped, and pilots among others, do not count") {
+TEST_CASE("Sessions that were stopped do not count") {
   FakeStudy study(Protocol::classification);
   const FakeAnswers right = FakeStudy::always_right();
   study.add({.participant = "P01", .enrolment = 1, .answers = right});
   study.add(
       {.participant = "P02", .enrolment = 2, .answers = right, .complete = false, .stop_after = 4});
-  study.add({.participant = "P03", .enrolment = 3, .answers = right, .pilot = true});
   study.close_and_unblind();
   const Outcomes outcomes = load_outcomes(study.store(), study.key());
-  CHECK(outcomes.trials.size() == 12 + 4 + 12);
+  CHECK(outcomes.trials.size() == 12 + 4);
   CHECK(counted(outcomes) == 12);
-  REQUIRE(outcomes.sessions.size() == 3);
+  REQUIRE(outcomes.sessions.size() == 2);
   CHECK(outcomes.sessions[0].counted);
   CHECK_FALSE(outcomes.sessions[1].counted);
-  CHECK_FALSE(outcomes.sessions[2].counted);
 }
 
 TEST_CASE("Excluded, withdrawn and foreign sessions do not count") {

@@ -59,6 +59,51 @@ TEST_CASE("every body reads back as it was written") {
   REQUIRE(completion_from_json(completion_to_json(true)));
 }
 
+TEST_CASE("what only sessions in real time have is there for them alone, and reads back") {
+  SessionOpening opening = fixture::opening(3);
+  REQUIRE_FALSE(opening_from_json(to_json(opening)).station);
+  REQUIRE(to_json(opening).find("station") == std::string::npos);
+  opening.station = StationRecord{.model = "Novint Falcon",
+                                  .firmware = "v3",
+                                  .max_force_n = 8.5,
+                                  .visual = true,
+                                  .rate_hz = 1000.0,
+                                  .scheduling = "fifo 80",
+                                  .calibration = std::string(64, 'a')};
+  REQUIRE(opening_from_json(to_json(opening)).station == opening.station);
+
+  TraceBody trace{
+      .trial = 1, .samples = 5, .rate_hz = 1000.0, .overruns = 2, .valid = true, .trace = {}};
+  REQUIRE_FALSE(trace_body_from_json(to_json(trace)).servo);
+  REQUIRE(to_json(trace).find("servo") == std::string::npos);
+  trace.servo = ServoHealth{.rate_hz = 999.5,
+                            .lateness_p50_us = 3.0,
+                            .lateness_p99_us = 63.0,
+                            .lateness_p999_us = 210.0,
+                            .lateness_worst_us = 1700.0,
+                            .lost = 1,
+                            .held = 3};
+  REQUIRE(trace_body_from_json(to_json(trace)).servo == trace.servo);
+
+  TrialMeasures measures;
+  REQUIRE_FALSE(measures_from_json(to_json(measures)).limited_ticks);
+  measures.limited_ticks = 17;
+  REQUIRE(measures_from_json(to_json(measures)) == measures);
+
+  const InterruptionDetail detail{
+      .safety_fault = "overspeed", .device_fault = "none", .ticks = 1, .flight = "a,b\r\n1,2\r\n"};
+  REQUIRE(interruption_from_json(to_json(detail)) == detail);
+}
+
+TEST_CASE("a refusal within an object names both keys") {
+  TraceBody trace;
+  trace.trial = 1;
+  trace.servo = ServoHealth{};
+  std::string text = to_json(trace);
+  text.replace(text.find("\"lost\""), 6, "\"lust\"");
+  REQUIRE_THROWS_WITH(static_cast<void>(trace_body_from_json(text)), "/servo/lost is missing");
+}
+
 TEST_CASE("doubles in bodies survive to the last bit") {
   RandomStream random(5, "doubles");
   for (int i = 0; i < 2000; ++i) {
@@ -106,6 +151,7 @@ TEST_CASE("hostile bodies are refused by one line and never crash") {
       [](const auto& t) { static_cast<void>(trial_from_json(t)); },
       [](const auto& t) { static_cast<void>(completion_from_json(t)); },
       [](const auto& t) { static_cast<void>(measures_from_json(t)); },
+      [](const auto& t) { static_cast<void>(interruption_from_json(t)); },
   };
   for (const Parse& parse : parsers) {
     for (const std::string& text : hostile) REQUIRE_THROWS_AS(parse(text), StoreError);

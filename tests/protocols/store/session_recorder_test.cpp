@@ -67,6 +67,31 @@ TEST_CASE("only schedule, measures and the end are sealed, and only the right ke
               .contact_s = 0.1, .path_mm = 512.5, .force_rms_n = 0.05, .saturated_share = 0.0});
 }
 
+TEST_CASE("what an interruption's size tells is the number of its flight record's ticks") {
+  const auto sealed_size = [](const std::string& row, std::int64_t ticks) {
+    BufferedEvents events;
+    SessionRecorder recorder(1, participant_key(1), events);
+    InterruptionDetail detail{"overspeed", "none", ticks, ""};
+    for (std::int64_t i = 0; i < ticks; ++i) detail.flight += row;
+    recorder.interrupted(seconds(1), 3, "device fault", detail);
+    REQUIRE(interruption_from_json(*unsealed(events.events.back(), participant_key(1))) == detail);
+    REQUIRE(trial_from_json(events.events.back().body).reason == "device fault");
+    return events.events.back().sealed.size();
+  };
+  const std::string smooth(90, '0');
+  const std::string rough(330, '7');
+  REQUIRE(sealed_size(smooth, 3001) == sealed_size(rough, 3001));
+  REQUIRE(sealed_size(smooth, 10) == sealed_size(rough, 10));
+  REQUIRE(sealed_size(smooth, 10) < sealed_size(smooth, 3001));
+}
+
+TEST_CASE("an interruption without a detail has no sealed part") {
+  BufferedEvents events;
+  SessionRecorder recorder(1, participant_key(1), events);
+  recorder.interrupted(seconds(1), 3, "comfort stop");
+  REQUIRE(events.events.back().sealed.empty());
+}
+
 TEST_CASE("a sealed part cannot be moved to another event") {
   const BufferedEvents session = session_of(4);
   Event moved = session.events.front();

@@ -173,6 +173,51 @@ TEST_CASE("a session of another study, another turn or another form is refused")
   require_refused(study, BufferedEvents{}, "has no end");
 }
 
+TEST_CASE("pilots and other sessions never share a database") {
+  StoredFixture study;
+  SessionOpening how = opening(1);
+  how.pilot = true;
+  require_refused(study, session_of(1, 3, {}, how), "is no pilot's database");
+
+  StudyCommitment pilot = commitment();
+  pilot.pilot = true;
+  const std::filesystem::path path = study.folder.path() / "pilot.db";
+  StudyStore store = StudyStore::create(path, pilot, kUtc);
+  REQUIRE(contains(refusal_of([&] { store.add_session(session_of(1), wrapped_key_of(1), kUtc); }),
+                   "is the database of a pilot"));
+  store.add_session(session_of(1, 3, {}, how), wrapped_key_of(1), kUtc);
+  REQUIRE(store.sessions().front().pilot);
+}
+
+TEST_CASE("a device that is seen is for pilots alone, and what is seen and felt is never pooled") {
+  const auto seen = [](int session, bool visual) {
+    SessionOpening how = opening(session);
+    how.device = visual ? "mouse" : "falcon";
+    how.pilot = true;
+    how.station = StationRecord{.visual = visual};
+    return session_of(session, 3, {}, how);
+  };
+  StoredFixture study;
+  SessionOpening how = opening(1);
+  how.device = "mouse";
+  how.station = StationRecord{.visual = true};
+  require_refused(study, session_of(1, 3, {}, how),
+                  "device 'mouse' is seen on a screen and not felt, which is not blind; use it in "
+                  "a pilot's database, or choose a device that is felt");
+
+  StudyCommitment pilot = commitment();
+  pilot.pilot = true;
+  for (const bool first : {true, false}) {
+    const std::filesystem::path path = study.folder.path() / (first ? "seen.db" : "felt.db");
+    StudyStore store = StudyStore::create(path, pilot, kUtc);
+    store.add_session(seen(1, first), wrapped_key_of(1), kUtc);
+    store.add_session(seen(2, first), wrapped_key_of(2), kUtc);
+    const std::string line =
+        refusal_of([&] { store.add_session(seen(3, !first), wrapped_key_of(3), kUtc); });
+    REQUIRE(contains(line, "they are never pooled; use another database"));
+  }
+}
+
 TEST_CASE("a session whose chain or traces do not hold is refused whole") {
   StoredFixture study;
   BufferedEvents session = session_of(1);
