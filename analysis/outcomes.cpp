@@ -1,6 +1,7 @@
 #include "analysis/outcomes.hpp"
 
 #include "analysis/sealed_sessions.hpp"
+#include "analysis/servo_quality.hpp"
 #include "analysis/session_rules.hpp"
 #include "core/errors.hpp"
 
@@ -36,6 +37,7 @@ Outcomes labelled(const StudyStore& store, const Study& study) {
   outcomes.protocol = study.protocol;
   outcomes.simulated = commitment.simulated;
   outcomes.pilot = commitment.pilot;
+  outcomes.visual = is_visual(store);
   outcomes.state = store.state();
   for (const StudyClass& one : study.classes) {
     outcomes.classes.push_back(one.label);

@@ -40,6 +40,7 @@ struct Outcomes {
   Protocol protocol = Protocol::classification;
   bool simulated = false;
   bool pilot = false;
+  bool visual = false;  ///< seen on a screen, not felt
   StudyState state;
   std::vector<std::string> classes;                 ///< labels
   std::vector<std::vector<std::string>> exemplars;  ///< of each class: image file names

@@ -1,5 +1,6 @@
 #include "analysis/quality.hpp"
 
+#include "analysis/servo_quality.hpp"
 #include "analysis/session_rules.hpp"
 
 #include <algorithm>
@@ -74,6 +75,8 @@ QualityReport make_quality(const StudyStore& store) {
     count_answer(trial, report.quality);
     count_trace(trial, report.quality);
   }
+  report.servo = servo_quality(store, withdrawn);
+  report.visual = is_visual(store);
   return report;
 }
 

@@ -36,6 +36,17 @@ struct TrialQuality {
   std::optional<double> lowest_rate_hz;
 };
 
+/// How the servo kept its time, of all trials in real time whose participant has not withdrawn.
+struct ServoQuality {
+  int trials = 0;
+  double median_p99_us = 0.0;  ///< of the trials' 99th percentiles of lateness
+  double highest_p99_us = 0.0;
+  double worst_us = 0.0;  ///< the latest tick of all
+  double lowest_rate_hz = 0.0;
+  std::int64_t lost = 0;                ///< samples that did not reach their trace
+  std::vector<std::string> scheduling;  ///< what sessions' servo threads obtained, each kind once
+};
+
 struct QualityReport {
   std::string study;
   std::string protocol;
@@ -46,6 +57,8 @@ struct QualityReport {
   int trials = 0;        ///< their scored trials
   SessionCounts sessions;
   TrialQuality quality;
+  std::optional<ServoQuality> servo;  ///< nothing if no session was in real time
+  bool visual = false;                ///< sessions were seen on a screen, not felt
 };
 
 /// "collecting", "closed" or "unblinded"

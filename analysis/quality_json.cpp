@@ -4,6 +4,19 @@
 #include <nlohmann/json.hpp>
 
 namespace touchtrial {
+namespace {
+
+void put_real_time(nlohmann::ordered_json& object, const ServoQuality& servo) {
+  object["trials_in_real_time"] = servo.trials;
+  object["lowest_rate_had_hz"] = servo.lowest_rate_hz;
+  object["lateness_us"] = {{"median_p99", servo.median_p99_us},
+                           {"highest_p99", servo.highest_p99_us},
+                           {"worst", servo.worst_us}};
+  object["lost_samples"] = servo.lost;
+  object["scheduling"] = servo.scheduling;
+}
+
+}  // namespace
 
 nlohmann::ordered_json quality_object(const QualityReport& report) {
   const SessionCounts& sessions = report.sessions;
@@ -28,6 +41,8 @@ nlohmann::ordered_json quality_object(const QualityReport& report) {
   object["servo"] = {{"overruns", quality.overruns},
                      {"trials_with_overruns", quality.with_overruns},
                      {"lowest_rate_hz", figure_json(quality.lowest_rate_hz)}};
+  if (report.servo) put_real_time(object["servo"], *report.servo);
+  if (report.visual) object["visual"] = true;
   return object;
 }
 

@@ -49,6 +49,24 @@ std::string health_text(const QualityReport& report) {
   return text + '\n';
 }
 
+/// A lateness, which may be microseconds or a second.
+std::string microseconds(double time_us) {
+  return fmt::format("{:.{}f} us", time_us, time_us < 10.0 ? 1 : 0);
+}
+
+std::string servo_text(const QualityReport& report) {
+  const ServoQuality& servo = *report.servo;
+  TextTable table(
+      {"servo", "trials", "lowest rate", "late p99", "highest p99", "worst", "overruns", "lost"});
+  table.add({"", std::to_string(servo.trials), fmt::format("{:.1f} Hz", servo.lowest_rate_hz),
+             microseconds(servo.median_p99_us), microseconds(servo.highest_p99_us),
+             microseconds(servo.worst_us), std::to_string(report.quality.overruns),
+             std::to_string(servo.lost)});
+  std::string text = heading("servo in real time", report.simulated) + table.text();
+  for (const std::string& had : servo.scheduling) text += "  scheduling: " + had + '\n';
+  return text;
+}
+
 }  // namespace
 
 std::string quality_text(const QualityReport& report) {
@@ -59,7 +77,12 @@ std::string quality_text(const QualityReport& report) {
   if (!report.state.unblinded) {
     text += wrapped("", "Blinded: outcomes are shown once the study has been unblinded.");
   }
-  text += sessions_text(report) + health_text(report) + positions_text(report);
+  if (report.visual) {
+    text += wrapped("", "Seen on a screen, not felt: never to be pooled with what was felt.");
+  }
+  text += sessions_text(report) + health_text(report);
+  if (report.servo) text += servo_text(report);
+  text += positions_text(report);
   if (report.simulated) text += '\n' + simulated_line(report.simulated);
   return text;
 }

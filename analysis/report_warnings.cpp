@@ -23,6 +23,10 @@ void warn_of_sessions(const Outcomes& outcomes, const std::string& why, Which wh
 
 void warn_of_state(const Outcomes& outcomes, Warnings& warnings) {
   if (outcomes.pilot) warnings.emplace_back("A pilot: not to be pooled with the study's data.");
+  if (outcomes.visual) {
+    warnings.emplace_back(
+        "Seen on a screen, not felt, and so not blind: never to be pooled with what was felt.");
+  }
   if (!outcomes.state.closed) {
     warnings.emplace_back(
         "An interim look: the study is still open, and what is seen here may not decide when it "

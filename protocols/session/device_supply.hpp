@@ -17,6 +17,8 @@ class DeviceSupply {
   /// Takes one step towards a device that is ready: opens it if it was lost, waits for its homing,
   /// asks for consent to arm it again. May block for a moment, not for good.
   [[nodiscard]] virtual SupplyState make_ready() = 0;
+  /// The last exploration was interrupted: no force until somebody consents.
+  virtual void interrupted() {}
 };
 
 /// A device that needs nothing: a simulated hand, made anew for each exploration.

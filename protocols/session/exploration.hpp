@@ -5,6 +5,7 @@
 #include "engine/rendering/rendering_model.hpp"
 #include "protocols/session/participant.hpp"
 #include "protocols/session/trace_builder.hpp"
+#include "protocols/store/payload.hpp"
 #include "protocols/store/trace.hpp"
 
 #include <chrono>
@@ -18,8 +19,9 @@ struct Exploration {
   ServoReport servo;
   std::optional<std::chrono::nanoseconds> landed_at;  ///< since plane-on
   std::chrono::nanoseconds lasted{};                  ///< on the servo's clock
-  std::int64_t held = 0;             ///< samples of the trace that had to be filled in
-  std::int64_t held_in_contact = 0;  ///< those of them with contact
+  std::int64_t held_in_contact = 0;   ///< samples of the trace that were filled in, with contact
+  std::optional<ServoHealth> health;  ///< in real time
+  std::optional<InterruptionDetail> detail;  ///< of one that was interrupted in real time
 };
 
 /// Runs explorations. The participant gets the plane's extent and the samples, and nothing else.

@@ -3,6 +3,7 @@
 #include "protocols/session/interruption_words.hpp"
 #include "protocols/session/trial_measures.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -99,7 +100,8 @@ class SessionRun {
     parts_.clock.pass(done.lasted);
     ++tally_.presentations;
     tally_.ticks += done.servo.ticks;
-    if (done.landed_at) session_.contact(plane_on + *done.landed_at);
+    // Ticks are counted from the servo's start, a moment after plane-on.
+    if (done.landed_at) session_.contact(std::min(plane_on + *done.landed_at, now()));
     if (is_interrupted(done.servo)) return interrupt(done);
     store_trace(done);
     if (done.servo.end == ServoEnd::time_limit) {
@@ -112,7 +114,8 @@ class SessionRun {
 
   void interrupt(const Exploration& done) {
     ++interruptions_;
-    session_.interrupt(now(), words_in_clear(done.servo));
+    session_.interrupt(now(), words_in_clear(done.servo), done.detail);
+    parts_.devices.interrupted();
   }
 
   void store_trace(const Exploration& done) {
@@ -124,6 +127,8 @@ class SessionRun {
     body.rate_hz = trace_.rate_hz;
     body.overruns = done.servo.overruns;
     body.valid = findings.long_enough;
+    body.servo = done.health;
+    if (done.health) findings.measures.limited_ticks = done.servo.limited_ticks;
     session_.store_trace(now(), body, findings.measures, trace_);
   }
 

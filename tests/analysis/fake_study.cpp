@@ -19,7 +19,8 @@ StudyKey fake_key(Protocol protocol, const FakeOptions& options) {
   return make_study_key(study, entropy, options.simulated);
 }
 
-StudyCommitment fake_commitment(const StudyKey& key, const std::filesystem::path& pack) {
+StudyCommitment fake_commitment(const StudyKey& key, const FakeOptions& options,
+                                const std::filesystem::path& pack) {
   StudyCommitment commitment;
   commitment.study = key.study.name;
   commitment.protocol = name_of(key.study.protocol);
@@ -30,6 +31,7 @@ StudyCommitment fake_commitment(const StudyKey& key, const std::filesystem::path
   commitment.scored_trials = key.study.scored_trials();
   commitment.positions = static_cast<int>(key.study.classes.size());
   commitment.simulated = key.simulated;
+  commitment.pilot = options.pilot;
   commitment.program_version = "0.0.0";
   return commitment;
 }
@@ -52,7 +54,8 @@ StudyStore fake_store(const StudyKey& key, const FakeOptions& options,
                       const std::filesystem::path& folder) {
   const auto pack = folder / "study.pack";
   if (options.with_pack) fake_pack(key, pack);
-  return StudyStore::create(folder / "study.db", fake_commitment(key, pack), milliseconds(0));
+  return StudyStore::create(folder / "study.db", fake_commitment(key, options, pack),
+                            milliseconds(0));
 }
 
 Trace fake_trace() {
@@ -86,6 +89,7 @@ void record_trial(SessionRecorder& recorder, const FakeSession& session, const S
   body.trial = shown.trial;
   body.rate_hz = 1000.0;
   body.valid = session.valid;
+  body.servo = session.servo;
   recorder.trace_stored(start + milliseconds(4500), body,
                         {4.0, 300.5, 0.125, 0.001 * shown.trial, session.within_limits},
                         fake_trace());
@@ -124,6 +128,8 @@ void FakeStudy::add(const FakeSession& session) {
   opening.seal = study_seal(key_);
   opening.device = "simulated";
   opening.simulated = key_.simulated;
+  opening.pilot = store_.commitment().pilot;
+  opening.station = session.station;
   recorder.opened(milliseconds(0), opening, schedule_to_json(schedule, key_));
   int shown = 0;
   for (const Presentation& presentation : schedule.presentations) {

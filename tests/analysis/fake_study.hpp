@@ -21,15 +21,18 @@ struct FakeSession {
   FakeAnswers answers;
   bool complete = true;
   bool valid = true;
-  bool within_limits = true;  ///< by the sealed measures
-  int interrupt_trial = 0;    ///< presented twice, the first time interrupted; 0: none
-  int stop_after = 1 << 20;   ///< presentations
+  bool within_limits = true;               ///< by the sealed measures
+  std::optional<StationRecord> station{};  ///< as in real time
+  std::optional<ServoHealth> servo{};      ///< of every trial
+  int interrupt_trial = 0;                 ///< presented twice, the first time interrupted; 0: none
+  int stop_after = 1 << 20;                ///< presentations
 };
 
 struct FakeOptions {
   bool simulated = true;
   std::string label = "bark";  ///< of the first class
-  bool with_pack = false;      ///< tiny fields in `folder() / "study.pack"`
+  bool pilot = false;
+  bool with_pack = false;  ///< tiny fields in `folder() / "study.pack"`
 };
 
 /// Three classes, each with one image, four presentations a method.

@@ -1,9 +1,11 @@
 #include "analysis/quality.hpp"
 
 #include "analysis/fake_study.hpp"
+#include "analysis/report.hpp"
 #include "analysis/text_matching.hpp"
 #include "support/catch.hpp"
 
+#include <algorithm>
 #include <numeric>
 
 #include <nlohmann/json.hpp>
@@ -76,6 +78,54 @@ TEST_CASE("A quality report says how the study stands") {
   const auto done = nlohmann::json::parse(quality_json(make_quality(study.store())));
   CHECK(done["state"] == "unblinded");
   CHECK(done["blinded"] == false);
+}
+
+TEST_CASE("A quality report shows how the servo kept its time, where that was recorded") {
+  FakeStudy study(Protocol::classification, {.simulated = false});
+  study.add({.participant = "P01", .answers = FakeStudy::always_right()});
+  CHECK_FALSE(make_quality(study.store()).servo);
+  CHECK_FALSE(contains(quality_text(make_quality(study.store())), "servo in real time"));
+
+  FakeSession session{.participant = "P02", .enrolment = 2, .answers = FakeStudy::always_right()};
+  session.station = StationRecord();
+  session.station->scheduling = "fifo 80, memory locked";
+  session.servo = ServoHealth{.rate_hz = 999.5,
+                              .lateness_p50_us = 3.0,
+                              .lateness_p99_us = 63.0,
+                              .lateness_p999_us = 210.0,
+                              .lateness_worst_us = 1700.0,
+                              .lost = 2,
+                              .held = 3};
+  study.add(session);
+  const QualityReport report = make_quality(study.store());
+  REQUIRE(report.servo);
+  CHECK(report.servo->trials == 12);
+  CHECK(report.servo->median_p99_us == 63.0);
+  CHECK(report.servo->worst_us == 1700.0);
+  CHECK(report.servo->lost == 24);
+  const std::string text = quality_text(report);
+  for (const char* figure : {"63 us", "1700 us", "999.5 Hz", "fifo 80, memory locked"}) {
+    CHECK(contains(text, figure));
+  }
+  const auto json = nlohmann::json::parse(quality_json(report));
+  CHECK(json["servo"]["lateness_us"]["highest_p99"] == 63.0);
+  CHECK(json["servo"]["scheduling"].size() == 1);
+}
+
+TEST_CASE("What was seen on a screen says so in every report") {
+  FakeStudy study(Protocol::classification, {.simulated = false, .pilot = true});
+  FakeSession session{.participant = "P01", .answers = FakeStudy::always_right()};
+  session.station = StationRecord();
+  session.station->visual = true;
+  study.add(session);
+  CHECK(contains(quality_text(make_quality(study.store())), "Seen on a screen, not felt"));
+  study.close_and_unblind();
+  const Outcomes outcomes = load_outcomes(study.store(), study.key());
+  CHECK(outcomes.visual);
+  const std::vector<std::string> warnings = make_report(outcomes).warnings;
+  CHECK(std::ranges::any_of(warnings, [](const std::string& warning) {
+    return contains(warning, "Seen on a screen, not felt");
+  }));
 }
 
 TEST_CASE("A quality report of real participants carries no stamp") {

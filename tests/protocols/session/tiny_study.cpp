@@ -11,8 +11,6 @@
 namespace touchtrial {
 namespace {
 
-constexpr int kSidePx = 120;
-
 struct Weave {
   const char* label;
   double wavelength_px;
@@ -49,10 +47,12 @@ StudyKey key_with(const TinyStudyOptions& options) {
   return make_study_key(study_with(options), entropy, true);
 }
 
-Pack write_pack(const std::filesystem::path& folder, const StudyKey& key, bool smooth) {
+Pack write_pack(const std::filesystem::path& folder, const StudyKey& key,
+                const TinyStudyOptions& options) {
   std::vector<TextureField> fields;
   for (const KeyedStimulus& keyed : key.stimuli) {
-    fields.push_back(make_texture_field(tiny_texture(keyed.stimulus), key.study.rendering));
+    fields.push_back(
+        make_texture_field(tiny_texture(keyed.stimulus, options.side_px), key.study.rendering));
   }
   std::vector<FieldView> views;
   for (const TextureField& field : fields) views.push_back(field.view());
@@ -62,7 +62,7 @@ Pack write_pack(const std::filesystem::path& folder, const StudyKey& key, bool s
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const std::string& code = key.stimuli[i].code;
     const Digest checksum = write_field(folder, code, views[i]);
-    manifest.entries.push_back({code, checksum, {}, smooth ? Gains{} : gains.of_field[i]});
+    manifest.entries.push_back({code, checksum, {}, options.smooth ? Gains{} : gains.of_field[i]});
   }
   std::ranges::sort(manifest.entries, {}, &PackEntry::code);
   write_manifest(folder, manifest);
@@ -71,11 +71,11 @@ Pack write_pack(const std::filesystem::path& folder, const StudyKey& key, bool s
 
 }  // namespace
 
-Plane<double> tiny_texture(const StimulusIndex& stimulus) {
+Plane<double> tiny_texture(const StimulusIndex& stimulus, int side_px) {
   const Weave& weave = kWeaves[stimulus.class_index];
   const int image = stimulus.exemplar + 100 * stimulus.method;
   RandomStream random(static_cast<std::uint64_t>(image), weave.label);
-  Plane<double> texture(kSidePx, kSidePx);
+  Plane<double> texture(side_px, side_px);
   constexpr int kWaves = 12;
   for (int wave = 0; wave < kWaves; ++wave) {
     const double angle =
@@ -84,8 +84,8 @@ Plane<double> tiny_texture(const StimulusIndex& stimulus) {
         2.0 * std::numbers::pi /
         (weave.wavelength_px * random.uniform(0.85, 1.15) * (1.0 + 0.3 * stimulus.method));
     const double phase = random.uniform(0.0, 2.0 * std::numbers::pi);
-    for (int y = 0; y < kSidePx; ++y) {
-      for (int x = 0; x < kSidePx; ++x) {
+    for (int y = 0; y < side_px; ++y) {
+      for (int x = 0; x < side_px; ++x) {
         const double along = x * std::cos(angle) + y * std::sin(angle);
         texture.at(y, x) += 8.0 * std::sin(per_px * along + phase);
       }
@@ -95,8 +95,7 @@ Plane<double> tiny_texture(const StimulusIndex& stimulus) {
 }
 
 TinyStudy::TinyStudy(const TinyStudyOptions& options)
-    : key_(key_with(options)),
-      pack_(write_pack(folder_.path() / "tiny.sim.pack", key_, options.smooth)) {}
+    : key_(key_with(options)), pack_(write_pack(folder_.path() / "tiny.sim.pack", key_, options)) {}
 
 std::filesystem::path TinyStudy::next_database() {
   return folder_.path() / (std::to_string(++databases_) + ".db");

@@ -16,12 +16,13 @@ struct TinyStudyOptions {
   int images = 1;                ///< a class
   bool comparison = false;       ///< two methods
   bool smooth = false;           ///< gains are zero
+  int side_px = 120;             ///< of the pictures, of 0.2 mm
   std::uint64_t secret = 1;      ///< codes and secrets are a function of it
   std::string trials = "{}";     ///< the study file's "trials"
   std::string rendering = "{}";  ///< the study file's "rendering"
 };
 
-/// Five textures of 120 x 120 pixels of 0.2 mm (waves of one length and direction each, with random
+/// Five square textures (waves of one length and direction each, with random
 /// phases), their key and their pack in a folder of its own.
 class TinyStudy {
  public:
@@ -40,6 +41,6 @@ class TinyStudy {
 };
 
 /// A texture T of one class, image and method; the same for the same arguments.
-[[nodiscard]] Plane<double> tiny_texture(const StimulusIndex& stimulus);
+[[nodiscard]] Plane<double> tiny_texture(const StimulusIndex& stimulus, int side_px = 120);
 
 }  // namespace touchtrial

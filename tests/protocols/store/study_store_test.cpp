@@ -194,13 +194,15 @@ TEST_CASE("a device that is seen is for pilots alone, and what is seen and felt 
     SessionOpening how = opening(session);
     how.device = visual ? "mouse" : "falcon";
     how.pilot = true;
-    how.station = StationRecord{.visual = visual};
+    how.station = StationRecord();
+    how.station->visual = visual;
     return session_of(session, 3, {}, how);
   };
   StoredFixture study;
   SessionOpening how = opening(1);
   how.device = "mouse";
-  how.station = StationRecord{.visual = true};
+  how.station = StationRecord();
+  how.station->visual = true;
   require_refused(study, session_of(1, 3, {}, how),
                   "device 'mouse' is seen on a screen and not felt, which is not blind; use it in "
                   "a pilot's database, or choose a device that is felt");

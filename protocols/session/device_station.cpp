@@ -1,0 +1,112 @@
+#include "protocols/session/device_station.hpp"
+
+#include "core/errors.hpp"
+#include "device/servo/servo_names.hpp"
+
+#include <stdexcept>
+#include <utility>
+
+namespace touchtrial {
+namespace {
+
+std::string need_of(DeviceReadiness readiness) {
+  switch (readiness) {
+    case DeviceReadiness::needs_homing:
+      return "the device is not homed; move its handle through the whole range";
+    case DeviceReadiness::needs_inkwell:
+      return "the device is not calibrated; put the stylus into its inkwell";
+    case DeviceReadiness::needs_calibration:
+      return "the device is not calibrated; run its vendor's calibration";
+    case DeviceReadiness::ready:
+      break;
+  }
+  return "";
+}
+
+std::string identity_of(const DeviceInfo& device) {
+  return device.name + (device.serial.empty() ? "" : " " + device.serial);
+}
+
+std::string text_of(const SchedulingObtained& scheduling) {
+  std::string text(name_of(scheduling.policy));
+  if (scheduling.priority > 0) text += " " + std::to_string(scheduling.priority);
+  return text + (scheduling.memory_locked ? ", memory locked" : ", memory not locked");
+}
+
+}  // namespace
+
+DeviceStation::DeviceStation(Open open, const std::optional<PlanePlacement>& placement,
+                             Attendant& attendant)
+    : open_(std::move(open)), placement_(placement), attendant_(attendant) {}
+
+SupplyState DeviceStation::make_ready() {
+  const std::string need = missing();
+  if (need.empty() && armed_) return SupplyState::ready;
+  const Attendant::Says says = attendant_.attend(need);
+  if (says == Attendant::Says::stop) return SupplyState::stopped;
+  if (says == Attendant::Says::wait || !need.empty()) return SupplyState::not_yet;
+  device_->rearm();
+  armed_ = true;
+  return SupplyState::ready;
+}
+
+std::string DeviceStation::missing() {
+  if (device_ && device_->fault() != DeviceFault::none) close();
+  if (!device_) {
+    std::string why = open_again();
+    if (!why.empty()) return why;
+  }
+  return need_of(device_->readiness());
+}
+
+std::string DeviceStation::open_again() try {
+  device_ = open_();
+  // Until somebody consents.
+  device_->halt();
+  const DeviceInfo info = device_->info();
+  if (!first_) first_ = info;
+  if (identity_of(info) != identity_of(*first_)) {
+    close();
+    return identity_of(info) + " is not the device that the session began with; connect " +
+           identity_of(*first_);
+  }
+  if (placement_) placed_.emplace(*device_, *placement_);
+  return "";
+} catch (const DeviceError& error) {
+  close();
+  return error.what();
+}
+
+void DeviceStation::close() noexcept {
+  placed_.reset();
+  device_.reset();
+  armed_ = false;
+}
+
+HapticDevice& DeviceStation::device() {
+  if (!device_) throw std::logic_error("DeviceStation: no device is open");
+  if (placed_) return *placed_;
+  return *device_;
+}
+
+const DeviceInfo& DeviceStation::info() const {
+  if (!first_) throw std::logic_error("DeviceStation: no device has been opened");
+  return *first_;
+}
+
+void describe_station(SessionOpening& opening, const DeviceInfo& device,
+                      const SchedulingObtained& scheduling, double rate_hz,
+                      const std::string& certificate) {
+  opening.device = device.name;
+  opening.device_serial = device.serial;
+  opening.simulated = device.simulated;
+  opening.station = StationRecord{.model = device.model,
+                                  .firmware = device.firmware,
+                                  .max_force_n = device.max_force_n,
+                                  .visual = device.visual,
+                                  .rate_hz = rate_hz,
+                                  .scheduling = text_of(scheduling),
+                                  .calibration = certificate};
+}
+
+}  // namespace touchtrial

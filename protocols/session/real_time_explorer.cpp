@@ -1,0 +1,154 @@
+#include "protocols/session/real_time_explorer.hpp"
+
+#include "device/servo/flight_recorder.hpp"
+#include "device/servo/paced_clock.hpp"
+#include "device/servo/sample_ring.hpp"
+#include "device/servo/servo_thread.hpp"
+#include "protocols/session/interruption_words.hpp"
+#include "protocols/session/model_force.hpp"
+#include "protocols/session/trace_writer.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <future>
+#include <optional>
+#include <utility>
+
+namespace touchtrial {
+namespace {
+
+/// How long the session's thread waits for the servo's end before it looks after the participant
+/// again.
+constexpr std::chrono::milliseconds kBetweenLooks{5};
+
+/// A writer that is late by this many samples loses some: 6.5 s at 10 kHz.
+constexpr std::size_t kLargestRing = std::size_t{1} << 16U;
+
+/// A servo that runs on its thread. However it is left, force is off and the thread at rest.
+class RunningServo {
+ public:
+  RunningServo(ServoThread& thread, ServoControl& control, std::function<void()> work)
+      : thread_(thread), control_(control) {
+    std::promise<void> promise;
+    ended_ = promise.get_future();
+    thread_.start([work = std::move(work),
+                   promise = std::make_shared<std::promise<void>>(std::move(promise))] {
+      const EndTeller teller{*promise};
+      work();
+    });
+  }
+  ~RunningServo() {
+    if (!ended_.valid()) return;
+    control_.emergency_stop();
+    try {
+      finish();
+    } catch (...) {  // Another exception is on its way.
+    }
+  }
+  RunningServo(const RunningServo&) = delete;
+  RunningServo& operator=(const RunningServo&) = delete;
+
+  [[nodiscard]] bool runs() const {
+    return ended_.wait_for(kBetweenLooks) != std::future_status::ready;
+  }
+  /// Throws what the work threw.
+  void finish() {
+    ended_.get();
+    thread_.wait();
+  }
+
+ private:
+  /// Tells of the end also when the work throws.
+  struct EndTeller {
+    std::promise<void>& promise;
+    ~EndTeller() { promise.set_value(); }
+  };
+
+  ServoThread& thread_;
+  ServoControl& control_;
+  std::future<void> ended_;
+};
+
+ServoHealth health_of(const ServoReport& report, std::int64_t lost, std::int64_t held) {
+  return {.rate_hz = report.rate_hz,
+          .lateness_p50_us = report.lateness.p50_us,
+          .lateness_p99_us = report.lateness.p99_us,
+          .lateness_p999_us = report.lateness.p999_us,
+          .lateness_worst_us = report.lateness.worst_us,
+          .lost = lost,
+          .held = held};
+}
+
+}  // namespace
+
+struct RealTimeExplorer::Machinery {
+  explicit Machinery(const RealTimeOptions& wanted) : options(wanted), thread(wanted.scheduling) {}
+
+  [[nodiscard]] std::unique_ptr<ServoClock> make_clock() const {
+    if (options.clock) return options.clock();
+    return std::make_unique<PacedClock>(PacedClock::usual_spin(thread.scheduling().policy));
+  }
+
+  /// Takes memory that the servo will use before it runs.
+  void make_room(const ServoOptions& servo) {
+    const std::size_t wanted = std::clamp(most_samples(servo), std::size_t{1}, kLargestRing);
+    if (!ring || ring->capacity() < wanted) ring.emplace(wanted);
+    if (!recorder || recorder_rate_hz != servo.rate_hz) {
+      recorder.emplace(options.flight_s, servo.rate_hz);
+      recorder_rate_hz = servo.rate_hz;
+    }
+    recorder->clear();
+  }
+
+  RealTimeOptions options;
+  ServoControl control;
+  std::optional<SampleRing> ring;
+  std::optional<FlightRecorder> recorder;
+  double recorder_rate_hz = 0.0;
+  ServoThread thread;
+};
+
+RealTimeExplorer::RealTimeExplorer(const RealTimeOptions& options)
+    : machinery_(std::make_unique<Machinery>(options)) {}
+
+RealTimeExplorer::~RealTimeExplorer() = default;
+
+const SchedulingObtained& RealTimeExplorer::scheduling() const noexcept {
+  return machinery_->thread.scheduling();
+}
+
+ServoControl& RealTimeExplorer::control() noexcept {
+  return machinery_->control;
+}
+
+Exploration RealTimeExplorer::explore(const RenderingModel& model, const PlaneGeometry& plane,
+                                      Participant& participant, const ServoOptions& options,
+                                      Trace& trace) {
+  Machinery& m = *machinery_;
+  m.make_room(options);
+  m.control.reset();
+  HapticDevice& device = participant.begin_exploring(plane);
+  ModelForce force(model);
+  TraceBuilder builder(trace, options.rate_hz, most_samples(options));
+  RingSink sink(*m.ring);
+  const std::unique_ptr<ServoClock> clock = m.make_clock();
+  ServoHooks hooks;
+  hooks.control = &m.control;
+  hooks.recorder = &*m.recorder;
+  Exploration done;
+  TraceWriter writer(*m.ring, builder, participant);
+  RunningServo servo(m.thread, m.control,
+                     [&] { done.servo = run_servo(device, force, sink, options, *clock, hooks); });
+  while (servo.runs()) participant.exploring(m.control);
+  servo.finish();
+  if (is_interrupted(done.servo)) device.halt();
+  writer.finish();
+  done.landed_at = builder.landed_at();
+  done.lasted = time_of_tick(done.servo.ticks + done.servo.overruns, options.rate_hz);
+  done.held_in_contact = builder.held_in_contact();
+  done.health = health_of(done.servo, sink.dropped(), builder.held());
+  if (is_interrupted(done.servo)) done.detail = detail_of(done.servo, m.recorder->ticks());
+  return done;
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,46 @@
+/// \file Explorations in real time, on any device.
+#pragma once
+
+#include "device/platform/realtime.hpp"
+#include "device/servo/servo_clock.hpp"
+#include "device/servo/servo_control.hpp"
+#include "protocols/session/exploration.hpp"
+
+#include <functional>
+#include <memory>
+
+namespace touchtrial {
+
+struct RealTimeOptions {
+  SchedulingRequest scheduling{};
+  double flight_s = 3.0;  ///< that the flight record holds, > 0
+  /// The clock of each exploration; empty: a PacedClock. Tests own time.
+  std::function<std::unique_ptr<ServoClock>()> clock{};
+};
+
+/// Runs the servo on a thread of its own that asked for real-time scheduling once. Samples go
+/// through a ring to a TraceWriter; the session's thread looks after the participant. An
+/// exploration that is interrupted leaves the device halted, so that only a person's decision
+/// (HapticDevice::rearm) lets force pass again. All functions belong to the session's thread, but
+/// for what `control` gives.
+class RealTimeExplorer final : public Explorer {
+ public:
+  explicit RealTimeExplorer(const RealTimeOptions& options = {});
+  ~RealTimeExplorer() override;
+
+  /// Also throws what `participant.exploring` throws: the force is zero by then.
+  [[nodiscard]] Exploration explore(const RenderingModel& model, const PlaneGeometry& plane,
+                                    Participant& participant, const ServoOptions& options,
+                                    Trace& trace) override;
+
+  /// Of the servo's thread.
+  [[nodiscard]] const SchedulingObtained& scheduling() const noexcept;
+  /// For signal handlers and other threads: requests hold for the exploration that runs.
+  [[nodiscard]] ServoControl& control() noexcept;
+
+ private:
+  struct Machinery;
+  std::unique_ptr<Machinery> machinery_;
+};
+
+}  // namespace touchtrial

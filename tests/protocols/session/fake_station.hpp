@@ -1,0 +1,76 @@
+/// \file A device on a cable that tests pull, with a hand that strokes the plane by itself.
+#pragma once
+
+#include "device/haptic_device.hpp"
+#include "protocols/session/device_station.hpp"
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+
+/// What lies outside the program: whether the device is plugged in, and what has reached its
+/// motors.
+struct Cable {
+  std::atomic<bool> plugged{true};
+  std::atomic<bool> homed{true};
+  std::atomic<int> pull_at_tick{-1};  ///< the cable comes off in this tick, once
+  std::atomic<int> opened{0};
+  std::atomic<int> writes_unarmed{0};     ///< forces other than zero that came while halted
+  std::atomic<int> strong_writes{0};      ///< forces other than zero
+  std::atomic<bool> last_was_zero{true};  ///< the last force that was written
+  std::string serial = "A1";
+};
+
+/// Strokes the plane to and fro at 60 mm/s, 0.3 mm deep, after coming down for 50 ticks.
+class FakeDevice final : public HapticDevice {
+ public:
+  explicit FakeDevice(Cable& cable) : cable_(cable) { ++cable.opened; }
+  ~FakeDevice() override { cable_.last_was_zero = true; }
+
+  [[nodiscard]] DeviceInfo info() const override;
+  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override;
+  [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override;
+  void halt() noexcept override { halted_ = true; }
+  void rearm() noexcept override { halted_ = false; }
+  [[nodiscard]] DeviceFault fault() const noexcept override {
+    return lost_ ? DeviceFault::link_lost : DeviceFault::none;
+  }
+  [[nodiscard]] DeviceReadiness readiness() const noexcept override {
+    return cable_.homed ? DeviceReadiness::ready : DeviceReadiness::needs_homing;
+  }
+  /// A new exploration: the hand is up again.
+  void lift() noexcept { tick_ = 0; }
+
+ private:
+  Cable& cable_;
+  std::atomic<bool> halted_{false};
+  std::atomic<bool> lost_{false};
+  std::atomic<int> tick_{0};
+  std::uint64_t sequence_ = 0;
+};
+
+/// Remembers what was missing; plugs the cable in when asked for the second time.
+class Helper final : public Attendant {
+ public:
+  explicit Helper(Cable& cable) : cable_(cable) {}
+
+  [[nodiscard]] Says attend(const std::string& need) override;
+
+  std::vector<std::string> needs;
+  bool gives_up = false;
+  bool plugs_in = true;
+  int consents = 0;
+
+ private:
+  Cable& cable_;
+};
+
+/// Opens the fake; the newest one is `device` while it lives.
+[[nodiscard]] DeviceStation::Open opener(Cable& cable, FakeDevice*& device);
+
+}  // namespace touchtrial

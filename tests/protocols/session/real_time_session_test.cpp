@@ -1,0 +1,271 @@
+// Sessions with the servo on a thread of its own, on a device that is lost and comes back. Nothing
+// here waits for a clock: servo time goes as fast as the processor.
+#include "core/cipher.hpp"
+#include "protocols/session/commitment.hpp"
+#include "protocols/session/fake_station.hpp"
+#include "protocols/session/real_time_explorer.hpp"
+#include "protocols/session/session_runner.hpp"
+#include "protocols/session/tiny_study.hpp"
+#include "protocols/store/payload_json.hpp"
+#include "protocols/store/study_store.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <functional>
+#include <stdexcept>
+#include <thread>
+
+namespace touchtrial {
+namespace {
+
+using std::chrono::seconds;
+
+/// Feels at a station, names a picture by what was felt, and remembers what was named.
+class PersonAtStation : public Participant {
+ public:
+  PersonAtStation(DeviceStation& station, FakeDevice*& device)
+      : station_(station), device_(device) {}
+
+  void see_pictures(const std::vector<std::string>& labels) override { pictures_ = labels.size(); }
+  [[nodiscard]] HapticDevice& begin_exploring(const PlaneGeometry&) override {
+    device_->lift();
+    felt_n_ = 0.0;
+    samples_ = 0;
+    return station_.device();
+  }
+  void feel(const ServoSample& sample) noexcept override {
+    felt_n_ += std::abs(sample.force_n.x);
+    ++samples_;
+  }
+  [[nodiscard]] ParticipantAnswer answer() override {
+    const auto tenths = static_cast<std::size_t>(felt_n_ * 10.0);
+    const int position = static_cast<int>((tenths + named.size()) % pictures_);
+    named.push_back(position);
+    return {position, seconds(1)};
+  }
+
+  std::vector<int> named;
+  [[nodiscard]] int samples() const noexcept { return samples_; }
+
+ private:
+  DeviceStation& station_;
+  FakeDevice*& device_;
+  std::size_t pictures_ = 0;
+  double felt_n_ = 0.0;
+  int samples_ = 0;
+};
+
+RealTimeOptions as_fast_as_it_goes() {
+  RealTimeOptions options;
+  options.scheduling.policy = SchedulingPolicy::other;
+  options.scheduling.lock_memory = false;
+  options.clock = [] { return std::make_unique<VirtualClock>(); };
+  return options;
+}
+
+/// A session of 5 trials of 0.4 s at the fake station.
+struct Laboratory {
+  explicit Laboratory(const RealTimeOptions& options = as_fast_as_it_goes())
+      : explorer(options),
+        session(make_schedule(study.key().study, 1), study.key().study.trials,
+                SessionRecorder(1, participant_key, events)) {}
+
+  SessionTally run(Participant& participant) {
+    REQUIRE(station.make_ready() == SupplyState::ready);
+    SessionOpening opening;
+    opening.participant = "P001";
+    opening.enrolment = 1;
+    describe_station(opening, station.info(), explorer.scheduling(), kServoRateHz, "");
+    session.open({}, opening, "{}");
+    return run_session(session,
+                       {study.key(), source, participant, clock, explorer, station, kServoRateHz});
+  }
+  SessionTally run() { return run(person); }
+
+  [[nodiscard]] std::vector<Event> all(EventKind kind) const {
+    std::vector<Event> found;
+    for (const Event& event : events.events) {
+      if (event.kind == kind) found.push_back(event);
+    }
+    return found;
+  }
+
+  TinyStudy study{{.trials = R"({"repeats": 1, "explore_limit_s": 0.4})"}};
+  StimulusSource source{study.pack(), study.key().study.rendering};
+  SecretKey participant_key = sha256(bytes_of("somebody"));
+  BufferedEvents events;
+  Cable cable;
+  FakeDevice* device = nullptr;
+  Helper helper{cable};
+  DeviceStation station{opener(cable, device), std::nullopt, helper};
+  PersonAtStation person{station, device};
+  VirtualSessionClock clock;
+  RealTimeExplorer explorer;
+  Session session;
+};
+
+TEST_CASE("a real-time session stores every answer, every sample and the servo's health") {
+  Laboratory lab;
+  const SessionTally tally = lab.run();
+  CHECK(lab.session.phase() == SessionPhase::closed);
+  CHECK(tally.presentations == 5);
+  const std::vector<Event> answers = lab.all(EventKind::answered);
+  REQUIRE(answers.size() == 5);
+  for (std::size_t i = 0; i < answers.size(); ++i) {
+    CHECK(answer_from_json(answers[i].body).position == lab.person.named[i]);
+  }
+  REQUIRE(lab.events.traces.size() == 5);
+  for (const Event& stored : lab.all(EventKind::trace_stored)) {
+    const TraceBody body = trace_body_from_json(stored.body);
+    CHECK(body.samples == 500);
+    REQUIRE(body.servo);
+    CHECK(body.servo->lost == 0);
+    CHECK(body.servo->held == 0);
+    const TrialMeasures measures =
+        measures_from_json(unsealed(stored, lab.participant_key).value());
+    CHECK(measures.contact_s > 0.3);
+    CHECK(measures.limited_ticks);
+  }
+  CHECK(lab.person.samples() == 500);
+  CHECK(lab.cable.last_was_zero);
+  CHECK(lab.cable.strong_writes > 5 * 300);
+  const SessionOpening opening = opening_from_json(lab.events.events.front().body);
+  REQUIRE(opening.station);
+  CHECK(opening.station->model == "Fake One");
+  CHECK(opening.station->scheduling == "other, memory not locked");
+}
+
+TEST_CASE("a cable that comes off in mid-trial interrupts it, and it is repeated at the end") {
+  Laboratory lab;
+  lab.cable.pull_at_tick = 200;
+  const SessionTally tally = lab.run();
+  CHECK(tally.presentations == 6);
+  CHECK(lab.cable.opened == 2);
+  CHECK(lab.helper.consents == 2);
+  CHECK(lab.cable.writes_unarmed == 0);
+  CHECK(lab.cable.last_was_zero);
+  CHECK(lab.all(EventKind::answered).size() == 5);
+  CHECK(lab.all(EventKind::paused).size() == 1);
+  const std::vector<Event> interrupted = lab.all(EventKind::interrupted);
+  REQUIRE(interrupted.size() == 1);
+  const TrialBody body = trial_from_json(interrupted.front().body);
+  CHECK(body.reason == "device lost");
+  CHECK(trial_from_json(lab.all(EventKind::presented).back().body).trial == body.trial);
+}
+
+TEST_CASE("the flight record of an interruption is sealed and holds the ticks before it") {
+  Laboratory lab;
+  lab.cable.pull_at_tick = 200;
+  lab.run();
+  const Event event = lab.all(EventKind::interrupted).front();
+  CHECK(event.body.find("link") == std::string::npos);
+  CHECK_FALSE(unsealed(event, SecretKey{}));
+  const InterruptionDetail detail =
+      interruption_from_json(unsealed(event, lab.participant_key).value());
+  CHECK(detail.safety_fault == "device");
+  CHECK(detail.device_fault == "link_lost");
+  CHECK(detail.ticks == 201);
+  CHECK(std::ranges::count(detail.flight, '\n') == 202);
+  CHECK(detail.flight.substr(0, 12) == "tick,time_s,");
+}
+
+TEST_CASE("a session ends when whoever attends gives up on the device") {
+  Laboratory lab;
+  lab.cable.pull_at_tick = 200;
+  lab.helper.gives_up = true;
+  lab.run();
+  CHECK(lab.session.phase() == SessionPhase::closed);
+  CHECK(lab.all(EventKind::stopped).size() == 1);
+  CHECK(lab.all(EventKind::answered).empty());
+  CHECK_FALSE(completion_from_json(lab.events.events.back().body));
+}
+
+/// Servo time that stands still from one tick on until it is told to go on.
+class GateClock final : public ServoClock {
+ public:
+  GateClock(std::atomic<bool>& open, Time gate) : open_(open), gate_(gate) {}
+  [[nodiscard]] Time now() noexcept override { return now_; }
+  void wait_until(Time time) noexcept override {
+    while (time >= gate_ && !open_.load()) std::this_thread::yield();
+    now_ = std::max(now_, time);
+  }
+
+ private:
+  std::atomic<bool>& open_;
+  Time gate_;
+  Time now_{};
+};
+
+RealTimeOptions gated(std::atomic<bool>& gate) {
+  RealTimeOptions options = as_fast_as_it_goes();
+  options.clock = [&gate] {
+    return std::make_unique<GateClock>(gate, std::chrono::milliseconds(100));
+  };
+  return options;
+}
+
+/// Acts on the servo while its time stands still, in every exploration or in the first alone.
+class Acting final : public PersonAtStation {
+ public:
+  using Act = std::function<void(ServoControl&)>;
+  Acting(Laboratory& lab, std::atomic<bool>& gate, bool once, Act act)
+      : PersonAtStation(lab.station, lab.device), gate_(gate), once_(once), act_(std::move(act)) {}
+
+  [[nodiscard]] HapticDevice& begin_exploring(const PlaneGeometry& plane) override {
+    gate_ = false;
+    return PersonAtStation::begin_exploring(plane);
+  }
+  void exploring(ServoControl& servo) override {
+    if (!once_ || !acted_) act_(servo);
+    acted_ = true;
+    gate_ = true;
+  }
+
+ private:
+  std::atomic<bool>& gate_;
+  bool once_;
+  bool acted_ = false;
+  Act act_;
+};
+
+TEST_CASE("a participant who is done ends the exploration before its time is up") {
+  std::atomic<bool> gate{false};
+  Laboratory lab(gated(gate));
+  Acting person(lab, gate, false, [](ServoControl& servo) { servo.finish(); });
+  lab.run(person);
+  CHECK(lab.all(EventKind::answered).size() == 5);
+  CHECK(lab.all(EventKind::timed_out).empty());
+  for (const Event& stored : lab.all(EventKind::trace_stored)) {
+    CHECK(trace_body_from_json(stored.body).samples <= 201);
+  }
+}
+
+TEST_CASE("a comfort stop interrupts the trial, and force comes back by consent alone") {
+  std::atomic<bool> gate{false};
+  Laboratory lab(gated(gate));
+  Acting person(lab, gate, true, [](ServoControl& servo) { servo.comfort_stop(); });
+  lab.run(person);
+  const std::vector<Event> interrupted = lab.all(EventKind::interrupted);
+  REQUIRE(interrupted.size() == 1);
+  CHECK(trial_from_json(interrupted.front().body).reason == "comfort stop");
+  CHECK(lab.cable.opened == 1);
+  CHECK(lab.helper.consents == 2);
+  CHECK(lab.cable.writes_unarmed == 0);
+  CHECK(lab.all(EventKind::answered).size() == 5);
+}
+
+TEST_CASE("an error on the session's thread leaves the hand without force") {
+  std::atomic<bool> gate{false};
+  Laboratory lab(gated(gate));
+  Acting person(lab, gate, true, [&](ServoControl&) {
+    gate = true;
+    throw std::runtime_error("the screen is gone");
+  });
+  CHECK_THROWS_WITH(lab.run(person), "the screen is gone");
+  CHECK(lab.cable.last_was_zero);
+}
+
+}  // namespace
+}  // namespace touchtrial
