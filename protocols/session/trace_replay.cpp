@@ -1,0 +1,15 @@
+#include "protocols/session/trace_replay.hpp"
+
+#include <utility>
+#include <vector>
+
+namespace touchtrial {
+
+RecordedMotion motion_of(const Trace& trace) {
+  std::vector<Vec3> positions_mm;
+  positions_mm.reserve(trace.samples.size());
+  for (const TraceSample& sample : trace.samples) positions_mm.push_back(sample.position_mm);
+  return {std::move(positions_mm), trace.rate_hz};
+}
+
+}  // namespace touchtrial

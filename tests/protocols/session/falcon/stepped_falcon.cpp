@@ -1,0 +1,87 @@
+#include "protocols/session/falcon/stepped_falcon.hpp"
+
+#include "device/falcon/usb_falcon.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace touchtrial::falcon {
+namespace {
+
+constexpr Vec3 kRestMm = {0.0, 15.0, 0.0};
+/// More than homing takes.
+constexpr int kHomingSteps = 1200;
+
+std::unique_ptr<FalconDevice> open_in_lockstep(const FalconSettings& settings, Lockstep& lockstep) {
+  FalconOptions options;
+  options.pace = lockstep.pace();
+  options.scheduling = {SchedulingPolicy::other, 0, false};
+  return std::make_unique<FalconDevice>(open_usb_falcon(settings.serial), settings,
+                                        std::move(options));
+}
+
+}  // namespace
+
+EmulatedFalcon::EmulatedFalcon(const PlanePlacement& placement) : hand(placement, kRestMm) {
+  emulator.set_hand([this](Vec3 force_n) { return hand.tick(force_n); });
+}
+
+void EmulatedFalcon::unplug() {
+  plugged = false;
+  usb.unplug();
+  emulator.unplug();
+}
+
+void EmulatedFalcon::plug() {
+  emulator.replug(false);
+  usb.plug();
+  plugged = true;
+}
+
+SteppedFalcon::SteppedFalcon(const FalconSettings& settings, std::function<void()> before_read)
+    : falcon_(open_in_lockstep(settings, lockstep_)), before_read_(std::move(before_read)) {}
+
+DeviceStatus SteppedFalcon::read(DeviceSample& sample) noexcept {
+  if (before_read_) before_read_();
+  lockstep_.step();
+  return falcon_->read(sample);
+}
+
+DeviceStatus SteppedFalcon::write(Vec3 force_n) noexcept {
+  return falcon_->write(force_n);
+}
+
+Attendant::Says Experimenter::attend(const std::string& need) {
+  strongest_n = std::max(strongest_n, norm(falcon_.emulator.force_n()));
+  if (need.empty()) {
+    ++consents;
+    return Says::arm;
+  }
+  needs.push_back(need);
+  if (!falcon_.plugged) {
+    falcon_.plug();
+  } else if (device_ != nullptr) {
+    falcon_.hand.home();
+    device_->steps(kHomingSteps);
+  }
+  return Says::wait;
+}
+
+HapticDevice& PersonAtFalcon::begin_exploring(const PlaneGeometry& plane) {
+  ++begun;
+  explored_ = falcon_.hand.explorations();
+  falcon_.hand.explore(static_cast<const SimulatedHand&>(mind_.begin_exploring(plane)));
+  return station_.device();
+}
+
+void PersonAtFalcon::exploring(ServoControl& servo) {
+  if (falcon_.hand.explorations() > explored_) servo.finish();
+}
+
+ParticipantAnswer PersonAtFalcon::answer() {
+  const ParticipantAnswer answer = mind_.answer();
+  named.push_back(answer.position);
+  return answer;
+}
+
+}  // namespace touchtrial::falcon

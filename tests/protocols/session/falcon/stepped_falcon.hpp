@@ -1,0 +1,94 @@
+/// \file The real Falcon driver on an emulated Falcon, one exchange through libusb a servo tick,
+/// and the people around it.
+#pragma once
+
+#include "device/falcon/emulator/hand_on_falcon.hpp"
+#include "device/falcon/rig/lockstep.hpp"
+#include "device/falcon/usbfs_shim/emulator_usb_model.hpp"
+#include "device/falcon/usbfs_shim/usbfs_shim.hpp"
+#include "protocols/session/device_station.hpp"
+#include "protocols/session/simulated_participant.hpp"
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace touchtrial::falcon {
+
+/// A Falcon on the bus, switched on and never loaded, with a hand on its grip.
+struct EmulatedFalcon {
+  explicit EmulatedFalcon(const PlanePlacement& placement);
+
+  /// Cable and power: firmware and homing are gone afterwards.
+  void unplug();
+  void plug();
+
+  HandOnFalcon hand;
+  FalconEmulator emulator;
+  testing::EmulatorUsbModel model{emulator};
+  testing::ShimmedUsbDevice usb{model};
+  std::atomic<bool> plugged{true};
+};
+
+/// FalconDevice in lockstep, with its lockstep.
+class SteppedFalcon final : public HapticDevice {
+ public:
+  /// \param before_read  on the servo's thread, while the USB thread rests; may be empty
+  SteppedFalcon(const FalconSettings& settings, std::function<void()> before_read);
+
+  [[nodiscard]] DeviceInfo info() const override { return falcon_->info(); }
+  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override;
+  [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override;
+  void halt() noexcept override { falcon_->halt(); }
+  void rearm() noexcept override { falcon_->rearm(); }
+  [[nodiscard]] DeviceFault fault() const noexcept override { return falcon_->fault(); }
+  [[nodiscard]] DeviceReadiness readiness() const noexcept override { return falcon_->readiness(); }
+  void steps(int count) noexcept { lockstep_.steps(count); }
+
+ private:
+  Lockstep lockstep_;
+  std::unique_ptr<FalconDevice> falcon_;
+  std::function<void()> before_read_;
+};
+
+/// Does what the program says is missing: plugs the Falcon in, homes its grip, and consents. Notes
+/// the force on the grip whenever asked.
+class Experimenter final : public Attendant {
+ public:
+  Experimenter(EmulatedFalcon& falcon, SteppedFalcon*& device) : falcon_(falcon), device_(device) {}
+  [[nodiscard]] Says attend(const std::string& need) override;
+
+  std::vector<std::string> needs;
+  int consents = 0;
+  double strongest_n = 0.0;  ///< while force was not yet consented to
+
+ private:
+  EmulatedFalcon& falcon_;
+  SteppedFalcon*& device_;
+};
+
+/// Somebody who knows the textures, feels them through the Falcon, and answers.
+class PersonAtFalcon final : public Participant {
+ public:
+  PersonAtFalcon(SimulatedParticipant& mind, EmulatedFalcon& falcon, DeviceStation& station)
+      : mind_(mind), falcon_(falcon), station_(station) {}
+
+  void see_pictures(const std::vector<std::string>& labels) override { mind_.see_pictures(labels); }
+  [[nodiscard]] HapticDevice& begin_exploring(const PlaneGeometry& plane) override;
+  void exploring(ServoControl& servo) override;
+  void feel(const ServoSample& sample) noexcept override { mind_.feel(sample); }
+  [[nodiscard]] ParticipantAnswer answer() override;
+
+  std::vector<int> named;     ///< every choice, in order
+  std::atomic<int> begun{0};  ///< explorations
+
+ private:
+  SimulatedParticipant& mind_;
+  EmulatedFalcon& falcon_;
+  DeviceStation& station_;
+  int explored_ = 0;
+};
+
+}  // namespace touchtrial::falcon
