@@ -1,6 +1,7 @@
 #include "protocols/session/device_station.hpp"
 
 #include "core/errors.hpp"
+#include "device/platform/stop_signals.hpp"
 #include "device/servo/servo_names.hpp"
 
 #include <stdexcept>
@@ -40,6 +41,7 @@ DeviceStation::DeviceStation(Open open, const std::optional<PlanePlacement>& pla
     : open_(std::move(open)), placement_(placement), attendant_(attendant) {}
 
 SupplyState DeviceStation::make_ready() {
+  if (StopOnSignals::asked()) return SupplyState::stopped;
   const std::string need = missing();
   if (need.empty() && armed_) return SupplyState::ready;
   const Attendant::Says says = attendant_.attend(need);

@@ -36,7 +36,8 @@ class DeviceStation final : public DeviceSupply {
   /// \param attendant  must outlive this
   DeviceStation(Open open, const std::optional<PlanePlacement>& placement, Attendant& attendant);
 
-  /// A device other than the one that was there first (name or serial) is not taken.
+  /// A device other than the one that was there first (name or serial) is not taken. Stopped, too,
+  /// once a signal has asked the program to end during an exploration.
   [[nodiscard]] SupplyState make_ready() override;
   void interrupted() override { armed_ = false; }
 

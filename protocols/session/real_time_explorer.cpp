@@ -1,5 +1,6 @@
 #include "protocols/session/real_time_explorer.hpp"
 
+#include "device/platform/stop_signals.hpp"
 #include "device/servo/flight_recorder.hpp"
 #include "device/servo/paced_clock.hpp"
 #include "device/servo/sample_ring.hpp"
@@ -9,7 +10,9 @@
 #include "protocols/session/trace_writer.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <future>
 #include <optional>
 #include <utility>
@@ -100,13 +103,48 @@ struct RealTimeExplorer::Machinery {
     recorder->clear();
   }
 
+  /// One run of the servo, on its thread; this one looks after the participant meanwhile.
+  [[nodiscard]] ServoReport run(HapticDevice& device, const RenderingModel& model, SampleSink& sink,
+                                const ServoOptions& servo, Participant& participant);
+
   RealTimeOptions options;
   ServoControl control;
+  std::atomic<std::int64_t> heartbeat{kServoAtRest};
   std::optional<SampleRing> ring;
   std::optional<FlightRecorder> recorder;
   double recorder_rate_hz = 0.0;
   ServoThread thread;
 };
+
+ServoReport RealTimeExplorer::Machinery::run(HapticDevice& device, const RenderingModel& model,
+                                             SampleSink& sink, const ServoOptions& servo,
+                                             Participant& participant) {
+  if (!control.emergency_stop_asked()) control.reset();
+  ModelForce force(model);
+  const std::unique_ptr<ServoClock> clock = make_clock();
+  ServoHooks hooks;
+  hooks.control = &control;
+  hooks.heartbeat = &heartbeat;
+  hooks.recorder = &*recorder;
+  const StopOnSignals signals(device, control);
+  Watchdog watchdog(device, control, heartbeat, options.watchdog_silence);
+  watchdog.arm();
+  ServoReport report;
+  RunningServo running(thread, control,
+                       [&] { report = run_servo(device, force, sink, servo, *clock, hooks); });
+  while (running.runs()) participant.exploring(control);
+  running.finish();
+  if (watchdog.disarm() && !is_interrupted(report)) {
+    // It tripped while the run ended by itself: the device is halted, which is an interruption.
+    report.end = ServoEnd::fault;
+    report.fault = SafetyFault::stalled;
+  }
+  if (is_interrupted(report)) {
+    device.halt();
+    control.reset();
+  }
+  return report;
+}
 
 RealTimeExplorer::RealTimeExplorer(const RealTimeOptions& options)
     : machinery_(std::make_unique<Machinery>(options)) {}

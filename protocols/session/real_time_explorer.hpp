@@ -2,10 +2,12 @@
 #pragma once
 
 #include "device/platform/realtime.hpp"
+#include "device/safety/watchdog.hpp"
 #include "device/servo/servo_clock.hpp"
 #include "device/servo/servo_control.hpp"
 #include "protocols/session/exploration.hpp"
 
+#include <chrono>
 #include <functional>
 #include <memory>
 
@@ -14,12 +16,15 @@ namespace touchtrial {
 struct RealTimeOptions {
   SchedulingRequest scheduling{};
   double flight_s = 3.0;  ///< that the flight record holds, > 0
+  /// After which a servo that stands still is taken for stuck, > 0; long where tests own time.
+  std::chrono::nanoseconds watchdog_silence = Watchdog::kSilence;
   /// The clock of each exploration; empty: a PacedClock. Tests own time.
   std::function<std::unique_ptr<ServoClock>()> clock{};
 };
 
 /// Runs the servo on a thread of its own that asked for real-time scheduling once. Samples go
-/// through a ring to a TraceWriter; the session's thread looks after the participant. An
+/// through a ring to a TraceWriter; the session's thread looks after the participant; a watchdog
+/// looks after the servo, and signals and crashes halt the device (StopOnSignals). An
 /// exploration that is interrupted leaves the device halted, so that only a person's decision
 /// (HapticDevice::rearm) lets force pass again. All functions belong to the session's thread, but
 /// for what `control` gives.
@@ -35,7 +40,8 @@ class RealTimeExplorer final : public Explorer {
 
   /// Of the servo's thread.
   [[nodiscard]] const SchedulingObtained& scheduling() const noexcept;
-  /// For signal handlers and other threads: requests hold for the exploration that runs.
+  /// For other threads. Requests hold for the exploration that runs; an emergency stop that comes
+  /// between two holds for the next.
   [[nodiscard]] ServoControl& control() noexcept;
 
  private:

@@ -3,8 +3,10 @@
 #include "core/cipher.hpp"
 #include "protocols/session/commitment.hpp"
 #include "protocols/session/fake_station.hpp"
+#include "protocols/session/felt_knowledge.hpp"
 #include "protocols/session/real_time_explorer.hpp"
 #include "protocols/session/session_runner.hpp"
+#include "protocols/session/simulated_participant.hpp"
 #include "protocols/session/tiny_study.hpp"
 #include "protocols/store/payload_json.hpp"
 #include "protocols/store/study_store.hpp"
@@ -61,6 +63,7 @@ RealTimeOptions as_fast_as_it_goes() {
   RealTimeOptions options;
   options.scheduling.policy = SchedulingPolicy::other;
   options.scheduling.lock_memory = false;
+  options.watchdog_silence = std::chrono::minutes(1);
   options.clock = [] { return std::make_unique<VirtualClock>(); };
   return options;
 }
@@ -256,6 +259,19 @@ TEST_CASE("a comfort stop interrupts the trial, and force comes back by consent 
   CHECK(lab.all(EventKind::answered).size() == 5);
 }
 
+TEST_CASE("an emergency stop between two explorations holds for the next") {
+  Laboratory lab;
+  lab.explorer.control().emergency_stop();
+  lab.run();
+  const std::vector<Event> interrupted = lab.all(EventKind::interrupted);
+  REQUIRE(interrupted.size() == 1);
+  const TrialBody body = trial_from_json(interrupted.front().body);
+  CHECK(body.trial == 1);
+  CHECK(body.reason == "emergency stop");
+  CHECK(lab.helper.consents == 2);
+  CHECK(lab.all(EventKind::answered).size() == 5);
+}
+
 TEST_CASE("an error on the session's thread leaves the hand without force") {
   std::atomic<bool> gate{false};
   Laboratory lab(gated(gate));
@@ -265,6 +281,47 @@ TEST_CASE("an error on the session's thread leaves the hand without force") {
   });
   CHECK_THROWS_WITH(lab.run(person), "the screen is gone");
   CHECK(lab.cable.last_was_zero);
+}
+
+TEST_CASE("a real-time session by the machine's own clock records how late its ticks were") {
+  const TinyStudy study({.trials = R"({"repeats": 1})"});
+  const StimulusSource source(study.pack(), study.key().study.rendering);
+  SubjectModel subject;
+  subject.explore_s = 0.2;
+  subject.training_passes = 1;
+  const FeltKnowledge knowledge =
+      learn_by_feeling(LabelledFields(study.key(), source), subject, 3.3, 1, 1);
+  SimulatedParticipant participant(subject, knowledge, 1, 1);
+  RealTimeOptions patient;  // a paced clock, and the scheduling that can be had
+  patient.watchdog_silence = std::chrono::minutes(1);
+  RealTimeExplorer explorer(patient);
+  SteadySessionClock clock;
+  AlwaysReady devices;
+  BufferedEvents events;
+  Session session(make_schedule(study.key().study, 1), study.key().study.trials,
+                  SessionRecorder(1, SecretKey{}, events));
+  SessionOpening opening;
+  opening.participant = "P001";
+  opening.enrolment = 1;
+  session.open(clock.now(), opening, "{}");
+  const SessionTally tally =
+      run_session(session, {study.key(), source, participant, clock, explorer, devices});
+  CHECK(session.phase() == SessionPhase::closed);
+  // Ticks of 0.2 s that were not left out take that long: no clock runs faster.
+  CHECK(tally.duration >= std::chrono::milliseconds(tally.ticks - 5));
+  int traces = 0;
+  for (const Event& event : events.events) {
+    if (event.kind != EventKind::trace_stored) continue;
+    const TraceBody body = trace_body_from_json(event.body);
+    ++traces;
+    REQUIRE(body.servo);
+    CHECK(body.servo->rate_hz > 0.0);
+    CHECK(body.servo->lateness_worst_us >= body.servo->lateness_p50_us);
+    CHECK(body.servo->lateness_worst_us > 0.0);
+    CHECK(body.servo->lost == 0);
+    CHECK(body.samples >= 200);
+  }
+  CHECK(traces == 5);
 }
 
 }  // namespace

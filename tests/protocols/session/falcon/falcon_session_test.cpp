@@ -25,6 +25,7 @@ RealTimeOptions as_fast_as_it_goes() {
   RealTimeOptions options;
   options.scheduling.policy = SchedulingPolicy::other;
   options.scheduling.lock_memory = false;
+  options.watchdog_silence = std::chrono::minutes(1);
   options.clock = [] { return std::make_unique<VirtualClock>(); };
   return options;
 }
