@@ -127,7 +127,7 @@ ServoReport RealTimeExplorer::Machinery::run(HapticDevice& device, const Renderi
   hooks.heartbeat = &heartbeat;
   hooks.recorder = &*recorder;
   const StopOnSignals signals(device, control);
-  Watchdog watchdog(device, control, heartbeat, options.watchdog_silence);
+  Watchdog watchdog(device, control, heartbeat, Watchdog::kSilence, *options.watchdog_time);
   watchdog.arm();
   ServoReport report;
   RunningServo running(thread, control,
@@ -164,23 +164,14 @@ Exploration RealTimeExplorer::explore(const RenderingModel& model, const PlaneGe
                                       Trace& trace) {
   Machinery& m = *machinery_;
   m.make_room(options);
-  m.control.reset();
   HapticDevice& device = participant.begin_exploring(plane);
-  ModelForce force(model);
   TraceBuilder builder(trace, options.rate_hz, most_samples(options));
   RingSink sink(*m.ring);
-  const std::unique_ptr<ServoClock> clock = m.make_clock();
-  ServoHooks hooks;
-  hooks.control = &m.control;
-  hooks.recorder = &*m.recorder;
   Exploration done;
-  TraceWriter writer(*m.ring, builder, participant);
-  RunningServo servo(m.thread, m.control,
-                     [&] { done.servo = run_servo(device, force, sink, options, *clock, hooks); });
-  while (servo.runs()) participant.exploring(m.control);
-  servo.finish();
-  if (is_interrupted(done.servo)) device.halt();
-  writer.finish();
+  {
+    const TraceWriter writer(*m.ring, builder, participant);
+    done.servo = m.run(device, model, sink, options, participant);
+  }
   done.landed_at = builder.landed_at();
   done.lasted = time_of_tick(done.servo.ticks + done.servo.overruns, options.rate_hz);
   done.held_in_contact = builder.held_in_contact();

@@ -7,7 +7,6 @@
 #include "device/servo/servo_control.hpp"
 #include "protocols/session/exploration.hpp"
 
-#include <chrono>
 #include <functional>
 #include <memory>
 
@@ -16,8 +15,8 @@ namespace touchtrial {
 struct RealTimeOptions {
   SchedulingRequest scheduling{};
   double flight_s = 3.0;  ///< that the flight record holds, > 0
-  /// After which a servo that stands still is taken for stuck, > 0; long where tests own time.
-  std::chrono::nanoseconds watchdog_silence = Watchdog::kSilence;
+  /// As the watchdog sees it; must outlive the explorer.
+  WatchdogTime* watchdog_time = &system_watchdog_time();
   /// The clock of each exploration; empty: a PacedClock. Tests own time.
   std::function<std::unique_ptr<ServoClock>()> clock{};
 };

@@ -7,6 +7,7 @@
 #include "protocols/session/real_time_explorer.hpp"
 #include "protocols/session/session_runner.hpp"
 #include "protocols/session/simulated_participant.hpp"
+#include "protocols/session/still_time.hpp"
 #include "protocols/session/tiny_study.hpp"
 #include "protocols/store/payload_json.hpp"
 #include "protocols/store/study_store.hpp"
@@ -63,7 +64,7 @@ RealTimeOptions as_fast_as_it_goes() {
   RealTimeOptions options;
   options.scheduling.policy = SchedulingPolicy::other;
   options.scheduling.lock_memory = false;
-  options.watchdog_silence = std::chrono::minutes(1);
+  options.watchdog_time = &still_time();
   options.clock = [] { return std::make_unique<VirtualClock>(); };
   return options;
 }
@@ -293,7 +294,7 @@ TEST_CASE("a real-time session by the machine's own clock records how late its t
       learn_by_feeling(LabelledFields(study.key(), source), subject, 3.3, 1, 1);
   SimulatedParticipant participant(subject, knowledge, 1, 1);
   RealTimeOptions patient;  // a paced clock, and the scheduling that can be had
-  patient.watchdog_silence = std::chrono::minutes(1);
+  patient.watchdog_time = &still_time();
   RealTimeExplorer explorer(patient);
   SteadySessionClock clock;
   AlwaysReady devices;

@@ -9,6 +9,7 @@
 #include "protocols/session/felt_knowledge.hpp"
 #include "protocols/session/real_time_explorer.hpp"
 #include "protocols/session/session_runner.hpp"
+#include "protocols/session/still_time.hpp"
 #include "protocols/session/tiny_study.hpp"
 #include "protocols/store/payload_json.hpp"
 #include "support/catch.hpp"
@@ -25,7 +26,7 @@ RealTimeOptions as_fast_as_it_goes() {
   RealTimeOptions options;
   options.scheduling.policy = SchedulingPolicy::other;
   options.scheduling.lock_memory = false;
-  options.watchdog_silence = std::chrono::minutes(1);
+  options.watchdog_time = &still_time();
   options.clock = [] { return std::make_unique<VirtualClock>(); };
   return options;
 }
