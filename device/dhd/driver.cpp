@@ -45,6 +45,7 @@ std::vector<DeviceListing> list_dhd(const DeviceSettings& settings) {
 }
 
 std::unique_ptr<HapticDevice> open_dhd(const DeviceSettings& settings) {
+  expect_loading_survived(settings.dhd.library, dhd::kRemedy);
   return std::make_unique<DhdDevice>(settings.dhd);
 }
 

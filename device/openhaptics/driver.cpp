@@ -24,6 +24,7 @@ std::vector<DeviceListing> list_openhaptics(const DeviceSettings& settings) {
 }
 
 std::unique_ptr<HapticDevice> open_openhaptics(const DeviceSettings& settings) {
+  expect_loading_survived(settings.openhaptics.library, hd::kRemedy);
   return std::make_unique<OpenHapticsDevice>(settings.openhaptics);
 }
 
