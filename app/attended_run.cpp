@@ -4,6 +4,7 @@
 #include "device/servo/paced_clock.hpp"
 #include "device/servo/servo_names.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -71,10 +72,17 @@ AttendedRun::AttendedRun(OpenedDevice& opened, HapticDevice& device, const Safet
       watchdog_(device, control_, heartbeat_),
       signals_(device, control_),
       on_terminal_(::isatty(STDERR_FILENO) != 0) {
-  if (keys) keys_.emplace();
+  if (!keys) return;
+  StopOnSignals::before_dying(TerminalKeys::restore);
+  keys_.emplace();
 }
 
-std::optional<ServoReport> AttendedRun::run(const std::string& phase, ForceSource& force,
+AttendedRun::~AttendedRun() {
+  keys_.reset();
+  StopOnSignals::before_dying(nullptr);
+}
+
+std::optional<ServoReport> AttendedRun::run(const PhaseName& phase, ForceSource& force,
                                             double seconds, const std::function<bool()>& is_done,
                                             SampleSink* sink) {
   if (StopOnSignals::asked()) stop_ = AttendedStop::signal;
@@ -111,7 +119,7 @@ void AttendedRun::wait_until_ready(double limit_s) {
   const std::string advice = advice_on(readiness);
   std::fprintf(stderr, "%s: %s\n", name.c_str(), advice.c_str());
   NoForce nothing;
-  const auto report = run("homing", nothing, limit_s,
+  const auto report = run([](std::int64_t) { return "homing"; }, nothing, limit_s,
                           [&] { return device_.readiness() == DeviceReadiness::ready; });
   if (stop_ != AttendedStop::none) return;
   if (report && report->end == ServoEnd::fault) {
@@ -147,7 +155,7 @@ void AttendedRun::take_keys() {
   }
 }
 
-void AttendedRun::show(const std::string& phase) {
+void AttendedRun::show(const PhaseName& phase) {
   const std::chrono::nanoseconds now = monotonic_now();
   if (now - shown_at_ < (on_terminal_ ? kOnTerminal : kOnPipe)) return;
   const ServoState newest = state_.get();
@@ -155,12 +163,12 @@ void AttendedRun::show(const std::string& phase) {
   const double rate_hz = static_cast<double>(newest.tick - shown_tick_) / passed_s;
   const Vec3 p = newest.sample.position_mm;
   const Vec3 f = newest.force_n;
+  // Short of 80 columns: a line that wraps cannot be written over.
   const std::string line = fmt::format(
-      "{:<8} {:6.0f} ticks/s  late {:5.0f} us  at {:7.1f} {:7.1f} {:7.1f} mm  force {:5.2f} "
-      "{:5.2f} "
-      "{:5.2f} N  [{}]",
-      phase, rate_hz, newest.lateness_us, p.x, p.y, p.z, f.x, f.y, f.z,
-      keys_ ? "q stops, space lets go" : "Ctrl-C stops");
+      "{:<7} {:3.0f} s {:6.1f} {:6.1f} {:6.1f} mm {:5.2f} {:5.2f} {:5.2f} N {:5.0f}/s {:3.0f} us "
+      "late",
+      phase(newest.tick), static_cast<double>(newest.tick) / options_.rate_hz, p.x, p.y, p.z, f.x,
+      f.y, f.z, rate_hz, std::min(newest.lateness_us, 9999.0));
   std::fprintf(stderr, on_terminal_ ? "\r%s\x1b[K" : "%s\n", line.c_str());
   std::fflush(stderr);
   shown_at_ = now;

@@ -30,6 +30,8 @@ enum class AttendedStop {
 class AttendedRun {
  public:
   static constexpr double kRecordedS = 10.0;  ///< that the flight recorder holds
+  /// What the live line calls a tick's part of the run; at most 8 letters.
+  using PhaseName = std::function<std::string(std::int64_t tick)>;
 
   /// \param opened  what is attended to
   /// \param device  what the servo runs: that of `opened`, or the same placed; both must outlive
@@ -38,14 +40,16 @@ class AttendedRun {
   /// \param keys  whether q and the space bar are taken from standard input meanwhile
   AttendedRun(OpenedDevice& opened, HapticDevice& device, const SafetyLimits& limits,
               double rate_hz, bool keys = true);
+  ~AttendedRun();
+  AttendedRun(const AttendedRun&) = delete;
+  AttendedRun& operator=(const AttendedRun&) = delete;
 
   /// Runs the servo in real time until it ends; meanwhile attends to window and keys, and shows a
   /// live line on standard error. After a stop was asked for, later runs do not begin.
-  /// \param phase  what the line calls it
   /// \param is_done  asked between; true: the force fades and the run ends
   /// \param sink  takes the samples; null: nobody does
   /// \return nothing if a stop had been asked for before
-  std::optional<ServoReport> run(const std::string& phase, ForceSource& force, double seconds,
+  std::optional<ServoReport> run(const PhaseName& phase, ForceSource& force, double seconds,
                                  const std::function<bool()>& is_done = {},
                                  SampleSink* sink = nullptr);
 
@@ -62,7 +66,7 @@ class AttendedRun {
 
  private:
   void take_keys();
-  void show(const std::string& phase);
+  void show(const PhaseName& phase);
   void end_line();
 
   OpenedDevice& opened_;

@@ -129,7 +129,7 @@ class Calibration {
 
   HoldFigures figures(const std::string& phase, HoldMeasurement::Mode mode) {
     HoldMeasurement hold(mode);
-    const auto report = run_.run(phase, hold, kRunS, {}, &hold);
+    const auto report = run_.run([&](std::int64_t) { return phase; }, hold, kRunS, {}, &hold);
     if (!report || run_.stop() != AttendedStop::none) {
       throw DeviceError("calibration was stopped; nothing was written");
     }

@@ -9,6 +9,7 @@
 #include "device/workspace_fit.hpp"
 #include "protocols/session/model_force.hpp"
 
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -21,6 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kReadyLimitS = 120.0;
+/// In which the texture rises out of the wall.
+constexpr double kBlendS = 0.2;
 /// 40 mm, which every supported device has room for.
 constexpr int kPlacedSidePx = 200;
 /// 100 mm, the plane of devices that have all the room of the plane frame.
@@ -68,14 +71,27 @@ fs::path record_path(const TestArguments& arguments) {
                                         : arguments.fault_record;
 }
 
-/// \return false if the test is over
-bool feel(const std::string& name, const RenderingModel& model, double seconds, AttendedRun& run,
+/// One run: the wall, and then, unless it is to be the wall alone, the texture.
+void feel(const TestArguments& arguments, const TestTexture& shown, AttendedRun& run,
           DeviceTest& test) {
-  ModelForce force(model);
-  const auto report = run.run(name, force, seconds);
-  if (!report) return false;
-  test.phases.push_back({name, *report});
-  return report->end == ServoEnd::time_limit;
+  const RenderingModel wall = shown.wall();
+  const RenderingModel texture = shown.texture();
+  ModelForce first(wall);
+  ModelForce second(texture);
+  const double change_s = arguments.seconds * (arguments.wall_only ? 2.0 : 0.5);
+  ForceSequence sequence(first, second, std::llround(change_s * arguments.rate_hz),
+                         std::llround(kBlendS * arguments.rate_hz));
+  const auto phase = [&](std::int64_t tick) {
+    return sequence.is_second(tick) ? "texture" : "wall";
+  };
+  std::fputs(
+      "q ends the test, space lets go, Ctrl-C halts at once\n"
+      "shown: time, position (right, down, off the plane), force, ticks a second, lateness\n",
+      stderr);
+  test.run = run.run(phase, sequence, arguments.seconds, {}, &sequence);
+  if (!test.run) return;
+  test.phases.push_back({"wall", sequence.first()});
+  if (sequence.second().ticks > 0) test.phases.push_back({"texture", sequence.second()});
 }
 
 /// What the summary does not say by itself: how the program ends.
@@ -84,13 +100,10 @@ int outcome_of(const DeviceTest& test, const AttendedRun& run) {
     std::fprintf(stderr, "touchtrial: %s\n", StopOnSignals::message().c_str());
     return StopOnSignals::exit_code();
   }
-  for (const TestPhase& phase : test.phases) {
-    if (phase.report.end != ServoEnd::fault) continue;
-    throw DeviceError(one_line(test.device.name + ": fault in the phase " + phase.name + ": " +
-                               fault_text(phase.report) + "; the last seconds are in " +
-                               test.fault_record.string()));
-  }
-  return 0;
+  if (!test.run || test.run->end != ServoEnd::fault) return 0;
+  throw DeviceError(one_line(test.device.name + ": fault while the " + test.phases.back().name +
+                             " was felt: " + fault_text(*test.run) + "; the last seconds are in " +
+                             test.fault_record.string()));
 }
 
 int test_device(const TestArguments& arguments) {
@@ -100,15 +113,9 @@ int test_device(const TestArguments& arguments) {
   run.wait_until_ready(kReadyLimitS);
   DeviceTest test;
   test.device = tested.device().info();
+  feel(arguments, tested.texture(), run, test);
   test.scheduling = run.scheduling();
-  const RenderingModel wall = tested.texture().wall();
-  const RenderingModel texture = tested.texture().texture();
-  const double phase_s = arguments.wall_only ? arguments.seconds : arguments.seconds / 2.0;
-  if (feel("wall", wall, phase_s, run, test) && !arguments.wall_only) {
-    feel("texture", texture, phase_s, run, test);
-  }
-  const bool faulted = !test.phases.empty() && test.phases.back().report.end == ServoEnd::fault;
-  if (faulted && run.stop() != AttendedStop::signal) {
+  if (test.run && test.run->end == ServoEnd::fault && run.stop() != AttendedStop::signal) {
     test.fault_record = record_path(arguments);
     replace_file(test.fault_record, run.flight_record());
   }

@@ -2,19 +2,21 @@
 /// platform.
 #pragma once
 
-#include <memory>
 #include <optional>
 
 namespace touchtrial {
 
 /// Reads standard input without ever waiting. On a terminal that the program has to itself, keys
-/// come one by one and are not shown, until this is destroyed; Ctrl-C stays a signal. From a pipe
-/// or file come its characters; its end is no key.
+/// come one by one and are not shown, until this is destroyed; Ctrl-C stays a signal, Ctrl-Z is
+/// none, because a program that sleeps cannot let go. From a pipe or file come its characters; its
+/// end is no key. One at a time in a program.
 class TerminalKeys {
  public:
   TerminalKeys();
   /// The terminal is as it was.
   ~TerminalKeys();
+  /// The same for whoever dies before: safe in a signal handler, and when there is nothing to do.
+  static void restore() noexcept;
   TerminalKeys(const TerminalKeys&) = delete;
   TerminalKeys& operator=(const TerminalKeys&) = delete;
 
@@ -22,8 +24,6 @@ class TerminalKeys {
   [[nodiscard]] std::optional<char> next();
 
  private:
-  struct Saved;
-  std::unique_ptr<Saved> saved_;  ///< the terminal as it was; null if there is none
   bool ended_ = false;
 };
 

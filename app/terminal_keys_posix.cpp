@@ -1,30 +1,42 @@
 #include "app/terminal_keys.hpp"
 
+#include <atomic>
+
 #include <poll.h>
 #include <termios.h>
 #include <unistd.h>
 
 namespace touchtrial {
 
-struct TerminalKeys::Saved {
-  termios terminal{};
-};
+namespace {
+
+/// What a signal handler sees: written before `is_changed`, read after it.
+termios terminal_before;
+std::atomic<bool> is_changed{false};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+}  // namespace
 
 TerminalKeys::TerminalKeys() {
   // In the background a change of the terminal would stop the program.
   if (::isatty(STDIN_FILENO) == 0 || ::tcgetpgrp(STDIN_FILENO) != ::getpgrp()) return;
-  Saved saved;
-  if (::tcgetattr(STDIN_FILENO, &saved.terminal) != 0) return;
-  termios keys = saved.terminal;
+  if (::tcgetattr(STDIN_FILENO, &terminal_before) != 0) return;
+  termios keys = terminal_before;
   keys.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
   keys.c_cc[VMIN] = 0;
   keys.c_cc[VTIME] = 0;
-  if (::tcsetattr(STDIN_FILENO, TCSANOW, &keys) != 0) return;
-  saved_ = std::make_unique<Saved>(saved);
+  keys.c_cc[VSUSP] = _POSIX_VDISABLE;
+  // Before the change: a signal between the two restores what is still so.
+  is_changed.store(true);
+  if (::tcsetattr(STDIN_FILENO, TCSANOW, &keys) != 0) is_changed.store(false);
 }
 
 TerminalKeys::~TerminalKeys() {
-  if (saved_) ::tcsetattr(STDIN_FILENO, TCSANOW, &saved_->terminal);
+  restore();
+}
+
+void TerminalKeys::restore() noexcept {
+  if (is_changed.exchange(false)) ::tcsetattr(STDIN_FILENO, TCSANOW, &terminal_before);
 }
 
 std::optional<char> TerminalKeys::next() {

@@ -13,44 +13,74 @@ double seconds_of(std::int64_t ticks, const ServoReport& report) {
   return report.rate_hz > 0.0 ? static_cast<double>(ticks) / report.rate_hz : 0.0;
 }
 
-std::string phase_text(const TestPhase& phase) {
-  const ServoReport& r = phase.report;
+std::string phase_text(const TestPhase& phase, const ServoReport& run) {
+  return fmt::format("{:<8} {:5.1f} s, contact {:5.1f} s, greatest force {:.2f} N\n", phase.name,
+                     seconds_of(phase.felt.ticks, run), seconds_of(phase.felt.contact_ticks, run),
+                     phase.felt.greatest_force_n);
+}
+
+const char* words_for(const ServoReport& run) {
+  if (run.fault == SafetyFault::emergency_stop) return "halted";
+  switch (run.end) {
+    case ServoEnd::time_limit:
+      return "time was up";
+    case ServoEnd::hand_stopped:
+      return "stopped by q, or by the device";
+    case ServoEnd::comfort_stop:
+      return "let go on request";
+    case ServoEnd::fault:
+      break;
+  }
+  return "fault";
+}
+
+std::string run_text(const ServoReport& run) {
+  const std::string fault =
+      run.fault == SafetyFault::none ? "" : fmt::format(", {}", name_of(run.fault));
+  const std::string device =
+      run.device_fault == DeviceFault::none ? "" : fmt::format(" ({})", name_of(run.device_fault));
   return fmt::format(
-      "{}: {:.1f} s at {:.1f} ticks/s, contact {:.1f} s, limit {:.2f} N met in {} ticks\n"
-      "  late: half within {:.0f} us, 99 % within {:.0f} us, 99.9 % within {:.0f} us, worst {:.0f} "
-      "us; {} ticks left out\n"
-      "  ended: {}; fault: {}{}\n",
-      phase.name, seconds_of(r.ticks, r), r.rate_hz, seconds_of(r.contact_ticks, r),
-      r.force_limit_n, r.limited_ticks, r.lateness.p50_us, r.lateness.p99_us, r.lateness.p999_us,
-      r.lateness.worst_us, r.overruns, name_of(r.end), name_of(r.fault),
-      r.device_fault == DeviceFault::none ? "" : fmt::format(" ({})", name_of(r.device_fault)));
+      "ticks:   {:.1f} a second, {} left out, {} with a force that safety changed (limit {:.2f} "
+      "N)\n"
+      "late:    half within {:.0f} us, 99 % within {:.0f} us, 99.9 % within {:.0f} us, worst "
+      "{:.0f} "
+      "us\n"
+      "ended:   {}{}{}\n",
+      run.rate_hz, run.overruns, run.limited_ticks, run.force_limit_n, run.lateness.p50_us,
+      run.lateness.p99_us, run.lateness.p999_us, run.lateness.worst_us, words_for(run), fault,
+      device);
 }
 
 std::string scheduling_text(const SchedulingObtained& had) {
   const std::string got = had.policy == SchedulingPolicy::fifo
                               ? fmt::format("real time, priority {}", had.priority)
                               : std::string("as an ordinary thread");
-  return "servo: " + got + (had.memory_locked ? ", memory locked" : ", memory not locked") +
+  return "servo:   " + got + (had.memory_locked ? ", memory locked" : ", memory not locked") +
          (had.reason.empty() ? "" : "; " + had.reason) + "\n";
 }
 
-nlohmann::ordered_json phase_json(const TestPhase& phase) {
-  const ServoReport& r = phase.report;
+nlohmann::ordered_json phase_json(const TestPhase& phase, const ServoReport& run) {
   return {{"phase", phase.name},
-          {"end", name_of(r.end)},
-          {"fault", name_of(r.fault)},
-          {"device_fault", name_of(r.device_fault)},
-          {"ticks", r.ticks},
-          {"rate_hz", r.rate_hz},
-          {"overruns", r.overruns},
-          {"limited_ticks", r.limited_ticks},
-          {"contact_s", seconds_of(r.contact_ticks, r)},
-          {"force_limit_n", r.force_limit_n},
+          {"ticks", phase.felt.ticks},
+          {"contact_s", seconds_of(phase.felt.contact_ticks, run)},
+          {"greatest_force_n", phase.felt.greatest_force_n}};
+}
+
+nlohmann::ordered_json run_json(const ServoReport& run) {
+  return {{"end", name_of(run.end)},
+          {"fault", name_of(run.fault)},
+          {"device_fault", name_of(run.device_fault)},
+          {"ticks", run.ticks},
+          {"rate_hz", run.rate_hz},
+          {"overruns", run.overruns},
+          {"limited_ticks", run.limited_ticks},
+          {"contact_s", seconds_of(run.contact_ticks, run)},
+          {"force_limit_n", run.force_limit_n},
           {"lateness_us",
-           {{"p50", r.lateness.p50_us},
-            {"p99", r.lateness.p99_us},
-            {"p999", r.lateness.p999_us},
-            {"worst", r.lateness.worst_us}}}};
+           {{"p50", run.lateness.p50_us},
+            {"p99", run.lateness.p99_us},
+            {"p999", run.lateness.p999_us},
+            {"worst", run.lateness.worst_us}}}};
 }
 
 }  // namespace
@@ -61,7 +91,9 @@ std::string test_text(const DeviceTest& test) {
                      (device.serial.empty() ? "" : ", serial " + device.serial) +
                      (device.firmware.empty() ? "" : ", firmware " + device.firmware) + "\n" +
                      scheduling_text(test.scheduling);
-  for (const TestPhase& phase : test.phases) text += phase_text(phase);
+  if (!test.run) return text + "ended:   stopped before the test began\n";
+  for (const TestPhase& phase : test.phases) text += phase_text(phase, *test.run);
+  text += run_text(*test.run);
   if (!test.fault_record.empty()) {
     text += "flight record of the fault: " + test.fault_record.string() + "\n";
   }
@@ -71,7 +103,7 @@ std::string test_text(const DeviceTest& test) {
 std::string test_json(const DeviceTest& test) {
   using nlohmann::ordered_json;
   ordered_json phases = ordered_json::array();
-  for (const TestPhase& phase : test.phases) phases.push_back(phase_json(phase));
+  for (const TestPhase& phase : test.phases) phases.push_back(phase_json(phase, *test.run));
   const ordered_json object = {{"driver", test.device.name},
                                {"model", test.device.model},
                                {"serial", test.device.serial},
@@ -81,6 +113,7 @@ std::string test_json(const DeviceTest& test) {
                                  {"priority", test.scheduling.priority},
                                  {"memory_locked", test.scheduling.memory_locked},
                                  {"reason", test.scheduling.reason}}},
+                               {"run", test.run ? run_json(*test.run) : ordered_json(nullptr)},
                                {"phases", phases},
                                {"fault_record", test.fault_record.string()}};
   return object.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";

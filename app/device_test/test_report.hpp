@@ -3,9 +3,10 @@
 
 #include "device/haptic_device.hpp"
 #include "device/platform/realtime.hpp"
-#include "device/servo/servo.hpp"
+#include "device/servo/force_sequence.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -13,12 +14,13 @@ namespace touchtrial {
 
 struct TestPhase {
   std::string name;  ///< "wall" or "texture"
-  ServoReport report;
+  ForceSequence::Part felt;
 };
 
 struct DeviceTest {
   DeviceInfo device;
   SchedulingObtained scheduling;
+  std::optional<ServoReport> run;      ///< nothing: it was stopped before it began
   std::vector<TestPhase> phases;       ///< those that began
   std::filesystem::path fault_record;  ///< empty unless a fault was recorded
 };

@@ -14,10 +14,10 @@ namespace touchtrial {
 /// emergency stop, and the signal is remembered, so that the command can put its things in order
 /// and leave with `exit_code`. A second such signal does what it would have done without this.
 ///
-/// Crashed (SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT) or std::terminate: the device is halted, and
-/// after 20 ms, in which the driver's own thread sends zeros, the earlier handler or the
-/// default action has its way. If it is the driver's thread that crashed, or the process is killed
-/// (SIGKILL), only the device's own watch over its link is left.
+/// Crashed (SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT), asked to with Ctrl-\ (SIGQUIT), or
+/// std::terminate: the device is halted, and after 20 ms, in which the driver's own thread sends
+/// zeros, the earlier handler or the default action has its way. If it is the driver's thread that
+/// crashed, or the process is killed (SIGKILL), only the device's own watch over its link is left.
 class StopOnSignals {
  public:
   /// \param device,control  must outlive this
@@ -27,6 +27,11 @@ class StopOnSignals {
   ~StopOnSignals();
   StopOnSignals(const StopOnSignals&) = delete;
   StopOnSignals& operator=(const StopOnSignals&) = delete;
+
+  /// What else is to be put back before the program dies of a second signal or a crash: a
+  /// terminal, say. Called after the device is halted, in the handler, so only what is safe there;
+  /// null: nothing. Any thread.
+  static void before_dying(void (*put_back)() noexcept) noexcept;
 
   /// Whether the program was asked to end. Any thread.
   [[nodiscard]] static bool asked() noexcept;

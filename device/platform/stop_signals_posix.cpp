@@ -16,15 +16,17 @@ namespace {
 constexpr long kTimeToSendNs = 20'000'000;
 constexpr int kExitBySignal = 128;
 constexpr std::array kAskSignals = {SIGINT, SIGTERM, SIGHUP};
-constexpr std::array kCrashSignals = {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT};
+constexpr std::array kCrashSignals = {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGQUIT};
 
 // What handlers see: lock-free atomics alone.
 std::atomic<HapticDevice*> device_to_halt{nullptr};
 std::atomic<ServoControl*> servo_to_stop{nullptr};
 std::atomic<int> first_signal{0};
+std::atomic<void (*)() noexcept> last_act{nullptr};
 static_assert(std::atomic<HapticDevice*>::is_always_lock_free);
 static_assert(std::atomic<ServoControl*>::is_always_lock_free);
 static_assert(std::atomic<int>::is_always_lock_free);
+static_assert(std::atomic<void (*)() noexcept>::is_always_lock_free);
 
 struct Earlier {
   std::array<struct sigaction, kAskSignals.size()> of_asks{};
@@ -38,6 +40,11 @@ void halt() noexcept {
   ServoControl* servo = servo_to_stop.load();
   if (device != nullptr) device->halt();
   if (servo != nullptr) servo->emergency_stop();
+}
+
+void put_the_rest_back() noexcept {
+  void (*const act)() noexcept = last_act.load();
+  if (act != nullptr) act();
 }
 
 void let_the_driver_send() noexcept {
@@ -57,6 +64,7 @@ extern "C" void on_ask(int signal) {
   halt();
   int none = 0;
   if (!first_signal.compare_exchange_strong(none, signal)) {
+    put_the_rest_back();
     put_back(kAskSignals, earlier.of_asks);
     raise(signal);  // delivered when this handler returns
   }
@@ -66,6 +74,7 @@ extern "C" void on_ask(int signal) {
 extern "C" void on_crash(int signal) {
   halt();
   let_the_driver_send();
+  put_the_rest_back();
   put_back(kCrashSignals, earlier.of_crashes);
   raise(signal);
 }
@@ -73,6 +82,7 @@ extern "C" void on_crash(int signal) {
 [[noreturn]] void on_terminate() {
   halt();
   let_the_driver_send();
+  put_the_rest_back();
   if (earlier.terminate != nullptr) earlier.terminate();
   std::abort();
 }
@@ -107,6 +117,10 @@ StopOnSignals::~StopOnSignals() {
   std::set_terminate(earlier.terminate);
   servo_to_stop.store(nullptr);
   device_to_halt.store(nullptr);
+}
+
+void StopOnSignals::before_dying(void (*put_back)() noexcept) noexcept {
+  last_act.store(put_back);
 }
 
 bool StopOnSignals::asked() noexcept {

@@ -75,20 +75,28 @@ void leave_by(const std::string& way, const ServoControl& control) {
   if (way == "terminate") std::terminate();
   if (way == "SIGSEGV") std::raise(SIGSEGV);
   if (way == "SIGFPE") std::raise(SIGFPE);
+  if (way == "SIGQUIT") std::raise(SIGQUIT);
 }
+
+int pipe_to_tell = -1;  ///< of the child, for what it does last
 
 [[noreturn]] void be_the_child(const std::string& way, int pipe) {
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
   ::close(STDERR_FILENO);
   // As the shell starts a program, whatever the test program itself has made of signals.
-  for (const int signal : {SIGTERM, SIGINT, SIGHUP, SIGABRT, SIGSEGV, SIGFPE}) {
+  for (const int signal : {SIGTERM, SIGINT, SIGHUP, SIGABRT, SIGSEGV, SIGFPE, SIGQUIT}) {
     std::signal(signal, SIG_DFL);
   }
   std::set_terminate(nullptr);
   PipeDevice device(pipe);
   ServoControl control;
   const StopOnSignals stop(device, control);
+  pipe_to_tell = pipe;
+  StopOnSignals::before_dying([]() noexcept {
+    const char last = 'L';
+    [[maybe_unused]] const ssize_t written = ::write(pipe_to_tell, &last, 1);
+  });
   leave_by(way, control);
   ::_exit(99);
 }
@@ -108,6 +116,10 @@ WayOut take(const std::string& way) {
   return out;
 }
 
+char last_sent(const WayOut& out) {
+  return out.sent[out.sent.find_last_not_of('L')];
+}
+
 TEST_CASE("asked to end, the program sends zero and leaves with the code that a shell expects") {
   const auto [way, signal] = GENERATE(
       table<std::string, int>({{"SIGTERM", SIGTERM}, {"SIGINT", SIGINT}, {"SIGHUP", SIGHUP}}));
@@ -115,24 +127,30 @@ TEST_CASE("asked to end, the program sends zero and leaves with the code that a 
   CAPTURE(way, out.sent);
   CHECK(out.sent.front() == 'F');
   CHECK(out.sent.back() == 'z');
+  CHECK(out.sent.find('L') == std::string::npos);
   REQUIRE(WIFEXITED(out.status));
   CHECK(WEXITSTATUS(out.status) == 128 + signal);
 }
 
 TEST_CASE("asked twice, the program ends at once, with the force at zero") {
   const WayOut out = take("SIGTERM twice");
-  CHECK(out.sent.back() == 'z');
+  CHECK(last_sent(out) == 'z');
+  CHECK(out.sent.find('L') != std::string::npos);
   REQUIRE(WIFSIGNALED(out.status));
   CHECK(WTERMSIG(out.status) == SIGTERM);
 }
 
 TEST_CASE("a crash sends zero before the program dies of it") {
-  const auto [way, signal] = GENERATE(table<std::string, int>(
-      {{"abort", SIGABRT}, {"terminate", SIGABRT}, {"SIGSEGV", SIGSEGV}, {"SIGFPE", SIGFPE}}));
+  const auto [way, signal] = GENERATE(table<std::string, int>({{"abort", SIGABRT},
+                                                               {"terminate", SIGABRT},
+                                                               {"SIGSEGV", SIGSEGV},
+                                                               {"SIGFPE", SIGFPE},
+                                                               {"SIGQUIT", SIGQUIT}}));
   const WayOut out = take(way);
   CAPTURE(way, out.sent);
   CHECK(out.sent.front() == 'F');
-  CHECK(out.sent.back() == 'z');
+  CHECK(last_sent(out) == 'z');
+  CHECK(out.sent.find('L') != std::string::npos);
   REQUIRE(WIFSIGNALED(out.status));
   CHECK(WTERMSIG(out.status) == signal);
 }

@@ -1,0 +1,89 @@
+#include "device/servo/force_sequence.hpp"
+
+#include "device/flat_wall.hpp"
+#include "device/registry.hpp"
+#include "support/catch.hpp"
+
+#include <cmath>
+
+namespace touchtrial {
+namespace {
+
+class SteadyForce final : public ForceSource {
+ public:
+  explicit SteadyForce(double z_n) : z_n_(z_n) {}
+  [[nodiscard]] Vec3 force_n(const DeviceSample&) noexcept override {
+    ++asked;
+    return {0.0, 0.0, z_n_};
+  }
+  int asked = 0;
+
+ private:
+  double z_n_;
+};
+
+/// What a sequence gives tick by tick, sent as it is.
+std::vector<double> forces_of(ForceSequence& sequence, std::int64_t ticks) {
+  std::vector<double> forces;
+  for (std::int64_t tick = 0; tick < ticks; ++tick) {
+    forces.push_back(sequence.force_n({}).z);
+    sequence.record({{}, {0.0, 0.0, forces.back()}, tick});
+  }
+  return forces;
+}
+
+TEST_CASE("a sequence of forces goes from one to the other smoothly and asks only who is needed") {
+  SteadyForce first(1.0);
+  SteadyForce second(3.0);
+  ForceSequence sequence(first, second, 100, 200);
+  const std::vector<double> forces = forces_of(sequence, 400);
+  CHECK(forces[99] == 1.0);
+  CHECK(forces[100] == 1.0);
+  CHECK(forces[200] == 2.0);
+  CHECK(forces[300] == 3.0);
+  double greatest_step = 0.0;
+  for (std::size_t i = 1; i < forces.size(); ++i) {
+    CHECK(forces[i] >= forces[i - 1]);
+    greatest_step = std::max(greatest_step, forces[i] - forces[i - 1]);
+  }
+  CHECK(greatest_step < 1.51 * 2.0 / 200.0);
+  CHECK(first.asked == 300);
+  CHECK(second.asked == 300);
+}
+
+TEST_CASE("a sequence of forces tells what the hand met of each") {
+  SteadyForce first(0.0);
+  SteadyForce second(2.0);
+  ForceSequence sequence(first, second, 30, 1);
+  (void)forces_of(sequence, 50);
+  CHECK(sequence.first().ticks == 30);
+  CHECK(sequence.first().contact_ticks == 0);
+  CHECK(sequence.second().ticks == 20);
+  CHECK(sequence.second().contact_ticks == 19);
+  CHECK(sequence.second().greatest_force_n == 2.0);
+}
+
+TEST_CASE("ticks that an overrun left out count for the change from one force to the other") {
+  SteadyForce first(1.0);
+  SteadyForce second(3.0);
+  ForceSequence sequence(first, second, 10, 10);
+  sequence.record({{}, {}, 50});
+  CHECK(sequence.force_n({}).z == 3.0);
+}
+
+TEST_CASE("a hand that rests on one plane of a sequence rests on the next") {
+  const auto hand = open_device("simulated", {});
+  FlatWall first;
+  FlatWall second;
+  ForceSequence sequence(first, second, 1000, 200);
+  ServoOptions options;
+  options.limit_ticks = 2000;
+  const ServoReport report = run_servo_in_virtual_time(*hand, sequence, sequence, options);
+  CHECK(report.end == ServoEnd::time_limit);
+  CHECK(report.limited_ticks < 100);
+  CHECK(sequence.first().contact_ticks > 500);
+  CHECK(sequence.second().contact_ticks > 1000);
+}
+
+}  // namespace
+}  // namespace touchtrial
