@@ -37,8 +37,9 @@ bool FalconExchange::take(const Reply& reply, Time now) noexcept {
   if (jumps(position_mm, now)) return false;
   pose_ = pose;
   pose_at_ = now;
+  // The origin jumps with homing: what was read before it is no way that the hand went.
+  if (!known_ || !homed_) velocity_.forget();
   known_ = homed_;
-  if (!homed_) velocity_.forget();
   const Vec3 velocity_mm_s = velocity_.add(position_mm, now);
   link_.publish({position_mm, velocity_mm_s, 0, reply.buttons, homed_});
   return true;

@@ -86,6 +86,23 @@ TEST_CASE("moved through its range it homes, shows blue, and its forces pass") {
   CHECK(rig.emulator.complaints().empty());
 }
 
+TEST_CASE("the jump of the origin on homing is no motion of the hand") {
+  Rig rig(false);
+  rig.emulator.set_hand(swinging_hand());
+  double fastest_mm_s = 0.0;
+  int ready = 0;
+  for (int i = 0; i < 1000; ++i) {
+    rig.push({});
+    const DeviceSample sample = rig.sample();
+    if (!sample.ready) continue;
+    ++ready;
+    fastest_mm_s = std::max(fastest_mm_s, norm(sample.velocity_mm_s));
+  }
+  REQUIRE(ready > 100);
+  // 25 mm once a second are 157 mm/s.
+  CHECK(fastest_mm_s < 200.0);
+}
+
 TEST_CASE("the lights go where the settings say") {
   FalconSettings settings;
   settings.led_order = {2, 1, 0};
