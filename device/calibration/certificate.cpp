@@ -29,6 +29,11 @@ std::string_view name_of(CalibrationAxis axis) noexcept {
   return axis == CalibrationAxis::y ? "y" : "z";
 }
 
+bool is_within_tolerance(const AxisResult& result) noexcept {
+  return result.expected_n > 0.0 &&
+         std::abs(result.measured_n / result.expected_n - 1.0) <= kForceTolerance;
+}
+
 bool Certificate::passed() const noexcept {
   return axes.size() == kCalibrationAxes.size() && free_air.passed &&
          std::ranges::all_of(axes, [](const AxisResult& result) { return result.passed; });
@@ -45,8 +50,7 @@ AxisResult judge_axis(CalibrationAxis axis, double mass_g, const HoldFigures& em
   // Over a pulley the weight pulls to either side.
   result.measured_n = std::abs(along_n);
   result.cross_n = norm(more_n - along_n * direction_of(axis));
-  result.passed = is_steady(empty) && is_steady(loaded) &&
-                  std::abs(result.measured_n / result.expected_n - 1.0) <= kForceTolerance;
+  result.passed = is_steady(empty) && is_steady(loaded) && is_within_tolerance(result);
   return result;
 }
 

@@ -40,6 +40,9 @@ struct AxisResult {
   bool passed = false;
 };
 
+/// Whether the force that was measured is the weight, within kForceTolerance.
+[[nodiscard]] bool is_within_tolerance(const AxisResult& result) noexcept;
+
 struct FreeAirResult {
   double noise_mm = 0.0;
   double drift_mm = 0.0;
@@ -77,7 +80,9 @@ struct ReadCertificate {
   Digest hash{};
 };
 
-/// \throws FileError if it cannot be read, StudyError with the JSON pointer if it is no certificate
+/// \throws FileError if it cannot be read, StudyError with the JSON pointer if it is no
+/// certificate,
+///   or one that says more than its figures do
 [[nodiscard]] ReadCertificate read_certificate(const std::filesystem::path& path);
 
 /// Holds a certificate against the device that a session is about to use.

@@ -3,7 +3,9 @@
 #include "core/strict_json.hpp"
 #include "device/calibration/certificate.hpp"
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 
 #include <nlohmann/json.hpp>
@@ -54,18 +56,51 @@ std::chrono::sys_seconds read_date(const JsonValue& place) {
   place.refuse(in_quotes(text) + " is no date of the form 2026-01-31T12:00:00Z");
 }
 
+bool is_weight_of(double force_n, double mass_g) {
+  const double weight_n = 0.001 * mass_g * kStandardGravityMS2;
+  return std::abs(force_n - weight_n) <= 1e-6 * weight_n;
+}
+
+/// A result that says more than its figures do.
+void expect_earned(bool earned, const JsonObject& object) {
+  if (!earned && object.at("passed").truth()) {
+    object.at("passed").refuse("does not follow from the figures; the file was changed by hand");
+  }
+}
+
 AxisResult read_axis(const JsonValue& place) {
   const JsonObject object =
       place.object({"axis", "mass_g", "expected_n", "measured_n", "cross_n", "passed"});
-  return {object.at("axis").choice(kAxisNames),    object.at("mass_g").number(kFigure),
-          object.at("expected_n").number(kFigure), object.at("measured_n").number(kFigure),
-          object.at("cross_n").number(kFigure),    object.at("passed").truth()};
+  const AxisResult result{
+      object.at("axis").choice(kAxisNames),    object.at("mass_g").number(kFigure),
+      object.at("expected_n").number(kFigure), object.at("measured_n").number(kFigure),
+      object.at("cross_n").number(kFigure),    object.at("passed").truth()};
+  if (!is_weight_of(result.expected_n, result.mass_g)) {
+    object.at("expected_n").refuse("is not the weight of mass_g; the file was changed by hand");
+  }
+  expect_earned(is_within_tolerance(result), object);
+  return result;
+}
+
+std::vector<AxisResult> read_axes(const JsonValue& place) {
+  std::vector<AxisResult> axes;
+  for (const JsonValue& item : place.items(kCalibrationAxes.size(), kCalibrationAxes.size())) {
+    const AxisResult result = read_axis(item);
+    if (std::ranges::find(axes, result.axis, &AxisResult::axis) != axes.end()) {
+      item.refuse_below("/axis", "is there twice; give each of x, y and z once");
+    }
+    axes.push_back(result);
+  }
+  return axes;
 }
 
 FreeAirResult read_free_air(const JsonValue& place) {
   const JsonObject object = place.object({"noise_mm", "drift_mm", "residual_n", "passed"});
-  return {object.at("noise_mm").number(kFigure), object.at("drift_mm").number(kFigure),
-          object.at("residual_n").number(kFigure), object.at("passed").truth()};
+  const FreeAirResult result{object.at("noise_mm").number(kFigure),
+                             object.at("drift_mm").number(kFigure),
+                             object.at("residual_n").number(kFigure), object.at("passed").truth()};
+  expect_earned(result.noise_mm <= kMostNoiseMm && result.drift_mm <= kMostDriftMm, object);
+  return result;
 }
 
 Certificate read_object(const JsonValue& place) {
@@ -81,9 +116,7 @@ Certificate read_object(const JsonValue& place) {
   certificate.firmware = object.at("firmware").text();
   certificate.program = object.at("program").text();
   certificate.made = read_date(object.at("made"));
-  for (const JsonValue& axis : object.at("axes").items(3, 3)) {
-    certificate.axes.push_back(read_axis(axis));
-  }
+  certificate.axes = read_axes(object.at("axes"));
   certificate.free_air = read_free_air(object.at("free_air"));
   if (object.at("passed").truth() != certificate.passed()) {
     object.at("passed").refuse("does not follow from the results; the file was changed by hand");

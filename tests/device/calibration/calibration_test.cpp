@@ -5,6 +5,8 @@
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 
+#include <functional>
+
 namespace touchtrial {
 namespace {
 
@@ -156,6 +158,31 @@ TEST_CASE("a certificate that was changed by hand is refused with its place") {
   CHECK_THAT(changed("2026-02-28", "2026-02-30"), holds_text("/made"));
   CHECK_THAT(changed("calibration 1", "calibration 9"), holds_text("/kind"));
   CHECK_THAT(changed("\"serial\"", "\"cereal\""), holds_text("/cereal"));
+}
+
+TEST_CASE("a certificate whose results its figures do not bear is refused with its place") {
+  const TempFolder folder;
+  const auto path = folder.path() / "certificate.json";
+  const auto refusal = [&](const std::function<void(Certificate&)>& change) {
+    Certificate certificate = passed_certificate();
+    change(certificate);
+    replace_file(path, certificate_json(certificate));
+    return message_of<StudyError>([&] { return read_certificate(path); });
+  };
+  CHECK_THAT(refusal([](Certificate& c) { c.axes[1].measured_n = 1.2; }),
+             holds_text("/axes/1/passed"));
+  CHECK_THAT(refusal([](Certificate& c) { c.axes[1].measured_n = 0.0; }),
+             holds_text("/axes/1/passed"));
+  CHECK_THAT(refusal([](Certificate& c) { c.axes[2].expected_n = c.axes[2].measured_n; }),
+             holds_text("/axes/2/expected_n"));
+  CHECK_THAT(refusal([](Certificate& c) { c.axes[2].axis = c.axes[0].axis; }),
+             holds_text("/axes/2/axis"));
+  CHECK_THAT(refusal([](Certificate& c) { c.axes[0].mass_g = c.axes[0].expected_n = 0.0; }),
+             holds_text("/axes/0/passed"));
+  CHECK_THAT(refusal([](Certificate& c) { c.free_air.drift_mm = 0.6; }),
+             holds_text("/free_air/passed"));
+  CHECK_THAT(refusal([](Certificate& c) { c.free_air.noise_mm = 0.2; }),
+             holds_text("/free_air/passed"));
 }
 
 TEST_CASE("a certificate serves its own device only and only if it passed") {
