@@ -29,22 +29,32 @@ Vec3 read_vec3(const JsonValue& place, const NumberRange& range) {
   return {items[0].number(range), items[1].number(range), items[2].number(range)};
 }
 
+/// A text that goes to the system, or to a vendor's library: to them a zero within it is its end.
+const std::string& plain_text(const JsonValue& place) {
+  const std::string& text = place.text();
+  const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
+  if (std::ranges::any_of(text, is_control)) {
+    place.refuse("has a control character: " + in_quotes(text) + "; leave it out");
+  }
+  return text;
+}
+
 void read_text(const JsonObject& object, std::string_view key, std::string& text) {
-  if (const auto member = object.find(key)) text = member->text();
+  if (const auto member = object.find(key)) text = plain_text(*member);
 }
 
 /// A file of the user's; an empty text is none.
 void read_path(const JsonObject& object, std::string_view key, const fs::path& folder,
                fs::path& path) {
   const auto member = object.find(key);
-  if (member && !member->text().empty()) path = folder / member->text();
+  if (member && !plain_text(*member).empty()) path = folder / member->text();
 }
 
 /// A library: a path if there is a slash in it, else a name that the system looks up.
 void read_library(const JsonObject& object, const fs::path& folder, fs::path& path) {
   const auto member = object.find("library");
   if (!member) return;
-  const std::string& name = member->text();
+  const std::string& name = plain_text(*member);
   if (name.empty()) member->refuse("is empty; give the library's path, or leave the key out");
   path = name.find('/') == std::string::npos ? fs::path(name) : folder / name;
 }

@@ -168,12 +168,20 @@ TEST_CASE("the reader keeps the types of the schema of device settings") {
 TEST_CASE("the reader keeps the words lengths and defaults of the schema of device settings") {
   int words = 0;
   int lists = 0;
+  int texts = 0;
   for (const Leaf& leaf : all_leaves()) {
     INFO(leaf.place.to_string());
     if (leaf.rule.contains("enum")) {
       for (const json& word : leaf.rule.at("enum")) CHECK(refusal(leaf.place, word).empty());
       CHECK_FALSE(refusal(leaf.place, "diagonal").empty());
       ++words;
+    }
+    if (leaf.rule.contains("pattern")) {
+      CHECK(leaf.rule.at("pattern") == R"(^[^\u0000-\u001f\u007f]*$)");
+      for (const char* text : {"\x01", "a\x1f", "a\x7fz"})
+        CHECK_FALSE(refusal(leaf.place, text).empty());
+      CHECK(refusal(leaf.place, "a b").empty());
+      ++texts;
     }
     if (leaf.rule.at("type") == "array") {
       CHECK_FALSE(refusal(leaf.place, json::array({0, 0})).empty());
@@ -184,6 +192,7 @@ TEST_CASE("the reader keeps the words lengths and defaults of the schema of devi
   }
   CHECK(words == 3);
   CHECK(lists == 6);
+  CHECK(texts == 6);
 }
 
 TEST_CASE("the defaults of the schema of device settings are the reader's") {

@@ -52,6 +52,17 @@ TEST_CASE("device settings say everything about the drivers") {
   CHECK(settings.replay.trace == "/lab/traces/one.csv");
 }
 
+TEST_CASE("a control character in a text is refused with its place") {
+  // To the system the first of these would be the C library.
+  CHECK(is_refused(R"({"openhaptics": {"library": "libc.so.6\u0000x"}})", "/openhaptics/library"));
+  CHECK(is_refused(R"({"dhd": {"library": "libdhd.so\n"}})", "/dhd/library"));
+  CHECK(is_refused(R"({"openhaptics": {"device": "a\tb"}})", "/openhaptics/device"));
+  CHECK(is_refused(R"({"falcon": {"firmware": "a\u0000b"}})", "/falcon/firmware"));
+  CHECK(is_refused(R"({"falcon": {"serial": "A\nB"}})", "/falcon/serial"));
+  CHECK(is_refused(R"({"replay": {"trace": "\u007f"}})", "/replay/trace"));
+  CHECK(parsed(R"({"falcon": {"serial": "Größe 7"}})").falcon.serial == "Größe 7");
+}
+
 TEST_CASE("a library is a name for the system to look up or a path from the file") {
   CHECK(parsed(R"({"dhd": {"library": "libdhd.so"}})").dhd.library == "libdhd.so");
   CHECK(parsed(R"({"dhd": {"library": "lib/libdhd.so"}})").dhd.library == "/lab/lib/libdhd.so");
