@@ -38,6 +38,7 @@ void add_device_list_command(CLI::App& device, Action& action);
 void add_device_test_command(CLI::App& device, Action& action);
 void add_device_fit_command(CLI::App& device, Action& action);
 void add_device_calibrate_command(CLI::App& device, Action& action);
+void add_device_monitor_command(CLI::App& device, Action& action);
 
 /// The option --settings of commands that open devices; see device_settings_for.
 void add_settings_option(CLI::App& command, std::filesystem::path& settings);

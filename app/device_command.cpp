@@ -16,6 +16,7 @@ void add_device_command(CLI::App& program, Action& action) {
   add_device_test_command(*device, action);
   add_device_fit_command(*device, action);
   add_device_calibrate_command(*device, action);
+  add_device_monitor_command(*device, action);
 }
 
 }  // namespace touchtrial

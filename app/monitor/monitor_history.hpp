@@ -1,0 +1,66 @@
+/// \file The last seconds of a servo, in bins narrow enough to plot.
+#pragma once
+
+#include "device/servo/servo.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace touchtrial {
+
+/// The least and the greatest of a time; nothing was there if least > greatest.
+struct Extent {
+  double least = std::numeric_limits<double>::infinity();
+  double greatest = -std::numeric_limits<double>::infinity();
+
+  void add(double value) noexcept;
+  [[nodiscard]] bool is_empty() const noexcept { return least > greatest; }
+};
+
+/// What is plotted, in this order: position in mm, force in N.
+enum class Channel : std::size_t { x, y, z, force_x, force_y, force_z };
+
+/// Not thread-safe.
+class MonitorHistory {
+ public:
+  static constexpr double kBinsPerS = 50.0;
+  static constexpr double kBinS = 1.0 / kBinsPerS;
+  static constexpr std::size_t kBins = 250;
+  static constexpr double kSpanS = kBinS * kBins;
+
+  /// \param rate_hz  of the servo, > 0: what its ticks mean
+  explicit MonitorHistory(double rate_hz);
+
+  /// Samples in the order of their ticks. One whose tick is before the last begins a new run.
+  void add(const ServoSample& sample);
+  /// How late a tick began at worst since the last call, µs; belongs to the bins since then.
+  void add_lateness(double late_us);
+
+  /// \name From the oldest to the newest, kBins of them
+  ///@{
+  [[nodiscard]] std::vector<Extent> values(Channel channel) const;
+  /// Ticks a second, over the last tenth of a second at each time.
+  [[nodiscard]] std::vector<Extent> rates_hz() const;
+  [[nodiscard]] std::vector<Extent> lateness_us() const;
+  ///@}
+
+ private:
+  struct Bin {
+    std::array<Extent, 6> channels;
+    Extent lateness_us;
+    int samples = 0;
+  };
+  [[nodiscard]] Bin& bin_at(std::int64_t number) noexcept;
+  [[nodiscard]] const Bin& from_oldest(std::size_t index) const noexcept;
+
+  double rate_hz_;
+  std::vector<Bin> bins_;     ///< a ring
+  std::int64_t newest_ = -1;  ///< number of the newest bin, from the run's beginning
+  std::int64_t last_tick_ = -1;
+  std::int64_t told_until_ = -1;  ///< the newest bin when lateness was told last
+};
+
+}  // namespace touchtrial

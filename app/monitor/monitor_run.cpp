@@ -1,0 +1,92 @@
+#include "app/monitor/monitor_run.hpp"
+
+#include "device/servo/paced_clock.hpp"
+
+#include <array>
+#include <cstdint>
+
+namespace touchtrial {
+namespace {
+
+/// As long as anybody looks.
+constexpr double kLongestRunS = 7.0 * 86'400.0;
+constexpr double kFadeS = 0.1;
+/// A window that stands still for two seconds loses nothing.
+constexpr double kRingS = 2.0;
+
+/// A clock that keeps how late it was at worst.
+class WatchedClock final : public ServoClock {
+ public:
+  WatchedClock(ServoClock& clock, std::atomic<std::int64_t>& worst_ns) noexcept
+      : clock_(clock), worst_ns_(worst_ns) {}
+
+  [[nodiscard]] Time now() noexcept override { return clock_.now(); }
+  void wait_until(Time time) noexcept override {
+    clock_.wait_until(time);
+    const std::int64_t late_ns = (clock_.now() - time).count();
+    // Who takes the worst away may do so in between; then this one is the first of the next.
+    std::int64_t worst_ns = worst_ns_.load(std::memory_order_relaxed);
+    while (late_ns > worst_ns &&
+           !worst_ns_.compare_exchange_weak(worst_ns, late_ns, std::memory_order_relaxed)) {
+    }
+  }
+
+ private:
+  ServoClock& clock_;
+  std::atomic<std::int64_t>& worst_ns_;
+};
+
+}  // namespace
+
+MonitorRun::MonitorRun(HapticDevice& device, double rate_hz, const SafetyLimits& limits)
+    : device_(device),
+      options_{.limit_ticks = static_cast<std::int64_t>(kLongestRunS * rate_hz),
+               .fade_ticks = static_cast<std::int64_t>(kFadeS * rate_hz),
+               .limits = limits,
+               .rate_hz = rate_hz},
+      wall_(rate_hz),
+      ring_(static_cast<std::size_t>(kRingS * rate_hz)),
+      sink_(ring_) {}
+
+MonitorRun::~MonitorRun() {
+  control_.finish();
+}
+
+void MonitorRun::start() {
+  if (running()) return;
+  control_.reset();
+  device_.rearm();
+  waited_for_ = false;
+  has_run_ = true;
+  thread_.start([this] { run(); });
+}
+
+void MonitorRun::run() noexcept {
+  PacedClock paced(PacedClock::usual_spin(thread_.scheduling().policy));
+  WatchedClock clock(paced, worst_late_ns_);
+  report_ =
+      run_servo(device_, wall_, sink_, options_, clock, {.control = &control_, .state = &states_});
+}
+
+bool MonitorRun::running() {
+  if (thread_.running()) return true;
+  if (!waited_for_) thread_.wait();
+  waited_for_ = true;
+  return false;
+}
+
+std::optional<ServoReport> MonitorRun::ended() {
+  if (running() || !has_run_) return std::nullopt;
+  return report_;
+}
+
+void MonitorRun::collect(MonitorHistory& history) {
+  std::array<ServoSample, 256> samples;
+  while (const std::size_t count = ring_.pop(samples)) {
+    for (std::size_t i = 0; i < count; ++i) history.add(samples[i]);
+  }
+  const std::int64_t late_ns = worst_late_ns_.exchange(-1, std::memory_order_relaxed);
+  if (late_ns >= 0) history.add_lateness(static_cast<double>(late_ns) * 1e-3);
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,190 @@
+#include "app/monitor/monitor_history.hpp"
+#include "app/monitor/monitor_run.hpp"
+#include "app/monitor/monitor_words.hpp"
+#include "app/monitor/plot.hpp"
+#include "app/monitor/test_wall.hpp"
+#include "core/random.hpp"
+#include "device/simulated/simulated_hand.hpp"
+#include "support/catch.hpp"
+
+#include <chrono>
+#include <functional>
+#include <limits>
+#include <thread>
+
+namespace touchtrial {
+namespace {
+
+DeviceSample at_height(double z_mm) {
+  DeviceSample sample;
+  sample.position_mm.z = z_mm;
+  return sample;
+}
+
+TEST_CASE("the test wall is gentle, and none until it is switched on") {
+  TestWall wall(1000.0);
+  CHECK(wall.force_n(at_height(-2.0)) == Vec3{});
+  wall.put(true);
+  for (int tick = 0; tick < 200; ++tick) static_cast<void>(wall.force_n(at_height(1.0)));
+  CHECK(wall.force_n(at_height(1.0)) == Vec3{});
+  CHECK(wall.force_n(at_height(-1.0)).z == Approx(0.4));
+  CHECK(wall.force_n(at_height(-50.0)).z == Approx(1.0));
+}
+
+TEST_CASE("a wall that is switched on behind the stylus waits until it has come out in front") {
+  TestWall wall(1000.0);
+  wall.put(true);
+  for (int tick = 0; tick < 500; ++tick) CHECK(wall.force_n(at_height(-3.0)) == Vec3{});
+  CHECK(wall.waits());
+  static_cast<void>(wall.force_n(at_height(0.1)));
+  CHECK_FALSE(wall.waits());
+}
+
+TEST_CASE("a wall that is switched off goes within 100 ms and without a step") {
+  TestWall wall(1000.0);
+  wall.put(true);
+  for (int tick = 0; tick < 200; ++tick) static_cast<void>(wall.force_n(at_height(1.0)));
+  wall.put(false);
+  double before_n = 1.0;
+  for (int tick = 0; tick < 100; ++tick) {
+    const double force_n = wall.force_n(at_height(-5.0)).z;
+    CHECK(before_n - force_n == Approx(0.01).margin(1e-9));
+    before_n = force_n;
+  }
+  CHECK(before_n == Approx(0.0).margin(1e-9));
+}
+
+TEST_CASE("the history keeps least and greatest of each bin, and the newest five seconds") {
+  MonitorHistory history(1000.0);
+  for (std::int64_t tick = 0; tick < 12'000; ++tick) {
+    const double time_s = static_cast<double>(tick) * 1e-3;
+    history.add({{time_s, 0.0, 0.0}, {0.0, 0.0, tick == 11'990 ? 0.7 : 0.0}, tick});
+  }
+  const auto x = history.values(Channel::x);
+  REQUIRE(x.size() == MonitorHistory::kBins);
+  CHECK(x.front().least == Approx(7.0));
+  CHECK(x.back().greatest == Approx(11.999));
+  CHECK(x[100].greatest - x[100].least == Approx(0.019));
+  CHECK(history.values(Channel::force_z).back().greatest == 0.7);
+  CHECK(history.rates_hz()[100].least == Approx(1000.0));
+}
+
+TEST_CASE("ticks that were left out show as a lower rate and as a gap") {
+  MonitorHistory history(1000.0);
+  for (std::int64_t tick = 0; tick < 5000; ++tick) {
+    if (tick < 2000 || tick >= 2100) history.add({{}, {}, tick});
+  }
+  CHECK(history.values(Channel::x)[102].is_empty());
+  CHECK_FALSE(history.values(Channel::x)[98].is_empty());
+  CHECK(history.rates_hz()[103].least < 500.0);
+}
+
+TEST_CASE("a new run begins a new history, and lateness belongs to the newest bin") {
+  MonitorHistory history(1000.0);
+  history.add_lateness(5.0);
+  for (std::int64_t tick = 0; tick < 100; ++tick) history.add({{1.0, 0.0, 0.0}, {}, tick});
+  history.add_lateness(7.0);
+  CHECK(history.lateness_us().back().greatest == 7.0);
+  CHECK(history.lateness_us()[MonitorHistory::kBins - 3].greatest == 7.0);
+  history.add({{2.0, 0.0, 0.0}, {}, 0});
+  const auto x = history.values(Channel::x);
+  CHECK(x.back().least == 2.0);
+  CHECK(x[MonitorHistory::kBins - 2].is_empty());
+  CHECK(history.lateness_us().back().is_empty());
+}
+
+TEST_CASE("scales hold every value and have ticks at round numbers") {
+  const std::vector<PlotLine> lines = {{"x", kBlue, {{-3.2, 17.0}, Extent{}, {0.0, 41.0}}}};
+  const PlotScale scale = scale_for(lines, {0.0, 10.0}, 4);
+  CHECK(scale.step == Approx(20.0));
+  CHECK(scale.least == Approx(-20.0));
+  CHECK(scale.greatest == Approx(60.0));
+  const PlotScale none = scale_for({}, {0.0, 0.8}, 4);
+  CHECK(none.step == Approx(0.2));
+  CHECK(none.greatest == Approx(0.8));
+}
+
+TEST_CASE("logarithmic scales hold whole decades") {
+  const PlotScale scale = decades_for({{"late", kBlue, {{0.2, 2500.0}}}}, {1.0, 1000.0});
+  CHECK(scale.least == Approx(1.0));
+  CHECK(scale.greatest == Approx(10'000.0));
+}
+
+TEST_CASE("the state line says what is, and faults say what to do") {
+  ServoReport lost;
+  lost.end = ServoEnd::fault;
+  lost.fault = SafetyFault::device;
+  lost.device_fault = DeviceFault::link_lost;
+  const StateLine fault = state_line({.ended = lost});
+  CHECK(fault.tone == StateTone::fault);
+  CHECK_THAT(fault.text, holds_text("check its cable"));
+  CHECK_THAT(fault.text, holds_text("Force is zero"));
+  ServoReport stopped;
+  stopped.end = ServoEnd::comfort_stop;
+  CHECK(state_line({.ended = stopped}).tone == StateTone::stopped);
+  const StateLine homing = state_line({.readiness = DeviceReadiness::needs_homing});
+  CHECK(homing.tone == StateTone::waiting);
+  CHECK_THAT(homing.text, holds_text("homed"));
+  CHECK(state_line({}).tone == StateTone::running);
+  CHECK_THAT(state_line({.wall_on = true, .wall_waits = true}).text, holds_text("waits"));
+}
+
+/// Waits until something is so; false if it never is.
+bool comes(const std::function<bool()>& is_so) {
+  const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+  while (!is_so()) {
+    if (std::chrono::steady_clock::now() > give_up) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  return true;
+}
+
+/// A simulated hand that keeps the last force it was sent.
+class WatchedHand final : public HapticDevice {
+ public:
+  WatchedHand() : random_(1, "monitor test"), hand_(options(), path()) {}
+  [[nodiscard]] DeviceInfo info() const override { return hand_.info(); }
+  [[nodiscard]] DeviceStatus read(DeviceSample& s) noexcept override { return hand_.read(s); }
+  [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override {
+    last_n = force_n;
+    return hand_.write(force_n);
+  }
+  void halt() noexcept override {}
+  void rearm() noexcept override { ++rearmed; }
+
+  Vec3 last_n{1.0, 1.0, 1.0};
+  int rearmed = 0;
+
+ private:
+  static HandOptions options() { return {.explore_s = 3600.0}; }
+  ExplorationPath path() { return {PlaneGeometry{0.2, 256, 256}, {.duration_s = 3600.0}, random_}; }
+
+  RandomStream random_;
+  SimulatedHand hand_;
+};
+
+TEST_CASE("a monitored device feels the wall, stops by request with zero force, and goes on") {
+  WatchedHand hand;
+  MonitorHistory history(1000.0);
+  {
+    MonitorRun run(hand, 1000.0, {});
+    CHECK_FALSE(run.ended());
+    run.wall().put(true);
+    run.start();
+    CHECK(comes([&] { return run.newest().force_n.z > 0.3; }));
+    run.collect(history);
+    CHECK(history.values(Channel::force_z).back().greatest > 0.0);
+    CHECK_FALSE(history.lateness_us().back().is_empty());
+    run.comfort_stop();
+    CHECK(comes([&] { return run.ended().has_value(); }));
+    CHECK(run.ended()->end == ServoEnd::comfort_stop);
+    CHECK(hand.last_n == Vec3{});
+    run.start();
+    CHECK(run.running());
+    CHECK(hand.rearmed == 2);
+  }
+  CHECK(hand.last_n == Vec3{});
+}
+
+}  // namespace
+}  // namespace touchtrial
