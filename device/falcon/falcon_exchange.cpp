@@ -1,5 +1,6 @@
 #include "device/falcon/falcon_exchange.hpp"
 
+#include <algorithm>
 #include <chrono>
 
 namespace touchtrial::falcon {
@@ -60,11 +61,20 @@ bool FalconExchange::jumps(Vec3 position_mm, Time now) noexcept {
   return false;
 }
 
+Vec3 FalconExchange::bias_n(Time now) noexcept {
+  if (!bias_from_) bias_from_ = now;
+  const double share = std::chrono::duration<double>(now - *bias_from_) / kBiasRamp;
+  return std::clamp(share, 0.0, 1.0) * gravity_bias_n_;
+}
+
 MotorValues FalconExchange::motors(Time now) noexcept {
   // Asked for even if it is not sent, so that none lies waiting.
   const std::optional<Vec3> force_n = link_.live_force(now);
-  if (!force_n || !homed_ || !known_ || missing_ > kForcelessAfter) return {};
-  const auto torques = torques_nm(pose_.jacobian, with_gravity_bias(*force_n, gravity_bias_n_));
+  if (!force_n || !homed_ || !known_ || missing_ > kForcelessAfter) {
+    bias_from_.reset();
+    return {};
+  }
+  const auto torques = torques_nm(pose_.jacobian, with_gravity_bias(*force_n, bias_n(now)));
   return torques && pose_.status == PoseStatus::ok ? motor_values(*torques) : MotorValues{};
 }
 

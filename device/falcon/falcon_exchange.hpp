@@ -9,6 +9,9 @@
 #include "device/falcon/ftdi_transport.hpp"
 #include "device/falcon/velocity_estimate.hpp"
 
+#include <chrono>
+#include <optional>
+
 namespace touchtrial::falcon {
 
 /// Belongs to the driver's own thread; the link takes samples to the servo and brings forces.
@@ -25,6 +28,8 @@ class FalconExchange final : public FtdiStreamSink {
   /// A hand does not move faster: a reply that says so is a broken one, unless the next ones agree.
   static constexpr double kMostSpeedMmS = 5'000.0;
   static constexpr int kMostJumps = 3;
+  /// In which the gravity bias comes, so that no hand is jerked when a servo begins.
+  static constexpr std::chrono::milliseconds kBiasRamp{500};
 
   /// \param link  must outlive this
   FalconExchange(const FalconSettings& settings, DeviceLink& link) noexcept;
@@ -50,11 +55,14 @@ class FalconExchange final : public FtdiStreamSink {
   /// \return whether the reply is a reading that can be
   [[nodiscard]] bool take(const Reply& reply, Time now) noexcept;
   [[nodiscard]] bool jumps(Vec3 position_mm, Time now) noexcept;
+  /// What is there of it by now.
+  [[nodiscard]] Vec3 bias_n(Time now) noexcept;
   [[nodiscard]] MotorValues motors(Time now) noexcept;
 
   DeviceLink& link_;
   Vec3 gravity_bias_n_;
   std::array<int, 3> led_order_;
+  std::optional<Time> bias_from_;  ///< when forces began to be sent; nothing: none are
 
   FalconStream stream_;
   bool fresh_ = false;

@@ -149,10 +149,32 @@ TEST_CASE("the gravity bias is there while a servo runs, and not otherwise") {
   Rig rig(true, settings);
   rig.lockstep.steps(3);
   CHECK(rig.emulator.motors() == kNoMotors);
-  rig.push({0.0, 0.0, 1.0});
+  for (int i = 0; i < 600; ++i) rig.push({0.0, 0.0, 1.0});
   CHECK(error_n(rig.emulator.force_n(), {0.0, 0.5, 1.0}) < 0.01);
   rig.lockstep.steps(15);
   CHECK(rig.emulator.motors() == kNoMotors);
+}
+
+TEST_CASE("the gravity bias comes slowly, each time that a servo begins") {
+  FalconSettings settings;
+  settings.gravity_bias_n = {0.0, 1.0, 0.0};
+  Rig rig(true, settings);
+  rig.lockstep.steps(3);
+  for (int round = 0; round < 2; ++round) {
+    double before_n = 0.0;
+    for (int i = 0; i < 600; ++i) {
+      rig.push({});
+      const double bias_n = rig.emulator.force_n().y;
+      // 2 mN a millisecond, and what whole motor values round.
+      REQUIRE(std::abs(bias_n - before_n) < 0.012);
+      before_n = bias_n;
+    }
+    CHECK(before_n == Approx(1.0).margin(0.01));
+    rig.device->halt();
+    rig.push({});
+    CHECK(rig.emulator.motors() == kNoMotors);
+    rig.device->rearm();
+  }
 }
 
 TEST_CASE("a halted Falcon gets no force, bias or other, until it is re-armed") {
