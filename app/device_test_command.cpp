@@ -115,6 +115,7 @@ int test_device(const TestArguments& arguments) {
   test.device = tested.device().info();
   feel(arguments, tested.texture(), run, test);
   test.scheduling = run.scheduling();
+  test.quit = run.stop() == AttendedStop::quit;
   if (test.run && test.run->end == ServoEnd::fault && run.stop() != AttendedStop::signal) {
     test.fault_record = record_path(arguments);
     replace_file(test.fault_record, run.flight_record());

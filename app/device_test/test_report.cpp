@@ -19,13 +19,13 @@ std::string phase_text(const TestPhase& phase, const ServoReport& run) {
                      phase.felt.greatest_force_n);
 }
 
-const char* words_for(const ServoReport& run) {
+const char* words_for(const ServoReport& run, bool quit) {
   if (run.fault == SafetyFault::emergency_stop) return "halted";
   switch (run.end) {
     case ServoEnd::time_limit:
       return "time was up";
     case ServoEnd::hand_stopped:
-      return "stopped by q, or by the device";
+      return quit ? "stopped by q" : "the device had no more to give";
     case ServoEnd::comfort_stop:
       return "let go on request";
     case ServoEnd::fault:
@@ -34,7 +34,7 @@ const char* words_for(const ServoReport& run) {
   return "fault";
 }
 
-std::string run_text(const ServoReport& run) {
+std::string run_text(const ServoReport& run, bool quit) {
   const std::string fault =
       run.fault == SafetyFault::none ? "" : fmt::format(", {}", name_of(run.fault));
   const std::string device =
@@ -47,7 +47,7 @@ std::string run_text(const ServoReport& run) {
       "us\n"
       "ended:   {}{}{}\n",
       run.rate_hz, run.overruns, run.limited_ticks, run.force_limit_n, run.lateness.p50_us,
-      run.lateness.p99_us, run.lateness.p999_us, run.lateness.worst_us, words_for(run), fault,
+      run.lateness.p99_us, run.lateness.p999_us, run.lateness.worst_us, words_for(run, quit), fault,
       device);
 }
 
@@ -93,7 +93,7 @@ std::string test_text(const DeviceTest& test) {
                      scheduling_text(test.scheduling);
   if (!test.run) return text + "ended:   stopped before the test began\n";
   for (const TestPhase& phase : test.phases) text += phase_text(phase, *test.run);
-  text += run_text(*test.run);
+  text += run_text(*test.run, test.quit);
   if (!test.fault_record.empty()) {
     text += "flight record of the fault: " + test.fault_record.string() + "\n";
   }

@@ -21,6 +21,7 @@ struct DeviceTest {
   DeviceInfo device;
   SchedulingObtained scheduling;
   std::optional<ServoReport> run;      ///< nothing: it was stopped before it began
+  bool quit = false;                   ///< by the person, with q
   std::vector<TestPhase> phases;       ///< those that began
   std::filesystem::path fault_record;  ///< empty unless a fault was recorded
 };

@@ -15,6 +15,8 @@ namespace {
 /// Of the Touch, for a library that does not tell.
 constexpr double kTouchMaxForceN = 3.3;
 constexpr double kTouchContinuousForceN = 0.88;
+/// 160 x 120 x 70 mm, about the library's origin.
+constexpr Workspace kTouchWorkspace{{-80.0, -60.0, -35.0}, {80.0, 60.0, 35.0}};
 
 std::atomic<bool> in_use{false};
 
@@ -90,14 +92,20 @@ std::string firmware_of(const Api& api) {
   return digits.str();
 }
 
-std::optional<Workspace> workspace_of(const Api& api) {
-  const auto w = numbers_of<6>(api, kMaxWorkspace);
+std::optional<Workspace> box_of(const Api& api, Enum what) {
+  const auto w = numbers_of<6>(api, what);
   if (!w) return std::nullopt;
   const Workspace space{{(*w)[0], (*w)[1], (*w)[2]}, {(*w)[3], (*w)[4], (*w)[5]}};
   const bool has_volume = space.least_mm.x < space.greatest_mm.x &&
                           space.least_mm.y < space.greatest_mm.y &&
                           space.least_mm.z < space.greatest_mm.z;
   return has_volume ? std::optional(space) : std::nullopt;
+}
+
+/// A device of the library's always has a frame of its own, so there is no going without.
+Workspace workspace_of(const Api& api) {
+  if (const auto usable = box_of(api, kUsableWorkspace)) return *usable;
+  return box_of(api, kMaxWorkspace).value_or(kTouchWorkspace);
 }
 
 std::string joined(const std::string& vendor, const std::string& model) {

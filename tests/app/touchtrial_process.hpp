@@ -13,7 +13,7 @@ struct ProgramResult {
   std::string errors;  ///< standard error
 };
 
-/// Runs `PROGRAM ARGUMENTS` to its end; `folder` takes what it prints meanwhile.
+/// Runs `PROGRAM ARGUMENTS` to its end without any input; `folder` takes what it prints meanwhile.
 [[nodiscard]] ProgramResult run_program(const std::filesystem::path& program,
                                         const std::filesystem::path& folder,
                                         const std::vector<std::string>& arguments);

@@ -112,6 +112,12 @@ void give_temperatures(double* values) {
   for (std::size_t i = 0; i < 6; ++i) values[i] = state->warmth[i];
 }
 
+void give_box(bool tells, Vec3 least_mm, Vec3 greatest_mm, double* values) {
+  if (!tells) return push_error(0x100);
+  copy(least_mm, values);
+  copy(greatest_mm, values + 3);
+}
+
 }  // namespace
 }  // namespace touchtrial::fakes
 
@@ -199,8 +205,11 @@ void hdGetDoublev(std::uint32_t what, double* values) {
       values[0] = 1.25;
       return;
     case 0x2550:
-      copy({-210.0, -110.0, -85.0}, values);
-      return copy({210.0, 205.0, 130.0}, values + 3);
+      return give_box(state->tells_max_workspace, {-210.0, -110.0, -85.0}, {210.0, 205.0, 130.0},
+                      values);
+    case 0x2551:
+      return give_box(state->tells_usable_workspace, {-80.0, -60.0, -40.0}, {80.0, 60.0, 30.0},
+                      values);
     case 0x2602:
       values[0] = 0.75;
       return;

@@ -26,6 +26,8 @@ struct FakeHd {
   std::atomic<std::uint32_t> next_error{0};  ///< pushed once, at the end of a frame
   std::atomic<bool> lost{false};             ///< every frame is a communication error
   std::atomic<bool> tells_temperature{true};
+  std::atomic<bool> tells_usable_workspace{true};
+  std::atomic<bool> tells_max_workspace{true};
   std::array<std::atomic<double>, 6> warmth{};
   std::atomic<int> buttons{0};
   std::atomic<bool> hold_callback{false};  ///< inside the library, until taken back

@@ -96,8 +96,26 @@ TEST_CASE("openhaptics: the device says what it is") {
   CHECK(info.max_rate_hz == 1000.0);
   CHECK_FALSE(info.simulated);
   REQUIRE(info.workspace);
-  CHECK(info.workspace->least_mm == Vec3{-210.0, -110.0, -85.0});
-  CHECK(info.workspace->greatest_mm == Vec3{210.0, 205.0, 130.0});
+  CHECK(info.workspace->least_mm == Vec3{-80.0, -60.0, -40.0});
+  CHECK(info.workspace->greatest_mm == Vec3{80.0, 60.0, 30.0});
+}
+
+TEST_CASE("openhaptics: a device that does not tell where it is usable has the room it reaches") {
+  LoadedHd fake;
+  fake->tells_usable_workspace = false;
+  const auto workspace = OpenHapticsDevice(settings_of_fake()).info().workspace;
+  REQUIRE(workspace);
+  CHECK(workspace->least_mm == Vec3{-210.0, -110.0, -85.0});
+  CHECK(workspace->greatest_mm == Vec3{210.0, 205.0, 130.0});
+}
+
+TEST_CASE("openhaptics: a device that tells no room at all still has a frame of its own") {
+  LoadedHd fake;
+  fake->tells_usable_workspace = false;
+  fake->tells_max_workspace = false;
+  const auto workspace = OpenHapticsDevice(settings_of_fake()).info().workspace;
+  REQUIRE(workspace);
+  CHECK(workspace->greatest_mm - workspace->least_mm == Vec3{160.0, 120.0, 70.0});
 }
 
 TEST_CASE("openhaptics: position and buttons arrive as the library gives them") {

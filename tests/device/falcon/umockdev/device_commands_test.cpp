@@ -1,7 +1,7 @@
 // The program itself with a Falcon on a bus of umockdev's: touchtrial device list and test.
 #include "core/files.hpp"
 #include "device/falcon/rig/dummy_firmware.hpp"
-#include "device/falcon/umockdev/child_process.hpp"
+#include "support/child_process.hpp"
 #include "device/falcon/umockdev/umockdev_falcon.hpp"
 #include "device/falcon/usbfs_shim/emulator_usb_model.hpp"
 #include "support/catch.hpp"

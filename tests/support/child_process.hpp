@@ -13,13 +13,17 @@ class ChildProcess {
  public:
   /// Starts it. \param arguments  the program's path first
   /// \param environment  "NAME=VALUE", on top of this process's
+  /// \param folder  where it works; empty: here
   ChildProcess(const std::vector<std::string>& arguments,
-               const std::vector<std::string>& environment);
+               const std::vector<std::string>& environment, const std::string& folder = "");
   ~ChildProcess();  ///< ends it if it still runs
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
   void write(const std::string& text);
+  /// Its input ends.
+  void close_input();
+  void send_signal(int signal);
   /// Reads until its output, both streams together, holds this. \return false if it ended first, or
   ///   after a minute
   [[nodiscard]] bool says(const std::string& text);

@@ -1,4 +1,4 @@
-#include "device/falcon/umockdev/child_process.hpp"
+#include "support/child_process.hpp"
 
 #include <array>
 #include <csignal>
@@ -16,7 +16,8 @@ constexpr std::chrono::seconds kPatience{60};
 
 /// In the child. Never returns.
 [[noreturn]] void become(std::vector<char*>& arguments, const std::vector<std::string>& environment,
-                         int input, int output) {
+                         const std::string& folder, int input, int output) {
+  if (!folder.empty() && chdir(folder.c_str()) != 0) _exit(127);
   dup2(input, STDIN_FILENO);
   dup2(output, STDOUT_FILENO);
   dup2(output, STDERR_FILENO);
@@ -31,7 +32,7 @@ constexpr std::chrono::seconds kPatience{60};
 }  // namespace
 
 ChildProcess::ChildProcess(const std::vector<std::string>& arguments,
-                           const std::vector<std::string>& environment) {
+                           const std::vector<std::string>& environment, const std::string& folder) {
   std::array<int, 2> to_child{};
   std::array<int, 2> from_child{};
   if (pipe2(to_child.data(), O_CLOEXEC) != 0 || pipe2(from_child.data(), O_CLOEXEC) != 0) return;
@@ -40,7 +41,7 @@ ChildProcess::ChildProcess(const std::vector<std::string>& arguments,
   for (std::string& argument : kept) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
   process_ = fork();
-  if (process_ == 0) become(pointers, environment, to_child[0], from_child[1]);
+  if (process_ == 0) become(pointers, environment, folder, to_child[0], from_child[1]);
   ::close(to_child[0]);
   ::close(from_child[1]);
   input_ = to_child[1];
@@ -53,6 +54,15 @@ ChildProcess::~ChildProcess() {
   if (process_ <= 0) return;
   kill(process_, SIGKILL);
   waitpid(process_, nullptr, 0);
+}
+
+void ChildProcess::close_input() {
+  if (input_ >= 0) ::close(input_);
+  input_ = -1;
+}
+
+void ChildProcess::send_signal(int signal) {
+  if (process_ > 0) kill(process_, signal);
 }
 
 void ChildProcess::write(const std::string& text) {

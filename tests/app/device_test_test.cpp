@@ -1,0 +1,206 @@
+// touchtrial device test and device calibrate as people and scripts run them. Every test waits for
+// what the program says, never for a time, and bears a machine that stands still: a device may then
+// be given up as a fault, which is the program's duty.
+#include "app/touchtrial_process.hpp"
+#include "core/files.hpp"
+#include "support/catch.hpp"
+#include "support/child_process.hpp"
+#include "support/temp_folder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+using namespace touchtrial;
+using nlohmann::json;
+using touchtrial::testing::ChildProcess;
+
+namespace {
+
+/// A folder with device settings of the test's own.
+class DeviceFolder {
+ public:
+  explicit DeviceFolder(const json& settings = json::object()) {
+    replace_file(folder_.path() / "devices.json", settings.dump());
+  }
+
+  [[nodiscard]] std::vector<std::string> words(const std::string& command,
+                                               const std::vector<std::string>& more) const {
+    std::vector<std::string> all = {"device", command};
+    all.insert(all.end(), more.begin(), more.end());
+    all.push_back("--settings");
+    all.push_back((folder_.path() / "devices.json").string());
+    return all;
+  }
+  [[nodiscard]] ProgramResult run(const std::string& command,
+                                  const std::vector<std::string>& more) const {
+    return run_touchtrial(folder_.path(), words(command, more));
+  }
+  /// Beside the test, in this folder.
+  [[nodiscard]] ChildProcess start(const std::string& command,
+                                   const std::vector<std::string>& more) const {
+    std::vector<std::string> all = {TOUCHTRIAL_PROGRAM};
+    for (const std::string& word : words(command, more)) all.push_back(word);
+    return {all, {}, folder_.path().string()};
+  }
+  [[nodiscard]] std::filesystem::path path(const std::string& name) const {
+    return folder_.path() / name;
+  }
+
+ private:
+  TempFolder folder_;
+};
+
+json dhd_settings() {
+  return {{"dhd", {{"library", TOUCHTRIAL_FAKE_DHD}, {"workspace_mm", {160, 160, 110}}}}};
+}
+
+/// Down onto a plane within half a second, then along it, 1 mm deep, for 2.5 s.
+std::string recorded_stroke() {
+  std::ostringstream csv;
+  csv << "time_s,x_mm,y_mm,z_mm\n";
+  for (int ms = 0; ms < 3000; ++ms) {
+    csv << 0.001 * ms << ',' << 30.0 + 0.01 * ms << ",50," << std::max(-1.0, 4.0 - 0.01 * ms)
+        << '\n';
+  }
+  return csv.str();
+}
+
+}  // namespace
+
+TEST_CASE("device test goes from wall to texture in one run, and the hand stays on the plane") {
+  const DeviceFolder folder;
+  const ProgramResult result = folder.run("test", {"simulated", "--seconds", "2", "--json"});
+  INFO(result.errors);
+  REQUIRE(result.exit_code == 0);
+  const json test = json::parse(result.output);
+  CHECK(test.at("driver") == "simulated");
+  CHECK(test.at("scheduling").at("policy").is_string());
+  CHECK(test.at("scheduling").at("memory_locked").is_boolean());
+  const json& run = test.at("run");
+  CHECK(run.at("end") == "time_limit");
+  CHECK(run.at("fault") == "none");
+  CHECK(run.at("rate_hz") > 0.0);
+  CHECK(run.at("overruns") >= 0);
+  CHECK(run.at("lateness_us").at("worst") >= run.at("lateness_us").at("p50"));
+  // 2 s and the fade of 0.1 s; what the machine slept is left out, not made up for.
+  CHECK(run.at("ticks").get<int>() + run.at("overruns").get<int>() == 2100);
+  REQUIRE(test.at("phases").size() == 2);
+  for (const json& phase : test.at("phases")) {
+    CAPTURE(phase.dump());
+    CHECK(phase.at("contact_s") > 0.0);
+    CHECK(phase.at("greatest_force_n") > 0.3);
+  }
+  CHECK(test.at("phases").at(1).at("phase") == "texture");
+  CHECK(test.at("fault_record") == "");
+}
+
+TEST_CASE("device test has a wall alone, and a summary for people") {
+  const ProgramResult result =
+      DeviceFolder().run("test", {"simulated", "--seconds", "0.5", "--wall-only"});
+  REQUIRE(result.exit_code == 0);
+  CHECK_THAT(result.output, holds_text("wall") && holds_text("late:") && holds_text("time was up"));
+  CHECK(result.output.find("texture") == std::string::npos);
+}
+
+TEST_CASE("device test ends at the letter q on a pipe, and not at the pipe's end") {
+  const DeviceFolder folder;
+  ChildProcess quit = folder.start("test", {"simulated", "--seconds", "3000"});
+  REQUIRE(quit.says("wall  "));
+  quit.write("q");
+  CHECK(quit.finish() == 0);
+  CHECK_THAT(quit.output(), holds_text("stopped by q"));
+
+  ChildProcess at_end = folder.start("test", {"simulated", "--seconds", "3000"});
+  at_end.close_input();
+  REQUIRE(at_end.says("wall  "));
+  at_end.send_signal(SIGTERM);
+  CHECK(at_end.finish() == 128 + SIGTERM);
+}
+
+TEST_CASE("device test lets go at a space and still tells what it felt") {
+  const DeviceFolder folder;
+  ChildProcess test = folder.start("test", {"simulated", "--seconds", "3000"});
+  REQUIRE(test.says("wall  "));
+  test.write(" ");
+  CHECK(test.finish() == 0);
+  CHECK_THAT(test.output(), holds_text("let go on request"));
+}
+
+TEST_CASE("device test that a signal ends says so and leaves with the code that a shell expects") {
+  const auto [signal, name] =
+      GENERATE(table<int, std::string>({{SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}}));
+  const DeviceFolder folder;
+  ChildProcess test = folder.start("test", {"simulated", "--seconds", "3000"});
+  REQUIRE(test.says("wall  "));
+  test.send_signal(signal);
+  CHECK(test.finish() == 128 + signal);
+  CHECK_THAT(test.output(), holds_text("stopped by " + name) && holds_text("the force is zero"));
+  CHECK_FALSE(std::filesystem::exists(folder.path("device-test-simulated-fault.csv")));
+}
+
+TEST_CASE("device test replays the recording that the settings name, to its end") {
+  const DeviceFolder folder(json{{"replay", {{"trace", "stroke.csv"}}}});
+  replace_file(folder.path("stroke.csv"), recorded_stroke());
+  const ProgramResult result = folder.run("test", {"replay", "--seconds", "600", "--json"});
+  INFO(result.errors);
+  REQUIRE(result.exit_code == 0);
+  const json test = json::parse(result.output);
+  CHECK(test.at("run").at("end") == "hand_stopped");
+  CHECK(test.at("run").at("contact_s") > 0.0);
+  REQUIRE(test.at("phases").size() == 1);
+  CHECK(std::abs(test.at("phases").at(0).at("greatest_force_n").get<double>() - 0.4) < 1e-9);
+}
+
+TEST_CASE("device test refuses what it cannot open with one line and a remedy") {
+  const DeviceFolder folder;
+  const ProgramResult unknown = folder.run("test", {"simulatd"});
+  CHECK(unknown.exit_code == 2);
+  CHECK(line_count(unknown.errors) == 1);
+  CHECK_THAT(unknown.errors, holds_text("did you mean simulated?"));
+  const ProgramResult no_recording = folder.run("test", {"replay"});
+  CHECK(no_recording.exit_code != 0);
+  CHECK(line_count(no_recording.errors) == 1);
+  CHECK_THAT(no_recording.errors, holds_text("replay.trace"));
+}
+
+TEST_CASE("device list and test use the library that the settings name") {
+  const DeviceFolder folder(dhd_settings());
+  const ProgramResult list = folder.run("list", {"--json"});
+  REQUIRE(list.exit_code == 0);
+  bool found = false;
+  const json devices = json::parse(list.output).at("devices");
+  for (const json& device : devices) {
+    if (device.at("driver") != "dhd") continue;
+    found = true;
+    CHECK(device.at("ready") == true);
+    CHECK(device.at("model") == "omega.3");
+  }
+  CHECK(found);
+
+  ChildProcess test = folder.start("test", {"dhd", "--seconds", "0.5"});
+  const int code = test.finish();
+  INFO(test.output());
+  CHECK_THAT(test.output(), holds_text("dhd: omega.3, serial 4242"));
+  const bool stood_still =
+      code == 1 && std::filesystem::exists(folder.path("device-test-dhd-fault.csv"));
+  CHECK((code == 0 || stood_still));
+}
+
+TEST_CASE("device calibrate wants motors, and every answer") {
+  const ProgramResult simulated = DeviceFolder().run("calibrate", {"simulated"});
+  CHECK(simulated.exit_code == 1);
+  CHECK(line_count(simulated.errors) == 1);
+  CHECK_THAT(simulated.errors, holds_text("no motors"));
+
+  const DeviceFolder folder(dhd_settings());
+  const ProgramResult silent = folder.run("calibrate", {"dhd"});
+  CHECK(silent.exit_code == 2);
+  CHECK_THAT(silent.errors, holds_text("Then press Enter") && holds_text("answer every prompt"));
+  CHECK_FALSE(std::filesystem::exists(folder.path("dhd-certificate.json")));
+}
