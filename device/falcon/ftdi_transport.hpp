@@ -58,7 +58,8 @@ class FtdiTransport {
   /// Queues the first read. \throws DeviceError if it cannot
   /// \param sink  must outlive the stream
   virtual void start_stream(FtdiStreamSink& sink) = 0;
-  /// Ends the stream and waits until nothing is under way. Safe on a lost device.
+  /// Ends the stream and waits until nothing is under way, for some seconds at most: if there still
+  /// is something then, the device counts as lost. Safe on a lost device.
   virtual void stop_stream() noexcept = 0;
   /// Sends without waiting. \return whether it was taken: the one before may still be under way
   [[nodiscard]] virtual bool post(std::span<const std::uint8_t> bytes) noexcept = 0;

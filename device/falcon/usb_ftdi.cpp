@@ -3,6 +3,8 @@
 #include "core/errors.hpp"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 namespace touchtrial::falcon {
 namespace {
@@ -14,6 +16,14 @@ constexpr unsigned kControlTimeoutMs = 1000;
 
 /// Failures of transfers in a row that a bad cable may cause; after more the link counts as lost.
 constexpr int kMostFailures = 20;
+/// For cancelled transfers to come back.
+constexpr std::chrono::seconds kPatience{2};
+
+/// What libusb never gave back stays its own: freed, it would be written to.
+void leave_to_libusb(UsbTransfer& transfer) {
+  static std::vector<UsbTransfer>& left = *new std::vector<UsbTransfer>;
+  left.push_back(std::move(transfer));
+}
 
 }  // namespace
 
@@ -72,7 +82,15 @@ void UsbFtdi::stop_stream() noexcept {
   if (reading_) libusb_cancel_transfer(read_.get());
   if (sending_) libusb_cancel_transfer(send_.get());
   // A transfer belongs to libusb until its callback has run, also on a device that is gone.
-  while (reading_ || sending_) serve(std::chrono::milliseconds(100));
+  const auto give_up = std::chrono::steady_clock::now() + kPatience;
+  while ((reading_ || sending_) && deaf_ <= kMostFailures &&
+         std::chrono::steady_clock::now() < give_up) {
+    serve(std::chrono::milliseconds(100));
+  }
+  if (!reading_ && !sending_) return;
+  lost_ = true;
+  if (std::exchange(reading_, false)) leave_to_libusb(read_);
+  if (std::exchange(sending_, false)) leave_to_libusb(send_);
 }
 
 void UsbFtdi::queue_read() noexcept {
@@ -97,7 +115,10 @@ void UsbFtdi::serve(std::chrono::microseconds at_most) noexcept {
   timeval limit{};
   limit.tv_sec = at_most.count() / 1'000'000;
   limit.tv_usec = at_most.count() % 1'000'000;
-  libusb_handle_events_timeout_completed(context_.get(), &limit, nullptr);
+  const int error = libusb_handle_events_timeout_completed(context_.get(), &limit, nullptr);
+  if (error == LIBUSB_ERROR_INTERRUPTED) return;
+  deaf_ = error == 0 ? 0 : deaf_ + 1;
+  if (deaf_ > kMostFailures) lost_ = true;
 }
 
 void UsbFtdi::note(libusb_transfer_status status) noexcept {

@@ -51,6 +51,7 @@ class UsbFtdi final : public FtdiTransport {
   bool reading_ = false;
   bool sending_ = false;
   int failures_ = 0;
+  int deaf_ = 0;  ///< times in a row that libusb could not tell what happened
   bool lost_ = false;
 };
 

@@ -215,6 +215,24 @@ TEST_CASE("unplugging during the stream loses the link, and closing it is clean"
   CHECK(device.open_handles() == 0);
 }
 
+TEST_CASE(
+    "a bus that gives nothing back is a lost link, and closing does not wait for it for ever") {
+  Loopback model;
+  ShimmedUsbDevice device(model);
+  auto transport = open_usb_falcon("");
+  Collector collector;
+  transport->start_stream(collector);
+  device.deafen(true);
+  const std::array<std::uint8_t, 1> byte = {7};
+  REQUIRE(transport->post(byte));
+  const bool served = GENERATE(true, false);
+  if (served) CHECK(serve_until(*transport, [&] { return transport->lost(); }));
+  transport->stop_stream();
+  CHECK(transport->lost());
+  transport.reset();
+  CHECK(device.open_handles() == 0);
+}
+
 TEST_CASE("a Falcon that is plugged in again is found and opened anew") {
   Loopback model;
   ShimmedUsbDevice device(model);

@@ -244,6 +244,7 @@ void UsbfsBus::complete(BusHandle& handle, usbdevfs_urb& urb, int status, std::s
 }
 
 int UsbfsBus::reap(BusHandle& handle, void* argument) {
+  if (handle.device->deaf) return failed(EIO);
   if (!handle.completed.empty()) {
     *static_cast<usbdevfs_urb**>(argument) = handle.completed.front();
     handle.completed.pop_front();

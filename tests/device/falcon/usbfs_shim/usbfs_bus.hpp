@@ -20,6 +20,7 @@ struct BusDevice {
   bool permitted = true;
   bool used_elsewhere = false;
   bool kernel_driver = false;
+  bool deaf = false;    ///< what completed cannot be had any more
   int claimed_by = -1;  ///< the handle's descriptor
 };
 

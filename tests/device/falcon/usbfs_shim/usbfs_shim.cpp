@@ -36,6 +36,10 @@ void ShimmedUsbDevice::use_elsewhere(bool used) {
   UsbfsBus::instance().change([&] { device_->used_elsewhere = used; });
 }
 
+void ShimmedUsbDevice::deafen(bool deaf) {
+  UsbfsBus::instance().change([&] { device_->deaf = deaf; });
+}
+
 void ShimmedUsbDevice::attach_kernel_driver(bool is_attached) {
   UsbfsBus::instance().change([&] { device_->kernel_driver = is_attached; });
 }

@@ -33,6 +33,7 @@ class ShimmedUsbDevice {
   void allow(bool permitted);     ///< whether the node may be opened
   void use_elsewhere(bool used);  ///< whether another program has claimed it
   void attach_kernel_driver(bool is_attached);
+  void deafen(bool deaf);  ///< whether transfers that ended cannot be had back
   [[nodiscard]] bool has_kernel_driver() const;
   [[nodiscard]] bool is_claimed() const;
   [[nodiscard]] int open_handles() const;  ///< that libusb has not closed
