@@ -40,11 +40,8 @@ std::string run_text(const ServoReport& run, bool quit) {
   const std::string device =
       run.device_fault == DeviceFault::none ? "" : fmt::format(" ({})", name_of(run.device_fault));
   return fmt::format(
-      "ticks:   {:.1f} a second, {} left out, {} with a force that safety changed (limit {:.2f} "
-      "N)\n"
-      "late:    half within {:.0f} us, 99 % within {:.0f} us, 99.9 % within {:.0f} us, worst "
-      "{:.0f} "
-      "us\n"
+      "ticks:   {:.1f} a second, {} left out; {} forces changed by safety (limit {:.2f} N)\n"
+      "late:    half within {:.0f} us, 99 % {:.0f} us, 99.9 % {:.0f} us, worst {:.0f} us\n"
       "ended:   {}{}{}\n",
       run.rate_hz, run.overruns, run.limited_ticks, run.force_limit_n, run.lateness.p50_us,
       run.lateness.p99_us, run.lateness.p999_us, run.lateness.worst_us, words_for(run, quit), fault,
