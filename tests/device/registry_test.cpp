@@ -19,6 +19,14 @@ TEST_CASE("every driver has a name of its own and says what it is") {
   CHECK(names.count("simulated") == 1);
 }
 
+TEST_CASE("every driver has a place in the device settings") {
+  for (const DeviceDriver& driver : device_drivers()) {
+    INFO(driver.name);
+    const std::string text = R"({")" + driver.name + R"(": {"limits": {"max_force_n": 1.5}}})";
+    CHECK(parse_device_settings(text, "", "test").use_of(driver.name).limits.max_force_n == 1.5);
+  }
+}
+
 TEST_CASE("every driver is listed whether it has a device or not") {
   std::set<std::string> listed;
   for (const DeviceListing& listing : list_devices({})) {
