@@ -46,8 +46,8 @@ struct DeviceDriver {
 /// \throws UsageError naming the nearest driver if there is none of this name
 [[nodiscard]] const DeviceDriver& device_driver(const std::string& name);
 
-/// \throws UsageError naming the nearest driver if there is none of this name, DeviceError with the
-///   remedy if it cannot be opened
+/// \throws UsageError naming the nearest driver if there is none of this name; DeviceError, or
+///   FileError for a file that it needs, with the remedy if it cannot be opened
 [[nodiscard]] std::unique_ptr<HapticDevice> open_device(const std::string& driver,
                                                         const DeviceSettings& settings);
 

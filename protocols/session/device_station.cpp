@@ -74,7 +74,8 @@ std::string DeviceStation::open_again() try {
   }
   if (placement_) placed_.emplace(*device_, *placement_);
   return "";
-} catch (const DeviceError& error) {
+} catch (const Error& error) {
+  // A device that lost its power may also want its firmware's file, which a person can mend too.
   close();
   return error.what();
 }

@@ -29,7 +29,8 @@ class Attendant {
 /// at the beginning and after every interruption the attendant has to say so.
 class DeviceStation final : public DeviceSupply {
  public:
-  /// Opens the device; throws DeviceError with the remedy if it cannot.
+  /// Opens the device; throws DeviceError, or FileError for its firmware, with the remedy if it
+  /// cannot.
   using Open = std::function<std::unique_ptr<HapticDevice>()>;
 
   /// \param placement  nothing for a device that speaks the plane frame

@@ -1,5 +1,6 @@
 #include "protocols/session/device_station.hpp"
 
+#include "core/errors.hpp"
 #include "protocols/session/fake_station.hpp"
 #include "support/catch.hpp"
 
@@ -47,6 +48,23 @@ TEST_CASE("what is missing is said until it is there") {
   CHECK(bench.station.make_ready() == SupplyState::not_yet);
   CHECK(bench.helper.needs.back() ==
         "the device is not homed; move its handle through the whole range");
+}
+
+TEST_CASE("a file that the device needs and that is missing is said and waited for as well") {
+  Cable cable;
+  FakeDevice* device = nullptr;
+  Helper helper{cable};
+  int tries = 0;
+  DeviceStation station(
+      [&, open = opener(cable, device)] {
+        if (++tries == 1) throw FileError("fw.bin: cannot be read; correct falcon.firmware");
+        return open();
+      },
+      std::nullopt, helper);
+  CHECK(station.make_ready() == SupplyState::not_yet);
+  REQUIRE(helper.needs.size() == 1);
+  CHECK(helper.needs.front() == "fw.bin: cannot be read; correct falcon.firmware");
+  CHECK(station.make_ready() == SupplyState::ready);
 }
 
 TEST_CASE("a device that was lost is opened anew and armed anew") {
