@@ -23,7 +23,9 @@ void fill_in(UsbFalcon& falcon, libusb_device* device) {
 
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  for (const std::string& word : words) {
+    text += (text.empty() ? "" : ", ") + (word.empty() ? std::string("one without") : word);
+  }
   return text;
 }
 
@@ -51,8 +53,8 @@ UsbHandle open_by_serial(const std::vector<UsbDevice>& falcons, const std::strin
     }
   }
   if (!trouble.empty()) throw DeviceError(trouble);
-  throw DeviceError("falcon: none has the serial number " + serial + ", but there is " +
-                    joined(seen) + "; correct falcon.serial in the device settings");
+  throw DeviceError(one_line("falcon: none has the serial number " + serial + ", but there is " +
+                             joined(seen) + "; correct falcon.serial in the device settings"));
 }
 
 }  // namespace

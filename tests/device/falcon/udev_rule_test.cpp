@@ -55,6 +55,15 @@ TEST_CASE("the udev rule is installed once, mended when it was changed, and told
   CHECK(text_of(installed) == rule);
 }
 
+TEST_CASE("a relative root of the udev rule is the caller's") {
+  const TempFolder folder;
+  const fs::path before = fs::current_path();
+  fs::current_path(folder.path());
+  CHECK(install("--root package").status == 0);
+  fs::current_path(before);
+  CHECK(fs::exists(folder.path() / "package/etc/udev/rules.d" / kRule));
+}
+
 TEST_CASE("the udev rule names the Falcon alone") {
   const std::string rule = text_of(kSource / "config/udev" / kRule);
   CHECK_THAT(rule, holds_text("ATTR{idVendor}==\"0403\", ATTR{idProduct}==\"cb48\""));

@@ -136,6 +136,12 @@ TEST_CASE("of several Falcons the settings have to name one") {
   CHECK(one.open_handles() == 0);
 }
 
+TEST_CASE("a Falcon without a serial number is told as one where another number was asked for") {
+  Loopback model;
+  const ShimmedUsbDevice device(model, {.serial = ""});
+  CHECK_THAT(refusal("A\nB"), holds_text("number A B, but there is one without; correct"));
+}
+
 TEST_CASE("requests and bytes reach the chip, and its packets come back with their status") {
   Loopback model;
   const ShimmedUsbDevice device(model);
