@@ -75,6 +75,13 @@ const char* hanging_on(CalibrationAxis axis) {
          "weight on its end.";
 }
 
+/// "passed", or why not.
+const char* verdict_on(const AxisResult& result) {
+  if (result.passed) return "passed";
+  return is_within_tolerance(result) ? "FAILED, the handle did not come to rest"
+                                     : "FAILED, more than 10 % off";
+}
+
 class Calibration {
  public:
   explicit Calibration(const CalibrateArguments& arguments)
@@ -123,7 +130,7 @@ class Calibration {
     const HoldFigures loaded = figures(std::string(name_of(axis)), HoldMeasurement::Mode::hold);
     const AxisResult result = judge_axis(axis, mass_g, empty, loaded);
     tell(fmt::format("axis {}: {:.3f} N commanded for {:.3f} N: {}\n", name_of(axis),
-                     result.measured_n, result.expected_n, result.passed ? "passed" : "FAILED"));
+                     result.measured_n, result.expected_n, verdict_on(result)));
     return result;
   }
 
@@ -151,12 +158,11 @@ std::string result_text(const Certificate& certificate, const fs::path& path) {
   for (const AxisResult& r : certificate.axes) {
     text += fmt::format("axis {}: {:.3f} N for {:.3f} N ({:+.1f} %), {:.3f} N across: {}\n",
                         name_of(r.axis), r.measured_n, r.expected_n,
-                        100.0 * (r.measured_n / r.expected_n - 1.0), r.cross_n,
-                        r.passed ? "passed" : "failed");
+                        100.0 * (r.measured_n / r.expected_n - 1.0), r.cross_n, verdict_on(r));
   }
   const FreeAirResult& air = certificate.free_air;
   text += fmt::format("free air: noise {:.3f} mm, drift {:.3f} mm, holding takes {:.3f} N: {}\n",
-                      air.noise_mm, air.drift_mm, air.residual_n, air.passed ? "passed" : "failed");
+                      air.noise_mm, air.drift_mm, air.residual_n, air.passed ? "passed" : "FAILED");
   return text + fmt::format("{}\n{}: SHA-256 {}\n", certificate.passed() ? "passed" : "FAILED",
                             path.string(), to_hex(sha256_of_file(path)));
 }
