@@ -13,6 +13,7 @@
 #include "device/servo/paced_clock.hpp"
 
 #include <chrono>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -42,12 +43,11 @@ class Monitor {
       : arguments_(arguments),
         settings_(device_settings_for(arguments.settings)),
         device_(open()),
-        window_({"Touchtrial: device monitor, " + arguments.driver, arguments.size_px[0],
-                 arguments.size_px[1], false}),
         history_(arguments.rate_hz),
         run_(*device_, arguments.rate_hz,
              stricter_of(SafetyLimits{}, settings_.use_of(arguments.driver).limits)),
-        signals_(*device_, run_.control()) {
+        window_({"Touchtrial: device monitor, " + arguments.driver, arguments.size_px[0],
+                 arguments.size_px[1], false}) {
     if (!arguments_.screenshot.empty()) window_.keep_pictures();
     window_.on_stop_key([this] { run_.comfort_stop(); });
     run_.wall().put(arguments_.wall);
@@ -68,7 +68,11 @@ class Monitor {
     if (!arguments_.screenshot.empty()) {
       replace_file(arguments_.screenshot, png_bytes(window_.picture()));
     }
-    if (!StopOnSignals::asked()) refuse_fault();
+    if (!StopOnSignals::asked()) {
+      refuse_fault();
+      return 0;
+    }
+    std::fprintf(stderr, "touchtrial: %s\n", StopOnSignals::message().c_str());
     return StopOnSignals::exit_code();
   }
 
@@ -129,10 +133,9 @@ class Monitor {
   PointerExchange pointer_;
   PacedClock clock_{PacedClock::Time{}};
   std::unique_ptr<HapticDevice> device_;
-  GlfwWindow window_;
   MonitorHistory history_;
-  MonitorRun run_;  ///< its servo ends before the device and the window go
-  StopOnSignals signals_;
+  MonitorRun run_;     ///< its servo ends before the device goes
+  GlfwWindow window_;  ///< who sees it can already stop the program by a signal
 };
 
 int monitor(const MonitorArguments& arguments) {

@@ -38,7 +38,8 @@ class WatchedClock final : public ServoClock {
 
 }  // namespace
 
-MonitorRun::MonitorRun(HapticDevice& device, double rate_hz, const SafetyLimits& limits)
+MonitorRun::MonitorRun(HapticDevice& device, double rate_hz, const SafetyLimits& limits,
+                       WatchdogTime& time)
     : device_(device),
       options_{.limit_ticks = static_cast<std::int64_t>(kLongestRunS * rate_hz),
                .fade_ticks = static_cast<std::int64_t>(kFadeS * rate_hz),
@@ -46,31 +47,37 @@ MonitorRun::MonitorRun(HapticDevice& device, double rate_hz, const SafetyLimits&
                .rate_hz = rate_hz},
       wall_(rate_hz),
       ring_(static_cast<std::size_t>(kRingS * rate_hz)),
-      sink_(ring_) {}
+      sink_(ring_),
+      watchdog_(device, control_, heartbeat_, Watchdog::kSilence, time),
+      signals_(device, control_) {}
 
 MonitorRun::~MonitorRun() {
   control_.finish();
 }
 
 void MonitorRun::start() {
-  if (running()) return;
+  if (running() || StopOnSignals::asked()) return;
   control_.reset();
   device_.rearm();
   waited_for_ = false;
   has_run_ = true;
+  watchdog_.arm();
   thread_.start([this] { run(); });
 }
 
 void MonitorRun::run() noexcept {
   PacedClock paced(PacedClock::usual_spin(thread_.scheduling().policy));
   WatchedClock clock(paced, worst_late_ns_);
-  report_ =
-      run_servo(device_, wall_, sink_, options_, clock, {.control = &control_, .state = &states_});
+  report_ = run_servo(device_, wall_, sink_, options_, clock,
+                      {.control = &control_, .state = &states_, .heartbeat = &heartbeat_});
 }
 
 bool MonitorRun::running() {
   if (thread_.running()) return true;
-  if (!waited_for_) thread_.wait();
+  if (!waited_for_) {
+    watchdog_.disarm();
+    thread_.wait();
+  }
   waited_for_ = true;
   return false;
 }

@@ -3,32 +3,36 @@
 
 #include "app/monitor/monitor_history.hpp"
 #include "app/monitor/test_wall.hpp"
+#include "device/platform/stop_signals.hpp"
+#include "device/safety/watchdog.hpp"
 #include "device/servo/sample_ring.hpp"
 #include "device/servo/servo.hpp"
 #include "device/servo/servo_thread.hpp"
 
 #include <atomic>
+#include <cstdint>
 #include <optional>
 
 namespace touchtrial {
 
-/// Runs a device against the test wall. Belongs to one thread; none of its functions waits for the
-/// servo but the destructor.
+/// Runs a device against the test wall, under a watchdog, and halts it by signals as long as this
+/// lives. Belongs to one thread; none of its functions waits for the servo but the destructor.
 class MonitorRun {
  public:
   /// \param device  must outlive this
   /// \param rate_hz  1,000 to 10,000
-  MonitorRun(HapticDevice& device, double rate_hz, const SafetyLimits& limits);
+  /// \throws std::logic_error if there is another StopOnSignals
+  MonitorRun(HapticDevice& device, double rate_hz, const SafetyLimits& limits,
+             WatchdogTime& time = system_watchdog_time());
   /// The force fades to zero and the servo ends.
   ~MonitorRun();
   MonitorRun(const MonitorRun&) = delete;
   MonitorRun& operator=(const MonitorRun&) = delete;
 
-  /// A person's decision: re-arms the device and runs the servo. Does nothing while it runs.
+  /// A person's decision: re-arms the device and runs the servo. Does nothing while it runs, or
+  /// once a signal has asked the program to end.
   void start();
   void comfort_stop() noexcept { control_.comfort_stop(); }
-  /// For those who may stop it from elsewhere: signal handlers.
-  [[nodiscard]] ServoControl& control() noexcept { return control_; }
   [[nodiscard]] bool running();
   /// How the last run ended; nothing while one runs, or before the first.
   [[nodiscard]] std::optional<ServoReport> ended();
@@ -50,12 +54,15 @@ class MonitorRun {
   SampleRing ring_;
   RingSink sink_;
   ServoControl control_;
+  std::atomic<std::int64_t> heartbeat_{0};
+  Watchdog watchdog_;
+  StopOnSignals signals_;
   LatestValue<ServoState> states_;
   std::atomic<std::int64_t> worst_late_ns_{-1};  ///< since the last `collect`
   ServoReport report_;
   bool waited_for_ = true;
   bool has_run_ = false;
-  ServoThread thread_;  ///< last: it ends before what it uses
+  ServoThread thread_;  ///< last: it ends before what it uses, and before what guards it
 };
 
 }  // namespace touchtrial

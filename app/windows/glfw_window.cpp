@@ -87,6 +87,10 @@ struct GlfwWindow::State {
     });
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;
+    // ImGui's backend would show the cursor again with every picture.
+    if (options.hide_cursor) {
+      ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NoMouseCursorChange;
+    }
     scale = screen_scale(window);
     load_fonts(scale.density);
     ImGui_ImplGlfw_InitForOpenGL(window, true);

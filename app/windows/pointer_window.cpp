@@ -14,7 +14,7 @@ namespace {
 constexpr const char* kTitle = "Touchtrial: pilot with a mouse, visual and not blind";
 constexpr const char* kHint = "Hold the left button to touch the plane. Space: stop.";
 constexpr double kMarginUnits = 40.0;
-constexpr double kHintUnits = 40.0;
+constexpr double kHintUnits = 40.0;  ///< two lines
 /// Frames after which a stylus that has not moved on belongs to no running servo.
 constexpr int kFramesUntilStale = 30;
 
@@ -38,9 +38,21 @@ ImVec2 to_imgui(Vec2 point) {
 void begin_canvas(Vec2 size) {
   ImGui::SetNextWindowPos({0.0F, 0.0F});
   ImGui::SetNextWindowSize(to_imgui(size));
+  // Padding would cut a rim off what is drawn.
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0F, 0.0F});
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0F);
   ImGui::Begin("canvas", nullptr,
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoBackground |
                    ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoInputs);
+  ImGui::PopStyleVar(2);
+}
+
+/// \return the height of the line
+double draw_centred(ImDrawList& list, Vec2 top, const std::string& text) {
+  const ImVec2 size = ImGui::CalcTextSize(text.c_str());
+  const Vec2 at = {std::round(top.x - static_cast<double>(size.x) / 2.0), std::round(top.y)};
+  list.AddText(to_imgui(at), kText, text.c_str());
+  return static_cast<double>(size.y);
 }
 
 }  // namespace
@@ -85,7 +97,9 @@ void PointerWindow::draw_frame() {
   list.AddRectFilled(to_imgui(corner_), to_imgui(end), kPlane);
   list.AddRect(to_imgui(corner_), to_imgui(end), kEdge);
   const double density = window_.density();
-  list.AddText(to_imgui({corner_.x, size.y - (kHintUnits + 8.0) * density}), kText, hint().c_str());
+  const Vec2 below = {size.x / 2.0, end.y + 20.0 * density};
+  const double line = draw_centred(list, below, kHint);
+  draw_centred(list, below + Vec2{0.0, line + 4.0 * density}, scale_in_words());
   draw_pointer();
   ImGui::End();
   window_.end_frame();
@@ -100,12 +114,12 @@ void PointerWindow::draw_pointer() {
   draw_stylus(is_live ? at : pointer_.position, pointer_.pressed, is_live, window_.density());
 }
 
-std::string PointerWindow::hint() const {
+std::string PointerWindow::scale_in_words() const {
   const double shrunk = mm_per_unit_ / window_.mm_per_unit();
   std::string scale = "true size";
   if (!window_.scale_is_known()) scale = "size not known: the monitor does not tell its own";
-  if (shrunk > 1.001) scale = fmt::format("shown at 1 : {:.2f}, for want of room", shrunk);
-  return fmt::format("{}    {:.0f} x {:.0f} mm, {}", kHint, plane_mm_.x, plane_mm_.y, scale);
+  if (shrunk >= 1.005) scale = fmt::format("shown at 1 : {:.2f}, for want of room", shrunk);
+  return fmt::format("{:.0f} x {:.0f} mm, {}", plane_mm_.x, plane_mm_.y, scale);
 }
 
 }  // namespace touchtrial

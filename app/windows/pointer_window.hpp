@@ -41,7 +41,7 @@ class PointerWindow {
   void publish(const WindowPointer& pointer);
   void place_plane();
   void draw_pointer();
-  [[nodiscard]] std::string hint() const;
+  [[nodiscard]] std::string scale_in_words() const;
 
   PointerExchange& exchange_;
   Vec2 plane_mm_;

@@ -5,9 +5,12 @@
 #include "app/monitor/test_wall.hpp"
 #include "core/random.hpp"
 #include "device/simulated/simulated_hand.hpp"
+#include "protocols/session/still_time.hpp"
 #include "support/catch.hpp"
 
+#include <atomic>
 #include <chrono>
+#include <csignal>
 #include <functional>
 #include <limits>
 #include <thread>
@@ -144,16 +147,21 @@ class WatchedHand final : public HapticDevice {
  public:
   WatchedHand() : random_(1, "monitor test"), hand_(options(), path()) {}
   [[nodiscard]] DeviceInfo info() const override { return hand_.info(); }
-  [[nodiscard]] DeviceStatus read(DeviceSample& s) noexcept override { return hand_.read(s); }
+  [[nodiscard]] DeviceStatus read(DeviceSample& s) noexcept override {
+    while (stands_still && halts == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return hand_.read(s);
+  }
   [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override {
     last_n = force_n;
     return hand_.write(force_n);
   }
-  void halt() noexcept override {}
+  void halt() noexcept override { ++halts; }
   void rearm() noexcept override { ++rearmed; }
 
   Vec3 last_n{1.0, 1.0, 1.0};
   int rearmed = 0;
+  std::atomic<int> halts{0};
+  std::atomic<bool> stands_still{false};  ///< reading comes back only once the device was halted
 
  private:
   static HandOptions options() { return {.explore_s = 3600.0}; }
@@ -167,7 +175,7 @@ TEST_CASE("a monitored device feels the wall, stops by request with zero force, 
   WatchedHand hand;
   MonitorHistory history(1000.0);
   {
-    MonitorRun run(hand, 1000.0, {});
+    MonitorRun run(hand, 1000.0, {}, still_time());
     CHECK_FALSE(run.ended());
     run.wall().put(true);
     run.start();
@@ -183,6 +191,37 @@ TEST_CASE("a monitored device feels the wall, stops by request with zero force, 
     CHECK(run.running());
     CHECK(hand.rearmed == 2);
   }
+  CHECK(hand.last_n == Vec3{});
+}
+
+TEST_CASE("a signal halts a monitored device under force, and nobody resumes it") {
+  const int signal = GENERATE(SIGINT, SIGTERM);
+  WatchedHand hand;
+  MonitorRun run(hand, 1000.0, {}, still_time());
+  run.wall().put(true);
+  run.start();
+  CHECK(comes([&] { return run.newest().force_n.z > 0.3; }));
+  std::raise(signal);
+  CHECK(comes([&] { return run.ended().has_value(); }));
+  CHECK(run.ended()->fault == SafetyFault::emergency_stop);
+  CHECK(hand.last_n == Vec3{});
+  CHECK(hand.halts == 1);
+  CHECK(StopOnSignals::exit_code() == 128 + signal);
+  run.start();
+  CHECK_FALSE(run.running());
+  CHECK(hand.rearmed == 1);
+}
+
+TEST_CASE("a monitored device whose driver stands still is halted by the watchdog") {
+  WatchedHand hand;
+  MonitorRun run(hand, 1000.0, {});
+  run.start();
+  // A machine that stands still by itself may be first.
+  CHECK(comes([&] { return run.newest().tick > 10 || run.ended(); }));
+  hand.stands_still = true;
+  CHECK(comes([&] { return run.ended().has_value(); }));
+  CHECK(run.ended()->fault == SafetyFault::stalled);
+  CHECK(hand.halts == 1);
   CHECK(hand.last_n == Vec3{});
 }
 

@@ -13,6 +13,7 @@
 #include <functional>
 #include <memory>
 
+#include <GLFW/glfw3.h>
 #include <stdlib.h>
 
 namespace touchtrial {
@@ -119,6 +120,15 @@ TEST_CASE("a window that closes under a pressed stylus ends the servo with zero 
   CHECK(station.report.device_fault == DeviceFault::link_lost);
   CHECK(station.last.force_n_ == Vec3{});
   screen->release();
+}
+
+TEST_CASE("the pointer itself is hidden, so that only the stylus shows where the hand is") {
+  const auto screen = VirtualScreen::open();
+  if (!screen) return;
+  PointerExchange exchange;
+  PointerWindow window(exchange, {50.0, 50.0});
+  for (int frame = 0; frame < 5; ++frame) window.draw_frame();
+  CHECK(glfwGetInputMode(glfwGetCurrentContext(), GLFW_CURSOR) == GLFW_CURSOR_HIDDEN);
 }
 
 TEST_CASE("the space bar asks to stop") {

@@ -25,6 +25,17 @@ TEST_CASE("an observer of the drawn path tells a weak grating from a strong one"
   CHECK(right >= 0.9);
 }
 
+TEST_CASE("the observer also names gratings and strokes that no setting was chosen by") {
+  const auto held_out = [](std::vector<Grating> pair) {
+    const TextureMaker make = gratings(std::move(pair));
+    return share_named_rightly(2, kStrokes, {make, 500'000}, {make, 900'000});
+  };
+  CHECK(held_out({{3.0, 0.04}, {5.0, 0.04}}) >= 0.9);
+  CHECK(held_out({{5.0, 0.04}, {8.0, 0.04}}) >= 0.9);
+  CHECK(held_out({{6.0, 0.04}, {7.5, 0.04}}) >= 0.9);
+  CHECK(held_out({{6.0, 0.04}, {6.0, 0.06}}) >= 0.9);
+}
+
 TEST_CASE("an observer of the drawn path guesses where two textures are the same") {
   const double right = share_named_rightly(2, kStrokes, gratings({{5.0, 0.05}, {5.0, 0.05}}));
   CHECK(right == 0.5);

@@ -177,24 +177,40 @@ class PathObserver {
 /// Makes a fresh force source for a presentation of texture `index`.
 using TextureMaker = std::function<std::unique_ptr<ForceSource>(std::size_t index)>;
 
+/// What an observer strokes: textures, and the seed of the first stroke over each.
+struct Presentations {
+  TextureMaker make;
+  std::uint64_t first_stroke = 0;
+};
+
 /// The share of strokes that an observer names rightly, who has learned from as many others. The
 /// same strokes go over each texture.
-inline double share_named_rightly(std::size_t textures, int strokes, const TextureMaker& make,
-                                  const MouseOptions& options = {}) {
+inline double share_named_rightly(std::size_t textures, int strokes, const Presentations& to_learn,
+                                  const Presentations& to_name, const MouseOptions& options = {}) {
+  const auto features_over = [&](const Presentations& shown, std::size_t texture, int stroke) {
+    return seen_features(*shown.make(texture),
+                         shown.first_stroke + static_cast<std::uint64_t>(stroke), options);
+  };
   std::vector<std::vector<PathFeatures>> learned(textures);
   for (std::size_t texture = 0; texture < textures; ++texture) {
     for (int stroke = 0; stroke < strokes; ++stroke) {
-      learned[texture].push_back(seen_features(*make(texture), 1000 + stroke, options));
+      learned[texture].push_back(features_over(to_learn, texture, stroke));
     }
   }
   const PathObserver observer(learned);
   int right = 0;
   for (std::size_t texture = 0; texture < textures; ++texture) {
     for (int stroke = 0; stroke < strokes; ++stroke) {
-      right += observer.name(seen_features(*make(texture), 9000 + stroke, options)) == texture;
+      right += observer.name(features_over(to_name, texture, stroke)) == texture;
     }
   }
   return right / static_cast<double>(strokes * static_cast<int>(textures));
+}
+
+/// The same with the strokes over which the device's settings were chosen.
+inline double share_named_rightly(std::size_t textures, int strokes, const TextureMaker& make,
+                                  const MouseOptions& options = {}) {
+  return share_named_rightly(textures, strokes, {make, 1000}, {make, 9000}, options);
 }
 
 }  // namespace touchtrial

@@ -1,0 +1,74 @@
+// Whether a pilot with a mouse shows the study's own textures: docs/devices/mouse.md. Nothing of
+// the mouse was chosen by these.
+#include "core/plane_geometry.hpp"
+#include "device/mouse/path_observer.hpp"
+#include "engine/extraction.hpp"
+#include "engine/rendering/gains.hpp"
+#include "protocols/session/model_force.hpp"
+#include "stimuli/generator.hpp"
+#include "support/catch.hpp"
+
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+namespace {
+
+constexpr int kStrokes = 40;
+constexpr int kSidePx = 300;  ///< 60 mm, more than any stroke's reach
+
+/// Exemplars as a study with the default options presents them.
+class PreparedTextures {
+ public:
+  PreparedTextures(const std::vector<std::string>& labels, int exemplar) {
+    std::vector<FieldView> views;
+    for (const std::string& label : labels) {
+      const GreyImage image = generate_stimulus(label, kDefaultStimuliSeed, kSidePx, exemplar);
+      fields_.push_back(make_texture_field(extract_texture<double>(image, {}).texture, options_));
+    }
+    for (const TextureField& field : fields_) views.push_back(field.view());
+    const StudyGains gains = choose_gains(views, options_);
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      models_.emplace_back(views[i], options_, gains.of_field[i]);
+    }
+  }
+
+  [[nodiscard]] TextureMaker maker() const {
+    return [this](std::size_t index) { return std::make_unique<ModelForce>(models_[index]); };
+  }
+
+ private:
+  RenderingOptions options_;
+  std::vector<TextureField> fields_;
+  std::vector<RenderingModel> models_;
+};
+
+TEST_CASE("an observer of the drawn path names brick and cloth as a study presents them") {
+  const PreparedTextures learned({"brick", "cloth"}, 1);
+  const PreparedTextures others({"brick", "cloth"}, 2);
+  const double same_picture =
+      share_named_rightly(2, kStrokes, {learned.maker(), 500'000}, {learned.maker(), 900'000});
+  const double other_picture =
+      share_named_rightly(2, kStrokes, {learned.maker(), 500'000}, {others.maker(), 900'000});
+  CHECK(same_picture >= 0.65);
+  // Hardly better than guessing.
+  CHECK(other_picture >= 0.4);
+  CHECK(other_picture < 0.7);
+}
+
+TEST_CASE("an observer of the drawn path names the five textures as a study presents them") {
+  const std::vector<std::string> labels = {"bark", "cloth", "pebbles", "straw", "brick"};
+  const PreparedTextures learned(labels, 1);
+  const PreparedTextures others(labels, 2);
+  const double same_picture =
+      share_named_rightly(5, kStrokes, {learned.maker(), 500'000}, {learned.maker(), 900'000});
+  const double other_picture =
+      share_named_rightly(5, kStrokes, {learned.maker(), 500'000}, {others.maker(), 900'000});
+  CHECK(same_picture >= 0.45);
+  CHECK(other_picture >= 0.35);
+}
+
+}  // namespace
+}  // namespace touchtrial
