@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "device/servo/paced_clock.hpp"
+#include "device/servo/running_servo.hpp"
 #include "device/servo/servo_names.hpp"
 
 #include <algorithm>
@@ -93,19 +94,19 @@ std::optional<ServoReport> AttendedRun::run(const PhaseName& phase, ForceSource&
   shown_at_ = monotonic_now();
   ServoReport report;
   const WatchdogGuard guard(watchdog_);
-  thread_.start([&] {
+  RunningServo running(thread_, control_, [&] {
     NobodyKeeps nobody;
     PacedClock clock(PacedClock::usual_spin(thread_.scheduling().policy));
     report = run_servo(device_, force, sink == nullptr ? static_cast<SampleSink&>(nobody) : *sink,
                        options_, clock, {&control_, &state_, &heartbeat_, &recorder_});
   });
-  while (thread_.running()) {
+  while (running.runs()) {
     opened_.attend();
     take_keys();
     if (is_done && is_done()) control_.finish();
     show(phase);
   }
-  thread_.wait();
+  running.finish();
   end_line();
   // A stop holds for good; an end that was only this run's must not end the next one.
   if (stop_ == AttendedStop::none) control_.reset();

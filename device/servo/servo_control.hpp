@@ -20,6 +20,11 @@ class ServoControl {
   void stall() noexcept { ask(kStall); }
   /// Before a new run. Emergency stops and stalls are only taken back by this.
   void reset() noexcept { requests_.store(0, std::memory_order_release); }
+  /// Before a new run, with emergency stops and stalls held: one that comes at this very moment is
+  /// not lost.
+  void forget_wishes() noexcept {
+    requests_.fetch_and(kEmergencyStop | kStall, std::memory_order_acq_rel);
+  }
 
   [[nodiscard]] bool finish_asked() const noexcept { return is_asked(kFinish); }
   [[nodiscard]] bool comfort_stop_asked() const noexcept { return is_asked(kComfortStop); }

@@ -3,6 +3,7 @@
 #include "device/platform/stop_signals.hpp"
 #include "device/servo/flight_recorder.hpp"
 #include "device/servo/paced_clock.hpp"
+#include "device/servo/running_servo.hpp"
 #include "device/servo/sample_ring.hpp"
 #include "device/servo/servo_thread.hpp"
 #include "protocols/session/interruption_words.hpp"
@@ -13,7 +14,6 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
-#include <future>
 #include <optional>
 #include <utility>
 
@@ -26,51 +26,6 @@ constexpr std::chrono::milliseconds kBetweenLooks{5};
 
 /// A writer that is late by this many samples loses some: 6.5 s at 10 kHz.
 constexpr std::size_t kLargestRing = std::size_t{1} << 16U;
-
-/// A servo that runs on its thread. However it is left, force is off and the thread at rest.
-class RunningServo {
- public:
-  RunningServo(ServoThread& thread, ServoControl& control, std::function<void()> work)
-      : thread_(thread), control_(control) {
-    std::promise<void> promise;
-    ended_ = promise.get_future();
-    thread_.start([work = std::move(work),
-                   promise = std::make_shared<std::promise<void>>(std::move(promise))] {
-      const EndTeller teller{*promise};
-      work();
-    });
-  }
-  ~RunningServo() {
-    if (!ended_.valid()) return;
-    control_.emergency_stop();
-    try {
-      finish();
-    } catch (...) {  // Another exception is on its way.
-    }
-  }
-  RunningServo(const RunningServo&) = delete;
-  RunningServo& operator=(const RunningServo&) = delete;
-
-  [[nodiscard]] bool runs() const {
-    return ended_.wait_for(kBetweenLooks) != std::future_status::ready;
-  }
-  /// Throws what the work threw.
-  void finish() {
-    ended_.get();
-    thread_.wait();
-  }
-
- private:
-  /// Tells of the end also when the work throws.
-  struct EndTeller {
-    std::promise<void>& promise;
-    ~EndTeller() { promise.set_value(); }
-  };
-
-  ServoThread& thread_;
-  ServoControl& control_;
-  std::future<void> ended_;
-};
 
 ServoHealth health_of(const ServoReport& report, std::int64_t lost, std::int64_t held) {
   return {.rate_hz = report.rate_hz,
@@ -119,7 +74,7 @@ struct RealTimeExplorer::Machinery {
 ServoReport RealTimeExplorer::Machinery::run(HapticDevice& device, const RenderingModel& model,
                                              SampleSink& sink, const ServoOptions& servo,
                                              Participant& participant) {
-  if (!control.emergency_stop_asked()) control.reset();
+  control.forget_wishes();
   ModelForce force(model);
   const std::unique_ptr<ServoClock> clock = make_clock();
   ServoHooks hooks;
@@ -132,7 +87,7 @@ ServoReport RealTimeExplorer::Machinery::run(HapticDevice& device, const Renderi
   ServoReport report;
   RunningServo running(thread, control,
                        [&] { report = run_servo(device, force, sink, servo, *clock, hooks); });
-  while (running.runs()) participant.exploring(control);
+  while (running.runs(kBetweenLooks)) participant.exploring(control);
   running.finish();
   if (watchdog.disarm() && !is_interrupted(report)) {
     // It tripped while the run ended by itself: the device is halted, which is an interruption.
