@@ -10,9 +10,11 @@ namespace touchtrial {
 
 /// While this lives, signals and crashes halt a device. One at a time in a program.
 ///
-/// Asked to end (SIGINT, SIGTERM, SIGHUP): the device is halted, the servo is asked for an
+/// Asked to end (SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXCPU) or to sleep (SIGTSTP, which is Ctrl-Z,
+/// SIGTTIN, SIGTTOU): the device is halted, the servo is asked for an
 /// emergency stop, and the signal is remembered, so that the command can put its things in order
-/// and leave with `exit_code`. A second such signal does what it would have done without this.
+/// and leave with `exit_code`. A second such signal does what it would have done without this, 20
+/// ms later.
 ///
 /// Crashed (SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT), asked to with Ctrl-\ (SIGQUIT), or
 /// std::terminate: the device is halted, and after 20 ms, in which the driver's own thread sends

@@ -15,7 +15,9 @@ namespace {
 
 constexpr long kTimeToSendNs = 20'000'000;
 constexpr int kExitBySignal = 128;
-constexpr std::array kAskSignals = {SIGINT, SIGTERM, SIGHUP};
+// Those that would put the program to sleep are among them: the motors would hold their last force.
+constexpr std::array kAskSignals = {SIGINT,  SIGTERM, SIGHUP,  SIGPIPE,
+                                    SIGXCPU, SIGTSTP, SIGTTIN, SIGTTOU};
 constexpr std::array kCrashSignals = {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGQUIT};
 
 // What handlers see: lock-free atomics alone.
@@ -64,6 +66,7 @@ extern "C" void on_ask(int signal) {
   halt();
   int none = 0;
   if (!first_signal.compare_exchange_strong(none, signal)) {
+    let_the_driver_send();
     put_the_rest_back();
     put_back(kAskSignals, earlier.of_asks);
     raise(signal);  // delivered when this handler returns
@@ -140,8 +143,14 @@ std::string StopOnSignals::message() {
       return "stopped by SIGINT (Ctrl-C); the force is zero";
     case SIGTERM:
       return "stopped by SIGTERM; the force is zero";
-    default:
+    case SIGHUP:
       return "stopped by SIGHUP (the terminal went away); the force is zero";
+    case SIGPIPE:
+      return "stopped by SIGPIPE (nobody reads the output); the force is zero";
+    case SIGXCPU:
+      return "stopped by SIGXCPU (the limit of processor time); the force is zero";
+    default:
+      return "stopped instead of suspended: a program that sleeps cannot let go; the force is zero";
   }
 }
 
