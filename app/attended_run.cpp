@@ -94,11 +94,17 @@ std::optional<ServoReport> AttendedRun::run(const PhaseName& phase, ForceSource&
   shown_at_ = monotonic_now();
   ServoReport report;
   const WatchdogGuard guard(watchdog_);
+  const ServoHooks hooks{.control = &control_,
+                         .state = &state_,
+                         .heartbeat = &heartbeat_,
+                         .recorder = &recorder_,
+                         .heat = &heat_,
+                         .parameters = &parameters_};
   RunningServo running(thread_, control_, [&] {
     NobodyKeeps nobody;
     PacedClock clock(PacedClock::usual_spin(thread_.scheduling().policy));
     report = run_servo(device_, force, sink == nullptr ? static_cast<SampleSink&>(nobody) : *sink,
-                       options_, clock, {&control_, &state_, &heartbeat_, &recorder_});
+                       options_, clock, hooks);
   });
   while (running.runs()) {
     opened_.attend();
@@ -152,8 +158,18 @@ void AttendedRun::take_keys() {
     } else if (*key == ' ') {
       stop_ = AttendedStop::comfort;
       control_.comfort_stop();
+    } else if (chooses_strength_) {
+      take_strength(*key);
     }
   }
+}
+
+void AttendedRun::take_strength(char key) {
+  if (key != '+' && key != '-') return;
+  strength_tenths_ = std::clamp(strength_tenths_ + (key == '+' ? 1 : -1), 1, 10);
+  parameters_.set({.force_share = 0.1 * strength_tenths_});
+  end_line();
+  std::fprintf(stderr, "strength %d %%\n", 10 * strength_tenths_);
 }
 
 void AttendedRun::show(const PhaseName& phase) {

@@ -57,6 +57,9 @@ class AttendedRun {
   /// it is. \throws DeviceError if it is not ready after `limit_s`, or a fault occurs
   void wait_until_ready(double limit_s);
 
+  /// The keys + and - make every force stronger and weaker by tenths, from all of it down to one.
+  void let_choose_strength() noexcept { chooses_strength_ = true; }
+
   [[nodiscard]] AttendedStop stop() const noexcept { return stop_; }
   [[nodiscard]] const SchedulingObtained& scheduling() const noexcept {
     return thread_.scheduling();
@@ -66,6 +69,7 @@ class AttendedRun {
 
  private:
   void take_keys();
+  void take_strength(char key);
   void show(const PhaseName& phase);
   void end_line();
 
@@ -74,6 +78,8 @@ class AttendedRun {
   ServoOptions options_;
   ServoControl control_;
   LatestValue<ServoState> state_;
+  LatestValue<ServoParameters> parameters_;
+  MotorHeat heat_;
   std::atomic<std::int64_t> heartbeat_{0};
   FlightRecorder recorder_;
   ServoThread thread_;
@@ -82,6 +88,8 @@ class AttendedRun {
   std::optional<TerminalKeys> keys_;
   AttendedStop stop_ = AttendedStop::none;
   bool on_terminal_;
+  bool chooses_strength_ = false;
+  int strength_tenths_ = 10;
   std::int64_t shown_tick_ = 0;
   std::chrono::nanoseconds shown_at_{};
 };

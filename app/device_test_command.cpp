@@ -85,7 +85,7 @@ void feel(const TestArguments& arguments, const TestTexture& shown, AttendedRun&
     return sequence.is_second(tick) ? "texture" : "wall";
   };
   std::fputs(
-      "q ends the test, space lets go, Ctrl-C halts at once\n"
+      "q ends the test, space lets go, - and + change its strength, Ctrl-C halts at once\n"
       "shown: time, position (right, down, off the plane), force, ticks a second, lateness\n",
       stderr);
   test.run = run.run(phase, sequence, arguments.seconds, {}, &sequence);
@@ -111,6 +111,7 @@ int test_device(const TestArguments& arguments) {
   DeviceForTest tested(arguments, settings);
   AttendedRun run(tested.opened(), tested.device(), tested.limits(), arguments.rate_hz);
   run.wait_until_ready(kReadyLimitS);
+  run.let_choose_strength();
   DeviceTest test;
   test.device = tested.device().info();
   feel(arguments, tested.texture(), run, test);

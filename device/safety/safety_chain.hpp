@@ -60,6 +60,11 @@ class SafetyChain {
   [[nodiscard]] SafetyFault fault() const noexcept { return fault_; }
   /// Lets forces pass again after a fault, from the gate and the ramp on; a person's decision.
   void rearm() noexcept;
+  /// \name Heat of the motors, which outlasts a run: as ThermalBudget
+  ///@{
+  [[nodiscard]] double heat_n2() const noexcept { return thermal_.heat_n2(); }
+  void begin_warm(double heat_n2, double rest_s) noexcept { thermal_.begin_warm(heat_n2, rest_s); }
+  ///@}
   /// What the last call of `check` let pass, N.
   [[nodiscard]] Vec3 sent_n() const noexcept { return slew_.sent_n(); }
 

@@ -31,6 +31,13 @@ class ThermalBudget {
     heat_ += (share < 1.0 ? share : 1.0) * (force_squared_n2 - heat_);
   }
 
+  /// The running mean of the force's square, N^2: what a later budget on the same motors begins
+  /// with.
+  [[nodiscard]] double heat_n2() const noexcept { return heat_; }
+  /// The motors come from earlier work. \param heat_n2  of then, >= 0, finite, else none
+  /// \param rest_s  without force since then, >= 0
+  void begin_warm(double heat_n2, double rest_s) noexcept;
+
   /// 0 cold, 1 as hot as may be; 0 without a budget.
   [[nodiscard]] double share_of_heat() const noexcept;
 
@@ -40,6 +47,7 @@ class ThermalBudget {
   double peak_n_;
   double continuous_n_;
   double most_heat_;             ///< N^2; infinite without a budget
+  double tau_s_ = 1.0;           ///< in which heat fades to 1/e
   double share_per_tick_ = 0.0;  ///< of the way to the present force's heat
   double heat_ = 0.0;            ///< N^2
 };

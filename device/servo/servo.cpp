@@ -16,6 +16,11 @@ namespace {
 constexpr double kLeastRateHz = 1'000.0;
 constexpr double kGreatestRateHz = 10'000.0;
 constexpr double kComfortStopS = 0.1;  ///< from the first tick that knows of it
+constexpr double kShareS = 0.1;        ///< from no force to all of it, by ServoParameters
+
+double share_of(const ServoParameters& parameters) noexcept {
+  return parameters.force_share >= 0.0 ? std::min(parameters.force_share, 1.0) : 0.0;
+}
 
 void check(const ServoOptions& options) {
   const bool rate_holds = options.rate_hz >= kLeastRateHz && options.rate_hz <= kGreatestRateHz;
@@ -51,6 +56,7 @@ class Pacing {
     return start;
   }
 
+  [[nodiscard]] ServoClock::Time now() const noexcept { return clock_.now(); }
   [[nodiscard]] const DurationHistogram& lateness() const noexcept { return lateness_; }
 
   void report_to(ServoReport& report) const noexcept {
@@ -112,6 +118,8 @@ class ServoRun {
   template <typename Clock>
   ServoReport run(Pacing<Clock> pacing) noexcept {
     std::optional<ServoEnd> end;
+    take_heat(pacing.now());
+    if (hooks_.parameters != nullptr) share_ = share_of(hooks_.parameters->get());
     {
       const RealtimeRegion region;
       end = run_ticks(pacing);
@@ -121,6 +129,7 @@ class ServoRun {
         hooks_.heartbeat->store(kServoAtRest, std::memory_order_release);
       }
     }
+    if (hooks_.heat != nullptr) *hooks_.heat = {safety_.heat_n2(), pacing.now()};
     report_.end = end.value_or(end_of_fade_);
     report_.fault = safety_.fault();
     report_.device_fault = device_.fault();
@@ -198,7 +207,7 @@ class ServoRun {
     const DeviceStatus state = device_.read(sample);
     if (state == DeviceStatus::stopped) return ServoEnd::hand_stopped;
     if (state == DeviceStatus::fault) safety_.trip(SafetyFault::device);
-    const Vec3 requested_n = fade_at(start.tick) * force_.force_n(sample);
+    const Vec3 requested_n = (fade_at(start.tick) * share()) * force_.force_n(sample);
     SafeForce safe = safety_.check(requested_n, sample, start.tick - last_tick_);
     last_tick_ = start.tick;
     if (safe.verdict != SafetyVerdict::fault && device_.write(safe.force_n) != DeviceStatus::ok) {
@@ -209,6 +218,20 @@ class ServoRun {
     if (safe.verdict == SafetyVerdict::fault) return ServoEnd::fault;
     count(sample, safe, start.tick);
     return std::nullopt;
+  }
+
+  void take_heat(ServoClock::Time now) noexcept {
+    if (hooks_.heat == nullptr) return;
+    safety_.begin_warm(hooks_.heat->heat_n2,
+                       std::chrono::duration<double>(now - hooks_.heat->when).count());
+  }
+
+  /// Follows the parameters.
+  double share() noexcept {
+    if (hooks_.parameters == nullptr) return 1.0;
+    const double most = 1.0 / (kShareS * rate_hz_);
+    share_ += std::clamp(share_of(hooks_.parameters->get()) - share_, -most, most);
+    return share_;
   }
 
   void count(const DeviceSample& sample, const SafeForce& safe, std::int64_t tick) noexcept {
@@ -244,6 +267,7 @@ class ServoRun {
   std::int64_t fade_from_;
   std::int64_t fade_ticks_;
   double fade_share_ = 1.0;  ///< at which the fade begins
+  double share_ = 1.0;       ///< of ServoParameters, followed
   std::int64_t end_of_comfort_stop_ = 0;
   ServoEnd end_of_fade_ = ServoEnd::time_limit;
   ServoReport report_;

@@ -94,6 +94,20 @@ struct ServoState {
 class DurationHistogram;
 class FlightRecorder;
 
+/// What the motors of one device went through, from run to run: they do not cool because a trial
+/// is over.
+struct MotorHeat {
+  double heat_n2 = 0.0;     ///< as ThermalBudget::heat_n2, when the last run ended
+  ServoClock::Time when{};  ///< then, on the clock of the runs
+};
+
+/// What other threads may change while the servo runs.
+struct ServoParameters {
+  /// Of every force, in [0, 1]; what lies beyond counts as the nearer end, NaN as 0. The servo
+  /// follows within 100 ms, without a step.
+  double force_share = 1.0;
+};
+
 /// A heartbeat outside of a run.
 inline constexpr std::int64_t kServoAtRest = -1;
 
@@ -105,6 +119,9 @@ struct ServoHooks {
   std::atomic<std::int64_t>* heartbeat = nullptr;
   FlightRecorder* recorder = nullptr;     ///< every tick, that of a fault included
   DurationHistogram* lateness = nullptr;  ///< what this run's ticks are added to at its end
+  MotorHeat* heat = nullptr;              ///< that the run begins with, and leaves at its end
+  /// A snapshot, whole, is taken every tick; one writer.
+  LatestValue<ServoParameters>* parameters = nullptr;
 };
 
 /// Runs the loop until it ends: tick i is at i / rate_hz after the first. A loop that is so late

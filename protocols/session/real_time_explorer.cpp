@@ -65,6 +65,7 @@ struct RealTimeExplorer::Machinery {
   RealTimeOptions options;
   ServoControl control;
   std::atomic<std::int64_t> heartbeat{kServoAtRest};
+  MotorHeat heat;
   std::optional<SampleRing> ring;
   std::optional<FlightRecorder> recorder;
   double recorder_rate_hz = 0.0;
@@ -81,6 +82,7 @@ ServoReport RealTimeExplorer::Machinery::run(HapticDevice& device, const Renderi
   hooks.control = &control;
   hooks.heartbeat = &heartbeat;
   hooks.recorder = &*recorder;
+  hooks.heat = &heat;
   const StopOnSignals signals(device, control);
   Watchdog watchdog(device, control, heartbeat, Watchdog::kSilence, *options.watchdog_time);
   watchdog.arm();

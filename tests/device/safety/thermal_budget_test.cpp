@@ -57,6 +57,31 @@ TEST_CASE("the limit falls without a step") {
   CHECK(last_n < 1.0);
 }
 
+TEST_CASE(
+    "a motor that worked before a run is warm when it begins, the less the longer it rested") {
+  ThermalBudget earlier(kOmni, kTickS);
+  push(earlier, 3.3, 15.0);
+  ThermalBudget at_once(kOmni, kTickS);
+  at_once.begin_warm(earlier.heat_n2(), 0.0);
+  CHECK(at_once.share_of_heat() == earlier.share_of_heat());
+  CHECK(push(at_once, 3.3, 10.0) < 3.3);
+  ThermalBudget rested(kOmni, kTickS);
+  rested.begin_warm(earlier.heat_n2(), 3600.0);
+  CHECK(push(rested, 3.3, 19.0) == 3.3);
+  ThermalBudget no_clock(kOmni, kTickS);
+  no_clock.begin_warm(earlier.heat_n2(), -5.0);
+  CHECK(no_clock.share_of_heat() == earlier.share_of_heat());
+}
+
+TEST_CASE("heat that is no number, and a device without a budget, begin cold") {
+  ThermalBudget budget(kOmni, kTickS);
+  budget.begin_warm(std::nan(""), 0.0);
+  CHECK(budget.share_of_heat() == 0.0);
+  ThermalBudget none({.max_force_n = 3.3}, kTickS);
+  none.begin_warm(5.0, 0.0);
+  CHECK(none.limit_n() == 3.3);
+}
+
 TEST_CASE("a motor that rests gets its peak force back") {
   ThermalBudget budget(kOmni, kTickS);
   static_cast<void>(push(budget, 3.3, 60.0));

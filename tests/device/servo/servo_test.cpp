@@ -51,6 +51,72 @@ TEST_CASE("the smaller of the device's and the study's force limits holds") {
   CHECK(device.written[0] == Vec3{0.0, limit_n, 0.0});
 }
 
+TEST_CASE("a share of the force that changes while the servo runs is followed without a step") {
+  ScriptedDevice device;
+  ConstantForce force({0.0, 0.0, 1.0});
+  KeptSamples kept;
+  LatestValue<ServoParameters> parameters({0.5});
+  class Asks final : public ForceSource {
+   public:
+    explicit Asks(LatestValue<ServoParameters>& set) : set_(set) {}
+    [[nodiscard]] Vec3 force_n(const DeviceSample&) noexcept override {
+      if (++tick_ == 10) set_.set({.force_share = 7.0});
+      return {0.0, 0.0, 1.0};
+    }
+
+   private:
+    LatestValue<ServoParameters>& set_;
+    int tick_ = 0;
+  } asks(parameters);
+  VirtualClock clock;
+  const ServoReport report = run_servo(
+      device, asks, kept, {.limit_ticks = 200, .fade_ticks = 0, .limits = norm_limit_alone()},
+      clock, {.parameters = &parameters});
+  REQUIRE(report.ticks == 200);
+  CHECK(kept.samples.front().force_n.z == 0.5);
+  CHECK(kept.samples[9].force_n.z < 0.52);
+  CHECK(kept.samples.back().force_n.z == 1.0);
+  for (std::size_t i = 1; i < kept.samples.size(); ++i) {
+    REQUIRE(kept.samples[i].force_n.z - kept.samples[i - 1].force_n.z <= 0.0100001);
+  }
+}
+
+TEST_CASE("a share of the force that is no number is none of it") {
+  ScriptedDevice device;
+  ConstantForce force({0.0, 0.0, 0.4});
+  KeptSamples kept;
+  LatestValue<ServoParameters> parameters({std::numeric_limits<double>::quiet_NaN()});
+  VirtualClock clock;
+  const ServoReport report = run_servo(device, force, kept, {.limit_ticks = 5, .fade_ticks = 0},
+                                       clock, {.parameters = &parameters});
+  CHECK(report.fault == SafetyFault::none);
+  CHECK(kept.samples.back().force_n == Vec3{});
+}
+
+TEST_CASE("motors that are warm from one run are warm in the next") {
+  MotorHeat heat;
+  ConstantForce force({0.0, 0.0, 3.0});
+  SafetyLimits limits = norm_limit_alone(3.3);
+  limits.continuous_force_n = 0.88;
+  limits.thermal_budget_s = 2.0;
+  limits.max_slew_n_per_s = 1e6;
+  VirtualClock clock;
+  const auto last_force_n = [&] {
+    ScriptedDevice device;
+    KeptSamples kept;
+    const ServoReport report =
+        run_servo(device, force, kept, {.limit_ticks = 1900, .fade_ticks = 0, .limits = limits},
+                  clock, {.heat = &heat});
+    REQUIRE(report.ticks == 1900);
+    return kept.samples.back().force_n.z;
+  };
+  CHECK(last_force_n() == 3.0);
+  CHECK(heat.heat_n2 > 0.0);
+  CHECK(last_force_n() < 2.0);
+  clock.wait_until(clock.now() + std::chrono::hours(1));
+  CHECK(last_force_n() == 3.0);
+}
+
 TEST_CASE("a force that is not a number ends the loop without reaching the device") {
   ScriptedDevice device;
   ConstantForce force({std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0});
