@@ -29,6 +29,8 @@ class Explorer {
  public:
   virtual ~Explorer() = default;
 
+  /// Whether a disk that is waited for would be felt: then every field is to be in memory before.
+  [[nodiscard]] virtual bool in_real_time() const noexcept { return false; }
   /// Puts a plane before a participant until the hand stops, time is up, or something fails. The
   /// last force written is zero. \param trace  gets every sample; its memory is used again
   [[nodiscard]] virtual Exploration explore(const RenderingModel& model, const PlaneGeometry& plane,

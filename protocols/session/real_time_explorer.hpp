@@ -32,6 +32,7 @@ class RealTimeExplorer final : public Explorer {
   explicit RealTimeExplorer(const RealTimeOptions& options = {});
   ~RealTimeExplorer() override;
 
+  [[nodiscard]] bool in_real_time() const noexcept override { return true; }
   /// Also throws what `participant.exploring` throws: the force is zero by then.
   [[nodiscard]] Exploration explore(const RenderingModel& model, const PlaneGeometry& plane,
                                     Participant& participant, const ServoOptions& options,

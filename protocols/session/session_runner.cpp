@@ -93,6 +93,7 @@ class SessionRun {
   void run_trial() {
     const StimulusIndex& stimulus = session_.current()->stimulus;
     const RenderingModel& model = parts_.source.model(parts_.key.code_of(stimulus));
+    if (parts_.explorer.in_real_time()) parts_.source.fetch();
     const SessionClock::Time plane_on = now();
     session_.present(plane_on);
     const Exploration done =
@@ -100,25 +101,28 @@ class SessionRun {
     parts_.clock.pass(done.lasted);
     ++tally_.presentations;
     tally_.ticks += done.servo.ticks;
-    // Ticks are counted from the servo's start, a moment after plane-on.
-    if (done.landed_at) session_.contact(std::min(plane_on + *done.landed_at, now()));
-    if (is_interrupted(done.servo)) return interrupt(done);
-    store_trace(done);
+    // Ticks are counted from the servo's start, a moment after plane-on. What is stamped after the
+    // exploration has the time of its end and not of now: how long a trace takes to pack, or a
+    // flight record to write, tells rough textures from smooth ones.
+    const SessionClock::Time ended = std::min(plane_on + done.lasted, now());
+    if (done.landed_at) session_.contact(std::min(plane_on + *done.landed_at, ended));
+    if (is_interrupted(done.servo)) return interrupt(done, ended);
+    store_trace(done, ended);
     if (done.servo.end == ServoEnd::time_limit) {
-      session_.time_out(now());
+      session_.time_out(ended);
     } else {
-      session_.end_exploring(now());
+      session_.end_exploring(ended);
     }
     if (session_.phase() == SessionPhase::answering) take_answer();
   }
 
-  void interrupt(const Exploration& done) {
+  void interrupt(const Exploration& done, SessionClock::Time ended) {
     ++interruptions_;
-    session_.interrupt(now(), words_in_clear(done.servo), done.detail);
+    session_.interrupt(ended, words_in_clear(done.servo), done.detail);
     parts_.devices.interrupted();
   }
 
-  void store_trace(const Exploration& done) {
+  void store_trace(const Exploration& done, SessionClock::Time ended) {
     TrialFindings findings = findings_of(trace_, done.servo.force_limit_n);
     if (done.held_in_contact > 0) findings.measures.within_limits = false;
     if (!findings.valid()) ++tally_.invalid_trials;
@@ -129,7 +133,7 @@ class SessionRun {
     body.valid = findings.long_enough;
     body.servo = done.health;
     if (done.health) findings.measures.limited_ticks = done.servo.limited_ticks;
-    session_.store_trace(now(), body, findings.measures, trace_);
+    session_.store_trace(ended, body, findings.measures, trace_);
   }
 
   void take_answer() {

@@ -3,8 +3,23 @@
 #include "core/errors.hpp"
 
 #include <algorithm>
+#include <cstddef>
+#include <span>
 
 namespace touchtrial {
+namespace {
+
+constexpr std::size_t kLeastPage = 4096;
+
+void touch(std::span<const std::byte> bytes) noexcept {
+  const auto read = [](const std::byte& byte) {
+    static_cast<void>(*static_cast<const volatile std::byte*>(&byte));
+  };
+  for (std::size_t i = 0; i < bytes.size(); i += kLeastPage) read(bytes[i]);
+  if (!bytes.empty()) read(bytes.back());
+}
+
+}  // namespace
 
 StimulusSource::StimulusSource(const Pack& pack, const RenderingOptions& rendering)
     : folder_(pack.folder().string()) {
@@ -23,6 +38,14 @@ StimulusSource::StimulusSource(const Pack& pack, const RenderingOptions& renderi
   }
   if (models_.empty()) {
     throw FileError(one_line(folder_ + ": the pack has no field; run `touchtrial prepare`"));
+  }
+}
+
+void StimulusSource::fetch() const noexcept {
+  for (const MappedField& field : fields_) {
+    const FieldView view = field.view();
+    touch(std::as_bytes(view.samples));
+    touch(std::as_bytes(view.coefficients));
   }
 }
 

@@ -11,7 +11,8 @@
 namespace touchtrial {
 
 /// Maps every field of a pack and makes its force model once. Of a field, this reads the header;
-/// pages of samples are read when a stylus first touches them. Thread-safe once made.
+/// pages of samples are read when a stylus first touches them, or by `fetch`. Thread-safe once
+/// made.
 class StimulusSource {
  public:
   /// \param rendering  of the study; gains come from the pack
@@ -21,6 +22,11 @@ class StimulusSource {
 
   /// \throws FileError if the pack has no such code
   [[nodiscard]] const RenderingModel& model(const std::string& code) const;
+
+  /// Reads a byte of every page of every field, so that the servo finds them in memory. Of all and
+  /// not of the one that comes next: which pages had to be fetched, and how long that took, would
+  /// tell a stimulus that was there before from a new one.
+  void fetch() const noexcept;
 
   /// The part of the plane that all stimuli have: what a participant is told to explore, so that
   /// its extent tells nothing.

@@ -12,6 +12,7 @@
 #include "protocols/store/payload_json.hpp"
 #include "protocols/store/study_store.hpp"
 #include "support/catch.hpp"
+#include "support/realtime_watch.hpp"
 
 #include <algorithm>
 #include <atomic>
@@ -112,7 +113,9 @@ struct Laboratory {
 
 TEST_CASE("a real-time session stores every answer, every sample and the servo's health") {
   Laboratory lab;
+  static_cast<void>(take_realtime_offences());
   const SessionTally tally = lab.run();
+  CHECK(take_realtime_offences() == RealtimeOffences{});
   CHECK(lab.session.phase() == SessionPhase::closed);
   CHECK(tally.presentations == 5);
   const std::vector<Event> answers = lab.all(EventKind::answered);

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include <sys/resource.h>
+
 namespace touchtrial {
 namespace {
 
@@ -72,6 +74,95 @@ Ran run(Participant& participant) {
   ran.tally = run_session_in_virtual_time(session, study.key(), source, participant);
   CHECK(session.phase() == SessionPhase::closed);
   return ran;
+}
+
+/// Real time in which everything takes a while, whatever is asked or stored.
+class CreepingClock final : public SessionClock {
+ public:
+  [[nodiscard]] Time now() override { return now_ += std::chrono::milliseconds(3); }
+  void pass(Time duration) override { now_ += duration; }
+
+ private:
+  Time now_{};
+};
+
+/// Reads the field of each presentation before it is felt, as the servo would, and counts how often
+/// a page of it had to be fetched.
+class PageCountingExplorer final : public Explorer {
+ public:
+  explicit PageCountingExplorer(bool in_real_time) : in_real_time_(in_real_time) {}
+
+  [[nodiscard]] bool in_real_time() const noexcept override { return in_real_time_; }
+  [[nodiscard]] Exploration explore(const RenderingModel& model, const PlaneGeometry& plane,
+                                    Participant& participant, const ServoOptions& options,
+                                    Trace& trace) override {
+    const long before = fetched_so_far();
+    Bristle touch;
+    for (double y_mm = 0.1; y_mm < plane.height_mm(); y_mm += plane.pitch_mm) {
+      for (double x_mm = 0.1; x_mm < plane.width_mm(); x_mm += plane.pitch_mm) {
+        felt_n_ += model.force_n({x_mm, y_mm, -1.0}, {}, touch).z;
+      }
+    }
+    fetched += fetched_so_far() - before;
+    return usual_.explore(model, plane, participant, options, trace);
+  }
+
+  long fetched = 0;
+
+ private:
+  static long fetched_so_far() {
+    rusage used{};
+    REQUIRE(::getrusage(RUSAGE_THREAD, &used) == 0);
+    return used.ru_minflt + used.ru_majflt;
+  }
+
+  bool in_real_time_;
+  double felt_n_ = 0.0;
+  VirtualExplorer usual_;
+};
+
+Ran run_with(Explorer& explorer, SessionClock& clock) {
+  const TinyStudy study({.trials = R"({"repeats": 1})"});
+  const StimulusSource source(study.pack(), study.key().study.rendering);
+  Ran ran;
+  Session session(make_schedule(study.key().study, 1), study.key().study.trials,
+                  SessionRecorder(1, SecretKey{}, ran.events));
+  SessionOpening opening;
+  opening.participant = "P001";
+  opening.enrolment = 1;
+  session.open({}, opening, "{}");
+  Unlucky person(1);
+  AlwaysReady devices;
+  ran.tally = run_session(session, {study.key(), source, person, clock, explorer, devices});
+  return ran;
+}
+
+TEST_CASE("in real time every field is in memory before it is felt, whichever it is") {
+  VirtualSessionClock clock;
+  PageCountingExplorer real(true);
+  CHECK(run_with(real, clock).tally.presentations == 6);
+  CHECK(real.fetched == 0);
+  PageCountingExplorer careless(false);
+  CHECK(run_with(careless, clock).tally.presentations == 6);
+  CHECK(careless.fetched > 0);
+}
+
+TEST_CASE("times in clear say when an exploration ended, not how long its trace took to pack") {
+  CreepingClock clock;
+  VirtualExplorer explorer;
+  const Ran ran = run_with(explorer, clock);
+  SessionClock::Time plane_on{};
+  int ends = 0;
+  for (const Event& event : ran.events.events) {
+    if (event.kind == EventKind::presented) plane_on = event.at;
+    const bool is_end =
+        event.kind == EventKind::trace_stored || event.kind == EventKind::interrupted;
+    if (!is_end) continue;
+    ++ends;
+    const auto ticks = event.kind == EventKind::interrupted ? 50 : 100;
+    CHECK(event.at - plane_on == std::chrono::milliseconds(ticks));
+  }
+  CHECK(ends == 6);
 }
 
 TEST_CASE(
