@@ -28,5 +28,7 @@ function(touchtrial_test name)
   add_executable(${name} ${sources})
   target_include_directories(${name} PRIVATE "${CMAKE_SOURCE_DIR}/tests")
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} touchtrial_test_support touchtrial_settings)
+  # Optimising the test framework costs more time than the tests then save.
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   catch_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES TIMEOUT 600)
 endfunction()
