@@ -12,6 +12,11 @@ function(touchtrial_library name)
     return()
   endif()
   add_library(${name} STATIC ${sources})
+  # Text in, text out: nearly all of this code is a parser's, instantiated in each file. It spends
+  # its time in compiling, not in running.
+  set(texts ${sources})
+  list(FILTER texts INCLUDE REGEX "json|csv|_command\\.cpp|/study[a-z_]*\\.cpp|/program\\.cpp")
+  set_source_files_properties(${texts} PROPERTIES COMPILE_OPTIONS $<$<CONFIG:Release>:-O1>)
   target_include_directories(${name} PUBLIC "${CMAKE_SOURCE_DIR}")
   target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE touchtrial_settings ${ARG_PRIVATE})
 endfunction()

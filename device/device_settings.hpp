@@ -80,8 +80,9 @@ struct DeviceSettings {
 /// read
 [[nodiscard]] DeviceSettings read_device_settings(const std::filesystem::path& file);
 
-/// The same from text. \param folder  that paths are relative to; \param source  names the origin
-/// in errors
+/// The same from text.
+/// \param folder  that paths are relative to
+/// \param source  names the origin in errors
 [[nodiscard]] DeviceSettings parse_device_settings(std::string_view text,
                                                    const std::filesystem::path& folder,
                                                    const std::string& source);

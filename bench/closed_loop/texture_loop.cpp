@@ -5,6 +5,7 @@
 #include "device/simulated/simulated_hand.hpp"
 #include "engine/rendering/gains.hpp"
 #include "engine/rendering/rendering_model.hpp"
+#include "protocols/session/model_force.hpp"
 
 #include <algorithm>
 #include <array>
@@ -18,18 +19,6 @@ namespace {
 
 constexpr double kCutHz = 30.0;
 constexpr double kLandingS = 1.0;
-
-class ModelForce final : public ForceSource {
- public:
-  explicit ModelForce(const RenderingModel& model) noexcept : model_(model) {}
-  [[nodiscard]] Vec3 force_n(const DeviceSample& sample) noexcept override {
-    return model_.force_n(sample.position_mm, sample.velocity_mm_s, touch_);
-  }
-
- private:
-  const RenderingModel& model_;
-  Bristle touch_;
-};
 
 /// Two first-order high passes, one after the other.
 class HighPass {

@@ -80,9 +80,8 @@ struct ReadCertificate {
   Digest hash{};
 };
 
-/// \throws FileError if it cannot be read, StudyError with the JSON pointer if it is no
-/// certificate,
-///   or one that says more than its figures do
+/// \throws FileError if it cannot be read, StudyError with the JSON pointer if it is none, or says
+///   more than its figures do
 [[nodiscard]] ReadCertificate read_certificate(const std::filesystem::path& path);
 
 /// Holds a certificate against the device that a session is about to use.

@@ -20,11 +20,9 @@ class ForceSequence final : public ForceSource, public SampleSink {
   };
 
   /// \param first,second  must outlive this; the second is asked from the change on, the first
-  /// until
-  ///   its end
+  ///   until the change's end
   /// \param change_tick  at which the change to the second begins, >= 0
-  /// \param blend_ticks  that it takes, >= 1: the share of the second rises smoothly (3 u^2 - 2
-  /// u^3)
+  /// \param blend_ticks  that it takes, >= 1: the second's share rises by 3 u^2 - 2 u^3
   ForceSequence(ForceSource& first, ForceSource& second, std::int64_t change_tick,
                 std::int64_t blend_ticks) noexcept
       : first_(first), second_(second), change_tick_(change_tick), blend_ticks_(blend_ticks) {}

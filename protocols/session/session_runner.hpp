@@ -41,9 +41,8 @@ struct SessionParts {
 /// trials. A presentation that ends in a fault or a comfort stop is marked as interrupted and
 /// repeated at the end; before the next one the session is paused until the device supply is ready
 /// again. It is stopped when the supply gives up, or when interruptions outnumber its trials.
-/// \throws StoreError if an event could not be stored; no force is on then. Whatever participant
-/// and
-///   device supply throw
+/// No force is on when it throws.
+/// \throws StoreError if an event could not be stored; what participant and supply throw
 SessionTally run_session(Session& session, const SessionParts& parts);
 
 /// The same in virtual time, from 0 on: with a participant who brings a simulated hand.

@@ -1,7 +1,5 @@
 #include "windows/virtual_screen.hpp"
 
-#include "support/catch.hpp"
-
 #include <array>
 #include <cstdlib>
 #include <stdexcept>
@@ -35,8 +33,7 @@ std::string display_number(int from) {
 
 std::unique_ptr<VirtualScreen> VirtualScreen::open(const std::string& size) {
   if (!is_installed("Xvfb") || !is_installed("xdotool")) {
-    WARN("skipped: Xvfb or xdotool is not installed; run scripts/install-dependencies");
-    return nullptr;
+    throw std::runtime_error("Xvfb or xdotool is not installed; run scripts/install-dependencies");
   }
   std::array<int, 2> pipe{};
   if (::pipe(pipe.data()) != 0) throw std::runtime_error("no pipe");

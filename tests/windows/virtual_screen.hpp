@@ -10,7 +10,7 @@ namespace touchtrial {
 /// names it, and OpenGL is drawn by software. One at a time.
 class VirtualScreen {
  public:
-  /// \return nothing, with a warning in the test's output, where Xvfb or xdotool is not installed
+  /// \throws std::runtime_error where Xvfb or xdotool is not installed, or no screen is to be had
   [[nodiscard]] static std::unique_ptr<VirtualScreen> open(const std::string& size = "1280x1024");
   ~VirtualScreen();
   VirtualScreen(const VirtualScreen&) = delete;

@@ -1,4 +1,5 @@
-/// \file Time that stands still for a watchdog: nothing in a test depends on how fast the machine is.
+/// \file Time that stands still for a watchdog: nothing in a test depends on how fast the machine
+/// is.
 #pragma once
 
 #include "device/safety/watchdog.hpp"

@@ -1,9 +1,9 @@
 // Falcons that other processes find, open and lose, on a bus of umockdev's.
 #include "device/falcon/rig/dummy_firmware.hpp"
-#include "support/child_process.hpp"
 #include "device/falcon/umockdev/umockdev_falcon.hpp"
 #include "device/falcon/usbfs_shim/emulator_usb_model.hpp"
 #include "support/catch.hpp"
+#include "support/child_process.hpp"
 #include "support/temp_folder.hpp"
 
 #include <cmath>
