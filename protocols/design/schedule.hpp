@@ -18,7 +18,8 @@ struct StimulusIndex {
   friend auto operator<=>(const StimulusIndex&, const StimulusIndex&) = default;
 };
 
-enum class PresentationKind { scored, lead_in };
+/// A catch trial presents a plane without texture: its `stimulus` means nothing.
+enum class PresentationKind { scored, lead_in, catch_trial };
 
 struct Presentation {
   int trial = 0;  ///< from 1

@@ -4,6 +4,8 @@
 
 #include "engine/extraction.hpp"
 #include "engine/rendering/rendering_options.hpp"
+#include "protocols/design/session_plan.hpp"
+#include "protocols/design/study_class.hpp"
 
 #include <cstdint>
 #include <filesystem>
@@ -16,12 +18,6 @@ namespace touchtrial {
 enum class Protocol { classification, comparison };
 [[nodiscard]] std::string_view name_of(Protocol protocol);
 
-/// A texture label and its images; each image is an exemplar.
-struct StudyClass {
-  std::string label;
-  std::vector<std::filesystem::path> images;  ///< as written in the file
-};
-
 /// A way of taking textures, and what tables and files call it.
 struct StudyMethod : ExtractionOptions {
   std::string label;  ///< unique in the study
@@ -32,9 +28,12 @@ struct StudyMethod : ExtractionOptions {
 /// The label of a method that is given none: its name, and its control's if it has one.
 [[nodiscard]] std::string default_label(const ExtractionOptions& method);
 
-enum class TrialOrder { shuffled, de_bruijn, uniform };
+enum class TrialOrder { shuffled, de_bruijn, uniform, williams };
 enum class OnTimeout { fade, no_response };
 enum class Blocks { by_method, mixed };
+/// What becomes of a presentation that was spoilt: by a fault, a comfort stop, or the program's
+/// end.
+enum class OnInterruption { repeat, leave_out, restart_block };
 
 /// The study file's "trials" object.
 struct TrialOptions {
@@ -42,11 +41,15 @@ struct TrialOptions {
   TrialOrder order = TrialOrder::shuffled;
   double explore_limit_s = 60.0;  ///< > 0
   OnTimeout on_timeout = OnTimeout::fade;
-  int practice = 0;
-  int break_every = 0;  ///< trials between breaks; 0: none
-  int catch_trials = 0;
-  int lead_in = 0;  ///< unscored presentations at the start of each block
+  int practice = 0;      ///< presentations of a practice round
+  int break_every = 0;   ///< trials between breaks; 0: none
+  int catch_trials = 0;  ///< unscored presentations of a plane without texture, among the others
+  int lead_in = 0;       ///< unscored presentations at the start of each block
   Blocks blocks = Blocks::by_method;
+  int max_run = 0;  ///< presentations of one class in a row, at most; 0: any number
+  OnInterruption on_interruption = OnInterruption::repeat;
+  double resume_within_h =
+      24.0;  ///< a session that was broken off can be taken up for so long, > 0
 
   friend bool operator==(const TrialOptions&, const TrialOptions&) = default;
 };
@@ -59,6 +62,9 @@ struct Study {
   std::vector<StudyMethod> methods;  ///< >= 1, labels unique
   RenderingOptions rendering;
   TrialOptions trials;
+  PracticePlan practice;
+  SessionPlan session;
+  Registration registration;
   std::uint64_t seed = 0;
   std::filesystem::path folder;  ///< that image paths are relative to
   std::string source;            ///< the file's name, for errors

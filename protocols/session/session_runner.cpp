@@ -87,7 +87,7 @@ class SessionRun {
   void take_break() {
     session_.take_break(now());
     parts_.clock.pass(kBreak);
-    parts_.participant.rest();
+    static_cast<void>(parts_.participant.attend(BreakStep{}));
   }
 
   void run_trial() {
@@ -137,9 +137,10 @@ class SessionRun {
   }
 
   void take_answer() {
-    const ParticipantAnswer answer = parts_.participant.answer();
-    session_.choose(answer.position);
-    parts_.clock.pass(answer.thought);
+    std::optional<StepReply> answer = parts_.participant.attend(AnswerStep{});
+    while (!answer) answer = parts_.participant.attend(AnswerStep{});
+    session_.choose(answer->position);
+    parts_.clock.pass(answer->took);
     session_.confirm(now());
   }
 

@@ -6,7 +6,7 @@
 #include "engine/perception/felt_classifier.hpp"
 #include "engine/perception/texture_sense.hpp"
 #include "protocols/session/felt_knowledge.hpp"
-#include "protocols/session/participant.hpp"
+#include "protocols/session/prompt_participant.hpp"
 #include "protocols/session/subject_model.hpp"
 
 #include <cstdint>
@@ -20,7 +20,7 @@ namespace touchtrial {
 /// Weber noise, and names the picture whose class makes them likeliest, bias included; or lapses,
 /// and names any. Everything random comes from the seed, the participant's number, and how many
 /// trials came before. Refers to subject and knowledge, which must outlive it.
-class SimulatedParticipant final : public Participant {
+class SimulatedParticipant final : public PromptParticipant {
  public:
   /// \param number  from 1
   SimulatedParticipant(const SubjectModel& subject, const FeltKnowledge& knowledge,

@@ -7,7 +7,7 @@
 namespace touchtrial {
 namespace {
 
-constexpr std::array<std::pair<EventKind, std::string_view>, 22> kNames = {{
+constexpr std::array<std::pair<EventKind, std::string_view>, 30> kNames = {{
     {EventKind::study_committed, "study-committed"},
     {EventKind::session_opened, "session-opened"},
     {EventKind::session_closed, "session-closed"},
@@ -15,6 +15,8 @@ constexpr std::array<std::pair<EventKind, std::string_view>, 22> kNames = {{
     {EventKind::participant_withdrawn, "participant-withdrawn"},
     {EventKind::study_closed, "study-closed"},
     {EventKind::study_unblinded, "study-unblinded"},
+    {EventKind::participant_replaced, "participant-replaced"},
+    {EventKind::participant_noted, "participant-noted"},
     {EventKind::opened, "opened"},
     {EventKind::calibrated, "calibrated"},
     {EventKind::instructed, "instructed"},
@@ -29,6 +31,12 @@ constexpr std::array<std::pair<EventKind, std::string_view>, 22> kNames = {{
     {EventKind::paused, "paused"},
     {EventKind::stopped, "stopped"},
     {EventKind::noted, "noted"},
+    {EventKind::ticked, "ticked"},
+    {EventKind::deviated, "deviated"},
+    {EventKind::questioned, "questioned"},
+    {EventKind::explored_again, "explored-again"},
+    {EventKind::block_restarted, "block-restarted"},
+    {EventKind::resumed, "resumed"},
     {EventKind::closed, "closed"},
 }};
 static_assert(kNames.size() == static_cast<std::size_t>(EventKind::closed) + 1);
@@ -48,7 +56,7 @@ std::optional<EventKind> event_kind_from_name(std::string_view name) {
 }
 
 bool belongs_to_file_chain(EventKind kind) {
-  return kind <= EventKind::study_unblinded;
+  return kind <= EventKind::participant_noted;
 }
 
 Digest event_hash(const Event& event) {

@@ -22,6 +22,8 @@ enum class EventKind {
   participant_withdrawn,
   study_closed,
   study_unblinded,
+  participant_replaced,  ///< somebody takes a participant's place in the order of enrolment
+  participant_noted,     ///< a remark or deviation, after a session or beside it
 
   opened,
   calibrated,
@@ -37,6 +39,12 @@ enum class EventKind {
   paused,
   stopped,
   noted,
+  ticked,           ///< an item of the day sheet is done
+  deviated,         ///< something was not as the study asks
+  questioned,       ///< a questionnaire was filled in
+  explored_again,   ///< the participant went back to the plane before answering
+  block_restarted,  ///< a block's trials are void and come anew, in another order
+  resumed,          ///< after a pause, or after the program ended
   closed,
 };
 

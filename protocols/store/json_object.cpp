@@ -99,6 +99,18 @@ std::optional<std::int64_t> JsonObject::optional_integer(const char* key) const 
   return integer(key, 0, std::numeric_limits<std::int64_t>::max());
 }
 
+std::vector<std::int64_t> JsonObject::optional_integers(const char* key) const {
+  std::vector<std::int64_t> numbers;
+  if (!object_.contains(key)) return numbers;
+  const nlohmann::json& value = at(key);
+  if (!value.is_array()) refuse(key, "is not a list");
+  for (const nlohmann::json& number : value) {
+    if (!number.is_number_unsigned()) refuse(key, "holds what is no whole number from 0 on");
+    numbers.push_back(number.get<std::int64_t>());
+  }
+  return numbers;
+}
+
 std::optional<JsonObject> JsonObject::optional_object(const char* key) const {
   if (!object_.contains(key)) return std::nullopt;
   const nlohmann::json& value = at(key);

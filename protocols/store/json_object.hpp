@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -37,6 +38,8 @@ class JsonObject {
   [[nodiscard]] std::optional<int> optional_count(const char* key, int least) const;
   [[nodiscard]] std::optional<std::string> optional_text(const char* key) const;
   [[nodiscard]] std::optional<std::int64_t> optional_integer(const char* key) const;
+  /// Whole numbers >= 0, or none if the key is absent.
+  [[nodiscard]] std::vector<std::int64_t> optional_integers(const char* key) const;
   /// An object within this one, or nothing if the key is absent. Its errors name both keys.
   [[nodiscard]] std::optional<JsonObject> optional_object(const char* key) const;
 

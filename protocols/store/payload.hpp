@@ -63,6 +63,27 @@ struct AnswerBody {
   std::optional<int> confidence;
 };
 
+/// `practised`: one presentation of a practice round, of a texture that is not in the study.
+struct PracticeBody {
+  int round = 0;         ///< from 1
+  int presentation = 0;  ///< in the round, from 1
+  int position = 0;      ///< answered, in the practice's own layout
+  bool correct = false;
+};
+
+/// `deviated`, and `participant-noted` where `code` is not empty.
+struct DeviationBody {
+  std::string code;  ///< for instance "no-masking-noise"; see docs/data-dictionary.md
+  std::string text;  ///< in the experimenter's words; may be empty
+};
+
+/// `resumed`.
+struct ResumedBody {
+  std::string after;              ///< "pause", or "program-ended"
+  double away_s = 0.0;            ///< since the last event before
+  std::string program_version{};  ///< after the program ended
+};
+
 /// `trace-stored`, in real time: how the servo kept its time. When a tick begins is up to the
 /// operating system and not to the texture.
 struct ServoHealth {
@@ -85,6 +106,8 @@ struct TraceBody {
   std::int64_t overruns = 0;
   bool valid = true;  ///< by what is in clear: the rest of the validity rule is sealed
   Digest trace{};     ///< SHA-256 of the stored (encrypted) trace
+  /// Samples of each exploration, where the participant explored again; they add up to `samples`.
+  std::vector<std::int64_t> explorations{};
   std::optional<ServoHealth> servo{};  ///< real time only
 };
 

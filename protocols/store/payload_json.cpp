@@ -133,6 +133,43 @@ AnswerBody answer_from_json(const std::string& text) {
           .confidence = object.optional_count("confidence", 0)};
 }
 
+std::string to_json(const PracticeBody& body) {
+  return compact({{"round", body.round},
+                  {"presentation", body.presentation},
+                  {"position", body.position},
+                  {"correct", body.correct}});
+}
+
+PracticeBody practice_from_json(const std::string& text) {
+  const JsonObject object(text);
+  return {.round = object.count("round", 1),
+          .presentation = object.count("presentation", 1),
+          .position = object.count("position", 0),
+          .correct = object.flag("correct")};
+}
+
+std::string to_json(const DeviationBody& body) {
+  return compact({{"code", body.code}, {"text", body.text}});
+}
+
+DeviationBody deviation_from_json(const std::string& text) {
+  const JsonObject object(text);
+  return {.code = object.text("code"), .text = object.text("text")};
+}
+
+std::string to_json(const ResumedBody& body) {
+  return compact({{"after", body.after},
+                  {"away_s", finite(body.away_s, "away_s")},
+                  {"program_version", body.program_version}});
+}
+
+ResumedBody resumed_from_json(const std::string& text) {
+  const JsonObject object(text);
+  return {.after = object.text("after"),
+          .away_s = object.number("away_s"),
+          .program_version = object.text("program_version")};
+}
+
 std::string to_json(const TraceBody& body) {
   json object = {{"trial", body.trial},
                  {"samples", body.samples},
@@ -140,6 +177,7 @@ std::string to_json(const TraceBody& body) {
                  {"overruns", body.overruns},
                  {"valid", body.valid},
                  {"trace", hex(body.trace)}};
+  if (!body.explorations.empty()) object["explorations"] = body.explorations;
   if (body.servo) object["servo"] = servo_object(*body.servo);
   return compact(object);
 }
@@ -152,6 +190,7 @@ TraceBody trace_body_from_json(const std::string& text) {
           .overruns = object.integer("overruns", 0, kAny),
           .valid = object.flag("valid"),
           .trace = object.digest("trace"),
+          .explorations = object.optional_integers("explorations"),
           .servo = servo_of(object.optional_object("servo"))};
 }
 
@@ -258,6 +297,10 @@ std::string presented_to_json(int trial, int block) {
 
 std::string interrupted_to_json(int trial, const std::string& reason) {
   return compact({{"trial", trial}, {"reason", reason}});
+}
+
+std::string block_to_json(int block, int first_trial) {
+  return compact({{"block", block}, {"first_trial", first_trial}});
 }
 
 std::string trial_to_json(int trial) {

@@ -45,6 +45,9 @@ struct UnblindingBody {
 [[nodiscard]] std::string to_json(const StudyCommitment& body);
 [[nodiscard]] std::string to_json(const SessionOpening& body);
 [[nodiscard]] std::string to_json(const AnswerBody& body);
+[[nodiscard]] std::string to_json(const PracticeBody& body);
+[[nodiscard]] std::string to_json(const DeviationBody& body);
+[[nodiscard]] std::string to_json(const ResumedBody& body);
 [[nodiscard]] std::string to_json(const TraceBody& body);
 [[nodiscard]] std::string to_json(const TrialMeasures& body);
 [[nodiscard]] std::string to_json(const InterruptionDetail& body);
@@ -56,6 +59,7 @@ struct UnblindingBody {
 [[nodiscard]] std::string presented_to_json(int trial, int block);
 [[nodiscard]] std::string interrupted_to_json(int trial, const std::string& reason);
 [[nodiscard]] std::string trial_to_json(int trial);
+[[nodiscard]] std::string block_to_json(int block, int first_trial);
 [[nodiscard]] std::string remark_to_json(const std::string& text);
 [[nodiscard]] std::string completion_to_json(bool complete);
 
@@ -63,6 +67,9 @@ struct UnblindingBody {
 [[nodiscard]] StudyCommitment commitment_from_json(const std::string& text);
 [[nodiscard]] SessionOpening opening_from_json(const std::string& text);
 [[nodiscard]] AnswerBody answer_from_json(const std::string& text);
+[[nodiscard]] PracticeBody practice_from_json(const std::string& text);
+[[nodiscard]] DeviationBody deviation_from_json(const std::string& text);
+[[nodiscard]] ResumedBody resumed_from_json(const std::string& text);
 [[nodiscard]] TraceBody trace_body_from_json(const std::string& text);
 [[nodiscard]] InterruptionDetail interruption_from_json(const std::string& text);
 [[nodiscard]] ChainEnd chain_end_from_json(const std::string& text);

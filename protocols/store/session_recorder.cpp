@@ -13,11 +13,11 @@ bool is_remark(EventKind kind) {
   switch (kind) {
     case EventKind::calibrated:
     case EventKind::instructed:
-    case EventKind::practised:
     case EventKind::break_taken:
     case EventKind::paused:
     case EventKind::stopped:
     case EventKind::noted:
+    case EventKind::ticked:
       return true;
     default:
       return false;
@@ -55,8 +55,9 @@ void SessionRecorder::first_contact(std::chrono::nanoseconds at, int trial) {
   append(at, EventKind::first_contact, trial_to_json(trial), {});
 }
 
-void SessionRecorder::answered(std::chrono::nanoseconds at, const AnswerBody& answer) {
-  append(at, EventKind::answered, to_json(answer), {});
+void SessionRecorder::answered(std::chrono::nanoseconds at, const AnswerBody& answer,
+                               const std::optional<TrialEvidence>& evidence) {
+  append_with(at, evidence, {EventKind::answered, to_json(answer), {}, {}});
 }
 
 void SessionRecorder::interrupted(std::chrono::nanoseconds at, int trial, const std::string& reason,
@@ -66,19 +67,52 @@ void SessionRecorder::interrupted(std::chrono::nanoseconds at, int trial, const 
   append(at, EventKind::interrupted, interrupted_to_json(trial, reason), secret);
 }
 
-void SessionRecorder::timed_out(std::chrono::nanoseconds at, int trial) {
-  append(at, EventKind::timed_out, trial_to_json(trial), {});
+void SessionRecorder::timed_out(std::chrono::nanoseconds at, int trial,
+                                const std::optional<TrialEvidence>& evidence) {
+  append_with(at, evidence, {EventKind::timed_out, trial_to_json(trial), {}, {}});
 }
 
-void SessionRecorder::trace_stored(std::chrono::nanoseconds at, TraceBody body,
-                                   const TrialMeasures& measures, const Trace& trace) {
+TrialEvidence SessionRecorder::packed(TraceBody body, const TrialMeasures& measures,
+                                      const Trace& trace) const {
   SealedTrace sealed{.session = session_,
                      .trial = body.trial,
                      .box = seal(participant_key_, trace_context(session_, body.trial),
                                  encode_trace(trace), trace_padding(trace.samples.size()))};
   body.samples = static_cast<std::int64_t>(trace.samples.size());
   body.trace = sha256(sealed.box);
-  append(at, EventKind::trace_stored, to_json(body), {to_json(measures)}, std::move(sealed));
+  return {std::move(body), measures, std::move(sealed)};
+}
+
+void SessionRecorder::trace_stored(std::chrono::nanoseconds at, const TraceBody& body,
+                                   const TrialMeasures& measures, const Trace& trace) {
+  Draft draft = draft_of(packed(body, measures, trace));
+  append_together(at, std::span(&draft, 1));
+}
+
+void SessionRecorder::practised(std::chrono::nanoseconds at, const PracticeBody& body) {
+  append(at, EventKind::practised, to_json(body), {});
+}
+
+void SessionRecorder::deviated(std::chrono::nanoseconds at, const DeviationBody& body) {
+  append(at, EventKind::deviated, to_json(body), {});
+}
+
+void SessionRecorder::questioned(std::chrono::nanoseconds at, const std::string& name,
+                                 const std::string& answers) {
+  append(at, EventKind::questioned, remark_to_json(name), {answers});
+}
+
+void SessionRecorder::explored_again(std::chrono::nanoseconds at, int trial) {
+  append(at, EventKind::explored_again, trial_to_json(trial), {});
+}
+
+void SessionRecorder::block_restarted(std::chrono::nanoseconds at, int block, int first_trial,
+                                      const std::string& secret_schedule) {
+  append(at, EventKind::block_restarted, block_to_json(block, first_trial), {secret_schedule});
+}
+
+void SessionRecorder::resumed(std::chrono::nanoseconds at, const ResumedBody& body) {
+  append(at, EventKind::resumed, to_json(body), {});
 }
 
 void SessionRecorder::remarked(std::chrono::nanoseconds at, EventKind kind,
@@ -96,30 +130,72 @@ void SessionRecorder::closed(std::chrono::nanoseconds at, bool complete) {
          {to_json(ChainEnd{.length = length_, .head = head_})});
 }
 
+void SessionRecorder::go_on_after(const Event& last) {
+  head_ = last.hash;
+  length_ = last.sequence + 1;
+  last_at_ = last.at;
+}
+
+SessionRecorder::Draft SessionRecorder::draft_of(TrialEvidence evidence) {
+  return {EventKind::trace_stored,
+          to_json(evidence.body),
+          {to_json(evidence.measures)},
+          std::move(evidence.trace)};
+}
+
 void SessionRecorder::append(std::chrono::nanoseconds at, EventKind kind, std::string body,
-                             const Secret& secret, const std::optional<SealedTrace>& trace) {
+                             const Secret& secret) {
+  Draft draft{kind, std::move(body), secret, {}};
+  append_together(at, std::span(&draft, 1));
+}
+
+void SessionRecorder::append_with(std::chrono::nanoseconds at,
+                                  const std::optional<TrialEvidence>& evidence, Draft draft) {
+  std::vector<Draft> drafts;
+  if (evidence) drafts.push_back(draft_of(*evidence));
+  drafts.push_back(std::move(draft));
+  append_together(at, drafts);
+}
+
+void SessionRecorder::append_together(std::chrono::nanoseconds at, std::span<Draft> drafts) {
   if (at < last_at_) {
     throw StoreError("session " + std::to_string(session_) + ": the clock went backwards before '" +
-                     std::string(name_of(kind)) + "'; use a monotonic clock");
+                     std::string(name_of(drafts.front().kind)) + "'; use a monotonic clock");
   }
+  std::vector<RecordedEvent> events;
+  Digest previous = head_;
+  for (Draft& draft : drafts) {
+    const std::int64_t sequence = length_ + static_cast<std::int64_t>(events.size());
+    events.push_back(chained(at, sequence, previous, draft));
+    previous = events.back().event.hash;
+  }
+  if (events.size() == 1) {
+    sink_.accept(events.front().event, events.front().trace);
+  } else {
+    sink_.accept_together(events);
+  }
+  // Only now: an event that its sink refused is not part of the chain.
+  head_ = previous;
+  last_at_ = at;
+  length_ += static_cast<std::int64_t>(events.size());
+}
+
+RecordedEvent SessionRecorder::chained(std::chrono::nanoseconds at, std::int64_t sequence,
+                                       const Digest& previous, Draft& draft) const {
   Event event{.session = session_,
-              .sequence = length_,
-              .kind = kind,
+              .sequence = sequence,
+              .kind = draft.kind,
               .at = at,
-              .body = std::move(body),
+              .body = std::move(draft.body),
               .sealed = {},
-              .previous = head_,
+              .previous = previous,
               .hash = {}};
-  if (!secret.text.empty()) {
-    event.sealed = seal(participant_key_, event_context(session_, length_, kind),
-                        bytes_of(secret.text), secret.padding);
+  if (!draft.secret.text.empty()) {
+    event.sealed = seal(participant_key_, event_context(session_, sequence, draft.kind),
+                        bytes_of(draft.secret.text), draft.secret.padding);
   }
   event.hash = event_hash(event);
-  sink_.accept(event, trace);
-  // Only now: an event that its sink refused is not part of the chain.
-  head_ = event.hash;
-  last_at_ = at;
-  ++length_;
+  return {std::move(event), std::move(draft.trace)};
 }
 
 }  // namespace touchtrial

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,19 @@ struct SealedTrace {
   Bytes box;
 };
 
+/// An event, and the trace that comes with one of kind trace_stored.
+struct RecordedEvent {
+  Event event;
+  std::optional<SealedTrace> trace;
+};
+
+/// What is stored of a presentation beside its answer, ready to be written.
+struct TrialEvidence {
+  TraceBody body;
+  TrialMeasures measures;
+  SealedTrace trace;
+};
+
 /// Where events go. A durable sink has them on disk when `accept` returns.
 class EventSink {
  public:
@@ -29,6 +43,10 @@ class EventSink {
   /// `trace` accompanies a trace_stored event and no other.
   /// \throws StoreError if the event cannot be stored; it is then not part of the chain
   virtual void accept(const Event& event, const std::optional<SealedTrace>& trace) = 0;
+  /// Events that are stored together. A durable sink stores all or none of them.
+  virtual void accept_together(std::span<const RecordedEvent> events) {
+    for (const auto& [event, trace] : events) accept(event, trace);
+  }
 };
 
 /// Keeps a whole session in memory, for StudyStore::add_session.
@@ -61,20 +79,40 @@ class SessionRecorder {
               const std::string& secret_schedule);
   void presented(std::chrono::nanoseconds at, int trial, int block);
   void first_contact(std::chrono::nanoseconds at, int trial);
-  void answered(std::chrono::nanoseconds at, const AnswerBody& answer);
+  /// \param evidence  of the same presentation, stored with the answer or not at all
+  void answered(std::chrono::nanoseconds at, const AnswerBody& answer,
+                const std::optional<TrialEvidence>& evidence = std::nullopt);
   /// \param reason  in clear: must tell nothing of the stimulus  \param detail  sealed, under
   ///   a padding that follows from the flight record's number of ticks
   void interrupted(std::chrono::nanoseconds at, int trial, const std::string& reason,
                    const std::optional<InterruptionDetail>& detail = std::nullopt);
-  void timed_out(std::chrono::nanoseconds at, int trial);
-  /// Encodes, seals and stores a trace; fills `body.trace` and `body.samples` itself.
-  void trace_stored(std::chrono::nanoseconds at, TraceBody body, const TrialMeasures& measures,
-                    const Trace& trace);
-  /// calibrated, instructed, practised, break_taken, paused, stopped, noted: a line of text or "".
+  void timed_out(std::chrono::nanoseconds at, int trial,
+                 const std::optional<TrialEvidence>& evidence = std::nullopt);
+  /// Encodes and seals a trace, and fills `body.trace` and `body.samples`. Takes a few milliseconds
+  /// for each second of exploration; may be called on another thread while this one records.
+  [[nodiscard]] TrialEvidence packed(TraceBody body, const TrialMeasures& measures,
+                                     const Trace& trace) const;
+  /// Stores `packed` of these, on its own.
+  void trace_stored(std::chrono::nanoseconds at, const TraceBody& body,
+                    const TrialMeasures& measures, const Trace& trace);
+  void practised(std::chrono::nanoseconds at, const PracticeBody& body);
+  void deviated(std::chrono::nanoseconds at, const DeviationBody& body);
+  /// \param name  of the questionnaire, in clear  \param answers  JSON, sealed
+  void questioned(std::chrono::nanoseconds at, const std::string& name, const std::string& answers);
+  void explored_again(std::chrono::nanoseconds at, int trial);
+  /// \param first_trial  number of the block's first trial from now on
+  /// \param secret_schedule  JSON of the block's new presentations, sealed
+  void block_restarted(std::chrono::nanoseconds at, int block, int first_trial,
+                       const std::string& secret_schedule);
+  void resumed(std::chrono::nanoseconds at, const ResumedBody& body);
+  /// calibrated, instructed, break_taken, paused, stopped, noted, ticked: a line of text or "".
   void remarked(std::chrono::nanoseconds at, EventKind kind, const std::string& text);
   /// Seals the chain's length and head up to here into the event, see ChainEnd.
   /// \param complete  whether the schedule was finished
   void closed(std::chrono::nanoseconds at, bool complete);
+
+  /// Goes on with a chain that is stored already. \param last  its last event
+  void go_on_after(const Event& last);
 
   /// Hash of the last event; zeros before the first.
   [[nodiscard]] const Digest& head() const noexcept { return head_; }
@@ -86,8 +124,21 @@ class SessionRecorder {
     std::string text;
     std::size_t padding = kEventPadding;
   };
-  void append(std::chrono::nanoseconds at, EventKind kind, std::string body, const Secret& secret,
-              const std::optional<SealedTrace>& trace = std::nullopt);
+  struct Draft {
+    EventKind kind{};
+    std::string body;
+    Secret secret;
+    std::optional<SealedTrace> trace;
+  };
+  void append(std::chrono::nanoseconds at, EventKind kind, std::string body, const Secret& secret);
+  /// All or none, one after the other at the same time.
+  void append_together(std::chrono::nanoseconds at, std::span<Draft> drafts);
+  /// After the presentation's trace, if there is one.
+  void append_with(std::chrono::nanoseconds at, const std::optional<TrialEvidence>& evidence,
+                   Draft draft);
+  [[nodiscard]] RecordedEvent chained(std::chrono::nanoseconds at, std::int64_t sequence,
+                                      const Digest& previous, Draft& draft) const;
+  [[nodiscard]] static Draft draft_of(TrialEvidence evidence);
 
   int session_;
   SecretKey participant_key_;

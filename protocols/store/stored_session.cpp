@@ -40,18 +40,27 @@ StoredSession::StoredSession(StoredStudy& study, int session, Bytes wrapped_key,
 }
 
 void StoredSession::accept(const Event& event, const std::optional<SealedTrace>& trace) {
-  study_.database().run([&] {
-    require_link(chain_, event);
-    require_match(event, trace ? &*trace : nullptr);
-    SQLite::Transaction transaction = study_.database().write_transaction();
-    store(event, trace);
-    transaction.commit();
-  });
-  chain_.extend(event);
+  const RecordedEvent recorded{event, trace};
+  accept_together(std::span(&recorded, 1));
 }
 
-void StoredSession::store(const Event& event, const std::optional<SealedTrace>& trace) {
-  if (chain_.length() == 0) study_.admit(event, wrapped_key_, utc_());
+void StoredSession::accept_together(std::span<const RecordedEvent> events) {
+  ChainLink chain = chain_;
+  study_.database().run([&] {
+    SQLite::Transaction transaction = study_.database().write_transaction();
+    for (const auto& [event, trace] : events) {
+      require_link(chain, event);
+      require_match(event, trace ? &*trace : nullptr);
+      store(event, trace, chain.length() == 0);
+      chain.extend(event);
+    }
+    transaction.commit();
+  });
+  chain_ = chain;
+}
+
+void StoredSession::store(const Event& event, const std::optional<SealedTrace>& trace, bool first) {
+  if (first) study_.admit(event, wrapped_key_, utc_());
   study_.append(event, trace);
   if (event.kind == EventKind::closed) study_.conclude(event, utc_());
 }

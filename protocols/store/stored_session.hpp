@@ -14,9 +14,10 @@ class StoredSession final : public EventSink {
   StoredSession(StoredStudy& study, int session, Bytes wrapped_key, UtcClock utc);
 
   void accept(const Event& event, const std::optional<SealedTrace>& trace) override;
+  void accept_together(std::span<const RecordedEvent> events) override;
 
  private:
-  void store(const Event& event, const std::optional<SealedTrace>& trace);
+  void store(const Event& event, const std::optional<SealedTrace>& trace, bool first);
 
   StoredStudy& study_;
   ChainLink chain_;

@@ -1,5 +1,6 @@
 #include "protocols/session/exploration.hpp"
 
+#include "protocols/session/prompt_participant.hpp"
 #include "protocols/session/simulated_exploration.hpp"
 #include "protocols/session/stimulus_source.hpp"
 #include "protocols/session/tiny_study.hpp"
@@ -13,7 +14,7 @@ namespace touchtrial {
 namespace {
 
 /// Explores as simulated participants do, and keeps what was felt.
-class Explorer final : public Participant {
+class Explorer final : public PromptParticipant {
  public:
   explicit Explorer(const SubjectModel& subject) : subject_(subject) {}
 

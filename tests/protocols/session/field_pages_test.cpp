@@ -1,6 +1,7 @@
 /// \file Of a pack only the pages that the stylus touches are read. Pages that it should not touch
 /// are taken away, so that reading one would end the test.
 #include "protocols/session/exploration.hpp"
+#include "protocols/session/prompt_participant.hpp"
 #include "protocols/session/simulated_exploration.hpp"
 #include "support/catch.hpp"
 #include "support/guarded_bytes.hpp"
@@ -54,7 +55,7 @@ std::set<std::size_t> pages_under(const Trace& trace, const PlaneGeometry& plane
   return pages;
 }
 
-class Explorer final : public Participant {
+class Explorer final : public PromptParticipant {
  public:
   void see_pictures(const std::vector<std::string>&) override {}
   [[nodiscard]] HapticDevice& begin_exploring(const PlaneGeometry& plane) override {

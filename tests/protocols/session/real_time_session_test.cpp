@@ -4,6 +4,7 @@
 #include "protocols/session/commitment.hpp"
 #include "protocols/session/fake_station.hpp"
 #include "protocols/session/felt_knowledge.hpp"
+#include "protocols/session/prompt_participant.hpp"
 #include "protocols/session/real_time_explorer.hpp"
 #include "protocols/session/session_runner.hpp"
 #include "protocols/session/simulated_participant.hpp"
@@ -27,7 +28,7 @@ namespace {
 using std::chrono::seconds;
 
 /// Feels at a station, names a picture by what was felt, and remembers what was named.
-class PersonAtStation : public Participant {
+class PersonAtStation : public PromptParticipant {
  public:
   PersonAtStation(DeviceStation& station, FakeDevice*& device)
       : station_(station), device_(device) {}

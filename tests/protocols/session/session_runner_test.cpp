@@ -1,5 +1,6 @@
 #include "protocols/session/session_runner.hpp"
 
+#include "protocols/session/prompt_participant.hpp"
 #include "protocols/session/tiny_study.hpp"
 #include "support/catch.hpp"
 
@@ -32,7 +33,7 @@ class RestingStylus final : public HapticDevice {
 };
 
 /// Always names the first picture; the device is lost in the first so many presentations.
-class Unlucky final : public Participant {
+class Unlucky final : public PromptParticipant {
  public:
   explicit Unlucky(int losses) : losses_(losses) {}
 

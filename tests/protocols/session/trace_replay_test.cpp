@@ -3,6 +3,7 @@
 #include "device/replay/replay_device.hpp"
 #include "protocols/session/exploration.hpp"
 #include "protocols/session/model_force.hpp"
+#include "protocols/session/prompt_participant.hpp"
 #include "protocols/session/simulated_exploration.hpp"
 #include "protocols/session/stimulus_source.hpp"
 #include "protocols/session/tiny_study.hpp"
@@ -16,7 +17,7 @@ namespace touchtrial {
 namespace {
 
 /// Brings one simulated hand.
-class Stroker final : public Participant {
+class Stroker final : public PromptParticipant {
  public:
   void see_pictures(const std::vector<std::string>&) override {}
   [[nodiscard]] HapticDevice& begin_exploring(const PlaneGeometry& plane) override {

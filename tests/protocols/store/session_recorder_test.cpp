@@ -170,13 +170,14 @@ TEST_CASE("only remarks are recorded as remarks") {
   SessionRecorder recorder(1, participant_key(1), events);
   recorder.opened(seconds(1), opening(1), "{}");
   for (const EventKind kind :
-       {EventKind::calibrated, EventKind::instructed, EventKind::practised, EventKind::break_taken,
+       {EventKind::calibrated, EventKind::instructed, EventKind::ticked, EventKind::break_taken,
         EventKind::paused, EventKind::stopped, EventKind::noted}) {
     recorder.remarked(seconds(1), kind, "text");
     REQUIRE(events.events.back().kind == kind);
     REQUIRE(events.events.back().body == R"({"text":"text"})");
   }
   REQUIRE_THROWS_AS(recorder.remarked(seconds(1), EventKind::answered, ""), StoreError);
+  REQUIRE_THROWS_AS(recorder.remarked(seconds(1), EventKind::practised, ""), StoreError);
   REQUIRE_THROWS_AS(recorder.remarked(seconds(1), EventKind::study_closed, ""), StoreError);
 }
 

@@ -7,6 +7,7 @@
 #include "device/falcon/usbfs_shim/emulator_usb_model.hpp"
 #include "device/falcon/usbfs_shim/usbfs_shim.hpp"
 #include "protocols/session/device_station.hpp"
+#include "protocols/session/prompt_participant.hpp"
 #include "protocols/session/simulated_participant.hpp"
 
 #include <atomic>
@@ -70,7 +71,7 @@ class Experimenter final : public Attendant {
 };
 
 /// Somebody who knows the textures, feels them through the Falcon, and answers.
-class PersonAtFalcon final : public Participant {
+class PersonAtFalcon final : public PromptParticipant {
  public:
   PersonAtFalcon(SimulatedParticipant& mind, EmulatedFalcon& falcon, DeviceStation& station)
       : mind_(mind), falcon_(falcon), station_(station) {}

@@ -1,0 +1,16 @@
+/// \file A texture label and its images.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+
+/// Each image is an exemplar.
+struct StudyClass {
+  std::string label;
+  std::vector<std::filesystem::path> images;  ///< as written in the file
+};
+
+}  // namespace touchtrial
