@@ -36,6 +36,8 @@ struct ExperimenterRequest {
     note,          ///< `text`
     deviation,     ///< `code`, and `text` which may be empty
     abort,         ///< `text` is the reason; the session is stopped and closed
+    leave,         ///< the program is to end, `text` says why: the session stays open and can be
+                   ///< taken up again
   };
   Kind kind{};
   std::string text;

@@ -1,0 +1,21 @@
+/// \file What a session's people read, in the language of the session.
+#pragma once
+
+#include "protocols/design/session_plan.hpp"
+#include "protocols/session/experimenter.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+
+/// Of one session. What is empty is left out of it.
+struct SessionTexts {
+  std::vector<std::string> instructions;    ///< pages
+  std::optional<Questionnaire> handedness;  ///< asked after the instructions
+  std::optional<Questionnaire> closing;     ///< asked after the last trial
+  std::vector<DaySheetItem> day_sheet;      ///< before the participant sits down
+};
+
+}  // namespace touchtrial
