@@ -2,6 +2,13 @@
 
 namespace touchtrial {
 
+ChainLink ChainLink::after(const Event& last) {
+  ChainLink link(last.session);
+  link.length_ = last.sequence;
+  link.extend(last);
+  return link;
+}
+
 std::optional<std::string> ChainLink::broken_by(const Event& next) const {
   if (next.session != session_) return "the event belongs to another chain";
   if (next.sequence > length_) {

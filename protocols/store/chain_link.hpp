@@ -16,6 +16,9 @@ class ChainLink {
   /// \param session  0 for the file's chain
   explicit ChainLink(int session) : session_(session) {}
 
+  /// The end of a chain that is stored already. \param last  its last event
+  [[nodiscard]] static ChainLink after(const Event& last);
+
   /// \return why `next` cannot follow, or nothing if it does
   [[nodiscard]] std::optional<std::string> broken_by(const Event& next) const;
 

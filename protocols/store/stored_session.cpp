@@ -31,7 +31,13 @@ void require_match(const Event& event, const SealedTrace* trace) {
 }  // namespace
 
 StoredSession::StoredSession(StoredStudy& study, int session, Bytes wrapped_key, UtcClock utc)
-    : study_(study), chain_(session), wrapped_key_(std::move(wrapped_key)), utc_(std::move(utc)) {
+    : StoredSession(study, ChainLink(session), std::move(wrapped_key), std::move(utc)) {}
+
+StoredSession::StoredSession(StoredStudy& study, const Event& last, UtcClock utc)
+    : StoredSession(study, ChainLink::after(last), {}, std::move(utc)) {}
+
+StoredSession::StoredSession(StoredStudy& study, ChainLink chain, Bytes wrapped_key, UtcClock utc)
+    : study_(study), chain_(chain), wrapped_key_(std::move(wrapped_key)), utc_(std::move(utc)) {
   if (!utc_) {
     utc_ = [] {
       return std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch());
@@ -48,6 +54,7 @@ void StoredSession::accept_together(std::span<const RecordedEvent> events) {
   ChainLink chain = chain_;
   study_.database().run([&] {
     SQLite::Transaction transaction = study_.database().write_transaction();
+    if (chain_.length() > 0) refuse_if_others_wrote(events.front().event.session);
     for (const auto& [event, trace] : events) {
       require_link(chain, event);
       require_match(event, trace ? &*trace : nullptr);
@@ -57,6 +64,14 @@ void StoredSession::accept_together(std::span<const RecordedEvent> events) {
     transaction.commit();
   });
   chain_ = chain;
+}
+
+/// Two programs in one session would each lose what the other recorded.
+void StoredSession::refuse_if_others_wrote(int session) const {
+  const ChainHead stored = study_.head(session);
+  if (stored.length == chain_.length() && stored.hash == chain_.head()) return;
+  study_.refuse("session " + std::to_string(session) +
+                " was continued by another program, which has it now; end this one");
 }
 
 void StoredSession::store(const Event& event, const std::optional<SealedTrace>& trace, bool first) {

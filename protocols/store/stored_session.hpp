@@ -12,11 +12,15 @@ class StoredSession final : public EventSink {
  public:
   /// \param study  must outlive this
   StoredSession(StoredStudy& study, int session, Bytes wrapped_key, UtcClock utc);
+  /// Goes on with a session that is stored and open. \param last  its last event
+  StoredSession(StoredStudy& study, const Event& last, UtcClock utc);
 
   void accept(const Event& event, const std::optional<SealedTrace>& trace) override;
   void accept_together(std::span<const RecordedEvent> events) override;
 
  private:
+  StoredSession(StoredStudy& study, ChainLink chain, Bytes wrapped_key, UtcClock utc);
+  void refuse_if_others_wrote(int session) const;
   void store(const Event& event, const std::optional<SealedTrace>& trace, bool first);
 
   StoredStudy& study_;

@@ -24,13 +24,6 @@ bool is_participant_id(const std::string& id) {
          std::all_of(id.begin(), id.end(), allowed);
 }
 
-std::optional<Event> last_event(const Database& database, int session) {
-  Query query = database.query("SELECT max(sequence) FROM events WHERE session = ?");
-  query.bind(session);
-  if (!query.step() || query.is_null(0)) return std::nullopt;
-  return read_event(database, session, query.integer(0));
-}
-
 bool is_visual(const SessionOpening& opening) {
   return opening.station && opening.station->visual;
 }
@@ -93,15 +86,36 @@ SessionRow StoredStudy::session(int session) const {
   return rows.sessions.begin()->second;
 }
 
-ChainHead StoredStudy::file_head() const {
-  const std::optional<Event> last = last_event(database_, 0);
+std::optional<SessionRow> StoredStudy::session_of(const std::string& participant) const {
+  Query query = database_.query("SELECT session FROM sessions WHERE participant = ?");
+  query.bind(participant);
+  if (!query.step()) return std::nullopt;
+  return session(static_cast<int>(query.integer(0)));
+}
+
+int StoredStudy::next_enrolment() const {
+  Query query = database_.query("SELECT enrolment FROM sessions ORDER BY enrolment");
+  int number = 1;
+  while (query.step() && query.integer(0) <= number) ++number;
+  return number;
+}
+
+std::optional<Event> StoredStudy::last_event(int session) const {
+  Query query = database_.query("SELECT max(sequence) FROM events WHERE session = ?");
+  query.bind(session);
+  if (!query.step() || query.is_null(0)) return std::nullopt;
+  return read_event(database_, session, query.integer(0));
+}
+
+ChainHead StoredStudy::head(int session) const {
+  const std::optional<Event> last = last_event(session);
   if (!last) return {};
   return {.length = last->sequence + 1, .hash = last->hash};
 }
 
 void StoredStudy::append_to_file(EventKind kind, std::chrono::nanoseconds at,
                                  const std::string& body) {
-  const std::optional<Event> last = last_event(database_, 0);
+  const std::optional<Event> last = last_event(0);
   Event event{.session = 0,
               .sequence = last ? last->sequence + 1 : 0,
               .kind = kind,
@@ -116,10 +130,32 @@ void StoredStudy::append_to_file(EventKind kind, std::chrono::nanoseconds at,
 
 void StoredStudy::append(const Event& event, const std::optional<SealedTrace>& trace) {
   DerivedRows rows = read_rows(database_, scope_of(event));
+  if (event.session != 0) refuse_after_withdrawal(rows, event);
   fold(rows, event);
   insert_event(database_, event);
   if (trace) insert_trace(database_, *trace);
   write_rows(database_, rows);
+}
+
+/// Nothing more is recorded of somebody who withdrew during the session, but that it ended.
+void StoredStudy::refuse_after_withdrawal(const DerivedRows& rows, const Event& event) const {
+  if (event.kind == EventKind::stopped || event.kind == EventKind::closed) return;
+  const auto row = rows.sessions.find(event.session);
+  if (row == rows.sessions.end() || !row->second.withdrawn) return;
+  refuse("participant " + row->second.participant + " has withdrawn; end session " +
+         std::to_string(event.session));
+}
+
+Event StoredStudy::last_of_open(int session) const {
+  const SessionRow row = this->session(session);
+  const std::string name =
+      "session " + std::to_string(session) + " (participant " + row.participant + ")";
+  if (row.state != SessionState::open) {
+    refuse(name + " has ended and cannot go on; use another participant id, or restart it");
+  }
+  if (row.withdrawn) refuse(name + " cannot go on: the participant has withdrawn");
+  if (is_closed(database_)) refuse(name + " cannot go on: the study is closed");
+  return last_event(session).value();
 }
 
 void StoredStudy::admit(const Event& opened, const Bytes& wrapped_key,

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "protocols/store/database.hpp"
+#include "protocols/store/fold.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <chrono>
@@ -23,9 +24,14 @@ class StoredStudy {
   /// The first event's body; read once. \throws StoreError if there is none
   [[nodiscard]] const StudyCommitment& commitment() const;
   [[nodiscard]] StudyState state() const;
-  /// Where the file's chain ends.
-  [[nodiscard]] ChainHead file_head() const;
+  /// Where a chain ends (0: the file's).
+  [[nodiscard]] ChainHead head(int session) const;
+  [[nodiscard]] std::optional<Event> last_event(int session) const;
   [[nodiscard]] int next_session() const;
+  /// The smallest number that nobody has.
+  [[nodiscard]] int next_enrolment() const;
+  /// The session that a participant has, if any.
+  [[nodiscard]] std::optional<SessionRow> session_of(const std::string& participant) const;
   /// \throws StoreError if there is no such session
   [[nodiscard]] SessionRow session(int session) const;
 
@@ -39,6 +45,10 @@ class StoredStudy {
   ///   study, or its participant or enrolment is taken (by which session), or it would mix pilots
   ///   with others or what is seen with what is felt
   void admit(const Event& opened, const Bytes& wrapped_key, std::chrono::nanoseconds at);
+  /// The last event of a session that may go on.
+  /// \throws StoreError if there is no such session, it is closed, its participant has withdrawn,
+  ///   or the study is closed
+  [[nodiscard]] Event last_of_open(int session) const;
   /// A session's end on the file's chain. \param closed  its last event
   void conclude(const Event& closed, std::chrono::nanoseconds at);
 
@@ -48,6 +58,7 @@ class StoredStudy {
   void require_reason(const std::string& reason, const std::string& what) const;
 
  private:
+  void refuse_after_withdrawal(const DerivedRows& rows, const Event& event) const;
   void check_opening(const SessionOpening& opening) const;
   /// Pilots and others, what is seen and what is felt: one database holds one kind.
   void refuse_mixture(const SessionOpening& opening) const;

@@ -106,7 +106,21 @@ StudyState StudyStore::state() const {
 }
 
 ChainHead StudyStore::file_head() const {
-  return impl_->run([&] { return impl_->study.file_head(); });
+  return impl_->run([&] { return impl_->study.head(0); });
+}
+
+std::optional<SessionRow> StudyStore::session_of(const std::string& participant) const {
+  return impl_->run([&] { return impl_->study.session_of(participant); });
+}
+
+std::optional<SessionRow> StudyStore::open_session_of(const std::string& participant) const {
+  std::optional<SessionRow> row = session_of(participant);
+  if (row && row->state != SessionState::open) row.reset();
+  return row;
+}
+
+std::optional<Event> StudyStore::last_event(int session) const {
+  return impl_->run([&] { return impl_->study.last_event(session); });
 }
 
 std::vector<SessionRow> StudyStore::sessions() const {
@@ -136,6 +150,10 @@ int StudyStore::next_session() const {
   return impl_->run([&] { return impl_->study.next_session(); });
 }
 
+int StudyStore::next_enrolment() const {
+  return impl_->run([&] { return impl_->study.next_enrolment(); });
+}
+
 std::optional<Bytes> StudyStore::wrapped_key(int session) const {
   return impl_->run([&]() -> std::optional<Bytes> {
     Query query = impl_->database().query("SELECT wrapped FROM participant_keys WHERE session = ?");
@@ -163,6 +181,13 @@ void StudyStore::add_session(const BufferedEvents& session, const Bytes& wrapped
 std::unique_ptr<EventSink> StudyStore::begin_session(int session, const Bytes& wrapped_key,
                                                      UtcClock utc) {
   return std::make_unique<StoredSession>(impl_->study, session, wrapped_key, std::move(utc));
+}
+
+std::unique_ptr<EventSink> StudyStore::continue_session(int session, UtcClock utc) {
+  return impl_->run([&] {
+    return std::make_unique<StoredSession>(impl_->study, impl_->study.last_of_open(session),
+                                           std::move(utc));
+  });
 }
 
 void StudyStore::close_study(std::chrono::nanoseconds at) {

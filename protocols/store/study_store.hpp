@@ -124,6 +124,12 @@ class StudyStore {
   /// Where the file's chain ends.
   [[nodiscard]] ChainHead file_head() const;
   [[nodiscard]] std::vector<SessionRow> sessions() const;
+  /// The session that this participant has, whatever its state.
+  [[nodiscard]] std::optional<SessionRow> session_of(const std::string& participant) const;
+  /// The same if that session is still open: it may be continued.
+  [[nodiscard]] std::optional<SessionRow> open_session_of(const std::string& participant) const;
+  /// The last event of one chain (0: the file's), read without those before it.
+  [[nodiscard]] std::optional<Event> last_event(int session) const;
   /// All trials of all sessions, by session and trial.
   [[nodiscard]] std::vector<TrialRow> trials() const;
   /// Events of one chain in order (0: the file's).
@@ -147,8 +153,19 @@ class StudyStore {
   [[nodiscard]] std::unique_ptr<EventSink> begin_session(int session, const Bytes& wrapped_key,
                                                          UtcClock utc = {});
 
+  /// Goes on with a session that is stored and still open, after the program ended in it. Give
+  /// the recorder last_event (SessionRecorder::go_on_after). If another program goes on with it as
+  /// well, the slower of the two is refused at its next event; see session_lock.hpp.
+  /// \param utc  the system's clock if empty
+  /// \return the sink; it must not outlive the store
+  /// \throws StoreError if there is no such session, it has ended, its participant has withdrawn,
+  ///   or the study is closed
+  [[nodiscard]] std::unique_ptr<EventSink> continue_session(int session, UtcClock utc = {});
+
   /// The number that the next session gets.
   [[nodiscard]] int next_session() const;
+  /// The smallest enrolment number that nobody has, from 1.
+  [[nodiscard]] int next_enrolment() const;
 
   void close_study(std::chrono::nanoseconds at);
   /// \param interim  a look at the sessions that have ended, while the study goes on
