@@ -1,0 +1,67 @@
+/// \file What a participant did with keyboard, mouse or gamepad, and when.
+#pragma once
+
+#include "core/vec.hpp"
+
+#include <chrono>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace touchtrial {
+
+enum class Key {
+  none,
+  enter,  ///< keypad's too, and a gamepad's A
+  space,
+  left,
+  right,
+  up,
+  down,
+  tab,
+  back_tab,
+  backspace,
+  remove,
+  home,
+  end,
+  digit,  ///< keypad's too
+};
+
+struct InputEvent {
+  using Time = std::chrono::steady_clock::time_point;
+  enum class Kind {
+    key,     ///< went down
+    repeat,  ///< is held, as the system repeats it
+    letter,  ///< typed
+    moved,
+    pressed,  ///< left button
+    released,
+  };
+  Kind kind = Kind::key;
+  Time at{};  ///< when it arrived
+  Key key = Key::none;
+  int digit = 0;        ///< 0 to 9
+  char32_t letter = 0;  ///< Unicode
+  Vec2 position;        ///< of the pointer, window units from the top-left corner
+};
+
+/// From the thread that takes events to the one that draws. Neither waits for the other but for
+/// the moment of copying.
+class InputQueue {
+ public:
+  void push(const InputEvent& event) {
+    const std::lock_guard lock(mutex_);
+    events_.push_back(event);
+  }
+  /// All that have come, in order.
+  [[nodiscard]] std::vector<InputEvent> take() {
+    const std::lock_guard lock(mutex_);
+    return std::exchange(events_, {});
+  }
+
+ private:
+  std::mutex mutex_;
+  std::vector<InputEvent> events_;
+};
+
+}  // namespace touchtrial

@@ -1,0 +1,38 @@
+/// \file A simulated participant before the same window as people.
+#pragma once
+
+#include "app/participant/participant_window.hpp"
+#include "protocols/session/participant.hpp"
+
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+
+/// Asks the participant for each reply, and gives it with the window's keys; what the window makes
+/// of them is what the session gets. All functions belong to the session's thread, but `feel`.
+class WindowSubject final : public Participant {
+ public:
+  /// \param window,subject  must outlive this
+  /// \param real_time  false: replies bear no time of their own, but the subject's thinking time
+  WindowSubject(ParticipantWindow& window, Participant& subject, bool real_time);
+
+  void see_pictures(const std::vector<std::string>& labels) override;
+  [[nodiscard]] std::optional<StepReply> attend(const Step& step) override;
+  [[nodiscard]] HapticDevice& begin_exploring(const PlaneGeometry& plane) override;
+  void exploring(ServoControl& servo) override;
+  void feel(const ServoSample& sample) noexcept override;
+
+ private:
+  [[nodiscard]] std::optional<StepReply> reply_of_subject(const Step& step);
+  void type(const Step& step, const StepReply& reply);
+  void press(Key key, int digit = 0);
+
+  ParticipantWindow& window_;
+  Participant& subject_;
+  bool real_time_;
+  std::optional<StepReply> meant_;  ///< typed into the window, which has not replied yet
+};
+
+}  // namespace touchtrial
