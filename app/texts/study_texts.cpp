@@ -1,0 +1,198 @@
+#include "app/texts/study_texts.hpp"
+
+#include "app/texts/language_texts.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace touchtrial {
+namespace {
+
+using Words = std::map<std::string, std::string>;
+
+/// A text with its words in braces filled in.
+std::string filled(std::string text, const Words& words) {
+  for (const auto& [name, word] : words) {
+    const std::string place = "{" + name + "}";
+    for (auto at = text.find(place); at != std::string::npos;
+         at = text.find(place, at + word.size())) {
+      text.replace(at, place.size(), word);
+    }
+  }
+  return text;
+}
+
+std::string seconds_text(double seconds, const std::string& language) {
+  std::string text = fmt::format("{:g}", seconds);
+  if (language == "de") std::replace(text.begin(), text.end(), '.', ',');
+  return text;
+}
+
+Words words_for(const Study& study, const LanguageTexts& texts) {
+  return {{"pictures", std::to_string(study.classes.size())},
+          {"limit", seconds_text(study.trials.explore_limit_s, texts.language)},
+          {"confidence", std::to_string(study.session.confidence_levels)},
+          {"consent", study.session.consent_version}};
+}
+
+/// Which parts of the instructions stand on which page.
+std::vector<std::vector<std::string>> pages_for(const Study& study) {
+  std::vector<std::string> rules{study.trials.on_timeout == OnTimeout::fade ? "time_fade"
+                                                                            : "time_no_response"};
+  if (study.session.confidence_levels > 0) rules.push_back("confidence");
+  if (study.session.masking.wanted) rules.push_back("masking");
+  std::vector<std::vector<std::string>> pages{
+      {"welcome"},
+      {study.protocol == Protocol::classification ? "classification" : "comparison"},
+      {"hand"},
+      {study.session.sight == Sight::blindfold ? "blindfold" : "curtain"},
+      rules};
+  if (study.trials.practice > 0) pages.push_back({"practice"});
+  pages.push_back({"comfort"});
+  return pages;
+}
+
+std::vector<std::string> own_instructions(const Study& study, const LanguageTexts& texts) {
+  const Words words = words_for(study, texts);
+  std::vector<std::string> pages;
+  for (const std::vector<std::string>& parts : pages_for(study)) {
+    std::string& page = pages.emplace_back();
+    for (const std::string& part : parts) {
+      if (!page.empty()) page += "\n\n";
+      page += filled(texts.instructions.at(part), words);
+    }
+  }
+  return pages;
+}
+
+std::vector<std::string> instructions(const Study& study, const LanguageTexts& texts) {
+  const auto given = study.session.instructions.find(study.session.language);
+  if (given != study.session.instructions.end() && !given->second.empty()) return given->second;
+  return own_instructions(study, texts);
+}
+
+/// The same question in every language that the program has.
+/// \param of  a language's wording
+template <typename Wording>
+Question question_in_all(Wording of) {
+  Question question;
+  for (const LanguageTexts& texts : built_in_languages()) {
+    const QuestionText& wording = of(texts);
+    question.id = wording.id;
+    question.kind = wording.options.empty() ? QuestionKind::text : QuestionKind::choice;
+    question.text[texts.language] = wording.text;
+    question.options.resize(wording.options.size());
+    for (std::size_t i = 0; i < wording.options.size(); ++i) {
+      question.options[i][texts.language] = wording.options[i];
+    }
+  }
+  return question;
+}
+
+std::vector<Question> questions_in_all(std::vector<QuestionText> LanguageTexts::*list) {
+  std::vector<Question> questions;
+  for (std::size_t i = 0; i < (built_in_languages().front().*list).size(); ++i) {
+    questions.push_back(question_in_all(
+        [&](const LanguageTexts& texts) -> const QuestionText& { return (texts.*list).at(i); }));
+  }
+  return questions;
+}
+
+Questionnaire handedness_inventory() {
+  Questionnaire inventory{"handedness", questions_in_all(&LanguageTexts::handedness)};
+  Question& hand = inventory.questions.emplace_back(question_in_all(
+      [](const LanguageTexts& texts) -> const QuestionText& { return texts.pen_hand; }));
+  hand.required = true;
+  return inventory;
+}
+
+void join(std::vector<Question>& questions, const Question& given) {
+  const auto same = std::find_if(questions.begin(), questions.end(),
+                                 [&](const Question& own) { return own.id == given.id; });
+  if (same == questions.end()) {
+    questions.push_back(given);
+  } else {
+    *same = given;
+  }
+}
+
+std::optional<Questionnaire> closing_questions(const SessionPlan& plan) {
+  Questionnaire closing{"closing", {}};
+  if (plan.closing) closing.questions = questions_in_all(&LanguageTexts::closing);
+  for (const Question& given : plan.closing_questions) join(closing.questions, given);
+  if (closing.questions.empty()) return std::nullopt;
+  return closing;
+}
+
+/// Items' keys in a language file, and the deviation that skipping each of them is.
+std::vector<std::pair<std::string, std::string>> items_for(const SessionPlan& plan) {
+  std::vector<std::pair<std::string, std::string>> items{
+      {"consent", plan.consent_version.empty() ? "consent" : "consent_version"},
+      {"warm-up", "warm_up"},
+      {"calibration", "calibration"},
+      {"gravity-compensation", "gravity"},
+      {"fixture-touch", "fixture"},
+      {"placement", "placement"}};
+  if (plan.sight == Sight::blindfold) {
+    items.emplace_back("labels-learnt", "labels");
+    items.emplace_back("blindfold", "blindfold");
+  } else {
+    items.emplace_back("curtain", "curtain");
+  }
+  if (!plan.masking.wanted) return items;
+  items.emplace_back("headphones", "headphones");
+  items.emplace_back("masking-level", "masking_level");
+  return items;
+}
+
+std::vector<DaySheetItem> day_sheet(const Study& study, const LanguageTexts& texts) {
+  const Words words = words_for(study, texts);
+  std::vector<DaySheetItem> sheet;
+  for (const auto& [code, key] : items_for(study.session)) {
+    sheet.push_back({"no-" + code, filled(texts.day_sheet.at(key), words)});
+  }
+  int number = 0;
+  for (const std::string& own : study.session.day_sheet) {
+    sheet.push_back({"no-day-sheet-" + std::to_string(++number), own});
+  }
+  return sheet;
+}
+
+}  // namespace
+
+SessionTexts session_texts(const Study& study) {
+  const LanguageTexts& texts = texts_in(study.session.language);
+  SessionTexts session;
+  session.instructions = instructions(study, texts);
+  if (study.session.handedness) session.handedness = handedness_inventory();
+  session.closing = closing_questions(study.session);
+  session.day_sheet = day_sheet(study, texts);
+  return session;
+}
+
+std::vector<DaySheetItem> day_sheet_after(const Study& study) {
+  const LanguageTexts& texts = texts_in(study.session.language);
+  return {{"no-fixture-touch-after", texts.day_sheet_after.at("fixture_after")},
+          {"no-questions-after", texts.day_sheet_after.at("questions_after")},
+          {"not-cleaned", texts.day_sheet_after.at("cleaned")}};
+}
+
+std::optional<double> laterality_quotient(const std::vector<std::string>& answers) {
+  constexpr std::size_t kItems = 4;
+  constexpr std::string_view kOptions = "01234";
+  if (answers.size() < kItems) return std::nullopt;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < kItems; ++i) {
+    if (answers[i].size() != 1 || kOptions.find(answers[i]) == std::string_view::npos) {
+      return std::nullopt;
+    }
+    sum += 100.0 - 50.0 * (answers[i].front() - '0');
+  }
+  return sum / static_cast<double>(kItems);
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,184 @@
+#include "app/texts/study_texts.hpp"
+
+#include "app/texts/built_in_texts.hpp"
+#include "app/texts/language_texts.hpp"
+#include "core/errors.hpp"
+#include "core/strict_json.hpp"
+#include "support/catch.hpp"
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace touchtrial {
+namespace {
+
+Study two_textures() {
+  Study study;
+  study.classes = {{"bark", {}}, {"cloth", {}}};
+  return study;
+}
+
+std::string all_of(const std::vector<std::string>& pages) {
+  std::string text;
+  for (const std::string& page : pages) text += page + "\n";
+  return text;
+}
+
+bool has(const std::vector<DaySheetItem>& sheet, std::string_view code) {
+  for (const DaySheetItem& item : sheet) {
+    if (item.code == code) return true;
+  }
+  return false;
+}
+
+/// Every kind of study that has texts of its own.
+std::vector<Study> every_kind(const std::string& language) {
+  std::vector<Study> studies;
+  for (int bits = 0; bits < 32; ++bits) {
+    Study study = two_textures();
+    study.session.language = language;
+    if ((bits & 1) != 0) study.protocol = Protocol::comparison;
+    if ((bits & 2) != 0) study.session.sight = Sight::blindfold;
+    if ((bits & 4) != 0) study.trials.on_timeout = OnTimeout::no_response;
+    if ((bits & 8) != 0) study.trials.practice = 5;
+    if ((bits & 16) != 0) {
+      study.session.confidence_levels = 5;
+      study.session.consent_version = "2026-03";
+    }
+    studies.push_back(study);
+  }
+  return studies;
+}
+
+TEST_CASE("English and German ask the same questions with as many options") {
+  const auto& languages = built_in_languages();
+  REQUIRE(languages.size() == 2);
+  const LanguageTexts& english = languages[0];
+  const LanguageTexts& german = languages[1];
+  CHECK(english.language == "en");
+  CHECK(german.language == "de");
+  const auto same = [](const std::vector<QuestionText>& a, const std::vector<QuestionText>& b) {
+    REQUIRE(a.size() == b.size());
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      CHECK(a[i].id == b[i].id);
+      CHECK(a[i].options.size() == b[i].options.size());
+      CHECK(a[i].text != b[i].text);
+    }
+  };
+  same(english.handedness, german.handedness);
+  same({english.pen_hand}, {german.pen_hand});
+  same(english.closing, german.closing);
+}
+
+TEST_CASE("a language file with a part missing, misspelt or empty is refused") {
+  const std::string good(english_texts_json());
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    const auto at = text.find(from);
+    REQUIRE(at != std::string::npos);
+    return text.replace(at, from.size(), to);
+  };
+  CHECK_NOTHROW(parse_language_texts(good, "en.json"));
+  CHECK_THROWS_AS(parse_language_texts(with("\"warm_up\"", "\"warmup\""), "x"), StudyError);
+  CHECK_THROWS_AS(parse_language_texts(with("\"language\": \"en\",", ""), "x"), StudyError);
+  CHECK_THROWS_AS(parse_language_texts(with("\"Right\"", "\"\""), "x"), StudyError);
+  CHECK_THROWS_AS(parse_language_texts(with("Welcome", "\xff"), "x"), StudyError);
+}
+
+TEST_CASE("instructions of every study name its numbers and leave no word to be filled in") {
+  for (const std::string language : {"en", "de"}) {
+    for (const Study& study : every_kind(language)) {
+      const SessionTexts texts = session_texts(study);
+      CHECK(texts.instructions.size() >= 6);
+      std::string text = all_of(texts.instructions);
+      CHECK(text.find("60") != std::string::npos);
+      for (const DaySheetItem& item : texts.day_sheet) text += item.text;
+      CHECK(text.find_first_of("{}") == std::string::npos);
+      CHECK(text.find("bark") == std::string::npos);
+      // Speeds and forces that strokes should have.
+      CHECK(text.find("50") != std::string::npos);
+      CHECK(text.find(language == "de" ? "0,5" : "0.5") != std::string::npos);
+    }
+  }
+}
+
+TEST_CASE("a study's own instructions take the place of the program's in their language alone") {
+  Study study = two_textures();
+  study.session.instructions["de"] = {"Nur das, {limit}."};
+  CHECK(session_texts(study).instructions.size() > 1);
+  study.session.language = "de";
+  CHECK(session_texts(study).instructions == std::vector<std::string>{"Nur das, {limit}."});
+}
+
+TEST_CASE("a language that the program has not is English") {
+  Study study = two_textures();
+  const SessionTexts english = session_texts(study);
+  study.session.language = "fr";
+  CHECK(session_texts(study).instructions == english.instructions);
+}
+
+TEST_CASE("the handedness inventory has four items with five options, then asks for the pen") {
+  Study study = two_textures();
+  const auto inventory = session_texts(study).handedness;
+  REQUIRE(inventory);
+  REQUIRE(inventory->questions.size() == 5);
+  for (int i = 0; i < 4; ++i) CHECK(inventory->questions[i].options.size() == 5);
+  CHECK(inventory->questions[4].id == "pen-hand");
+  CHECK(inventory->questions[0].text.at("de") == "Welche Hand benutzen Sie zum Schreiben?");
+  CHECK(inventory->questions[0].options[4].at("en") == "Always left");
+  study.session.handedness = false;
+  CHECK_FALSE(session_texts(study).handedness);
+}
+
+TEST_CASE("the laterality quotient goes from -100 to 100 and needs all four items") {
+  CHECK(laterality_quotient({"0", "0", "0", "0", "0"}) == 100.0);
+  CHECK(laterality_quotient({"4", "4", "4", "4"}) == -100.0);
+  CHECK(laterality_quotient({"0", "1", "2", "3"}) == 25.0);
+  CHECK_FALSE(laterality_quotient({"0", "", "2", "3"}));
+  CHECK_FALSE(laterality_quotient({"0", "5", "2", "3"}));
+  CHECK_FALSE(laterality_quotient({"0", "1", "2"}));
+}
+
+TEST_CASE("a study's closing questions follow the program's, or take their place") {
+  Study study = two_textures();
+  const std::size_t own = session_texts(study).closing.value().questions.size();
+  Question more;
+  more.id = "tired";
+  study.session.closing_questions = {more};
+  CHECK(session_texts(study).closing.value().questions.size() == own + 1);
+  more.id = "heard";
+  more.text["en"] = "Loud?";
+  study.session.closing_questions = {more};
+  const auto questions = session_texts(study).closing.value().questions;
+  CHECK(questions.size() == own);
+  CHECK(questions.front().text.at("en") == "Loud?");
+  study.session.closing = false;
+  CHECK(session_texts(study).closing.value().questions.size() == 1);
+  study.session.closing_questions.clear();
+  CHECK_FALSE(session_texts(study).closing);
+}
+
+TEST_CASE("the day sheet has what the study needs, each with a deviation code of its own") {
+  Study study = two_textures();
+  study.session.consent_version = "2026-03";
+  study.session.day_sheet = {"The window is shut"};
+  const std::vector<DaySheetItem> sheet = session_texts(study).day_sheet;
+  for (const char* code : {"no-warm-up", "no-calibration", "no-fixture-touch", "no-curtain",
+                           "no-headphones", "no-masking-level", "no-consent",
+                           "no-gravity-compensation", "no-placement", "no-day-sheet-1"}) {
+    CHECK(has(sheet, code));
+  }
+  CHECK(sheet.front().text.find("2026-03") != std::string::npos);
+  CHECK(sheet.back().text == "The window is shut");
+  study.session.masking.wanted = false;
+  study.session.sight = Sight::blindfold;
+  const std::vector<DaySheetItem> blind = session_texts(study).day_sheet;
+  CHECK_FALSE(has(blind, "no-headphones"));
+  CHECK_FALSE(has(blind, "no-curtain"));
+  CHECK(has(blind, "no-labels-learnt"));
+  CHECK(day_sheet_after(study).size() == 3);
+}
+
+}  // namespace
+}  // namespace touchtrial
