@@ -92,7 +92,7 @@ const std::vector<LanguageTexts>& built_in_languages() {
 
 const LanguageTexts& texts_in(std::string_view language) {
   for (const LanguageTexts& texts : built_in_languages()) {
-    if (texts.language == language) return texts;
+    if (language.substr(0, 2) == texts.language) return texts;
   }
   return built_in_languages().front();
 }

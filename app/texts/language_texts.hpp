@@ -33,7 +33,7 @@ struct LanguageTexts {
 /// The languages that are built in, English first. Parsed once; thread-safe.
 [[nodiscard]] const std::vector<LanguageTexts>& built_in_languages();
 
-/// That of the code; English if there is none.
+/// That of the code ("de", "de-AT"); English if there is none.
 [[nodiscard]] const LanguageTexts& texts_in(std::string_view language);
 
 }  // namespace touchtrial
