@@ -18,23 +18,35 @@ std::string_view name_of(SessionPhase phase) {
 }
 
 std::string_view name_of(SessionInput input) {
-  constexpr std::array<std::string_view, 17> kNames = {
-      "open",     "calibrate", "instruct",    "present", "contact", "end-exploring",
-      "time-out", "interrupt", "store-trace", "choose",  "confirm", "take-break",
-      "pause",    "resume",    "note",        "stop",    "close"};
+  constexpr std::array<std::string_view, 19> kNames = {
+      "open",          "calibrate", "instruct",  "present",       "contact",
+      "end-exploring", "time-out",  "interrupt", "keep-evidence", "explore-again",
+      "choose",        "confirm",   "practise",  "take-break",    "pause",
+      "resume",        "note",      "stop",      "close"};
   return kNames[static_cast<std::size_t>(input)];
 }
 
-Session::Session(Schedule schedule, const TrialOptions& options, SessionRecorder recorder)
+Session::Session(Schedule schedule, const TrialOptions& options, SessionRecorder recorder,
+                 BlockRestart restart)
     : schedule_(std::move(schedule)),
       options_(options),
       recorder_(std::move(recorder)),
+      restart_(std::move(restart)),
       queue_(schedule_.presentations.size()) {
+  if (options.on_interruption == OnInterruption::restart_block &&
+      !(restart_.draw && restart_.secret)) {
+    throw std::invalid_argument("Session: a study that restarts blocks needs to know how");
+  }
   std::iota(queue_.begin(), queue_.end(), std::size_t{0});
 }
 
 bool Session::is_under_way() const noexcept {
   return phase_ != Phase::fresh && phase_ != Phase::closed;
+}
+
+bool Session::in_presentation() const noexcept {
+  const Phase phase = phase_ == Phase::paused ? before_pause_ : phase_;
+  return phase == Phase::exploring || phase == Phase::answering || phase == Phase::chosen;
 }
 
 bool Session::accepts(SessionInput input) const noexcept {
@@ -54,15 +66,19 @@ bool Session::accepts(SessionInput input) const noexcept {
     case Input::time_out:
       return phase_ == Phase::exploring;
     case Input::interrupt:
-      return phase_ == Phase::exploring && !has_trace_;
-    case Input::store_trace:
-      return (phase_ == Phase::exploring || answering) && !has_trace_;
+    case Input::keep_evidence:
+      return phase_ == Phase::exploring || answering;
+    case Input::explore_again:
+      return answering && !was_timed_out_;
     case Input::choose:
       return answering && !(answer_ && answer_->first_position);
     case Input::confirm:
       return phase_ == Phase::chosen;
+    case Input::practise:
+      return phase_ == Phase::ready && begun_ == 0;
     case Input::pause:
-      return phase_ == Phase::ready || answering;
+      return is_under_way() && phase_ != Phase::exploring && phase_ != Phase::paused &&
+             phase_ != Phase::stopped;
     case Input::resume:
       return phase_ == Phase::paused;
     case Input::note:
@@ -118,9 +134,15 @@ void Session::instruct(Time at, const std::string& text) {
 void Session::present(Time at) {
   require(Input::present, at);
   recorder_.presented(at, current()->trial, current()->block);
+  begin_presentation(at);
+}
+
+void Session::begin_presentation(Time at) noexcept {
   had_contact_ = false;
-  has_trace_ = false;
+  was_timed_out_ = false;
+  evidence_.reset();
   answer_.reset();
+  ++begun_;
   move_to(Phase::exploring, at);
 }
 
@@ -138,8 +160,10 @@ void Session::end_exploring(Time at) {
 
 void Session::time_out(Time at) {
   require(Input::time_out, at);
-  recorder_.timed_out(at, current()->trial);
-  if (options_.on_timeout == OnTimeout::no_response) {
+  const bool over = options_.on_timeout == OnTimeout::no_response;
+  recorder_.timed_out(at, current()->trial, over ? evidence_ : std::nullopt);
+  was_timed_out_ = true;
+  if (over) {
     finish_presentation(at);
   } else {
     move_to(Phase::answering, at);
@@ -150,17 +174,20 @@ void Session::interrupt(Time at, const std::string& reason,
                         const std::optional<InterruptionDetail>& detail) {
   require(Input::interrupt, at);
   recorder_.interrupted(at, current()->trial, reason, detail);
-  queue_.push_back(queue_.front());
-  queue_.pop_front();
-  move_to(Phase::ready, at);
+  give_up_presentation(at);
+  if (block_to_restart_) restart_block(at);
 }
 
-void Session::store_trace(Time at, const TraceBody& body, const TrialMeasures& measures,
-                          const Trace& trace) {
-  require(Input::store_trace, at);
-  recorder_.trace_stored(at, body, measures, trace);
-  has_trace_ = true;
-  move_to(phase_, at);
+void Session::keep_evidence(TrialEvidence evidence) {
+  require(Input::keep_evidence, last_);
+  evidence_ = std::move(evidence);
+}
+
+void Session::explore_again(Time at) {
+  require(Input::explore_again, at);
+  recorder_.explored_again(at, current()->trial);
+  answer_.reset();
+  move_to(Phase::exploring, at);
 }
 
 void Session::choose(int position) {
@@ -175,13 +202,14 @@ void Session::choose(int position) {
 
 void Session::confirm(Time at, std::optional<int> confidence) {
   require(Input::confirm, at);
-  recorder_.answered(at,
-                     {current()->trial, answer_->position, answer_->first_position, confidence});
+  recorder_.answered(at, {current()->trial, answer_->position, answer_->first_position, confidence},
+                     evidence_);
   finish_presentation(at);
 }
 
 void Session::finish_presentation(Time at) noexcept {
   queue_.pop_front();
+  evidence_.reset();
   ++done_since_break_;
   move_to(queue_.empty() ? Phase::finished : Phase::ready, at);
 }
@@ -202,8 +230,37 @@ void Session::pause(Time at, const std::string& reason) {
 
 void Session::resume(Time at) {
   require(Input::resume, at);
-  recorder_.remarked(at, EventKind::noted, "resumed");
+  recorder_.resumed(
+      at, {.after = "pause", .away_s = std::chrono::duration<double>(at - last_).count()});
   move_to(before_pause_, at);
+}
+
+void Session::practise(Time at, const PracticeBody& body) {
+  require(Input::practise, at);
+  recorder_.practised(at, body);
+  remarks_.practice.push_back(body);
+  move_to(phase_, at);
+}
+
+void Session::deviate(Time at, const DeviationBody& body) {
+  require(Input::note, at);
+  recorder_.deviated(at, body);
+  remarks_.deviations.insert(body.code);
+  move_to(phase_, at);
+}
+
+void Session::tick(Time at, const std::string& item) {
+  require(Input::note, at);
+  recorder_.remarked(at, EventKind::ticked, item);
+  remarks_.ticked.insert(item);
+  move_to(phase_, at);
+}
+
+void Session::question(Time at, const std::string& name, const std::string& answers) {
+  require(Input::note, at);
+  recorder_.questioned(at, name, answers);
+  remarks_.questionnaires.insert(name);
+  move_to(phase_, at);
 }
 
 void Session::note(Time at, const std::string& text) {

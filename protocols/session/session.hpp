@@ -7,9 +7,13 @@
 
 #include <chrono>
 #include <deque>
+#include <functional>
 #include <optional>
+#include <set>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace touchtrial {
 
@@ -39,17 +43,35 @@ enum class SessionInput {
   end_exploring,
   time_out,
   interrupt,
-  store_trace,
+  keep_evidence,
+  explore_again,
   choose,
   confirm,
+  practise,
   take_break,
   pause,
   resume,
-  note,
+  note,  ///< and what else may be said at any time: deviations, ticks, questionnaires
   stop,
   close,
 };
 [[nodiscard]] std::string_view name_of(SessionInput input);
+
+/// How a block comes again in a fresh order (OnInterruption::restart_block).
+struct BlockRestart {
+  /// The block's new presentations; the same for the same arguments.
+  std::function<std::vector<Presentation>(int block, int first_trial)> draw;
+  /// What is sealed of them.
+  std::function<std::string(const std::vector<Presentation>&)> secret;
+};
+
+/// What was said so far beside the trials, so that nobody is asked twice.
+struct SessionRemarks {
+  std::set<std::string> ticked;          ///< items of the day sheet
+  std::set<std::string> deviations;      ///< codes
+  std::set<std::string> questionnaires;  ///< names
+  std::vector<PracticeBody> practice;    ///< in their order
+};
 
 /// A session as an event-driven state machine that owns the place in the schedule and the recorder.
 /// Times come in as arguments: since the session's opening, never decreasing.
@@ -62,7 +84,17 @@ class Session {
  public:
   using Time = std::chrono::nanoseconds;
 
-  Session(Schedule schedule, const TrialOptions& options, SessionRecorder recorder);
+  /// \param restart  needed only if the study restarts blocks
+  Session(Schedule schedule, const TrialOptions& options, SessionRecorder recorder,
+          BlockRestart restart = {});
+
+  /// Goes through what is stored of this session, and stands where it stood; the recorder goes on
+  /// after the last event. On a fresh session only; records nothing.
+  /// \throws StoreError if the events are not those of such a session
+  void restore(std::span<const Event> events);
+  /// The program has ended in the midst of the session, and this one takes it up: a presentation
+  /// that was under way is interrupted, a pause is over.
+  void take_up(Time at, const ResumedBody& body);
 
   [[nodiscard]] SessionPhase phase() const noexcept { return phase_; }
   [[nodiscard]] bool accepts(SessionInput input) const noexcept;
@@ -73,6 +105,13 @@ class Session {
   [[nodiscard]] const Presentation* current() const noexcept;
   /// Presentations still to be done, the current one included.
   [[nodiscard]] int presentations_left() const noexcept { return static_cast<int>(queue_.size()); }
+  /// Presentations begun so far, interrupted ones included.
+  [[nodiscard]] int presentations_begun() const noexcept { return begun_; }
+  /// Whether a presentation was begun that is not done yet.
+  [[nodiscard]] bool in_presentation() const noexcept;
+  [[nodiscard]] const SessionRemarks& remarks() const noexcept { return remarks_; }
+  /// Of the last event.
+  [[nodiscard]] Time last() const noexcept { return last_; }
   /// Whether the study wants a break before the next presentation.
   [[nodiscard]] bool break_due() const noexcept;
 
@@ -88,29 +127,43 @@ class Session {
   /// The participant is done exploring.
   void end_exploring(Time at);
   /// Exploration time is up: an answer is still required, or, if the study says no-response, the
-  /// presentation is done without one.
+  /// presentation is done without one; its evidence is stored then.
   void time_out(Time at);
-  /// The presentation was spoilt (a comfort stop, a device fault): it is repeated, under its trial
-  /// number, after all others. Not once its trace is stored.
+  /// The presentation was spoilt (a comfort stop, a device fault): what becomes of it, the study's
+  /// on_interruption says. Nothing is kept of its evidence.
   /// \param reason  in clear: must tell nothing of the stimulus  \param detail  sealed
   void interrupt(Time at, const std::string& reason,
                  const std::optional<InterruptionDetail>& detail = std::nullopt);
-  /// The samples of the presentation; once in each.
-  void store_trace(Time at, const TraceBody& body, const TrialMeasures& measures,
-                   const Trace& trace);
+  /// SessionRecorder::packed; may be called on another thread, but not beside `restore`.
+  [[nodiscard]] TrialEvidence packed(const TraceBody& body, const TrialMeasures& measures,
+                                     const Trace& trace) const {
+    return recorder_.packed(body, measures, trace);
+  }
+  /// The samples of the presentation so far; those kept before are forgotten. Stored together with
+  /// the answer, or with a time-out without one.
+  void keep_evidence(TrialEvidence evidence);
+  /// The participant goes back to the plane before answering; not once time was up.
+  void explore_again(Time at);
 
   /// A picture is chosen, by its position in the layout; it can be changed once before `confirm`.
   /// Recorded by `confirm`. \throws std::invalid_argument if there is no such position
   void choose(int position);
-  /// Next: records the answer, and the one before a change.
+  /// Next: records the answer, the one before a change, and the evidence, all or nothing.
   void confirm(Time at, std::optional<int> confidence = std::nullopt);
 
+  /// One presentation of the practice, between instruction and the first trial.
+  void practise(Time at, const PracticeBody& body);
   void take_break(Time at, const std::string& text = "");
-  /// Between trials or while answering; `resume` goes on where `pause` was.
+  /// Whenever nothing is on the plane; `resume` goes on where `pause` was.
   void pause(Time at, const std::string& reason);
   void resume(Time at);
-  /// A remark, at any time between opening and closing.
+  /// Remarks, at any time between opening and closing.
   void note(Time at, const std::string& text);
+  void deviate(Time at, const DeviationBody& body);
+  /// \param item  its code
+  void tick(Time at, const std::string& item);
+  /// \param answers  JSON, sealed
+  void question(Time at, const std::string& name, const std::string& answers);
   /// Ends the session early. A presentation that is under way remains without an answer.
   void stop(Time at, const std::string& reason);
   void close(Time at);
@@ -124,18 +177,35 @@ class Session {
   void require(SessionInput input, Time at) const;
   [[nodiscard]] bool is_under_way() const noexcept;
   void move_to(SessionPhase phase, Time at) noexcept;
+  void begin_presentation(Time at) noexcept;
   void finish_presentation(Time at) noexcept;
+  /// Takes the current presentation off, as the study's on_interruption has it.
+  void give_up_presentation(Time at);
+  void restart_block(Time at);
+  [[nodiscard]] std::vector<Presentation> drawn_again(int block, int first_trial) const;
+  void replace_block(int block, std::vector<Presentation> presentations);
+
+  // What stored events do, by group (session_restore.cpp).
+  void follow(const Event& event);
+  [[nodiscard]] bool follow_trial(const Event& event);
+  [[nodiscard]] bool follow_remark(const Event& event);
+  void follow_course(const Event& event);
 
   Schedule schedule_;
   TrialOptions options_;
   SessionRecorder recorder_;
+  BlockRestart restart_;
   std::deque<std::size_t> queue_;  ///< indices into the schedule, the current one first
   SessionPhase phase_ = SessionPhase::fresh;
   SessionPhase before_pause_ = SessionPhase::ready;
   Time last_{};
   bool had_contact_ = false;
-  bool has_trace_ = false;
+  bool was_timed_out_ = false;
+  std::optional<TrialEvidence> evidence_;
   std::optional<Answer> answer_;
+  std::optional<int> block_to_restart_;
+  SessionRemarks remarks_;
+  int begun_ = 0;
   int done_since_break_ = 0;
 };
 

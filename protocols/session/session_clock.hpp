@@ -15,11 +15,15 @@ class SessionClock {
   /// Something has happened that takes this long. Virtual time goes on by it; real time has gone on
   /// by itself while it happened.
   virtual void pass(Time duration) = 0;
+  /// When something happened, by the servo's monotonic clock. Virtual time knows of no other: now.
+  [[nodiscard]] virtual Time of(std::chrono::steady_clock::time_point) { return now(); }
 };
 
-/// Starts at 0 and goes on by what it is told.
+/// Starts at 0, or where it is told to, and goes on by what it is told.
 class VirtualSessionClock final : public SessionClock {
  public:
+  explicit VirtualSessionClock(Time start = {}) : now_(start) {}
+
   [[nodiscard]] Time now() override { return now_; }
   void pass(Time duration) override { now_ += duration; }
 
@@ -30,11 +34,17 @@ class VirtualSessionClock final : public SessionClock {
 /// Real time since the clock was made, by the machine's monotonic clock.
 class SteadySessionClock final : public SessionClock {
  public:
-  [[nodiscard]] Time now() override { return std::chrono::steady_clock::now() - start_; }
+  /// \param start  what it shows when it is made: not 0 in a session that is taken up again
+  explicit SteadySessionClock(Time start = {}) : zero_(std::chrono::steady_clock::now() - start) {}
+
+  [[nodiscard]] Time now() override { return of(std::chrono::steady_clock::now()); }
   void pass(Time) override {}
+  [[nodiscard]] Time of(std::chrono::steady_clock::time_point when) override {
+    return when - zero_;
+  }
 
  private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  std::chrono::steady_clock::time_point zero_;
 };
 
 }  // namespace touchtrial

@@ -32,6 +32,8 @@ StimulusSource::StimulusSource(const Pack& pack, const RenderingOptions& renderi
                                "prepare`"));
     }
     models_.emplace(entry.code, RenderingModel(view, rendering, entry.gains));
+    // Of a field that is read like any other, so that the servo's times are the same.
+    if (!flat_) flat_.emplace(view, rendering, Gains{});
     if (models_.size() == 1) plane_ = view.geometry;
     plane_.height_px = std::min(plane_.height_px, view.geometry.height_px);
     plane_.width_px = std::min(plane_.width_px, view.geometry.width_px);

@@ -5,6 +5,7 @@
 #include "engine/rendering/rendering_model.hpp"
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,9 @@ class StimulusSource {
   /// \throws FileError if the pack has no such code
   [[nodiscard]] const RenderingModel& model(const std::string& code) const;
 
+  /// A plane without texture, for catch trials.
+  [[nodiscard]] const RenderingModel& flat() const noexcept { return *flat_; }
+
   /// Reads a byte of every page of every field, so that the servo finds them in memory. Of all and
   /// not of the one that comes next: which pages had to be fetched, and how long that took, would
   /// tell a stimulus that was there before from a new one.
@@ -36,6 +40,7 @@ class StimulusSource {
   std::string folder_;
   std::vector<MappedField> fields_;
   std::map<std::string, RenderingModel, std::less<>> models_;
+  std::optional<RenderingModel> flat_;
   PlaneGeometry plane_;
 };
 

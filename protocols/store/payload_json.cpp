@@ -303,6 +303,11 @@ std::string block_to_json(int block, int first_trial) {
   return compact({{"block", block}, {"first_trial", first_trial}});
 }
 
+BlockBody block_from_json(const std::string& text) {
+  const JsonObject object(text);
+  return {.block = object.count("block", 0), .first_trial = object.count("first_trial", 1)};
+}
+
 std::string trial_to_json(int trial) {
   return compact({{"trial", trial}});
 }
@@ -316,6 +321,10 @@ TrialBody trial_from_json(const std::string& text) {
 
 std::string remark_to_json(const std::string& text) {
   return compact({{"text", text}});
+}
+
+std::string remark_from_json(const std::string& text) {
+  return JsonObject(text).text("text");
 }
 
 std::string completion_to_json(bool complete) {

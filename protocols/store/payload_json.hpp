@@ -41,6 +41,12 @@ struct UnblindingBody {
   bool interim = false;
 };
 
+/// `block-restarted`.
+struct BlockBody {
+  int block = 0;
+  int first_trial = 0;
+};
+
 /// \throws StoreError if a text is not UTF-8 or a number is not finite
 [[nodiscard]] std::string to_json(const StudyCommitment& body);
 [[nodiscard]] std::string to_json(const SessionOpening& body);
@@ -79,6 +85,8 @@ struct UnblindingBody {
 [[nodiscard]] UnblindingBody unblinding_from_json(const std::string& text);
 /// `block` and `reason` where the body has them.
 [[nodiscard]] TrialBody trial_from_json(const std::string& text);
+[[nodiscard]] BlockBody block_from_json(const std::string& text);
+[[nodiscard]] std::string remark_from_json(const std::string& text);
 [[nodiscard]] bool completion_from_json(const std::string& text);
 
 }  // namespace touchtrial

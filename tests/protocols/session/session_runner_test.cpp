@@ -154,14 +154,18 @@ TEST_CASE("times in clear say when an exploration ended, not how long its trace 
   const Ran ran = run_with(explorer, clock);
   SessionClock::Time plane_on{};
   int ends = 0;
-  for (const Event& event : ran.events.events) {
-    if (event.kind == EventKind::presented) plane_on = event.at;
-    const bool is_end =
-        event.kind == EventKind::trace_stored || event.kind == EventKind::interrupted;
-    if (!is_end) continue;
-    ++ends;
-    const auto ticks = event.kind == EventKind::interrupted ? 50 : 100;
-    CHECK(event.at - plane_on == std::chrono::milliseconds(ticks));
+  const std::vector<Event>& events = ran.events.events;
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    if (events[i].kind == EventKind::presented) plane_on = events[i].at;
+    if (events[i].kind == EventKind::interrupted) {
+      CHECK(events[i].at - plane_on == std::chrono::milliseconds(50));
+      ++ends;
+    }
+    if (events[i].kind == EventKind::trace_stored) {
+      REQUIRE(events[i + 1].kind == EventKind::answered);
+      CHECK(events[i + 1].at == events[i].at);
+      ++ends;
+    }
   }
   CHECK(ends == 6);
 }

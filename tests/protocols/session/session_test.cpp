@@ -99,17 +99,19 @@ TEST_CASE("each phase takes its own inputs and no others") {
   Laboratory lab(2);
   Session& session = lab.session;
   using List = std::vector<Input>;
-  CHECK(accepted(session) ==
-        List{Input::present, Input::take_break, Input::pause, Input::note, Input::stop});
+  CHECK(accepted(session) == List{Input::present, Input::practise, Input::take_break, Input::pause,
+                                  Input::note, Input::stop});
   session.present(seconds(4));
   CHECK(accepted(session) == List{Input::contact, Input::end_exploring, Input::time_out,
-                                  Input::interrupt, Input::store_trace, Input::note, Input::stop});
+                                  Input::interrupt, Input::keep_evidence, Input::note,
+                                  Input::stop});
   session.end_exploring(seconds(5));
-  CHECK(accepted(session) ==
-        List{Input::store_trace, Input::choose, Input::pause, Input::note, Input::stop});
+  CHECK(accepted(session) == List{Input::interrupt, Input::keep_evidence, Input::explore_again,
+                                  Input::choose, Input::pause, Input::note, Input::stop});
   session.choose(0);
-  CHECK(accepted(session) == List{Input::store_trace, Input::choose, Input::confirm, Input::pause,
-                                  Input::note, Input::stop});
+  CHECK(accepted(session) == List{Input::interrupt, Input::keep_evidence, Input::explore_again,
+                                  Input::choose, Input::confirm, Input::pause, Input::note,
+                                  Input::stop});
   session.pause(seconds(6), "coffee");
   CHECK(accepted(session) == List{Input::resume, Input::note, Input::stop});
   session.stop(seconds(7), "fire alarm");
@@ -129,7 +131,8 @@ TEST_CASE("an input that does not fit throws, and changes and records nothing") 
       {Input::end_exploring, [&] { lab.session.end_exploring(seconds(9)); }},
       {Input::time_out, [&] { lab.session.time_out(seconds(9)); }},
       {Input::interrupt, [&] { lab.session.interrupt(seconds(9), "why"); }},
-      {Input::store_trace, [&] { lab.session.store_trace(seconds(9), {}, {}, {}); }},
+      {Input::keep_evidence, [&] { lab.session.keep_evidence({}); }},
+      {Input::explore_again, [&] { lab.session.explore_again(seconds(9)); }},
       {Input::choose, [&] { lab.session.choose(0); }},
       {Input::confirm, [&] { lab.session.confirm(seconds(9)); }},
       {Input::resume, [&] { lab.session.resume(seconds(9)); }},
@@ -208,17 +211,65 @@ TEST_CASE("an interrupted trial is repeated after all others, under its number")
   CHECK(trials == std::vector<int>{2, 3, 1});
 }
 
-TEST_CASE("a trial whose trace is stored has one trace and cannot be interrupted any more") {
-  Laboratory lab;
-  lab.session.present(seconds(4));
+TrialEvidence evidence_of(const Session& session, double height_mm) {
   TraceBody body;
   body.trial = 1;
-  const Trace trace{1000.0, {{{1.0, 2.0, 3.0}, {0.0, 0.0, 0.5}}}};
-  lab.session.store_trace(seconds(5), body, {}, trace);
-  CHECK(lab.session.phase() == Phase::exploring);
-  CHECK_THROWS_AS(lab.session.store_trace(seconds(5), body, {}, trace), std::logic_error);
-  CHECK_THROWS_AS(lab.session.interrupt(seconds(5), "late"), std::logic_error);
-  CHECK(lab.sink.stored.traces.size() == 1);
+  return session.packed(body, {}, {1000.0, {{{1.0, 2.0, height_mm}, {0.0, 0.0, 0.5}}}});
+}
+
+TEST_CASE("evidence is stored with the answer, the last that was kept and no other") {
+  Laboratory lab;
+  lab.session.present(seconds(4));
+  const TrialEvidence first = evidence_of(lab.session, 3.0);
+  const TrialEvidence last = evidence_of(lab.session, 4.0);
+  lab.session.keep_evidence(first);
+  lab.session.end_exploring(seconds(5));
+  lab.session.explore_again(seconds(6));
+  lab.session.end_exploring(seconds(7));
+  lab.session.keep_evidence(last);
+  CHECK(lab.sink.stored.traces.empty());
+  lab.session.choose(1);
+  lab.session.confirm(seconds(8));
+  REQUIRE(lab.sink.stored.traces.size() == 1);
+  CHECK(lab.sink.stored.traces.front().box == last.trace.box);
+  const std::vector<EventKind> kinds = lab.kinds();
+  CHECK(kinds[kinds.size() - 3] == EventKind::explored_again);
+  CHECK(kinds[kinds.size() - 2] == EventKind::trace_stored);
+  CHECK(kinds.back() == EventKind::answered);
+}
+
+TEST_CASE("a trial can be interrupted while the participant answers; its evidence is forgotten") {
+  Laboratory lab(2);
+  lab.session.present(seconds(4));
+  lab.session.keep_evidence(evidence_of(lab.session, 3.0));
+  lab.session.end_exploring(seconds(5));
+  lab.session.choose(1);
+  lab.session.interrupt(seconds(6), "comfort stop: a cramp");
+  CHECK(lab.session.current()->trial == 2);
+  lab.now = seconds(6);
+  lab.run_trial(0);
+  lab.run_trial(0);
+  CHECK(lab.session.phase() == Phase::finished);
+  CHECK(lab.sink.stored.traces.empty());
+}
+
+TEST_CASE("nobody goes back to the plane once time is up") {
+  Laboratory lab;
+  lab.session.present(seconds(4));
+  lab.session.time_out(seconds(64));
+  CHECK_THROWS_AS(lab.session.explore_again(seconds(65)), std::logic_error);
+}
+
+TEST_CASE("a spoilt trial is left out if the study says so") {
+  TrialOptions options;
+  options.on_interruption = OnInterruption::leave_out;
+  Laboratory lab(2, options);
+  lab.session.present(seconds(4));
+  lab.session.interrupt(seconds(5), "device lost");
+  CHECK(lab.session.presentations_left() == 1);
+  lab.now = seconds(5);
+  lab.run_trial(0);
+  CHECK(lab.session.phase() == Phase::finished);
 }
 
 TEST_CASE("when time is up an answer is still required") {
@@ -287,6 +338,154 @@ TEST_CASE("a session that was stopped closes as incomplete") {
   lab.session.stop(seconds(5), "the participant feels unwell");
   lab.session.close(seconds(6));
   CHECK(lab.last_body().at("complete") == false);
+}
+
+BlockRestart two_trials_again() {
+  return {[](int block, int first_trial) {
+            return std::vector<Presentation>{
+                {first_trial, block, PresentationKind::scored, {.class_index = 2}},
+                {first_trial + 1, block, PresentationKind::scored, {.class_index = 1}}};
+          },
+          [](const std::vector<Presentation>&) { return std::string("{}"); }};
+}
+
+TrialOptions restarting_blocks() {
+  TrialOptions options;
+  options.on_interruption = OnInterruption::restart_block;
+  return options;
+}
+
+TEST_CASE("a spoilt trial begins its block anew, under new numbers, if the study says so") {
+  FickleSink sink;
+  Session session(schedule_of(4), restarting_blocks(), SessionRecorder(1, SecretKey{}, sink),
+                  two_trials_again());
+  session.open({}, {}, "{}");
+  session.calibrate({});
+  session.instruct({});
+  std::vector<int> trials;
+  for (int i = 0; session.phase() == Phase::ready; ++i) {
+    trials.push_back(session.current()->trial);
+    session.present({});
+    if (i == 1) {
+      session.interrupt({}, "device lost");
+      continue;
+    }
+    session.end_exploring({});
+    session.choose(0);
+    session.confirm({});
+  }
+  CHECK(trials == std::vector<int>{1, 2, 5, 6, 3, 4});
+  CHECK_THROWS_AS(
+      Session(schedule_of(4), restarting_blocks(), SessionRecorder(1, SecretKey{}, sink)),
+      std::invalid_argument);
+}
+
+/// Runs a session that is killed after so many events, takes it up until its end, and gives its
+/// trials as they were answered.
+std::vector<int> killed_after(std::size_t kept, const TrialOptions& options) {
+  FickleSink first;
+  const auto run = [](Session& session, FickleSink& sink, std::size_t most) {
+    const auto over = [&] { return sink.stored.events.size() >= most; };
+    const auto at = [&] { return session.last() + seconds(1); };
+    while (session.phase() != Phase::closed && !over()) {
+      switch (session.phase()) {
+        case Phase::opened:
+          session.calibrate(at());
+          break;
+        case Phase::calibrated:
+          session.instruct(at());
+          break;
+        case Phase::ready:
+          session.present(at());
+          break;
+        case Phase::exploring:
+          session.contact(at());
+          if (over()) return;
+          session.end_exploring(at());
+          session.choose(1);
+          session.confirm(at());
+          break;
+        default:
+          session.close(at());
+      }
+    }
+  };
+  Session session(schedule_of(4), options, SessionRecorder(1, SecretKey{}, first),
+                  two_trials_again());
+  session.open({}, {}, "{}");
+  run(session, first, kept);
+
+  FickleSink second;
+  Session again(schedule_of(4), options, SessionRecorder(1, SecretKey{}, second),
+                two_trials_again());
+  again.restore(first.stored.events);
+  CHECK(again.last() == first.stored.events.back().at);
+  if (again.phase() != Phase::closed) again.take_up(again.last(), {"program-ended", 1.0, "1"});
+  run(again, second, 1000);
+  CHECK(again.phase() == Phase::closed);
+
+  std::vector<int> answered;
+  Digest head{};
+  std::int64_t sequence = 0;
+  for (const BufferedEvents* part : {&first.stored, &second.stored}) {
+    for (const Event& event : part->events) {
+      CHECK(event.previous == head);
+      CHECK(event.sequence == sequence++);
+      head = event.hash;
+      if (event.kind != EventKind::answered) continue;
+      answered.push_back(nlohmann::json::parse(event.body).at("trial"));
+    }
+  }
+  return answered;
+}
+
+TEST_CASE("a session that was killed after any event is taken up where it stood") {
+  // opened, calibrated, instructed, then three events a trial, closed.
+  for (std::size_t kept = 1; kept <= 16; ++kept) {
+    CAPTURE(kept);
+    std::vector<int> repeated = killed_after(kept, {});
+    CHECK(repeated.size() == 4);
+    std::ranges::sort(repeated);
+    CHECK(repeated == std::vector<int>{1, 2, 3, 4});
+
+    TrialOptions options;
+    options.on_interruption = OnInterruption::leave_out;
+    const bool in_trial = kept > 3 && kept < 16 && (kept - 3) % 3 != 0;
+    CHECK(killed_after(kept, options).size() == (in_trial ? 3U : 4U));
+
+    // The block's last answers are those that count.
+    const std::vector<int> restarted = killed_after(kept, restarting_blocks());
+    CHECK(restarted.size() == (in_trial && ((kept - 4) / 3) % 2 == 1 ? 5U : 4U));
+  }
+}
+
+TEST_CASE("a pause is over when a session is taken up, and nobody is asked twice") {
+  Laboratory lab;
+  lab.session.tick(seconds(3), "curtain");
+  lab.session.deviate(seconds(3), {"no-masking-noise", "no headphones"});
+  lab.session.question(seconds(3), "handedness", "{}");
+  lab.session.practise(seconds(3), {1, 1, 2, true});
+  lab.session.pause(seconds(4), "telephone");
+  FickleSink sink;
+  Session again(schedule_of(3), {}, SessionRecorder(1, SecretKey{}, sink));
+  again.restore(lab.sink.stored.events);
+  CHECK(again.phase() == Phase::paused);
+  again.take_up(seconds(5), {"program-ended", 1.0, "1"});
+  CHECK(again.phase() == Phase::ready);
+  CHECK(again.remarks().ticked.contains("curtain"));
+  CHECK(again.remarks().deviations.contains("no-masking-noise"));
+  CHECK(again.remarks().questionnaires.contains("handedness"));
+  CHECK(again.remarks().practice.size() == 1);
+}
+
+TEST_CASE("events that do not fit the schedule are refused") {
+  Laboratory lab(1);
+  lab.session.present(seconds(4));
+  FickleSink sink;
+  Schedule other = schedule_of(1);
+  other.presentations.front().trial = 2;
+  Session again(other, {}, SessionRecorder(1, SecretKey{}, sink));
+  CHECK_THROWS_WITH(again.restore(lab.sink.stored.events), Catch::Contains("verify"));
 }
 
 TEST_CASE("a session without presentations is finished once the participant is instructed") {

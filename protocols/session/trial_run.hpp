@@ -1,0 +1,42 @@
+/// \file One presentation: ready, explore, answer. Private to the runner.
+#pragma once
+
+#include "protocols/session/attended_exploring.hpp"
+#include "protocols/session/exploration_record.hpp"
+#include "protocols/session/session_desk.hpp"
+
+namespace touchtrial {
+
+/// The servo's options of a study's explorations.
+[[nodiscard]] ServoOptions servo_options(const Study& study, double rate_hz);
+
+/// The trials of a session, one after the other.
+class TrialRun {
+ public:
+  explicit TrialRun(SessionDesk& desk);
+
+  /// The current presentation, as far as it goes. \pre the session is ready
+  void run();
+
+ private:
+  /// \return whether the participant is to answer
+  [[nodiscard]] bool explore(const RenderingModel& model);
+  [[nodiscard]] bool explore_again(const RenderingModel& model);
+  [[nodiscard]] bool end_exploration(const Exploration& done, SessionClock::Time began);
+  void answer(const RenderingModel& model);
+  void confirm(const StepReply& reply);
+  void keep_evidence();
+  [[nodiscard]] AnswerStep question() const;
+  [[nodiscard]] const RenderingModel& model() const;
+
+  SessionDesk& desk_;
+  Session& session_;
+  const SessionParts& parts_;
+  AttendedExploring participant_;
+  ServoOptions servo_;
+  ExplorationRecord record_;
+  int of_ = 0;  ///< presentations that there will be
+  bool time_is_up_ = false;
+};
+
+}  // namespace touchtrial
