@@ -29,6 +29,8 @@ struct Question {
   Translated text;
   std::vector<Translated> options;  ///< of a choice, >= 2
   bool required = false;
+
+  friend bool operator==(const Question&, const Question&) = default;
 };
 
 /// Questions that are asked together.
@@ -39,20 +41,24 @@ struct Questionnaire {
 
 /// Textures to learn the task on; none is in the study.
 struct PracticePlan {
-  std::vector<StudyClass> classes;
-  int criterion = 4;  ///< correct answers that end practice, <= trials.practice
-  int rounds = 2;     ///< at most; who does not reach the criterion is flagged
+  std::vector<StudyClass> classes;  ///< one image each
+  int criterion = 4;                ///< correct answers that end practice, <= trials.practice
+  int rounds = 2;                   ///< at most; who does not reach the criterion is flagged
+
+  friend bool operator==(const PracticePlan&, const PracticePlan&) = default;
 };
 
 /// Noise that covers the device's sound.
 struct MaskingPlan {
   bool wanted = true;
   double level_dbfs = -30.0;  ///< rms, below full scale, <= 0; what it is in dBA the lab measures
+
+  friend bool operator==(const MaskingPlan&, const MaskingPlan&) = default;
 };
 
 /// The study file's "session".
 struct SessionPlan {
-  std::string language = "en";  ///< of what the participant reads
+  std::string language = "en";  ///< of what the participant reads: "en" or "de"
   /// Pages of instruction by language; empty: the program's own.
   std::map<std::string, std::vector<std::string>> instructions;
   Sight sight = Sight::curtain;
@@ -64,6 +70,8 @@ struct SessionPlan {
   std::string ethics_number;                ///< may be empty
   std::vector<Question> closing_questions;  ///< beside the program's own
   bool closing = true;                      ///< ask the program's own closing questions
+
+  friend bool operator==(const SessionPlan&, const SessionPlan&) = default;
 };
 
 /// The study file's "registration": what is deposited before the first participant.
@@ -73,6 +81,8 @@ struct Registration {
   std::string stopping_rule;
   std::string exclusions;
   std::string primary_test;
+
+  friend bool operator==(const Registration&, const Registration&) = default;
 };
 
 }  // namespace touchtrial

@@ -7,6 +7,7 @@
 #include "protocols/design/study_sections.hpp"
 
 #include <algorithm>
+#include <span>
 
 namespace touchtrial {
 namespace {
@@ -60,9 +61,56 @@ void check_trials(const JsonValue& place, const Study& study) {
   }
 }
 
+/// What a participant has learnt must not be in the study, by name or by picture.
+void check_practice_class(const JsonValue& place, const Study& study, std::size_t index) {
+  const StudyClass& learnt = study.practice.classes[index];
+  const std::string at = "/practice/classes/" + std::to_string(index);
+  const auto image = learnt.images.front().lexically_normal();
+  const auto has_image = [&](const StudyClass& other) {
+    return std::ranges::any_of(other.images,
+                               [&](const auto& path) { return path.lexically_normal() == image; });
+  };
+  if (std::ranges::count(study.classes, learnt.label, &StudyClass::label) > 0) {
+    place.refuse_below(
+        at + "/label",
+        in_quotes(learnt.label) + " is a class of the study; practise with another texture");
+  }
+  if (std::ranges::any_of(study.classes, has_image)) {
+    place.refuse_below(at + "/images/0", in_quotes(learnt.images.front().string()) +
+                                             " is an image of the study; practise with another");
+  }
+  const std::span<const StudyClass> before(study.practice.classes.data(), index);
+  if (std::ranges::any_of(before, has_image)) {
+    place.refuse_below(at + "/images/0", in_quotes(learnt.images.front().string()) +
+                                             " is the image of another practice class; choose "
+                                             "another");
+  }
+}
+
+void check_practice(const JsonValue& place, const Study& study) {
+  for (std::size_t i = 0; i < study.practice.classes.size(); ++i) {
+    check_practice_class(place, study, i);
+  }
+  const int trials = study.trials.practice;
+  if (trials == 0) return;
+  if (study.practice.classes.empty()) {
+    place.refuse_below("/trials/practice",
+                       "is " + std::to_string(trials) +
+                           ", but the study has no textures to practise with; add a section "
+                           "\"practice\", or set it to 0");
+  }
+  if (study.practice.criterion > trials) {
+    place.refuse_below("/practice/criterion", "is " + std::to_string(study.practice.criterion) +
+                                                  ", more than the practice trials of a round, " +
+                                                  std::to_string(trials) +
+                                                  "; lower it, or raise /trials/practice");
+  }
+}
+
 Study read_study(const JsonValue& place) {
-  const JsonObject root = place.object(
-      {"study", "protocol", "classes", "methods", "rendering", "trials", "blinding", "seed"});
+  const JsonObject root =
+      place.object({"study", "protocol", "classes", "methods", "rendering", "trials", "practice",
+                    "session", "registration", "blinding", "seed"});
   Study study;
   study.name = read_plain_name(root.at("study"));
   study.protocol = root.at("protocol").choice(kProtocolNames);
@@ -70,12 +118,18 @@ Study read_study(const JsonValue& place) {
   study.methods = read_methods(root.at("methods"));
   if (const auto member = root.find("rendering")) study.rendering = read_rendering(*member);
   if (const auto member = root.find("trials")) study.trials = read_trials(*member);
+  if (const auto member = root.find("practice")) study.practice = read_practice(*member);
+  if (const auto member = root.find("session")) study.session = read_session(*member);
+  if (const auto member = root.find("registration")) {
+    study.registration = read_registration(*member);
+  }
   if (const auto member = root.find("blinding")) static_cast<void>(member->choice(kBlindingNames));
   if (const auto member = root.find("seed")) {
     study.seed = static_cast<std::uint64_t>(member->integer(0, kMaxSeed));
   }
   check_protocol(place, study);
   check_trials(place, study);
+  check_practice(place, study);
   return study;
 }
 

@@ -11,6 +11,8 @@ namespace touchtrial {
 struct StudyClass {
   std::string label;
   std::vector<std::filesystem::path> images;  ///< as written in the file
+
+  friend bool operator==(const StudyClass&, const StudyClass&) = default;
 };
 
 }  // namespace touchtrial

@@ -1,5 +1,6 @@
 /// The study file's "classes".
 #include "protocols/design/study_sections.hpp"
+#include "protocols/design/study_texts.hpp"
 
 #include <algorithm>
 #include <set>
@@ -9,18 +10,6 @@ namespace {
 
 constexpr std::size_t kLongestLabel = 64;   // bytes
 constexpr std::size_t kLongestPath = 1024;  // bytes
-
-/// C0, DEL and C1, whose UTF-8 form is 0xC2 0x80 .. 0xC2 0x9F.
-bool has_control_character(std::string_view text) {
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const auto c = static_cast<unsigned char>(text[i]);
-    if (c < 0x20 || c == 0x7f) return true;
-    const bool c1 =
-        c == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xa0;
-    if (c1) return true;
-  }
-  return false;
-}
 
 std::string read_label(const JsonValue& place) {
   const std::string& label = place.text();
@@ -46,10 +35,10 @@ std::string read_image(const JsonValue& place) {
   return path;
 }
 
-std::vector<std::filesystem::path> read_images(const JsonValue& place) {
+std::vector<std::filesystem::path> read_images(const JsonValue& place, std::size_t most) {
   std::vector<std::filesystem::path> images;
   std::set<std::string> seen;
-  for (const JsonValue& item : place.items(1, kMaxImagesOfClass)) {
+  for (const JsonValue& item : place.items(1, most)) {
     const std::string path = read_image(item);
     if (!seen.insert(path).second) {
       item.refuse(in_quotes(path) + " is there twice; list each image of a class once");
@@ -61,11 +50,12 @@ std::vector<std::filesystem::path> read_images(const JsonValue& place) {
 
 }  // namespace
 
-std::vector<StudyClass> read_classes(const JsonValue& place) {
+std::vector<StudyClass> read_classes(const JsonValue& place, std::size_t most_images) {
   std::vector<StudyClass> classes;
   for (const JsonValue& item : place.items(2, kMaxClasses)) {
     const JsonObject object = item.object({"label", "images"});
-    StudyClass study_class{read_label(object.at("label")), read_images(object.at("images"))};
+    StudyClass study_class{read_label(object.at("label")),
+                           read_images(object.at("images"), most_images)};
     const bool taken = std::any_of(classes.begin(), classes.end(), [&](const StudyClass& other) {
       return other.label == study_class.label;
     });

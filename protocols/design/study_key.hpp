@@ -57,7 +57,8 @@ void save_study_key(const std::filesystem::path& path, const StudyKey& key);
 [[nodiscard]] Schedule schedule_from_json(const std::string& text, const StudyKey& key);
 
 /// The study with codes in place of labels and image names, sorted by code, without its seed (from
-/// which the schedule could be worked out): what a database stores in clear. Compact JSON.
+/// which the schedule could be worked out): what a database stores in clear. Of practice, session
+/// and registration it has what is no text, and of the texts a keyed hash. Compact JSON.
 [[nodiscard]] std::string blinded_configuration(const StudyKey& key);
 
 /// SHA-256 over key (master, and what each code means), schedule rule, seed, blinded configuration

@@ -16,7 +16,8 @@ inline constexpr std::array kProtocolNames = {
 inline constexpr std::array kTrialOrderNames = {
     Named<TrialOrder>{"shuffled", TrialOrder::shuffled},
     Named<TrialOrder>{"de-bruijn", TrialOrder::de_bruijn},
-    Named<TrialOrder>{"uniform", TrialOrder::uniform}};
+    Named<TrialOrder>{"uniform", TrialOrder::uniform},
+    Named<TrialOrder>{"williams", TrialOrder::williams}};
 
 inline constexpr std::array kOnTimeoutNames = {
     Named<OnTimeout>{"fade", OnTimeout::fade},
@@ -24,6 +25,19 @@ inline constexpr std::array kOnTimeoutNames = {
 
 inline constexpr std::array kBlocksNames = {Named<Blocks>{"by-method", Blocks::by_method},
                                             Named<Blocks>{"mixed", Blocks::mixed}};
+
+inline constexpr std::array kOnInterruptionNames = {
+    Named<OnInterruption>{"repeat", OnInterruption::repeat},
+    Named<OnInterruption>{"leave-out", OnInterruption::leave_out},
+    Named<OnInterruption>{"restart-block", OnInterruption::restart_block}};
+
+inline constexpr std::array kSightNames = {Named<Sight>{"curtain", Sight::curtain},
+                                           Named<Sight>{"blindfold", Sight::blindfold}};
+
+inline constexpr std::array kQuestionKindNames = {
+    Named<QuestionKind>{"choice", QuestionKind::choice},
+    Named<QuestionKind>{"number", QuestionKind::number},
+    Named<QuestionKind>{"text", QuestionKind::text}};
 
 inline constexpr std::array kModelNames = {Named<ModelKind>{"paper", ModelKind::paper},
                                            Named<ModelKind>{"surface", ModelKind::surface}};

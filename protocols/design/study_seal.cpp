@@ -5,6 +5,43 @@
 #include <algorithm>
 
 namespace touchtrial {
+namespace {
+
+/// Everything that people read, as a hash that only the key's holder can check: names of textures
+/// are among it.
+std::string texts_tag(const StudyKey& key) {
+  const Study& study = key.study;
+  const nlohmann::json texts = {{"practice", to_json(study.practice)},
+                                {"session", to_json(study.session)},
+                                {"registration", to_json(study.registration)}};
+  const Digest hash = sha256(bytes_of(texts.dump()));
+  return to_hex(keyed_hash(derive_key(key.master, "texts"), ByteView(hash)));
+}
+
+/// What is said of the sections that are not in studies from before they existed: nothing where
+/// they are as if they were not there, so that such a study's configuration stays as it was.
+void add_plans(nlohmann::json& configuration, const StudyKey& key) {
+  const Study& study = key.study;
+  if (study.practice != PracticePlan{}) {
+    configuration["practice"] = {{"positions", study.practice.classes.size()},
+                                 {"criterion", study.practice.criterion},
+                                 {"rounds", study.practice.rounds}};
+  }
+  if (study.session != SessionPlan{}) {
+    nlohmann::json session = to_json(study.session);
+    for (const char* text :
+         {"instructions", "day_sheet", "consent_version", "ethics_number", "closing_questions"}) {
+      session.erase(text);
+    }
+    configuration["session"] = std::move(session);
+  }
+  if (configuration.contains("practice") || configuration.contains("session") ||
+      study.registration != Registration{}) {
+    configuration["texts"] = texts_tag(key);
+  }
+}
+
+}  // namespace
 
 std::string blinded_configuration(const StudyKey& key) {
   const Study& study = key.study;
@@ -13,15 +50,16 @@ std::string blinded_configuration(const StudyKey& key) {
   std::vector<std::string> codes;
   for (const KeyedStimulus& stimulus : key.stimuli) codes.push_back(stimulus.code);
   std::ranges::sort(codes);
-  return nlohmann::json{{"study", study.name},
-                        {"protocol", name_of(study.protocol)},
-                        {"stimuli", codes},
-                        {"positions", study.classes.size()},
-                        {"methods", methods},
-                        {"rendering", to_json(study.rendering)},
-                        {"trials", to_json(study.trials)},
-                        {"blinding", "double"}}
-      .dump();
+  nlohmann::json configuration = {{"study", study.name},
+                                  {"protocol", name_of(study.protocol)},
+                                  {"stimuli", codes},
+                                  {"positions", study.classes.size()},
+                                  {"methods", methods},
+                                  {"rendering", to_json(study.rendering)},
+                                  {"trials", to_json(study.trials)},
+                                  {"blinding", "double"}};
+  add_plans(configuration, key);
+  return configuration.dump();
 }
 
 Digest study_seal(const StudyKey& key) {

@@ -23,17 +23,26 @@ inline constexpr int kMaxScoredTrials = 10'000;
 [[nodiscard]] std::string read_plain_name(const JsonValue& place);
 
 /// All throw StudyError with the place of what they cannot accept.
-[[nodiscard]] std::vector<StudyClass> read_classes(const JsonValue& place);
+[[nodiscard]] std::vector<StudyClass> read_classes(const JsonValue& place,
+                                                   std::size_t most_images = kMaxImagesOfClass);
 [[nodiscard]] std::vector<StudyMethod> read_methods(const JsonValue& place);
 [[nodiscard]] RenderingOptions read_rendering(const JsonValue& place);
 [[nodiscard]] TrialOptions read_trials(const JsonValue& place);
+[[nodiscard]] PracticePlan read_practice(const JsonValue& place);
+[[nodiscard]] SessionPlan read_session(const JsonValue& place);
+[[nodiscard]] Registration read_registration(const JsonValue& place);
 
 /// The sections as the study file writes them, every key explicit; a method has the keys that
-/// belong to it and no others, "control" if it has one, and "label" if it is not the default. Equal
-/// options give equal JSON.
+/// belong to it and no others, "control" if it has one, and "label" if it is not the default. Of
+/// the trials, "max_run", "on_interruption" and "resume_within_h" are there only where they are not
+/// the default, so that what was sealed before they existed stays as it was. Equal options give
+/// equal JSON.
 [[nodiscard]] nlohmann::json to_json(const ExtractionOptions& method);
 [[nodiscard]] nlohmann::json to_json(const StudyMethod& method);
 [[nodiscard]] nlohmann::json to_json(const RenderingOptions& rendering);
 [[nodiscard]] nlohmann::json to_json(const TrialOptions& trials);
+[[nodiscard]] nlohmann::json to_json(const PracticePlan& practice);
+[[nodiscard]] nlohmann::json to_json(const SessionPlan& session);
+[[nodiscard]] nlohmann::json to_json(const Registration& registration);
 
 }  // namespace touchtrial

@@ -26,7 +26,8 @@ TEST_CASE("the classification study is the paper's: five textures, 25 trials, on
   CHECK(study.scored_trials() == 25);
   CHECK(make_schedule(study, 1).presentations.size() == 25);
   CHECK(study.rendering == RenderingOptions{});
-  CHECK(study.trials == TrialOptions{});
+  CHECK(study.trials == TrialOptions{.practice = 5, .break_every = 10});
+  CHECK(study.session == SessionPlan{});
   CHECK(study.seed == 31875542);
 }
 
@@ -50,7 +51,8 @@ TEST_CASE("the surface study is the classification study under the other model")
   CHECK(study.rendering == RenderingOptions{.model = ModelKind::surface, .gains = {}});
   CHECK(labels_of(study) == labels_of(paper));
   CHECK(study.methods == paper.methods);
-  CHECK(study.trials == paper.trials);
+  CHECK(study.trials.repeats == paper.trials.repeats);
+  CHECK(study.trials.order == paper.trials.order);
   CHECK(study.seed != paper.seed);
 }
 
@@ -68,7 +70,8 @@ TEST_CASE("the comparison without outlines differs from the other in its picture
   CHECK(textures.classes.size() == 4);
   CHECK(textures.methods == objects.methods);
   CHECK(textures.rendering == objects.rendering);
-  CHECK(textures.trials == objects.trials);
+  CHECK(textures.scored_trials() == objects.scored_trials());
+  CHECK(textures.trials.order == objects.trials.order);
   CHECK(textures.seed != objects.seed);
 }
 
@@ -82,6 +85,24 @@ TEST_CASE("the study of controls has its adaptive method beside what could stand
   CHECK(study.methods[2].method == Method::edge);
   CHECK(study.methods[3].method == Method::luminance);
   CHECK(study.rendering.equalise == Equalise::rms);
+}
+
+TEST_CASE("the two default studies are practised on textures of neither, and are registered") {
+  for (const char* name : {"classification.json", "comparison.json"}) {
+    const Study study = load_study(kConfig / name);
+    CHECK(study.practice.classes.size() == 3);
+    CHECK(study.practice.criterion == 4);
+    CHECK(study.practice.rounds == 2);
+    for (const StudyClass& learnt : study.practice.classes) {
+      CHECK(std::filesystem::is_regular_file(study.folder / learnt.images.front()));
+    }
+    CHECK(study.registration.participants == 20);
+    for (const std::string& statement :
+         {study.registration.hypothesis, study.registration.stopping_rule,
+          study.registration.exclusions, study.registration.primary_test}) {
+      CHECK_FALSE(statement.empty());
+    }
+  }
 }
 
 TEST_CASE("every image of the studies that come with the program is there") {

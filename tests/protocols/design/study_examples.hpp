@@ -42,6 +42,28 @@ namespace touchtrial {
   return study;
 }
 
+/// A study with practice and with a plan of the session and a registration that are not the
+/// default.
+[[nodiscard]] inline nlohmann::json planned_study() {
+  nlohmann::json study = study_of(3);
+  study["trials"] = {{"practice", 5}};
+  study["practice"]["classes"] = {{{"label", "corduroy"}, {"images", {"corduroy.png"}}},
+                                  {{"label", "velvet"}, {"images", {"velvet.png"}}}};
+  study["session"] = {{"instructions", {{"en", {"Feel the plane.\n\nSlowly."}}}},
+                      {"sight", "blindfold"},
+                      {"confidence", 5},
+                      {"day_sheet", {"Door shut"}},
+                      {"consent_version", "form 3"},
+                      {"ethics_number", "2026-17"},
+                      {"closing_questions",
+                       {{{"id", "cue"},
+                         {"kind", "choice"},
+                         {"text", {{"en", "Which cue?"}}},
+                         {"options", {{{"en", "Edges"}}, {{"en", "Depth"}, {"de", "Tiefe"}}}}}}}};
+  study["registration"] = {{"hypothesis", "They can."}, {"participants", 20}};
+  return study;
+}
+
 [[nodiscard]] inline Study parsed(const nlohmann::json& study,
                                   const std::filesystem::path& folder = "somewhere") {
   return parse_study(study.dump(), folder, "study.json");

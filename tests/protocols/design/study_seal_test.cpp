@@ -82,6 +82,73 @@ TEST_CASE("the sections in clear, read again, give the same study options") {
   CHECK(again.methods == key.study.methods);
 }
 
+TEST_CASE("a study that has none of the newer keys keeps its configuration and seal") {
+  // Written by the program before it knew practice, sessions and registrations.
+  json document = labelled_study();
+  StudyKey key = key_for(document);
+  CHECK(to_hex(study_seal(key)) ==
+        "7af5bedec9c62bea77c60a41d6ea87a7110a5e1cdcb2561861db4e8eb4399934");
+  const std::string trials =
+      R"("trials":{"blocks":"by-method","break_every":0,"catch":0,"explore_limit_s":60.0,)"
+      R"("lead_in":0,"on_timeout":"fade","order":"shuffled","practice":0,"repeats":5}})";
+  CHECK(blinded_configuration(key).ends_with(trials));
+  document["trials"] = {{"order", "de-bruijn"}, {"repeats", 3}, {"break_every", 7}};
+  key = key_for(document);
+  CHECK(to_hex(study_seal(key)) ==
+        "0d6c41ceb5fdbae1234501fd554ffed5c553b6803b015caace9d9015ed3e4b65");
+  document["practice"]["classes"] = planned_study()["practice"]["classes"];
+  CHECK_FALSE(study_seal(key_for(document)) == study_seal(key));
+}
+
+TEST_CASE("of practice, session and registration no text stands in clear") {
+  const std::string text = blinded_configuration(key_for(planned_study()));
+  for (const char* secret : {"corduroy", "velvet", ".png", "Feel the plane", "Door shut", "form 3",
+                             "2026-17", "Which cue", "Edges", "They can."}) {
+    INFO(secret);
+    CHECK(text.find(secret) == std::string::npos);
+  }
+  const json configuration = json::parse(text);
+  CHECK(configuration["practice"] == json{{"positions", 2}, {"criterion", 4}, {"rounds", 2}});
+  CHECK(configuration["session"] == json{{"language", "en"},
+                                         {"sight", "blindfold"},
+                                         {"masking", {{"wanted", true}, {"level_dbfs", -30.0}}},
+                                         {"handedness", true},
+                                         {"confidence", 5},
+                                         {"closing", true}});
+  CHECK(configuration["texts"].get<std::string>().size() == 64);
+  CHECK_FALSE(configuration["texts"] ==
+              json::parse(blinded_configuration(key_for(planned_study(), 2)))["texts"]);
+}
+
+TEST_CASE("any change of what people read or are asked changes the seal") {
+  const std::vector<std::function<void(json&)>> changes = {
+      [](json& d) { d["practice"]["classes"][0]["label"] = "other"; },
+      [](json& d) { d["practice"]["classes"][0]["images"] = {"other.png"}; },
+      [](json& d) { d["practice"]["criterion"] = 3; },
+      [](json& d) { d["practice"]["rounds"] = 1; },
+      [](json& d) { d["session"]["instructions"]["en"][0] = "Press."; },
+      [](json& d) { d["session"]["masking"]["level_dbfs"] = -20; },
+      [](json& d) { d["session"]["sight"] = "curtain"; },
+      [](json& d) { d["session"]["closing_questions"][0]["text"]["en"] = "What?"; },
+      [](json& d) { d["session"]["consent_version"] = "form 4"; },
+      [](json& d) { d["session"]["day_sheet"] = json::array(); },
+      [](json& d) { d["registration"]["participants"] = 21; },
+      [](json& d) { d["registration"]["hypothesis"] = "They cannot."; },
+      [](json& d) { d["trials"]["practice"] = 6; },
+      [](json& d) { d["trials"]["catch"] = 1; },
+      [](json& d) { d["trials"]["max_run"] = 2; },
+      [](json& d) { d["trials"]["order"] = "williams"; },
+      [](json& d) { d["trials"]["on_interruption"] = "restart-block"; },
+      [](json& d) { d["trials"]["resume_within_h"] = 1; }};
+  std::set<Digest> seals = {study_seal(key_for(planned_study()))};
+  for (const auto& change : changes) {
+    json document = planned_study();
+    change(document);
+    seals.insert(study_seal(key_for(document)));
+  }
+  CHECK(seals.size() == changes.size() + 1);
+}
+
 TEST_CASE("the seal is the same for the same key and study") {
   CHECK(study_seal(key_for(labelled_study())) == study_seal(key_for(labelled_study())));
 }
