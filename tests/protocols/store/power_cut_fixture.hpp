@@ -1,0 +1,139 @@
+/// \file Stories told to a database until something ends them, and what must be left then.
+#pragma once
+
+#include "protocols/store/store_fixture.hpp"
+#include "support/catch.hpp"
+#include "support/fault_vfs.hpp"
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace touchtrial::fixture {
+
+using testing::DiskOperation;
+using testing::Fault;
+using testing::FaultVfs;
+
+/// Passes events on, and notes those that were acknowledged.
+class NotingSink final : public EventSink {
+ public:
+  NotingSink(std::unique_ptr<EventSink> sink, std::vector<Event>& acknowledged)
+      : sink_(std::move(sink)), acknowledged_(acknowledged) {}
+
+  void accept(const Event& event, const std::optional<SealedTrace>& trace) override {
+    sink_->accept(event, trace);
+    acknowledged_.push_back(event);
+  }
+  void accept_together(std::span<const RecordedEvent> events) override {
+    sink_->accept_together(events);
+    for (const RecordedEvent& recorded : events) acknowledged_.push_back(recorded.event);
+  }
+
+ private:
+  std::unique_ptr<EventSink> sink_;
+  std::vector<Event>& acknowledged_;
+};
+
+/// What a program was told is safe.
+struct Acknowledged {
+  std::vector<Event> session;  ///< of session 2, event by event
+  ChainHead file;              ///< where the file's chain ended, after a change of it returned
+  std::size_t under_way = 2;   ///< the most events of session 2 that one step stores
+};
+
+/// What is done to a database that has session 1 and is open.
+using Story = std::function<void(StudyStore&, Acknowledged&)>;
+
+/// Does one step of a session; may do it again if it is refused.
+using Attempt = std::function<void(const std::function<void()>&)>;
+
+/// Session 2, each answer stored together with its trace.
+inline void record_session(StudyStore& store, Acknowledged& acknowledged, const Attempt& attempt) {
+  NotingSink sink(store.begin_session(2, wrapped_key_of(2), [] { return kUtc; }),
+                  acknowledged.session);
+  SessionRecorder recorder(2, participant_key(2), sink);
+  const Trace trace = stroking(400, 0.05);
+  attempt([&] { recorder.opened(nanoseconds(0), opening(2), R"({"schedule":"2"})"); });
+  attempt([&] { recorder.remarked(seconds(1), EventKind::instructed, "read aloud"); });
+  for (int trial = 1; trial <= 3; ++trial) {
+    const nanoseconds start = seconds(20 * trial);
+    attempt([&] { recorder.presented(start, trial, 0); });
+    attempt([&] { recorder.first_contact(start + milliseconds(350), trial); });
+    const TraceBody body{
+        .trial = trial, .samples = 0, .rate_hz = 1000.0, .overruns = 0, .valid = true, .trace = {}};
+    const TrialEvidence evidence = recorder.packed(body, {}, trace);
+    const AnswerBody answer{
+        .trial = trial, .position = trial, .first_position = {}, .confidence = {}};
+    attempt([&] { recorder.answered(start + seconds(9), answer, evidence); });
+  }
+  attempt([&] { recorder.closed(seconds(90), true); });
+}
+
+/// The same, told once.
+inline void tell_session(StudyStore& store, Acknowledged& acknowledged) {
+  record_session(store, acknowledged, [](const std::function<void()>& step) { step(); });
+}
+
+/// A study with one finished session, made once; to be copied.
+inline const std::filesystem::path& finished_session() {
+  static StoredFixture study(1);
+  study.store.reset();
+  return study.path;
+}
+
+/// What a run of a story came to.
+struct Outcome {
+  Acknowledged acknowledged;
+  std::string refusal;  ///< with which line it ended early
+};
+
+/// Opens the database and tells the story until it ends, or is ended.
+inline Outcome tell(const std::filesystem::path& path, const Story& story) {
+  Outcome outcome;
+  outcome.refusal = refusal_of([&] {
+    StudyStore store = StudyStore::open(path, StudyStore::Access::read_write);
+    story(store, outcome.acknowledged);
+  });
+  return outcome;
+}
+
+/// Everything that was acknowledged is there, once, and the chain holds.
+inline void require_kept(const StudyStore& store, const Acknowledged& acknowledged) {
+  const auto fault = store.first_fault();
+  INFO((fault ? fault->what : std::string()));
+  REQUIRE_FALSE(fault);
+  const std::vector<Event> kept = store.events(2);
+  REQUIRE(kept.size() >= acknowledged.session.size());
+  // Of what was under way no more than one step.
+  REQUIRE(kept.size() <= acknowledged.session.size() + acknowledged.under_way);
+  for (std::size_t i = 0; i < acknowledged.session.size(); ++i) {
+    REQUIRE(kept[i].hash == acknowledged.session[i].hash);
+  }
+  const std::vector<Event> file = store.events(0);
+  REQUIRE(file.size() >= static_cast<std::size_t>(acknowledged.file.length));
+  if (acknowledged.file.length > 0) {
+    REQUIRE(file[static_cast<std::size_t>(acknowledged.file.length) - 1].hash ==
+            acknowledged.file.hash);
+  }
+}
+
+/// The database takes what may follow: the rest of session 2, a third session, a note of its own.
+inline void require_writable(const std::filesystem::path& path) {
+  StudyStore store = StudyStore::open(path, StudyStore::Access::read_write);
+  if (!store.state().closed) add(store, store.next_session());
+  if (!store.sessions().at(0).excluded) store.exclude(1, kUtc, "a test");
+  if (!store.sessions().at(0).withdrawn) store.withdraw(1, kUtc, "a test");
+  REQUIRE_FALSE(store.first_fault());
+}
+
+/// How many operations a story takes when nothing goes wrong.
+inline std::int64_t operations_of(FaultVfs& vfs, const Story& story) {
+  StoredFixture study(finished_session());
+  vfs.plan({});
+  REQUIRE(tell(study.path, story).refusal.empty());
+  return vfs.operations();
+}
+
+}  // namespace touchtrial::fixture

@@ -1,0 +1,93 @@
+// Kills and power cuts at every operation on the disk: nothing acknowledged is lost.
+#include "protocols/store/power_cut_fixture.hpp"
+
+#include <array>
+
+using namespace touchtrial;
+using namespace touchtrial::fixture;
+
+namespace {
+
+using Kind = Fault::Kind;
+
+void note_head(const StudyStore& store, Acknowledged& acknowledged) {
+  acknowledged.file = store.file_head();
+}
+
+Story changing(const std::function<void(StudyStore&)>& change) {
+  return [change](StudyStore& store, Acknowledged& acknowledged) {
+    change(store);
+    note_head(store, acknowledged);
+  };
+}
+
+/// Ends a story at one operation and looks at what is left. \return whether it was ended
+bool survives(FaultVfs& vfs, const Story& story, const Fault& fault) {
+  INFO("kind " << static_cast<int>(fault.kind) << " at operation " << fault.at << ", seed "
+               << fault.seed);
+  StoredFixture study(finished_session());
+  vfs.plan(fault);
+  const Outcome outcome = tell(study.path, story);
+  if (!vfs.struck()) return false;
+  vfs.start_anew();
+  {
+    const StudyStore store = StudyStore::open(study.path, StudyStore::Access::read_only);
+    require_kept(store, outcome.acknowledged);
+  }
+  require_writable(study.path);
+  return true;
+}
+
+/// \param seeds  of what is on the disk by chance
+void end_everywhere(const Story& story, Kind kind, std::uint64_t seeds = 1) {
+  FaultVfs vfs;
+  const std::int64_t operations = operations_of(vfs, story);
+  REQUIRE(operations > 5);
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    for (std::int64_t at = 1; at <= operations; ++at) {
+      REQUIRE(
+          survives(vfs, story, {.kind = kind, .at = at, .only = {}, .lasts = false, .seed = seed}));
+    }
+  }
+}
+
+const std::array<Kind, 4> kEnds = {Kind::kill, Kind::torn_kill, Kind::power_cut,
+                                   Kind::torn_power_cut};
+
+void end_everywhere_in_every_way(const Story& story) {
+  for (const Kind kind : kEnds) end_everywhere(story, kind);
+}
+
+}  // namespace
+
+TEST_CASE("a session killed at any operation on the disk keeps what was acknowledged") {
+  end_everywhere(tell_session, Kind::kill);
+  end_everywhere(tell_session, Kind::torn_kill);
+}
+
+TEST_CASE("a session whose power is cut at any operation keeps what was acknowledged") {
+  end_everywhere(tell_session, Kind::power_cut);
+}
+
+TEST_CASE("a session whose power is cut keeps it whatever part of the rest is on the disk") {
+  end_everywhere(tell_session, Kind::torn_power_cut, 3);
+}
+
+TEST_CASE("a session added whole is there whole or not at all after a kill or a power cut") {
+  end_everywhere_in_every_way([](StudyStore& store, Acknowledged& acknowledged) {
+    acknowledged.under_way = 100;
+    add(store, 2);
+    note_head(store, acknowledged);
+  });
+}
+
+TEST_CASE("an exclusion, a look at outcomes and a closing survive kills and power cuts") {
+  end_everywhere_in_every_way(changing([](StudyStore& store) { store.exclude(1, kUtc, "ill"); }));
+  end_everywhere_in_every_way(
+      changing([](StudyStore& store) { store.unblind(kUtc, "safety board", true); }));
+  end_everywhere_in_every_way(changing([](StudyStore& store) { store.close_study(kUtc); }));
+}
+
+TEST_CASE("derived tables made anew survive kills and power cuts") {
+  end_everywhere_in_every_way([](StudyStore& store, Acknowledged&) { store.rebuild_derived(); });
+}
