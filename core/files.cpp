@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 
 #include <cerrno>
+#include <cstdio>
 #include <fstream>
 #include <system_error>
 #include <utility>
@@ -115,6 +116,21 @@ void replace_file(const std::filesystem::path& given, ByteView content, FileMode
 
 void replace_file(const std::filesystem::path& path, std::string_view content, FileMode mode) {
   replace_file(path, bytes_of(content), mode);
+}
+
+bool move_to_free_name(const std::filesystem::path& file, const std::filesystem::path& name) {
+  int failed = ::renameat2(AT_FDCWD, file.c_str(), AT_FDCWD, name.c_str(), RENAME_NOREPLACE);
+  if (failed != 0 && (errno == EINVAL || errno == ENOSYS)) {
+    // A file system without such a rename: an empty file takes the name first.
+    const Descriptor claim(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
+    failed = claim.number() < 0 ? -1 : std::rename(file.c_str(), name.c_str());
+  }
+  if (failed != 0 && errno == EEXIST) return false;
+  if (failed != 0) {
+    fail(name, "cannot be made", errno, "check the folder, its permissions and the free space");
+  }
+  sync_folder(name.parent_path());
+  return true;
 }
 
 void make_folder(const std::filesystem::path& folder) {

@@ -31,6 +31,12 @@ void replace_file(const std::filesystem::path& path, std::string_view content,
 /// \throws FileError if there is no such folder afterwards
 void make_folder(const std::filesystem::path& folder);
 
+/// Gives a whole file its name, if nothing else has that name, and syncs the folder.
+/// \return whether the name was free
+/// \throws FileError with the system's reason
+[[nodiscard]] bool move_to_free_name(const std::filesystem::path& file,
+                                     const std::filesystem::path& name);
+
 /// Whether something is there; false also where one cannot look.
 [[nodiscard]] bool is_there(const std::filesystem::path& path) noexcept;
 

@@ -9,8 +9,8 @@
 namespace touchtrial {
 
 /// Looks, in this order, at the file's structure, its chain, every session's chain, what the file's
-/// chain says of the sessions, keys, traces, and the derived tables; structure and traces may be
-/// left out. Call inside Database::run and a transaction.
+/// chain says of the sessions, keys, traces, the derived tables, and the schema; structure and
+/// traces may be left out. Call inside Database::run and a transaction.
 [[nodiscard]] std::optional<ChainFault> find_first_fault(const Database& database,
                                                          TraceCheck traces);
 

@@ -57,13 +57,32 @@ SQLite::Database connected(const std::filesystem::path& path, Database::Mode mod
   return {absolute_name(path), SQLite::OPEN_READONLY, kBusyTimeoutMs};
 }
 
-void set_up(SQLite::Database& connection, Database::Mode mode) {
-  connection.exec(
+/// SQLite does not refuse a setting that it cannot have: it says which one it has.
+void require_setting(const Database& database, const std::string& name, const std::string& wanted,
+                     const std::string& remedy) {
+  const std::string had = database.connection().execAndGet("PRAGMA " + name).getString();
+  if (had == wanted) return;
+  throw StoreError(database.refusal("cannot be written safely (" + name + " gives " + had +
+                                    ", not " + wanted + "); " + remedy));
+}
+
+/// An event that is acknowledged must be on the disk: see docs/durability.md.
+void set_up_for_writing(const Database& database) {
+  database.connection().exec("PRAGMA synchronous = FULL; PRAGMA secure_delete = ON;");
+  require_setting(database, "journal_mode = WAL", "wal", "keep it in a folder on a local disk");
+  const std::string remedy = "use a program whose SQLite has this setting";
+  require_setting(database, "synchronous", "2", remedy);
+  require_setting(database, "secure_delete", "1", remedy);
+}
+
+void set_up(const Database& database, Database::Mode mode) {
+  database.connection().exec(
       "PRAGMA foreign_keys = ON; PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON;");
-  connection.exec(mode == Database::Mode::read_only
-                      ? "PRAGMA query_only = ON;"
-                      : "PRAGMA journal_mode = WAL; PRAGMA synchronous = FULL; "
-                        "PRAGMA secure_delete = ON;");
+  if (mode == Database::Mode::read_only) {
+    database.connection().exec("PRAGMA query_only = ON;");
+  } else {
+    set_up_for_writing(database);
+  }
 }
 
 /// What failed and what to do about it, from SQLite's primary result code.
@@ -120,7 +139,7 @@ Database Database::create(const std::filesystem::path& path) {
     // holds nothing need not be safe yet: the first transaction's sync covers this.
     database.connection_.exec("PRAGMA synchronous = OFF; PRAGMA page_size = 8192;");
     database.connection_.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
-    set_up(database.connection_, Mode::read_write);
+    set_up(database, Mode::read_write);
     return database;
   } catch (const SQLite::Exception& error) {
     std::error_code ignored;
@@ -137,7 +156,7 @@ Database Database::open(const std::filesystem::path& path, Mode mode, int newest
         sqlite3_db_readonly(database.connection_.getHandle(), "main") == 1) {
       throw StoreError(database.refusal("cannot be written; check its permissions"));
     }
-    set_up(database.connection_, mode);
+    set_up(database, mode);
     // SQLite opens files lazily: what is wrong with this one shows when its schema is read.
     database.connection_.execAndGet("SELECT count(*) FROM sqlite_schema");
     return database;

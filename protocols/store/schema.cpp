@@ -1,9 +1,12 @@
 #include "protocols/store/schema.hpp"
 
+#include "core/files.hpp"
+
 #include <array>
 #include <string>
 
 #include <SQLiteCpp/Backup.h>
+#include <sqlite3.h>
 
 namespace touchtrial {
 namespace {
@@ -93,14 +96,31 @@ void make_first_version(SQLite::Database& database) {
 
 constexpr std::array<Migration, kSchemaVersion> kMigrations = {make_first_version};
 
+void write_copy(const Database& database, const std::filesystem::path& to) {
+  SQLite::Database target(to.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  if (SQLite::Backup(target, database.connection()).executeStep(-1) != SQLITE_DONE) {
+    throw StoreError(database.refusal(
+        "cannot be copied, because another program uses it; close it there, and try again"));
+  }
+}
+
+/// A backup that is there is whole; one that a broken-off migration left, and that is equal to what
+/// it would be now, stands.
 void back_up(const Database& database, int version) {
   const std::filesystem::path copy = backup_path(database.path(), version);
-  if (std::filesystem::exists(copy)) {
+  const std::filesystem::path draft = copy.string() + ".part";
+  std::filesystem::remove(draft);  // of a migration that was broken off
+  write_copy(database, draft);
+  if (!std::filesystem::exists(copy)) {
+    std::filesystem::rename(draft, copy);
+    return;
+  }
+  const bool same = read_file(draft) == read_file(copy);
+  std::filesystem::remove(draft);
+  if (!same) {
     throw StoreError(database.refusal("cannot be brought to this version: its backup " +
                                       copy.string() + " exists already; move that away"));
   }
-  SQLite::Database target(copy.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-  SQLite::Backup(target, database.connection()).executeStep(-1);
 }
 
 }  // namespace

@@ -19,7 +19,8 @@ using Migration = void (*)(SQLite::Database&);
 
 /// Brings a database to version `steps.size()` in one transaction. Unless it is empty, a copy of it
 /// is laid at backup_path first.
-/// \throws StoreError if a step fails, which leaves the database as it was, or the copy exists
+/// \throws StoreError if a step fails, which leaves the database as it was, or
+///   another copy exists
 void migrate(const Database& database, std::span<const Migration> steps);
 
 [[nodiscard]] int schema_version(const Database& database);

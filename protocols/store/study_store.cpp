@@ -1,5 +1,6 @@
 #include "protocols/store/study_store.hpp"
 
+#include "core/files.hpp"
 #include "protocols/store/chain_check.hpp"
 #include "protocols/store/damaged_store.hpp"
 #include "protocols/store/derived_rows.hpp"
@@ -12,6 +13,8 @@
 #include <system_error>
 #include <utility>
 
+#include <unistd.h>
+
 namespace touchtrial {
 namespace {
 
@@ -20,6 +23,11 @@ void remove_database(const std::filesystem::path& path) {
     std::error_code ignored;
     std::filesystem::remove(path.string() + suffix, ignored);
   }
+}
+
+[[noreturn]] void refuse_taken(const std::filesystem::path& path) {
+  throw StoreError(one_line(path.string()) +
+                   ": exists already; choose another name or continue with it");
 }
 
 void check_tables(const Database& database) {
@@ -68,19 +76,28 @@ StudyStore& StudyStore::operator=(StudyStore&&) noexcept = default;
 
 StudyStore StudyStore::create(const std::filesystem::path& path, const StudyCommitment& commitment,
                               std::chrono::nanoseconds at) {
-  auto impl = std::make_unique<Impl>(Database::create(path));
+  if (is_there(path)) refuse_taken(path);
+  // It gets its name when it is whole: whatever ends the program before leaves no half of it there.
+  const std::filesystem::path draft = path.string() + ".new" + std::to_string(::getpid());
+  remove_database(draft);
   try {
-    migrate(impl->database(), migrations());
-    impl->change(
-        [&] { impl->study.append_to_file(EventKind::study_committed, at, to_json(commitment)); });
-    // From its birth the file is whole without its log.
-    impl->run([&] { return impl->database().checkpoint(); });
+    fill_new(draft, commitment, at);
+    if (!move_to_free_name(draft, path)) refuse_taken(path);
   } catch (...) {
-    impl.reset();
-    remove_database(path);
+    remove_database(draft);
     throw;
   }
-  return StudyStore(std::move(impl));
+  return open(path, Access::read_write);
+}
+
+void StudyStore::fill_new(const std::filesystem::path& draft, const StudyCommitment& commitment,
+                          std::chrono::nanoseconds at) {
+  Impl impl(Database::create(draft));
+  migrate(impl.database(), migrations());
+  impl.change(
+      [&] { impl.study.append_to_file(EventKind::study_committed, at, to_json(commitment)); });
+  // From its birth the file is whole without its log.
+  impl.run([&] { return impl.database().checkpoint(); });
 }
 
 StudyStore StudyStore::open(const std::filesystem::path& path, Access access) {

@@ -98,7 +98,8 @@ using UtcClock = std::function<std::chrono::nanoseconds()>;
 /// The database. One writer at a time (SQLite's lock); not to be shared between threads.
 class StudyStore {
  public:
-  /// Makes a new database with its first event. Refuses an existing file.
+  /// Makes a new database with its first event. Refuses an existing file. The file appears under
+  /// its name when it is whole and safe; a kill or a power cut before leaves none.
   /// \throws StoreError if the file exists or cannot be made
   [[nodiscard]] static StudyStore create(const std::filesystem::path& path,
                                          const StudyCommitment& commitment,
@@ -200,6 +201,8 @@ class StudyStore {
 
  private:
   struct Impl;
+  static void fill_new(const std::filesystem::path& draft, const StudyCommitment& commitment,
+                       std::chrono::nanoseconds at);
   explicit StudyStore(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };

@@ -48,6 +48,9 @@ void forge_answers(const std::filesystem::path& path) {
   std::vector<Event> chain = store.events(1);
   std::vector<Event> file = store.events(0);
   SQLite::Database database(path.string(), SQLite::OPEN_READWRITE);
+  const std::string trigger =
+      database.execAndGet("SELECT sql FROM sqlite_schema WHERE name = 'events_no_update'")
+          .getString();
   database.exec("DROP TRIGGER events_no_update");
   Digest previous{};
   for (Event& event : chain) {
@@ -67,6 +70,7 @@ void forge_answers(const std::filesystem::path& path) {
     previous = event.hash = event_hash(event);
     store_hashes(database, event);
   }
+  database.exec(trigger);
 }
 
 }  // namespace

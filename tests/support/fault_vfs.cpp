@@ -36,6 +36,7 @@ struct FaultVfs::State {
   std::array<std::int64_t, kDiskOperations> counts{};
   bool struck = false;
   bool repaired = false;
+  bool shares_memory = true;
   std::optional<DiskImage> left;  ///< what a kill or a power cut left
 
   [[nodiscard]] bool is_dead() const { return left.has_value(); }
@@ -202,6 +203,13 @@ constexpr sqlite3_io_methods kMethods = {
     lock_file,  unlock_file,   check_lock,  control_file, sector_size,   characteristics, map_index,
     lock_index, index_barrier, unmap_index, nullptr,      nullptr};
 
+constexpr sqlite3_io_methods without_shared_memory() {
+  sqlite3_io_methods methods = kMethods;
+  methods.iVersion = 1;
+  return methods;
+}
+constexpr sqlite3_io_methods kMethodsWithoutSharedMemory = without_shared_memory();
+
 Bytes content_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
@@ -234,7 +242,7 @@ int open_file(sqlite3_vfs* /*vfs*/, const char* path, sqlite3_file* file, int fl
   const int code = active->real->xOpen(active->real, path, mine->real, flags, granted);
   if (code != SQLITE_OK) return code;
   if (mine->tracked) mine->path = sqlite3_mprintf("%s", path);
-  mine->base.pMethods = &kMethods;
+  mine->base.pMethods = active->shares_memory ? &kMethods : &kMethodsWithoutSharedMemory;
   return SQLITE_OK;
 }
 
@@ -280,6 +288,10 @@ void FaultVfs::plan(const Fault& fault) {
   state_->counts = {};
   state_->struck = false;
   state_->repaired = false;
+}
+
+void FaultVfs::forbid_shared_memory() {
+  state_->shares_memory = false;
 }
 
 void FaultVfs::repair() {

@@ -48,6 +48,8 @@ class FaultVfs {
 
   /// Counts from here.
   void plan(const Fault& fault);
+  /// From here on files are opened as on a file system without shared memory.
+  void forbid_shared_memory();
   /// Errors that last end.
   void repair();
   /// Operations since `plan`.

@@ -239,3 +239,29 @@ TEST_CASE("what a chain cannot show: an open session cut at its end") {
   tamper(study, "DELETE FROM events WHERE session = 1 AND sequence = 1");
   REQUIRE_FALSE(study.store->first_fault());
 }
+
+TEST_CASE("an object of the schema that is missing, altered or added is named") {
+  const auto altered = [](const std::string& sql) {
+    StoredFixture study(two_sessions());
+    {
+      SQLite::Database raw(study.path.string(), SQLite::OPEN_READWRITE);
+      raw.exec(sql);
+    }
+    study.store = StudyStore::open(study.path, StudyStore::Access::read_only);
+    const auto fault = study.store->first_fault(TraceCheck::skip);
+    return fault ? fault->what : std::string();
+  };
+  REQUIRE(altered("") == "");
+  REQUIRE(altered("DROP TRIGGER events_no_delete") ==
+          "trigger events_no_delete is missing from the schema");
+  REQUIRE(altered("CREATE VIEW results AS SELECT * FROM responses") ==
+          "view results does not belong to the schema");
+  REQUIRE(altered("CREATE TABLE notes(x)") == "table notes does not belong to the schema");
+  REQUIRE(altered("CREATE INDEX quick ON trials(block)") ==
+          "index quick does not belong to the schema");
+  REQUIRE(altered("ALTER TABLE trials ADD COLUMN presented TEXT") ==
+          "table trials is not as its schema has it");
+  REQUIRE(altered("DROP TRIGGER traces_no_update; CREATE TRIGGER traces_no_update BEFORE UPDATE ON "
+                  "traces BEGIN SELECT 1; END") ==
+          "trigger traces_no_update is not as its schema has it");
+}

@@ -245,6 +245,13 @@ TEST_CASE("a migration that fails leaves the database as it was") {
     REQUIRE_THROWS_AS(migrate(database, steps), StoreError);
     REQUIRE(schema_version(database) == 1);
     REQUIRE_FALSE(database.connection().tableExists("half"));
+    // The same again: the backup that stands there is the one that would be made.
+    REQUIRE_FALSE(
+        contains(refusal_of([&] { migrate(database, steps); }), ".v1.backup exists already"));
+  }
+  StudyStore::open(study.path, Access::read_write).exclude(1, kUtc, "changes the file");
+  {
+    const Database database = Database::open(study.path, Database::Mode::read_write, 2);
     REQUIRE(contains(refusal_of([&] { migrate(database, steps); }), ".v1.backup exists already"));
   }
   REQUIRE_FALSE(StudyStore::open(study.path, Access::read_only).first_fault());

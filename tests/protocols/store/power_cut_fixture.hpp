@@ -119,9 +119,21 @@ inline void require_kept(const StudyStore& store, const Acknowledged& acknowledg
   }
 }
 
-/// The database takes what may follow: the rest of session 2, a third session, a note of its own.
+/// Goes on with session 2 where it broke off, to its end.
+inline void finish_session(StudyStore& store) {
+  const auto open = store.open_session_of(participant_of(2));
+  if (!open || store.state().closed) return;
+  const auto sink = store.continue_session(2, [] { return kUtc; });
+  SessionRecorder recorder(2, participant_key(2), *sink);
+  recorder.go_on_after(store.last_event(2).value());
+  recorder.resumed(seconds(100), {.after = "program-ended", .away_s = 1.0, .program_version = ""});
+  recorder.closed(seconds(101), false);
+}
+
+/// The database takes what may follow: the rest of session 2, another session, changes of the file.
 inline void require_writable(const std::filesystem::path& path) {
   StudyStore store = StudyStore::open(path, StudyStore::Access::read_write);
+  finish_session(store);
   if (!store.state().closed) add(store, store.next_session());
   if (!store.sessions().at(0).excluded) store.exclude(1, kUtc, "a test");
   if (!store.sessions().at(0).withdrawn) store.withdraw(1, kUtc, "a test");

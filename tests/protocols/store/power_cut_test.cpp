@@ -1,6 +1,9 @@
 // Kills and power cuts at every operation on the disk: nothing acknowledged is lost.
+#include "core/files.hpp"
 #include "protocols/store/power_cut_fixture.hpp"
+#include "protocols/store/schema.hpp"
 
+#include <algorithm>
 #include <array>
 
 using namespace touchtrial;
@@ -90,4 +93,96 @@ TEST_CASE("an exclusion, a look at outcomes and a closing survive kills and powe
 
 TEST_CASE("derived tables made anew survive kills and power cuts") {
   end_everywhere_in_every_way([](StudyStore& store, Acknowledged&) { store.rebuild_derived(); });
+}
+
+TEST_CASE("a database that is being made is whole or not there after a kill or a power cut") {
+  FaultVfs vfs;
+  for (const Kind kind : kEnds) {
+    Fault fault{.kind = kind, .at = 1};
+    for (;; ++fault.at) {
+      INFO("kind " << static_cast<int>(kind) << " at operation " << fault.at);
+      TempFolder folder;
+      const auto path = folder.path() / "study.db";
+      vfs.plan(fault);
+      static_cast<void>(refusal_of([&] { return StudyStore::create(path, commitment(), kUtc); }));
+      if (!vfs.struck()) break;
+      vfs.start_anew();
+      if (!std::filesystem::exists(path)) {
+        static_cast<void>(StudyStore::create(path, commitment(), kUtc));
+      }
+      REQUIRE_FALSE(StudyStore::open(path, StudyStore::Access::read_only).first_fault());
+      StudyStore store = StudyStore::open(path, StudyStore::Access::read_write);
+      add(store, 1);
+    }
+    REQUIRE(fault.at > 10);
+  }
+}
+
+TEST_CASE("a database that is brought forward is the old one or the new one after a kill") {
+  FaultVfs vfs;
+  std::vector<Migration> steps(migrations().begin(), migrations().end());
+  steps.push_back(
+      [](SQLite::Database& database) { database.exec("CREATE TABLE later(x INTEGER) STRICT"); });
+  const int newest = static_cast<int>(steps.size());
+  const auto bring_forward = [&](const std::filesystem::path& path) {
+    migrate(Database::open(path, Database::Mode::read_write, newest), steps);
+  };
+  for (const Kind kind : kEnds) {
+    Fault fault{.kind = kind, .at = 1};
+    for (;; ++fault.at) {
+      INFO("kind " << static_cast<int>(kind) << " at operation " << fault.at);
+      StoredFixture study(finished_session());
+      vfs.plan(fault);
+      static_cast<void>(refusal_of([&] { bring_forward(study.path); }));
+      if (!vfs.struck()) break;
+      vfs.start_anew();
+      bring_forward(study.path);
+      const auto backup = backup_path(study.path, newest - 1);
+      REQUIRE_FALSE(StudyStore::open(backup, StudyStore::Access::read_only).first_fault());
+      SQLite::Database raw(study.path.string());
+      REQUIRE(raw.tableExists("later"));
+      REQUIRE(raw.execAndGet("SELECT count(*) FROM trials").getInt() == 3);
+    }
+    REQUIRE(fault.at > 10);
+  }
+}
+
+TEST_CASE("a key that was destroyed does not come back after a power cut") {
+  FaultVfs vfs;
+  const Bytes key = wrapped_key_of(1);
+  for (const Kind kind : kEnds) {
+    Fault fault{.kind = kind, .at = 1};
+    for (;; ++fault.at) {
+      INFO("kind " << static_cast<int>(kind) << " at operation " << fault.at);
+      StoredFixture study(finished_session());
+      bool acknowledged = false;
+      static_cast<void>(refusal_of([&] {
+        StudyStore store = StudyStore::open(study.path, StudyStore::Access::read_write);
+        vfs.plan(fault);
+        store.withdraw(1, kUtc, "asked to");
+        acknowledged = true;
+      }));
+      if (!vfs.struck()) break;
+      vfs.start_anew();
+      const bool withdrawn =
+          StudyStore::open(study.path, StudyStore::Access::read_write).sessions().at(0).withdrawn;
+      REQUIRE((withdrawn || !acknowledged));
+      const Bytes file = read_file(study.path);
+      const bool has_key =
+          std::search(file.begin(), file.end(), key.begin(), key.end()) != file.end();
+      REQUIRE(has_key == !withdrawn);
+      REQUIRE_FALSE(std::filesystem::exists(study.path.string() + "-wal"));
+    }
+  }
+}
+
+TEST_CASE("a folder that cannot have a write-ahead log is refused") {
+  FaultVfs vfs;
+  vfs.forbid_shared_memory();
+  TempFolder folder;
+  const std::string line = refusal_of(
+      [&] { return StudyStore::create(folder.path() / "study.db", commitment(), kUtc); });
+  REQUIRE(contains(line, "cannot be written safely"));
+  REQUIRE(contains(line, "keep it in a folder on a local disk"));
+  REQUIRE(std::filesystem::is_empty(folder.path()));
 }

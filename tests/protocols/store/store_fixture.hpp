@@ -10,10 +10,12 @@
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 
 #include <SQLiteCpp/Database.h>
+#include <SQLiteCpp/Statement.h>
 
 namespace touchtrial::fixture {
 
@@ -174,19 +176,26 @@ class StoredFixture {
   std::optional<StudyStore> store;
 };
 
-/// Closes the store, runs SQL behind its back (the triggers that protect events are gone then), and
-/// opens it again.
+/// Calls `work` while the triggers that protect events are gone, and puts them back.
+template <typename Work>
+void without_triggers(SQLite::Database& raw, Work&& work) {
+  std::map<std::string, std::string> triggers;
+  {
+    SQLite::Statement query(raw, "SELECT name, sql FROM sqlite_schema WHERE type = 'trigger'");
+    while (query.executeStep()) triggers[query.getColumn(0)] = query.getColumn(1).getString();
+  }
+  for (const auto& [name, sql] : triggers) raw.exec("DROP TRIGGER " + name);
+  work();
+  for (const auto& [name, sql] : triggers) raw.exec(sql);
+}
+
+/// Closes the store, runs SQL behind its back and those of its triggers, and opens it again.
 inline void tamper(StoredFixture& study, const std::string& sql) {
   study.store.reset();
   {
     SQLite::Database raw(study.path.string(), SQLite::OPEN_READWRITE);
-    for (const char* const table : {"events", "traces"}) {
-      for (const char* const what : {"update", "delete", "replace"}) {
-        raw.exec(std::string("DROP TRIGGER IF EXISTS ") + table + "_no_" + what);
-      }
-    }
     raw.exec("PRAGMA foreign_keys = OFF; PRAGMA synchronous = OFF");
-    raw.exec(sql);
+    without_triggers(raw, [&] { raw.exec(sql); });
   }
   study.store = StudyStore::open(study.path, StudyStore::Access::read_write);
 }
