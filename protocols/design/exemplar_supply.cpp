@@ -13,7 +13,7 @@ int ExemplarSupply::next(int class_index, int method) {
   auto deck = decks_.find(key);
   if (deck == decks_.end()) {
     const std::string purpose = "schedule: exemplars of class " + std::to_string(class_index) +
-                                ", method " + std::to_string(method);
+                                ", method " + std::to_string(method) + restart_;
     RandomStream random(study_.seed, purpose, static_cast<std::uint64_t>(enrolment_));
     deck = decks_.emplace(key, Deck{random, {}}).first;
   }

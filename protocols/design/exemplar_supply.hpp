@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <map>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -15,7 +16,9 @@ namespace touchtrial {
 /// before any repeats, then they are shuffled anew.
 class ExemplarSupply {
  public:
-  ExemplarSupply(const Study& study, int enrolment) : study_(study), enrolment_(enrolment) {}
+  /// \param restart  ends the purposes of the random streams; empty in a participant's schedule
+  ExemplarSupply(const Study& study, int enrolment, std::string restart = {})
+      : study_(study), enrolment_(enrolment), restart_(std::move(restart)) {}
 
   /// The next image of the class under the method.
   [[nodiscard]] int next(int class_index, int method);
@@ -28,6 +31,7 @@ class ExemplarSupply {
 
   const Study& study_;
   int enrolment_;
+  std::string restart_;
   std::map<std::pair<int, int>, Deck> decks_;
 };
 

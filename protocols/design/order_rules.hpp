@@ -17,4 +17,7 @@ struct OrderObstacle {
 /// \return nothing if every participant's schedule can be made
 [[nodiscard]] std::optional<OrderObstacle> obstacle_to_order(const Study& study);
 
+/// Whether the study's limit of runs excludes an order that it would have otherwise.
+[[nodiscard]] bool max_run_matters(const Study& study);
+
 }  // namespace touchtrial

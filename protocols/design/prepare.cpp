@@ -348,12 +348,29 @@ class Preparation {
 
 }  // namespace
 
+namespace {
+
+/// They are not in the pack, but a session should not be the first to miss one.
+void check_practice_images_exist(const Study& study) {
+  if (study.trials.practice == 0) return;
+  for (std::size_t i = 0; i < study.practice.classes.size(); ++i) {
+    const auto path = study.folder / study.practice.classes[i].images.front();
+    if (is_there(path)) continue;
+    throw StudyError(one_line(study.source + ": /practice/classes/" + std::to_string(i) +
+                              "/images/0: " + path.string() +
+                              ": does not exist; correct the path"));
+  }
+}
+
+}  // namespace
+
 void check_images_exist(const Study& study) {
   for (const ImageOfStudy& image : images_of(study)) {
     if (is_there(image.path)) continue;
     refuse_image(study, image,
                  one_line(image.path.string()) + ": does not exist; correct the path");
   }
+  check_practice_images_exist(study);
 }
 
 PrepareReport prepare_pack(const StudyKey& key, const std::filesystem::path& pack_folder,

@@ -2,11 +2,13 @@
 
 #include "core/errors.hpp"
 #include "core/random.hpp"
-#include "protocols/design/de_bruijn.hpp"
+#include "protocols/design/block_order.hpp"
+#include "protocols/design/catch_trials.hpp"
 #include "protocols/design/exemplar_supply.hpp"
 #include "protocols/design/order_rules.hpp"
 #include "protocols/design/study_names.hpp"
 
+#include <algorithm>
 #include <numeric>
 #include <span>
 #include <stdexcept>
@@ -14,81 +16,40 @@
 namespace touchtrial {
 namespace {
 
-/// What a trial presents before an image is chosen.
-struct Item {
-  int class_index = 0;
-  int method = 0;
+/// The methods of each block, and the purpose of its random streams.
+struct BlockPlan {
+  std::vector<int> methods;
+  std::string purpose;
 };
 
-/// A block's presentations; the first `lead_ins` are not scored.
-struct BlockOrder {
-  std::vector<Item> items;
-  std::size_t lead_ins = 0;
-};
-
-std::vector<Item> items_of(const Study& study, std::span<const int> methods) {
-  std::vector<Item> items;
-  for (const int method : methods) {
-    for (int c = 0; c < static_cast<int>(study.classes.size()); ++c) items.push_back({c, method});
-  }
-  return items;
-}
-
-Item drawn(std::span<const Item> items, RandomStream& random) {
-  return items[static_cast<std::size_t>(random.below(items.size()))];
-}
-
-/// The cycle with its last symbol before it, so that every transition has both its ends.
-BlockOrder de_bruijn_order(std::span<const Item> items, RandomStream& random) {
-  const std::vector<int> cycle = random_de_bruijn_cycle(static_cast<int>(items.size()), random);
-  BlockOrder order{{items[static_cast<std::size_t>(cycle.back())]}, 1};
-  for (const int symbol : cycle) order.items.push_back(items[static_cast<std::size_t>(symbol)]);
-  return order;
-}
-
-std::vector<Item> scored_items(std::span<const Item> items, const TrialOptions& trials,
-                               RandomStream& random) {
-  const std::size_t count = items.size() * static_cast<std::size_t>(trials.repeats);
-  std::vector<Item> scored;
-  for (std::size_t i = 0; i < count; ++i) {
-    const bool balanced = trials.order == TrialOrder::shuffled;
-    scored.push_back(balanced ? items[i % items.size()] : drawn(items, random));
-  }
-  if (trials.order == TrialOrder::shuffled) shuffle(std::span<Item>(scored), random);
-  return scored;
-}
-
-/// \param purpose  of the block's random streams
-BlockOrder block_order(const Study& study, std::span<const int> methods, const std::string& purpose,
-                       int enrolment) {
-  const std::vector<Item> items = items_of(study, methods);
-  const auto index = static_cast<std::uint64_t>(enrolment);
-  RandomStream random(study.seed, "schedule: order, " + purpose, index);
-  if (study.trials.order == TrialOrder::de_bruijn) return de_bruijn_order(items, random);
-  RandomStream lead_in_random(study.seed, "schedule: lead-in, " + purpose, index);
-  BlockOrder order;
-  order.lead_ins = static_cast<std::size_t>(study.trials.lead_in);
-  for (std::size_t i = 0; i < order.lead_ins; ++i) {
-    order.items.push_back(drawn(items, lead_in_random));
-  }
-  const std::vector<Item> scored = scored_items(items, study.trials, random);
-  order.items.insert(order.items.end(), scored.begin(), scored.end());
-  return order;
-}
-
-std::vector<BlockOrder> all_blocks(const Study& study, int enrolment) {
+std::vector<BlockPlan> block_plans(const Study& study, int enrolment) {
   const std::vector<int> methods = williams_row(study.presented_methods(), enrolment);
   if (study.trials.blocks == Blocks::mixed) {
     std::vector<int> in_file_order(methods.size());
     std::iota(in_file_order.begin(), in_file_order.end(), 0);
-    return {block_order(study, in_file_order, "all methods", enrolment)};
+    return {{in_file_order, "all methods"}};
   }
-  std::vector<BlockOrder> blocks;
-  for (const int method : methods) {
-    const std::string purpose = "method " + std::to_string(method);
-    blocks.push_back(block_order(study, std::span(&method, 1), purpose, enrolment));
+  std::vector<BlockPlan> plans;
+  for (const int method : methods) plans.push_back({{method}, "method " + std::to_string(method)});
+  return plans;
+}
+
+/// A block's presentations without catch trials and numbers.
+std::vector<Presentation> presentations_of(const BlockOrder& order, int block,
+                                           ExemplarSupply& exemplars) {
+  std::vector<Presentation> shown;
+  for (std::size_t i = 0; i < order.items.size(); ++i) {
+    const auto [class_index, method] = order.items[i];
+    shown.push_back(
+        {.block = block,
+         .kind = i < order.lead_ins ? PresentationKind::lead_in : PresentationKind::scored,
+         .stimulus = {class_index, exemplars.next(class_index, method), method}});
   }
-  return blocks;
+  return shown;
+}
+
+void number(std::vector<Presentation>& presentations, int first) {
+  for (Presentation& shown : presentations) shown.trial = first++;
 }
 
 std::vector<int> picture_layout(const Study& study, int enrolment) {
@@ -114,19 +75,39 @@ Schedule make_schedule(const Study& study, int enrolment) {
   Schedule schedule;
   ExemplarSupply exemplars(study, enrolment);
   int block = 0;
-  for (const BlockOrder& order : all_blocks(study, enrolment)) {
-    for (std::size_t i = 0; i < order.items.size(); ++i) {
-      const auto [class_index, method] = order.items[i];
-      schedule.presentations.push_back(
-          {.trial = static_cast<int>(schedule.presentations.size()) + 1,
-           .block = block,
-           .kind = i < order.lead_ins ? PresentationKind::lead_in : PresentationKind::scored,
-           .stimulus = {class_index, exemplars.next(class_index, method), method}});
-    }
-    ++block;
+  for (const auto& [methods, purpose] : block_plans(study, enrolment)) {
+    const BlockOrder order = make_block_order(study, methods, purpose, enrolment);
+    const auto shown = presentations_of(order, block++, exemplars);
+    schedule.presentations.insert(schedule.presentations.end(), shown.begin(), shown.end());
   }
+  RandomStream random(study.seed, "schedule: catch", static_cast<std::uint64_t>(enrolment));
+  schedule.presentations =
+      with_catch_trials(schedule.presentations, study.trials.catch_trials, random);
+  number(schedule.presentations, 1);
   schedule.layout = picture_layout(study, enrolment);
   return schedule;
+}
+
+std::vector<Presentation> restarted_block(const Study& study, int enrolment, int block,
+                                          int restarts_before, int first_trial) {
+  const std::vector<BlockPlan> plans = block_plans(study, enrolment);
+  if (block < 0 || block >= static_cast<int>(plans.size()) || restarts_before < 0) {
+    throw std::invalid_argument("restarted_block: the study has no such block or restart");
+  }
+  const Schedule first = make_schedule(study, enrolment);
+  const auto caught = std::ranges::count_if(first.presentations, [block](const auto& shown) {
+    return shown.block == block && shown.kind == PresentationKind::catch_trial;
+  });
+  const std::string restart = ", restart " + std::to_string(restarts_before + 1);
+  const auto& [methods, purpose] = plans[static_cast<std::size_t>(block)];
+  ExemplarSupply exemplars(study, enrolment, restart);
+  const auto shown = presentations_of(
+      make_block_order(study, methods, purpose + restart, enrolment), block, exemplars);
+  RandomStream random(study.seed, "schedule: catch, " + purpose + restart,
+                      static_cast<std::uint64_t>(enrolment));
+  std::vector<Presentation> again = with_catch_trials(shown, static_cast<int>(caught), random);
+  number(again, first_trial);
+  return again;
 }
 
 std::vector<int> williams_row(int methods, int enrolment) {
@@ -158,7 +139,9 @@ std::string schedule_rule(const Study& study) {
          "; repeats=" + std::to_string(trials.repeats) +
          "; order=" + std::string(word_for(kTrialOrderNames, trials.order)) +
          "; blocks=" + std::string(word_for(kBlocksNames, trials.blocks)) +
-         "; lead_in=" + std::to_string(trials.lead_in);
+         "; lead_in=" + std::to_string(trials.lead_in) +
+         (trials.max_run > 0 ? "; max_run=" + std::to_string(trials.max_run) : "") +
+         (trials.catch_trials > 0 ? "; catch=" + std::to_string(trials.catch_trials) : "");
 }
 
 }  // namespace touchtrial

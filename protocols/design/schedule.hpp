@@ -43,9 +43,20 @@ struct Schedule {
 /// \throws StudyError if the order is impossible for the study
 [[nodiscard]] Schedule make_schedule(const Study& study, int enrolment);
 
+/// A block of a participant's schedule once more, in a fresh order, with as many catch trials as it
+/// had: a function of the arguments alone. What it was before tells nothing of it.
+/// \param block  from 0  \param restarts_before  of this block by this participant, from 0
+/// \param first_trial  number of its first presentation; the others follow
+/// \throws StudyError if the order is impossible for the study
+/// \throws std::invalid_argument if there is no such block
+[[nodiscard]] std::vector<Presentation> restarted_block(const Study& study, int enrolment,
+                                                        int block, int restarts_before,
+                                                        int first_trial);
+
 /// Method blocks in a carry-over-balanced order: row (enrolment mod rows) of a Williams design.
 /// \param methods  >= 1
-/// \return method indices, each once
+/// \return method indices, each once. For an odd number, rows from `methods` on are the mirror
+/// images.
 [[nodiscard]] std::vector<int> williams_row(int methods, int enrolment);
 
 /// Names this rule and its version; the seal commits to it.

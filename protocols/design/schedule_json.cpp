@@ -13,6 +13,7 @@ using nlohmann::json;
 
 constexpr std::string_view kScored = "scored";
 constexpr std::string_view kLeadIn = "lead-in";
+constexpr std::string_view kCatch = "catch";
 
 [[noreturn]] void refuse(const std::string& what) {
   throw StoreError("session schedule: " + what + "; use the key that the session was run with");
@@ -24,13 +25,54 @@ StimulusIndex meaning_of(const json& code, const StudyKey& key) {
   return *stimulus;
 }
 
+std::string_view word_of(PresentationKind kind) {
+  if (kind == PresentationKind::catch_trial) return kCatch;
+  return kind == PresentationKind::scored ? kScored : kLeadIn;
+}
+
+PresentationKind kind_of(const std::string& word) {
+  using enum PresentationKind;
+  for (const PresentationKind kind : {scored, lead_in, catch_trial}) {
+    if (word == word_of(kind)) return kind;
+  }
+  refuse("has a presentation of an unknown kind");
+}
+
 Presentation presentation_from(const json& object, const StudyKey& key) {
-  const auto& kind = object.at("kind").get_ref<const std::string&>();
-  if (kind != kScored && kind != kLeadIn) refuse("has a presentation of an unknown kind");
-  return {.trial = object.at("trial").get<int>(),
-          .block = object.at("block").get<int>(),
-          .kind = kind == kScored ? PresentationKind::scored : PresentationKind::lead_in,
-          .stimulus = meaning_of(object.at("code"), key)};
+  Presentation shown{.trial = object.at("trial").get<int>(),
+                     .block = object.at("block").get<int>(),
+                     .kind = kind_of(object.at("kind").get_ref<const std::string&>()),
+                     .stimulus = {}};
+  if (shown.kind != PresentationKind::catch_trial) {
+    shown.stimulus = meaning_of(object.at("code"), key);
+  } else if (object.at("code") != catch_code(key)) {
+    refuse("names a code that this key does not have");
+  }
+  return shown;
+}
+
+std::vector<Presentation> presentations_from(const json& list, const StudyKey& key) {
+  std::vector<Presentation> presentations;
+  for (const json& object : list) presentations.push_back(presentation_from(object, key));
+  return presentations;
+}
+
+json json_of(const std::vector<Presentation>& presentations, const StudyKey& key) {
+  json list = json::array();
+  for (const Presentation& shown : presentations) {
+    const bool is_catch = shown.kind == PresentationKind::catch_trial;
+    list.push_back({{"trial", shown.trial},
+                    {"block", shown.block},
+                    {"kind", word_of(shown.kind)},
+                    {"code", is_catch ? catch_code(key) : key.code_of(shown.stimulus)}});
+  }
+  return list;
+}
+
+json parsed_json(const std::string& text) {
+  json document = json::parse(text, nullptr, false);
+  if (document.is_discarded()) refuse("is not JSON");
+  return document;
 }
 
 void check_layout(const std::vector<int>& layout, const StudyKey& key) {
@@ -44,9 +86,7 @@ void check_layout(const std::vector<int>& layout, const StudyKey& key) {
 
 Schedule schedule_of(const json& document, const StudyKey& key) {
   Schedule schedule;
-  for (const json& object : document.at("presentations")) {
-    schedule.presentations.push_back(presentation_from(object, key));
-  }
+  schedule.presentations = presentations_from(document.at("presentations"), key);
   for (const json& code : document.at("layout")) {
     schedule.layout.push_back(meaning_of(code, key).class_index);
   }
@@ -57,27 +97,31 @@ Schedule schedule_of(const json& document, const StudyKey& key) {
 }  // namespace
 
 std::string schedule_to_json(const Schedule& schedule, const StudyKey& key) {
-  json presentations = json::array();
-  for (const Presentation& shown : schedule.presentations) {
-    const bool scored = shown.kind == PresentationKind::scored;
-    presentations.push_back({{"trial", shown.trial},
-                             {"block", shown.block},
-                             {"kind", scored ? kScored : kLeadIn},
-                             {"code", key.code_of(shown.stimulus)}});
-  }
   // A picture stands for its class; the code of the class's first stimulus names it.
   json layout = json::array();
   for (const int class_index : schedule.layout) layout.push_back(key.code_of({class_index, 0, 0}));
-  return json{{"presentations", presentations}, {"layout", layout}}.dump();
+  return json{{"presentations", json_of(schedule.presentations, key)}, {"layout", layout}}.dump();
 }
 
 Schedule schedule_from_json(const std::string& text, const StudyKey& key) {
-  const json document = json::parse(text, nullptr, false);
-  if (document.is_discarded()) refuse("is not JSON");
+  const json document = parsed_json(text);
   try {
     return schedule_of(document, key);
   } catch (const json::exception&) {
     refuse("does not have the form of a schedule");
+  }
+}
+
+std::string block_to_json(const std::vector<Presentation>& block, const StudyKey& key) {
+  return json_of(block, key).dump();
+}
+
+std::vector<Presentation> block_from_json(const std::string& text, const StudyKey& key) {
+  const json document = parsed_json(text);
+  try {
+    return presentations_from(document, key);
+  } catch (const json::exception&) {
+    refuse("does not have the form of a block");
   }
 }
 

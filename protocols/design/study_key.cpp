@@ -81,6 +81,11 @@ const std::string& StudyKey::code_of(const StimulusIndex& stimulus) const {
   return found->code;
 }
 
+std::string catch_code(const StudyKey& key) {
+  const Digest identity = FieldHasher().add("touchtrial catch code 1").finish();
+  return first_hex(keyed_hash(derive_key(key.master, "codes"), ByteView(identity)), kCodeBytes);
+}
+
 StudyKey make_study_key(const Study& study, Entropy& entropy, bool simulated) {
   const SecretKey master = entropy.secret("touchtrial study key master");
   const SecretKey nonce = entropy.secret("touchtrial study key nonce");

@@ -56,6 +56,18 @@ void save_study_key(const std::filesystem::path& path, const StudyKey& key);
 /// \throws StoreError if the text is not such, or names a code that the key does not have
 [[nodiscard]] Schedule schedule_from_json(const std::string& text, const StudyKey& key);
 
+/// A restarted block as the secret part of its event, in the same form as a schedule's
+/// presentations.
+[[nodiscard]] std::string block_to_json(const std::vector<Presentation>& block,
+                                        const StudyKey& key);
+/// \throws StoreError as schedule_from_json
+[[nodiscard]] std::vector<Presentation> block_from_json(const std::string& text,
+                                                        const StudyKey& key);
+
+/// What stands for the plane without texture where a stimulus has its code: derived from the key as
+/// the others are, so that nothing tells it apart from them. No pack has a field of this code.
+[[nodiscard]] std::string catch_code(const StudyKey& key);
+
 /// The study with codes in place of labels and image names, sorted by code, without its seed (from
 /// which the schedule could be worked out): what a database stores in clear. Of practice, session
 /// and registration it has what is no text, and of the texts a keyed hash. Compact JSON.

@@ -1,0 +1,30 @@
+/// \file Whole numbers of any size, and uniform draws among them. For sources only.
+#pragma once
+
+#include "core/random.hpp"
+
+#include <boost/multiprecision/cpp_int.hpp>
+
+namespace touchtrial {
+
+using BigCount = boost::multiprecision::cpp_int;
+
+/// A number in [0, bound), each equally likely (by rejection: less than two tries on average).
+/// \pre bound >= 1
+[[nodiscard]] inline BigCount draw_below(const BigCount& bound, RandomStream& random) {
+  constexpr unsigned kWord = 64;
+  if (bound == 1) return 0;
+  const unsigned bits = boost::multiprecision::msb(BigCount(bound - 1)) + 1;
+  const unsigned words = (bits + kWord - 1) / kWord;
+  while (true) {
+    BigCount number = 0;
+    for (unsigned i = 0; i < words; ++i) {
+      number <<= kWord;
+      number |= random.bits();
+    }
+    number >>= words * kWord - bits;
+    if (number < bound) return number;
+  }
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,239 @@
+#include "protocols/design/limited_orders.hpp"
+
+#include "protocols/design/big_draw.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+#include <unordered_map>
+
+namespace touchtrial {
+namespace {
+
+using State = std::u16string;  ///< how many symbols have 0, 1, .. copies left; then the last one's
+
+/// Sequences as runs: a symbol and how many of it, no two neighbours of one symbol.
+class RunCounter {
+ public:
+  RunCounter(const std::vector<int>& counts, int max_run)
+      : left_(counts),
+        max_run_(max_run),
+        histogram_(static_cast<std::size_t>(*std::ranges::max_element(counts)) + 1, u'\0') {
+    for (const int count : counts) ++histogram_[static_cast<std::size_t>(count)];
+  }
+
+  [[nodiscard]] int left(int symbol) const { return left_[static_cast<std::size_t>(symbol)]; }
+  [[nodiscard]] int symbols() const { return static_cast<int>(left_.size()); }
+  [[nodiscard]] int longest(int copies) const { return std::min(copies, max_run_); }
+
+  void take(int symbol, int copies) {
+    int& left = left_[static_cast<std::size_t>(symbol)];
+    move(left, left - copies);
+    left -= copies;
+  }
+
+  /// Completions after a run of `last` (negative: nothing came before): the next symbol is another.
+  [[nodiscard]] BigCount completions(int last) { return count(last < 0 ? -1 : left(last)); }
+
+ private:
+  /// A symbol that had `from` copies left has `to`.
+  void move(int from, int to) {
+    --histogram_[static_cast<std::size_t>(from)];
+    ++histogram_[static_cast<std::size_t>(to)];
+  }
+
+  /// \param last  copies left of the symbol before; negative if there is none
+  const BigCount& count(int last) {
+    State state = histogram_;
+    state.push_back(static_cast<char16_t>(last + 1));
+    if (const auto known = counts_.find(state); known != counts_.end()) return known->second;
+    BigCount total = 0;
+    bool any_left = false;
+    for (int copies = 1; copies < static_cast<int>(histogram_.size()); ++copies) {
+      const int symbols = histogram_[static_cast<std::size_t>(copies)];
+      any_left = any_left || symbols > 0;
+      const int others = symbols - (last == copies ? 1 : 0);
+      if (others > 0) total += others * after_any_run(copies);
+    }
+    if (!any_left) total = 1;
+    return counts_.emplace(std::move(state), std::move(total)).first->second;
+  }
+
+  BigCount after_any_run(int copies) {
+    BigCount sum = 0;
+    for (int run = 1; run <= longest(copies); ++run) {
+      move(copies, copies - run);
+      sum += count(copies - run);
+      move(copies - run, copies);
+    }
+    return sum;
+  }
+
+  std::vector<int> left_;
+  int max_run_;
+  State histogram_;
+  std::unordered_map<State, BigCount> counts_;
+};
+
+/// How many more of the symbol before may come first, from 0.
+int longest_continuation(const RunCounter& counter, int max_run, RunBefore before) {
+  return std::min(max_run - before.length, counter.left(before.symbol));
+}
+
+BigCount count_all(RunCounter& counter, int max_run, RunBefore before) {
+  if (before.symbol < 0) return counter.completions(-1);
+  BigCount total = 0;
+  const int longest = longest_continuation(counter, max_run, before);
+  for (int run = 0; run <= longest; ++run) {
+    counter.take(before.symbol, run);
+    total += counter.completions(before.symbol);
+    counter.take(before.symbol, -run);
+  }
+  return total;
+}
+
+/// Goes from order to order of a numbered list down to the one with the number.
+class Descent {
+ public:
+  Descent(RunCounter& counter, BigCount number) : counter_(counter), number_(std::move(number)) {}
+
+  /// \return whether the order goes on with this run
+  bool takes(int symbol, int run) {
+    counter_.take(symbol, run);
+    const BigCount below = counter_.completions(symbol);
+    if (number_ >= below) {
+      number_ -= below;
+      counter_.take(symbol, -run);
+      return false;
+    }
+    order_.insert(order_.end(), static_cast<std::size_t>(run), symbol);
+    return true;
+  }
+
+  /// \return the symbol of the run that was taken
+  int take_next_run(int last) {
+    for (int symbol = 0; symbol < counter_.symbols(); ++symbol) {
+      if (symbol == last) continue;
+      const int longest = counter_.longest(counter_.left(symbol));
+      for (int run = 1; run <= longest; ++run) {
+        if (takes(symbol, run)) return symbol;
+      }
+    }
+    return last;
+  }
+
+  [[nodiscard]] std::vector<int>& order() { return order_; }
+
+ private:
+  RunCounter& counter_;
+  BigCount number_;
+  std::vector<int> order_;
+};
+
+/// Sequences of `m` symbols whose first is not the one before, for m = 0 .. length.
+std::vector<BigCount> sequence_counts(int symbols, int length, int max_run) {
+  std::vector<BigCount> counts = {1};
+  BigCount within_reach = 1;  // the sum of the last max_run counts
+  for (int m = 1; m <= length; ++m) {
+    counts.push_back((symbols - 1) * within_reach);
+    within_reach += counts.back();
+    if (m >= max_run) within_reach -= counts[static_cast<std::size_t>(m - max_run)];
+  }
+  return counts;
+}
+
+/// How long the next run is, each in proportion to what can follow it.
+int draw_run(const std::vector<BigCount>& counts, int left, int shortest, int longest,
+             RandomStream& random) {
+  BigCount total = 0;
+  for (int run = shortest; run <= longest; ++run) {
+    total += counts[static_cast<std::size_t>(left - run)];
+  }
+  BigCount number = draw_below(total, random);
+  for (int run = shortest; run < longest; ++run) {
+    const BigCount& below = counts[static_cast<std::size_t>(left - run)];
+    if (number < below) return run;
+    number -= below;
+  }
+  return longest;
+}
+
+}  // namespace
+
+bool limited_order_exists(const std::vector<int>& counts, int max_run, RunBefore before) {
+  const int total = std::accumulate(counts.begin(), counts.end(), 0);
+  for (int symbol = 0; symbol < static_cast<int>(counts.size()); ++symbol) {
+    const int copies = counts[static_cast<std::size_t>(symbol)];
+    // What came before takes its share of the first place.
+    const int taken = symbol == before.symbol ? before.length : 0;
+    const std::int64_t places = std::int64_t{total} - copies + 1;
+    if (copies + taken > places * max_run) return false;
+  }
+  return true;
+}
+
+bool limited_orders_are_countable(const std::vector<int>& counts, int max_run) {
+  constexpr double kMostStates = 150'000.0;
+  constexpr double kMostRuns = 2'000'000.0;
+  const auto symbols = static_cast<int>(counts.size());
+  const int copies = *std::ranges::max_element(counts);
+  double states = std::min(symbols, copies + 1);
+  for (int i = 1; i <= std::min(symbols, copies); ++i) {
+    states *= static_cast<double>(symbols + copies - i + 1) / i;
+  }
+  const double runs = states * std::min(symbols, copies) * std::min(max_run, copies);
+  return states <= kMostStates && runs <= kMostRuns;
+}
+
+std::string count_limited_orders(const std::vector<int>& counts, int max_run, RunBefore before) {
+  RunCounter counter(counts, max_run);
+  return count_all(counter, max_run, before).str();
+}
+
+std::optional<std::vector<int>> draw_limited_order(const std::vector<int>& counts, int max_run,
+                                                   RunBefore before, RandomStream& random) {
+  RunCounter counter(counts, max_run);
+  const BigCount total = count_all(counter, max_run, before);
+  if (total == 0) return std::nullopt;
+  Descent descent(counter, draw_below(total, random));
+  if (before.symbol >= 0) {
+    const int longest = longest_continuation(counter, max_run, before);
+    for (int run = 0; run <= longest; ++run) {
+      if (descent.takes(before.symbol, run)) break;
+    }
+  }
+  const auto length = static_cast<std::size_t>(std::accumulate(counts.begin(), counts.end(), 0));
+  int last = before.symbol;
+  while (descent.order().size() < length) last = descent.take_next_run(last);
+  return descent.order();
+}
+
+std::vector<int> draw_limited_sequence(int symbols, int length, int max_run, RunBefore before,
+                                       RandomStream& random) {
+  const std::vector<BigCount> counts = sequence_counts(symbols, length, max_run);
+  std::vector<int> sequence;
+  int last = before.symbol;
+  int left = length;
+  const auto append = [&](int run) {
+    sequence.insert(sequence.end(), static_cast<std::size_t>(run), last);
+    left -= run;
+  };
+  if (last >= 0) append(draw_run(counts, left, 0, std::min(max_run - before.length, left), random));
+  while (left > 0) {
+    const int others = last < 0 ? symbols : symbols - 1;
+    const auto drawn = static_cast<int>(random.below(static_cast<std::uint64_t>(others)));
+    last = last >= 0 && drawn >= last ? drawn + 1 : drawn;
+    append(draw_run(counts, left, 1, std::min(max_run, left), random));
+  }
+  return sequence;
+}
+
+RunBefore run_at_end(const std::vector<int>& order, RunBefore before) {
+  for (const int symbol : order) {
+    before.length = symbol == before.symbol ? before.length + 1 : 1;
+    before.symbol = symbol;
+  }
+  return before;
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,144 @@
+#include "protocols/design/practice.hpp"
+
+#include "core/errors.hpp"
+#include "core/random.hpp"
+#include "engine/image_file.hpp"
+#include "engine/rendering/gains.hpp"
+#include "protocols/design/stimulus_field.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <optional>
+#include <span>
+
+namespace touchtrial {
+namespace {
+
+GreyImage middle_of(const GreyImage& image, const PlaneGeometry& plane) {
+  const int top = (image.height() - plane.height_px) / 2;
+  const int left = (image.width() - plane.width_px) / 2;
+  GreyImage middle(plane.height_px, plane.width_px);
+  for (int y = 0; y < middle.height(); ++y) {
+    for (int x = 0; x < middle.width(); ++x) middle.at(y, x) = image.at(top + y, left + x);
+  }
+  return middle;
+}
+
+[[noreturn]] void refuse_image(const Study& study, std::size_t index, const std::string& what) {
+  throw StudyError(one_line(study.source + ": /practice/classes/" + std::to_string(index) +
+                            "/images/0: " + what));
+}
+
+GreyImage practice_image(const Study& study, std::size_t index, const PlaneGeometry& plane) {
+  const auto path = study.folder / study.practice.classes[index].images.front();
+  try {
+    const GreyImage image = read_grey_image(path);
+    if (image.height() >= plane.height_px && image.width() >= plane.width_px) {
+      return middle_of(image, plane);
+    }
+  } catch (const FileError& error) {
+    refuse_image(study, index, error.what());
+  }
+  refuse_image(study, index,
+               "has fewer pixels than the study's plane, " + std::to_string(plane.width_px) +
+                   " x " + std::to_string(plane.height_px) + "; take a larger image");
+}
+
+TextureField practice_field(const Study& study, std::size_t index, const PlaneGeometry& plane) {
+  ExtractionOptions method = study.methods.front();
+  if (method.control != Control::none) {
+    const std::string purpose = "control of practice " + study.practice.classes[index].label;
+    method.control_seed = RandomStream(study.seed, purpose).bits();
+  }
+  std::optional<TakenTexture> taken;
+  return build_field(practice_image(study, index, plane), method, study.rendering, taken, false,
+                     nullptr)
+      .field;
+}
+
+std::vector<TextureField> practice_fields(const Study& study, const PlaneGeometry& plane) {
+  std::vector<TextureField> fields;
+  for (std::size_t i = 0; i < study.practice.classes.size(); ++i) {
+    fields.push_back(practice_field(study, i, plane));
+  }
+  return fields;
+}
+
+Gains weaker(const Gains& one, const Gains& other) {
+  return {.tangential_n = std::min(one.tangential_n, other.tangential_n),
+          .normal_n = std::min(one.normal_n, other.normal_n),
+          .height_mm = std::min(one.height_mm, other.height_mm)};
+}
+
+/// One for each field.
+std::vector<Gains> practice_gains(const std::vector<TextureField>& fields, const Gains& of_pack,
+                                  const RenderingOptions& rendering) {
+  if (fields.empty()) return {};
+  std::vector<FieldView> views;
+  for (const TextureField& field : fields) views.push_back(field.view());
+  std::vector<Gains> gains = choose_gains(views, rendering).of_field;
+  if (rendering.gains || rendering.equalise != Equalise::none) return gains;
+  for (Gains& of_field : gains) of_field = weaker(of_field, of_pack);
+  return gains;
+}
+
+std::vector<RenderingModel> practice_models(const std::vector<TextureField>& fields,
+                                            const Gains& of_pack,
+                                            const RenderingOptions& rendering) {
+  const std::vector<Gains> gains = practice_gains(fields, of_pack, rendering);
+  std::vector<RenderingModel> models;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    models.emplace_back(fields[i].view(), rendering, gains[i]);
+  }
+  return models;
+}
+
+RandomStream stream_of(const Study& study, const std::string& what, int enrolment, int round) {
+  return {study.seed, "practice: " + what + ", round " + std::to_string(round),
+          static_cast<std::uint64_t>(enrolment)};
+}
+
+std::vector<int> shuffled_classes(const Study& study, RandomStream& random) {
+  std::vector<int> classes(study.practice.classes.size());
+  std::iota(classes.begin(), classes.end(), 0);
+  shuffle(std::span<int>(classes), random);
+  return classes;
+}
+
+}  // namespace
+
+PracticeSet::PracticeSet(const Study& study, const Gains& gains, const PlaneGeometry& plane)
+    : plane_(plane),
+      fields_(practice_fields(study, plane)),
+      models_(practice_models(fields_, gains, study.rendering)),
+      flat_(FieldView{.geometry = plane}, study.rendering, Gains{}) {}
+
+const RenderingModel& PracticeSet::model(int class_index) const {
+  return models_.at(static_cast<std::size_t>(class_index));
+}
+
+Gains weakest_gains(const PackManifest& manifest) {
+  if (manifest.entries.empty()) return {};
+  Gains weakest = manifest.entries.front().gains;
+  for (const PackEntry& entry : manifest.entries) weakest = weaker(weakest, entry.gains);
+  return weakest;
+}
+
+std::vector<int> practice_round(const Study& study, int enrolment, int round) {
+  if (study.practice.classes.empty()) return {};
+  RandomStream random = stream_of(study, "order", enrolment, round);
+  const std::vector<int> classes = shuffled_classes(study, random);
+  std::vector<int> order;
+  for (std::size_t i = 0; i < static_cast<std::size_t>(study.trials.practice); ++i) {
+    order.push_back(classes[i % classes.size()]);
+  }
+  shuffle(std::span<int>(order), random);
+  return order;
+}
+
+std::vector<int> practice_layout(const Study& study, int enrolment, int round) {
+  RandomStream random = stream_of(study, "layout", enrolment, round);
+  return shuffled_classes(study, random);
+}
+
+}  // namespace touchtrial
