@@ -1,9 +1,15 @@
-# touchtrial_library(NAME [PUBLIC targets...] [PRIVATE libraries...])
+# Compiles a target in less time, for code that spends none: at this level GCC sees uninitialised
+# values that are not there.
+set(TOUCHTRIAL_UNHURRIED -O1 -Wno-maybe-uninitialized)
+
+# touchtrial_library(NAME [UNHURRIED] [PUBLIC targets...] [PRIVATE libraries...]
+#                    [PRECOMPILE headers...])
 # One static library a folder, of every .cpp file in and below it. PUBLIC: targets of ours, along
 # the arrows of docs/architecture.md; PRIVATE: third-party libraries, whose headers no public header
-# includes.
+# includes. UNHURRIED: nothing in it is worth optimising; files that read and write JSON and other
+# texts are so everywhere. PRECOMPILE: headers that take long to read and stand in many files.
 function(touchtrial_library name)
-  cmake_parse_arguments(ARG "" "" "PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "UNHURRIED" "" "PUBLIC;PRIVATE;PRECOMPILE" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cpp")
   list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")
   if(NOT sources)
@@ -14,6 +20,16 @@ function(touchtrial_library name)
   add_library(${name} STATIC ${sources})
   target_include_directories(${name} PUBLIC "${CMAKE_SOURCE_DIR}")
   target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE touchtrial_settings ${ARG_PRIVATE})
+  if(ARG_PRECOMPILE AND TOUCHTRIAL_PRECOMPILED_HEADERS)
+    target_precompile_headers(${name} PRIVATE ${ARG_PRECOMPILE})
+  endif()
+  if(ARG_UNHURRIED)
+    target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:${TOUCHTRIAL_UNHURRIED}>)
+    return()
+  endif()
+  list(FILTER sources INCLUDE REGEX "(_json|_text|_csv|_html|_object|manifest|_key_file)\\.cpp$")
+  set_source_files_properties(${sources} PROPERTIES
+    COMPILE_OPTIONS "$<$<CONFIG:Release>:${TOUCHTRIAL_UNHURRIED}>")
 endfunction()
 
 # touchtrial_test(NAME [EXCEPT folders...] [LIBRARIES ...])
@@ -28,8 +44,10 @@ function(touchtrial_test name)
   add_executable(${name} ${sources})
   target_include_directories(${name} PRIVATE "${CMAKE_SOURCE_DIR}/tests")
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} touchtrial_test_support touchtrial_settings)
-  # Optimising the test framework costs more time than the tests then save. At this level GCC sees
-  # uninitialised values that are not there; the product itself is compiled with that warning.
-  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:-O1 -Wno-maybe-uninitialized>)
+  # Optimising the test framework costs more time than the tests then save.
+  target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:${TOUCHTRIAL_UNHURRIED}>)
+  if(TOUCHTRIAL_PRECOMPILED_HEADERS)
+    target_precompile_headers(${name} REUSE_FROM touchtrial_test_headers)
+  endif()
   catch_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES TIMEOUT 600)
 endfunction()
