@@ -19,8 +19,8 @@ constexpr std::int64_t kHighest = std::numeric_limits<std::int64_t>::max();
 
 /// In the order of the enumerators.
 constexpr std::array<std::string_view, 3> kSessionStates = {"open", "completed", "stopped"};
-constexpr std::array<std::string_view, 4> kTrialStates = {"presented", "answered", "timed-out",
-                                                          "interrupted"};
+constexpr std::array<std::string_view, 5> kTrialStates = {"presented", "answered", "timed-out",
+                                                          "interrupted", "voided"};
 
 /// A row whose values are taken only if an event can have given rise to them.
 class DerivedRow {
@@ -73,7 +73,8 @@ SessionRow session_of_row(const Query& query) {
           .pilot = row.flag(5),
           .excluded = row.flag(6),
           .withdrawn = row.flag(7),
-          .device = query.text(8)};
+          .device = query.text(8),
+          .replaced_by = query.text(9)};
 }
 
 TrialRow trial_of_row(const Query& query) {
@@ -92,15 +93,16 @@ TrialRow trial_of_row(const Query& query) {
           .valid = trial.flag(6),
           .overruns = query.integer(7),
           .samples = query.integer(8),
-          .rate_hz = query.real(9)};
+          .rate_hz = query.real(9),
+          .explorations = trial.whole(14)};
 }
 
 void visit_sessions(const Database& database, std::int64_t first, std::int64_t last,
                     const std::function<void(const SessionRow&)>& visit) {
   Query query = database.query(
       "SELECT session, participant, enrolment, state, simulated, pilot, excluded, withdrawn, "
-      "device "
-      "FROM sessions WHERE session BETWEEN ? AND ? ORDER BY session");
+      "device, coalesce(replaced_by, '') FROM sessions WHERE session BETWEEN ? AND ? ORDER BY "
+      "session");
   query.bind(first).bind(last);
   while (query.step()) visit(session_of_row(query));
 }
@@ -112,7 +114,7 @@ void visit_trials(const Database& database, std::pair<std::int64_t, std::int64_t
   Query query = database.query(
       "SELECT t.session, t.trial, t.block, t.state, t.presented_at_ns, t.contact_at_ns, t.valid, "
       "t.overruns, t.samples, t.rate_hz, r.answered_at_ns, r.position, r.first_position, "
-      "r.confidence FROM trials t LEFT JOIN responses r USING(session, trial) "
+      "r.confidence, t.explorations FROM trials t LEFT JOIN responses r USING(session, trial) "
       "WHERE t.session BETWEEN ? AND ? AND t.trial BETWEEN ? AND ? ORDER BY t.session, t.trial");
   query.bind(first.first).bind(last.first).bind(first.second).bind(last.second);
   while (query.step()) visit(trial_of_row(query));
@@ -132,9 +134,10 @@ void write_session(const Database& database, const SessionRow& row) {
   database
       .query(
           "INSERT INTO sessions(session, participant, enrolment, state, simulated, pilot, "
-          "excluded, withdrawn, device) VALUES(?,?,?,?,?,?,?,?,?) ON CONFLICT(session) DO UPDATE "
-          "SET state = excluded.state, excluded = excluded.excluded, "
-          "withdrawn = excluded.withdrawn")
+          "excluded, withdrawn, device, replaced_by) VALUES(?,?,?,?,?,?,?,?,?,?) "
+          "ON CONFLICT(session) DO UPDATE SET state = excluded.state, "
+          "excluded = excluded.excluded, withdrawn = excluded.withdrawn, "
+          "replaced_by = excluded.replaced_by")
       .bind(row.session)
       .bind(row.participant)
       .bind(row.enrolment)
@@ -144,6 +147,7 @@ void write_session(const Database& database, const SessionRow& row) {
       .bind(row.excluded)
       .bind(row.withdrawn)
       .bind(row.device)
+      .bind(row.replaced_by.empty() ? std::nullopt : std::optional(row.replaced_by))
       .run();
 }
 
@@ -165,11 +169,12 @@ void write_trial(const Database& database, const TrialRow& row) {
   database
       .query(
           "INSERT INTO trials(session, trial, block, state, presented_at_ns, contact_at_ns, valid, "
-          "overruns, samples, rate_hz) VALUES(?,?,?,?,?,?,?,?,?,?) "
+          "overruns, samples, rate_hz, explorations) VALUES(?,?,?,?,?,?,?,?,?,?,?) "
           "ON CONFLICT(session, trial) DO UPDATE SET block = excluded.block, "
           "state = excluded.state, presented_at_ns = excluded.presented_at_ns, "
           "contact_at_ns = excluded.contact_at_ns, valid = excluded.valid, "
-          "overruns = excluded.overruns, samples = excluded.samples, rate_hz = excluded.rate_hz")
+          "overruns = excluded.overruns, samples = excluded.samples, rate_hz = excluded.rate_hz, "
+          "explorations = excluded.explorations")
       .bind(row.session)
       .bind(row.trial)
       .bind(row.block)
@@ -180,6 +185,7 @@ void write_trial(const Database& database, const TrialRow& row) {
       .bind(row.overruns)
       .bind(row.samples)
       .bind(row.rate_hz)
+      .bind(row.explorations)
       .run();
   // An answer is final, so that a response is only ever added.
   if (row.position) write_response(database, row);
@@ -205,6 +211,12 @@ DerivedRows read_rows(const Database& database, const FoldScope& scope) {
   if (scope.session) {
     visit_sessions(database, *scope.session, *scope.session,
                    [&](const SessionRow& row) { rows.sessions[row.session] = row; });
+  }
+  if (scope.block) {
+    const int session = scope.block->first;
+    visit_trials(database, {session, kLowest}, {session, kHighest}, [&](const TrialRow& row) {
+      if (row.block == scope.block->second) rows.trials[{row.session, row.trial}] = row;
+    });
   }
   if (scope.trial) {
     visit_trials(database, *scope.trial, *scope.trial, [&](const TrialRow& row) {

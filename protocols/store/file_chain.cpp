@@ -30,6 +30,11 @@ void FileChain::add(const Event& event) {
       return;
     case EventKind::participant_withdrawn:
       return withdraw(event);
+    case EventKind::participant_replaced:
+      return replace(event);
+    case EventKind::participant_noted:
+      static_cast<void>(known(event, body_of(event, note_from_json).session));
+      return;
     case EventKind::study_closed:
       if (closed_) refuse(event, "the study is closed twice");
       closed_ = true;
@@ -52,8 +57,17 @@ void FileChain::open_session(const Event& event) {
   if (body.session != static_cast<int>(sessions_.size()) + 1) {
     refuse(event, "session " + std::to_string(body.session) + " is not opened in its turn");
   }
-  sessions_[body.session] = {
-      .opened = body, .opened_at = event.sequence, .closed = {}, .withdrawn = false};
+  if (!participants_.insert(body.participant).second) {
+    refuse(event, "participant " + body.participant + " has a session already");
+  }
+  if (!enrolments_.insert(body.enrolment).second) {
+    refuse(event, "enrolment " + std::to_string(body.enrolment) + " is taken already");
+  }
+  sessions_[body.session] = {.opened = body,
+                             .opened_at = event.sequence,
+                             .closed = {},
+                             .withdrawn = false,
+                             .replaced_by = {}};
 }
 
 void FileChain::close_session(const Event& event) {
@@ -67,6 +81,17 @@ void FileChain::close_session(const Event& event) {
 
 void FileChain::withdraw(const Event& event) {
   known(event, body_of(event, participant_from_json).session).withdrawn = true;
+}
+
+void FileChain::replace(const Event& event) {
+  const ReplacementBody body = body_of(event, replacement_from_json);
+  SessionOnFile& session = known(event, body.session);
+  if (!session.replaced_by.empty()) {
+    refuse(event, "session " + std::to_string(body.session) + " is replaced twice");
+  }
+  session.replaced_by = body.by;
+  participants_.erase(session.opened.participant);
+  enrolments_.erase(session.opened.enrolment);
 }
 
 SessionOnFile& FileChain::known(const Event& event, int session) {

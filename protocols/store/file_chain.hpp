@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
+#include <string>
 
 namespace touchtrial {
 
@@ -16,6 +18,7 @@ struct SessionOnFile {
   std::int64_t opened_at = 0;  ///< sequence on the file's chain
   std::optional<SessionClosedBody> closed;
   bool withdrawn = false;
+  std::string replaced_by;  ///< empty: nobody
 };
 
 /// The events of the file's chain in order, held against each other.
@@ -33,10 +36,14 @@ class FileChain {
   void open_session(const Event& event);
   void close_session(const Event& event);
   void withdraw(const Event& event);
+  void replace(const Event& event);
   [[nodiscard]] SessionOnFile& known(const Event& event, int session);
 
   std::optional<StudyCommitment> commitment_;
   std::map<int, SessionOnFile> sessions_;
+  /// Of sessions that nobody replaced.
+  std::set<std::string> participants_;
+  std::set<int> enrolments_;
   bool closed_ = false;
 };
 

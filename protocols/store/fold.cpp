@@ -4,6 +4,7 @@
 #include "protocols/store/payload_json.hpp"
 
 #include <string>
+#include <vector>
 
 namespace touchtrial {
 namespace {
@@ -27,7 +28,8 @@ void open_session(DerivedRows& rows, const Event& event) {
                                   .pilot = opening.pilot,
                                   .excluded = false,
                                   .withdrawn = false,
-                                  .device = opening.device};
+                                  .device = opening.device,
+                                  .replaced_by = {}};
 }
 
 SessionRow& open_row(DerivedRows& rows, const Event& event) {
@@ -37,6 +39,13 @@ SessionRow& open_row(DerivedRows& rows, const Event& event) {
   return found->second;
 }
 
+/// What was presented before its block was restarted is done with.
+void refuse_if_voided(const TrialRow& row, const Event& event) {
+  if (row.state == TrialState::voided) {
+    refuse_trial(event, row.trial, "is void: its block was restarted");
+  }
+}
+
 void present_trial(DerivedRows& rows, const Event& event) {
   const TrialBody body = body_of(event, trial_from_json);
   const TrialId id(event.session, body.trial);
@@ -44,6 +53,7 @@ void present_trial(DerivedRows& rows, const Event& event) {
   if (before != rows.trials.end()) {
     // After an interruption a trial may be presented anew; a response or a trace settles it.
     const TrialRow& row = before->second;
+    refuse_if_voided(row, event);
     if (row.position) refuse_trial(event, body.trial, "is presented again after its answer");
     if (row.samples > 0) refuse_trial(event, body.trial, "is presented again after its trace");
   }
@@ -59,6 +69,7 @@ void present_trial(DerivedRows& rows, const Event& event) {
 TrialRow& presented_row(DerivedRows& rows, const Event& event, int trial) {
   const auto found = rows.trials.find({event.session, trial});
   if (found == rows.trials.end()) refuse_trial(event, trial, "has not been presented");
+  refuse_if_voided(found->second, event);
   return found->second;
 }
 
@@ -100,16 +111,50 @@ void measure_trial(DerivedRows& rows, const Event& event) {
   row.rate_hz = body.rate_hz;
 }
 
+void explore_again(DerivedRows& rows, const Event& event) {
+  const int trial = body_of(event, trial_from_json).trial;
+  ++waiting_row(rows, event, trial).explorations;
+}
+
+/// All that was presented of the block is void; what comes anew has numbers of its own, so that
+/// nothing links the two.
+void restart_block(DerivedRows& rows, const Event& event) {
+  const BlockBody body = body_of(event, block_from_json);
+  std::vector<TrialRow*> block;
+  for (auto entry = rows.trials.lower_bound({event.session, 0});
+       entry != rows.trials.end() && entry->first.first == event.session; ++entry) {
+    if (entry->second.block == body.block) block.push_back(&entry->second);
+  }
+  for (const TrialRow* row : block) {
+    if (row->trial >= body.first_trial) {
+      refuse_trial(event, row->trial, "was presented before its block was restarted");
+    }
+  }
+  for (TrialRow* row : block) row->state = TrialState::voided;
+}
+
 void close_session(DerivedRows& rows, const Event& event) {
   const bool complete = body_of(event, completion_from_json);
   open_row(rows, event).state = complete ? SessionState::completed : SessionState::stopped;
 }
 
-void mark_participant(DerivedRows& rows, const Event& event, bool SessionRow::*mark) {
-  const int session = body_of(event, participant_from_json).session;
+SessionRow& named_row(DerivedRows& rows, const Event& event, int session) {
   const auto found = rows.sessions.find(session);
   if (found == rows.sessions.end()) refuse(event, "there is no session " + std::to_string(session));
-  found->second.*mark = true;
+  return found->second;
+}
+
+void mark_participant(DerivedRows& rows, const Event& event, bool SessionRow::*mark) {
+  named_row(rows, event, body_of(event, participant_from_json).session).*mark = true;
+}
+
+void replace_participant(DerivedRows& rows, const Event& event) {
+  const ReplacementBody body = body_of(event, replacement_from_json);
+  SessionRow& row = named_row(rows, event, body.session);
+  if (!row.replaced_by.empty()) {
+    refuse(event, "session " + std::to_string(body.session) + " is replaced twice");
+  }
+  row.replaced_by = body.by;
 }
 
 void fold_session_event(DerivedRows& rows, const Event& event) {
@@ -127,6 +172,10 @@ void fold_session_event(DerivedRows& rows, const Event& event) {
       return end_trial(rows, event, TrialState::timed_out);
     case EventKind::trace_stored:
       return measure_trial(rows, event);
+    case EventKind::explored_again:
+      return explore_again(rows, event);
+    case EventKind::block_restarted:
+      return restart_block(rows, event);
     case EventKind::closed:
       return close_session(rows, event);
     default:
@@ -135,7 +184,8 @@ void fold_session_event(DerivedRows& rows, const Event& event) {
 }
 
 bool is_about_a_trial(EventKind kind) {
-  return kind >= EventKind::presented && kind <= EventKind::trace_stored;
+  return (kind >= EventKind::presented && kind <= EventKind::trace_stored) ||
+         kind == EventKind::explored_again;
 }
 
 bool is_about_a_participant(EventKind kind) {
@@ -148,10 +198,16 @@ FoldScope scope_of(const Event& event) {
   if (is_about_a_participant(event.kind)) {
     return {.session = body_of(event, participant_from_json).session, .trial = {}};
   }
+  if (event.kind == EventKind::participant_replaced) {
+    return {.session = body_of(event, replacement_from_json).session, .trial = {}};
+  }
   if (belongs_to_file_chain(event.kind)) return {};
   FoldScope scope{.session = event.session, .trial = {}};
   if (is_about_a_trial(event.kind)) {
     scope.trial = TrialId(event.session, body_of(event, trial_from_json).trial);
+  }
+  if (event.kind == EventKind::block_restarted) {
+    scope.block = {event.session, body_of(event, block_from_json).block};
   }
   return scope;
 }
@@ -164,6 +220,7 @@ void fold(DerivedRows& rows, const Event& event) {
   if (event.kind == EventKind::participant_withdrawn) {
     return mark_participant(rows, event, &SessionRow::withdrawn);
   }
+  if (event.kind == EventKind::participant_replaced) return replace_participant(rows, event);
   if (!belongs_to_file_chain(event.kind)) fold_session_event(rows, event);
 }
 

@@ -23,6 +23,8 @@ struct DerivedRows {
 struct FoldScope {
   std::optional<int> session;
   std::optional<TrialId> trial;
+  /// Session and block: all trials of it that were presented.
+  std::optional<std::pair<int, int>> block{};
 };
 
 /// \throws EventFault if the event's body is no such

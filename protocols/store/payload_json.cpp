@@ -282,6 +282,28 @@ ParticipantBody participant_from_json(const std::string& text) {
   return {.session = object.count("session", 1), .reason = object.text("reason")};
 }
 
+std::string to_json(const ReplacementBody& body) {
+  return compact({{"session", body.session}, {"by", body.by}, {"reason", body.reason}});
+}
+
+ReplacementBody replacement_from_json(const std::string& text) {
+  const JsonObject object(text);
+  return {.session = object.count("session", 1),
+          .by = object.text("by"),
+          .reason = object.text("reason")};
+}
+
+std::string to_json(const NoteBody& body) {
+  return compact({{"session", body.session}, {"code", body.code}, {"text", body.text}});
+}
+
+NoteBody note_from_json(const std::string& text) {
+  const JsonObject object(text);
+  return {.session = object.count("session", 1),
+          .code = object.text("code"),
+          .text = object.text("text")};
+}
+
 std::string to_json(const UnblindingBody& body) {
   return compact({{"reason", body.reason}, {"interim", body.interim}});
 }

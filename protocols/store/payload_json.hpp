@@ -35,13 +35,27 @@ struct ParticipantBody {
   std::string reason;
 };
 
+/// `participant-replaced`.
+struct ReplacementBody {
+  int session = 0;
+  std::string by;  ///< participant who inherits the enrolment number; the same one: restarted
+  std::string reason;
+};
+
+/// `participant-noted`.
+struct NoteBody {
+  int session = 0;
+  std::string code;  ///< of a deviation; empty: a remark
+  std::string text;
+};
+
 /// `study-unblinded`.
 struct UnblindingBody {
   std::string reason;
   bool interim = false;
 };
 
-/// `block-restarted`.
+/// `block-restarted`: which block, from 0, and the number of its first trial from now on.
 struct BlockBody {
   int block = 0;
   int first_trial = 0;
@@ -61,6 +75,8 @@ struct BlockBody {
 [[nodiscard]] std::string to_json(const SessionOpenedBody& body);
 [[nodiscard]] std::string to_json(const SessionClosedBody& body);
 [[nodiscard]] std::string to_json(const ParticipantBody& body);
+[[nodiscard]] std::string to_json(const ReplacementBody& body);
+[[nodiscard]] std::string to_json(const NoteBody& body);
 [[nodiscard]] std::string to_json(const UnblindingBody& body);
 [[nodiscard]] std::string presented_to_json(int trial, int block);
 [[nodiscard]] std::string interrupted_to_json(int trial, const std::string& reason);
@@ -82,6 +98,8 @@ struct BlockBody {
 [[nodiscard]] SessionOpenedBody session_opened_from_json(const std::string& text);
 [[nodiscard]] SessionClosedBody session_closed_from_json(const std::string& text);
 [[nodiscard]] ParticipantBody participant_from_json(const std::string& text);
+[[nodiscard]] ReplacementBody replacement_from_json(const std::string& text);
+[[nodiscard]] NoteBody note_from_json(const std::string& text);
 [[nodiscard]] UnblindingBody unblinding_from_json(const std::string& text);
 /// `block` and `reason` where the body has them.
 [[nodiscard]] TrialBody trial_from_json(const std::string& text);

@@ -94,7 +94,69 @@ void make_first_version(SQLite::Database& database) {
   database.exec(kDerived);
 }
 
-constexpr std::array<Migration, kSchemaVersion> kMigrations = {make_first_version};
+// Participants may be replaced, which leaves their rows: who is unique is so among the others.
+// Sessions began to be restarted, and trials explored again or voided, with this version.
+constexpr const char* kSecondDerived = R"sql(
+CREATE TABLE sessions(
+  session     INTEGER PRIMARY KEY,
+  participant TEXT NOT NULL,
+  enrolment   INTEGER NOT NULL,
+  state       TEXT NOT NULL,
+  simulated   INTEGER NOT NULL,
+  pilot       INTEGER NOT NULL,
+  excluded    INTEGER NOT NULL,
+  withdrawn   INTEGER NOT NULL,
+  device      TEXT NOT NULL,
+  replaced_by TEXT
+) STRICT;
+CREATE TABLE trials(
+  session         INTEGER NOT NULL REFERENCES sessions(session),
+  trial           INTEGER NOT NULL,
+  block           INTEGER NOT NULL,
+  state           TEXT NOT NULL,
+  presented_at_ns INTEGER NOT NULL,
+  contact_at_ns   INTEGER,
+  valid           INTEGER NOT NULL,
+  overruns        INTEGER NOT NULL,
+  samples         INTEGER NOT NULL,
+  rate_hz         REAL NOT NULL,
+  explorations    INTEGER NOT NULL,
+  PRIMARY KEY(session, trial)
+) STRICT, WITHOUT ROWID;
+CREATE TABLE responses(
+  session        INTEGER NOT NULL,
+  trial          INTEGER NOT NULL,
+  answered_at_ns INTEGER NOT NULL,
+  position       INTEGER NOT NULL,
+  first_position INTEGER,
+  confidence     INTEGER,
+  PRIMARY KEY(session, trial),
+  FOREIGN KEY(session, trial) REFERENCES trials(session, trial)
+) STRICT, WITHOUT ROWID;
+CREATE UNIQUE INDEX sessions_participant ON sessions(participant) WHERE replaced_by IS NULL;
+CREATE UNIQUE INDEX sessions_enrolment ON sessions(enrolment) WHERE replaced_by IS NULL;
+)sql";
+
+/// The tables are made anew; their rows are carried over and not derived again, so that a database
+/// that was tampered with is still found out afterwards.
+void make_second_version(SQLite::Database& database) {
+  database.exec(
+      "ALTER TABLE responses RENAME TO old_responses;"
+      "ALTER TABLE trials RENAME TO old_trials;"
+      "ALTER TABLE sessions RENAME TO old_sessions;");
+  database.exec(kSecondDerived);
+  database.exec(
+      "INSERT INTO sessions SELECT session, participant, enrolment, state, simulated, pilot, "
+      "excluded, withdrawn, device, NULL FROM old_sessions;"
+      "INSERT INTO trials SELECT session, trial, block, state, presented_at_ns, contact_at_ns, "
+      "valid, overruns, samples, rate_hz, 1 FROM old_trials;"
+      "INSERT INTO responses SELECT session, trial, answered_at_ns, position, first_position, "
+      "confidence FROM old_responses;"
+      "DROP TABLE old_responses; DROP TABLE old_trials; DROP TABLE old_sessions;");
+}
+
+constexpr std::array<Migration, kSchemaVersion> kMigrations = {make_first_version,
+                                                               make_second_version};
 
 void write_copy(const Database& database, const std::filesystem::path& to) {
   SQLite::Database target(to.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);

@@ -9,7 +9,7 @@
 
 namespace touchtrial {
 
-inline constexpr int kSchemaVersion = 1;
+inline constexpr int kSchemaVersion = 2;
 
 /// One step forward; runs inside a transaction.
 using Migration = void (*)(SQLite::Database&);

@@ -87,17 +87,39 @@ SessionRow StoredStudy::session(int session) const {
 }
 
 std::optional<SessionRow> StoredStudy::session_of(const std::string& participant) const {
-  Query query = database_.query("SELECT session FROM sessions WHERE participant = ?");
+  Query query =
+      database_.query("SELECT session FROM sessions WHERE participant = ? AND replaced_by IS NULL");
   query.bind(participant);
   if (!query.step()) return std::nullopt;
   return session(static_cast<int>(query.integer(0)));
 }
 
 int StoredStudy::next_enrolment() const {
-  Query query = database_.query("SELECT enrolment FROM sessions ORDER BY enrolment");
+  const std::map<int, std::string> promised = promised_enrolments();
+  Query query = database_.query(
+      "SELECT enrolment FROM sessions WHERE replaced_by IS NULL ORDER BY enrolment");
+  std::set<std::int64_t> taken;
+  while (query.step()) taken.insert(query.integer(0));
   int number = 1;
-  while (query.step() && query.integer(0) <= number) ++number;
+  while (taken.contains(number) || promised.contains(number)) ++number;
   return number;
+}
+
+int StoredStudy::enrolment_for(const std::string& participant) const {
+  for (const auto& [enrolment, by] : promised_enrolments()) {
+    if (by == participant) return enrolment;
+  }
+  return next_enrolment();
+}
+
+std::map<int, std::string> StoredStudy::promised_enrolments() const {
+  // Who has a number is in its last session; if that was replaced, it waits for who comes.
+  Query query = database_.query(
+      "SELECT enrolment, replaced_by, max(session) FROM sessions GROUP BY enrolment "
+      "HAVING replaced_by IS NOT NULL");
+  std::map<int, std::string> promised;
+  while (query.step()) promised[static_cast<int>(query.integer(0))] = query.text(1);
+  return promised;
 }
 
 std::optional<Event> StoredStudy::last_event(int session) const {
@@ -137,13 +159,17 @@ void StoredStudy::append(const Event& event, const std::optional<SealedTrace>& t
   write_rows(database_, rows);
 }
 
-/// Nothing more is recorded of somebody who withdrew during the session, but that it ended.
+/// Nothing more is recorded of somebody who withdrew or was replaced during the session, but that
+/// it ended.
 void StoredStudy::refuse_after_withdrawal(const DerivedRows& rows, const Event& event) const {
   if (event.kind == EventKind::stopped || event.kind == EventKind::closed) return;
-  const auto row = rows.sessions.find(event.session);
-  if (row == rows.sessions.end() || !row->second.withdrawn) return;
-  refuse("participant " + row->second.participant + " has withdrawn; end session " +
-         std::to_string(event.session));
+  const auto found = rows.sessions.find(event.session);
+  if (found == rows.sessions.end()) return;
+  const SessionRow& row = found->second;
+  if (!row.withdrawn && row.replaced_by.empty()) return;
+  refuse("participant " + row.participant +
+         (row.withdrawn ? " has withdrawn" : " was replaced by participant " + row.replaced_by) +
+         "; end session " + std::to_string(event.session));
 }
 
 Event StoredStudy::last_of_open(int session) const {
@@ -154,6 +180,9 @@ Event StoredStudy::last_of_open(int session) const {
     refuse(name + " has ended and cannot go on; use another participant id, or restart it");
   }
   if (row.withdrawn) refuse(name + " cannot go on: the participant has withdrawn");
+  if (!row.replaced_by.empty()) {
+    refuse(name + " cannot go on: it was replaced by participant " + row.replaced_by);
+  }
   if (is_closed(database_)) refuse(name + " cannot go on: the study is closed");
   return last_event(session).value();
 }
@@ -202,6 +231,7 @@ void StoredStudy::check_opening(const SessionOpening& opening) const {
   }
   refuse_mixture(opening);
   refuse_if_taken(opening);
+  refuse_if_promised(opening);
 }
 
 void StoredStudy::refuse_mixture(const SessionOpening& opening) const {
@@ -225,8 +255,8 @@ void StoredStudy::refuse_mixture(const SessionOpening& opening) const {
 
 void StoredStudy::refuse_if_taken(const SessionOpening& opening) const {
   Query query = database_.query(
-      "SELECT session, participant FROM sessions WHERE participant = ?1 OR enrolment = ?2 "
-      "ORDER BY participant = ?1 DESC");
+      "SELECT session, participant FROM sessions WHERE (participant = ?1 OR enrolment = ?2) "
+      "AND replaced_by IS NULL ORDER BY participant = ?1 DESC");
   query.bind(opening.participant).bind(opening.enrolment);
   if (!query.step()) return;
   const std::string session = "session " + std::to_string(query.integer(0));
@@ -237,6 +267,75 @@ void StoredStudy::refuse_if_taken(const SessionOpening& opening) const {
   refuse("enrolment " + std::to_string(opening.enrolment) + ", asked for participant " +
          opening.participant + ", belongs to participant " + query.text(1) + " (" + session +
          "); give the next free number");
+}
+
+void StoredStudy::refuse_if_promised(const SessionOpening& opening) const {
+  const std::map<int, std::string> promised = promised_enrolments();
+  const auto kept = promised.find(opening.enrolment);
+  if (kept != promised.end() && kept->second != opening.participant) {
+    refuse("enrolment " + std::to_string(opening.enrolment) + " is kept for participant " +
+           kept->second + ", who replaces somebody; give participant " + opening.participant +
+           " number " + std::to_string(next_enrolment()));
+  }
+  const int inherited = enrolment_for(opening.participant);
+  const auto own = promised.find(inherited);
+  if (own != promised.end() && inherited != opening.enrolment) {
+    refuse("participant " + opening.participant + " replaces somebody and inherits enrolment " +
+           std::to_string(inherited) + "; leave the number out, or give that one");
+  }
+  if (own != promised.end()) return;
+  Query query = database_.query(
+      "SELECT session, replaced_by FROM sessions WHERE participant = ? ORDER BY session DESC");
+  query.bind(opening.participant);
+  if (!query.step()) return;
+  refuse("participant " + opening.participant + " was replaced by participant " + query.text(1) +
+         " (session " + std::to_string(query.integer(0)) + "); give another participant id");
+}
+
+void StoredStudy::withdraw(int session, std::chrono::nanoseconds at, const std::string& reason) {
+  if (this->session(session).withdrawn) {
+    refuse("the participant of session " + std::to_string(session) + " has already withdrawn");
+  }
+  database_.query("DELETE FROM participant_keys WHERE session = ?").bind(session).run();
+  append_to_file(EventKind::participant_withdrawn, at,
+                 to_json(ParticipantBody{.session = session, .reason = reason}));
+}
+
+void StoredStudy::replace(const ReplacementBody& replacement, std::chrono::nanoseconds at) {
+  if (is_closed(database_)) refuse("the study is closed; it takes no more sessions");
+  const SessionRow row = session(replacement.session);
+  check_replaced(row);
+  check_replacement(row, replacement.by);
+  append_to_file(EventKind::participant_replaced, at, to_json(replacement));
+}
+
+void StoredStudy::check_replaced(const SessionRow& row) const {
+  const std::string name =
+      "session " + std::to_string(row.session) + " (participant " + row.participant + ")";
+  if (!row.replaced_by.empty()) {
+    refuse(name + " was already replaced by participant " + row.replaced_by);
+  }
+  if (row.excluded || row.withdrawn || row.state == SessionState::stopped) return;
+  refuse(name + (row.state == SessionState::open ? " is still open" : " is complete") +
+         "; who is replaced must have been stopped, excluded or withdrawn first");
+}
+
+void StoredStudy::check_replacement(const SessionRow& row, const std::string& by) const {
+  if (!is_participant_id(by)) {
+    refuse("'" + by + "' is no participant id; use 1 to 32 of 0-9, A-Z, a-z, '+', '-', '_'");
+  }
+  if (by == row.participant) return;
+  Query query = database_.query("SELECT session FROM sessions WHERE participant = ?");
+  query.bind(by);
+  if (query.step()) {
+    refuse("participant " + by + " already has session " + std::to_string(query.integer(0)) +
+           "; only somebody new can take a place");
+  }
+  for (const auto& [enrolment, promised] : promised_enrolments()) {
+    if (promised != by) continue;
+    refuse("participant " + by + " already replaces somebody, with enrolment " +
+           std::to_string(enrolment) + "; name another participant");
+  }
 }
 
 }  // namespace touchtrial

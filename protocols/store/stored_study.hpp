@@ -5,10 +5,12 @@
 
 #include "protocols/store/database.hpp"
 #include "protocols/store/fold.hpp"
+#include "protocols/store/payload_json.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -28,9 +30,11 @@ class StoredStudy {
   [[nodiscard]] ChainHead head(int session) const;
   [[nodiscard]] std::optional<Event> last_event(int session) const;
   [[nodiscard]] int next_session() const;
-  /// The smallest number that nobody has.
+  /// The smallest number that nobody has and that is kept for nobody.
   [[nodiscard]] int next_enrolment() const;
-  /// The session that a participant has, if any.
+  /// What the participant inherits, else next_enrolment.
+  [[nodiscard]] int enrolment_for(const std::string& participant) const;
+  /// The session that a participant has and that nobody replaced, if any.
   [[nodiscard]] std::optional<SessionRow> session_of(const std::string& participant) const;
   /// \throws StoreError if there is no such session
   [[nodiscard]] SessionRow session(int session) const;
@@ -52,6 +56,11 @@ class StoredStudy {
   /// A session's end on the file's chain. \param closed  its last event
   void conclude(const Event& closed, std::chrono::nanoseconds at);
 
+  /// Destroys a participant's key. \throws StoreError if they have withdrawn already
+  void withdraw(int session, std::chrono::nanoseconds at, const std::string& reason);
+  /// \throws StoreError if the session may still go on or was replaced, or `by` is taken
+  void replace(const ReplacementBody& replacement, std::chrono::nanoseconds at);
+
   /// \throws StoreError with the file's name before `text`
   [[noreturn]] void refuse(const std::string& text) const;
   /// \throws StoreError naming `what` if `reason` is empty
@@ -63,6 +72,12 @@ class StoredStudy {
   /// Pilots and others, what is seen and what is felt: one database holds one kind.
   void refuse_mixture(const SessionOpening& opening) const;
   void refuse_if_taken(const SessionOpening& opening) const;
+  /// Nobody comes back whom somebody else replaced, nor takes a number that is kept for another.
+  void refuse_if_promised(const SessionOpening& opening) const;
+  void check_replaced(const SessionRow& row) const;
+  void check_replacement(const SessionRow& row, const std::string& by) const;
+  /// Numbers that are kept, and for whom.
+  [[nodiscard]] std::map<int, std::string> promised_enrolments() const;
 
   Database database_;
   mutable std::optional<StudyCommitment> commitment_;

@@ -108,7 +108,7 @@ StudyStore StudyStore::open(const std::filesystem::path& path, Access access) {
     migrate(impl->database(), migrations());
   } else if (schema_version(impl->database()) < kSchemaVersion) {
     impl->study.refuse(
-        "is of an older schema; open it once for writing, which brings it up to date");
+        "is of an older schema; `touchtrial migrate` brings it up to date and keeps a copy");
   }
   impl->run([&] { check_tables(impl->database()); });
   return StudyStore(std::move(impl));
@@ -128,6 +128,12 @@ ChainHead StudyStore::file_head() const {
 
 std::optional<SessionRow> StudyStore::session_of(const std::string& participant) const {
   return impl_->run([&] { return impl_->study.session_of(participant); });
+}
+
+std::vector<SessionRow> StudyStore::sessions_of(const std::string& participant) const {
+  std::vector<SessionRow> rows = sessions();
+  std::erase_if(rows, [&](const SessionRow& row) { return row.participant != participant; });
+  return rows;
 }
 
 std::optional<SessionRow> StudyStore::open_session_of(const std::string& participant) const {
@@ -169,6 +175,10 @@ int StudyStore::next_session() const {
 
 int StudyStore::next_enrolment() const {
   return impl_->run([&] { return impl_->study.next_enrolment(); });
+}
+
+int StudyStore::enrolment_for(const std::string& participant) const {
+  return impl_->run([&] { return impl_->study.enrolment_for(participant); });
 }
 
 std::optional<Bytes> StudyStore::wrapped_key(int session) const {
@@ -242,22 +252,39 @@ void StudyStore::exclude(int session, std::chrono::nanoseconds at, const std::st
 }
 
 void StudyStore::withdraw(int session, std::chrono::nanoseconds at, const std::string& reason) {
+  withdraw(std::span(&session, 1), at, reason);
+}
+
+void StudyStore::withdraw(std::span<const int> sessions, std::chrono::nanoseconds at,
+                          const std::string& reason) {
   impl_->change([&] {
-    if (impl_->study.session(session).withdrawn) {
-      impl_->study.refuse("the participant of session " + std::to_string(session) +
-                          " has already withdrawn");
-    }
-    impl_->database().query("DELETE FROM participant_keys WHERE session = ?").bind(session).run();
-    impl_->study.append_to_file(EventKind::participant_withdrawn, at,
-                                to_json(ParticipantBody{.session = session, .reason = reason}));
+    for (const int session : sessions) impl_->study.withdraw(session, at, reason);
   });
-  // The log still holds the key's page from before.
+  // The log still holds the keys' pages from before.
   const bool emptied = impl_->run([&] { return impl_->database().checkpoint(); });
   if (!emptied) {
     impl_->study.refuse(
         "the withdrawal is recorded, but another program keeps the key in the file's -wal; close "
         "it there, then open and close the database once for writing");
   }
+}
+
+void StudyStore::replace(int session, const std::string& by, std::chrono::nanoseconds at,
+                         const std::string& reason) {
+  impl_->change([&] {
+    impl_->study.require_reason(reason, "a replacement");
+    impl_->study.replace({.session = session, .by = by, .reason = reason}, at);
+  });
+}
+
+void StudyStore::note(int session, std::chrono::nanoseconds at, const std::string& code,
+                      const std::string& text) {
+  impl_->change([&] {
+    static_cast<void>(impl_->study.session(session));
+    if (code.empty() && text.empty()) impl_->study.refuse("the note is empty; give it a text");
+    impl_->study.append_to_file(EventKind::participant_noted, at,
+                                to_json(NoteBody{.session = session, .code = code, .text = text}));
+  });
 }
 
 std::optional<ChainFault> StudyStore::first_fault(TraceCheck traces) const {

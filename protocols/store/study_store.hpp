@@ -14,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -32,12 +33,16 @@ struct SessionRow {
   bool excluded = false;
   bool withdrawn = false;
   std::string device;
+  /// Participant who took this one's place in the order of enrolment, the same one if the session
+  /// was restarted; empty: nobody.
+  std::string replaced_by{};
 
   friend bool operator==(const SessionRow&, const SessionRow&) = default;
 };
 
-/// How a trial ended, derived from its events.
-enum class TrialState { presented, answered, timed_out, interrupted };
+/// How a trial ended, derived from its events. `voided`: its block was restarted, whatever it was
+/// before; it is never presented again.
+enum class TrialState { presented, answered, timed_out, interrupted, voided };
 
 struct TrialRow {
   int session = 0;
@@ -54,6 +59,7 @@ struct TrialRow {
   std::int64_t overruns = 0;
   std::int64_t samples = 0;
   double rate_hz = 0.0;
+  int explorations = 1;  ///< of the last presentation
 
   friend bool operator==(const TrialRow&, const TrialRow&) = default;
 };
@@ -125,8 +131,10 @@ class StudyStore {
   /// Where the file's chain ends.
   [[nodiscard]] ChainHead file_head() const;
   [[nodiscard]] std::vector<SessionRow> sessions() const;
-  /// The session that this participant has, whatever its state.
+  /// The session that this participant has and that nobody replaced, whatever its state.
   [[nodiscard]] std::optional<SessionRow> session_of(const std::string& participant) const;
+  /// All that this participant ever had, by number: those before a restart too.
+  [[nodiscard]] std::vector<SessionRow> sessions_of(const std::string& participant) const;
   /// The same if that session is still open: it may be continued.
   [[nodiscard]] std::optional<SessionRow> open_session_of(const std::string& participant) const;
   /// The last event of one chain (0: the file's), read without those before it.
@@ -165,8 +173,11 @@ class StudyStore {
 
   /// The number that the next session gets.
   [[nodiscard]] int next_session() const;
-  /// The smallest enrolment number that nobody has, from 1.
+  /// The smallest enrolment number that nobody has and that is kept for nobody, from 1.
   [[nodiscard]] int next_enrolment() const;
+  /// The number that this participant gets: what they inherit from somebody whom they replace, or
+  /// from their own session if it was restarted, else next_enrolment.
+  [[nodiscard]] int enrolment_for(const std::string& participant) const;
 
   void close_study(std::chrono::nanoseconds at);
   /// \param interim  a look at the sessions that have ended, while the study goes on
@@ -183,6 +194,24 @@ class StudyStore {
   /// \throws StoreError if there is no such session or it has already withdrawn; also, after the
   ///   withdrawal, if another program keeps the key's last traces in the write-ahead log
   void withdraw(int session, std::chrono::nanoseconds at, const std::string& reason);
+  /// The same of several sessions, all or none: those of one participant.
+  void withdraw(std::span<const int> sessions, std::chrono::nanoseconds at,
+                const std::string& reason);
+
+  /// Lets `by` take the place of a session's participant: whoever comes under that id next inherits
+  /// the enrolment number. The session stays as it is, but enters no outcomes.
+  /// \param by  another participant, or the same one, whose session is restarted
+  /// \throws StoreError if there is no such session, it was replaced already or may still go on
+  ///   (it must have been stopped, excluded or withdrawn), `by` has a session or replaces somebody
+  ///   else already or is no participant id, the study is closed, or `reason` is empty
+  void replace(int session, const std::string& by, std::chrono::nanoseconds at,
+               const std::string& reason);
+
+  /// A remark on a session, or a deviation from the protocol, at any time.
+  /// \param code  of the deviation; empty: a remark
+  /// \throws StoreError if there is no such session, or `text` and `code` are empty
+  void note(int session, std::chrono::nanoseconds at, const std::string& code,
+            const std::string& text);
 
   /// The participant's wrapped key; empty after withdrawal.
   [[nodiscard]] std::optional<Bytes> wrapped_key(int session) const;

@@ -59,7 +59,7 @@ TEST_CASE("a database is in WAL mode, of our application id and schema version")
   study.store.reset();
   REQUIRE(pragma(study.path, "journal_mode") == "wal");
   REQUIRE(pragma(study.path, "application_id") == std::to_string(0x5454524c));
-  REQUIRE(pragma(study.path, "user_version") == "1");
+  REQUIRE(pragma(study.path, "user_version") == std::to_string(kSchemaVersion));
   REQUIRE(pragma(study.path, "integrity_check") == "ok");
   SQLite::Database raw(study.path.string());
   REQUIRE_FALSE(SQLite::Statement(raw, "PRAGMA foreign_key_check").executeStep());
@@ -159,10 +159,10 @@ TEST_CASE("what is no database of ours is refused untouched") {
 TEST_CASE("a newer database is refused untouched") {
   StoredFixture study(1);
   study.store.reset();
-  SQLite::Database(study.path.string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 2");
+  SQLite::Database(study.path.string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 3");
   for (const Access access : {Access::read_only, Access::read_write}) {
     REQUIRE(contains(refusal_untouched(study.path, access),
-                     "newer Touchtrial (schema 2, this one knows 1)"));
+                     "newer Touchtrial (schema 3, this one knows 2)"));
   }
 }
 
@@ -217,15 +217,15 @@ TEST_CASE("an older database is brought forward after a backup") {
   StoredFixture study(2);
   const auto trials = study.store->trials();
   study.store.reset();
-  const std::array<Migration, 2> steps = {migrations()[0], add_a_table};
+  const std::array<Migration, 3> steps = {migrations()[0], migrations()[1], add_a_table};
   {
-    const Database database = Database::open(study.path, Database::Mode::read_write, 2);
+    const Database database = Database::open(study.path, Database::Mode::read_write, 3);
     migrate(database, steps);
-    REQUIRE(schema_version(database) == 2);
+    REQUIRE(schema_version(database) == 3);
     migrate(database, steps);  // nothing is left to do
   }
-  const auto backup = backup_path(study.path, 1);
-  REQUIRE(backup.string() == study.path.string() + ".v1.backup");
+  const auto backup = backup_path(study.path, 2);
+  REQUIRE(backup.string() == study.path.string() + ".v2.backup");
   const StudyStore before = StudyStore::open(backup, Access::read_only);
   REQUIRE(before.trials() == trials);
   REQUIRE_FALSE(before.first_fault());
@@ -239,20 +239,20 @@ TEST_CASE("an older database is brought forward after a backup") {
 TEST_CASE("a migration that fails leaves the database as it was") {
   StoredFixture study(1);
   study.store.reset();
-  const std::array<Migration, 2> steps = {migrations()[0], fail};
+  const std::array<Migration, 3> steps = {migrations()[0], migrations()[1], fail};
   {
-    const Database database = Database::open(study.path, Database::Mode::read_write, 2);
+    const Database database = Database::open(study.path, Database::Mode::read_write, 3);
     REQUIRE_THROWS_AS(migrate(database, steps), StoreError);
-    REQUIRE(schema_version(database) == 1);
+    REQUIRE(schema_version(database) == 2);
     REQUIRE_FALSE(database.connection().tableExists("half"));
     // The same again: the backup that stands there is the one that would be made.
     REQUIRE_FALSE(
-        contains(refusal_of([&] { migrate(database, steps); }), ".v1.backup exists already"));
+        contains(refusal_of([&] { migrate(database, steps); }), ".v2.backup exists already"));
   }
   StudyStore::open(study.path, Access::read_write).exclude(1, kUtc, "changes the file");
   {
-    const Database database = Database::open(study.path, Database::Mode::read_write, 2);
-    REQUIRE(contains(refusal_of([&] { migrate(database, steps); }), ".v1.backup exists already"));
+    const Database database = Database::open(study.path, Database::Mode::read_write, 3);
+    REQUIRE(contains(refusal_of([&] { migrate(database, steps); }), ".v2.backup exists already"));
   }
   REQUIRE_FALSE(StudyStore::open(study.path, Access::read_only).first_fault());
 }

@@ -109,3 +109,57 @@ TEST_CASE("a session that was never opened takes no events") {
   DerivedRows rows;
   REQUIRE(contains(refusal_of([&] { fold(rows, events.events.front()); }), "has not been opened"));
 }
+
+TEST_CASE("exploring again is counted for each presentation") {
+  FoldedSession session;
+  session.recorder.presented(seconds(1), 1, 0);
+  REQUIRE(session.row(1).explorations == 1);
+  session.recorder.explored_again(seconds(1), 1);
+  session.recorder.explored_again(seconds(1), 1);
+  REQUIRE(session.row(1).explorations == 3);
+  session.recorder.interrupted(seconds(1), 1, "device lost");
+  REQUIRE_THROWS_AS(session.recorder.explored_again(seconds(1), 1), StoreError);
+  session.recorder.presented(seconds(2), 1, 0);
+  REQUIRE(session.row(1).explorations == 1);
+  session.answer(1);
+  REQUIRE_THROWS_AS(session.recorder.explored_again(seconds(2), 1), StoreError);
+}
+
+TEST_CASE("a block that is restarted voids what was presented of it, and nothing else") {
+  FoldedSession session;
+  session.recorder.presented(seconds(1), 1, 0);
+  session.answer(1);
+  session.recorder.presented(seconds(2), 3, 1);
+  session.answer(3);
+  session.recorder.presented(seconds(2), 4, 1);
+  session.recorder.interrupted(seconds(2), 4, "device lost");
+  session.recorder.block_restarted(seconds(3), 1, 7, "[]");
+  REQUIRE(session.row(1).state == TrialState::answered);
+  REQUIRE(session.row(3).state == TrialState::voided);
+  REQUIRE(session.row(3).position == 1);
+  REQUIRE(session.row(4).state == TrialState::voided);
+  session.recorder.presented(seconds(4), 7, 1);
+  REQUIRE(session.row(7).state == TrialState::presented);
+  session.recorder.block_restarted(seconds(5), 1, 9, "[]");
+  REQUIRE(session.row(7).state == TrialState::voided);
+}
+
+TEST_CASE("a voided trial takes no more events, and a block's new numbers are new") {
+  FoldedSession session;
+  session.recorder.presented(seconds(1), 2, 0);
+  session.recorder.interrupted(seconds(1), 2, "device lost");
+  const auto restart = [&](int first) {
+    session.recorder.block_restarted(seconds(2), 0, first, "[]");
+  };
+  REQUIRE(contains(refusal_of([&] { restart(2); }), "was presented before its block"));
+  REQUIRE(session.row(2).state == TrialState::interrupted);
+  restart(3);
+  const auto refused = [&](auto&& work) {
+    return contains(refusal_of(work), "trial 2 is void: its block was restarted");
+  };
+  REQUIRE(refused([&] { session.recorder.presented(seconds(3), 2, 0); }));
+  REQUIRE(refused([&] { session.recorder.explored_again(seconds(3), 2); }));
+  REQUIRE(refused([&] { session.recorder.first_contact(seconds(3), 2); }));
+  REQUIRE(refused([&] { session.answer(2); }));
+  REQUIRE(refused([&] { session.trace(2); }));
+}
