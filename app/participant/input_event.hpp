@@ -4,9 +4,6 @@
 #include "core/vec.hpp"
 
 #include <chrono>
-#include <mutex>
-#include <utility>
-#include <vector>
 
 namespace touchtrial {
 
@@ -43,25 +40,6 @@ struct InputEvent {
   int digit = 0;        ///< 0 to 9
   char32_t letter = 0;  ///< Unicode
   Vec2 position;        ///< of the pointer, window units from the top-left corner
-};
-
-/// From the thread that takes events to the one that draws. Neither waits for the other but for
-/// the moment of copying.
-class InputQueue {
- public:
-  void push(const InputEvent& event) {
-    const std::lock_guard lock(mutex_);
-    events_.push_back(event);
-  }
-  /// All that have come, in order.
-  [[nodiscard]] std::vector<InputEvent> take() {
-    const std::lock_guard lock(mutex_);
-    return std::exchange(events_, {});
-  }
-
- private:
-  std::mutex mutex_;
-  std::vector<InputEvent> events_;
 };
 
 }  // namespace touchtrial

@@ -28,7 +28,8 @@ struct ParticipantWindowOptions {
   Sight sight = Sight::curtain;
   /// Pictures of the originals by label, the practice's too.
   std::map<std::string, GreyImage> pictures;
-  double pitch_mm = 0.2;  ///< of the study; with a picture's pixels its size on the screen
+  double pitch_mm = 0.2;    ///< of the study; with a picture's pixels its size on the screen
+  double rate_hz = 1000.0;  ///< of the servo
   /// The device that is explored, asked for as each plane comes on.
   std::function<HapticDevice&()> device;
   Cues* cues = nullptr;  ///< null: silent; must outlive the window
@@ -72,6 +73,7 @@ class ParticipantWindow final : public Participant {
   /// Blocks for up to 10 ms. Nothing once the window is gone, and as long as a pause lasts; a step
   /// that a pause interrupted goes on as it was.
   [[nodiscard]] std::optional<StepReply> attend(const Step& step) override;
+  /// \throws std::logic_error if the options have no device
   [[nodiscard]] HapticDevice& begin_exploring(const PlaneGeometry& plane) override;
   /// The screen while a plane is on, for a device that somebody else brings.
   void show_exploring(const PlaneGeometry& plane);

@@ -25,14 +25,15 @@ class WindowSubject final : public Participant {
   void feel(const ServoSample& sample) noexcept override;
 
  private:
-  [[nodiscard]] std::optional<StepReply> reply_of_subject(const Step& step);
   void type(const Step& step, const StepReply& reply);
+  void forget();
   void press(Key key, int digit = 0);
 
   ParticipantWindow& window_;
   Participant& subject_;
   bool real_time_;
-  std::optional<StepReply> meant_;  ///< typed into the window, which has not replied yet
+  std::optional<StepReply> meant_;  ///< the window has not replied yet
+  bool typed_ = false;              ///< what is meant, into the window
 };
 
 }  // namespace touchtrial

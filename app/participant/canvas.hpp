@@ -1,0 +1,140 @@
+/// \file What the participant's screens are drawn with: text that is measured, buttons, pictures.
+#pragma once
+
+#include "core/vec.hpp"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+struct ImDrawList;
+struct ImFont;
+
+namespace touchtrial {
+
+/// Window units from the top-left corner.
+struct Box {
+  double x = 0.0;
+  double y = 0.0;
+  double width = 0.0;
+  double height = 0.0;
+
+  [[nodiscard]] constexpr double right() const noexcept { return x + width; }
+  [[nodiscard]] constexpr double bottom() const noexcept { return y + height; }
+  [[nodiscard]] constexpr bool contains(Vec2 point) const noexcept {
+    return point.x >= x && point.y >= y && point.x < right() && point.y < bottom();
+  }
+  /// Smaller by this on every side.
+  [[nodiscard]] constexpr Box inset(double by) const noexcept {
+    return {x + by, y + by, width - 2.0 * by, height - 2.0 * by};
+  }
+};
+
+/// As ImGui packs colours: 0xAABBGGRR.
+namespace tone {
+inline constexpr std::uint32_t kGround = 0xFFECEAE8;  ///< of every screen: no flash between two
+inline constexpr std::uint32_t kCard = 0xFFFFFFFF;
+inline constexpr std::uint32_t kEdge = 0xFFD2CDC8;
+inline constexpr std::uint32_t kText = 0xFF332A22;
+inline constexpr std::uint32_t kQuiet = 0xFF6B6158;  ///< 5 : 1 on the ground
+inline constexpr std::uint32_t kAccent = 0xFF99580B;
+inline constexpr std::uint32_t kAccentPale = 0xFFF6E9DC;
+inline constexpr std::uint32_t kAccentDark = 0xFF754308;
+inline constexpr std::uint32_t kGood = 0xFF4F7A0A;
+inline constexpr std::uint32_t kWarn = 0xFF0B4FB4;
+inline constexpr std::uint32_t kTrack = 0xFFD6D1CC;
+inline constexpr std::uint32_t kDisabled = 0xFFDEDAD7;
+inline constexpr std::uint32_t kWhite = 0xFFFFFFFF;
+}  // namespace tone
+
+enum class Letters { small, body, strong, title };
+enum class Align { left, centre, right };
+enum class ButtonKind { primary, plain, choice };
+
+/// The sizes of one scale, in ImGui's current context.
+struct Fonts {
+  ImFont* small = nullptr;
+  ImFont* body = nullptr;
+  ImFont* strong = nullptr;
+  ImFont* title = nullptr;
+};
+
+/// Window units for one of the design, which is 1280 x 720.
+[[nodiscard]] double design_unit(Vec2 size) noexcept;
+
+/// Adds the fonts to the current context's atlas, in place of all others; it is to be built anew.
+[[nodiscard]] Fonts load_participant_fonts(double unit);
+
+/// Brings pictures to the screen's memory.
+class PictureShelf {
+ public:
+  virtual ~PictureShelf() = default;
+  /// In mm. \param label  of the picture
+  [[nodiscard]] virtual Vec2 size_mm(const std::string& label) const = 0;
+  /// ImGui's texture of a picture at this size in window units; null: draw a blank.
+  [[nodiscard]] virtual void* texture(const std::string& label, int width, int height) = 0;
+};
+
+/// Something that can be clicked, or chosen by keys.
+struct Target {
+  int id = 0;
+  Box box;
+};
+
+struct PlacedText {
+  std::string text;
+  Box box;   ///< what its letters take
+  Box room;  ///< what they may take
+};
+
+/// What is under the pointer, held, and chosen by keys; -1: nothing.
+struct Attention {
+  int focus = -1;
+  int hover = -1;
+  int held = -1;
+};
+
+/// One picture of the window, while ImGui's frame is begun. The drawing thread's.
+class Canvas {
+ public:
+  Canvas(ImDrawList& list, const Fonts& fonts, Vec2 size, const Attention& attention);
+
+  [[nodiscard]] Vec2 size() const noexcept { return size_; }
+  [[nodiscard]] double unit() const noexcept { return unit_; }
+
+  /// \return the height that it takes
+  double measure(Letters letters, const std::string& text, double width, double shrink = 1.0) const;
+  [[nodiscard]] double width_of(Letters letters, const std::string& text) const;
+  /// Wrapped at the room's width, from its top. \return the height that it takes
+  double text(const Box& room, Letters letters, std::uint32_t colour, const std::string& text,
+              Align align = Align::centre, double shrink = 1.0);
+  /// One or more lines in the middle of the room's height; smaller letters if it is too small.
+  void label(const Box& room, Letters letters, std::uint32_t colour, const std::string& text,
+             Align align = Align::centre);
+
+  void fill(const Box& box, std::uint32_t colour, double rounding = 0.0);
+  void outline(const Box& box, std::uint32_t colour, double thickness, double rounding = 0.0);
+  void button(int id, const Box& box, const std::string& label, ButtonKind kind,
+              bool enabled = true, bool chosen = false);
+  /// A ring around what the keys have chosen.
+  void focus_ring(int id, const Box& box, double rounding);
+  void target(int id, const Box& box) { targets_.push_back({id, box}); }
+  void picture(PictureShelf& shelf, const std::string& label, const Box& box);
+
+  [[nodiscard]] const Attention& attention() const noexcept { return attention_; }
+  [[nodiscard]] const std::vector<Target>& targets() const noexcept { return targets_; }
+  [[nodiscard]] const std::vector<PlacedText>& texts() const noexcept { return texts_; }
+
+ private:
+  [[nodiscard]] ImFont* font(Letters letters) const;
+
+  ImDrawList& list_;
+  Fonts fonts_;
+  Vec2 size_;
+  double unit_;
+  Attention attention_;
+  std::vector<Target> targets_;
+  std::vector<PlacedText> texts_;
+};
+
+}  // namespace touchtrial

@@ -1,0 +1,110 @@
+#include "app/participant/exploring_screen.hpp"
+
+#include "app/participant/page_layout.hpp"
+#include "app/windows/stylus_mark.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace touchtrial {
+namespace {
+
+// What instructions ask for, and where bars end. Source: docs/participant-window.md.
+constexpr double kGoodForceN[] = {0.5, 0.8};
+constexpr double kTooHardN = 2.0;
+constexpr double kFullForceN = 2.5;
+constexpr double kGoodSpeedMmS[] = {50.0, 150.0};
+constexpr double kFullSpeedMmS = 250.0;
+
+constexpr double kMargin = 40.0;
+constexpr double kBelow = 92.0;  ///< for a line of text, and the bars in practice
+
+/// A bar with the good range marked.
+struct Bar {
+  std::string name;
+  double share = 0.0;
+  double good_from = 0.0;
+  double good_to = 0.0;
+  bool too_much = false;
+};
+
+void paint_bar(Canvas& canvas, const Box& room, const Bar& bar) {
+  const double unit = canvas.unit();
+  const double name = 120.0 * unit;
+  canvas.label({room.x, room.y, name, room.height}, Letters::small, tone::kQuiet, bar.name,
+               Align::left);
+  const Box track = {room.x + name, room.y + (room.height - 14.0 * unit) / 2.0, room.width - name,
+                     14.0 * unit};
+  canvas.fill(track, tone::kTrack, 7.0 * unit);
+  canvas.fill({track.x + bar.good_from * track.width, track.y - 5.0 * unit,
+               (bar.good_to - bar.good_from) * track.width, track.height + 10.0 * unit},
+              0x40000000U | (tone::kGood & 0xFFFFFFU), 4.0 * unit);
+  const double share = std::clamp(bar.share, 0.0, 1.0);
+  const bool good = share >= bar.good_from && share <= bar.good_to;
+  const std::uint32_t colour = bar.too_much ? tone::kWarn : (good ? tone::kGood : tone::kAccent);
+  if (share > 0.0) {
+    canvas.fill({track.x, track.y, std::max(share * track.width, track.height), track.height},
+                colour, 7.0 * unit);
+  }
+}
+
+}  // namespace
+
+PlaneOnScreen place_plane(Vec2 window, Vec2 plane_mm, double mm_per_unit) {
+  const double unit = design_unit(window);
+  const Vec2 room = {window.x - 2.0 * kMargin * unit, window.y - (2.0 * kMargin + kBelow) * unit};
+  const double least =
+      std::max(plane_mm.x / std::max(room.x, 1.0), plane_mm.y / std::max(room.y, 1.0));
+  PlaneOnScreen placed;
+  placed.mm_per_unit = std::max(mm_per_unit, least);
+  placed.shown = mm_per_unit / placed.mm_per_unit;
+  const Vec2 drawn = (1.0 / placed.mm_per_unit) * plane_mm;
+  placed.corner = {std::round((window.x - drawn.x) / 2.0),
+                   std::round((window.y - kBelow * unit - drawn.y) / 2.0)};
+  return placed;
+}
+
+void ExploringScreen::paint(Canvas& canvas) {
+  if (view_.pointer != nullptr) paint_plane(canvas);
+  if (view_.bars != nullptr) paint_bars(canvas);
+}
+
+void ExploringScreen::paint_plane(Canvas& canvas) {
+  const double unit = canvas.unit();
+  const Vec2 plane_mm = {view_.plane.width_mm(), view_.plane.height_mm()};
+  const PlaneOnScreen placed = place_plane(canvas.size(), plane_mm, context_.glass->mm_per_unit);
+  const Vec2 drawn = (1.0 / placed.mm_per_unit) * plane_mm;
+  const Box plane = {placed.corner.x, placed.corner.y, drawn.x, drawn.y};
+  canvas.fill(plane, 0xFFF7F6F5);
+  canvas.outline(plane, 0xFFA09A94, 1.0);
+  if (view_.bars == nullptr) {
+    canvas.label({0.0, canvas.size().y - 84.0 * unit, canvas.size().x, 30.0 * unit}, Letters::small,
+                 tone::kQuiet, context_.words->exploring_mouse);
+  }
+  const StylusState stylus = view_.pointer->stylus();
+  if (stylus.sequence == 0) return;
+  draw_stylus(placed.corner + (1.0 / placed.mm_per_unit) * stylus.position_mm,
+              view_.pressed->load(), true, static_cast<float>(unit));
+}
+
+void ExploringScreen::paint_bars(Canvas& canvas) {
+  const Words& words = *context_.words;
+  const double unit = canvas.unit();
+  const double force_n = view_.bars->force_n;
+  const double width = 560.0 * unit;
+  const double x = (canvas.size().x - width) / 2.0;
+  const double y = canvas.size().y - 92.0 * unit;
+  const bool too_hard = force_n > kTooHardN;
+  paint_bar(canvas, {x, y, width, 34.0 * unit},
+            {words.force, force_n / kFullForceN, kGoodForceN[0] / kFullForceN,
+             kGoodForceN[1] / kFullForceN, too_hard});
+  paint_bar(canvas, {x, y + 38.0 * unit, width, 34.0 * unit},
+            {words.speed, static_cast<double>(view_.bars->speed_mm_s) / kFullSpeedMmS,
+             kGoodSpeedMmS[0] / kFullSpeedMmS, kGoodSpeedMmS[1] / kFullSpeedMmS, false});
+  if (!too_hard) return;
+  canvas.label({x + width + 24.0 * unit, y, 300.0 * unit, 34.0 * unit}, Letters::strong,
+               tone::kWarn, words.too_hard, Align::left);
+}
+
+}  // namespace touchtrial

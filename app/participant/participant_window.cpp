@@ -1,0 +1,437 @@
+#include "app/participant/participant_window.hpp"
+
+#include "app/participant/exploring_screen.hpp"
+#include "app/participant/glfw_input.hpp"
+#include "app/participant/simple_screens.hpp"
+#include "app/participant/window_drawing.hpp"
+#include "app/windows/screen_scale.hpp"
+#include "core/errors.hpp"
+#include "device/platform/stop_signals.hpp"
+#include "device/servo/servo.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include <GLFW/glfw3.h>
+
+namespace touchtrial {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+using std::chrono::milliseconds;
+
+constexpr const char* kTitle = "Touchtrial";
+/// The session's thread looks elsewhere this often.
+constexpr milliseconds kAttention{10};
+constexpr milliseconds kPictureLimit{10'000};
+/// Enter that is still held from the screen before does not end an exploration.
+constexpr milliseconds kNoAccident{500};
+/// Force that is too much; the tone comes again only after it has been less than the second.
+constexpr double kTooHardN = 2.0;
+constexpr double kSoftAgainN = 1.7;
+constexpr double kBarsTimeS = 0.06;  ///< in which the practice's bars follow
+
+[[noreturn]] void refuse(const std::string& remedy) {
+  const char* reason = nullptr;
+  glfwGetError(&reason);
+  throw DeviceError(one_line(
+      "window: " + std::string(reason == nullptr ? "unknown error" : reason) + "; " + remedy));
+}
+
+/// GLFW itself, for as long as there is a window.
+class Library {
+ public:
+  Library() {
+    if (glfwInit() != GLFW_TRUE) {
+      refuse("run in a graphical session (DISPLAY or WAYLAND_DISPLAY), or under xvfb-run");
+    }
+  }
+  ~Library() { glfwTerminate(); }
+  Library(const Library&) = delete;
+  Library& operator=(const Library&) = delete;
+};
+
+GLFWmonitor* monitor_of(const ParticipantWindowOptions& options) {
+  if (options.size_px) return nullptr;
+  int count = 0;
+  GLFWmonitor** monitors = glfwGetMonitors(&count);
+  if (options.monitor < 1 || options.monitor > count) {
+    throw DeviceError("window: there is no monitor " + std::to_string(options.monitor) +
+                      "; this machine has " + std::to_string(count) +
+                      ": give another --monitor, or --window WIDTHxHEIGHT");
+  }
+  return monitors[options.monitor - 1];
+}
+
+GLFWwindow* make_window(const ParticipantWindowOptions& options, GLFWmonitor* monitor) {
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 2);
+  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+  // The experimenter's window takes the focus now and then.
+  glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);
+  std::pair<int, int> size = options.size_px.value_or(std::pair(1280, 720));
+  if (monitor != nullptr) {
+    const GLFWvidmode* mode = glfwGetVideoMode(monitor);
+    size = {mode->width, mode->height};
+    glfwWindowHint(GLFW_RED_BITS, mode->redBits);
+    glfwWindowHint(GLFW_GREEN_BITS, mode->greenBits);
+    glfwWindowHint(GLFW_BLUE_BITS, mode->blueBits);
+    glfwWindowHint(GLFW_REFRESH_RATE, mode->refreshRate);
+  }
+  GLFWwindow* window = glfwCreateWindow(size.first, size.second, kTitle, monitor, nullptr);
+  if (window == nullptr) {
+    refuse("OpenGL 3.2 is needed; install the graphics driver, or Mesa (libgl1-mesa-dri)");
+  }
+  return window;
+}
+
+}  // namespace
+
+struct ParticipantWindow::State {
+  explicit State(const ParticipantWindowOptions& wanted)
+      : options(wanted),
+        monitor(monitor_of(options)),
+        window(make_window(options, monitor)),
+        shelf(options.pictures, options.pitch_mm) {
+    context = {&words_in(options.language), options.language, options.sight,
+               options.pointer != nullptr,  &shelf,           &glass};
+    glfwSetWindowUserPointer(window, this);
+    take_callbacks();
+    tell_surface();
+    exchange.show(std::make_shared<BlankScreen>());
+    drawing = std::thread([this] { draw_until_ended(window, exchange, glass, shelf); });
+  }
+
+  ~State() {
+    exchange.end();
+    drawing.join();
+    if (options.pointer != nullptr) options.pointer->publish({{}, false, true, 0});
+    glfwSetMonitorCallback(nullptr);
+    newest = nullptr;
+    glfwDestroyWindow(window);
+  }
+  State(const State&) = delete;
+  State& operator=(const State&) = delete;
+
+  static State& of(GLFWwindow* window) {
+    return *static_cast<State*>(glfwGetWindowUserPointer(window));
+  }
+
+  void take_callbacks() {
+    glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int modifiers) {
+      of(w).take_key(event_of_key(key, action, modifiers));
+    });
+    glfwSetCharCallback(window, [](GLFWwindow* w, unsigned int letter) {
+      InputEvent event = event_now(InputEvent::Kind::letter);
+      event.letter = letter;
+      of(w).take(event);
+    });
+    glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
+      of(w).take_pointer(InputEvent::Kind::moved, {x, y});
+    });
+    glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int button, int action, int) {
+      if (button != GLFW_MOUSE_BUTTON_LEFT) return;
+      of(w).take_pointer(
+          action == GLFW_PRESS ? InputEvent::Kind::pressed : InputEvent::Kind::released,
+          of(w).pointer_at);
+    });
+    glfwSetWindowCloseCallback(window, [](GLFWwindow* w) { of(w).leave(WindowGone::closed); });
+    glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { of(w).exchange.redraw(); });
+    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { of(w).tell_surface(); });
+    glfwSetWindowPosCallback(window, [](GLFWwindow* w, int, int) { of(w).tell_surface(); });
+    newest = this;
+    glfwSetMonitorCallback([](GLFWmonitor* changed, int what) {
+      if (newest != nullptr && what == GLFW_DISCONNECTED && changed == newest->monitor) {
+        newest->leave(WindowGone::monitor_lost);
+      }
+    });
+  }
+
+  static InputEvent event_now(InputEvent::Kind kind) {
+    InputEvent event;
+    event.kind = kind;
+    event.at = Clock::now();
+    return event;
+  }
+
+  /// Where keys and buttons of every kind come together.
+  void take(const InputEvent& event) {
+    if (!exploring) return exchange.push(event);
+    if (event.kind != InputEvent::Kind::key) return;
+    if (event.key == Key::space) comfort_asked = true;
+    if (event.key == Key::enter && event.at - Clock::time_point(plane_on) > kNoAccident) {
+      finish_asked = true;
+    }
+  }
+
+  void take_key(const InputEvent& event) {
+    if (event.key != Key::none) take(event);
+  }
+
+  void take_pointer(InputEvent::Kind kind, Vec2 position) {
+    pointer_at = position;
+    if (kind == InputEvent::Kind::pressed) pressed = true;
+    if (kind == InputEvent::Kind::released) pressed = false;
+    publish_pointer();
+    InputEvent event = event_now(kind);
+    event.position = position;
+    take(event);
+  }
+
+  /// The device "mouse" wants to hear of its window even if nothing has moved.
+  void publish_pointer() {
+    if (options.pointer == nullptr) return;
+    const WindowSurface surface = exchange.surface();
+    const PlaneGeometry now = newest_plane();
+    PointerState state;
+    if (exploring && now.width_px > 0) {
+      const PlaneOnScreen placed =
+          place_plane(surface.size, {now.width_mm(), now.height_mm()}, surface.glass.mm_per_unit);
+      state.position_mm = placed.mm_per_unit * (pointer_at - placed.corner);
+      state.pressed = pressed;
+    }
+    options.pointer->publish(state);
+  }
+
+  [[nodiscard]] PlaneGeometry newest_plane() {
+    const std::lock_guard lock(plane_mutex);
+    return plane;
+  }
+
+  void tell_surface() {
+    WindowSurface surface;
+    int width = 0;
+    int height = 0;
+    glfwGetWindowSize(window, &width, &height);
+    surface.size = {static_cast<double>(std::max(width, 1)),
+                    static_cast<double>(std::max(height, 1))};
+    glfwGetFramebufferSize(window, &surface.width_px, &surface.height_px);
+    const ScreenScale scale = screen_scale(window);
+    surface.glass = {scale.mm_per_unit, scale.is_known};
+    surface.refresh_hz = scale.refresh_hz;
+    exchange.set_surface(surface);
+  }
+
+  void leave(WindowGone why) {
+    int nobody = -1;
+    gone.compare_exchange_strong(nobody, static_cast<int>(why));
+  }
+
+  /// The pointer is hidden while a plane is on: it would tell where the hand of a mouse user is.
+  void hide_pointer() {
+    const bool hide = exploring;
+    if (hide == pointer_hidden) return;
+    pointer_hidden = hide;
+    glfwSetInputMode(window, GLFW_CURSOR, hide ? GLFW_CURSOR_HIDDEN : GLFW_CURSOR_NORMAL);
+  }
+
+  void switch_to(const Step& next) {
+    std::shared_ptr<Screen> made;
+    if (suspended && is_same_step(suspended->first, next)) made = suspended->second;
+    const bool pauses = std::holds_alternative<PauseStep>(next);
+    if (pauses && step && !replied) {
+      suspended = {*step, screen};
+    } else if (!pauses) {
+      suspended.reset();
+    }
+    screen = made ? made : screen_for(next, context, labels);
+    step = next;
+    replied = false;
+    if (const auto* const ready = std::get_if<ReadyStep>(&next)) practice = ready->practice;
+    exchange.show(screen);
+  }
+
+  void cue(Cue which) noexcept {
+    if (options.cues != nullptr) options.cues->tone(which);
+  }
+
+  ParticipantWindowOptions options;
+  Library library;
+  GLFWmonitor* monitor;  ///< null: a window
+  GLFWwindow* window;
+  Glass glass;  ///< the drawing thread's
+  GlPictureShelf shelf;
+  ScreenContext context;
+  WindowExchange exchange;
+  static inline State* newest = nullptr;  ///< GLFW's monitor callback has no other
+
+  // Main thread.
+  Vec2 pointer_at;
+  bool pointer_hidden = false;
+  Gamepads gamepads;
+
+  // Between threads.
+  std::atomic<int> gone{-1};
+  std::atomic<bool> exploring{false};
+  std::atomic<bool> comfort_asked{false};
+  std::atomic<bool> finish_asked{false};
+  std::atomic<bool> pressed{false};
+  std::atomic<Clock::duration> plane_on{};
+  std::mutex plane_mutex;
+  PlaneGeometry plane;
+  FeltNow felt;
+
+  // Session's thread.
+  std::vector<std::string> labels;
+  std::optional<Step> step;
+  std::shared_ptr<Screen> screen;
+  std::optional<std::pair<Step, std::shared_ptr<Screen>>> suspended;
+  bool replied = false;
+  bool practice = false;
+
+  // Behind the servo.
+  std::optional<ServoSample> last_felt;
+  bool is_too_hard = false;
+
+  std::thread drawing;
+};
+
+ParticipantWindow::ParticipantWindow(const ParticipantWindowOptions& options)
+    : state_(std::make_unique<State>(options)) {}
+
+ParticipantWindow::~ParticipantWindow() = default;
+
+void ParticipantWindow::pump(milliseconds longest) {
+  State& s = *state_;
+  glfwWaitEventsTimeout(std::chrono::duration<double>(longest).count());
+  s.gamepads.poll([&s](Key key) {
+    InputEvent event = State::event_now(InputEvent::Kind::key);
+    event.key = key;
+    // Its B stops forces and chooses nothing.
+    if (key != Key::space || s.exploring) s.take(event);
+  });
+  s.hide_pointer();
+  s.publish_pointer();
+  if (StopOnSignals::asked()) s.leave(WindowGone::signal);
+}
+
+void ParticipantWindow::check() const {
+  state_->exchange.check();
+}
+
+void ParticipantWindow::see_pictures(const std::vector<std::string>& labels) {
+  state_->labels = labels;
+}
+
+std::optional<StepReply> ParticipantWindow::attend(const Step& step) {
+  State& s = *state_;
+  s.exchange.check();
+  if (s.exploring.exchange(false) && s.options.sight == Sight::blindfold) s.cue(Cue::plane_off);
+  if (gone()) {
+    std::this_thread::sleep_for(kAttention);
+    return std::nullopt;
+  }
+  if (!s.step || s.replied || !is_same_step(*s.step, step)) s.switch_to(step);
+  std::optional<StepReply> reply = s.exchange.reply(*s.screen, kAttention);
+  s.replied = reply.has_value();
+  return reply;
+}
+
+HapticDevice& ParticipantWindow::begin_exploring(const PlaneGeometry& plane) {
+  if (!state_->options.device) throw std::logic_error("ParticipantWindow: no device to explore");
+  show_exploring(plane);
+  return state_->options.device();
+}
+
+void ParticipantWindow::show_exploring(const PlaneGeometry& plane) {
+  State& s = *state_;
+  {
+    const std::lock_guard lock(s.plane_mutex);
+    s.plane = plane;
+  }
+  s.step.reset();
+  s.suspended.reset();
+  s.last_felt.reset();
+  s.is_too_hard = false;
+  s.felt.force_n = 0.0F;
+  s.felt.speed_mm_s = 0.0F;
+  ExploringView view;
+  view.plane = plane;
+  view.pointer = s.options.pointer;
+  view.pressed = &s.pressed;
+  if (s.practice) view.bars = &s.felt;
+  s.screen = std::make_shared<ExploringScreen>(view, s.context);
+  s.exchange.show(s.screen);
+  s.comfort_asked = false;
+  s.finish_asked = false;
+  s.plane_on = Clock::now().time_since_epoch();
+  s.exploring = true;
+  glfwPostEmptyEvent();
+  if (s.options.sight == Sight::blindfold) s.cue(Cue::plane_on);
+}
+
+void ParticipantWindow::exploring(ServoControl& servo) {
+  State& s = *state_;
+  if (gone()) servo.emergency_stop();
+  if (s.comfort_asked) servo.comfort_stop();
+  if (s.finish_asked) servo.finish();
+}
+
+void ParticipantWindow::feel(const ServoSample& sample) noexcept {
+  State& s = *state_;
+  const double force_n = norm(sample.force_n);
+  if (force_n > kTooHardN && !s.is_too_hard) s.cue(Cue::too_hard);
+  s.is_too_hard = force_n > (s.is_too_hard ? kSoftAgainN : kTooHardN);
+  if (s.last_felt && sample.tick > s.last_felt->tick) {
+    const double seconds = static_cast<double>(sample.tick - s.last_felt->tick) / s.options.rate_hz;
+    const Vec3 way = sample.position_mm - s.last_felt->position_mm;
+    const double speed = std::hypot(way.x, way.y) / seconds;
+    const auto share = static_cast<float>(std::min(1.0, seconds / kBarsTimeS));
+    const auto follow = [share](std::atomic<float>& shown, double now) {
+      const float before = shown;
+      shown = before + share * (static_cast<float>(now) - before);
+    };
+    follow(s.felt.force_n, force_n);
+    follow(s.felt.speed_mm_s, speed);
+  }
+  s.last_felt = sample;
+}
+
+std::optional<WindowGone> ParticipantWindow::gone() const noexcept {
+  const int why = state_->gone;
+  if (why < 0) return std::nullopt;
+  return static_cast<WindowGone>(why);
+}
+
+void ParticipantWindow::inject(const InputEvent& event) {
+  state_->take(event);
+}
+
+bool ParticipantWindow::wait_until_shown(milliseconds longest) {
+  return state_->exchange.wait_until_shown(longest);
+}
+
+ColourImage ParticipantWindow::picture() {
+  std::optional<ColourImage> picture = state_->exchange.picture(kPictureLimit);
+  check();
+  if (!picture) throw DeviceError("window: no picture came; look at the graphics driver");
+  return std::move(*picture);
+}
+
+void run_beside(ParticipantWindow& window, const std::function<void()>& session) {
+  std::exception_ptr failure;
+  std::atomic<bool> ended{false};
+  std::thread thread([&] {
+    try {
+      session();
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    ended = true;
+    glfwPostEmptyEvent();
+  });
+  constexpr milliseconds kBetweenLooks{4};
+  while (!ended) window.pump(kBetweenLooks);
+  thread.join();
+  if (failure) std::rethrow_exception(failure);
+  window.check();
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,44 @@
+/// \file A questionnaire, one question at a time.
+#pragma once
+
+#include "app/participant/screen.hpp"
+
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+
+class QuestionScreen final : public Screen {
+ public:
+  /// \param questionnaire  outlives this
+  QuestionScreen(const Questionnaire& questionnaire, const ScreenContext& context);
+
+ private:
+  void paint(Canvas& canvas) override;
+  [[nodiscard]] std::optional<StepReply> activate(int id, Time at) override;
+  [[nodiscard]] int default_target() const noexcept override { return kNextTarget; }
+  bool takes_key(const InputEvent& event) override;
+
+  void paint_options(Canvas& canvas, const Box& area);
+  void paint_field(Canvas& canvas, const Box& area);
+  void choose(int option);
+  void write(char32_t letter);
+  bool edit(Key key);
+  [[nodiscard]] const Question& question() const { return questionnaire_.questions[page_]; }
+  [[nodiscard]] std::u32string& typed() { return typed_[page_]; }
+  [[nodiscard]] bool is_answered() const;
+  [[nodiscard]] std::string in_language(const Translated& text) const;
+  [[nodiscard]] std::vector<std::string> answers() const;
+
+  const Questionnaire& questionnaire_;
+  ScreenContext context_;
+  std::size_t page_ = 0;
+  std::vector<int> chosen_;            ///< option of each question; -1: none
+  std::vector<std::u32string> typed_;  ///< text of each
+  std::size_t caret_ = 0;
+};
+
+/// UTF-8. Invalid code points are left out.
+[[nodiscard]] std::string utf8_of(const std::u32string& text);
+
+}  // namespace touchtrial

@@ -1,0 +1,93 @@
+/// \file What the session's thread, the main thread and the drawing thread of a participant's
+/// window tell each other.
+#pragma once
+
+#include "app/participant/screen.hpp"
+#include "engine/pictures/colour_image.hpp"
+
+#include <chrono>
+#include <condition_variable>
+#include <exception>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <vector>
+
+namespace touchtrial {
+
+/// The window as the main thread knows it.
+struct WindowSurface {
+  Vec2 size;         ///< window units
+  int width_px = 0;  ///< of the picture
+  int height_px = 0;
+  Glass glass;
+  double refresh_hz = 60.0;
+};
+
+/// Every function may be called from any thread; none waits for a picture but those that say so.
+class WindowExchange {
+ public:
+  using Time = std::chrono::steady_clock::time_point;
+
+  /// What is to be drawn next.
+  struct Work {
+    std::shared_ptr<Screen> screen;
+    WindowSurface surface;
+    std::vector<InputEvent> events;
+    bool picture_wanted = false;
+    bool ending = false;
+  };
+
+  /// \name Session's thread
+  ///@{
+  void show(std::shared_ptr<Screen> screen);
+  /// The reply that the screen has given, once; waits for it.
+  [[nodiscard]] std::optional<StepReply> reply(const Screen& of, std::chrono::milliseconds longest);
+  ///@}
+
+  /// \name Main thread
+  ///@{
+  void push(const InputEvent& event);
+  void set_surface(const WindowSurface& surface);
+  void redraw();
+  void end();
+  ///@}
+
+  /// \name Drawing thread
+  ///@{
+  /// Waits until there is something new, or `longest` has gone by.
+  [[nodiscard]] Work wait_for_work(std::chrono::milliseconds longest);
+  /// \param events_left  that have not been taken to the screen yet
+  void shown(const std::shared_ptr<Screen>& screen, bool events_left);
+  void replied(const std::shared_ptr<Screen>& screen, const StepReply& reply);
+  void keep(ColourImage picture);
+  void failed(std::exception_ptr failure);
+  ///@}
+
+  [[nodiscard]] WindowSurface surface() const;
+  /// Waits until the newest screen is on the glass, with all events that came taken.
+  [[nodiscard]] bool wait_until_shown(std::chrono::milliseconds longest);
+  /// Waits for the next picture. \return nothing if none comes
+  [[nodiscard]] std::optional<ColourImage> picture(std::chrono::milliseconds longest);
+  /// \throws what drawing threw
+  void check() const;
+
+ private:
+  mutable std::mutex mutex_;
+  std::condition_variable for_drawing_;
+  std::condition_variable for_others_;
+  std::shared_ptr<Screen> screen_;
+  std::shared_ptr<Screen> shown_;
+  std::shared_ptr<Screen> replied_by_;
+  std::optional<StepReply> reply_;
+  WindowSurface surface_;
+  std::vector<InputEvent> events_;
+  std::optional<ColourImage> picture_;
+  std::exception_ptr failure_;
+  bool picture_wanted_ = false;
+  bool dirty_ = true;
+  bool settled_ = false;  ///< no event is left that a picture must show
+  bool ending_ = false;
+};
+
+}  // namespace touchtrial

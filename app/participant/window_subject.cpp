@@ -1,0 +1,103 @@
+#include "app/participant/window_subject.hpp"
+
+#include <chrono>
+#include <cstddef>
+
+namespace touchtrial {
+namespace {
+
+constexpr std::chrono::milliseconds kPictureLimit{1000};
+
+}  // namespace
+
+WindowSubject::WindowSubject(ParticipantWindow& window, Participant& subject, bool real_time)
+    : window_(window), subject_(subject), real_time_(real_time) {}
+
+void WindowSubject::see_pictures(const std::vector<std::string>& labels) {
+  window_.see_pictures(labels);
+  subject_.see_pictures(labels);
+}
+
+std::optional<StepReply> WindowSubject::attend(const Step& step) {
+  std::optional<StepReply> reply = window_.attend(step);
+  if (std::holds_alternative<PauseStep>(step)) return std::nullopt;
+  if (!reply && !meant_) meant_ = subject_.attend(step);
+  if (!reply && meant_ && !typed_ && window_.wait_until_shown(kPictureLimit)) {
+    type(step, *meant_);
+    typed_ = true;
+    reply = window_.attend(step);
+  }
+  if (!reply) return std::nullopt;
+  if (!real_time_) {
+    reply->at.reset();
+    reply->took = meant_ ? meant_->took : std::chrono::nanoseconds{};
+  }
+  forget();
+  return reply;
+}
+
+HapticDevice& WindowSubject::begin_exploring(const PlaneGeometry& plane) {
+  forget();
+  window_.show_exploring(plane);
+  return subject_.begin_exploring(plane);
+}
+
+void WindowSubject::exploring(ServoControl& servo) {
+  subject_.exploring(servo);
+  window_.exploring(servo);
+}
+
+void WindowSubject::feel(const ServoSample& sample) noexcept {
+  subject_.feel(sample);
+  window_.feel(sample);
+}
+
+void WindowSubject::forget() {
+  meant_.reset();
+  typed_ = false;
+}
+
+void WindowSubject::press(Key key, int digit) {
+  InputEvent event;
+  event.at = std::chrono::steady_clock::now();
+  event.key = key;
+  event.digit = digit;
+  window_.inject(event);
+}
+
+void WindowSubject::type(const Step& step, const StepReply& reply) {
+  if (const auto* const pages = std::get_if<InstructionStep>(&step)) {
+    for (std::size_t i = 0; i < pages->pages.size(); ++i) press(Key::enter);
+    if (pages->pages.empty()) press(Key::enter);
+    return;
+  }
+  if (const auto* const asked = std::get_if<QuestionStep>(&step)) {
+    for (const Question& question : asked->questionnaire->questions) {
+      // Whatever must be answered gets the first option, or a 1.
+      if (question.required && question.kind == QuestionKind::choice) press(Key::digit, 1);
+      if (question.required && question.kind != QuestionKind::choice) {
+        InputEvent event;
+        event.kind = InputEvent::Kind::letter;
+        event.at = std::chrono::steady_clock::now();
+        event.letter = U'1';
+        window_.inject(event);
+      }
+      press(Key::enter);
+    }
+    if (asked->questionnaire->questions.empty()) press(Key::enter);
+    return;
+  }
+  if (const auto* const answer = std::get_if<AnswerStep>(&step)) {
+    if (reply.first_position) press(Key::digit, *reply.first_position + 1);
+    press(Key::digit, reply.position + 1);
+    press(Key::enter);
+    if (answer->confidence_levels > 0) {
+      press(Key::digit, reply.confidence.value_or(1));
+    }
+    if (answer->confidence_levels > 0) press(Key::enter);
+    return;
+  }
+  press(Key::enter);
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,434 @@
+// The participant's window on a screen that nobody sees, driven by real key and mouse events.
+#include "app/participant/participant_window.hpp"
+
+#include "app/participant/window_subject.hpp"
+#include "device/servo/servo.hpp"
+#include "device/servo/servo_control.hpp"
+#include "engine/pictures/colour_image.hpp"
+#include "protocols/session/prompt_participant.hpp"
+#include "stimuli/generator.hpp"
+#include "support/catch.hpp"
+#include "windows/virtual_screen.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+namespace touchtrial {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::steady_clock;
+
+constexpr PlaneGeometry kPlane = {0.2, 256, 256};
+const std::vector<std::string> kLabels = {"bark", "cloth", "pebbles", "straw", "brick"};
+
+/// Pictures as a study's, made once.
+const std::map<std::string, GreyImage>& pictures() {
+  static const std::map<std::string, GreyImage> made = [] {
+    std::map<std::string, GreyImage> all;
+    for (const std::string& label : kLabels) {
+      all[label] = generate_stimulus(label, kDefaultStimuliSeed, 256, 1);
+    }
+    return all;
+  }();
+  return made;
+}
+
+ParticipantWindowOptions options(int width = 1280, int height = 720) {
+  ParticipantWindowOptions all;
+  all.size_px = {width, height};
+  all.pictures = pictures();
+  return all;
+}
+
+/// A session's thread before the window, with a hand on the keyboard.
+struct Sitting {
+  explicit Sitting(const ParticipantWindowOptions& wanted = options(),
+                   const char* size = "1280x720")
+      : screen(VirtualScreen::open(size)), window(wanted) {
+    window.see_pictures(kLabels);
+  }
+
+  /// Runs `session` beside the window.
+  template <typename Session>
+  void run(const Session& session) {
+    run_beside(window, [&] { session(); });
+  }
+
+  /// Shows a step until it is on the glass; session's thread.
+  void show(const Step& step) {
+    CHECK_FALSE(window.attend(step));
+    CHECK(window.wait_until_shown(milliseconds(20'000)));
+  }
+  /// Attends until there is a reply, or a minute has gone by.
+  std::optional<StepReply> reply_to(const Step& step) {
+    const auto give_up = steady_clock::now() + std::chrono::seconds(60);
+    while (steady_clock::now() < give_up && !window.gone()) {
+      if (const auto reply = window.attend(step)) return reply;
+    }
+    return std::nullopt;
+  }
+  /// Types on a shown step. \return its reply
+  std::optional<StepReply> answer(const Step& step, const std::string& keys) {
+    show(step);
+    screen->type(keys);
+    return reply_to(step);
+  }
+
+  std::unique_ptr<VirtualScreen> screen;
+  ParticipantWindow window;
+};
+
+AnswerStep answer_step(int trial = 1) {
+  return {.trial = trial, .of = 25};
+}
+
+TEST_CASE("25 trials are answered with keys as chosen, each reply stamped between key and now") {
+  Sitting sitting;
+  sitting.run([&] {
+    for (int trial = 1; trial <= 25; ++trial) {
+      const ReadyStep ready{trial, 25, false};
+      CHECK(sitting.answer(ready, trial % 2 == 0 ? "space" : "Return"));
+      sitting.window.show_exploring(kPlane);
+      const int choice = (trial * 7) % 5;
+      const bool changes = trial % 4 == 0;
+      const std::string first = changes ? std::to_string((choice + 2) % 5 + 1) + " " : "";
+      const std::string pad = trial % 3 == 0 ? "KP_" : "";
+      const auto before = steady_clock::now();
+      const auto reply =
+          sitting.answer(answer_step(trial), first + pad + std::to_string(choice + 1) + " Return");
+      REQUIRE(reply);
+      CHECK(reply->position == choice);
+      CHECK(reply->first_position.has_value() == changes);
+      REQUIRE(reply->at);
+      CHECK(*reply->at > before);
+      CHECK(*reply->at < steady_clock::now());
+    }
+    CHECK(sitting.answer(EndStep{}, "Return"));
+  });
+}
+
+TEST_CASE("a picture and Next are clicked with a real mouse") {
+  Sitting sitting;
+  sitting.run([&] {
+    const AnswerStep step = answer_step();
+    sitting.show(step);
+    // The middle one of five, and the button below.
+    sitting.screen->move_pointer(640, 320);
+    sitting.screen->press();
+    sitting.screen->release();
+    CHECK(sitting.window.wait_until_shown(milliseconds(20'000)));
+    std::this_thread::sleep_for(milliseconds(200));
+    sitting.screen->move_pointer(640, 640);
+    sitting.screen->press();
+    sitting.screen->release();
+    const auto reply = sitting.reply_to(step);
+    REQUIRE(reply);
+    CHECK(reply->position == 2);
+  });
+}
+
+TEST_CASE("a key that was pressed before a screen was shown does nothing on it") {
+  Sitting sitting;
+  sitting.run([&] {
+    sitting.show(ReadyStep{1, 25, false});
+    sitting.screen->type("Return Return Return");
+    CHECK(sitting.reply_to(ReadyStep{1, 25, false}));
+    sitting.show(BreakStep{1, 25});
+    for (int i = 0; i < 10; ++i) CHECK_FALSE(sitting.window.attend(BreakStep{1, 25}));
+  });
+}
+
+TEST_CASE("Escape ends nothing, on no screen") {
+  Sitting sitting;
+  sitting.run([&] {
+    sitting.show(ReadyStep{1, 25, false});
+    sitting.screen->type("Escape");
+    for (int i = 0; i < 20; ++i) CHECK_FALSE(sitting.window.attend(ReadyStep{1, 25, false}));
+    CHECK_FALSE(sitting.window.gone());
+  });
+}
+
+TEST_CASE("a pause covers a choice, which is still there afterwards") {
+  Sitting sitting;
+  sitting.run([&] {
+    sitting.show(answer_step());
+    sitting.screen->type("4");
+    std::this_thread::sleep_for(milliseconds(300));
+    sitting.show(PauseStep{});
+    sitting.screen->type("2 Return");
+    for (int i = 0; i < 20; ++i) CHECK_FALSE(sitting.window.attend(PauseStep{}));
+    const auto reply = sitting.answer(answer_step(), "Return");
+    REQUIRE(reply);
+    CHECK(reply->position == 3);
+    CHECK_FALSE(reply->first_position);
+  });
+}
+
+TEST_CASE("while a plane is on the space bar stops the force and Enter ends the exploration") {
+  Sitting sitting;
+  const bool stops = GENERATE(true, false);
+  sitting.run([&] {
+    sitting.show(ReadyStep{1, 25, false});
+    sitting.window.show_exploring(kPlane);
+    CHECK(sitting.window.wait_until_shown(milliseconds(20'000)));
+    std::this_thread::sleep_for(milliseconds(600));
+    ServoControl servo;
+    sitting.window.exploring(servo);
+    CHECK_FALSE(servo.finish_asked());
+    sitting.screen->type(stops ? "space" : "Return");
+    const auto give_up = steady_clock::now() + std::chrono::seconds(20);
+    while (!servo.comfort_stop_asked() && !servo.finish_asked() && steady_clock::now() < give_up) {
+      sitting.window.exploring(servo);
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+    CHECK(servo.comfort_stop_asked() == stops);
+    CHECK(servo.finish_asked() == !stops);
+  });
+}
+
+TEST_CASE("a window that is closed under force stops it at once, and replies no more") {
+  Sitting sitting;
+  sitting.run([&] {
+    sitting.window.show_exploring(kPlane);
+    // As a window manager asks for it.
+    sitting.screen->xdotool("search --name '^Touchtrial$' windowquit");
+    ServoControl servo;
+    const auto give_up = steady_clock::now() + std::chrono::seconds(20);
+    while (!sitting.window.gone() && steady_clock::now() < give_up) {
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+    sitting.window.exploring(servo);
+    CHECK(servo.emergency_stop_asked());
+    CHECK(sitting.window.gone() == WindowGone::closed);
+    CHECK_FALSE(sitting.window.attend(answer_step()));
+  });
+}
+
+/// Feels what a texture of this strength would give.
+void feel_texture(ParticipantWindow& window, double force_n) {
+  for (int tick = 0; tick < 2000; ++tick) {
+    ServoSample sample;
+    sample.tick = tick;
+    sample.position_mm = {0.1 * tick, 20.0 * force_n, -0.1};
+    sample.force_n = {0.3 * force_n, 0.0, force_n};
+    window.feel(sample);
+  }
+}
+
+TEST_CASE("the exploring screen is the same to the last byte, whatever is felt") {
+  Sitting sitting;
+  sitting.run([&] {
+    std::optional<ColourImage> first;
+    for (int trial = 1; trial <= 5; ++trial) {
+      sitting.show(ReadyStep{trial, 25, false});
+      sitting.window.show_exploring(kPlane);
+      feel_texture(sitting.window, 0.4 * trial);
+      sitting.screen->move_pointer(100 * trial, 60 * trial);
+      CHECK(sitting.window.wait_until_shown(milliseconds(20'000)));
+      const ColourImage picture = sitting.window.picture();
+      if (!first) first = picture;
+      CHECK(picture == *first);
+      const auto samples = picture.samples();
+      // No cursor, no edge, no text.
+      CHECK(std::all_of(samples.begin(), samples.end(),
+                        [&](const Rgb& sample) { return sample == samples.front(); }));
+    }
+  });
+}
+
+class CountedCues final : public Cues {
+ public:
+  void tone(Cue cue) noexcept override {
+    if (cue == Cue::too_hard) ++too_hard;
+  }
+  std::atomic<int> too_hard{0};
+};
+
+TEST_CASE("more than 2 N sounds once, until there has been less") {
+  CountedCues cues;
+  ParticipantWindowOptions wanted = options();
+  wanted.cues = &cues;
+  Sitting sitting(wanted);
+  feel_texture(sitting.window, 1.5);
+  CHECK(cues.too_hard == 0);
+  feel_texture(sitting.window, 2.5);
+  CHECK(cues.too_hard == 1);
+  feel_texture(sitting.window, 1.0);
+  feel_texture(sitting.window, 2.5);
+  CHECK(cues.too_hard == 2);
+}
+
+/// Chooses pictures in turn, and what is asked about itself.
+class Chooser final : public PromptParticipant {
+ public:
+  void see_pictures(const std::vector<std::string>& /*labels*/) override {}
+  [[nodiscard]] HapticDevice& begin_exploring(const PlaneGeometry& /*plane*/) override {
+    throw std::logic_error("not asked for");
+  }
+  void feel(const ServoSample& /*sample*/) noexcept override {}
+  [[nodiscard]] ParticipantAnswer answer() override {
+    return {next_++ % 5, std::chrono::seconds(3)};
+  }
+
+ private:
+  int next_ = 0;
+};
+
+TEST_CASE("a simulated participant sits before the window and answers with its keys") {
+  Sitting sitting;
+  Chooser chooser;
+  sitting.run([&] {
+    WindowSubject subject(sitting.window, chooser, false);
+    subject.see_pictures(kLabels);
+    const auto reply_to = [&](const Step& step) {
+      const auto give_up = steady_clock::now() + std::chrono::seconds(60);
+      while (steady_clock::now() < give_up) {
+        if (auto reply = subject.attend(step)) return *reply;
+      }
+      throw std::runtime_error("no reply");
+    };
+    CHECK_FALSE(reply_to(InstructionStep{{"one", "two", "three"}}).at);
+    Questionnaire questions{"closing", {}};
+    questions.questions.push_back({"a", QuestionKind::text, {{"en", "Text"}}, {}, false});
+    questions.questions.push_back(
+        {"b", QuestionKind::choice, {{"en", "One"}}, {{{"en", "x"}}, {{"en", "y"}}}, true});
+    CHECK(reply_to(QuestionStep{&questions}).answers == std::vector<std::string>{"", "0"});
+    for (int trial = 0; trial < 7; ++trial) {
+      static_cast<void>(reply_to(ReadyStep{trial + 1, 7, false}));
+      AnswerStep step = answer_step(trial + 1);
+      step.confidence_levels = trial % 2 == 0 ? 0 : 4;
+      const StepReply reply = reply_to(step);
+      CHECK(reply.position == trial % 5);
+      CHECK(reply.took == std::chrono::seconds(3));
+      CHECK(reply.confidence.has_value() == (trial % 2 == 1));
+    }
+    static_cast<void>(reply_to(EndStep{}));
+  });
+}
+
+TEST_CASE("the window's title and the monitor's number are all that the system sees") {
+  Sitting sitting;
+  sitting.screen->xdotool("search --name '^Touchtrial$' >/dev/null");
+  sitting.run([&] { sitting.show(answer_step()); });
+  sitting.screen->xdotool("search --name '^Touchtrial$' >/dev/null");
+}
+
+TEST_CASE("a monitor that is not there is named, and how many there are") {
+  const auto screen = VirtualScreen::open();
+  ParticipantWindowOptions wanted = options();
+  wanted.size_px.reset();
+  wanted.monitor = 3;
+  CHECK_THROWS_WITH(ParticipantWindow(wanted), holds_text("no monitor 3") && holds_text("has 1"));
+}
+
+TEST_CASE("the whole screen is taken on the monitor that is asked for") {
+  ParticipantWindowOptions wanted = options();
+  wanted.size_px.reset();
+  Sitting sitting(wanted, "1920x1080");
+  sitting.run([&] {
+    sitting.show(answer_step());
+    const ColourImage picture = sitting.window.picture();
+    CHECK(picture.width() == 1920);
+    CHECK(picture.height() == 1080);
+  });
+}
+
+/// What a participant may see, to be looked at by people.
+std::vector<std::pair<std::string, Step>> gallery() {
+  static const Questionnaire questions = {
+      "closing",
+      {{"hand",
+        QuestionKind::choice,
+        {{"en", "Which hand do you write with?"}, {"de", "Mit welcher Hand schreiben Sie?"}},
+        {{{"en", "always the left"}, {"de", "immer mit der linken"}},
+         {{"en", "usually the left"}, {"de", "meistens mit der linken"}},
+         {{"en", "either"}, {"de", "mit beiden"}},
+         {{"en", "usually the right"}, {"de", "meistens mit der rechten"}},
+         {{"en", "always the right"}, {"de", "immer mit der rechten"}}},
+        true}}};
+  static const Questionnaire free_text = {
+      "closing",
+      {{"strategy",
+        QuestionKind::text,
+        {{"en", "How did you decide?"}, {"de", "Wie haben Sie entschieden?"}},
+        {}}}};
+  const std::string page =
+      "How to feel\n\nHold the stylus like a pen and rest your forearm. Stroke the surface to the "
+      "left and to the right, in long and even strokes, about as hard as you would write.\n\nTake "
+      "as long as you like. When you have felt enough, press Enter and choose the picture that "
+      "belongs to the surface.";
+  return {{"instructions", InstructionStep{{page, page}}},
+          {"question", QuestionStep{&questions}},
+          {"text", QuestionStep{&free_text}},
+          {"practice", PracticeStep{1}},
+          {"ready", ReadyStep{7, 25, false}},
+          {"answer", AnswerStep{.trial = 7, .of = 25, .may_explore_again = true}},
+          {"time-is-up", AnswerStep{.trial = 7, .of = 25, .time_is_up = true}},
+          {"spoken", AnswerStep{.trial = 7, .of = 25, .sight = Sight::blindfold}},
+          {"wrong", FeedbackStep{0, 4}},
+          {"right", FeedbackStep{1, 1}},
+          {"break", BreakStep{10, 25}},
+          {"pause", PauseStep{}},
+          {"end", EndStep{}}};
+}
+
+void keep(ParticipantWindow& window, const std::filesystem::path& file) {
+  const Bytes png = png_bytes(window.picture());
+  std::ofstream(file, std::ios::binary)
+      .write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
+}
+
+TEST_CASE("screenshots of every screen, for TOUCHTRIAL_SCREENSHOTS=FOLDER", "[.]") {
+  const char* const folder = std::getenv("TOUCHTRIAL_SCREENSHOTS");
+  REQUIRE(folder != nullptr);
+  const auto [width, height] =
+      GENERATE(std::pair(1280, 720), std::pair(1920, 1080), std::pair(3840, 2160));
+  const std::string language = GENERATE("en", "de");
+  ParticipantWindowOptions wanted = options(width, height);
+  wanted.language = language;
+  const std::string size = std::to_string(width) + "x" + std::to_string(height);
+  Sitting sitting(wanted, size.c_str());
+  const auto file = [&](const std::string& name) {
+    return std::filesystem::path(folder) / (name + "-" + language + "-" + size + ".png");
+  };
+  sitting.run([&] {
+    for (const auto& [name, step] : gallery()) {
+      sitting.show(step);
+      if (name == "question" || name == "answer") sitting.screen->type("4");
+      if (name == "text") sitting.screen->type("B y space f e e l");
+      std::this_thread::sleep_for(milliseconds(500));
+      keep(sitting.window, file(name));
+      if (name != "answer") continue;
+      sitting.screen->type("2");
+      std::this_thread::sleep_for(milliseconds(500));
+      keep(sitting.window, file("answer-changed"));
+    }
+    AnswerStep step = answer_step(9);
+    step.confidence_levels = 5;
+    sitting.show(step);
+    sitting.screen->type("4 Return 3");
+    std::this_thread::sleep_for(milliseconds(500));
+    keep(sitting.window, file("confidence"));
+    static_cast<void>(sitting.answer(ReadyStep{2, 5, true}, "Return"));
+    sitting.window.show_exploring(kPlane);
+    feel_texture(sitting.window, 0.9);
+    CHECK(sitting.window.wait_until_shown(milliseconds(20'000)));
+    keep(sitting.window, file("exploring-practice"));
+  });
+}
+
+}  // namespace
+}  // namespace touchtrial
