@@ -108,7 +108,7 @@ void AnswerScreen::paint_names(Canvas& canvas, const Box& area) {
     const Box box = {std::round(left + (i / rows) * (width + gap)),
                      std::round(top + (i % rows) * (height + gap)), width, height};
     canvas.button(i, box, std::to_string(i + 1) + "   " + labels_[static_cast<std::size_t>(i)],
-                  ButtonKind::choice, !is_fixed(), chosen_ == i);
+                  ButtonKind::line, !is_fixed(), chosen_ == i);
   }
   canvas.label({area.x, area.y + room, area.width, line}, Letters::small, tone::kQuiet, hint());
 }

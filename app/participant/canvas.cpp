@@ -11,7 +11,7 @@
 namespace touchtrial {
 namespace {
 
-constexpr double kSmall = 17.0;
+constexpr double kSmall = 19.0;
 constexpr double kBody = 24.0;
 constexpr double kTitle = 38.0;
 /// Letters are made smaller in such steps until they fit, but no smaller than the last.
@@ -167,8 +167,14 @@ void Canvas::button(int id, const Box& box, const std::string& label, ButtonKind
   if (!filled) outline(box, lit ? tone::kAccent : tone::kEdge, 1.5 * unit_, rounding);
   std::uint32_t letters = filled ? tone::kWhite : tone::kText;
   if (!enabled && !chosen) letters = tone::kQuiet;
-  this->label(box.inset(8.0 * unit_), kind == ButtonKind::primary ? Letters::strong : Letters::body,
-              letters, label);
+  const bool in_line = kind == ButtonKind::line;
+  Box inside = box.inset(8.0 * unit_);
+  if (in_line) {
+    inside.x += 16.0 * unit_;
+    inside.width -= 32.0 * unit_;
+  }
+  this->label(inside, kind == ButtonKind::primary ? Letters::strong : Letters::body, letters, label,
+              in_line ? Align::left : Align::centre);
   if (!enabled) return;
   target(id, box);
   focus_ring(id, box, rounding);

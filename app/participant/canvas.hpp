@@ -49,7 +49,12 @@ inline constexpr std::uint32_t kWhite = 0xFFFFFFFF;
 
 enum class Letters { small, body, strong, title };
 enum class Align { left, centre, right };
-enum class ButtonKind { primary, plain, choice };
+enum class ButtonKind {
+  primary,
+  plain,
+  choice,
+  line,  ///< a choice with its words at the left
+};
 
 /// The sizes of one scale, in ImGui's current context.
 struct Fonts {

@@ -93,7 +93,7 @@ void QuestionScreen::paint_options(Canvas& canvas, const Box& area) {
                      std::round(top + (i % rows) * (height + gap)), each, height};
     const std::string number = i < 9 ? std::to_string(i + 1) + "   " : "";
     canvas.button(i, box, number + in_language(question().options[static_cast<std::size_t>(i)]),
-                  ButtonKind::choice, true, chosen_[page_] == i);
+                  ButtonKind::line, true, chosen_[page_] == i);
   }
 }
 

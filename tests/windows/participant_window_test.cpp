@@ -376,8 +376,8 @@ std::vector<std::pair<std::string, Step>> gallery() {
           {"practice", PracticeStep{1}},
           {"ready", ReadyStep{7, 25, false}},
           {"answer", AnswerStep{.trial = 7, .of = 25, .may_explore_again = true}},
-          {"time-is-up", AnswerStep{.trial = 7, .of = 25, .time_is_up = true}},
-          {"spoken", AnswerStep{.trial = 7, .of = 25, .sight = Sight::blindfold}},
+          {"time-is-up", AnswerStep{.trial = 8, .of = 25, .time_is_up = true}},
+          {"spoken", AnswerStep{.trial = 9, .of = 25, .sight = Sight::blindfold}},
           {"wrong", FeedbackStep{0, 4}},
           {"right", FeedbackStep{1, 1}},
           {"break", BreakStep{10, 25}},
@@ -416,7 +416,7 @@ TEST_CASE("screenshots of every screen, for TOUCHTRIAL_SCREENSHOTS=FOLDER", "[.]
       std::this_thread::sleep_for(milliseconds(500));
       keep(sitting.window, file("answer-changed"));
     }
-    AnswerStep step = answer_step(9);
+    AnswerStep step = answer_step(12);
     step.confidence_levels = 5;
     sitting.show(step);
     sitting.screen->type("4 Return 3");
