@@ -29,6 +29,7 @@ find_package(OpenGL REQUIRED)
 # Debian's Dear ImGui holds the GLFW and OpenGL 3 backends, and leaves these two to whoever links it.
 pkg_check_modules(imgui REQUIRED IMPORTED_TARGET GLOBAL imgui)
 pkg_check_modules(freetype REQUIRED IMPORTED_TARGET GLOBAL freetype2)
+pkg_check_modules(portaudio REQUIRED IMPORTED_TARGET GLOBAL portaudio-2.0)
 
 find_package(hwy QUIET)
 if(TARGET hwy::hwy)

@@ -1,0 +1,52 @@
+#include "app/experimenter/status_words.hpp"
+
+#include <cstddef>
+
+#include <fmt/format.h>
+
+namespace touchtrial {
+namespace {
+
+bool begins_character(char byte) {
+  return (static_cast<unsigned char>(byte) & 0xC0U) != 0x80U;
+}
+
+}  // namespace
+
+std::string progress_words(const SessionStatus& status) {
+  std::string words = status.participant + "  " + status.stage;
+  if (status.practice && status.stage != "practice") words += " (practice)";
+  if (status.trial > 0) words += fmt::format("  trial {} of {}", status.trial, status.of);
+  if (status.interruptions > 0) words += fmt::format("  interruptions {}", status.interruptions);
+  return words;
+}
+
+std::string status_line(const SessionStatus& status) {
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(status.elapsed).count();
+  std::string line = progress_words(status);
+  line += fmt::format("  {}:{:02}", seconds / 60, seconds % 60);
+  if (!status.device.empty()) line += "  " + status.device;
+  if (status.rate_hz > 0.0) {
+    line += fmt::format("  {:.0f}/s  late {:.0f} us  overruns {}", status.rate_hz,
+                        status.lateness_p99_us, status.overruns);
+  }
+  return line;
+}
+
+std::string first_of(const std::string& text, int columns) {
+  std::size_t end = 0;
+  for (int column = 0; end < text.size(); ++end) {
+    if (begins_character(text[end]) && ++column > columns) break;
+  }
+  return text.substr(0, end);
+}
+
+std::string last_of(const std::string& text, int columns) {
+  std::size_t begin = text.size();
+  for (int column = 0; begin > 0 && column < columns; --begin) {
+    if (begins_character(text[begin - 1])) ++column;
+  }
+  return text.substr(begin);
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,178 @@
+#include "app/experimenter/terminal_experimenter.hpp"
+
+#include "app/experimenter/status_words.hpp"
+#include "app/terminal_keys.hpp"
+
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <thread>
+#include <utility>
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+namespace touchtrial {
+namespace {
+
+int columns_of_terminal() {
+  winsize size{};
+  if (::ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col < 20) return 80;
+  return size.ws_col;
+}
+
+}  // namespace
+
+ExperimenterTerminal standard_terminal() {
+  ExperimenterTerminal terminal;
+  if (::isatty(STDIN_FILENO) != 0) {
+    terminal.key = [keys = std::make_shared<TerminalKeys>()] { return keys->next(); };
+  }
+  terminal.write = [](const std::string& text) {
+    std::fputs(text.c_str(), stderr);
+    std::fflush(stderr);
+  };
+  terminal.rewrites = ::isatty(STDERR_FILENO) != 0;
+  terminal.columns = columns_of_terminal();
+  terminal.pause = [] { std::this_thread::sleep_for(std::chrono::milliseconds(20)); };
+  return terminal;
+}
+
+TerminalExperimenter::TerminalExperimenter(ExperimenterTerminal terminal)
+    : terminal_(std::move(terminal)) {
+  if (terminal_.key) write_line(request_keys_help());
+}
+
+TerminalExperimenter::~TerminalExperimenter() {
+  if (terminal_.rewrites && !shown_.empty()) terminal_.write("\n");
+}
+
+void TerminalExperimenter::add(const ExperimenterRequest& request) {
+  const std::lock_guard lock(mutex_);
+  added_.push_back(request);
+}
+
+void TerminalExperimenter::take_keys() {
+  if (!terminal_.key) return;
+  while (const auto key = terminal_.key()) take(*key);
+}
+
+void TerminalExperimenter::take(char key) {
+  const bool is_of_number =
+      (key >= '0' && key <= '9') || key == '\n' || key == '\r' || key == '\x7f' || key == '\b';
+  const bool is_of_sheet = key == 'y' || key == 's' || key == 'b' || key == '\n' || key == '\r';
+  if (!typing_.prompt().empty()) {
+    typing_.take(key);
+  } else if (sheet_ && is_of_sheet) {
+    sheet_->take(key);
+  } else if (spoken_ && is_of_number) {
+    spoken_->take(key);
+  } else if (key == 'g') {
+    arm_asked_ = true;
+  } else {
+    typing_.take(key);
+  }
+}
+
+std::string TerminalExperimenter::line_now() const {
+  if (std::string prompt = typing_.prompt(); !prompt.empty()) return prompt;
+  if (sheet_) return sheet_->prompt();
+  if (spoken_) return spoken_->prompt();
+  return status_;
+}
+
+void TerminalExperimenter::write_line(const std::string& line) {
+  terminal_.write(line + "\n");
+}
+
+void TerminalExperimenter::rewrite(const std::string& line) {
+  // A line that wraps cannot be written over, and of one that is typed the end matters.
+  const std::string cut = last_of(line, terminal_.columns - 1);
+  if (cut == shown_) return;
+  shown_ = cut;
+  if (terminal_.rewrites) {
+    terminal_.write("\r" + cut + "\x1b[K");
+  } else {
+    write_line(line);
+  }
+}
+
+void TerminalExperimenter::show(const SessionStatus& status) {
+  status_ = first_of(status_line(status), terminal_.columns - 1);
+  if (terminal_.rewrites) {
+    rewrite(line_now());
+    return;
+  }
+  const std::string progress = progress_words(status);
+  if (progress == progress_) return;
+  progress_ = progress;
+  write_line(status_line(status));
+}
+
+std::optional<ExperimenterRequest> TerminalExperimenter::request() {
+  take_keys();
+  if (auto typed = typing_.next()) return typed;
+  const std::lock_guard lock(mutex_);
+  if (added_.empty()) return std::nullopt;
+  ExperimenterRequest first = added_.front();
+  added_.erase(added_.begin());
+  return first;
+}
+
+std::optional<std::vector<Tick>> TerminalExperimenter::day_sheet(
+    const std::vector<DaySheetItem>& items) {
+  if (!terminal_.key) return std::vector<Tick>{};
+  if (!sheet_) sheet_.emplace(items);
+  take_keys();
+  if (sheet_->is_done()) {
+    std::vector<Tick> ticks = sheet_->ticks();
+    sheet_.reset();
+    return ticks;
+  }
+  show_item(sheet_->text());
+  rewrite(line_now());
+  if (terminal_.pause) terminal_.pause();
+  return std::nullopt;
+}
+
+void TerminalExperimenter::show_item(const std::string& text) {
+  if (text == item_) return;
+  item_ = text;
+  if (terminal_.rewrites) terminal_.write("\r\x1b[K");
+  write_line(text);
+  shown_.clear();
+}
+
+Attendant::Says TerminalExperimenter::attend(const std::string& need) {
+  arm_asked_ = false;
+  take_keys();
+  bool stops = false;
+  // The session records the abort, its reason, and whatever else was typed, once it asks.
+  while (const auto request = typing_.next()) {
+    stops = stops || request->kind == ExperimenterRequest::Kind::abort;
+    add(*request);
+  }
+  if (stops) return Says::stop;
+  if (arm_asked_ && need.empty()) return Says::arm;
+  const std::string prompt = typing_.prompt();
+  rewrite(!prompt.empty() ? prompt
+          : need.empty()  ? "ready: g lets the force on, once the hand is at the pen"
+                          : "the device waits: " + need);
+  if (terminal_.pause) terminal_.pause();
+  return Says::wait;
+}
+
+std::optional<SpokenAnswer> TerminalExperimenter::spoken_answer(
+    const AnswerStep& step, const std::vector<std::string>& labels) {
+  if (!spoken_) spoken_.emplace(step, labels);
+  take_keys();
+  const std::optional<SpokenAnswer> answer = spoken_->answer();
+  if (answer) {
+    spoken_.reset();
+  } else {
+    rewrite(line_now());
+  }
+  return answer;
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,239 @@
+#include "app/sound/masking_noise.hpp"
+#include "app/sound/session_sound.hpp"
+#include "app/sound/sound_card.hpp"
+#include "app/sound/sound_mixer.hpp"
+#include "device/servo/realtime_region.hpp"
+#include "support/catch.hpp"
+#include "support/realtime_watch.hpp"
+#include "support/temp_folder.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <string>
+#include <thread>
+#include <tuple>
+#include <vector>
+
+namespace touchtrial {
+namespace {
+
+constexpr double kRateHz = 48000.0;
+
+double rms_of(const std::vector<float>& samples) {
+  double power = 0.0;
+  for (const float sample : samples) power += static_cast<double>(sample) * sample;
+  return std::sqrt(power / static_cast<double>(samples.size()));
+}
+
+float peak_of(const std::vector<float>& samples) {
+  float peak = 0.0F;
+  for (const float sample : samples) peak = std::max(peak, std::abs(sample));
+  return peak;
+}
+
+/// Power between two of the loop's harmonics, a few of them looked at.
+double density_at(const std::vector<float>& samples, int first, int last) {
+  constexpr int kLooks = 64;
+  double power = 0.0;
+  for (int look = 0; look < kLooks; ++look) {
+    const int harmonic = first + (last - first) * look / kLooks;
+    const double step = 2.0 * std::numbers::pi * harmonic / static_cast<double>(samples.size());
+    double even = 0.0;
+    double odd = 0.0;
+    // A rotating pair instead of a sine and a cosine a sample.
+    double c = 1.0;
+    double s = 0.0;
+    for (const float sample : samples) {
+      even += c * sample;
+      odd += s * sample;
+      const double turned = c * std::cos(step) - s * std::sin(step);
+      s = s * std::cos(step) + c * std::sin(step);
+      c = turned;
+    }
+    power += even * even + odd * odd;
+  }
+  return power / kLooks;
+}
+
+std::vector<float> rendered(SoundMixer& mixer, std::size_t count) {
+  std::vector<float> samples(count);
+  mixer.render(samples);
+  return samples;
+}
+
+TEST_CASE("masking noise has the level that is asked for, and no constant part") {
+  for (const double level : {-60.0, -30.0, -18.0}) {
+    const std::vector<float> noise = masking_noise(level, 7);
+    CHECK(20.0 * std::log10(rms_of(noise)) == Approx(level).margin(1e-4));
+    double sum = 0.0;
+    for (const float sample : noise) sum += sample;
+    CHECK(std::abs(sum / static_cast<double>(noise.size())) < 1e-6);
+  }
+}
+
+TEST_CASE("masking noise does not clip at the highest level, and nothing is louder") {
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    CHECK(peak_of(masking_noise(kHighestMaskingDbfs, seed)) < 0.8F);
+  }
+  CHECK(masking_noise(0.0, 1) == masking_noise(kHighestMaskingDbfs, 1));
+}
+
+TEST_CASE("masking noise follows from its seed") {
+  CHECK(masking_noise(-30.0, 3) == masking_noise(-30.0, 3));
+  CHECK(masking_noise(-30.0, 3) != masking_noise(-30.0, 4));
+}
+
+TEST_CASE("masking noise falls by three decibels an octave") {
+  const std::vector<float> noise = masking_noise(-30.0, 1);
+  // 96 to 192 Hz and 3.1 to 6.1 kHz at 48 kHz: five octaves apart.
+  const double low = density_at(noise, 524, 1048);
+  const double high = density_at(noise, 16768, 33536);
+  CHECK(10.0 * std::log10(high / low) / 5.0 == Approx(-3.0).margin(0.6));
+}
+
+TEST_CASE("noise begins and ends in ramps without a step") {
+  SoundMixer mixer(kRateHz, std::vector<float>(1000, 0.5F));
+  CHECK(peak_of(rendered(mixer, 500)) == 0.0F);
+  float before = 0.0F;
+  for (const bool on : {true, false}) {
+    mixer.mask(on);
+    const std::vector<float> samples = rendered(mixer, 4800);
+    for (const float sample : samples) {
+      // 0.5 in 50 ms, and rounding.
+      CHECK(std::abs(sample - before) < 0.5F / 2400.0F + 1e-6F);
+      before = sample;
+    }
+    CHECK(before == Approx(on ? 0.5F : 0.0F));
+  }
+}
+
+TEST_CASE("tones begin and end without a step, and stop by themselves") {
+  for (const Cue cue : {Cue::plane_on, Cue::plane_off, Cue::too_hard}) {
+    SoundMixer mixer(kRateHz, {});
+    mixer.tone(cue);
+    const std::vector<float> samples = rendered(mixer, 48000);
+    CHECK(peak_of(samples) > 0.05F);
+    CHECK(samples.front() == 0.0F);
+    CHECK(std::abs(samples.back()) == 0.0F);
+    float step = 0.0F;
+    for (std::size_t i = 1; i < samples.size(); ++i) {
+      step = std::max(step, std::abs(samples[i] - samples[i - 1]));
+    }
+    // The steepest of a sine of 1 kHz with this amplitude.
+    CHECK(step < 0.06F * 2.0F * 3.1416F * 1000.0F / 48000.0F + 1e-4F);
+  }
+}
+
+TEST_CASE("a tone that sounds is not begun anew, and one asked for later is") {
+  SoundMixer mixer(kRateHz, {});
+  mixer.tone(Cue::too_hard);
+  std::ignore = rendered(mixer, 6000);
+  mixer.tone(Cue::too_hard);
+  const std::vector<float> rest = rendered(mixer, 12000);
+  CHECK(peak_of({rest.begin() + 6000, rest.end()}) == 0.0F);
+  mixer.tone(Cue::too_hard);
+  CHECK(peak_of(rendered(mixer, 6000)) > 0.05F);
+}
+
+TEST_CASE("all tones over the loudest noise stay within full scale") {
+  SoundMixer mixer(kRateHz, masking_noise(0.0, 5));
+  mixer.mask(true);
+  for (int i = 0; i < 20; ++i) {
+    for (const Cue cue : {Cue::plane_on, Cue::plane_off, Cue::too_hard}) mixer.tone(cue);
+    CHECK(peak_of(rendered(mixer, 12000)) < 1.0F);
+  }
+}
+
+TEST_CASE("rendering sound allocates and locks nothing") {
+  SoundMixer mixer(kRateHz, masking_noise(-30.0, 5));
+  std::vector<float> samples(4800);
+  std::ignore = take_realtime_offences();
+  {
+    const RealtimeRegion region;
+    mixer.mask(true);
+    mixer.tone(Cue::plane_on);
+    mixer.render(samples);
+    mixer.tone(Cue::too_hard);
+    mixer.render(samples);
+  }
+  CHECK(take_realtime_offences() == RealtimeOffences{});
+}
+
+/// ALSA reads its configuration from here as long as this lives.
+class AlsaConfiguration {
+ public:
+  explicit AlsaConfiguration(const std::string& text) {
+    std::ofstream(folder_.path() / "asoundrc") << text;
+    ::setenv("ALSA_CONFIG_PATH", (folder_.path() / "asoundrc").c_str(), 1);
+  }
+  ~AlsaConfiguration() { ::unsetenv("ALSA_CONFIG_PATH"); }
+  AlsaConfiguration(const AlsaConfiguration&) = delete;
+  AlsaConfiguration& operator=(const AlsaConfiguration&) = delete;
+
+ private:
+  TempFolder folder_;
+};
+
+TEST_CASE("without a sound card a session is silent, says why, and records it once") {
+  const AlsaConfiguration nothing("pcm.!default { type hw card 99 }\n");
+  SessionSound sound(MaskingPlan{}, 1);
+  sound.tone(Cue::plane_on);
+  CHECK(sound.trouble().find("sound: ") == 0);
+  const auto record = sound.to_record();
+  REQUIRE(record);
+  CHECK(record->kind == ExperimenterRequest::Kind::deviation);
+  CHECK(record->code == "no-masking-noise");
+  CHECK_FALSE(sound.to_record());
+}
+
+TEST_CASE("a study without masking noise records nothing about it") {
+  const AlsaConfiguration nothing("pcm.!default { type hw card 99 }\n");
+  SessionSound sound({.wanted = false}, 1);
+  CHECK_FALSE(sound.to_record());
+}
+
+/// What the sound card was given so far, as it stands in the file.
+std::vector<float> samples_in(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::vector<float> samples;
+  float sample = 0.0F;
+  while (stream.read(reinterpret_cast<char*>(&sample), sizeof sample)) samples.push_back(sample);
+  return samples;
+}
+
+TEST_CASE("what is mixed arrives at the sound card sample by sample") {
+  const TempFolder folder;
+  const std::filesystem::path file = folder.path() / "played.raw";
+  const AlsaConfiguration to_file("pcm.!default { type file\n slave.pcm { type null }\n file \"" +
+                                  file.string() + "\"\n format \"raw\" }\n");
+  constexpr std::int64_t kCount = 24000;
+  SoundMixer mixer(kRateHz, masking_noise(-30.0, 2));
+  mixer.mask(true);
+  mixer.tone(Cue::plane_on);
+  {
+    const SoundCard card(mixer);
+    CHECK(card.plays());
+    for (int i = 0; i < 2000 && mixer.rendered() < 4 * kCount; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+  }
+  SoundMixer twin(kRateHz, masking_noise(-30.0, 2));
+  twin.mask(true);
+  twin.tone(Cue::plane_on);
+  const std::vector<float> played = samples_in(file);
+  const std::vector<float> expected = rendered(twin, kCount);
+  // The sound card's buffer is filled with silence before.
+  REQUIRE(expected.front() != 0.0F);
+  const auto first =
+      std::find_if(played.begin(), played.end(), [](float sample) { return sample != 0.0F; });
+  REQUIRE(played.end() - first >= kCount);
+  CHECK(std::equal(expected.begin(), expected.end(), first));
+}
+
+}  // namespace
+}  // namespace touchtrial

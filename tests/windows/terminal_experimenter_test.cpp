@@ -1,0 +1,213 @@
+#include "app/experimenter/terminal_experimenter.hpp"
+
+#include "app/experimenter/status_words.hpp"
+#include "protocols/session/prompt_participant.hpp"
+#include "support/catch.hpp"
+
+#include <stdexcept>
+#include <string>
+#include <tuple>
+#include <vector>
+
+namespace touchtrial {
+namespace {
+
+using Kind = ExperimenterRequest::Kind;
+
+/// Keys in, text out.
+struct TypedTerminal {
+  std::string keys;
+  std::string written;
+  bool rewrites = true;
+
+  ExperimenterTerminal terminal() {
+    ExperimenterTerminal terminal;
+    terminal.key = [this]() -> std::optional<char> {
+      if (keys.empty()) return std::nullopt;
+      const char key = keys.front();
+      keys.erase(0, 1);
+      return key;
+    };
+    terminal.write = [this](const std::string& text) { written += text; };
+    terminal.rewrites = rewrites;
+    return terminal;
+  }
+};
+
+SessionStatus exploring() {
+  SessionStatus status;
+  status.participant = "P07";
+  status.stage = "exploring";
+  status.trial = 3;
+  status.of = 25;
+  return status;
+}
+
+std::vector<ExperimenterRequest> all_requests(Experimenter& experimenter) {
+  std::vector<ExperimenterRequest> requests;
+  while (auto request = experimenter.request()) requests.push_back(*request);
+  return requests;
+}
+
+TEST_CASE("pause and comfort stop are asked for at their key, the reason follows as a note") {
+  TypedTerminal typed;
+  TerminalExperimenter experimenter(typed.terminal());
+  typed.keys = "c";
+  auto requests = all_requests(experimenter);
+  REQUIRE(requests.size() == 1);
+  CHECK(requests[0].kind == Kind::comfort_stop);
+  typed.keys = "cramp\nptea\nr";
+  requests = all_requests(experimenter);
+  REQUIRE(requests.size() == 4);
+  CHECK(requests[0].kind == Kind::note);
+  CHECK(requests[0].text == "comfort stop: cramp");
+  CHECK(requests[1].kind == Kind::pause);
+  CHECK(requests[2].text == "pause: tea");
+  CHECK(requests[3].kind == Kind::resume);
+}
+
+TEST_CASE("notes and deviations take umlauts and backspace, Escape leaves them") {
+  TypedTerminal typed;
+  TerminalExperimenter experimenter(typed.terminal());
+  typed.keys =
+      "nlaut\xc3\xbc\x7f hier\nnnothing\x1b"
+      "dno-curtain\nf\xc3\xbcr P07\nn\n";
+  const auto requests = all_requests(experimenter);
+  REQUIRE(requests.size() == 2);
+  CHECK(requests[0].text == "laut hier");
+  CHECK(requests[1].kind == Kind::deviation);
+  CHECK(requests[1].code == "no-curtain");
+  CHECK(requests[1].text == "f\xc3\xbcr P07");
+}
+
+TEST_CASE("a session is ended only after yes and a reason") {
+  TypedTerminal typed;
+  TerminalExperimenter experimenter(typed.terminal());
+  typed.keys = "ay\naunwell\n";
+  CHECK(all_requests(experimenter).empty());
+  typed.keys =
+      "\x1b"
+      "ayes\nunwell\n";
+  const auto requests = all_requests(experimenter);
+  REQUIRE(requests.size() == 1);
+  CHECK(requests[0].kind == Kind::abort);
+  CHECK(requests[0].text == "unwell");
+}
+
+TEST_CASE("the day sheet is ticked item by item, and one can go back") {
+  TypedTerminal typed;
+  TerminalExperimenter experimenter(typed.terminal());
+  const std::vector<DaySheetItem> items{{"no-a", "A is there"}, {"no-b", "B is there"}};
+  CHECK_FALSE(experimenter.day_sheet(items));
+  CHECK(typed.written.find("1/2 A is there\n") != std::string::npos);
+  typed.keys = "sb\n";
+  CHECK_FALSE(experimenter.day_sheet(items));
+  typed.keys = "s";
+  CHECK(experimenter.day_sheet(items).value() == std::vector<Tick>{Tick::done, Tick::skipped});
+}
+
+TEST_CASE("where nobody types nobody is asked, and lines are those of progress") {
+  TypedTerminal typed;
+  typed.rewrites = false;
+  ExperimenterTerminal terminal = typed.terminal();
+  terminal.key = nullptr;
+  TerminalExperimenter experimenter(terminal);
+  CHECK(experimenter.day_sheet({{"no-a", "A"}}).value().empty());
+  SessionStatus status = exploring();
+  experimenter.show(status);
+  status.elapsed = std::chrono::seconds(1);
+  experimenter.show(status);
+  CHECK(typed.written == "P07  exploring  trial 3 of 25  0:00\n");
+  status.stage = "answering";
+  experimenter.show(status);
+  CHECK(typed.written.find("answering  trial 3 of 25  0:01\n") != std::string::npos);
+}
+
+TEST_CASE("the status line is written over and never wraps") {
+  TypedTerminal typed;
+  TerminalExperimenter experimenter(typed.terminal());
+  typed.written.clear();
+  SessionStatus status = exploring();
+  status.device = std::string(100, 'd');
+  experimenter.show(status);
+  CHECK(typed.written.find('\n') == std::string::npos);
+  CHECK(typed.written.front() == '\r');
+  CHECK(typed.written.size() == 1 + 79 + 3);
+  CHECK(first_of("\xc3\xa4\xc3\xb6\xc3\xbc", 2) == "\xc3\xa4\xc3\xb6");
+  CHECK(last_of("\xc3\xa4\xc3\xb6\xc3\xbc", 2) == "\xc3\xb6\xc3\xbc");
+}
+
+TEST_CASE("force comes on by a key that was pressed when nothing was missing") {
+  TypedTerminal typed;
+  TerminalExperimenter experimenter(typed.terminal());
+  typed.keys = "g";
+  CHECK(experimenter.attend("move the handle") == Attendant::Says::wait);
+  CHECK(experimenter.attend("") == Attendant::Says::wait);
+  typed.keys = "g";
+  CHECK(experimenter.attend("") == Attendant::Says::arm);
+  typed.keys = "ayes\nfire alarm\n";
+  CHECK(experimenter.attend("") == Attendant::Says::stop);
+  CHECK(all_requests(experimenter).at(0).text == "fire alarm");
+}
+
+TEST_CASE("requests of others come after those that were typed") {
+  TypedTerminal typed;
+  TerminalExperimenter experimenter(typed.terminal());
+  experimenter.add({Kind::note, "noise", ""});
+  typed.keys = "r";
+  const auto requests = all_requests(experimenter);
+  REQUIRE(requests.size() == 2);
+  CHECK(requests[0].kind == Kind::resume);
+  CHECK(requests[1].text == "noise");
+}
+
+class Blindfolded final : public PromptParticipant {
+ public:
+  void see_pictures(const std::vector<std::string>&) override {}
+  [[nodiscard]] HapticDevice& begin_exploring(const PlaneGeometry&) override {
+    throw std::logic_error("nobody explores");
+  }
+  void feel(const ServoSample&) noexcept override {}
+  [[nodiscard]] ParticipantAnswer answer() override { return {2, {}}; }
+};
+
+TEST_CASE("a spoken answer is entered by its number in alphabetical order") {
+  TypedTerminal typed;
+  TerminalExperimenter experimenter(typed.terminal());
+  Blindfolded participant;
+  SpokenAnswers spoken(participant, experimenter);
+  spoken.see_pictures({"sand", "bark", "cloth"});
+  AnswerStep step;
+  step.trial = 7;
+  step.sight = Sight::blindfold;
+  step.confidence_levels = 5;
+  CHECK_FALSE(spoken.attend(step));
+  CHECK(typed.written.find("trial 7: 1 bark 2 cloth 3 sand: ") != std::string::npos);
+  typed.keys = "9\n1\n3\n2\n";
+  CHECK_FALSE(spoken.attend(step));
+  CHECK(typed.written.find("sand; Enter confirms: ") != std::string::npos);
+  // Keys that the session takes on its way to requests are not lost to the answer.
+  typed.keys = "\n6\n4";
+  CHECK_FALSE(experimenter.request());
+  typed.keys = "\n";
+  const auto reply = spoken.attend(step);
+  REQUIRE(reply);
+  CHECK(reply->position == 0);
+  CHECK(reply->first_position == 1);
+  CHECK(reply->confidence == 4);
+  CHECK(reply->at);
+}
+
+TEST_CASE("answers of those who see are their own") {
+  TypedTerminal typed;
+  TerminalExperimenter experimenter(typed.terminal());
+  Blindfolded participant;
+  SpokenAnswers spoken(participant, experimenter);
+  spoken.see_pictures({"sand", "bark", "cloth"});
+  const auto reply = spoken.attend(AnswerStep{});
+  REQUIRE(reply);
+  CHECK(reply->position == 2);
+}
+
+}  // namespace
+}  // namespace touchtrial
