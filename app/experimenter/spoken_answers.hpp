@@ -26,6 +26,8 @@ class SpokenEntry {
   ///   presented
   [[nodiscard]] virtual std::optional<SpokenAnswer> spoken_answer(
       const AnswerStep& step, const std::vector<std::string>& labels) = 0;
+  /// What was entered and not confirmed counts no more: a plane is on.
+  virtual void forget_spoken_answer() = 0;
 };
 
 /// Shows each step to `participant`, and takes the replies to answers that are to be spoken (sight
@@ -39,6 +41,7 @@ class SpokenAnswers final : public Participant {
   void see_pictures(const std::vector<std::string>& labels) override;
   [[nodiscard]] std::optional<StepReply> attend(const Step& step) override;
   [[nodiscard]] HapticDevice& begin_exploring(const PlaneGeometry& plane) override {
+    entry_.forget_spoken_answer();
     return participant_.begin_exploring(plane);
   }
   void exploring(ServoControl& servo) override { participant_.exploring(servo); }

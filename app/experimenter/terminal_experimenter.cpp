@@ -2,6 +2,7 @@
 
 #include "app/experimenter/status_words.hpp"
 #include "app/terminal_keys.hpp"
+#include "device/platform/stop_signals.hpp"
 
 #include <chrono>
 #include <cstdio>
@@ -28,6 +29,7 @@ ExperimenterTerminal standard_terminal() {
   if (::isatty(STDIN_FILENO) != 0) {
     terminal.key = [keys = std::make_shared<TerminalKeys>()] { return keys->next(); };
   }
+  StopOnSignals::before_dying(TerminalKeys::restore);
   terminal.write = [](const std::string& text) {
     std::fputs(text.c_str(), stderr);
     std::fflush(stderr);
@@ -68,7 +70,7 @@ void TerminalExperimenter::take(char key) {
   } else if (spoken_ && is_of_number) {
     spoken_->take(key);
   } else if (key == 'g') {
-    arm_asked_ = true;
+    arm_asked_ = is_ready_shown_;
   } else {
     typing_.take(key);
   }
@@ -78,7 +80,7 @@ std::string TerminalExperimenter::line_now() const {
   if (std::string prompt = typing_.prompt(); !prompt.empty()) return prompt;
   if (sheet_) return sheet_->prompt();
   if (spoken_) return spoken_->prompt();
-  return status_;
+  return need_.empty() ? status_ : need_;
 }
 
 void TerminalExperimenter::write_line(const std::string& line) {
@@ -144,8 +146,20 @@ void TerminalExperimenter::show_item(const std::string& text) {
 }
 
 Attendant::Says TerminalExperimenter::attend(const std::string& need) {
-  arm_asked_ = false;
   take_keys();
+  const Says says = said(need.empty());
+  is_ready_shown_ = says == Says::wait && need.empty();
+  arm_asked_ = false;
+  need_.clear();
+  if (says != Says::wait) return says;
+  need_ = need.empty() ? "ready: g lets the force on, once the hand is at the pen"
+                       : "the device waits: " + need;
+  rewrite(line_now());
+  if (terminal_.pause) terminal_.pause();
+  return says;
+}
+
+Attendant::Says TerminalExperimenter::said(bool is_ready) {
   bool stops = false;
   // The session records the abort, its reason, and whatever else was typed, once it asks.
   while (const auto request = typing_.next()) {
@@ -153,13 +167,11 @@ Attendant::Says TerminalExperimenter::attend(const std::string& need) {
     add(*request);
   }
   if (stops) return Says::stop;
-  if (arm_asked_ && need.empty()) return Says::arm;
-  const std::string prompt = typing_.prompt();
-  rewrite(!prompt.empty() ? prompt
-          : need.empty()  ? "ready: g lets the force on, once the hand is at the pen"
-                          : "the device waits: " + need);
-  if (terminal_.pause) terminal_.pause();
-  return Says::wait;
+  return arm_asked_ && is_ready ? Says::arm : Says::wait;
+}
+
+void TerminalExperimenter::forget_spoken_answer() {
+  spoken_.reset();
 }
 
 std::optional<SpokenAnswer> TerminalExperimenter::spoken_answer(

@@ -49,10 +49,11 @@ class TerminalExperimenter final : public Experimenter, public Attendant, public
   /// At once and empty if nobody types.
   [[nodiscard]] std::optional<std::vector<Tick>> day_sheet(
       const std::vector<DaySheetItem>& items) override;
-  /// Key g arms; a, after a question, stops.
+  /// Key g arms, if it comes after the line that says so; a, after a question, stops.
   [[nodiscard]] Says attend(const std::string& need) override;
   [[nodiscard]] std::optional<SpokenAnswer> spoken_answer(
       const AnswerStep& step, const std::vector<std::string>& labels) override;
+  void forget_spoken_answer() override;
 
  private:
   void take_keys();
@@ -62,13 +63,17 @@ class TerminalExperimenter final : public Experimenter, public Attendant, public
   [[nodiscard]] std::string line_now() const;
   void rewrite(const std::string& line);
   void show_item(const std::string& text);
+  /// \param is_ready  nothing is missing
+  [[nodiscard]] Says said(bool is_ready);
   void write_line(const std::string& line);
 
   ExperimenterTerminal terminal_;
   RequestTyping typing_;
   std::optional<TickList> sheet_;
   std::optional<AnswerTyping> spoken_;
+  bool is_ready_shown_ = false;  ///< the line asks for the key that lets the force on
   bool arm_asked_ = false;
+  std::string need_;  ///< what the line says meanwhile
   std::string status_;
   std::string item_;  ///< of the day sheet, shown last
   std::string shown_;

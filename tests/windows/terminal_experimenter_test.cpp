@@ -143,8 +143,16 @@ TEST_CASE("force comes on by a key that was pressed when nothing was missing") {
   typed.keys = "g";
   CHECK(experimenter.attend("move the handle") == Attendant::Says::wait);
   CHECK(experimenter.attend("") == Attendant::Says::wait);
+  // The session asks for requests meanwhile, and shows how it stands.
   typed.keys = "g";
+  CHECK_FALSE(experimenter.request());
+  experimenter.show(exploring());
   CHECK(experimenter.attend("") == Attendant::Says::arm);
+  CHECK(experimenter.attend("") == Attendant::Says::wait);
+  typed.keys = "g";
+  CHECK_FALSE(experimenter.request());
+  CHECK(experimenter.attend("put it into the inkwell") == Attendant::Says::wait);
+  CHECK(experimenter.attend("") == Attendant::Says::wait);
   typed.keys = "ayes\nfire alarm\n";
   CHECK(experimenter.attend("") == Attendant::Says::stop);
   CHECK(all_requests(experimenter).at(0).text == "fire alarm");
@@ -196,6 +204,23 @@ TEST_CASE("a spoken answer is entered by its number in alphabetical order") {
   CHECK(reply->first_position == 1);
   CHECK(reply->confidence == 4);
   CHECK(reply->at);
+}
+
+TEST_CASE("an answer that was begun does not outlive its exploration") {
+  TypedTerminal typed;
+  TerminalExperimenter experimenter(typed.terminal());
+  Blindfolded participant;
+  SpokenAnswers spoken(participant, experimenter);
+  spoken.see_pictures({"sand", "bark", "cloth"});
+  AnswerStep step;
+  step.sight = Sight::blindfold;
+  typed.keys = "3\n";
+  CHECK_FALSE(spoken.attend(step));
+  CHECK_FALSE(spoken.attend(step));
+  CHECK_THROWS_AS(spoken.begin_exploring(PlaneGeometry{}), std::logic_error);
+  typed.keys = "\n";
+  CHECK_FALSE(spoken.attend(step));
+  CHECK_FALSE(spoken.attend(step));
 }
 
 TEST_CASE("answers of those who see are their own") {
