@@ -1,0 +1,146 @@
+#include "protocols/store/personal_data.hpp"
+
+#include "core/errors.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include <SQLiteCpp/Database.h>
+#include <SQLiteCpp/Exception.h>
+#include <SQLiteCpp/Statement.h>
+#include <SQLiteCpp/Transaction.h>
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace touchtrial {
+namespace {
+
+constexpr int kApplicationId = 0x54545250;  // "TTRP"
+constexpr int kVersion = 1;
+constexpr int kBusyTimeoutMs = 2000;
+
+[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
+  throw StoreError(one_line(path.string() + ": " + why));
+}
+
+/// Made with its permissions, so that it is never readable by others, not for a moment.
+void make_private(const std::filesystem::path& path) {
+  const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  if (file >= 0) {
+    ::close(file);
+  } else if (errno != EEXIST) {
+    refuse(path, std::string("cannot be made (") + std::strerror(errno) +
+                     "); check that its folder exists and may be written");
+  }
+}
+
+void require_private(const std::filesystem::path& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) refuse(path, "cannot be read; check its permissions");
+  if ((status.st_mode & 077U) != 0) {
+    refuse(path, "others may read these personal data; run `chmod 600 " + path.string() +
+                     "`, and ask who has read them");
+  }
+}
+
+void set_up(SQLite::Database& connection, const std::filesystem::path& path) {
+  connection.exec(
+      "PRAGMA secure_delete = ON; PRAGMA synchronous = FULL; PRAGMA trusted_schema = OFF");
+  const int id = connection.execAndGet("PRAGMA application_id").getInt();
+  const int version = connection.execAndGet("PRAGMA user_version").getInt();
+  if (id == kApplicationId && version == kVersion) return;
+  if (id == kApplicationId && version > kVersion) {
+    refuse(path, "was written by a newer Touchtrial; use that version");
+  }
+  if (id != 0 || connection.execAndGet("SELECT count(*) FROM sqlite_schema").getInt() != 0) {
+    refuse(path, "is no personal-data file of Touchtrial; move it away");
+  }
+  SQLite::Transaction transaction(connection);
+  connection.exec(
+      "CREATE TABLE people(participant TEXT PRIMARY KEY, consent_version TEXT NOT NULL, "
+      "consented_utc TEXT NOT NULL, age INTEGER, gender TEXT NOT NULL, contact TEXT NOT NULL) "
+      "STRICT");
+  connection.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
+  connection.exec("PRAGMA user_version = " + std::to_string(kVersion));
+  transaction.commit();
+}
+
+}  // namespace
+
+std::filesystem::path personal_data_path(const std::filesystem::path& database) {
+  return database.string() + ".personal";
+}
+
+struct PersonalData::Impl {
+  explicit Impl(const std::filesystem::path& file)
+      : path(file), connection(absolute(file).string(), SQLite::OPEN_READWRITE, kBusyTimeoutMs) {
+    set_up(connection, path);
+  }
+
+  std::filesystem::path path;
+  SQLite::Database connection;
+};
+
+namespace {
+
+template <typename Work>
+auto translated(const std::filesystem::path& path, Work&& work) {
+  try {
+    return work();
+  } catch (const SQLite::Exception& error) {
+    refuse(path, std::string("personal data cannot be read or written (") + error.what() +
+                     "); check the disk and that no other program uses the file");
+  }
+}
+
+}  // namespace
+
+PersonalData::PersonalData(const std::filesystem::path& path) {
+  make_private(path);
+  require_private(path);
+  impl_ = translated(path, [&] { return std::make_unique<Impl>(path); });
+}
+PersonalData::~PersonalData() = default;
+PersonalData::PersonalData(PersonalData&&) noexcept = default;
+PersonalData& PersonalData::operator=(PersonalData&&) noexcept = default;
+
+void PersonalData::put(const PersonalRecord& record) {
+  translated(impl_->path, [&] {
+    SQLite::Statement query(impl_->connection, "INSERT OR REPLACE INTO people VALUES(?,?,?,?,?,?)");
+    query.bind(1, record.participant);
+    query.bind(2, record.consent_version);
+    query.bind(3, record.consented_utc);
+    if (record.age) query.bind(4, *record.age);
+    query.bind(5, record.gender);
+    query.bind(6, record.contact);
+    return query.exec();
+  });
+}
+
+std::optional<PersonalRecord> PersonalData::find(const std::string& participant) const {
+  return translated(impl_->path, [&]() -> std::optional<PersonalRecord> {
+    SQLite::Statement query(impl_->connection, "SELECT * FROM people WHERE participant = ?");
+    query.bind(1, participant);
+    if (!query.executeStep()) return std::nullopt;
+    PersonalRecord record;
+    record.participant = query.getColumn(0).getString();
+    record.consent_version = query.getColumn(1).getString();
+    record.consented_utc = query.getColumn(2).getString();
+    if (!query.isColumnNull(3)) record.age = query.getColumn(3).getInt();
+    record.gender = query.getColumn(4).getString();
+    record.contact = query.getColumn(5).getString();
+    return record;
+  });
+}
+
+bool PersonalData::remove(const std::string& participant) {
+  return translated(impl_->path, [&] {
+    SQLite::Statement query(impl_->connection, "DELETE FROM people WHERE participant = ?");
+    query.bind(1, participant);
+    return query.exec() > 0;
+  });
+}
+
+}  // namespace touchtrial

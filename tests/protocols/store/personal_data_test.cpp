@@ -1,0 +1,79 @@
+#include "protocols/store/personal_data.hpp"
+
+#include "protocols/store/store_fixture.hpp"
+#include "support/catch.hpp"
+
+#include <fstream>
+#include <iterator>
+
+#include <sys/stat.h>
+
+using namespace touchtrial;
+using namespace touchtrial::fixture;
+
+namespace {
+
+PersonalRecord somebody() {
+  return {.participant = "P07",
+          .consent_version = "2",
+          .consented_utc = "2026-11-22T09:00:00Z",
+          .age = 31,
+          .gender = "f",
+          .contact = "seven@example.org"};
+}
+
+unsigned mode_of(const std::filesystem::path& path) {
+  struct stat status {};
+  REQUIRE(::stat(path.c_str(), &status) == 0);
+  return status.st_mode & 0777U;
+}
+
+std::string content_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), {}};
+}
+
+}  // namespace
+
+TEST_CASE("personal data are kept, changed, and removed without a trace in their file") {
+  const TempFolder folder;
+  const auto path = personal_data_path(folder.path() / "study.db");
+  {
+    PersonalData data(path);
+    data.put(somebody());
+    REQUIRE(data.find("P07") == somebody());
+    PersonalRecord changed = somebody();
+    changed.age.reset();
+    data.put(changed);
+  }
+  REQUIRE(contains(content_of(path), "seven@example.org"));
+  {
+    PersonalData data(path);
+    REQUIRE_FALSE(data.find("P07").value().age);
+    REQUIRE(data.remove("P07"));
+    REQUIRE_FALSE(data.remove("P07"));
+    REQUIRE_FALSE(data.find("P07"));
+  }
+  REQUIRE_FALSE(contains(content_of(path), "seven@example.org"));
+}
+
+TEST_CASE("personal data are their owner's alone whatever the umask, else they are refused") {
+  const TempFolder folder;
+  const auto path = personal_data_path(folder.path() / "study.db");
+  const mode_t before = ::umask(0);
+  { PersonalData(path).put(somebody()); }
+  ::umask(before);
+  REQUIRE(mode_of(path) == 0600U);
+  REQUIRE(::chmod(path.c_str(), 0640) == 0);
+  REQUIRE(contains(refusal_of([&] { const PersonalData data(path); }), "chmod 600 "));
+}
+
+TEST_CASE("another file is not taken for personal data") {
+  const TempFolder folder;
+  const auto path = personal_data_path(folder.path() / "study.db");
+  { PersonalData(path).put(somebody()); }
+  SQLite::Database(path.string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 9");
+  REQUIRE(contains(refusal_of([&] { const PersonalData data(path); }), "newer Touchtrial"));
+  SQLite::Database(path.string(), SQLite::OPEN_READWRITE).exec("PRAGMA application_id = 5");
+  REQUIRE(contains(refusal_of([&] { const PersonalData data(path); }), "is no personal-data file"));
+}
