@@ -1,12 +1,12 @@
 /// \file Stories told to a database until something ends them, and what must be left then.
 #pragma once
 
+#include "protocols/store/noting_sink.hpp"
 #include "protocols/store/store_fixture.hpp"
 #include "support/catch.hpp"
 #include "support/fault_vfs.hpp"
 
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -15,26 +15,6 @@ namespace touchtrial::fixture {
 using testing::DiskOperation;
 using testing::Fault;
 using testing::FaultVfs;
-
-/// Passes events on, and notes those that were acknowledged.
-class NotingSink final : public EventSink {
- public:
-  NotingSink(std::unique_ptr<EventSink> sink, std::vector<Event>& acknowledged)
-      : sink_(std::move(sink)), acknowledged_(acknowledged) {}
-
-  void accept(const Event& event, const std::optional<SealedTrace>& trace) override {
-    sink_->accept(event, trace);
-    acknowledged_.push_back(event);
-  }
-  void accept_together(std::span<const RecordedEvent> events) override {
-    sink_->accept_together(events);
-    for (const RecordedEvent& recorded : events) acknowledged_.push_back(recorded.event);
-  }
-
- private:
-  std::unique_ptr<EventSink> sink_;
-  std::vector<Event>& acknowledged_;
-};
 
 /// What a program was told is safe.
 struct Acknowledged {

@@ -1,0 +1,242 @@
+// Whole sessions, ended at every commit by a kill or a power cut, and taken up again to their end.
+#include "core/errors.hpp"
+#include "core/random.hpp"
+#include "protocols/session/commitment.hpp"
+#include "protocols/session/prompt_participant.hpp"
+#include "protocols/session/session_runner.hpp"
+#include "protocols/session/tiny_study.hpp"
+#include "protocols/store/noting_sink.hpp"
+#include "protocols/store/study_store.hpp"
+#include "support/catch.hpp"
+#include "support/fault_vfs.hpp"
+
+#include <array>
+#include <map>
+#include <memory>
+#include <set>
+
+namespace touchtrial {
+namespace {
+
+using testing::DiskOperation;
+using testing::Fault;
+using testing::FaultVfs;
+using Access = StudyStore::Access;
+using Kind = Fault::Kind;
+
+constexpr int kTrials = 25;
+
+/// A stylus that rests on the plane for 40 ticks.
+class BriefStylus final : public HapticDevice {
+ public:
+  [[nodiscard]] DeviceInfo info() const override { return {"brief", "", 3.3, true}; }
+  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override {
+    sample.position_mm = {10.0, 10.0, -1.0};
+    sample.sequence = static_cast<std::uint64_t>(tick_) + 1;
+    return ++tick_ <= 40 ? DeviceStatus::ok : DeviceStatus::stopped;
+  }
+  [[nodiscard]] DeviceStatus write(Vec3) noexcept override { return DeviceStatus::ok; }
+  void halt() noexcept override {}
+  void rearm() noexcept override {}
+
+ private:
+  int tick_ = 0;
+};
+
+/// Names one picture after the other.
+class Restless final : public PromptParticipant {
+ public:
+  explicit Restless(int first) : next_(first) {}
+
+  void see_pictures(const std::vector<std::string>&) override {}
+  [[nodiscard]] HapticDevice& begin_exploring(const PlaneGeometry&) override {
+    stylus_ = BriefStylus();
+    return stylus_;
+  }
+  void feel(const ServoSample&) noexcept override {}
+  [[nodiscard]] ParticipantAnswer answer() override {
+    return {next_++ % 5, std::chrono::seconds(1)};
+  }
+
+ private:
+  int next_;
+  BriefStylus stylus_;
+};
+
+/// The study, and a database of it without sessions; made once.
+struct Laboratory {
+  Laboratory() {
+    static_cast<void>(StudyStore::create(
+        empty, commitment_of(study.key(), study.pack(), true, false), std::chrono::seconds(1)));
+  }
+  TinyStudy study{{.side_px = 120, .trials = R"({"repeats": 5})"}};
+  StimulusSource source{study.pack(), study.key().study.rendering};
+  SecretKey participant_key = sha256(bytes_of("participant"));
+  std::filesystem::path empty = study.next_database();
+};
+
+Laboratory& laboratory() {
+  static Laboratory laboratory;
+  return laboratory;
+}
+
+/// One session in a database of its own, from start to start of the program.
+struct KilledSession {
+  KilledSession() : path(laboratory().study.next_database()) {
+    std::filesystem::copy_file(laboratory().empty, path);
+  }
+  ~KilledSession() { std::filesystem::remove(path); }
+  KilledSession(const KilledSession&) = delete;
+  KilledSession& operator=(const KilledSession&) = delete;
+
+  /// Starts the program: a new session, or the open one taken up again, run to its end.
+  /// \return whether it came to its end
+  bool start() try {
+    ++starts;
+    StudyStore store = StudyStore::open(path, Access::read_write);
+    const std::optional<SessionRow> open = store.open_session_of("P001");
+    const std::optional<SessionRow> any = store.session_of("P001");
+    if (any && !open) return true;  // it had ended, only nobody was told
+    run(store, open.has_value());
+    return true;
+  } catch (const StoreError&) {
+    return false;
+  }
+
+  std::filesystem::path path;
+  std::vector<Event> acknowledged;
+  int starts = 0;
+
+ private:
+  void run(StudyStore& store, bool again) {
+    Laboratory& lab = laboratory();
+    const StudyKey& key = lab.study.key();
+    const Bytes wrapped = wrap_participant_key(key.master, 1, lab.participant_key);
+    NotingSink sink(again ? store.continue_session(1) : store.begin_session(1, wrapped),
+                    acknowledged);
+    const Schedule schedule = make_schedule(key.study, 1);
+    Session session(schedule, key.study.trials, SessionRecorder(1, lab.participant_key, sink));
+    VirtualSessionClock clock;
+    if (again) {
+      session.restore(store.events(1));
+      clock = VirtualSessionClock(session.last() + std::chrono::seconds(30));
+      session.take_up(clock.now(), {.after = "program-ended", .away_s = 30.0});
+    } else {
+      session.open({}, opening(), schedule_to_json(schedule, key));
+    }
+    Restless participant(starts);
+    VirtualExplorer explorer;
+    AlwaysReady devices;
+    run_session(session, {key, lab.source, participant, clock, explorer, devices});
+  }
+
+  static SessionOpening opening() {
+    const StudyKey& key = laboratory().study.key();
+    SessionOpening opening;
+    opening.participant = "P001";
+    opening.enrolment = 1;
+    opening.study_id = key.study_id;
+    opening.seal = study_seal(key);
+    opening.device = "simulated";
+    opening.simulated = true;
+    return opening;
+  }
+};
+
+/// Every acknowledged event is there, once, as it was acknowledged.
+void require_kept(const std::vector<Event>& stored, const std::vector<Event>& acknowledged) {
+  for (const Event& event : acknowledged) {
+    REQUIRE(event.sequence < static_cast<std::int64_t>(stored.size()));
+    REQUIRE(stored[static_cast<std::size_t>(event.sequence)].hash == event.hash);
+  }
+}
+
+/// 25 answers, five of each class, and a chain that holds.
+void require_complete(const KilledSession& session) {
+  const StudyStore store = StudyStore::open(session.path, Access::read_only);
+  REQUIRE_FALSE(store.first_fault());
+  REQUIRE(store.sessions().size() == 1);
+  REQUIRE(store.sessions().at(0).state == SessionState::completed);
+  require_kept(store.events(1), session.acknowledged);
+  std::map<int, int> class_of_trial;
+  for (const Presentation& one : make_schedule(laboratory().study.key().study, 1).presentations) {
+    class_of_trial[one.trial] = one.stimulus.class_index;
+  }
+  std::map<int, int> answered;
+  for (const TrialRow& trial : store.trials()) {
+    REQUIRE(trial.state == TrialState::answered);
+    ++answered[class_of_trial.at(trial.trial)];
+  }
+  REQUIRE(store.trials().size() == kTrials);
+  for (int class_index = 0; class_index < 5; ++class_index) REQUIRE(answered[class_index] == 5);
+  int answers = 0;
+  store.for_each(EventKind::answered, [&](const Event&) { ++answers; });
+  REQUIRE(answers == kTrials);
+}
+
+/// One session that is ended once; then taken up and finished.
+/// \return whether the fault came
+bool is_finished_after(FaultVfs& vfs, const Fault& fault) {
+  INFO("kind " << static_cast<int>(fault.kind) << " at " << fault.at);
+  KilledSession session;
+  vfs.plan(fault);
+  const bool ended = session.start();
+  if (!vfs.struck()) return false;
+  vfs.start_anew();
+  {
+    const StudyStore store = StudyStore::open(session.path, Access::read_only);
+    REQUIRE_FALSE(store.first_fault());
+    require_kept(store.events(1), session.acknowledged);
+  }
+  // A fault in the closing of the file comes when all is done.
+  REQUIRE((ended || session.start()));
+  require_complete(session);
+  return true;
+}
+
+/// \return how many commits there are
+std::int64_t end_at_every_commit(Kind kind) {
+  FaultVfs vfs;
+  Fault fault{.kind = kind, .at = 1, .only = DiskOperation::sync, .lasts = false, .seed = 3};
+  while (is_finished_after(vfs, fault)) ++fault.at;
+  return fault.at - 1;
+}
+
+TEST_CASE("a session killed at any of its commits is taken up again, complete and balanced") {
+  // Four events a trial, two of them together, and those before and after.
+  REQUIRE(end_at_every_commit(Kind::kill) > 3 * kTrials);
+}
+
+TEST_CASE(
+    "a session whose power is cut at any of its commits is complete and balanced in the end") {
+  REQUIRE(end_at_every_commit(Kind::power_cut) > 3 * kTrials);
+  REQUIRE(end_at_every_commit(Kind::torn_power_cut) > 3 * kTrials);
+}
+
+TEST_CASE("a session that is ended over and over loses and doubles nothing") {
+  FaultVfs vfs;
+  constexpr std::array kKinds = {Kind::kill, Kind::torn_kill, Kind::power_cut,
+                                 Kind::torn_power_cut};
+  RandomStream random(5, "ended over and over");
+  int ends = 0;
+  for (int i = 0; i < 12; ++i) {
+    KilledSession session;
+    for (bool ended = false; !ended;) {
+      const auto at = static_cast<std::int64_t>(1 + random.below(400));
+      vfs.plan({.kind = kKinds[random.below(kKinds.size())],
+                .at = at,
+                .only = {},
+                .lasts = false,
+                .seed = random.bits()});
+      ended = session.start();
+      if (!vfs.struck()) continue;
+      ++ends;
+      vfs.start_anew();
+    }
+    require_complete(session);
+  }
+  REQUIRE(ends > 24);
+}
+
+}  // namespace
+}  // namespace touchtrial
