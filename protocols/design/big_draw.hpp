@@ -3,6 +3,9 @@
 
 #include "core/random.hpp"
 
+#include <cstdint>
+#include <vector>
+
 #include <boost/multiprecision/cpp_int.hpp>
 
 namespace touchtrial {
@@ -17,11 +20,10 @@ using BigCount = boost::multiprecision::cpp_int;
   const unsigned bits = boost::multiprecision::msb(BigCount(bound - 1)) + 1;
   const unsigned words = (bits + kWord - 1) / kWord;
   while (true) {
-    BigCount number = 0;
-    for (unsigned i = 0; i < words; ++i) {
-      number <<= kWord;
-      number |= random.bits();
-    }
+    std::vector<std::uint64_t> drawn(words);
+    for (std::uint64_t& word : drawn) word = random.bits();
+    BigCount number;
+    boost::multiprecision::import_bits(number, drawn.begin(), drawn.end());
     number >>= words * kWord - bits;
     if (number < bound) return number;
   }

@@ -130,30 +130,28 @@ class Descent {
   std::vector<int> order_;
 };
 
-/// Sequences of `m` symbols whose first is not the one before, for m = 0 .. length.
-std::vector<BigCount> sequence_counts(int symbols, int length, int max_run) {
-  std::vector<BigCount> counts = {1};
-  BigCount within_reach = 1;  // the sum of the last max_run counts
+/// How many sequences of fewer than `m` symbols there are whose first is not the one before, for
+/// m = 0 .. length + 1: sums, so that what a range of lengths has is one difference.
+std::vector<BigCount> sequences_below(int symbols, int length, int max_run) {
+  std::vector<BigCount> below = {0, 1};
   for (int m = 1; m <= length; ++m) {
-    counts.push_back((symbols - 1) * within_reach);
-    within_reach += counts.back();
-    if (m >= max_run) within_reach -= counts[static_cast<std::size_t>(m - max_run)];
+    const auto first = static_cast<std::size_t>(std::max(m - max_run, 0));
+    below.push_back(below.back() + (symbols - 1) * BigCount(below.back() - below[first]));
   }
-  return counts;
+  return below;
 }
 
 /// How long the next run is, each in proportion to what can follow it.
-int draw_run(const std::vector<BigCount>& counts, int left, int shortest, int longest,
+int draw_run(const std::vector<BigCount>& below, int left, int shortest, int longest,
              RandomStream& random) {
-  BigCount total = 0;
-  for (int run = shortest; run <= longest; ++run) {
-    total += counts[static_cast<std::size_t>(left - run)];
-  }
-  BigCount number = draw_below(total, random);
+  // A run of r is followed by left - r symbols: the shortest run comes first, with most to follow.
+  const auto at = [&below](int length) -> const BigCount& {
+    return below[static_cast<std::size_t>(length)];
+  };
+  const BigCount& top = at(left - shortest + 1);
+  const BigCount number = draw_below(BigCount(top - at(left - longest)), random);
   for (int run = shortest; run < longest; ++run) {
-    const BigCount& below = counts[static_cast<std::size_t>(left - run)];
-    if (number < below) return run;
-    number -= below;
+    if (number < top - at(left - run)) return run;
   }
   return longest;
 }
@@ -210,7 +208,7 @@ std::optional<std::vector<int>> draw_limited_order(const std::vector<int>& count
 
 std::vector<int> draw_limited_sequence(int symbols, int length, int max_run, RunBefore before,
                                        RandomStream& random) {
-  const std::vector<BigCount> counts = sequence_counts(symbols, length, max_run);
+  const std::vector<BigCount> counts = sequences_below(symbols, length, max_run);
   std::vector<int> sequence;
   int last = before.symbol;
   int left = length;
