@@ -3,6 +3,8 @@
 #include "core/errors.hpp"
 #include "protocols/store/payload_json.hpp"
 
+#include <vector>
+
 #include <fmt/format.h>
 
 namespace touchtrial {
@@ -99,6 +101,12 @@ std::map<int, Schedule> open_schedules(const StudyStore& store, const StudyKey& 
   for_each_secret(store, key, EventKind::opened, [&](const Event& event, const std::string& text) {
     schedules.insert_or_assign(event.session, schedule_from_json(text, key));
   });
+  const auto add_block = [&](const Event& event, const std::string& text) {
+    std::vector<Presentation>& all = schedules[event.session].presentations;
+    const std::vector<Presentation> block = block_from_json(text, key);
+    all.insert(all.end(), block.begin(), block.end());
+  };
+  for_each_secret(store, key, EventKind::block_restarted, add_block);
   return schedules;
 }
 

@@ -34,7 +34,8 @@ void require_key_of(const StudyStore& store, const StudyKey& key);
 /// \throws VerificationError, naming the session, if one is another chain's
 void require_sealed_ends(const StudyStore& store, const StudyKey& key);
 
-/// Schedules and layouts of all sessions that have not withdrawn, by session.
+/// Schedules and layouts of all sessions that have not withdrawn, by session. Blocks that came
+/// again, in their new order, follow the schedule with which the session began.
 /// \throws VerificationError, naming the session, if one does not open or is no schedule of this
 /// key
 [[nodiscard]] std::map<int, Schedule> open_schedules(const StudyStore& store, const StudyKey& key);
