@@ -219,7 +219,7 @@ struct ParticipantWindow::State {
     exchange.set_surface(surface);
   }
 
-  void leave(WindowGone why) {
+  void leave(WindowGone why) noexcept {
     int nobody = -1;
     gone.compare_exchange_strong(nobody, static_cast<int>(why));
   }
@@ -398,6 +398,10 @@ std::optional<WindowGone> ParticipantWindow::gone() const noexcept {
   const int why = state_->gone;
   if (why < 0) return std::nullopt;
   return static_cast<WindowGone>(why);
+}
+
+void ParticipantWindow::close() noexcept {
+  state_->leave(WindowGone::closed);
 }
 
 void ParticipantWindow::inject(const InputEvent& event) {

@@ -85,6 +85,8 @@ class ParticipantWindow final : public Participant {
   /// \name Any thread
   ///@{
   [[nodiscard]] std::optional<WindowGone> gone() const noexcept;
+  /// As if the window manager had closed it.
+  void close() noexcept;
   /// What is now to happen: as if the event had come by itself.
   void inject(const InputEvent& event);
   /// Waits until the newest step has been on the screen for a picture. \return false if it is not
