@@ -123,11 +123,12 @@ int withdraw(const PeopleArguments& arguments) {
   for (const SessionRow& row : sessions_of(store, arguments)) {
     if (!row.withdrawn) sessions.push_back(row.session);
   }
+  // The key first: whatever is wrong with the other file must not keep anybody from withdrawing.
+  if (!sessions.empty()) store.withdraw(sessions, utc_now(), arguments.reason);
   const bool removed = remove_person(arguments);
   if (sessions.empty() && !removed) {
     throw StoreError(one_line(place_of(arguments) + " has already withdrawn"));
   }
-  if (!sessions.empty()) store.withdraw(sessions, utc_now(), arguments.reason);
   print(place_of(arguments) + ": withdrawn; what was sealed of this person cannot be read again" +
         (removed ? ", and the personal data are removed\n" : "\n") +
         remaining_text(arguments.database));
