@@ -1,14 +1,12 @@
 #include "app/commands.hpp"
 #include "app/console.hpp"
-#include "app/default_subject.hpp"
-#include "core/cipher.hpp"
+#include "app/simulated_study.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "engine/pack/pack.hpp"
 #include "protocols/design/prepare.hpp"
 #include "protocols/session/commitment.hpp"
 #include "protocols/session/simulation.hpp"
-#include "protocols/session/subject_model.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <algorithm>
@@ -20,7 +18,6 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-#include <spdlog/spdlog.h>
 
 namespace touchtrial {
 namespace {
@@ -37,35 +34,11 @@ struct SimulateArguments {
   bool json = false;
 };
 
-SubjectModel subject_for(const SimulateArguments& arguments, const Study& study) {
-  SubjectModel subject =
-      arguments.subject.empty()
-          ? parse_subject_model(default_subject_json(), "the default subject model")
-          : load_subject_model(arguments.subject);
-  subject.check_labels(study);
-  return subject;
-}
-
 void refuse_existing(const fs::path& path) {
   if (is_there(path)) {
     throw StoreError(path.string() +
                      ": exists already; give another --db, or move the old file away");
   }
-}
-
-/// A key that stayed when its database was removed may serve again; any other may be somebody's
-/// only one.
-void refuse_other_key(const fs::path& path, const StudyKey& key) {
-  if (is_there(path) && study_seal(load_study_key(path)) != study_seal(key)) refuse_existing(path);
-}
-
-/// A simulated study has secrets of its own, from the study's seed, so that its databases belong
-/// together and can be made again.
-StudyKey simulated_key(const Study& study, const fs::path& study_file) {
-  SeededEntropy entropy(study.seed);
-  StudyKey key = make_study_key(study, entropy, true);
-  key.pack_folder = simulated_pack_place(study_file).pack;
-  return key;
 }
 
 std::string summary_of(const SimulateArguments& arguments, const SimulationReport& report) {
@@ -97,13 +70,10 @@ int simulate(const SimulateArguments& arguments) {
   if (arguments.database.empty()) throw UsageError("simulate: --db is empty; give it a file name");
   refuse_existing(arguments.database);
   const Study study = load_study(arguments.study);
-  const SubjectModel subject = subject_for(arguments, study);
+  const SubjectModel subject = subject_for(arguments.subject, study);
   const StudyKey key = simulated_key(study, arguments.study);
   refuse_other_key(key_path_for(arguments.database, {}), key);
-  const PrepareReport prepared =
-      prepare_pack(key, key.pack_folder, progress_bar("preparing"), {.statistics = false});
-  for (const std::string& warning : prepared.warnings) spdlog::warn("{}", warning);
-
+  prepare_simulated_pack(key);
   const Pack pack(key.pack_folder);
   StudyStore store =
       StudyStore::create(arguments.database, commitment_of(key, pack, true, false), 0ns);

@@ -32,8 +32,6 @@ PracticeProgress PracticeRun::progress() const {
 
 bool PracticeRun::run() {
   const int rounds = desk_.parts().key.study.practice.rounds;
-  if (progress().passed) return true;
-  desk_.parts().participant.see_pictures(textures_.labels);
   for (PracticeProgress at = progress(); !at.passed; at = progress()) {
     if (at.round > rounds) {
       if (!desk_.session().remarks().deviations.contains("practice-not-passed")) {
@@ -47,16 +45,19 @@ bool PracticeRun::run() {
 }
 
 bool PracticeRun::run_round(int round) {
+  const PracticeRound shown = textures_.round(round);
+  desk_.parts().participant.see_pictures(shown.labels);
   desk_.enter("practice", true);
   if (!desk_.attend(PracticeStep{round})) return desk_.goes_on();
-  const std::vector<int> order = textures_.order(round);
+  const std::vector<int>& order = shown.order;
   for (PracticeProgress at = progress(); at.round == round && !at.passed; at = progress()) {
     if (!desk_.await_device()) {
       if (!desk_.goes_on()) return false;
       continue;
     }
     const int position = order[static_cast<std::size_t>(at.done) % order.size()];
-    const std::optional<PracticeBody> done = present(at, position);
+    const std::optional<PracticeBody> done =
+        present(at, position, *shown.models[static_cast<std::size_t>(position)]);
     if (!desk_.goes_on()) return false;
     if (!done) continue;
     desk_.session().practise(desk_.now(), *done);
@@ -66,10 +67,11 @@ bool PracticeRun::run_round(int round) {
   return true;
 }
 
-std::optional<PracticeBody> PracticeRun::present(const PracticeProgress& at, int position) {
+std::optional<PracticeBody> PracticeRun::present(const PracticeProgress& at, int position,
+                                                 const RenderingModel& model) {
   const int number = at.done + 1;
   if (!desk_.attend(ReadyStep{number, a_round_, true})) return std::nullopt;
-  if (!explore(position)) return std::nullopt;
+  if (!explore(model)) return std::nullopt;
   desk_.enter("answering", true);
   const SessionPlan& plan = desk_.parts().key.study.session;
   const std::optional<StepReply> reply = answer({.trial = number,
@@ -83,12 +85,11 @@ std::optional<PracticeBody> PracticeRun::present(const PracticeProgress& at, int
   return PracticeBody{at.round, number, reply->position, reply->position == position};
 }
 
-bool PracticeRun::explore(int position) {
+bool PracticeRun::explore(const RenderingModel& model) {
   const SessionParts& parts = desk_.parts();
   desk_.enter("exploring", true);
   const Exploration done =
-      parts.explorer.explore(*textures_.models[static_cast<std::size_t>(position)], textures_.plane,
-                             participant_, servo_, trace_);
+      parts.explorer.explore(model, textures_.plane, participant_, servo_, trace_);
   parts.clock.pass(done.lasted);
   desk_.saw_servo(done.servo);
   if (!is_interrupted(done.servo)) return true;

@@ -33,8 +33,9 @@ class PracticeRun {
   [[nodiscard]] PracticeProgress progress() const;
   [[nodiscard]] bool run_round(int round);
   /// \return nothing if it was interrupted, and is to be done again if the session goes on
-  [[nodiscard]] std::optional<PracticeBody> present(const PracticeProgress& at, int position);
-  [[nodiscard]] bool explore(int position);
+  [[nodiscard]] std::optional<PracticeBody> present(const PracticeProgress& at, int position,
+                                                    const RenderingModel& model);
+  [[nodiscard]] bool explore(const RenderingModel& model);
   [[nodiscard]] std::optional<StepReply> answer(const AnswerStep& step);
 
   SessionDesk& desk_;

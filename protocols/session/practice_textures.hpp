@@ -10,13 +10,17 @@
 
 namespace touchtrial {
 
-/// Of one participant. The models refer to fields that must outlive this.
-struct PracticeTextures {
+struct PracticeRound {
   std::vector<std::string> labels;            ///< by position
   std::vector<const RenderingModel*> models;  ///< by position
+  std::vector<int> order;                     ///< positions to present, one after the other
+};
+
+/// Of one participant. The models refer to fields that must outlive this.
+struct PracticeTextures {
   PlaneGeometry plane;
-  /// Positions to present in a round, from 1; the same whenever it is asked.
-  std::function<std::vector<int>(int round)> order;
+  /// From 1; the same whenever it is asked.
+  std::function<PracticeRound(int round)> round;
 };
 
 }  // namespace touchtrial

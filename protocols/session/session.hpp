@@ -8,6 +8,7 @@
 #include <chrono>
 #include <deque>
 #include <functional>
+#include <map>
 #include <optional>
 #include <set>
 #include <span>
@@ -60,7 +61,7 @@ enum class SessionInput {
 /// How a block comes again in a fresh order (OnInterruption::restart_block).
 struct BlockRestart {
   /// The block's new presentations; the same for the same arguments.
-  std::function<std::vector<Presentation>(int block, int first_trial)> draw;
+  std::function<std::vector<Presentation>(int block, int restarts_before, int first_trial)> draw;
   /// What is sealed of them.
   std::function<std::string(const std::vector<Presentation>&)> secret;
 };
@@ -182,7 +183,7 @@ class Session {
   /// Takes the current presentation off, as the study's on_interruption has it.
   void give_up_presentation(Time at);
   void restart_block(Time at);
-  [[nodiscard]] std::vector<Presentation> drawn_again(int block, int first_trial) const;
+  [[nodiscard]] std::vector<Presentation> drawn_again(int block, int first_trial);
   void replace_block(int block, std::vector<Presentation> presentations);
 
   // What stored events do, by group (session_restore.cpp).
@@ -204,6 +205,7 @@ class Session {
   std::optional<TrialEvidence> evidence_;
   std::optional<Answer> answer_;
   std::optional<int> block_to_restart_;
+  std::map<int, int> restarts_;  ///< of each block
   SessionRemarks remarks_;
   int begun_ = 0;
   int done_since_break_ = 0;

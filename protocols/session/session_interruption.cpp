@@ -24,8 +24,8 @@ void Session::give_up_presentation(Time at) {
   move_to(queue_.empty() ? SessionPhase::finished : SessionPhase::ready, at);
 }
 
-std::vector<Presentation> Session::drawn_again(int block, int first_trial) const {
-  return restart_.draw(block, first_trial);
+std::vector<Presentation> Session::drawn_again(int block, int first_trial) {
+  return restart_.draw(block, restarts_[block], first_trial);
 }
 
 /// New numbers, so that nothing in clear links two presentations of one stimulus.
@@ -45,6 +45,7 @@ void Session::replace_block(int block, std::vector<Presentation> presentations) 
     schedule_.presentations.push_back(*next);
     queue_.push_front(schedule_.presentations.size() - 1);
   }
+  ++restarts_[block];
   done_since_break_ = 0;
   block_to_restart_.reset();
 }

@@ -341,7 +341,7 @@ TEST_CASE("a session that was stopped closes as incomplete") {
 }
 
 BlockRestart two_trials_again() {
-  return {[](int block, int first_trial) {
+  return {[](int block, int, int first_trial) {
             return std::vector<Presentation>{
                 {first_trial, block, PresentationKind::scored, {.class_index = 2}},
                 {first_trial + 1, block, PresentationKind::scored, {.class_index = 1}}};

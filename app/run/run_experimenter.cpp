@@ -1,0 +1,25 @@
+#include "app/run/run_experimenter.hpp"
+
+#include "app/console.hpp"
+#include "app/run/ending_signals.hpp"
+
+#include <utility>
+
+namespace touchtrial {
+
+RunExperimenter::RunExperimenter(Experimenter& inner, std::function<std::string()> gone)
+    : inner_(inner), gone_(std::move(gone)) {}
+
+std::optional<ExperimenterRequest> RunExperimenter::request() {
+  std::string why = EndingSignals::message();
+  if (why.empty() && gone_) why = gone_();
+  if (!why.empty()) return ExperimenterRequest{ExperimenterRequest::Kind::leave, why, ""};
+  return inner_.request();
+}
+
+void RunExperimenter::acknowledged(int trial) {
+  print("trial " + std::to_string(trial) + " acknowledged\n");
+  inner_.acknowledged(trial);
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,34 @@
+/// \file Whoever runs the session, and what the program itself has to say meanwhile.
+#pragma once
+
+#include "protocols/session/experimenter.hpp"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+
+/// Passes everything on to the experimenter's terminal or window; prints a line to standard output
+/// for each durable response; and leaves the session when the program is to end.
+class RunExperimenter final : public Experimenter {
+ public:
+  /// \param inner  must outlive this
+  /// \param gone  why the program is to end, beside signals; empty as long as it is not
+  RunExperimenter(Experimenter& inner, std::function<std::string()> gone);
+
+  void show(const SessionStatus& status) override { inner_.show(status); }
+  [[nodiscard]] std::optional<ExperimenterRequest> request() override;
+  [[nodiscard]] std::optional<std::vector<Tick>> day_sheet(
+      const std::vector<DaySheetItem>& items) override {
+    return inner_.day_sheet(items);
+  }
+  void acknowledged(int trial) override;
+
+ private:
+  Experimenter& inner_;
+  std::function<std::string()> gone_;
+};
+
+}  // namespace touchtrial

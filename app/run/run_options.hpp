@@ -1,0 +1,38 @@
+/// \file What `touchtrial run` was asked for.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace touchtrial {
+
+/// What is done with a session that the participant has already.
+enum class OnExisting { refuse, resume, restart };
+
+struct RunOptions {
+  std::filesystem::path study;
+  std::string participant;
+  std::filesystem::path database;
+  std::filesystem::path pack;  ///< empty: as `prepare` lays it
+  std::filesystem::path key;   ///< empty: beside the pack
+  std::string device;          ///< driver; empty: the simulated one for a subject
+  std::filesystem::path settings;
+  std::filesystem::path certificate;  ///< empty: NAME-certificate.json, if it is there
+  bool pilot = false;
+  OnExisting on_existing = OnExisting::refuse;
+  int enrolment = 0;  ///< 0: the smallest that is free
+  /// A simulated participant instead of a person: a model file, or "default".
+  std::optional<std::filesystem::path> subject;
+  std::uint64_t seed = 1;  ///< of the simulated participant
+  bool headless = false;
+  bool real_time = false;  ///< a simulated participant in real time
+  bool console = false;    ///< the experimenter's own window
+  bool sound = true;
+  int monitor = 1;
+
+  [[nodiscard]] bool is_simulated() const noexcept { return subject.has_value(); }
+};
+
+}  // namespace touchtrial

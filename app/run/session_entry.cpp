@@ -1,0 +1,154 @@
+#include "app/run/session_entry.hpp"
+
+#include "app/console.hpp"
+#include "core/cipher.hpp"
+#include "core/errors.hpp"
+#include "core/version.hpp"
+#include "protocols/store/payload_json.hpp"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+namespace touchtrial {
+namespace {
+
+using std::chrono::nanoseconds;
+
+/// How the study's blocks come again in this participant's session.
+BlockRestart block_restart_of(const StudyKey& key, int enrolment) {
+  return {[&key, enrolment](int, int, int) -> std::vector<Presentation> {
+            throw StudyError(key.study.source + ": blocks cannot be restarted yet; enrolment " +
+                             std::to_string(enrolment));
+          },
+          [&key](const std::vector<Presentation>& presentations) {
+            return schedule_to_json({presentations, {}}, key);
+          }};
+}
+
+EnteredSession new_session(const RunOptions& options, const RunStudy& study, StudyStore& store,
+                           int enrolment, const DescribeOpening& describe) {
+  EnteredSession entered;
+  entered.number = store.next_session();
+  entered.enrolment = enrolment;
+  SystemEntropy entropy;
+  const SecretKey key = entropy.secret("participant key");
+  entered.sink = store.begin_session(entered.number,
+                                     wrap_participant_key(study.key.master, entered.number, key));
+  const Schedule schedule = make_schedule(study.key.study, enrolment);
+  entered.session = std::make_unique<Session>(schedule, study.key.study.trials,
+                                              SessionRecorder(entered.number, key, *entered.sink),
+                                              block_restart_of(study.key, enrolment));
+  SessionOpening opening;
+  opening.participant = options.participant;
+  opening.enrolment = enrolment;
+  opening.study_id = study.key.study_id;
+  opening.seal = study_seal(study.key);
+  opening.pilot = options.pilot;
+  describe(opening);
+  entered.session->open({}, opening, schedule_to_json(schedule, study.key));
+  return entered;
+}
+
+/// How long ago the session's last event was.
+nanoseconds away(const StudyStore& store, const SessionRow& row, const Event& last) {
+  nanoseconds opened{};
+  store.for_each(EventKind::session_opened, [&](const Event& event) {
+    if (session_opened_from_json(event.body).session == row.session) opened = event.at;
+  });
+  return std::max(nanoseconds{}, utc_now() - opened - last.at);
+}
+
+std::string standing(const StudyStore& store, const SessionRow& row, nanoseconds away) {
+  int done = 0;
+  for (const TrialRow& trial : store.trials()) {
+    if (trial.session == row.session && trial.state == TrialState::answered) ++done;
+  }
+  const auto minutes = std::chrono::duration_cast<std::chrono::minutes>(away).count();
+  return fmt::format("participant {} has session {}, with {} trials answered, left {} h {} min ago",
+                     row.participant, row.session, done, minutes / 60, minutes % 60);
+}
+
+Session restored(const RunStudy& study, const StudyStore& store, const SessionRow& row,
+                 EventSink& sink) {
+  const std::vector<Event> events = store.events(row.session);
+  const auto wrapped = store.wrapped_key(row.session);
+  const auto key =
+      wrapped ? unwrap_participant_key(study.key.master, row.session, *wrapped) : std::nullopt;
+  const auto secret = key ? unsealed(events.front(), *key) : std::nullopt;
+  if (!secret) {
+    throw StoreError(fmt::format("session {}: its schedule cannot be read; run `touchtrial verify`",
+                                 row.session));
+  }
+  Session session(schedule_from_json(*secret, study.key), study.key.study.trials,
+                  SessionRecorder(row.session, *key, sink),
+                  block_restart_of(study.key, row.enrolment));
+  session.restore(events);
+  return session;
+}
+
+/// In virtual time nothing goes by between two runs of the program.
+nanoseconds time_after(const RunOptions& options, nanoseconds last, nanoseconds away) {
+  return options.is_simulated() && !options.real_time ? last : last + away;
+}
+
+EnteredSession resumed_session(const RunOptions& options, const RunStudy& study, StudyStore& store,
+                               const SessionRow& row, nanoseconds away) {
+  EnteredSession entered;
+  entered.number = row.session;
+  entered.enrolment = row.enrolment;
+  entered.resumed = true;
+  entered.sink = store.continue_session(row.session);
+  entered.session = std::make_unique<Session>(restored(study, store, row, *entered.sink));
+  Session& session = *entered.session;
+  entered.clock = time_after(options, session.last(), away);
+  session.take_up(entered.clock, {.after = "program-ended",
+                                  .away_s = std::chrono::duration<double>(away).count(),
+                                  .program_version = std::string(program_version())});
+  return entered;
+}
+
+void require_young(const RunOptions& options, const RunStudy& study, const std::string& standing,
+                   nanoseconds away) {
+  const double limit_h = study.key.study.trials.resume_within_h;
+  if (std::chrono::duration<double, std::ratio<3600>>(away).count() <= limit_h) return;
+  throw StoreError(
+      fmt::format("{}: {}; the study lets sessions be taken up within {} h; begin anew with "
+                  "--on-existing restart",
+                  options.database.string(), standing, limit_h));
+}
+
+EnteredSession existing_session(const RunOptions& options, const RunStudy& study, StudyStore& store,
+                                const SessionRow& row) {
+  if (row.state != SessionState::open) {
+    throw StoreError(fmt::format(
+        "{}: participant {} already has session {}, which is {}; give another participant id",
+        options.database.string(), row.participant, row.session,
+        row.state == SessionState::completed ? "complete" : "stopped"));
+  }
+  const nanoseconds gone = away(store, row, store.last_event(row.session).value());
+  const std::string stands = standing(store, row, gone);
+  if (options.on_existing == OnExisting::refuse) {
+    throw StoreError(fmt::format(
+        "{}: {}; go on with --on-existing resume, or begin anew with --on-existing restart",
+        options.database.string(), stands));
+  }
+  require_young(options, study, stands, gone);
+  return resumed_session(options, study, store, row, gone);
+}
+
+}  // namespace
+
+EnteredSession enter_session(const RunOptions& options, const RunStudy& study, StudyStore& store,
+                             const DescribeOpening& describe) {
+  if (const auto row = store.session_of(options.participant)) {
+    return existing_session(options, study, store, *row);
+  }
+  const int enrolment = options.enrolment > 0 ? options.enrolment : store.next_enrolment();
+  return new_session(options, study, store, enrolment, describe);
+}
+
+}  // namespace touchtrial
