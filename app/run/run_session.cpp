@@ -9,6 +9,7 @@
 #include "app/simulated_study.hpp"
 #include "app/texts/study_texts.hpp"
 #include "core/errors.hpp"
+#include "device/simulated/simulated_hand.hpp"
 #include "protocols/session/device_station.hpp"
 #include "protocols/session/felt_knowledge.hpp"
 #include "protocols/session/real_time_explorer.hpp"
@@ -74,7 +75,7 @@ void describe_simulated(SessionOpening& opening, const RunOptions& options,
   opening.device = "simulated";
   opening.simulated = true;
   if (!options.real_time) return;
-  const DeviceInfo device{.name = "simulated", .simulated = true};
+  const DeviceInfo device{"simulated", "", HandOptions{}.max_force_n, true};
   describe_station(opening, device, explorer->scheduling(), kServoRateHz, "");
   opening.simulated = true;
 }

@@ -20,12 +20,11 @@ using std::chrono::nanoseconds;
 
 /// How the study's blocks come again in this participant's session.
 BlockRestart block_restart_of(const StudyKey& key, int enrolment) {
-  return {[&key, enrolment](int, int, int) -> std::vector<Presentation> {
-            throw StudyError(key.study.source + ": blocks cannot be restarted yet; enrolment " +
-                             std::to_string(enrolment));
+  return {[&key, enrolment](int block, int restarts_before, int first_trial) {
+            return restarted_block(key.study, enrolment, block, restarts_before, first_trial);
           },
           [&key](const std::vector<Presentation>& presentations) {
-            return schedule_to_json({presentations, {}}, key);
+            return block_to_json(presentations, key);
           }};
 }
 
@@ -135,6 +134,9 @@ EnteredSession existing_session(const RunOptions& options, const RunStudy& study
     throw StoreError(fmt::format(
         "{}: {}; go on with --on-existing resume, or begin anew with --on-existing restart",
         options.database.string(), stands));
+  }
+  if (options.on_existing == OnExisting::restart) {
+    throw UsageError("run: --on-existing restart is to come; take the session up with resume");
   }
   require_young(options, study, stands, gone);
   return resumed_session(options, study, store, row, gone);

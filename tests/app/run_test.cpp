@@ -1,0 +1,136 @@
+// One session after the other, run as an experimenter runs them, with a simulated participant.
+#include "app/study_folder.hpp"
+#include "support/catch.hpp"
+
+#include <csignal>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+using namespace touchtrial;
+
+namespace {
+
+std::vector<std::string> run_arguments(const StudyFolder& study, const std::string& participant,
+                                       const std::vector<std::string>& more = {}) {
+  std::vector<std::string> arguments = {
+      "run",       study.in("cloths.json"), "--participant", participant, "--db", study.in("db"),
+      "--subject", study.in("quick.json"),  "--headless"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return arguments;
+}
+
+ProgramResult run(const StudyFolder& study, const std::string& participant,
+                  const std::vector<std::string>& more = {}) {
+  return study.run(run_arguments(study, participant, more));
+}
+
+/// Starts the session in real time, waits for a line of its output, and sends a signal.
+/// \return what the shell had: 128 + the signal's number if it died of it
+ProgramResult run_until(const StudyFolder& study, const std::string& participant,
+                        const std::string& line, int signal) {
+  std::string command = std::string(TOUCHTRIAL_PROGRAM);
+  for (const std::string& argument : run_arguments(study, participant, {"--real-time"})) {
+    command += " '" + argument + "'";
+  }
+  const std::string out = "'" + study.in("out") + "'";
+  const std::string script = command + " > " + out + " & p=$!; until grep -q '" + line + "' " +
+                             out + "; do sleep 0.02; kill -0 $p || break; done; kill -" +
+                             std::to_string(signal) + " $p; wait $p; code=$?; cat " + out +
+                             "; exit $code";
+  return run_program("/bin/sh", study.path(), {"-c", script});
+}
+
+int acknowledged(const std::string& output) {
+  int count = 0;
+  for (std::size_t at = output.find(" acknowledged\n"); at != std::string::npos;
+       at = output.find(" acknowledged\n", at + 1)) {
+    ++count;
+  }
+  return count;
+}
+
+/// Every trial answered once, every class as often as any other, and the chain whole.
+void check_balanced(const StudyFolder& study, int participants) {
+  const ProgramResult verified = study.run({"verify", study.in("db")});
+  INFO(verified.output << verified.errors);
+  CHECK(verified.exit_code == 0);
+  REQUIRE(study.run({"close", study.in("db")}).exit_code == 0);
+  REQUIRE(study.run({"unblind", study.in("db"), "--reason", "test"}).exit_code == 0);
+  const ProgramResult reported = study.run({"report", study.in("db"), "--json"});
+  REQUIRE(reported.exit_code == 0);
+  const json report = json::parse(reported.output);
+  CHECK(report.at("participants") == participants);
+  CHECK(report.at("trials") == 6 * participants);
+  for (const json& row : report.at("methods").at(0).at("confusion")) {
+    int presented = 0;
+    for (const json& count : row) presented += count.get<int>();
+    CHECK(presented == 2 * participants);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("run makes the database, acknowledges every response, and is refused a second time") {
+  const StudyFolder study;
+  const ProgramResult first = run(study, "P01");
+  INFO(first.errors);
+  REQUIRE(first.exit_code == 0);
+  CHECK(acknowledged(first.output) == 6);
+  CHECK(first.output.find("complete") != std::string::npos);
+  CHECK(first.output.find("SIMULATED") != std::string::npos);
+  for (const std::string& label : kLabels) {
+    CHECK(first.output.find(label) == std::string::npos);
+    CHECK(first.errors.find(label) == std::string::npos);
+  }
+  const ProgramResult again = run(study, "P01", {"--on-existing", "resume"});
+  CHECK(again.exit_code == 1);
+  CHECK(again.errors.find("another participant") != std::string::npos);
+  CHECK(run(study, "P02").exit_code == 0);
+  check_balanced(study, 2);
+}
+
+TEST_CASE("a session that was killed goes on after the responses that were acknowledged") {
+  const StudyFolder study;
+  const ProgramResult killed = run_until(study, "P01", "trial", SIGKILL);
+  CHECK(killed.exit_code == 128 + SIGKILL);
+  const int before = acknowledged(killed.output);
+  CHECK(before >= 1);
+  CHECK(before < 6);
+  const ProgramResult refused = run(study, "P01");
+  CHECK(refused.exit_code == 1);
+  CHECK(refused.errors.find("--on-existing resume") != std::string::npos);
+  const ProgramResult resumed = run(study, "P01", {"--on-existing", "resume"});
+  INFO(resumed.errors);
+  CHECK(resumed.exit_code == 0);
+  // The last response may have been durable without anybody having read so.
+  CHECK(before + acknowledged(resumed.output) >= 5);
+  CHECK(before + acknowledged(resumed.output) <= 6);
+  check_balanced(study, 1);
+}
+
+TEST_CASE("a session that is asked to end stays open, says so, and goes on later") {
+  const StudyFolder study;
+  const ProgramResult stopped = run_until(study, "P01", "trial", SIGTERM);
+  CHECK(stopped.exit_code == 128 + SIGTERM);
+  CHECK(stopped.errors.find("SIGTERM") != std::string::npos);
+  CHECK(stopped.output.find("left open") != std::string::npos);
+  REQUIRE(run(study, "P01", {"--on-existing", "resume"}).exit_code == 0);
+  check_balanced(study, 1);
+}
+
+TEST_CASE("pilots, other studies and studies that changed are refused") {
+  const StudyFolder study;
+  REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
+  REQUIRE(run(study, "P01").exit_code == 0);
+  const ProgramResult pilot = run(study, "P02", {"--pilot"});
+  CHECK(pilot.exit_code == 1);
+  CHECK(pilot.errors.find("pilot") != std::string::npos);
+
+  json changed = study_of("classification");
+  changed["trials"]["repeats"] = 3;
+  replace_file(study.path() / "cloths.json", changed.dump());
+  const ProgramResult other = run(study, "P02");
+  CHECK(other.exit_code == 2);
+  CHECK(other.errors.find("prepare") != std::string::npos);
+}
