@@ -120,8 +120,26 @@ void require_young(const RunOptions& options, const RunStudy& study, const std::
                   options.database.string(), standing, limit_h));
 }
 
+/// The session ends as it stands.
+void give_up(const RunStudy& study, StudyStore& store, const SessionRow& row) {
+  const std::unique_ptr<EventSink> sink = store.continue_session(row.session);
+  Session session = restored(study, store, row, *sink);
+  if (session.accepts(SessionInput::stop)) session.stop(session.last(), "restarted");
+  session.close(session.last());
+}
+
+/// In the same place of the order. The session has ended.
+EnteredSession begin_anew(const RunOptions& options, const RunStudy& study, StudyStore& store,
+                          const SessionRow& row, const DescribeOpening& describe) {
+  store.replace(row.session, row.participant, utc_now(), "restarted");
+  return new_session(options, study, store, row.enrolment, describe);
+}
+
 EnteredSession existing_session(const RunOptions& options, const RunStudy& study, StudyStore& store,
-                                const SessionRow& row) {
+                                const SessionRow& row, const DescribeOpening& describe) {
+  const bool may_be_restarted =
+      options.on_existing == OnExisting::restart && row.state == SessionState::stopped;
+  if (may_be_restarted) return begin_anew(options, study, store, row, describe);
   if (row.state != SessionState::open) {
     throw StoreError(fmt::format(
         "{}: participant {} already has session {}, which is {}; give another participant id",
@@ -136,7 +154,8 @@ EnteredSession existing_session(const RunOptions& options, const RunStudy& study
         options.database.string(), stands));
   }
   if (options.on_existing == OnExisting::restart) {
-    throw UsageError("run: --on-existing restart is to come; take the session up with resume");
+    give_up(study, store, row);
+    return begin_anew(options, study, store, row, describe);
   }
   require_young(options, study, stands, gone);
   return resumed_session(options, study, store, row, gone);
@@ -147,9 +166,10 @@ EnteredSession existing_session(const RunOptions& options, const RunStudy& study
 EnteredSession enter_session(const RunOptions& options, const RunStudy& study, StudyStore& store,
                              const DescribeOpening& describe) {
   if (const auto row = store.session_of(options.participant)) {
-    return existing_session(options, study, store, *row);
+    return existing_session(options, study, store, *row, describe);
   }
-  const int enrolment = options.enrolment > 0 ? options.enrolment : store.next_enrolment();
+  const int enrolment =
+      options.enrolment > 0 ? options.enrolment : store.enrolment_for(options.participant);
   return new_session(options, study, store, enrolment, describe);
 }
 

@@ -119,6 +119,16 @@ TEST_CASE("a session that is asked to end stays open, says so, and goes on later
   check_balanced(study, 1);
 }
 
+TEST_CASE("a session that was left can be begun anew, and the one before enters no outcomes") {
+  const StudyFolder study;
+  REQUIRE(run_until(study, "P01", "trial", SIGKILL).exit_code == 128 + SIGKILL);
+  const ProgramResult restarted = run(study, "P01", {"--on-existing", "restart"});
+  INFO(restarted.errors);
+  CHECK(restarted.exit_code == 0);
+  CHECK(acknowledged(restarted.output) == 6);
+  check_balanced(study, 1);
+}
+
 TEST_CASE("pilots, other studies and studies that changed are refused") {
   const StudyFolder study;
   REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
