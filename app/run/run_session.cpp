@@ -15,6 +15,7 @@
 #include "protocols/session/real_time_explorer.hpp"
 #include "protocols/session/session_runner.hpp"
 #include "protocols/session/simulated_participant.hpp"
+#include "protocols/store/session_lock.hpp"
 
 #include <cstdio>
 #include <memory>
@@ -118,6 +119,7 @@ int run_headless(const RunOptions& options, const RunStudy& study, StudyStore& s
 int run_study_session(const RunOptions& options) {
   const EndingSignals signals;
   const RunStudy study = run_study_for(options);
+  const SessionLock lock(options.database, options.participant);
   StudyStore store = run_database_for(options, study);
   return run_headless(options, study, store);
 }
