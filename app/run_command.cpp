@@ -2,11 +2,32 @@
 #include "app/run/run_session.hpp"
 #include "core/errors.hpp"
 
+#include <charconv>
 #include <map>
 #include <memory>
+#include <string>
+#include <utility>
 
 namespace touchtrial {
 namespace {
+
+/// "1280x720"
+std::pair<int, int> size_of(const std::string& text) {
+  constexpr int kSmallest = 320;
+  constexpr int kLargest = 16384;
+  std::pair<int, int> size;
+  const char* const end = text.data() + text.size();
+  const auto width = std::from_chars(text.data(), end, size.first);
+  const bool has_cross = width.ec == std::errc() && width.ptr != end && *width.ptr == 'x';
+  const auto height = has_cross ? std::from_chars(width.ptr + 1, end, size.second) : width;
+  const bool whole = has_cross && height.ec == std::errc() && height.ptr == end;
+  const auto fits = [](int side) { return side >= kSmallest && side <= kLargest; };
+  if (!whole || !fits(size.first) || !fits(size.second)) {
+    throw CLI::ValidationError(
+        "--window", "'" + text + "' is no size; give WIDTHxHEIGHT, for instance 1280x720");
+  }
+  return size;
+}
 
 void check(const RunOptions& options) {
   if (options.database.empty()) throw UsageError("run: --db is empty; give it a file name");
@@ -42,11 +63,13 @@ void add_device_options(CLI::App& command, RunOptions& options) {
   add_settings_option(command, options.settings);
   command.add_option("--certificate", options.certificate,
                      "The device's calibration (default: NAME-certificate.json, if it is there)");
-  command.add_flag("--console", options.console, "A window for the experimenter too");
   command.add_flag("!--no-sound", options.sound, "Neither masking noise nor tones");
   command.add_option("--monitor", options.monitor, "The participant's monitor, from 1")
       ->check(CLI::Range(1, 16))
       ->capture_default_str();
+  command.add_option_function<std::string>(
+      "--window", [&options](const std::string& text) { options.window_px = size_of(text); },
+      "WIDTHxHEIGHT: a window instead of the whole monitor, pixels");
 }
 
 void add_simulation_options(CLI::App& command, RunOptions& options) {

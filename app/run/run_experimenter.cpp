@@ -7,13 +7,15 @@
 
 namespace touchtrial {
 
-RunExperimenter::RunExperimenter(Experimenter& inner, std::function<std::string()> gone)
-    : inner_(inner), gone_(std::move(gone)) {}
+RunExperimenter::RunExperimenter(Experimenter& inner, std::function<std::string()> gone,
+                                 std::function<std::optional<ExperimenterRequest>()> more)
+    : inner_(inner), gone_(std::move(gone)), more_(std::move(more)) {}
 
 std::optional<ExperimenterRequest> RunExperimenter::request() {
   std::string why = EndingSignals::message();
   if (why.empty() && gone_) why = gone_();
   if (!why.empty()) return ExperimenterRequest{ExperimenterRequest::Kind::leave, why, ""};
+  if (auto request = more_ ? more_() : std::nullopt) return request;
   return inner_.request();
 }
 

@@ -16,7 +16,9 @@ class RunExperimenter final : public Experimenter {
  public:
   /// \param inner  must outlive this
   /// \param gone  why the program is to end, beside signals; empty as long as it is not
-  RunExperimenter(Experimenter& inner, std::function<std::string()> gone);
+  /// \param more  requests that something else makes, such as the sound; empty: nothing does
+  RunExperimenter(Experimenter& inner, std::function<std::string()> gone,
+                  std::function<std::optional<ExperimenterRequest>()> more = {});
 
   void show(const SessionStatus& status) override { inner_.show(status); }
   [[nodiscard]] std::optional<ExperimenterRequest> request() override;
@@ -29,6 +31,7 @@ class RunExperimenter final : public Experimenter {
  private:
   Experimenter& inner_;
   std::function<std::string()> gone_;
+  std::function<std::optional<ExperimenterRequest>()> more_;
 };
 
 }  // namespace touchtrial

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 
 namespace touchtrial {
 
@@ -28,9 +29,10 @@ struct RunOptions {
   std::uint64_t seed = 1;  ///< of the simulated participant
   bool headless = false;
   bool real_time = false;  ///< a simulated participant in real time
-  bool console = false;    ///< the experimenter's own window
   bool sound = true;
-  int monitor = 1;
+  int monitor = 1;  ///< the participant's, from 1; full screen
+  /// Width and height of the participant's window instead, pixels.
+  std::optional<std::pair<int, int>> window_px;
 
   [[nodiscard]] bool is_simulated() const noexcept { return subject.has_value(); }
 };

@@ -22,7 +22,7 @@ PracticeRun::PracticeRun(SessionDesk& desk, const PracticeTextures& textures)
     : desk_(desk),
       textures_(textures),
       participant_(desk),
-      servo_(servo_options(desk.parts().key.study, desk.parts().rate_hz)),
+      servo_(servo_options(desk.parts())),
       a_round_(desk.parts().key.study.trials.practice) {}
 
 PracticeProgress PracticeRun::progress() const {

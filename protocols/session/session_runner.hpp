@@ -3,6 +3,7 @@
 /// how an exploration runs, and where the device comes from.
 #pragma once
 
+#include "device/device_settings.hpp"
 #include "protocols/design/study_key.hpp"
 #include "protocols/session/device_supply.hpp"
 #include "protocols/session/experimenter.hpp"
@@ -50,6 +51,7 @@ struct SessionParts {
   const PracticeTextures* practice = nullptr;  ///< null: nobody practises
   std::string participant_name{};              ///< as the experimenter is shown it
   std::string device_name{};                   ///< likewise
+  LabLimits limits{};                          ///< of the device, beside the study's
 };
 
 /// Runs a session that is open, or was taken up again, to its closing: day sheet, instructions,

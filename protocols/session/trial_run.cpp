@@ -17,12 +17,15 @@ constexpr double kLeastAgainS = 0.5;
 
 }  // namespace
 
-ServoOptions servo_options(const Study& study, double rate_hz) {
+ServoOptions servo_options(const SessionParts& parts) {
+  const Study& study = parts.key.study;
+  const double rate_hz = parts.rate_hz;
   ServoOptions options;
   options.rate_hz = rate_hz;
   options.limit_ticks = std::llround(study.trials.explore_limit_s * rate_hz);
   options.fade_ticks = std::llround(std::chrono::duration<double>(kFade).count() * rate_hz);
   options.limits.max_force_n = study.rendering.max_force_n;
+  options.limits = stricter_of(options.limits, parts.limits);
   return options;
 }
 
@@ -31,7 +34,7 @@ TrialRun::TrialRun(SessionDesk& desk)
       session_(desk.session()),
       parts_(desk.parts()),
       participant_(desk),
-      servo_(servo_options(desk.parts().key.study, desk.parts().rate_hz)) {}
+      servo_(servo_options(desk.parts())) {}
 
 const RenderingModel& TrialRun::model() const {
   const Presentation& presentation = *session_.current();

@@ -7,8 +7,9 @@
 
 namespace touchtrial {
 
-/// The servo's options of a study's explorations.
-[[nodiscard]] ServoOptions servo_options(const Study& study, double rate_hz);
+/// The servo's options of a session's explorations: the study's limits, or the lab's where they are
+/// stricter.
+[[nodiscard]] ServoOptions servo_options(const SessionParts& parts);
 
 /// The trials of a session, one after the other.
 class TrialRun {

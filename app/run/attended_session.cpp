@@ -1,0 +1,175 @@
+#include "app/run/attended_session.hpp"
+
+#include "app/experimenter/spoken_answers.hpp"
+#include "app/experimenter/terminal_experimenter.hpp"
+#include "app/participant/participant_window.hpp"
+#include "app/participant/window_subject.hpp"
+#include "app/run/answer_pictures.hpp"
+#include "app/run/practice_of.hpp"
+#include "app/run/run_experimenter.hpp"
+#include "app/run/session_device.hpp"
+#include "app/run/session_end.hpp"
+#include "app/run/session_entry.hpp"
+#include "app/run/simulated_sitter.hpp"
+#include "app/sound/session_sound.hpp"
+#include "app/texts/study_texts.hpp"
+#include "protocols/session/real_time_explorer.hpp"
+#include "protocols/session/session_runner.hpp"
+#include "protocols/session/simulated_participant.hpp"
+
+#include <optional>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
+namespace touchtrial {
+namespace {
+
+ParticipantWindowOptions window_options(const RunOptions& options, const Study& study) {
+  ParticipantWindowOptions window;
+  window.monitor = options.monitor;
+  window.size_px = options.window_px;
+  window.language = study.session.language;
+  window.sight = study.session.sight;
+  window.pictures = answer_pictures(study);
+  window.pitch_mm = study.rendering.pitch_mm;
+  return window;
+}
+
+std::string why_gone(const ParticipantWindow& window) {
+  const auto gone = window.gone();
+  if (!gone || *gone == WindowGone::signal) return "";
+  return *gone == WindowGone::closed ? "the participant's window was closed"
+                                     : "the participant's monitor was unplugged";
+}
+
+/// What a person hears. A device that is only seen makes no sound that would have to be covered.
+MaskingPlan masking_of(const RunOptions& options, const Study& study, const DeviceInfo& device) {
+  MaskingPlan plan = study.session.masking;
+  plan.wanted = plan.wanted && options.sound && !device.visual;
+  return plan;
+}
+
+/// What was not as the study asks before the session began.
+std::vector<ExperimenterRequest> known_deviations(const RunOptions& options, const Study& study,
+                                                  const SessionDevice& device) {
+  std::vector<ExperimenterRequest> known = device.to_record();
+  if (study.session.masking.wanted && !options.sound && !device.info().visual) {
+    known.push_back({ExperimenterRequest::Kind::deviation, "--no-sound", "no-masking-noise"});
+  }
+  return known;
+}
+
+/// A device that is only seen needs no warming up, no curtain and no headphones.
+SessionTexts texts_for(const Study& study, const DeviceInfo& device) {
+  SessionTexts texts = session_texts(study);
+  if (device.visual) texts.day_sheet.clear();
+  return texts;
+}
+
+/// Everything around one person's session.
+class PersonsSession {
+ public:
+  PersonsSession(const RunOptions& options, const RunStudy& study, StudyStore& store)
+      : options_(options),
+        study_(study),
+        store_(store),
+        source_(study.pack, study.key.study.rendering),
+        terminal_(standard_terminal()),
+        device_(options, source_.plane(), terminal_),
+        sound_(masking_of(options, study.key.study, device_.info()), study.key.study.seed) {
+    if (!sound_.trouble().empty()) spdlog::warn("{}", sound_.trouble());
+    for (const ExperimenterRequest& known : known_deviations(options, study.key.study, device_)) {
+      terminal_.add(known);
+    }
+  }
+
+  int run() {
+    ParticipantWindowOptions wanted = window_options(options_, study_.key.study);
+    wanted.device = [this]() -> HapticDevice& { return device_.device(); };
+    wanted.pointer = device_.pointer();
+    if (options_.sound) wanted.cues = &sound_;
+    ParticipantWindow window(wanted);
+    int code = 1;
+    run_beside(window, [&] { code = run_before(window); });
+    return code;
+  }
+
+ private:
+  int run_before(ParticipantWindow& window) {
+    RealTimeExplorer explorer;
+    const EnteredSession entered =
+        enter_session(options_, study_, store_, [&](SessionOpening& opening) {
+          describe_station(opening, device_.info(), explorer.scheduling(), kServoRateHz,
+                           device_.certificate());
+        });
+    SteadySessionClock clock(entered.clock);
+    const ParticipantPractice practice(study_, source_.plane(), entered.enrolment);
+    SpokenAnswers spoken(window, terminal_);
+    const bool speaks = study_.key.study.session.sight == Sight::blindfold;
+    RunExperimenter experimenter(
+        terminal_, [&] { return why_gone(window); }, [this] { return sound_.to_record(); });
+    const SessionTexts texts = texts_for(study_.key.study, device_.info());
+    const SessionTally tally = run_session(
+        *entered.session, {.key = study_.key,
+                           .source = source_,
+                           .participant = speaks ? static_cast<Participant&>(spoken) : window,
+                           .clock = clock,
+                           .explorer = explorer,
+                           .devices = device_.station(),
+                           .experimenter = experimenter,
+                           .texts = texts,
+                           .practice = practice.textures(),
+                           .participant_name = options_.participant,
+                           .device_name = device_.driver(),
+                           .limits = device_.limits()});
+    return conclude_session(options_, entered.number, tally, store_);
+  }
+
+  const RunOptions& options_;
+  const RunStudy& study_;
+  StudyStore& store_;
+  StimulusSource source_;
+  TerminalExperimenter terminal_;
+  SessionDevice device_;
+  SessionSound sound_;
+};
+
+}  // namespace
+
+int run_attended(const RunOptions& options, const RunStudy& study, StudyStore& store) {
+  return PersonsSession(options, study, store).run();
+}
+
+int run_simulated_at_window(const RunOptions& options, const RunStudy& study, StudyStore& store) {
+  const StimulusSource source(study.pack, study.key.study.rendering);
+  const SimulatedSitter sitter = simulated_sitter_for(options, study, source);
+  const SessionTexts texts = session_texts(study.key.study);
+  ParticipantWindow window(window_options(options, study.key.study));
+  int code = 1;
+  run_beside(window, [&] {
+    const SimulatedCourse course = simulated_course(options);
+    const EnteredSession entered = enter_session(
+        options, study, store, [&](SessionOpening& opening) { course.describe(opening); });
+    const std::unique_ptr<SessionClock> clock = course.clock(entered.clock);
+    SimulatedParticipant mind(sitter.subject, sitter.knowledge, options.seed, entered.enrolment);
+    WindowSubject participant(window, mind, options.real_time);
+    AlwaysReady devices;
+    RunExperimenter experimenter(no_experimenter(), [&] { return why_gone(window); });
+    const SessionTally tally =
+        run_session(*entered.session, {.key = study.key,
+                                       .source = source,
+                                       .participant = participant,
+                                       .clock = *clock,
+                                       .explorer = *course.explorer,
+                                       .devices = devices,
+                                       .experimenter = experimenter,
+                                       .texts = texts,
+                                       .participant_name = options.participant,
+                                       .device_name = "simulated"});
+    code = conclude_session(options, entered.number, tally, store);
+  });
+  return code;
+}
+
+}  // namespace touchtrial

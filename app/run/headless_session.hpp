@@ -1,0 +1,13 @@
+/// \file A session of a simulated participant with a hand of their own, without any window.
+#pragma once
+
+#include "app/run/run_options.hpp"
+#include "app/run/run_study.hpp"
+#include "protocols/store/study_store.hpp"
+
+namespace touchtrial {
+
+/// \return as run_study_session
+[[nodiscard]] int run_headless(const RunOptions& options, const RunStudy& study, StudyStore& store);
+
+}  // namespace touchtrial
