@@ -30,6 +30,7 @@ void add_commands(CLI::App& program, Action& action) {
   add_evaluate_command(program, action);
   add_stimuli_command(program, action);
   add_prepare_command(program, action);
+  add_prereg_command(program, action);
   add_simulate_command(program, action);
   add_run_command(program, action);
   add_close_command(program, action);

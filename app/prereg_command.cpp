@@ -1,0 +1,70 @@
+#include "app/commands.hpp"
+#include "app/console.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "protocols/design/prepare.hpp"
+#include "protocols/session/registration_page.hpp"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <spdlog/spdlog.h>
+
+namespace touchtrial {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct PreregArguments {
+  fs::path study;
+  fs::path pack;
+  fs::path key;
+  fs::path output;
+};
+
+int preregister(const PreregArguments& arguments) {
+  const Study study = load_study(arguments.study);
+  PackPlace place =
+      arguments.pack.empty() ? default_pack_place(arguments.study) : pack_place_at(arguments.pack);
+  if (!arguments.key.empty()) place.key = arguments.key;
+  if (!is_there(place.key) || !is_there(place.pack)) {
+    throw UsageError(arguments.study.string() +
+                     ": has not been prepared; run `touchtrial prepare` first, or say where with "
+                     "--pack and --key");
+  }
+  if (!arguments.output.empty() && is_there(arguments.output)) {
+    throw UsageError(arguments.output.string() +
+                     ": is there already and may have been deposited; choose another name");
+  }
+  const StudyKey key = load_study_key(place.key);
+  const Pack pack(place.pack);
+  require_prepared(study, key, pack);
+  for (const std::string& unsaid : unstated(study.registration)) {
+    spdlog::warn("{}: {} is not stated; add it before depositing the page",
+                 arguments.study.string(), unsaid);
+  }
+  const std::string page = registration_page(key, pack);
+  if (arguments.output.empty()) {
+    print(page);
+  } else {
+    replace_file(arguments.output, page);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_prereg_command(CLI::App& program, Action& action) {
+  auto arguments = std::make_shared<PreregArguments>();
+  CLI::App* command =
+      program.add_subcommand("prereg", "Write the page to deposit before the first participant");
+  command->add_option("STUDY", arguments->study, "Study file, prepared")->required();
+  command->add_option("--pack", arguments->pack, "Folder of the pack (default: <study>.pack)");
+  command->add_option("--key", arguments->key, "Key of the study (default: beside the pack)");
+  command->add_option("-o,--output", arguments->output,
+                      "Markdown file to write (default: standard output)");
+  command->callback([=, &action] { action = [=] { return preregister(*arguments); }; });
+}
+
+}  // namespace touchtrial
