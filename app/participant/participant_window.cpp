@@ -1,5 +1,6 @@
 #include "app/participant/participant_window.hpp"
 
+#include "app/experimenter/console_window.hpp"
 #include "app/participant/exploring_screen.hpp"
 #include "app/participant/glfw_input.hpp"
 #include "app/participant/simple_screens.hpp"
@@ -106,7 +107,9 @@ struct ParticipantWindow::State {
     take_callbacks();
     tell_surface();
     exchange.show(std::make_shared<BlankScreen>());
-    drawing = std::thread([this] { draw_until_ended(window, exchange, glass, shelf); });
+    if (options.console != nullptr) open_console();
+    drawing =
+        std::thread([this] { draw_until_ended(window, exchange, glass, shelf, console.get()); });
   }
 
   ~State() {
@@ -119,6 +122,17 @@ struct ParticipantWindow::State {
   }
   State(const State&) = delete;
   State& operator=(const State&) = delete;
+
+  void open_console() {
+    ConsoleWindowOptions wanted;
+    wanted.monitor = options.console_monitor;
+    wanted.keyboard_is_participants = [this] { return exploring.load(); };
+    wanted.key = [this](int key, int action, int modifiers) {
+      take_key(event_of_key(key, action, modifiers));
+    };
+    wanted.stir = [this] { exchange.stir(); };
+    console = std::make_unique<ConsoleWindow>(*options.console, wanted);
+  }
 
   static State& of(GLFWwindow* window) {
     return *static_cast<State*>(glfwGetWindowUserPointer(window));
@@ -260,6 +274,7 @@ struct ParticipantWindow::State {
   GlPictureShelf shelf;
   ScreenContext context;
   WindowExchange exchange;
+  std::unique_ptr<ConsoleWindow> console;
   static inline State* newest = nullptr;  ///< GLFW's monitor callback has no other
 
   // Main thread.
@@ -414,6 +429,14 @@ bool ParticipantWindow::wait_until_shown(milliseconds longest) {
 
 ColourImage ParticipantWindow::picture() {
   std::optional<ColourImage> picture = state_->exchange.picture(kPictureLimit);
+  check();
+  if (!picture) throw DeviceError("window: no picture came; look at the graphics driver");
+  return std::move(*picture);
+}
+
+ColourImage ParticipantWindow::console_picture() {
+  if (!state_->console) throw std::logic_error("ParticipantWindow: no experimenter's window");
+  std::optional<ColourImage> picture = state_->console->picture(kPictureLimit);
   check();
   if (!picture) throw DeviceError("window: no picture came; look at the graphics driver");
   return std::move(*picture);

@@ -19,6 +19,8 @@
 
 namespace touchtrial {
 
+class ConsoleExperimenter;
+
 struct ParticipantWindowOptions {
   /// Full screen on this monitor, from 1 as the system counts them; not with `size_px`.
   int monitor = 1;
@@ -36,6 +38,10 @@ struct ParticipantWindowOptions {
   /// Of the device "mouse": the window then shows the plane and the stylus. Must outlive the
   /// window.
   PointerExchange* pointer = nullptr;
+  /// A second window, for whoever runs the session. Must outlive the window; null: none.
+  ConsoleExperimenter* console = nullptr;
+  /// Where it comes up, from 1; none: wherever the system puts it.
+  std::optional<int> console_monitor;
 };
 
 /// Why there is no participant any more.
@@ -51,6 +57,10 @@ enum class WindowGone {
 ///
 /// While a plane is on, the space bar is a comfort stop and Enter ends the exploration; both are
 /// seen without the drawing thread. Escape does nothing.
+///
+/// The experimenter's window, if there is one, lives on the same threads. Keys that are not text
+/// written there are the participant's, whichever window has the focus; while a plane is on, all
+/// are.
 class ParticipantWindow final : public Participant {
  public:
   /// \throws DeviceError with the remedy if there is no display, no OpenGL 3.2, or no such monitor
@@ -94,6 +104,8 @@ class ParticipantWindow final : public Participant {
   [[nodiscard]] bool wait_until_shown(std::chrono::milliseconds longest);
   /// What is on the screen: waits for a picture. \throws DeviceError if none comes within 10 s
   [[nodiscard]] ColourImage picture();
+  /// What is in the experimenter's window, likewise. \throws std::logic_error if there is none
+  [[nodiscard]] ColourImage console_picture();
   ///@}
 
  private:

@@ -1,5 +1,7 @@
 #include "app/participant/window_drawing.hpp"
 
+#include "app/experimenter/console_window.hpp"
+#include "app/windows/gl_picture.hpp"
 #include "app/windows/imgui_turn.hpp"
 
 #include <algorithm>
@@ -33,8 +35,10 @@ bool is_transition(const InputEvent& event) {
 /// OpenGL and ImGui of one window, for as long as its thread draws.
 class Drawing {
  public:
-  Drawing(GLFWwindow* window, WindowExchange& exchange, Glass& glass, GlPictureShelf& shelf)
-      : window_(window), exchange_(exchange), glass_(glass), shelf_(shelf) {
+  Drawing(GLFWwindow* window, WindowExchange& exchange, Glass& glass, GlPictureShelf& shelf,
+          ConsoleWindow* console)
+      : window_(window), exchange_(exchange), glass_(glass), shelf_(shelf), console_(console) {
+    if (console_ != nullptr) console_->begin_drawing();
     glfwMakeContextCurrent(window_);
     glfwSwapInterval(1);
     const std::lock_guard turn(imgui_turn());
@@ -56,6 +60,7 @@ class Drawing {
       ImGui::DestroyContext(context_);
     }
     glfwMakeContextCurrent(nullptr);
+    if (console_ != nullptr) console_->end_drawing();
   }
   Drawing(const Drawing&) = delete;
   Drawing& operator=(const Drawing&) = delete;
@@ -68,14 +73,29 @@ class Drawing {
       glass_ = work.surface.glass;
       if (work.screen != screen_) begin(work.screen);
       take_events();
-      if (work.surface.width_px > 0 && work.surface.height_px > 0) frame(work);
+      if (is_due(work)) frame(work);
+      draw_console();
     }
   }
 
  private:
   [[nodiscard]] milliseconds patience() const {
     if (!waiting_.empty()) return milliseconds(0);
+    if (console_ != nullptr && console_->wants_picture()) return milliseconds(0);
     return screen_ && screen_->is_alive() ? milliseconds(0) : kIdle;
+  }
+
+  /// Not for what the console alone has to show.
+  [[nodiscard]] bool is_due(const WindowExchange::Work& work) const {
+    if (work.surface.width_px <= 0 || work.surface.height_px <= 0) return false;
+    return work.is_new || !waiting_.empty() || !is_shown_ || (screen_ && screen_->is_alive()) ||
+           Clock::now() - drawn_at_ >= kIdle;
+  }
+
+  void draw_console() {
+    if (console_ == nullptr || !console_->wants_picture()) return;
+    console_->draw();
+    glfwMakeContextCurrent(window_);
   }
 
   void begin(std::shared_ptr<Screen> screen) {
@@ -102,9 +122,12 @@ class Drawing {
   void frame(const WindowExchange::Work& work) {
     const Clock::time_point began = Clock::now();
     draw(work.surface);
-    if (work.picture_wanted) exchange_.keep(read_picture(work.surface));
+    if (work.picture_wanted) {
+      exchange_.keep(drawn_picture(work.surface.width_px, work.surface.height_px));
+    }
     glfwSwapBuffers(window_);
-    if (!is_shown_) shown_at_ = Clock::now();
+    drawn_at_ = Clock::now();
+    if (!is_shown_) shown_at_ = drawn_at_;
     is_shown_ = true;
     exchange_.shown(screen_, !waiting_.empty());
     // Where nothing paces the screen.
@@ -162,42 +185,27 @@ class Drawing {
     ImGui::End();
   }
 
-  [[nodiscard]] static ColourImage read_picture(const WindowSurface& surface) {
-    const int width = surface.width_px;
-    const int height = surface.height_px;
-    std::vector<unsigned char> bytes(static_cast<std::size_t>(width) * height * 3);
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, bytes.data());
-    ColourImage picture(height, width);
-    for (int y = 0; y < height; ++y) {
-      const unsigned char* row =
-          bytes.data() + static_cast<std::size_t>(height - 1 - y) * width * 3;
-      for (int x = 0; x < width; ++x) {
-        picture.at(y, x) = {row[3 * x], row[3 * x + 1], row[3 * x + 2]};
-      }
-    }
-    return picture;
-  }
-
   GLFWwindow* window_;
   WindowExchange& exchange_;
   Glass& glass_;
   GlPictureShelf& shelf_;
+  ConsoleWindow* console_;
   ImGuiContext* context_ = nullptr;
   Fonts fonts_;
   double unit_ = 0.0;
   std::shared_ptr<Screen> screen_;
   bool is_shown_ = false;
   Clock::time_point shown_at_{};
+  Clock::time_point drawn_at_{};
   std::deque<InputEvent> waiting_;
 };
 
 }  // namespace
 
 void draw_until_ended(GLFWwindow* window, WindowExchange& exchange, Glass& glass,
-                      GlPictureShelf& shelf) {
+                      GlPictureShelf& shelf, ConsoleWindow* console) {
   try {
-    Drawing(window, exchange, glass, shelf).run();
+    Drawing(window, exchange, glass, shelf, console).run();
   } catch (...) {
     exchange.failed(std::current_exception());
   }

@@ -53,10 +53,18 @@ void WindowExchange::end() {
 
 WindowExchange::Work WindowExchange::wait_for_work(std::chrono::milliseconds longest) {
   std::unique_lock lock(mutex_);
-  for_drawing_.wait_for(
-      lock, longest, [this] { return dirty_ || ending_ || picture_wanted_ || !events_.empty(); });
+  const auto is_new = [this] { return dirty_ || ending_ || picture_wanted_ || !events_.empty(); };
+  for_drawing_.wait_for(lock, longest, [&] { return stirred_ || is_new(); });
+  const bool came = is_new();
+  stirred_ = false;
   dirty_ = false;
-  return {screen_, surface_, std::exchange(events_, {}), picture_wanted_, ending_};
+  return {screen_, surface_, std::exchange(events_, {}), picture_wanted_, ending_, came};
+}
+
+void WindowExchange::stir() {
+  const std::lock_guard lock(mutex_);
+  stirred_ = true;
+  for_drawing_.notify_all();
 }
 
 void WindowExchange::shown(const std::shared_ptr<Screen>& screen, bool events_left) {

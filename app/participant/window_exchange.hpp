@@ -36,6 +36,7 @@ class WindowExchange {
     std::vector<InputEvent> events;
     bool picture_wanted = false;
     bool ending = false;
+    bool is_new = true;  ///< something of this came since the last time
   };
 
   /// \name Session's thread
@@ -64,6 +65,8 @@ class WindowExchange {
   void failed(std::exception_ptr failure);
   ///@}
 
+  /// Something else that the drawing thread draws is to be looked at.
+  void stir();
   [[nodiscard]] WindowSurface surface() const;
   /// Waits until the newest screen is on the glass, with all events that came taken.
   [[nodiscard]] bool wait_until_shown(std::chrono::milliseconds longest);
@@ -86,6 +89,7 @@ class WindowExchange {
   std::exception_ptr failure_;
   bool picture_wanted_ = false;
   bool dirty_ = true;
+  bool stirred_ = false;
   bool settled_ = false;  ///< no event is left that a picture must show
   bool ending_ = false;
 };
