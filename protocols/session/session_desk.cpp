@@ -72,27 +72,39 @@ std::optional<StepReply> SessionDesk::attend(const Step& step) {
 
 void SessionDesk::look(ServoControl& servo) {
   show_now_and_then();
-  while (std::optional<Request> request = parts_.experimenter.request()) {
-    switch (request->kind) {
-      case Request::Kind::comfort_stop:
-        reason_ = with_text("comfort stop", request->text);
-        servo.comfort_stop();
-        continue;  // done
-      case Request::Kind::abort:
-      case Request::Kind::leave:
-        reason_ = request->kind == Request::Kind::abort ? "aborted" : "program ended";
-        servo.comfort_stop();
-        break;
-      case Request::Kind::pause:
-        servo.finish();
-        break;
-      default:
-        break;
-    }
-    // Events are stamped in order, and the first contact, known at the exploration's end, comes
-    // first.
-    postponed_.push_back(std::move(*request));
+  // Whoever wants the session to end may ask for it for as long as it has not.
+  while (!end_is_postponed()) {
+    std::optional<Request> request = parts_.experimenter.request();
+    if (!request) return;
+    heed(std::move(*request), servo);
   }
+}
+
+bool SessionDesk::end_is_postponed() const noexcept {
+  return !postponed_.empty() && (postponed_.back().kind == Request::Kind::abort ||
+                                 postponed_.back().kind == Request::Kind::leave);
+}
+
+void SessionDesk::heed(Request request, ServoControl& servo) {
+  switch (request.kind) {
+    case Request::Kind::comfort_stop:
+      reason_ = with_text("comfort stop", request.text);
+      servo.comfort_stop();
+      return;  // done
+    case Request::Kind::abort:
+    case Request::Kind::leave:
+      reason_ = request.kind == Request::Kind::abort ? "aborted" : "program ended";
+      servo.comfort_stop();
+      break;
+    case Request::Kind::pause:
+      servo.finish();
+      break;
+    default:
+      break;
+  }
+  // Events are stamped in order, and the first contact, known at the exploration's end, comes
+  // first.
+  postponed_.push_back(std::move(request));
 }
 
 std::string SessionDesk::note_interruption(const std::string& words) {

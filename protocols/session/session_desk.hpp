@@ -52,6 +52,9 @@ class SessionDesk {
  private:
   using Request = ExperimenterRequest;
 
+  [[nodiscard]] bool end_is_postponed() const noexcept;
+  /// One request while the plane is on.
+  void heed(Request request, ServoControl& servo);
   [[nodiscard]] std::optional<Request> next_request();
   [[nodiscard]] bool obey(const Request& request);
   [[nodiscard]] bool obey_pause(const Request& request);

@@ -5,6 +5,7 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include <sys/resource.h>
 
@@ -122,7 +123,43 @@ class PageCountingExplorer final : public Explorer {
   VirtualExplorer usual_;
 };
 
-Ran run_with(Explorer& explorer, SessionClock& clock) {
+/// In virtual time, but the desk has its turn while the plane is on.
+class AttendedExplorer final : public Explorer {
+ public:
+  [[nodiscard]] bool in_real_time() const noexcept override { return false; }
+  [[nodiscard]] Exploration explore(const RenderingModel& model, const PlaneGeometry& plane,
+                                    Participant& participant, const ServoOptions& options,
+                                    Trace& trace) override {
+    ServoControl control;
+    participant.exploring(control);
+    participant.exploring(control);
+    was_stopped = control.comfort_stop_asked();
+    return usual_.explore(model, plane, participant, options, trace);
+  }
+
+  bool was_stopped = false;
+
+ private:
+  VirtualExplorer usual_;
+};
+
+/// Says that the program is to end from the first exploration on, whenever asked.
+class Insisting final : public Experimenter {
+ public:
+  void show(const SessionStatus& status) override { insists_ |= status.stage == "exploring"; }
+  [[nodiscard]] std::optional<ExperimenterRequest> request() override {
+    if (!insists_) return std::nullopt;
+    if (++asked_ > 100) throw std::runtime_error("the desk does not stop asking");
+    return ExperimenterRequest{ExperimenterRequest::Kind::leave, "a signal", ""};
+  }
+
+ private:
+  bool insists_ = false;
+  int asked_ = 0;
+};
+
+Ran run_with(Explorer& explorer, SessionClock& clock,
+             Experimenter& experimenter = no_experimenter()) {
   const TinyStudy study({.trials = R"({"repeats": 1})"});
   const StimulusSource source(study.pack(), study.key().study.rendering);
   Ran ran;
@@ -134,7 +171,8 @@ Ran run_with(Explorer& explorer, SessionClock& clock) {
   session.open({}, opening, "{}");
   Unlucky person(1);
   AlwaysReady devices;
-  ran.tally = run_session(session, {study.key(), source, person, clock, explorer, devices});
+  ran.tally = run_session(
+      session, {study.key(), source, person, clock, explorer, devices, kServoRateHz, experimenter});
   return ran;
 }
 
@@ -194,6 +232,18 @@ TEST_CASE("a presentation in which the device was lost is repeated and leaves no
   CHECK(ran.count(EventKind::answered) == 5);
   CHECK(ran.count(EventKind::trace_stored) == 5);
   CHECK(ran.count(EventKind::stopped) == 0);
+}
+
+TEST_CASE("a session that is to end while the plane is on is left once, however often it is said") {
+  VirtualSessionClock clock;
+  AttendedExplorer explorer;
+  Insisting experimenter;
+  const Ran ran = run_with(explorer, clock, experimenter);
+  CHECK(explorer.was_stopped);
+  CHECK(ran.tally.left == "a signal");
+  CHECK(ran.count(EventKind::presented) == 1);
+  CHECK(ran.count(EventKind::answered) == 0);
+  CHECK(ran.count(EventKind::closed) == 0);
 }
 
 TEST_CASE("a session whose device is lost again and again is stopped") {
