@@ -40,6 +40,7 @@ class Look {
     colour(ImGuiCol_PlotHistogram, kBlue);
     space(ImGuiStyleVar_WindowPadding, {kMargin * density, kMargin * density});
     space(ImGuiStyleVar_FramePadding, {12.0F * density, 9.0F * density});
+    space(ImGuiStyleVar_CellPadding, {0.0F, 6.0F * density});
     space(ImGuiStyleVar_ItemSpacing, {10.0F * density, 10.0F * density});
     ImGui::PushStyleVar(ImGuiStyleVar_FrameRounding, 5.0F * density);
     ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, 1.0F);
@@ -101,7 +102,10 @@ void draw_progress(const SessionStatus& status, float density) {
 
 void fact(const char* name, const std::string& value) {
   ImGui::TableNextColumn();
+  // Closer to its value than to the row above.
+  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0.0F, 2.0F});
   grey(name);
+  ImGui::PopStyleVar();
   ImGui::TextWrapped("%s", value.c_str());
 }
 

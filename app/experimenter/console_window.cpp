@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <condition_variable>
 #include <deque>
 #include <mutex>
@@ -145,6 +146,13 @@ struct Surface {
   float density = 1.0F;
 };
 
+/// Letters grow with the window, by quarters: their pictures are made anew each time.
+float enlargement(const Surface& surface) {
+  const float room = std::min(static_cast<float>(surface.width) / (kWidth * surface.density),
+                              static_cast<float>(surface.height) / (kHeight * surface.density));
+  return std::clamp(std::floor(4.0F * room) / 4.0F, 1.0F, 3.0F);
+}
+
 }  // namespace
 
 struct ConsoleWindow::State {
@@ -236,6 +244,7 @@ struct ConsoleWindow::State {
     // Nothing is drawn while it is iconified.
     if (now.height_px <= 0) now.width_px = 0;
     now.density = screen_scale(window).density;
+    now.density *= enlargement(now);
     {
       const std::lock_guard lock(mutex);
       surface = now;

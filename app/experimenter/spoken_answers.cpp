@@ -23,6 +23,7 @@ std::optional<StepReply> SpokenAnswers::attend(const Step& step) {
   const auto shown = participant_.attend(step);
   const auto* asked = std::get_if<AnswerStep>(&step);
   if (asked == nullptr || asked->sight != Sight::blindfold) return shown;
+  if (shown && shown->explore_again) return shown;
   const auto spoken = entry_.spoken_answer(*asked, sorted_);
   if (!spoken) return std::nullopt;
   StepReply reply;

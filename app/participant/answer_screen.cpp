@@ -48,7 +48,8 @@ void AnswerScreen::paint(Canvas& canvas) {
   }
   std::vector<FooterButton> buttons;
   if (step_.may_explore_again) buttons.push_back({kFeelAgain, words.feel_again, false});
-  buttons.push_back({kNextTarget, words.next, true, chosen_ >= 0});
+  // Who speaks an answer has nothing to press.
+  if (!spoken || chosen_ >= 0) buttons.push_back({kNextTarget, words.next, true, chosen_ >= 0});
   draw_footer(canvas, buttons);
 }
 
@@ -110,6 +111,7 @@ void AnswerScreen::paint_names(Canvas& canvas, const Box& area) {
     canvas.button(i, box, std::to_string(i + 1) + "   " + labels_[static_cast<std::size_t>(i)],
                   ButtonKind::line, !is_fixed(), chosen_ == i);
   }
+  if (chosen_ < 0) return;
   canvas.label({area.x, area.y + room, area.width, line}, Letters::small, tone::kQuiet, hint());
 }
 

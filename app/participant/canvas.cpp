@@ -48,6 +48,27 @@ std::vector<std::string> wrapped(const ImFont& font, const std::string& text, fl
   return lines;
 }
 
+/// As few lines as the width allows, and as even as they can be: no word is alone in the last.
+std::vector<std::string> balanced(const ImFont& font, const std::string& text, float scale,
+                                  double width) {
+  std::vector<std::string> lines = wrapped(font, text, scale, static_cast<float>(width));
+  if (lines.size() < 2) return lines;
+  constexpr int kHalvings = 8;
+  double narrow = 0.4 * width;
+  double wide = width;
+  for (int i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (narrow + wide);
+    auto tried = wrapped(font, text, scale, static_cast<float>(middle));
+    if (tried.size() > lines.size()) {
+      narrow = middle;
+    } else {
+      wide = middle;
+      lines = std::move(tried);
+    }
+  }
+  return lines;
+}
+
 }  // namespace
 
 double design_unit(Vec2 size) noexcept {
@@ -104,8 +125,11 @@ double Canvas::text(const Box& room, Letters letters, std::uint32_t colour, cons
   double y = std::round(room.y);
   Box taken{room.right(), y, 0.0, 0.0};
   double right = room.x;
-  for (const std::string& line :
-       wrapped(face, text, static_cast<float>(shrink), static_cast<float>(room.width))) {
+  const auto lines =
+      align == Align::centre
+          ? balanced(face, text, static_cast<float>(shrink), room.width)
+          : wrapped(face, text, static_cast<float>(shrink), static_cast<float>(room.width));
+  for (const std::string& line : lines) {
     const double width = static_cast<double>(
         face.CalcTextSizeA(static_cast<float>(size), FLT_MAX, 0.0F, line.c_str()).x);
     double x = room.x;

@@ -53,6 +53,7 @@ struct Room {
     window.see_pictures({"bark", "cloth"});
     screen->xdotool("search --name '^Touchtrial$' windowmove 0 0");
     screen->xdotool("search --name '^Touchtrial console$' windowmove 1280 0");
+    std::this_thread::sleep_for(milliseconds(100));
   }
 
   template <typename Session>
@@ -62,8 +63,9 @@ struct Room {
 
   void settle() { static_cast<void>(window.console_picture()); }
 
-  /// Clicks in the experimenter's window.
+  /// Clicks in the experimenter's window, which gets the focus, as window managers give it.
   void click(std::pair<int, int> at) {
+    screen->xdotool("search --name '^Touchtrial console$' windowfocus --sync");
     screen->move_pointer(kParticipantWidth + at.first, at.second);
     screen->press();
     screen->release();
@@ -93,6 +95,156 @@ struct Room {
   ParticipantWindow window;
 };
 
+/// Where the buttons are, in window units; found by the colour of the comfort stop.
+struct Buttons {
+  using Place = std::pair<int, int>;
+  Place pause, resume, comfort_stop, note, deviation, abort;
+};
+
+bool is_vermillion(const Rgb& sample) {
+  return sample == Rgb{213, 94, 0};
+}
+
+/// The middle of the lowest or of the highest button of that colour.
+std::pair<int, int> middle_of_vermillion(const ColourImage& picture, bool is_lowest) {
+  int y = is_lowest ? picture.height() - 1 : 0;
+  const auto is_in_row = [&picture](int row) {
+    for (int x = 0; x < picture.width(); ++x) {
+      if (is_vermillion(picture.at(row, x))) return true;
+    }
+    return false;
+  };
+  while (y > 0 && y < picture.height() && !is_in_row(y)) y += is_lowest ? -1 : 1;
+  if (!is_lowest) {
+    while (y < picture.height() && !is_in_row(y)) ++y;
+  }
+  y += is_lowest ? -6 : 6;
+  int first = 0;
+  while (!is_vermillion(picture.at(y, first))) ++first;
+  int last = picture.width() - 1;
+  while (!is_vermillion(picture.at(y, last))) --last;
+  return {(first + last) / 2, is_lowest ? y - 6 : y + 12};
+}
+
+Buttons buttons_of(const ColourImage& picture) {
+  const auto [x, y] = middle_of_vermillion(picture, false);
+  const int left = picture.width() - x;
+  const int middle = picture.width() / 2;
+  return {{left, y}, {middle, y}, {x, y}, {left, y + 54}, {middle, y + 54}, {x, y + 54}};
+}
+
+bool is(const std::optional<ExperimenterRequest>& request, Kind kind, const std::string& text = "",
+        const std::string& code = "") {
+  return request && request->kind == kind && request->text == text && request->code == code;
+}
+
+TEST_CASE("the console's buttons ask for what stands on them") {
+  Room room;
+  room.run([&] {
+    room.console.show(status());
+    const Buttons buttons = buttons_of(room.window.console_picture());
+    room.click(buttons.pause);
+    CHECK(is(room.request(), Kind::pause));
+    room.type("d o o r Return");
+    CHECK(is(room.request(), Kind::note, "pause: door"));
+    room.console.show(status("paused"));
+    room.settle();
+    room.click(buttons.resume);
+    CHECK(is(room.request(), Kind::resume));
+    room.console.show(status());
+    room.click(buttons.comfort_stop);
+    CHECK(is(room.request(), Kind::comfort_stop));
+    room.click(buttons.note);
+    room.type("h o t space 2 BackSpace 3 Return");
+    CHECK(is(room.request(), Kind::note, "hot 3"));
+    room.click(buttons.deviation);
+    room.type("n o minus c u r t a i n Tab f e l l Return");
+    CHECK(is(room.request(), Kind::deviation, "fell", "no-curtain"));
+    CHECK_FALSE(room.console.request());
+  });
+}
+
+TEST_CASE("the console asks again before a session is aborted, and Enter does not do it") {
+  Room room;
+  room.run([&] {
+    room.console.show(status());
+    const Buttons buttons = buttons_of(room.window.console_picture());
+    room.click(buttons.abort);
+    room.type("i l l Return");
+    CHECK_FALSE(room.console.request());
+    room.click(middle_of_vermillion(room.window.console_picture(), true));
+    CHECK(is(room.request(), Kind::abort, "ill"));
+  });
+}
+
+TEST_CASE("keys pressed over the console are the participant's, but for what is written there") {
+  Room room;
+  room.run([&] {
+    room.console.show(status());
+    const Buttons buttons = buttons_of(room.window.console_picture());
+    const AnswerStep answer{.trial = 7, .of = 25};
+    CHECK_FALSE(room.window.attend(answer));
+    CHECK(room.window.wait_until_shown(milliseconds(20'000)));
+    room.click(buttons.note);
+    room.type("1 2 Return");
+    CHECK(is(room.request(), Kind::note, "12"));
+    for (int i = 0; i < 20; ++i) CHECK_FALSE(room.window.attend(answer));
+    room.type("2 Return");
+    std::optional<StepReply> reply;
+    for (int i = 0; i < 2000 && !reply; ++i) reply = room.window.attend(answer);
+    REQUIRE(reply);
+    CHECK(reply->position == 1);
+  });
+}
+
+TEST_CASE("while a plane is on the space bar is a comfort stop even where a note is written") {
+  Room room;
+  room.run([&] {
+    room.console.show(status("exploring"));
+    const Buttons buttons = buttons_of(room.window.console_picture());
+    room.click(buttons.note);
+    room.type("h o t");
+    room.window.show_exploring({0.2, 256, 256});
+    CHECK(room.window.wait_until_shown(milliseconds(20'000)));
+    ServoControl servo;
+    room.window.exploring(servo);
+    CHECK_FALSE(servo.comfort_stop_asked());
+    room.screen->type("space");
+    const auto give_up = steady_clock::now() + std::chrono::seconds(20);
+    while (!servo.comfort_stop_asked() && steady_clock::now() < give_up) {
+      room.window.exploring(servo);
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+    CHECK(servo.comfort_stop_asked());
+    room.click(buttons.comfort_stop);
+    CHECK(is(room.request(), Kind::comfort_stop));
+  });
+}
+
+TEST_CASE("the console is the same to the last byte, whatever the participant sees and answers") {
+  Room room;
+  room.run([&] {
+    std::optional<ColourImage> first;
+    room.console.show(status());
+    for (const int position : {0, 1}) {
+      CHECK_FALSE(room.window.attend(FeedbackStep{0, position}));
+      CHECK(room.window.wait_until_shown(milliseconds(20'000)));
+      const ColourImage picture = room.window.console_picture();
+      if (!first) first = picture;
+      CHECK(picture == *first);
+    }
+  });
+}
+
+TEST_CASE("the console's monitor is named if it is not there") {
+  const auto screen = VirtualScreen::open();
+  Experimenter nobody;
+  ConsoleExperimenter console(nobody);
+  ParticipantWindowOptions wanted = options(console);
+  wanted.console_monitor = 2;
+  CHECK_THROWS_WITH(ParticipantWindow(wanted), holds_text("no monitor 2") && holds_text("has 1"));
+}
+
 void keep(const ColourImage& picture, const std::string& name) {
   const char* const folder = std::getenv("TOUCHTRIAL_SCREENSHOTS");
   REQUIRE(folder != nullptr);
@@ -107,6 +259,24 @@ TEST_CASE("screenshots of every state of the console, for TOUCHTRIAL_SCREENSHOTS
     keep(room.window.console_picture(), "console-empty");
     room.console.show(status());
     keep(room.window.console_picture(), "console");
+    const Buttons buttons = buttons_of(room.window.console_picture());
+    room.click(buttons.note);
+    room.type("R o o m space i s space h o t");
+    keep(room.window.console_picture(), "console-note");
+    room.type("Return");
+    room.click(buttons.deviation);
+    keep(room.window.console_picture(), "console-deviation");
+    room.click(buttons.abort);
+    keep(room.window.console_picture(), "console-abort");
+    room.window.show_exploring({0.2, 256, 256});
+    room.console.show(status("exploring"));
+    keep(room.window.console_picture(), "console-exploring");
+    room.screen->xdotool("search --name '^Touchtrial console$' windowsize 1280 720");
+    std::this_thread::sleep_for(milliseconds(500));
+    keep(room.window.console_picture(), "console-1280x720");
+    room.screen->xdotool("search --name '^Touchtrial console$' windowsize 1920 1080");
+    std::this_thread::sleep_for(milliseconds(500));
+    keep(room.window.console_picture(), "console-1920x1080");
   });
 }
 
