@@ -29,6 +29,7 @@ void add_prepare_command(CLI::App& program, Action& action);
 void add_prereg_command(CLI::App& program, Action& action);
 void add_simulate_command(CLI::App& program, Action& action);
 void add_run_command(CLI::App& program, Action& action);
+void add_consent_command(CLI::App& program, Action& action);
 void add_close_command(CLI::App& program, Action& action);
 void add_unblind_command(CLI::App& program, Action& action);
 void add_verify_command(CLI::App& program, Action& action);

@@ -33,6 +33,7 @@ void add_commands(CLI::App& program, Action& action) {
   add_prereg_command(program, action);
   add_simulate_command(program, action);
   add_run_command(program, action);
+  add_consent_command(program, action);
   add_close_command(program, action);
   add_unblind_command(program, action);
   add_verify_command(program, action);
