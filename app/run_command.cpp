@@ -63,6 +63,9 @@ void add_device_options(CLI::App& command, RunOptions& options) {
   add_settings_option(command, options.settings);
   command.add_option("--certificate", options.certificate,
                      "The device's calibration (default: NAME-certificate.json, if it is there)");
+  command.add_flag("--console", options.console, "A window for the experimenter too");
+  command.add_option("--console-monitor", options.console_monitor, "Its monitor, from 1")
+      ->check(CLI::Range(1, 16));
   command.add_flag("!--no-sound", options.sound, "Neither masking noise nor tones");
   command.add_option("--monitor", options.monitor, "The participant's monitor, from 1")
       ->check(CLI::Range(1, 16))

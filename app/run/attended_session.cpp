@@ -1,5 +1,6 @@
 #include "app/run/attended_session.hpp"
 
+#include "app/experimenter/console_experimenter.hpp"
 #include "app/experimenter/spoken_answers.hpp"
 #include "app/experimenter/terminal_experimenter.hpp"
 #include "app/participant/participant_window.hpp"
@@ -89,6 +90,8 @@ class PersonsSession {
     wanted.device = [this]() -> HapticDevice& { return device_.device(); };
     wanted.pointer = device_.pointer();
     if (options_.sound) wanted.cues = &sound_;
+    if (options_.console) wanted.console = &console_;
+    if (options_.console_monitor > 0) wanted.console_monitor = options_.console_monitor;
     ParticipantWindow window(wanted);
     int code = 1;
     run_beside(window, [&] { code = run_before(window); });
@@ -108,7 +111,7 @@ class PersonsSession {
     SpokenAnswers spoken(window, terminal_);
     const bool speaks = study_.key.study.session.sight == Sight::blindfold;
     RunExperimenter experimenter(
-        terminal_, [&] { return why_gone(window); }, [this] { return sound_.to_record(); });
+        console_, [&] { return why_gone(window); }, [this] { return sound_.to_record(); });
     const SessionTexts texts = texts_for(study_.key.study, device_.info());
     const SessionTally tally = run_session(
         *entered.session, {.key = study_.key,
@@ -131,6 +134,7 @@ class PersonsSession {
   StudyStore& store_;
   StimulusSource source_;
   TerminalExperimenter terminal_;
+  ConsoleExperimenter console_{terminal_};
   SessionDevice device_;
   SessionSound sound_;
 };

@@ -28,7 +28,9 @@ struct RunOptions {
   std::optional<std::filesystem::path> subject;
   std::uint64_t seed = 1;  ///< of the simulated participant
   bool headless = false;
-  bool real_time = false;  ///< a simulated participant in real time
+  bool real_time = false;   ///< a simulated participant in real time
+  bool console = false;     ///< a window for the experimenter
+  int console_monitor = 0;  ///< on which, from 1; 0: wherever the system puts it
   bool sound = true;
   int monitor = 1;  ///< the participant's, from 1; full screen
   /// Width and height of the participant's window instead, pixels.
