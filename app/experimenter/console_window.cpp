@@ -96,7 +96,7 @@ void name_keys(ImGuiIO& io) {
 [[noreturn]] void refuse_monitor(int wanted, int count) {
   throw DeviceError("experimenter's window: there is no monitor " + std::to_string(wanted) +
                     "; this machine has " + std::to_string(count) +
-                    ": connect another, or leave --console-monitor out");
+                    ": connect another, or choose one of these");
 }
 
 /// In the middle of the monitor, cut to what it has room for.

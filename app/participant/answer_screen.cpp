@@ -108,8 +108,9 @@ void AnswerScreen::paint_names(Canvas& canvas, const Box& area) {
   for (int i = 0; i < count(); ++i) {
     const Box box = {std::round(left + (i / rows) * (width + gap)),
                      std::round(top + (i % rows) * (height + gap)), width, height};
-    canvas.button(i, box, std::to_string(i + 1) + "   " + labels_[static_cast<std::size_t>(i)],
-                  ButtonKind::line, !is_fixed(), chosen_ == i);
+    // Without a number: the experimenter's list has others, in alphabetical order.
+    canvas.button(i, box, labels_[static_cast<std::size_t>(i)], ButtonKind::line, !is_fixed(),
+                  chosen_ == i);
   }
   if (chosen_ < 0) return;
   canvas.label({area.x, area.y + room, area.width, line}, Letters::small, tone::kQuiet, hint());
