@@ -14,6 +14,8 @@ void count_session(const SessionRow& session, const StudyCommitment& commitment,
   if (session.pilot && !commitment.pilot) ++counts.pilot;
   if (session.withdrawn) {
     ++counts.withdrawn;
+  } else if (!session.replaced_by.empty()) {
+    ++counts.replaced;
   } else if (session.excluded) {
     ++counts.excluded;
   } else if (session.state == SessionState::completed) {

@@ -11,12 +11,14 @@
 
 namespace touchtrial {
 
-/// Sessions by how they stand; withdrawn and excluded ones are not in the first three.
+/// Sessions by how they stand, each counted once: withdrawn, else replaced, else excluded, else by
+/// its state.
 struct SessionCounts {
   int completed = 0;
   int open = 0;
   int stopped = 0;
   int excluded = 0;
+  int replaced = 0;  ///< somebody took the place, or the session was restarted
   int withdrawn = 0;
   int pilot = 0;  ///< of all these, in a study that is no pilot
 };

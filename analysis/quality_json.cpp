@@ -29,7 +29,8 @@ nlohmann::ordered_json quality_object(const QualityReport& report) {
   object["trials"] = report.trials;
   object["sessions"] = {{"completed", sessions.completed}, {"open", sessions.open},
                         {"stopped", sessions.stopped},     {"excluded", sessions.excluded},
-                        {"withdrawn", sessions.withdrawn}, {"pilot", sessions.pilot}};
+                        {"replaced", sessions.replaced},   {"withdrawn", sessions.withdrawn},
+                        {"pilot", sessions.pilot}};
   object["responses"] = {
       {"presented", quality.presented},     {"answered", quality.answered},
       {"changed", quality.changed},         {"no_response", quality.no_response},

@@ -9,11 +9,13 @@ namespace touchtrial {
 namespace {
 
 std::string sessions_text(const QualityReport& report) {
-  TextTable table({"sessions", "completed", "open", "stopped", "excluded", "withdrawn", "pilot"});
+  TextTable table(
+      {"sessions", "completed", "open", "stopped", "excluded", "replaced", "withdrawn", "pilot"});
   const SessionCounts& counts = report.sessions;
   table.add({"", std::to_string(counts.completed), std::to_string(counts.open),
              std::to_string(counts.stopped), std::to_string(counts.excluded),
-             std::to_string(counts.withdrawn), std::to_string(counts.pilot)});
+             std::to_string(counts.replaced), std::to_string(counts.withdrawn),
+             std::to_string(counts.pilot)});
   return heading("sessions", report.simulated) + table.text();
 }
 

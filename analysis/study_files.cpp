@@ -43,12 +43,22 @@ Opened<StudyKey> open_key(const StudyFiles& files) {
   return opened<StudyKey>([&] { return load_study_key(files.key); });
 }
 
+bool has_code_of(const StudyKey& key, const Pack& pack) {
+  const auto& entries = pack.manifest().entries;
+  return std::any_of(key.stimuli.begin(), key.stimuli.end(), [&](const KeyedStimulus& stimulus) {
+    return std::any_of(entries.begin(), entries.end(),
+                       [&](const PackEntry& entry) { return entry.code == stimulus.code; });
+  });
+}
+
 /// The pack where the key says may since have been made anew for another study, or, with the same
-/// seed and hence the same identity, for an edited study that is simulated.
-bool was_made_anew(const StudyStore& store, const Pack& pack) {
+/// seed and hence the same identity, for an edited study that is simulated. Codes of other studies
+/// are drawn at random: a pack that has one of the key's is the study's, whatever it says.
+bool was_made_anew(const StudyStore& store, const StudyKey& key, const Pack& pack) {
   const StudyCommitment& commitment = store.commitment();
-  return pack.manifest().study_id != commitment.study_id ||
-         (commitment.simulated && pack.digest() != commitment.pack);
+  const bool is_of_other = pack.manifest().study_id != commitment.study_id;
+  if (!key.simulated) return is_of_other && !has_code_of(key, pack);
+  return is_of_other || pack.digest() != commitment.pack;
 }
 
 Opened<Pack> find_pack(const StudyStore& store, const StudyKey& key) {
@@ -60,7 +70,7 @@ Opened<Pack> find_pack(const StudyStore& store, const StudyKey& key) {
   if (is_absent(key.pack_folder)) return leave("there is no " + folder);
   Opened<Pack> pack = opened<Pack>([&] { return Pack(key.pack_folder); });
   try {
-    if (pack.file && was_made_anew(store, *pack.file)) {
+    if (pack.file && was_made_anew(store, key, *pack.file)) {
       return leave(folder + " was made anew for another study, or for this one after a change");
     }
   } catch (const StoreError&) {

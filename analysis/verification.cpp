@@ -2,13 +2,12 @@
 
 #include "analysis/outcomes.hpp"
 #include "analysis/sealed_sessions.hpp"
+#include "analysis/session_course.hpp"
 #include "core/errors.hpp"
 #include "protocols/store/payload_json.hpp"
 
 #include <algorithm>
 #include <map>
-#include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -64,80 +63,33 @@ std::string check_configuration(const StudyStore& store, const StudyKey& key) {
   return "what the database holds in clear is the key's study";
 }
 
-/// What a session should have presented, and where blocks that were restarted begin.
-struct ExpectedSchedule {
-  Schedule schedule;
-  std::map<int, int> first_trials;  ///< of the last restart, by block
-};
-
-using ExpectedSchedules = std::map<int, ExpectedSchedule>;
-
-std::vector<Presentation> drawn_again(const Study& study, int enrolment, const BlockBody& body,
-                                      int restarts_before) {
+/// A session's events as the study and its enrolment number alone have them follow.
+SessionCourse course_of(const StudyStore& store, const Study& study, const SessionRow& session) {
   try {
-    return restarted_block(study, enrolment, body.block, restarts_before, body.first_trial);
-  } catch (const std::invalid_argument&) {
-    throw VerificationError(
-        fmt::format("enrolment {} has no block {} that could be restarted", enrolment, body.block));
+    SessionCourse course(study, session.enrolment);
+    for (const Event& event : store.events(session.session)) course.follow(event);
+    return course;
+  } catch (const StudyError& error) {
+    throw VerificationError(fmt::format("session {}: the study has no order for enrolment {}: {}",
+                                        session.session, session.enrolment, error.what()));
   }
-}
-
-/// From the study and the enrolment number alone, but for which blocks were restarted when.
-ExpectedSchedules expected_schedules(const StudyStore& store, const Study& study) {
-  ExpectedSchedules expected;
-  std::map<int, int> enrolments;
-  for (const SessionRow& session : store.sessions()) {
-    if (session.withdrawn) continue;
-    enrolments[session.session] = session.enrolment;
-    expected[session.session] = {make_schedule(study, session.enrolment), {}};
-  }
-  std::map<std::pair<int, int>, int> restarts;
-  store.for_each(EventKind::block_restarted, [&](const Event& event) {
-    const auto own = expected.find(event.session);
-    if (own == expected.end()) return;
-    const BlockBody body = block_from_json(event.body);
-    const int before = restarts[{event.session, body.block}]++;
-    const std::vector<Presentation> block =
-        drawn_again(study, enrolments[event.session], body, before);
-    auto& all = own->second.schedule.presentations;
-    all.insert(all.end(), block.begin(), block.end());
-    own->second.first_trials[body.block] = body.first_trial;
-  });
-  return expected;
-}
-
-void check_presented(const TrialRow& row, const ExpectedSchedule& expected) {
-  const auto& planned = expected.schedule.presentations;
-  const auto fail = [&](const char* what) {
-    throw VerificationError(
-        fmt::format("session {}, trial {}: was presented {}", row.session, row.trial, what));
-  };
-  if (std::none_of(planned.begin(), planned.end(), [&](const Presentation& one) {
-        return one.trial == row.trial && one.block == row.block;
-      })) {
-    fail("but not scheduled");
-  }
-  const auto restarted = expected.first_trials.find(row.block);
-  if (restarted == expected.first_trials.end() || row.state == TrialState::voided) return;
-  if (row.trial < restarted->second) fail("under its old number after its block was restarted");
 }
 
 std::string check_schedule(const StudyStore& store, const StudyKey& key) {
   const std::map<int, Schedule> schedules = open_schedules(store, key);
-  const ExpectedSchedules expected = expected_schedules(store, key.study);
+  int presentations = 0;
   for (const SessionRow& session : store.sessions()) {
+    const SessionCourse course = course_of(store, key.study, session);
+    presentations += course.presentations();
     const auto schedule = schedules.find(session.session);
     if (schedule == schedules.end()) continue;  // withdrawn
-    if (schedule->second == expected.at(session.session).schedule) continue;
+    if (schedule->second == course.schedule()) continue;
     throw VerificationError(
         fmt::format("session {}: the schedule is not the one that enrolment {} gets",
                     session.session, session.enrolment));
   }
-  for (const TrialRow& row : store.trials()) {
-    const auto own = expected.find(row.session);
-    if (own != expected.end()) check_presented(row, own->second);
-  }
-  return fmt::format("{} sessions' schedules made anew", schedules.size());
+  return fmt::format("{} sessions' schedules made anew, {} presentations where they were due",
+                     schedules.size(), presentations);
 }
 
 std::string check_responses(const StudyStore& store) {

@@ -2,11 +2,14 @@
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/key_of_database.hpp"
+#include "core/errors.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <filesystem>
 #include <memory>
 #include <string>
+
+#include <spdlog/spdlog.h>
 
 namespace touchtrial {
 namespace {
@@ -20,9 +23,26 @@ struct UnblindArguments {
   bool interim = false;
 };
 
+/// What can no longer be gone on with; empty if nothing. Whoever withdrew could not anyway.
+std::string left_open(const StudyStore& store) {
+  std::string participants;
+  for (const SessionRow& row : store.sessions()) {
+    if (row.state != SessionState::open || row.withdrawn || !row.replaced_by.empty()) continue;
+    participants += (participants.empty() ? "" : ", ") + row.participant;
+  }
+  return participants;
+}
+
 int close(const fs::path& database) {
   StudyStore store = StudyStore::open(database, StudyStore::Access::read_write);
+  const std::string open = left_open(store);
   store.close_study(utc_now());
+  if (!open.empty()) {
+    spdlog::warn("{}", one_line(database.string() +
+                                ": these participants' sessions are open, and can no longer be "
+                                "continued: " +
+                                open));
+  }
   print(database.string() + ": collection is closed\n");
   return 0;
 }

@@ -92,7 +92,8 @@ std::string explanation(int code, const std::string& message) {
     case SQLITE_LOCKED:
       return "is in use by another program; close it there, or wait, and try again";
     case SQLITE_READONLY:
-      return "cannot be written; open it for writing, and check its permissions";
+      return "cannot be written; open it for writing, and check its permissions and those of its "
+             "folder";
     case SQLITE_CORRUPT:
     case SQLITE_NOTADB:
       return "is damaged (" + message + "); restore it from a backup";
@@ -154,7 +155,8 @@ Database Database::open(const std::filesystem::path& path, Mode mode, int newest
     Database database(path, connected(path, mode));
     if (mode == Mode::read_write &&
         sqlite3_db_readonly(database.connection_.getHandle(), "main") == 1) {
-      throw StoreError(database.refusal("cannot be written; check its permissions"));
+      throw StoreError(
+          database.refusal("cannot be written; check its permissions and those of its folder"));
     }
     set_up(database, mode);
     // SQLite opens files lazily: what is wrong with this one shows when its schema is read.

@@ -14,7 +14,9 @@ using std::chrono::milliseconds;
 constexpr int kRepeats = 4;
 
 StudyKey fake_key(Protocol protocol, const FakeOptions& options) {
-  const Study study = parse_study(fake_study_text(protocol, options.label), ".", "fake.json");
+  nlohmann::json text = nlohmann::json::parse(fake_study_text(protocol, options.label));
+  if (!options.trials.empty()) text["trials"].update(nlohmann::json::parse(options.trials));
+  const Study study = parse_study(text.dump(), ".", "fake.json");
   SeededEntropy entropy(11);
   return make_study_key(study, entropy, options.simulated);
 }
@@ -69,14 +71,17 @@ int position_of(const Schedule& schedule, int class_index) {
   return static_cast<int>(found - schedule.layout.begin());
 }
 
-/// Trial t begins at 10 t seconds, touches 0.5 s and answers 4.25 s later.
+/// The presentation at a place, from 1, begins at 10 times that in seconds.
+void interrupt_trial(SessionRecorder& recorder, const Presentation& shown, int place) {
+  const milliseconds start(10'000 * place);
+  recorder.presented(start, shown.trial, shown.block);
+  recorder.interrupted(start + milliseconds(1000), shown.trial, "comfort stop");
+}
+
+/// It is touched 0.5 s and answered 4.25 s later.
 void record_trial(SessionRecorder& recorder, const FakeSession& session, const Schedule& schedule,
-                  const Presentation& shown) {
-  const milliseconds start(10'000 * shown.trial);
-  if (shown.trial == session.interrupt_trial) {
-    recorder.presented(start - milliseconds(2000), shown.trial, shown.block);
-    recorder.interrupted(start - milliseconds(1000), shown.trial, "comfort stop");
-  }
+                  const Presentation& shown, int place) {
+  const milliseconds start(10'000 * place);
   recorder.presented(start, shown.trial, shown.block);
   recorder.first_contact(start + milliseconds(500), shown.trial);
   if (const auto answer = session.answers(shown)) {
@@ -131,11 +136,18 @@ void FakeStudy::add(const FakeSession& session) {
   opening.pilot = store_.commitment().pilot;
   opening.station = session.station;
   recorder.opened(milliseconds(0), opening, schedule_to_json(schedule, key_));
-  int shown = 0;
+  int place = 0;
+  const Presentation* again = nullptr;
   for (const Presentation& presentation : schedule.presentations) {
-    if (shown++ == session.stop_after) break;
-    record_trial(recorder, session, schedule, presentation);
+    if (place == session.stop_after) break;
+    if (presentation.trial == session.interrupt_trial) {
+      again = &presentation;
+      interrupt_trial(recorder, presentation, ++place);
+    } else {
+      record_trial(recorder, session, schedule, presentation, ++place);
+    }
   }
+  if (again != nullptr) record_trial(recorder, session, schedule, *again, ++place);
   recorder.closed(milliseconds(10'000'000), session.complete);
   store_.add_session(buffer, wrap_participant_key(key_.master, number, own), milliseconds(number));
 }

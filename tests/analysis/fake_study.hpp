@@ -24,7 +24,7 @@ struct FakeSession {
   bool within_limits = true;               ///< by the sealed measures
   std::optional<StationRecord> station{};  ///< as in real time
   std::optional<ServoHealth> servo{};      ///< of every trial
-  int interrupt_trial = 0;                 ///< presented twice, the first time interrupted; 0: none
+  int interrupt_trial = 0;                 ///< interrupted, and presented again at the end; 0: none
   int stop_after = 1 << 20;                ///< presentations
 };
 
@@ -32,6 +32,7 @@ struct FakeOptions {
   bool simulated = true;
   std::string label = "bark";  ///< of the first class
   bool pilot = false;
+  std::string trials{};    ///< JSON, on top of the study's trials; may be empty
   bool with_pack = false;  ///< tiny fields in `folder() / "study.pack"`
 };
 

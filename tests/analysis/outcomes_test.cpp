@@ -64,7 +64,7 @@ TEST_CASE("Of a trial that was interrupted and repeated the repetition counts on
   CHECK(outcomes.trials.size() == 12);
   CHECK(counted(outcomes) == 12);
   CHECK(outcomes.trials[4].correct());
-  CHECK(outcomes.trials[4].row.presented_at == std::chrono::seconds(50));
+  CHECK(outcomes.trials[4].row.presented_at == std::chrono::seconds(130));
 }
 
 TEST_CASE("Sessions that were stopped do not count") {

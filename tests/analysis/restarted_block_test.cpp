@@ -17,7 +17,9 @@ const Check& schedule_check(const Verification& verification) {
                        [](const Check& check) { return check.name == "schedule"; });
 }
 
-/// A session whose only block is restarted after its first trial.
+const FakeOptions kRestarting{.trials = R"({"on_interruption": "restart-block"})"};
+
+/// A session whose only block is restarted because its second trial is interrupted.
 class RestartedSession {
  public:
   explicit RestartedSession(FakeStudy& study)
@@ -34,11 +36,13 @@ class RestartedSession {
     opening.simulated = true;
     recorder_.opened(milliseconds(0), opening, schedule_to_json(begun_, key_));
     answer(1);
+    recorder_.presented(at_ += seconds(1), 2, 0);
+    recorder_.interrupted(at_, 2, "comfort stop");
     const int first = static_cast<int>(begun_.presentations.size()) + 1;
     const auto again = restarted_block(key_.study, 1, 0, restarts_before, first);
     recorder_.block_restarted(at_, 0, first, block_to_json(again, key_));
     for (const Presentation& one : again) answer(one.trial);
-    if (old_number_again) answer(2);
+    if (old_number_again) answer(3);
     recorder_.closed(at_, true);
     study.store().add_session(events_, wrap_participant_key(key_.master, 1, own_), milliseconds(1));
   }
@@ -61,7 +65,7 @@ class RestartedSession {
 }  // namespace
 
 TEST_CASE("verify_study holds a restarted block against the order that the design gives it") {
-  FakeStudy study(Protocol::classification);
+  FakeStudy study(Protocol::classification, kRestarting);
   RestartedSession(study).record(study, 0);
   const Verification verification = verify_study(study.store(), &study.key(), nullptr);
   INFO(schedule_check(verification).detail);
@@ -70,22 +74,22 @@ TEST_CASE("verify_study holds a restarted block against the order that the desig
 }
 
 TEST_CASE("verify_study finds another order of a restarted block") {
-  FakeStudy study(Protocol::classification);
+  FakeStudy study(Protocol::classification, kRestarting);
   RestartedSession(study).record(study, 1);
   const Verification verification = verify_study(study.store(), &study.key(), nullptr);
   CHECK(schedule_check(verification).state == CheckState::failed);
 }
 
 TEST_CASE("verify_study finds an old number that came after its block was restarted") {
-  FakeStudy study(Protocol::classification);
+  FakeStudy study(Protocol::classification, kRestarting);
   RestartedSession(study).record(study, 0, true);
   const Verification verification = verify_study(study.store(), &study.key(), nullptr);
   CHECK(contains(schedule_check(verification).detail,
-                 "session 1, trial 2: was presented under its old number"));
+                 "session 1, trial 3: was presented under its old number"));
 }
 
 TEST_CASE("outcomes hold a restarted block's trials and count no voided one") {
-  FakeStudy study(Protocol::classification);
+  FakeStudy study(Protocol::classification, kRestarting);
   RestartedSession(study).record(study, 0);
   study.close_and_unblind();
   const Outcomes outcomes = load_outcomes(study.store(), study.key());

@@ -1,0 +1,144 @@
+// Databases that cannot be used: one line says what is wrong, where, and what to do.
+#include "app/study_folder.hpp"
+#include "support/catch.hpp"
+
+#include <string>
+#include <vector>
+
+#include <SQLiteCpp/Database.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+using namespace touchtrial;
+
+namespace {
+
+void check_refused(const ProgramResult& result, const std::vector<std::string>& words,
+                   int exit_code = 1) {
+  INFO(result.output << result.errors);
+  CHECK(result.exit_code == exit_code);
+  CHECK(line_count(result.errors) == 1);
+  for (const std::string& word : words) {
+    INFO(word);
+    CHECK(result.errors.find(word) != std::string::npos);
+  }
+}
+
+ProgramResult note(const StudyFolder& study, const std::string& database) {
+  return study.run({"note", database, "--participant", "P001", "came late"});
+}
+
+ProgramResult run_session(const StudyFolder& study, const std::string& file,
+                          const std::string& database) {
+  return study.run({"run", study.in(file), "--participant", "P009", "--db", study.in(database),
+                    "--subject", study.in("quick.json"), "--headless"});
+}
+
+/// Runs it as a user whom permissions bind, which they do not root.
+ProgramResult run_as_ordinary_user(const StudyFolder& study,
+                                   const std::vector<std::string>& arguments) {
+  if (::geteuid() != 0) return study.run(arguments);
+  std::vector<std::string> words = {"--reuid=65534", "--regid=65534", "--clear-groups",
+                                    TOUCHTRIAL_PROGRAM};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return run_program("/usr/bin/setpriv", study.path(), words);
+}
+
+}  // namespace
+
+TEST_CASE("a database that another program writes is refused, and stays as it was") {
+  const StudyFolder study;
+  REQUIRE(study.simulate("study.db", {"--keep-blind"}).exit_code == 0);
+  {
+    SQLite::Database other(study.in("study.db"), SQLite::OPEN_READWRITE);
+    other.exec("BEGIN IMMEDIATE");
+    check_refused(note(study, study.in("study.db")),
+                  {"study.db: ", "is in use by another program", "try again"});
+    CHECK(study.run({"report", study.in("study.db")}).exit_code == 0);  // reading goes on
+    other.exec("ROLLBACK");
+  }
+  CHECK(note(study, study.in("study.db")).exit_code == 0);
+}
+
+TEST_CASE("a database with a corrupted page is named as damaged, whatever is asked of it") {
+  const StudyFolder study;
+  REQUIRE(study.simulate("study.db", {"--keep-blind"}).exit_code == 0);
+  Bytes bytes = read_file(study.path() / "study.db");
+  constexpr std::size_t kPage = 8192;
+  REQUIRE(bytes.size() > 3 * kPage);
+  // The first page holds the schema, the second the root of the events.
+  for (std::size_t i = kPage; i < 2 * kPage; ++i) bytes[i] = 0xa5;
+  replace_file(study.path() / "study.db", ByteView(bytes));
+  check_refused(note(study, study.in("study.db")),
+                {"study.db: ", "is damaged", "restore it from a backup"}, 3);
+  check_refused(study.run({"report", study.in("study.db")}),
+                {"study.db: ", "is damaged", "restore it from a backup"}, 3);
+  const ProgramResult verified = study.run({"verify", study.in("study.db")});
+  INFO(verified.output << verified.errors);
+  CHECK(verified.exit_code == 3);
+  CHECK(verified.output.find("damaged") != std::string::npos);
+}
+
+TEST_CASE("a session is not put into another study's database") {
+  const StudyFolder study;
+  REQUIRE(study.simulate("study.db", {"--keep-blind"}).exit_code == 0);
+  json other = study_of("classification");
+  other["study"] = "others";
+  other["seed"] = 12;
+  replace_file(study.path() / "others.json", other.dump());
+  REQUIRE(study.run({"prepare", study.in("others.json")}).exit_code == 0);
+  const std::string before = content(study.path() / "study.db");
+  const ProgramResult refused =
+      study.run({"run", study.in("others.json"), "--participant", "P009", "--db",
+                 study.in("study.db"), "--key", study.in("others.key"), "--pack",
+                 study.in("others.pack"), "--subject", study.in("quick.json"), "--headless"});
+  check_refused(refused, {"study.db: ", "is the database of another study", "another --db"});
+  CHECK(content(study.path() / "study.db") == before);
+}
+
+TEST_CASE("what is no database of a study is not opened, and stays as it was") {
+  const StudyFolder study;
+  replace_file(study.path() / "letter.db", std::string(300, 'x'));
+  {
+    SQLite::Database(study.in("others.db"), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE)
+        .exec("CREATE TABLE birds(name)");
+  }
+  fs::create_directory(study.path() / "folder.db");
+  check_refused(note(study, study.in("letter.db")), {"letter.db", "is no Touchtrial database"});
+  check_refused(note(study, study.in("others.db")), {"others.db", "none of Touchtrial"});
+  check_refused(note(study, study.in("folder.db")), {"folder.db", "is a folder"});
+  check_refused(run_session(study, "cloths.json", "letter.db"), {"letter.db"});
+  CHECK(content(study.path() / "letter.db") == std::string(300, 'x'));
+}
+
+TEST_CASE("in a folder that may only be read, reading goes on and writing says what is wrong") {
+  const StudyFolder study;
+  REQUIRE(::chmod(study.path().c_str(), 0755) == 0);
+  if (run_as_ordinary_user(study, {"--version"}).exit_code != 0) {
+    WARN("not tested: root may write everywhere, and the program cannot be run as somebody else");
+    return;
+  }
+  REQUIRE(study.simulate("study.db", {"--keep-blind"}).exit_code == 0);
+  REQUIRE(::chmod(study.in("study.db").c_str(), 0644) == 0);
+  REQUIRE(::chmod(study.path().c_str(), 0555) == 0);
+  const auto as_user = [&](const std::vector<std::string>& arguments) {
+    return run_as_ordinary_user(study, arguments);
+  };
+  const ProgramResult reported = as_user({"report", study.in("study.db"), "--json"});
+  const ProgramResult noted =
+      as_user({"note", study.in("study.db"), "--participant", "P001", "came late"});
+  const ProgramResult file_only = [&] {  // the file may be written, but nothing beside it
+    REQUIRE(::chmod(study.in("study.db").c_str(), 0666) == 0);
+    return as_user({"note", study.in("study.db"), "--participant", "P001", "came late"});
+  }();
+  const ProgramResult simulated =
+      as_user({"simulate", study.in("cloths.json"), "--participants", "1", "--db",
+               study.in("new.db"), "--subject", study.in("quick.json")});
+  REQUIRE(::chmod(study.path().c_str(), 0755) == 0);
+  INFO(reported.errors);
+  CHECK(reported.exit_code == 0);
+  CHECK(json::parse(reported.output).at("participants") == 4);
+  check_refused(noted, {"study.db: ", "cannot be written", "check its permissions"});
+  check_refused(file_only, {"study.db: ", "cannot be written", "its folder"});
+  check_refused(simulated, {study.path().string()});
+}

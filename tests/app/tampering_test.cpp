@@ -1,0 +1,207 @@
+// One byte altered in each kind of evidence: `verify` names it and ends with 3.
+#include "app/study_folder.hpp"
+#include "core/bytes.hpp"
+#include "support/catch.hpp"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <SQLiteCpp/Database.h>
+#include <SQLiteCpp/Statement.h>
+
+using namespace touchtrial;
+
+namespace {
+
+/// A study that was prepared for people, with two simulated sessions as a rehearsal.
+struct PreparedStudy : StudyFolder {
+  PreparedStudy() {
+    REQUIRE(StudyFolder::run({"prepare", in("cloths.json")}).exit_code == 0);
+    for (const std::string participant : {"P01", "P02"}) {
+      const ProgramResult ran =
+          StudyFolder::run({"run", in("cloths.json"), "--participant", participant, "--db",
+                            in("study.db"), "--subject", in("quick.json"), "--headless"});
+      INFO(ran.errors);
+      REQUIRE(ran.exit_code == 0);
+    }
+  }
+  [[nodiscard]] ProgramResult verify(const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {"verify", in("study.db"), "--key", in("cloths.key")};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return StudyFolder::run(arguments);
+  }
+};
+
+void flip(const fs::path& file, std::size_t at) {
+  Bytes bytes = read_file(file);
+  REQUIRE(at < bytes.size());
+  bytes[at] ^= 1U;
+  replace_file(file, ByteView(bytes));
+}
+
+/// Alters the middle byte of a column of one row, as somebody with an SQLite shell could who leaves
+/// the schema as it was.
+void flip_in(const StudyFolder& study, const std::string& table, const std::string& column,
+             const std::string& where) {
+  SQLite::Database database(study.in("study.db"), SQLite::OPEN_READWRITE);
+  std::vector<std::string> triggers;
+  for (SQLite::Statement query(database,
+                               "SELECT name, sql FROM sqlite_schema WHERE type = 'trigger'");
+       query.executeStep();) {
+    triggers.push_back(query.getColumn(1).getString());
+  }
+  std::vector<std::string> names;
+  for (SQLite::Statement query(database, "SELECT name FROM sqlite_schema WHERE type = 'trigger'");
+       query.executeStep();) {
+    names.push_back(query.getColumn(0).getString());
+  }
+  for (const std::string& name : names) database.exec("DROP TRIGGER " + name);
+  std::string value;
+  bool is_text = false;
+  {
+    SQLite::Statement query(database,
+                            "SELECT " + column + " FROM " + table + " WHERE " + where + " LIMIT 1");
+    REQUIRE(query.executeStep());
+    is_text = query.getColumn(0).isText();
+    value = query.getColumn(0).getString();
+  }
+  REQUIRE_FALSE(value.empty());
+  value[value.size() / 2] = static_cast<char>(value[value.size() / 2] ^ 1);
+  SQLite::Statement update(database, "UPDATE " + table + " SET " + column + " = ? WHERE " + where);
+  if (is_text) {
+    update.bind(1, value);
+  } else {
+    update.bind(1, value.data(), static_cast<int>(value.size()));
+  }
+  REQUIRE(update.exec() == 1);
+  for (const std::string& sql : triggers) database.exec(sql);
+}
+
+struct Tampering {
+  std::string what;
+  std::function<void(const StudyFolder&)> alter;
+  std::vector<std::string> words;  ///< that the line of the failed check holds
+};
+
+fs::path first_field(const StudyFolder& study) {
+  std::vector<fs::path> fields;
+  for (const auto& entry : fs::directory_iterator(study.path() / "cloths.pack")) {
+    if (entry.path().extension() == ".field") fields.push_back(entry.path());
+  }
+  REQUIRE(fields.size() == kLabels.size());
+  return *std::min_element(fields.begin(), fields.end());
+}
+
+const std::vector<Tampering> kTamperings = {
+    {"an event's body",
+     [](const StudyFolder& study) {
+       flip_in(study, "events", "body", "session = 2 AND sequence = 4");
+     },
+     {"chain", "failed", "session 2, event 4"}},
+    {"an event's sealed part",
+     [](const StudyFolder& study) {
+       flip_in(study, "events", "sealed", "session = 2 AND sequence = 0");
+     },
+     {"chain", "failed", "session 2, event 0"}},
+    {"an event's hash",
+     [](const StudyFolder& study) {
+       flip_in(study, "events", "hash", "session = 2 AND sequence = 5");
+     },
+     {"chain", "failed", "session 2, event"}},
+    {"an event of the file's chain",
+     [](const StudyFolder& study) {
+       flip_in(study, "events", "body", "session = 0 AND sequence = 1");
+     },
+     {"chain", "failed", "the file's chain, event 1"}},
+    {"a trace",
+     [](const StudyFolder& study) { flip_in(study, "traces", "box", "session = 2 AND trial = 3"); },
+     {"chain", "failed", "session 2", "trace of trial 3"}},
+    {"a wrapped key",
+     [](const StudyFolder& study) { flip_in(study, "participant_keys", "wrapped", "session = 2"); },
+     {"chain", "failed", "key"}},
+    {"a row of responses",
+     [](const StudyFolder& study) {
+       SQLite::Database(study.in("study.db"), SQLite::OPEN_READWRITE)
+           .exec(
+               "UPDATE responses SET position = (position + 1) % 3 WHERE session = 2 AND "
+               "trial = 3");
+     },
+     {"chain", "failed", "session 2"}},
+    {"a row of sessions",
+     [](const StudyFolder& study) { flip_in(study, "sessions", "participant", "session = 2"); },
+     {"chain", "failed"}},
+    {"the pack's list",
+     [](const StudyFolder& study) {
+       const fs::path list = study.path() / "cloths.pack" / "pack.json";
+       flip(list, content(list).size() / 2);
+     },
+     {"pack", "failed"}},
+    {"the study of the pack's list",
+     [](const StudyFolder& study) {
+       const fs::path list = study.path() / "cloths.pack" / "pack.json";
+       const json pack = json::parse(content(list));
+       const std::string id =
+           json::parse(content(study.path() / "cloths.pack" / "pack.json")).at("study_id");
+       flip(list, content(list).find(id));
+     },
+     {"pack", "failed", "the pack is of study"}},
+    {"a field",
+     [](const StudyFolder& study) {
+       const fs::path field = first_field(study);
+       flip(field, fs::file_size(field) / 2);
+     },
+     {"pack", "failed", "field "}},
+    {"the key",
+     [](const StudyFolder& study) {
+       const fs::path key = study.path() / "cloths.key";
+       flip(key, fs::file_size(key) / 2);
+     },
+     {"key", "failed", "cloths.key"}},
+};
+
+/// The lines of checks that failed.
+std::string failed_lines(const std::string& output) {
+  std::string failed;
+  std::size_t at = 0;
+  while (at < output.size()) {
+    const std::size_t end = output.find('\n', at);
+    const std::string line = output.substr(at, end - at + 1);
+    if (line.find("  failed  ") != std::string::npos) failed += line;
+    at = end == std::string::npos ? output.size() : end + 1;
+  }
+  return failed;
+}
+
+}  // namespace
+
+TEST_CASE("one byte altered anywhere is named by verify, with exit 3") {
+  const PreparedStudy study;
+  const ProgramResult whole = study.verify();
+  INFO(whole.output << whole.errors);
+  REQUIRE(whole.exit_code == 0);
+  const fs::path kept = study.path() / "kept";
+  fs::create_directory(kept);
+  const std::vector<std::string> evidence = {"study.db", "cloths.pack", "cloths.key"};
+  for (const std::string& name : evidence) {
+    fs::copy(study.path() / name, kept / name, fs::copy_options::recursive);
+  }
+  for (const Tampering& tampering : kTamperings) {
+    INFO(tampering.what);
+    tampering.alter(study);
+    const ProgramResult found = study.verify();
+    INFO(found.output << found.errors);
+    CHECK(found.exit_code == 3);
+    const std::string failed = failed_lines(found.output);
+    for (const std::string& word : tampering.words) {
+      INFO(word);
+      CHECK(failed.find(word) != std::string::npos);
+    }
+    for (const std::string& label : kLabels) CHECK(found.output.find(label) == std::string::npos);
+    for (const std::string& name : evidence) {
+      fs::remove_all(study.path() / name);
+      fs::copy(kept / name, study.path() / name, fs::copy_options::recursive);
+    }
+  }
+  CHECK(study.verify().exit_code == 0);
+}
