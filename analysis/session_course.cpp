@@ -165,7 +165,6 @@ void SessionCourse::restart_block(const Event& event) {
 void SessionCourse::take_up(const Event& event) {
   constexpr double kSecondsInHour = 3600.0;
   const ResumedBody body = resumed_from_json(event.body);
-  if (is_stopped_) fail(event, "the session was taken up after it was stopped");
   if (body.after == "pause") {
     if (!is_paused_) fail(event, "the session was resumed, but not paused");
   } else if (body.away_s > study_.trials.resume_within_h * kSecondsInHour) {

@@ -53,6 +53,25 @@ TEST_CASE("make_quality counts sessions, answers and validity without a key") {
   CHECK(std::accumulate(quality.by_position.begin(), quality.by_position.end(), 0) == 27);
 }
 
+TEST_CASE("make_quality counts every session once, and replaced ones apart") {
+  FakeStudy study(Protocol::classification);
+  fill(study);
+  using std::chrono::milliseconds;
+  study.store().replace(3, "P04", milliseconds(10), "went home");
+  study.add({.participant = "P04", .enrolment = 3, .answers = FakeStudy::always_right()});
+  study.store().exclude(1, milliseconds(20), "fell asleep");
+  study.store().replace(1, "P05", milliseconds(30), "place is wanted");
+  const SessionCounts counts = make_quality(study.store()).sessions;
+  CHECK(counts.completed == 2);
+  CHECK(counts.stopped == 0);
+  CHECK(counts.excluded == 0);
+  CHECK(counts.replaced == 2);
+  study.store().withdraw(1, milliseconds(40), "");
+  CHECK(make_quality(study.store()).sessions.replaced == 1);
+  CHECK(make_quality(study.store()).sessions.withdrawn == 1);
+  CHECK(quality_text(make_quality(study.store())).find("replaced") != std::string::npos);
+}
+
 TEST_CASE("A quality report names no class, no image and no method") {
   FakeStudy study(Protocol::comparison, {.label = "petrified wood"});
   study.add({.participant = "P01", .answers = FakeStudy::always_right()});

@@ -144,3 +144,19 @@ TEST_CASE("pilots, other studies and studies that changed are refused") {
   CHECK(other.exit_code == 2);
   CHECK(other.errors.find("prepare") != std::string::npos);
 }
+
+TEST_CASE("closing a study names the sessions that can then no longer be continued") {
+  const StudyFolder study;
+  REQUIRE(run_until(study, "P01", "trial", SIGKILL).exit_code == 128 + SIGKILL);
+  REQUIRE(run(study, "P02").exit_code == 0);
+  const ProgramResult closed = study.run({"close", study.in("db")});
+  INFO(closed.errors);
+  CHECK(closed.exit_code == 0);
+  CHECK(line_count(closed.errors) == 1);
+  CHECK(closed.errors.find("can no longer be continued: P01") != std::string::npos);
+  CHECK(closed.errors.find("P02") == std::string::npos);
+  const ProgramResult refused = run(study, "P01", {"--on-existing", "resume"});
+  CHECK(refused.exit_code == 1);
+  CHECK(refused.errors.find("closed") != std::string::npos);
+  CHECK(study.run({"verify", study.in("db")}).exit_code == 0);
+}
