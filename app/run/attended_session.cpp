@@ -7,6 +7,7 @@
 #include "app/participant/window_subject.hpp"
 #include "app/run/answer_pictures.hpp"
 #include "app/run/practice_of.hpp"
+#include "app/run/run_database.hpp"
 #include "app/run/run_experimenter.hpp"
 #include "app/run/session_device.hpp"
 #include "app/run/session_end.hpp"
@@ -71,13 +72,13 @@ SessionTexts texts_for(const Study& study, const DeviceInfo& device) {
 /// Everything around one person's session.
 class PersonsSession {
  public:
-  PersonsSession(const RunOptions& options, const RunStudy& study, StudyStore& store)
+  PersonsSession(const RunOptions& options, const RunStudy& study)
       : options_(options),
         study_(study),
-        store_(store),
         source_(study.pack, study.key.study.rendering),
         terminal_(standard_terminal()),
         device_(options, source_.plane(), terminal_),
+        store_(run_database_for(options, study)),
         sound_(masking_of(options, study.key.study, device_.info()), study.key.study.seed) {
     if (!sound_.trouble().empty()) spdlog::warn("{}", sound_.trouble());
     for (const ExperimenterRequest& known : known_deviations(options, study.key.study, device_)) {
@@ -131,21 +132,22 @@ class PersonsSession {
 
   const RunOptions& options_;
   const RunStudy& study_;
-  StudyStore& store_;
   StimulusSource source_;
   TerminalExperimenter terminal_;
   ConsoleExperimenter console_{terminal_};
   SessionDevice device_;
+  StudyStore store_;  ///< not made for nothing: the device is there
   SessionSound sound_;
 };
 
 }  // namespace
 
-int run_attended(const RunOptions& options, const RunStudy& study, StudyStore& store) {
-  return PersonsSession(options, study, store).run();
+int run_attended(const RunOptions& options, const RunStudy& study) {
+  return PersonsSession(options, study).run();
 }
 
-int run_simulated_at_window(const RunOptions& options, const RunStudy& study, StudyStore& store) {
+int run_simulated_at_window(const RunOptions& options, const RunStudy& study) {
+  StudyStore store = run_database_for(options, study);
   const StimulusSource source(study.pack, study.key.study.rendering);
   const SimulatedSitter sitter = simulated_sitter_for(options, study, source);
   const SessionTexts texts = session_texts(study.key.study);

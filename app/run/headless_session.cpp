@@ -1,5 +1,6 @@
 #include "app/run/headless_session.hpp"
 
+#include "app/run/run_database.hpp"
 #include "app/run/run_experimenter.hpp"
 #include "app/run/session_end.hpp"
 #include "app/run/session_entry.hpp"
@@ -10,7 +11,8 @@
 
 namespace touchtrial {
 
-int run_headless(const RunOptions& options, const RunStudy& study, StudyStore& store) {
+int run_headless(const RunOptions& options, const RunStudy& study) {
+  StudyStore store = run_database_for(options, study);
   const StimulusSource source(study.pack, study.key.study.rendering);
   const SimulatedSitter sitter = simulated_sitter_for(options, study, source);
   const SimulatedCourse course = simulated_course(options);

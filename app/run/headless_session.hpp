@@ -3,11 +3,10 @@
 
 #include "app/run/run_options.hpp"
 #include "app/run/run_study.hpp"
-#include "protocols/store/study_store.hpp"
 
 namespace touchtrial {
 
 /// \return as run_study_session
-[[nodiscard]] int run_headless(const RunOptions& options, const RunStudy& study, StudyStore& store);
+[[nodiscard]] int run_headless(const RunOptions& options, const RunStudy& study);
 
 }  // namespace touchtrial

@@ -3,7 +3,6 @@
 #include "app/run/attended_session.hpp"
 #include "app/run/ending_signals.hpp"
 #include "app/run/headless_session.hpp"
-#include "app/run/run_database.hpp"
 #include "app/run/run_study.hpp"
 #include "protocols/store/session_lock.hpp"
 
@@ -13,10 +12,8 @@ int run_study_session(const RunOptions& options) {
   const EndingSignals signals;
   const RunStudy study = run_study_for(options);
   const SessionLock lock(options.database, options.participant);
-  StudyStore store = run_database_for(options, study);
-  if (!options.is_simulated()) return run_attended(options, study, store);
-  return options.headless ? run_headless(options, study, store)
-                          : run_simulated_at_window(options, study, store);
+  if (!options.is_simulated()) return run_attended(options, study);
+  return options.headless ? run_headless(options, study) : run_simulated_at_window(options, study);
 }
 
 }  // namespace touchtrial

@@ -47,8 +47,9 @@ RunStudy simulated_study(const RunOptions& options, const Study& study) {
   const fs::path path = key_path_for(options.database, {});
   refuse_other_key(path, key);
   prepare_simulated_pack(key);
-  // Before there is a database: one without its key would be of no use to anybody.
-  if (!is_there(path)) save_study_key(path, key);
+  // Before there is a database: one without its key would be of no use to anybody. Nor would one
+  // beside another study's key.
+  if (!is_there(path) && !is_there(options.database)) save_study_key(path, key);
   Pack pack(key.pack_folder);
   return {std::move(key), std::move(pack)};
 }
