@@ -143,7 +143,8 @@ const std::vector<Tampering> kTamperings = {
        const json pack = json::parse(content(list));
        const std::string id =
            json::parse(content(study.path() / "cloths.pack" / "pack.json")).at("study_id");
-       flip(list, content(list).find(id));
+       // A digit becomes another one, so that it still is an identity.
+       flip(list, content(list).find(id) + id.find_first_of("0123456789"));
      },
      {"pack", "failed", "the pack is of study"}},
     {"a field",
