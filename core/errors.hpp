@@ -50,8 +50,8 @@ class VerificationError : public Error {
   using Error::Error;
 };
 
-/// \return `text` on one line: control characters become spaces, so that a hostile file name or
-///   value cannot break a message into several.
+/// \return `text` on one line of UTF-8: control characters become spaces, bytes that are not UTF-8
+///   `\xNN`, so that no file name or value can break a message, or the JSON that it is put into.
 [[nodiscard]] std::string one_line(const std::string& text);
 
 }  // namespace touchtrial

@@ -206,3 +206,23 @@ TEST_CASE("one byte altered anywhere is named by verify, with exit 3") {
   }
   CHECK(study.verify().exit_code == 0);
 }
+
+TEST_CASE("verify prints UTF-8 whatever became of the pack's list, in lines and as JSON") {
+  const PreparedStudy study;
+  const fs::path list = study.path() / "cloths.pack" / "pack.json";
+  const Bytes whole = read_file(list);
+  for (std::size_t at = 0; at < whole.size(); at += whole.size() / 10) {
+    INFO(at);
+    Bytes altered = whole;
+    altered[at] = 0xff;
+    replace_file(list, ByteView(altered));
+    const ProgramResult lines = study.verify();
+    CHECK(lines.exit_code == 3);
+    CHECK_NOTHROW(json(lines.output).dump());
+    CHECK(lines.output.find("pack") != std::string::npos);
+    const ProgramResult object = study.verify({"--json"});
+    INFO(object.errors);
+    CHECK(object.exit_code == 3);
+    CHECK(json::accept(object.output));
+  }
+}
