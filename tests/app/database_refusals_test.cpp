@@ -3,6 +3,7 @@
 #include "support/catch.hpp"
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <SQLiteCpp/Database.h>
@@ -141,4 +142,23 @@ TEST_CASE("in a folder that may only be read, reading goes on and writing says w
   check_refused(noted, {"study.db: ", "cannot be written", "check its permissions"});
   check_refused(file_only, {"study.db: ", "cannot be written", "its folder"});
   check_refused(simulated, {study.path().string()});
+}
+
+TEST_CASE("a refusal names a file in any language, and bytes that are no text by their numbers") {
+  const TempFolder folder;
+  const std::vector<std::pair<std::string, std::string>> names = {
+      {"t\u00e4st-\u20ac-\U0001f600.db", "t\u00e4st-\u20ac-\U0001f600.db"},
+      {"a\xff.db", "a\\xff.db"},
+      {"a\xc3.db", "a\\xc3.db"},
+      {"\xe2\x82", "\\xe2\\x82"},
+      {"\xc0\xaf.db", "\\xc0\\xaf.db"},
+      {"\xed\xa0\x80.db", "\\xed\\xa0\\x80.db"},
+      {"\xf4\x90\x80\x80.db", "\\xf4\\x90\\x80\\x80.db"}};
+  for (const auto& [name, printed] : names) {
+    INFO(printed);
+    const ProgramResult refused = run_touchtrial(folder.path(), {"verify", name});
+    CHECK(refused.exit_code != 0);
+    CHECK(line_count(refused.errors) == 1);
+    CHECK(refused.errors.find(printed) != std::string::npos);
+  }
 }
