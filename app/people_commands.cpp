@@ -120,12 +120,18 @@ bool remove_person(const PeopleArguments& arguments) {
 int withdraw(const PeopleArguments& arguments) {
   StudyStore store = opened(arguments);
   std::vector<int> sessions;
-  for (const SessionRow& row : sessions_of(store, arguments)) {
+  const std::vector<SessionRow> rows = store.sessions_of(arguments.participant);
+  for (const SessionRow& row : rows) {
     if (!row.withdrawn) sessions.push_back(row.session);
   }
   // The key first: whatever is wrong with the other file must not keep anybody from withdrawing.
   if (!sessions.empty()) store.withdraw(sessions, utc_now(), arguments.reason);
   const bool removed = remove_person(arguments);
+  if (rows.empty() && removed) {
+    print(place_of(arguments) + ": had no session; the personal data are removed\n");
+    return 0;
+  }
+  if (rows.empty()) static_cast<void>(sessions_of(store, arguments));  // says that there is none
   if (sessions.empty() && !removed) {
     throw StoreError(one_line(place_of(arguments) + " has already withdrawn"));
   }

@@ -146,6 +146,7 @@ void TerminalExperimenter::show_item(const std::string& text) {
 }
 
 Attendant::Says TerminalExperimenter::attend(const std::string& need) {
+  spoken_.reset();  // of a trial that was interrupted: its line would hide what is needed
   take_keys();
   const Says says = said(need.empty());
   is_ready_shown_ = says == Says::wait && need.empty();

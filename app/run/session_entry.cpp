@@ -120,6 +120,23 @@ void require_young(const RunOptions& options, const RunStudy& study, const std::
                   options.database.string(), standing, limit_h));
 }
 
+bool is_visual(const SessionOpening& opening) {
+  return opening.station && opening.station->visual;
+}
+
+/// Of another kind of device it would be two sessions, and one that is seen is not blind.
+void require_same_kind(const RunOptions& options, const StudyStore& store, const SessionRow& row,
+                       const DescribeOpening& describe) {
+  SessionOpening now;
+  describe(now);
+  const SessionOpening then = opening_from_json(store.events(row.session).front().body);
+  if (is_visual(now) == is_visual(then)) return;
+  throw StoreError(fmt::format(
+      "{}: session {} was begun with device '{}', and '{}' is {}: go on with the former",
+      options.database.string(), row.session, then.device, now.device,
+      is_visual(now) ? "seen on a screen and not felt" : "felt and not seen"));
+}
+
 /// The session ends as it stands.
 void give_up(const RunStudy& study, StudyStore& store, const SessionRow& row) {
   const std::unique_ptr<EventSink> sink = store.continue_session(row.session);
@@ -158,6 +175,7 @@ EnteredSession existing_session(const RunOptions& options, const RunStudy& study
     return begin_anew(options, study, store, row, describe);
   }
   require_young(options, study, stands, gone);
+  require_same_kind(options, store, row, describe);
   return resumed_session(options, study, store, row, gone);
 }
 

@@ -58,7 +58,7 @@ void SessionDesk::breathe() const {
 }
 
 bool SessionDesk::goes_on() const noexcept {
-  return !tally_.left && session_.phase() != SessionPhase::stopped &&
+  return !tally_.left && !is_aborted_ && session_.phase() != SessionPhase::stopped &&
          session_.phase() != SessionPhase::closed;
 }
 
@@ -194,10 +194,14 @@ bool SessionDesk::obey_comfort_stop(const Request& request) {
 }
 
 bool SessionDesk::obey_abort(const Request& request) {
+  // A session whose trials are done stays complete.
+  const bool is_done = session_.presentations_left() == 0;
+  if (is_done && session_.phase() == SessionPhase::paused) session_.resume(now());
   if (session_.accepts(SessionInput::stop)) {
     session_.stop(now(), request.text);
   } else {
     session_.note(now(), with_text("aborted", request.text));
+    is_aborted_ = true;
   }
   return false;
 }
@@ -229,6 +233,8 @@ bool SessionDesk::wait_for_device(SupplyState device) {
   }
   if (device == SupplyState::ready) return true;
   if (StopOnSignals::asked()) return leave(StopOnSignals::message());
+  // Whoever stopped it may have said why.
+  if (!obey()) return false;
   session_.stop(now(), "stopped while waiting for the device");
   return false;
 }

@@ -41,7 +41,7 @@ class SessionDesk {
   /// \return whether they may
   [[nodiscard]] bool await_device();
 
-  /// Neither stopped nor left.
+  /// Neither stopped nor aborted nor left.
   [[nodiscard]] bool goes_on() const noexcept;
   /// An exploration was interrupted; what for, in clear. \param words  that of the servo
   [[nodiscard]] std::string note_interruption(const std::string& words);
@@ -69,6 +69,7 @@ class SessionDesk {
   Session& session_;
   const SessionParts& parts_;
   SessionTally tally_;
+  bool is_aborted_ = false;  ///< after the last trial, when there is nothing left to stop
   SessionStatus status_;
   std::deque<Request> postponed_;
   std::optional<std::string> reason_;  ///< of the interruption that the experimenter asked for
