@@ -7,7 +7,8 @@ set(TOUCHTRIAL_UNHURRIED -O1 -Wno-maybe-uninitialized)
 # One static library a folder, of every .cpp file in and below it. PUBLIC: targets of ours, along
 # the arrows of docs/architecture.md; PRIVATE: third-party libraries, whose headers no public header
 # includes. UNHURRIED: nothing in it is worth optimising; files that read and write JSON and other
-# texts are so everywhere. PRECOMPILE: headers that take long to read and stand in many files.
+# texts are so everywhere. PRECOMPILE: headers that take long to read and stand in many files; for
+# unhurried targets, since GCC warns of what is not there when it optimises precompiled ones.
 function(touchtrial_library name)
   cmake_parse_arguments(ARG "UNHURRIED" "" "PUBLIC;PRIVATE;PRECOMPILE" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cpp")
