@@ -113,7 +113,12 @@ void TerminalExperimenter::show(const SessionStatus& status) {
 
 std::optional<ExperimenterRequest> TerminalExperimenter::request() {
   take_keys();
-  if (auto typed = typing_.next()) return typed;
+  if (auto typed = typing_.next()) {
+    // Force comes on only after the line that says so was shown anew.
+    is_ready_shown_ = false;
+    arm_asked_ = false;
+    return typed;
+  }
   const std::lock_guard lock(mutex_);
   if (added_.empty()) return std::nullopt;
   ExperimenterRequest first = added_.front();

@@ -384,6 +384,7 @@ void ParticipantWindow::show_exploring(const PlaneGeometry& plane) {
 
 void ParticipantWindow::exploring(ServoControl& servo) {
   State& s = *state_;
+  s.exchange.check();  // nobody explores before a window that is dead
   if (gone()) servo.emergency_stop();
   if (s.comfort_asked) servo.comfort_stop();
   if (s.finish_asked) servo.finish();
@@ -455,7 +456,13 @@ void run_beside(ParticipantWindow& window, const std::function<void()>& session)
     glfwPostEmptyEvent();
   });
   constexpr milliseconds kBetweenLooks{4};
-  while (!ended) window.pump(kBetweenLooks);
+  try {
+    while (!ended) window.pump(kBetweenLooks);
+  } catch (...) {
+    window.close();  // the session leaves off
+    thread.join();
+    throw;
+  }
   thread.join();
   if (failure) std::rethrow_exception(failure);
   window.check();

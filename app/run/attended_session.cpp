@@ -15,6 +15,7 @@
 #include "app/run/simulated_sitter.hpp"
 #include "app/sound/session_sound.hpp"
 #include "app/texts/study_texts.hpp"
+#include "core/errors.hpp"
 #include "protocols/session/real_time_explorer.hpp"
 #include "protocols/session/session_runner.hpp"
 #include "protocols/session/simulated_participant.hpp"
@@ -23,6 +24,7 @@
 #include <utility>
 
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 namespace touchtrial {
 namespace {
@@ -69,6 +71,14 @@ SessionTexts texts_for(const Study& study, const DeviceInfo& device) {
   return texts;
 }
 
+/// Force never comes on by itself.
+void require_consent(const DeviceInfo& device) {
+  if (device.visual || ::isatty(STDIN_FILENO) != 0) return;
+  throw UsageError(
+      "run: standard input is no terminal, where the experimenter lets the force on; start it from "
+      "a terminal");
+}
+
 /// Everything around one person's session.
 class PersonsSession {
  public:
@@ -80,6 +90,7 @@ class PersonsSession {
         device_(options, source_.plane(), terminal_),
         store_(run_database_for(options, study)),
         sound_(masking_of(options, study.key.study, device_.info()), study.key.study.seed) {
+    require_consent(device_.info());
     if (!sound_.trouble().empty()) spdlog::warn("{}", sound_.trouble());
     for (const ExperimenterRequest& known : known_deviations(options, study.key.study, device_)) {
       terminal_.add(known);

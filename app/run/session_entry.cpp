@@ -125,16 +125,28 @@ bool is_visual(const SessionOpening& opening) {
 }
 
 /// Of another kind of device it would be two sessions, and one that is seen is not blind.
-void require_same_kind(const RunOptions& options, const StudyStore& store, const SessionRow& row,
-                       const DescribeOpening& describe) {
-  SessionOpening now;
-  describe(now);
-  const SessionOpening then = opening_from_json(store.events(row.session).front().body);
+void require_same_kind(const RunOptions& options, const SessionRow& row, const SessionOpening& then,
+                       const SessionOpening& now) {
   if (is_visual(now) == is_visual(then)) return;
   throw StoreError(fmt::format(
       "{}: session {} was begun with device '{}', and '{}' is {}: go on with the former",
       options.database.string(), row.session, then.device, now.device,
       is_visual(now) ? "seen on a screen and not felt" : "felt and not seen"));
+}
+
+/// The hand is on something else than before: said once it is taken up.
+void record_other_station(EnteredSession& entered, const SessionOpening& then,
+                          const SessionOpening& now) {
+  const auto certificate = [](const SessionOpening& opening) {
+    return opening.station ? opening.station->calibration : std::string();
+  };
+  if (then.device != now.device || then.device_serial != now.device_serial) {
+    entered.session->deviate(entered.clock,
+                             {"other-device", one_line(now.device + " " + now.device_serial)});
+  }
+  if (certificate(then) != certificate(now)) {
+    entered.session->deviate(entered.clock, {"other-certificate", certificate(now)});
+  }
 }
 
 /// The session ends as it stands.
@@ -175,8 +187,13 @@ EnteredSession existing_session(const RunOptions& options, const RunStudy& study
     return begin_anew(options, study, store, row, describe);
   }
   require_young(options, study, stands, gone);
-  require_same_kind(options, store, row, describe);
-  return resumed_session(options, study, store, row, gone);
+  SessionOpening now;
+  describe(now);
+  const SessionOpening then = opening_from_json(store.events(row.session).front().body);
+  require_same_kind(options, row, then, now);
+  EnteredSession entered = resumed_session(options, study, store, row, gone);
+  record_other_station(entered, then, now);
+  return entered;
 }
 
 }  // namespace

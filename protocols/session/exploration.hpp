@@ -19,6 +19,8 @@ struct Exploration {
   ServoReport servo;
   std::optional<std::chrono::nanoseconds> landed_at;  ///< since plane-on
   std::chrono::nanoseconds lasted{};                  ///< on the servo's clock
+  /// When the servo started, in real time: its ticks are counted from here.
+  std::optional<std::chrono::steady_clock::time_point> began;
   std::int64_t held_in_contact = 0;   ///< samples of the trace that were filled in, with contact
   std::optional<ServoHealth> health;  ///< in real time
   std::optional<InterruptionDetail> detail;  ///< of one that was interrupted in real time

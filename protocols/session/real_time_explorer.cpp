@@ -59,8 +59,10 @@ struct RealTimeExplorer::Machinery {
   }
 
   /// One run of the servo, on its thread; this one looks after the participant meanwhile.
+  /// \param began  set to when the servo starts
   [[nodiscard]] ServoReport run(HapticDevice& device, const RenderingModel& model, SampleSink& sink,
-                                const ServoOptions& servo, Participant& participant);
+                                const ServoOptions& servo, Participant& participant,
+                                std::chrono::steady_clock::time_point& began);
 
   RealTimeOptions options;
   ServoControl control;
@@ -74,7 +76,8 @@ struct RealTimeExplorer::Machinery {
 
 ServoReport RealTimeExplorer::Machinery::run(HapticDevice& device, const RenderingModel& model,
                                              SampleSink& sink, const ServoOptions& servo,
-                                             Participant& participant) {
+                                             Participant& participant,
+                                             std::chrono::steady_clock::time_point& began) {
   control.forget_wishes();
   ModelForce force(model);
   const std::unique_ptr<ServoClock> clock = make_clock();
@@ -87,8 +90,10 @@ ServoReport RealTimeExplorer::Machinery::run(HapticDevice& device, const Renderi
   Watchdog watchdog(device, control, heartbeat, Watchdog::kSilence, *options.watchdog_time);
   watchdog.arm();
   ServoReport report;
-  RunningServo running(thread, control,
-                       [&] { report = run_servo(device, force, sink, servo, *clock, hooks); });
+  RunningServo running(thread, control, [&] {
+    began = std::chrono::steady_clock::now();
+    report = run_servo(device, force, sink, servo, *clock, hooks);
+  });
   while (running.runs(kBetweenLooks)) participant.exploring(control);
   running.finish();
   if (watchdog.disarm() && !is_interrupted(report)) {
@@ -127,7 +132,7 @@ Exploration RealTimeExplorer::explore(const RenderingModel& model, const PlaneGe
   Exploration done;
   {
     const TraceWriter writer(*m.ring, builder, participant);
-    done.servo = m.run(device, model, sink, options, participant);
+    done.servo = m.run(device, model, sink, options, participant, done.began.emplace());
   }
   done.landed_at = builder.landed_at();
   done.lasted = time_of_tick(done.servo.ticks + done.servo.overruns, options.rate_hz);

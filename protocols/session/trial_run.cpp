@@ -74,10 +74,12 @@ bool TrialRun::explore_again(const RenderingModel& model) {
       parts_.explorer.explore(model, parts_.source.plane(), participant_, rest, trace), plane_on);
 }
 
-/// Ticks are counted from the servo's start, a moment after plane-on. What is stamped after the
-/// exploration has the time of its end and not of now: how long a trace takes to pack, or a flight
-/// record to write, tells rough textures from smooth ones.
-bool TrialRun::end_exploration(const Exploration& done, Time began) {
+/// Ticks are counted from the servo's start, a moment after plane-on was recorded. What is stamped
+/// after the exploration has the time of its end and not of now: how long a trace takes to pack, or
+/// a flight record to write, tells rough textures from smooth ones.
+bool TrialRun::end_exploration(const Exploration& done, Time plane_on) {
+  const Time began =
+      done.began ? std::clamp(parts_.clock.of(*done.began), plane_on, desk_.now()) : plane_on;
   parts_.clock.pass(done.lasted);
   desk_.tally().ticks += done.servo.ticks;
   desk_.saw_servo(done.servo);

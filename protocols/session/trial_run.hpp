@@ -23,7 +23,7 @@ class TrialRun {
   /// \return whether the participant is to answer
   [[nodiscard]] bool explore(const RenderingModel& model);
   [[nodiscard]] bool explore_again(const RenderingModel& model);
-  [[nodiscard]] bool end_exploration(const Exploration& done, SessionClock::Time began);
+  [[nodiscard]] bool end_exploration(const Exploration& done, SessionClock::Time plane_on);
   void answer(const RenderingModel& model);
   void confirm(const StepReply& reply);
   void keep_evidence();
