@@ -47,8 +47,5 @@ function(touchtrial_test name)
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} touchtrial_test_support touchtrial_settings)
   # Optimising the test framework costs more time than the tests then save.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:${TOUCHTRIAL_UNHURRIED}>)
-  if(TOUCHTRIAL_PRECOMPILED_HEADERS)
-    target_precompile_headers(${name} REUSE_FROM touchtrial_test_headers)
-  endif()
   catch_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES TIMEOUT 600)
 endfunction()
