@@ -2,15 +2,13 @@
 # values that are not there.
 set(TOUCHTRIAL_UNHURRIED -O1 -Wno-maybe-uninitialized)
 
-# touchtrial_library(NAME [UNHURRIED] [PUBLIC targets...] [PRIVATE libraries...]
-#                    [PRECOMPILE headers...])
+# touchtrial_library(NAME [UNHURRIED] [PUBLIC targets...] [PRIVATE libraries...])
 # One static library a folder, of every .cpp file in and below it. PUBLIC: targets of ours, along
 # the arrows of docs/architecture.md; PRIVATE: third-party libraries, whose headers no public header
 # includes. UNHURRIED: nothing in it is worth optimising; files that read and write JSON and other
-# texts are so everywhere. PRECOMPILE: headers that take long to read and stand in many files; for
-# unhurried targets, since GCC warns of what is not there when it optimises precompiled ones.
+# texts are so everywhere.
 function(touchtrial_library name)
-  cmake_parse_arguments(ARG "UNHURRIED" "" "PUBLIC;PRIVATE;PRECOMPILE" ${ARGN})
+  cmake_parse_arguments(ARG "UNHURRIED" "" "PUBLIC;PRIVATE" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cpp")
   list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")
   if(NOT sources)
@@ -21,9 +19,6 @@ function(touchtrial_library name)
   add_library(${name} STATIC ${sources})
   target_include_directories(${name} PUBLIC "${CMAKE_SOURCE_DIR}")
   target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE touchtrial_settings ${ARG_PRIVATE})
-  if(ARG_PRECOMPILE AND TOUCHTRIAL_PRECOMPILED_HEADERS)
-    target_precompile_headers(${name} PRIVATE ${ARG_PRECOMPILE})
-  endif()
   if(ARG_UNHURRIED)
     target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:${TOUCHTRIAL_UNHURRIED}>)
     return()
