@@ -35,6 +35,7 @@ class Squares final : public PictureShelf {
 class Paper {
  public:
   explicit Paper(Vec2 size) : size_(size), context_(ImGui::CreateContext()) {
+    ImGui::SetCurrentContext(context_);
     ImGui::GetIO().IniFilename = nullptr;
     ImGui::GetIO().DisplaySize = {static_cast<float>(size.x), static_cast<float>(size.y)};
     fonts_ = load_participant_fonts(design_unit(size));
@@ -45,6 +46,7 @@ class Paper {
   Paper& operator=(const Paper&) = delete;
 
   [[nodiscard]] Canvas draw(Screen& screen) const {
+    ImGui::SetCurrentContext(context_);
     ImGui::NewFrame();
     Canvas canvas(*ImGui::GetBackgroundDrawList(), fonts_, size_, screen.attention());
     screen.draw(canvas);
