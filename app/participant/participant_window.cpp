@@ -5,6 +5,7 @@
 #include "app/participant/glfw_input.hpp"
 #include "app/participant/simple_screens.hpp"
 #include "app/participant/window_drawing.hpp"
+#include "app/windows/glfw_library.hpp"
 #include "app/windows/screen_scale.hpp"
 #include "core/errors.hpp"
 #include "device/platform/stop_signals.hpp"
@@ -38,26 +39,6 @@ constexpr double kTooHardN = 2.0;
 constexpr double kSoftAgainN = 1.7;
 constexpr double kBarsTimeS = 0.06;  ///< in which the practice's bars follow
 
-[[noreturn]] void refuse(const std::string& remedy) {
-  const char* reason = nullptr;
-  glfwGetError(&reason);
-  throw DeviceError(one_line(
-      "window: " + std::string(reason == nullptr ? "unknown error" : reason) + "; " + remedy));
-}
-
-/// GLFW itself, for as long as there is a window.
-class Library {
- public:
-  Library() {
-    if (glfwInit() != GLFW_TRUE) {
-      refuse("run in a graphical session (DISPLAY or WAYLAND_DISPLAY), or under xvfb-run");
-    }
-  }
-  ~Library() { glfwTerminate(); }
-  Library(const Library&) = delete;
-  Library& operator=(const Library&) = delete;
-};
-
 GLFWmonitor* monitor_of(const ParticipantWindowOptions& options) {
   if (options.size_px) return nullptr;
   int count = 0;
@@ -88,7 +69,7 @@ GLFWwindow* make_window(const ParticipantWindowOptions& options, GLFWmonitor* mo
   }
   GLFWwindow* window = glfwCreateWindow(size.first, size.second, kTitle, monitor, nullptr);
   if (window == nullptr) {
-    refuse("OpenGL 3.2 is needed; install the graphics driver, or Mesa (libgl1-mesa-dri)");
+    refuse_window("OpenGL 3.2 is needed; install the graphics driver, or Mesa (libgl1-mesa-dri)");
   }
   return window;
 }
@@ -267,7 +248,7 @@ struct ParticipantWindow::State {
   }
 
   ParticipantWindowOptions options;
-  Library library;
+  GlfwLibrary library;
   GLFWmonitor* monitor;  ///< null: a window
   GLFWwindow* window;
   Glass glass;  ///< the drawing thread's

@@ -1,6 +1,7 @@
 #include "app/windows/glfw_window.hpp"
 
 #include "app/windows/fonts.hpp"
+#include "app/windows/glfw_library.hpp"
 #include "app/windows/screen_scale.hpp"
 #include "core/errors.hpp"
 
@@ -21,26 +22,6 @@ namespace {
 /// Of a frame's time that is spent waiting for events; the screen itself paces the rest, where it
 /// can.
 constexpr double kShareForEvents = 0.8;
-
-[[noreturn]] void refuse(const std::string& remedy) {
-  const char* reason = nullptr;
-  glfwGetError(&reason);
-  throw DeviceError(one_line(
-      "window: " + std::string(reason == nullptr ? "unknown error" : reason) + "; " + remedy));
-}
-
-/// GLFW itself, for as long as there is a window.
-class Library {
- public:
-  Library() {
-    if (glfwInit() != GLFW_TRUE) {
-      refuse("run in a graphical session (DISPLAY or WAYLAND_DISPLAY), or under xvfb-run");
-    }
-  }
-  ~Library() { glfwTerminate(); }
-  Library(const Library&) = delete;
-  Library& operator=(const Library&) = delete;
-};
 
 /// The size asked for at this density, cut to what the screen has room for.
 std::pair<int, int> size_on_screen(const WindowOptions& options, float density) {
@@ -66,7 +47,7 @@ GLFWwindow* make_window(const WindowOptions& options) {
   const auto [width, height] = size_on_screen(options, primary_density());
   GLFWwindow* window = glfwCreateWindow(width, height, options.title.c_str(), nullptr, nullptr);
   if (window == nullptr) {
-    refuse("OpenGL 3.2 is needed; install the graphics driver, or Mesa (libgl1-mesa-dri)");
+    refuse_window("OpenGL 3.2 is needed; install the graphics driver, or Mesa (libgl1-mesa-dri)");
   }
   return window;
 }
@@ -141,7 +122,7 @@ struct GlfwWindow::State {
     }
   }
 
-  Library library;
+  GlfwLibrary library;
   GLFWwindow* window;
   ScreenScale scale;
   std::function<void(const WindowPointer&)> listener;

@@ -33,9 +33,9 @@ TEST_CASE("consent is recorded in a file of its own that only its owner may read
 TEST_CASE("consent without a line for the contact that was announced records nothing") {
   const TempFolder folder;
   const fs::path database = folder.path() / "study.db";
-  const ProgramResult done =
-      run_touchtrial(folder.path(), {"consent", database.string(), "--participant", "P07",
-                                     "--version", "1", "--contact"});
+  const ProgramResult done = run_touchtrial(
+      folder.path(),
+      {"consent", database.string(), "--participant", "P07", "--version", "1", "--contact"});
   CHECK(done.exit_code == 2);
   CHECK_FALSE(fs::exists(personal_data_path(database)));
 }
