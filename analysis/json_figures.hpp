@@ -1,9 +1,9 @@
 /// \file How figures stand in JSON. Not for public headers: it shows the JSON library.
 #pragma once
 
-#include "analysis/proportion.hpp"
-#include "analysis/quality.hpp"
-#include "analysis/report.hpp"
+#include "analysis/report/quality.hpp"
+#include "analysis/report/report.hpp"
+#include "analysis/statistics/proportion.hpp"
 #include "engine/metrics/glcm.hpp"
 
 #include <optional>

@@ -1,7 +1,7 @@
 #include "analysis/outcomes.hpp"
 
+#include "analysis/report/servo_quality.hpp"
 #include "analysis/sealed_sessions.hpp"
-#include "analysis/servo_quality.hpp"
 #include "analysis/session_rules.hpp"
 #include "core/errors.hpp"
 

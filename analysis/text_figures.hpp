@@ -2,7 +2,7 @@
 /// none.
 #pragma once
 
-#include "analysis/proportion.hpp"
+#include "analysis/statistics/proportion.hpp"
 
 #include <cstdint>
 #include <optional>

@@ -1,5 +1,5 @@
-#include "analysis/export_csv.hpp"
-#include "analysis/export_json.hpp"
+#include "analysis/exports/export_csv.hpp"
+#include "analysis/exports/export_json.hpp"
 #include "analysis/outcomes.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"

@@ -1,6 +1,6 @@
 #include "analysis/outcomes.hpp"
-#include "analysis/quality.hpp"
-#include "analysis/report.hpp"
+#include "analysis/report/quality.hpp"
+#include "analysis/report/report.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/key_of_database.hpp"

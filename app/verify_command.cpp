@@ -1,4 +1,4 @@
-#include "analysis/study_files.hpp"
+#include "analysis/verification/study_files.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "core/errors.hpp"

@@ -1,7 +1,7 @@
 // A whole classification session on an emulated Falcon: study, pack, servo thread, driver, the
 // unmodified libusb, and the database. Servo ticks and USB exchanges go in lockstep, as fast as the
 // processor goes.
-#include "analysis/report.hpp"
+#include "analysis/report/report.hpp"
 #include "analysis/sealed_sessions.hpp"
 #include "device/falcon/rig/dummy_firmware.hpp"
 #include "protocols/session/commitment.hpp"

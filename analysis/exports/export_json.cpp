@@ -1,0 +1,57 @@
+#include "analysis/exports/export_json.hpp"
+
+#include "analysis/exports/export_folder.hpp"
+#include "analysis/exports/export_tables.hpp"
+#include "analysis/json_figures.hpp"
+#include "core/files.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct JsonValue {
+  Json operator()(std::monostate) const { return nullptr; }
+  Json operator()(const std::string& text) const { return text; }
+  Json operator()(std::int64_t number) const { return number; }
+  Json operator()(double number) const { return number; }
+  Json operator()(std::chrono::nanoseconds time) const {
+    return std::chrono::duration<double>(time).count();
+  }
+};
+
+/// An array of objects with the columns as keys.
+Json rows_json(const DataTable& table) {
+  Json rows = Json::array();
+  for (const std::vector<Cell>& cells : table.rows) {
+    Json row = Json::object();
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      row[table.columns[i]] = std::visit(JsonValue{}, cells[i]);
+    }
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+}  // namespace
+
+std::filesystem::path export_json(const StudyStore& store, const std::optional<Outcomes>& outcomes,
+                                  const std::filesystem::path& folder) {
+  make_export_folder(folder);
+  Json document{{"study", store.commitment().study}, {"protocol", store.commitment().protocol}};
+  put_stamp(document, store.commitment().simulated);
+  if (outcomes) {
+    document["report"] = report_object(make_report(*outcomes));
+  } else {
+    document["quality"] = quality_object(make_quality(store));
+  }
+  document["participants"] = rows_json(participants_table(store));
+  document["trials"] = rows_json(trials_table(store, outcomes));
+  const std::filesystem::path file = folder / "study.json";
+  replace_file(file, json_text(document));
+  return file;
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,34 @@
+/// \file Two methods felt by the same participants. Source: docs/method.md, "Statistics".
+#pragma once
+
+#include "analysis/statistics/participant_mean.hpp"
+#include "analysis/statistics/proportion.hpp"
+
+#include <optional>
+#include <span>
+
+namespace touchtrial {
+
+/// One participant's proportion correct with each method.
+struct PairedAccuracy {
+  double first = 0.0;
+  double second = 0.0;
+};
+
+/// How much better the first method is than the second.
+struct MethodComparison {
+  int participants = 0;
+  std::optional<double> difference;  ///< mean over participants of first minus second
+  Interval interval{-1.0, 1.0};      ///< t interval of that mean, within [-1, 1]
+  std::optional<double> p;           ///< sign_flip_p
+  std::optional<double> db;          ///< decibels of the two means
+};
+
+/// 10 log10(a / b).
+/// \return nothing unless both are > 0
+[[nodiscard]] std::optional<double> decibels(double a, double b);
+
+/// \throws std::invalid_argument if a proportion is not finite
+[[nodiscard]] MethodComparison compare_methods(std::span<const PairedAccuracy> participants);
+
+}  // namespace touchtrial

@@ -1,0 +1,47 @@
+#include "analysis/statistics/participant_mean.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <boost/math/distributions/students_t.hpp>
+
+namespace touchtrial {
+namespace {
+
+double mean_of(std::span<const double> values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+/// Of the mean, from the sample's spread around it.
+double standard_error(std::span<const double> values, double mean) {
+  double squares = 0.0;
+  for (const double value : values) squares += (value - mean) * (value - mean);
+  const auto n = static_cast<double>(values.size());
+  return std::sqrt(squares / (n - 1.0) / n);
+}
+
+}  // namespace
+
+MeanEstimate participant_mean(std::span<const double> values, Interval range, double level) {
+  if (!(level > 0.0 && level < 1.0)) {
+    throw std::invalid_argument("a confidence level lies between 0 and 1");
+  }
+  if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) {
+    throw std::invalid_argument("a mean needs finite values");
+  }
+  MeanEstimate estimate{static_cast<int>(values.size()), std::nullopt, range};
+  if (values.empty()) return estimate;
+  const double mean = mean_of(values);
+  estimate.mean = mean;
+  if (values.size() == 1) return estimate;
+  const boost::math::students_t_distribution<> t(static_cast<double>(values.size() - 1));
+  const double half = boost::math::quantile(t, 0.5 + level / 2.0) * standard_error(values, mean);
+  estimate.interval = {std::clamp(mean - half, range.low, range.high),
+                       std::clamp(mean + half, range.low, range.high)};
+  return estimate;
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,56 @@
+#include "analysis/statistics/proportion.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include <boost/math/distributions/beta.hpp>
+#include <boost/math/distributions/normal.hpp>
+
+namespace touchtrial {
+namespace {
+
+void require_valid(Proportion proportion, double level) {
+  if (proportion.correct < 0 || proportion.correct > proportion.n) {
+    throw std::invalid_argument("a proportion needs 0 <= correct <= n");
+  }
+  if (!(level > 0.0 && level < 1.0)) {
+    throw std::invalid_argument("a confidence level lies between 0 and 1");
+  }
+}
+
+double beta_quantile(double a, double b, double probability) {
+  return boost::math::quantile(boost::math::beta_distribution<>(a, b), probability);
+}
+
+}  // namespace
+
+std::optional<double> Proportion::share() const noexcept {
+  if (n == 0) return std::nullopt;
+  return static_cast<double>(correct) / n;
+}
+
+Interval wilson_interval(Proportion proportion, double level) {
+  require_valid(proportion, level);
+  if (proportion.n == 0) return {};
+  const double n = proportion.n;
+  const double p = proportion.correct / n;
+  const double z = boost::math::quantile(boost::math::normal_distribution<>(), 0.5 + level / 2.0);
+  const double scale = 1.0 + z * z / n;
+  const double centre = (p + z * z / (2.0 * n)) / scale;
+  const double half = z * std::sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n)) / scale;
+  // Centre and half-width are equal at the ends of the scale, but only to rounding.
+  return {proportion.correct == 0 ? 0.0 : centre - half,
+          proportion.correct == proportion.n ? 1.0 : centre + half};
+}
+
+Interval clopper_pearson_interval(Proportion proportion, double level) {
+  require_valid(proportion, level);
+  if (proportion.n == 0) return {};
+  const double tail = (1.0 - level) / 2.0;
+  const double correct = proportion.correct;
+  const double wrong = proportion.n - proportion.correct;
+  return {proportion.correct == 0 ? 0.0 : beta_quantile(correct, wrong + 1.0, tail),
+          wrong == 0.0 ? 1.0 : beta_quantile(correct + 1.0, wrong, 1.0 - tail)};
+}
+
+}  // namespace touchtrial

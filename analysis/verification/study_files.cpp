@@ -1,0 +1,124 @@
+#include "analysis/verification/study_files.hpp"
+
+#include "core/errors.hpp"
+#include "protocols/store/damaged_store.hpp"
+
+#include <algorithm>
+#include <array>
+#include <system_error>
+
+namespace touchtrial {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A file that was opened, or what to say in place of its check.
+template <typename File>
+struct Opened {
+  std::optional<File> file;
+  CheckState state = CheckState::not_checked;
+  std::string why;
+};
+
+/// Only what surely is not there: what cannot be looked at fails when it is opened.
+bool is_absent(const fs::path& path) {
+  std::error_code error;
+  return fs::status(path, error).type() == fs::file_type::not_found;
+}
+
+template <typename File, typename Open>
+Opened<File> opened(Open open) {
+  try {
+    return {open(), CheckState::passed, ""};
+  } catch (const Error& error) {
+    return {std::nullopt, CheckState::failed, one_line(error.what())};
+  }
+}
+
+Opened<StudyKey> open_key(const StudyFiles& files) {
+  if (!files.key_named && is_absent(files.key)) {
+    return {std::nullopt, CheckState::not_checked,
+            "there is no " + one_line(files.key.string()) + "; name the key with --key"};
+  }
+  return opened<StudyKey>([&] { return load_study_key(files.key); });
+}
+
+bool has_code_of(const StudyKey& key, const Pack& pack) {
+  const auto& entries = pack.manifest().entries;
+  return std::any_of(key.stimuli.begin(), key.stimuli.end(), [&](const KeyedStimulus& stimulus) {
+    return std::any_of(entries.begin(), entries.end(),
+                       [&](const PackEntry& entry) { return entry.code == stimulus.code; });
+  });
+}
+
+/// The pack where the key says may since have been made anew for another study, or, with the same
+/// seed and hence the same identity, for an edited study that is simulated. Codes of other studies
+/// are drawn at random: a pack that has one of the key's is the study's, whatever it says.
+bool was_made_anew(const StudyStore& store, const StudyKey& key, const Pack& pack) {
+  const StudyCommitment& commitment = store.commitment();
+  const bool is_of_other = pack.manifest().study_id != commitment.study_id;
+  if (!key.simulated) return is_of_other && !has_code_of(key, pack);
+  return is_of_other || pack.digest() != commitment.pack;
+}
+
+Opened<Pack> find_pack(const StudyStore& store, const StudyKey& key) {
+  const std::string folder = one_line(key.pack_folder.string());
+  const auto leave = [](const std::string& why) {
+    return Opened<Pack>{std::nullopt, CheckState::not_checked, why + "; name the pack with --pack"};
+  };
+  if (key.pack_folder.empty()) return leave("the key names no pack");
+  if (is_absent(key.pack_folder)) return leave("there is no " + folder);
+  Opened<Pack> pack = opened<Pack>([&] { return Pack(key.pack_folder); });
+  try {
+    if (pack.file && was_made_anew(store, key, *pack.file)) {
+      return leave(folder + " was made anew for another study, or for this one after a change");
+    }
+  } catch (const StoreError&) {
+    // A first event that cannot be read is the business of the chain's check.
+  }
+  return pack;
+}
+
+Opened<Pack> open_pack(const StudyFiles& files, const StudyStore& store,
+                       const std::optional<StudyKey>& key) {
+  if (!files.pack.empty()) return opened<Pack>([&] { return Pack(files.pack); });
+  if (key) return find_pack(store, *key);
+  return {std::nullopt, CheckState::not_checked, "needs the key, or --pack"};
+}
+
+template <typename File>
+void put(Verification& verification, const char* name, const Opened<File>& opened) {
+  if (opened.file) return;
+  const auto check = std::find_if(verification.checks.begin(), verification.checks.end(),
+                                  [&](const Check& one) { return one.name == name; });
+  if (check != verification.checks.end()) *check = {name, opened.state, opened.why};
+}
+
+Verification of_damaged(const DamagedStore& error) {
+  constexpr std::array kOthers{"key",       "seal",     "configuration", "schedule",
+                               "responses", "payloads", "traces",        "pack"};
+  Verification verification;
+  verification.checks.push_back({"chain", CheckState::failed, one_line(error.what())});
+  for (const char* name : kOthers) {
+    verification.checks.push_back(
+        {name, CheckState::not_checked, "needs a database that can be read"});
+  }
+  return verification;
+}
+
+}  // namespace
+
+Verification verify_files(const StudyFiles& files, const std::optional<Digest>& head) try {
+  const StudyStore store = StudyStore::open(files.database, StudyStore::Access::read_only);
+  const Opened<StudyKey> key = open_key(files);
+  const Opened<Pack> pack = open_pack(files, store, key.file);
+  Verification verification =
+      verify_study(store, key.file ? &*key.file : nullptr, pack.file ? &*pack.file : nullptr, head);
+  put(verification, "key", key);
+  put(verification, "pack", pack);
+  return verification;
+} catch (const DamagedStore& error) {
+  return of_damaged(error);
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,253 @@
+#include "analysis/verification/verification.hpp"
+
+#include "analysis/outcomes.hpp"
+#include "analysis/sealed_sessions.hpp"
+#include "analysis/verification/session_course.hpp"
+#include "core/errors.hpp"
+#include "protocols/store/payload_json.hpp"
+
+#include <algorithm>
+#include <map>
+#include <vector>
+
+#include <fmt/format.h>
+
+namespace touchtrial {
+namespace {
+
+// Every check below returns what it held against what, and throws an Error where that fails.
+
+std::string check_chain(const StudyStore& store) {
+  if (const auto fault = store.first_fault()) throw VerificationError(shown(*fault));
+  return fmt::format("the file's chain and those of {} sessions, their traces and tables",
+                     store.sessions().size());
+}
+
+std::string check_key(const StudyStore& store, const StudyKey& key) {
+  const std::string& study_id = store.commitment().study_id;
+  if (key.study_id != study_id) {
+    throw VerificationError(fmt::format("is the key of study {}, the database is of study {}",
+                                        key.study_id, one_line(study_id)));
+  }
+  return "the key of study " + study_id;
+}
+
+std::string check_seal(const StudyStore& store, const StudyKey& key) {
+  require_key_of(store, key);
+  const StudyCommitment& commitment = store.commitment();
+  store.for_each(EventKind::opened, [&](const Event& event) {
+    const SessionOpening opening = opening_from_json(event.body);
+    if (opening.study_id == commitment.study_id && opening.seal == commitment.seal) return;
+    throw VerificationError(
+        fmt::format("session {}: was opened under another study's seal; it does not belong here",
+                    event.session));
+  });
+  return fmt::format("{}..., in the first event and every session's",
+                     to_hex(commitment.seal).substr(0, 16));
+}
+
+std::string check_configuration(const StudyStore& store, const StudyKey& key) {
+  const StudyCommitment& commitment = store.commitment();
+  const auto require = [](bool same, const char* what) {
+    if (!same) throw VerificationError(std::string(what) + " differs between key and database");
+  };
+  require(blinded_configuration(key) == commitment.configuration, "the configuration");
+  require(key.study.name == commitment.study, "the study's name");
+  require(name_of(key.study.protocol) == commitment.protocol, "the protocol");
+  require(key.study.scored_trials() == commitment.scored_trials, "the number of scored trials");
+  require(static_cast<int>(key.study.classes.size()) == commitment.positions,
+          "the number of pictures");
+  // A prepared study may be rehearsed with simulated participants, in a database of its own; a
+  // simulated study is nothing for people.
+  require(!key.simulated || commitment.simulated, "whether the study is simulated");
+  return "what the database holds in clear is the key's study";
+}
+
+/// A session's events as the study and its enrolment number alone have them follow.
+SessionCourse course_of(const StudyStore& store, const Study& study, const SessionRow& session) {
+  try {
+    SessionCourse course(study, session.enrolment);
+    for (const Event& event : store.events(session.session)) course.follow(event);
+    return course;
+  } catch (const StudyError& error) {
+    throw VerificationError(fmt::format("session {}: the study has no order for enrolment {}: {}",
+                                        session.session, session.enrolment, error.what()));
+  }
+}
+
+std::string check_schedule(const StudyStore& store, const StudyKey& key) {
+  const std::map<int, Schedule> schedules = open_schedules(store, key);
+  int presentations = 0;
+  for (const SessionRow& session : store.sessions()) {
+    const SessionCourse course = course_of(store, key.study, session);
+    presentations += course.presentations();
+    const auto schedule = schedules.find(session.session);
+    if (schedule == schedules.end()) continue;  // withdrawn
+    if (schedule->second == course.schedule()) continue;
+    throw VerificationError(
+        fmt::format("session {}: the schedule is not the one that enrolment {} gets",
+                    session.session, session.enrolment));
+  }
+  return fmt::format("{} sessions' schedules made anew, {} presentations where they were due",
+                     schedules.size(), presentations);
+}
+
+std::string check_responses(const StudyStore& store) {
+  const int positions = store.commitment().positions;
+  int responses = 0;
+  for (const TrialRow& row : store.trials()) {
+    for (const std::optional<int>& position : {row.position, row.first_position}) {
+      if (!position || (*position >= 0 && *position < positions)) continue;
+      throw VerificationError(fmt::format("session {}, trial {}: answers position {} of {}",
+                                          row.session, row.trial, *position, positions));
+    }
+    if (row.position) ++responses;
+  }
+  return fmt::format("{} answers within the {} pictures", responses, positions);
+}
+
+bool has_sealed_part(const Event& event) {
+  return event.kind == EventKind::opened || event.kind == EventKind::trace_stored ||
+         event.kind == EventKind::closed || !event.sealed.empty();
+}
+
+std::string check_payloads(const StudyStore& store, const StudyKey& key) {
+  int opened = 0;
+  for (const auto& [session, own] : participant_keys(store, key)) {
+    for (const Event& event : store.events(session)) {
+      if (!has_sealed_part(event)) continue;
+      static_cast<void>(opened_part(event, own));
+      ++opened;
+    }
+  }
+  require_sealed_ends(store, key);
+  return fmt::format("{} sealed parts of events, the ends of chains among them", opened);
+}
+
+void check_trace(const StudyStore& store, const Event& event, const SecretKey& own) {
+  const TraceBody body = trace_body_from_json(event.body);
+  const auto box = store.sealed_trace(event.session, body.trial);
+  const auto fail = [&](const std::string& what) {
+    throw VerificationError(
+        fmt::format("session {}, trial {}: the trace {}", event.session, body.trial, what));
+  };
+  if (!box) return fail("is missing");
+  const auto samples = static_cast<std::size_t>(body.samples);
+  const auto trace = unsealed_trace(event.session, body.trial, *box, own, samples);
+  if (!trace) return fail("does not open");
+  if (trace->samples.size() != samples) fail("has another number of samples than its event says");
+}
+
+std::string check_traces(const StudyStore& store, const StudyKey& key) {
+  const std::map<int, SecretKey> keys = participant_keys(store, key);
+  int traces = 0;
+  store.for_each(EventKind::trace_stored, [&](const Event& event) {
+    const auto own = keys.find(event.session);
+    if (own == keys.end()) return;
+    check_trace(store, event, own->second);
+    ++traces;
+  });
+  return fmt::format("{} traces opened and decoded", traces);
+}
+
+std::string check_pack(const StudyStore& store, const StudyKey* key, const Pack& pack) {
+  if (pack.manifest().study_id != store.commitment().study_id) {
+    throw VerificationError("the pack is of study " + one_line(pack.manifest().study_id));
+  }
+  if (pack.digest() != store.commitment().pack) {
+    throw VerificationError("the pack is not the one that the database was begun with");
+  }
+  for (const PackEntry& entry : pack.manifest().entries) {
+    if (pack.is_intact(entry.code)) continue;
+    throw VerificationError("field " + entry.code + " of the pack is not what was prepared");
+  }
+  if (key == nullptr) {
+    return fmt::format("{} fields intact; not held against the key",
+                       pack.manifest().entries.size());
+  }
+  for (const KeyedStimulus& stimulus : key->stimuli) static_cast<void>(pack.entry(stimulus.code));
+  return fmt::format("{} fields intact, every code of the key among them",
+                     pack.manifest().entries.size());
+}
+
+std::string check_head(const StudyStore& store, const Digest& head) {
+  const std::vector<Event> events = store.events(0);
+  const auto found = std::find_if(events.begin(), events.end(),
+                                  [&](const Event& event) { return event.hash == head; });
+  if (found == events.end()) {
+    throw VerificationError(
+        "no event of the file's chain has the hash that was given: its end was cut off, or it was "
+        "made anew");
+  }
+  return fmt::format("event {} of the file's chain, which has {}", found->sequence, events.size());
+}
+
+template <typename Work>
+Check done(const std::string& name, Work work) {
+  try {
+    return {name, CheckState::passed, work()};
+  } catch (const Error& error) {
+    return {name, CheckState::failed, one_line(error.what())};
+  }
+}
+
+Check left(const std::string& name, const std::string& needed) {
+  return {name, CheckState::not_checked, "needs the " + needed};
+}
+
+}  // namespace
+
+std::string name_of(CheckState state) {
+  switch (state) {
+    case CheckState::passed:
+      return "passed";
+    case CheckState::failed:
+      return "failed";
+    case CheckState::not_checked:
+      break;
+  }
+  return "not-checked";
+}
+
+bool Verification::holds() const noexcept {
+  return std::none_of(checks.begin(), checks.end(),
+                      [](const Check& check) { return check.state == CheckState::failed; });
+}
+
+bool Verification::complete() const noexcept {
+  return std::none_of(checks.begin(), checks.end(),
+                      [](const Check& check) { return check.state == CheckState::not_checked; });
+}
+
+Verification verify_study(const StudyStore& store, const StudyKey* key, const Pack* pack,
+                          const std::optional<Digest>& head) {
+  Verification verification;
+  try {
+    verification.head = store.file_head();
+    verification.simulated = store.commitment().simulated;
+  } catch (const StoreError&) {
+    // The first check says what is wrong with the file's chain.
+  }
+  const auto with_key = [&](const char* name,
+                            std::string (*check)(const StudyStore&, const StudyKey&)) {
+    verification.checks.push_back(key == nullptr ? left(name, "key")
+                                                 : done(name, [&] { return check(store, *key); }));
+  };
+  verification.checks.push_back(done("chain", [&] { return check_chain(store); }));
+  with_key("key", check_key);
+  with_key("seal", check_seal);
+  with_key("configuration", check_configuration);
+  with_key("schedule", check_schedule);
+  verification.checks.push_back(done("responses", [&] { return check_responses(store); }));
+  with_key("payloads", check_payloads);
+  with_key("traces", check_traces);
+  verification.checks.push_back(pack == nullptr ? left("pack", "pack") : done("pack", [&] {
+    return check_pack(store, key, *pack);
+  }));
+  if (head) {
+    verification.checks.push_back(done("head", [&] { return check_head(store, *head); }));
+  }
+  return verification;
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,256 @@
+#include "analysis/exports/export_csv.hpp"
+#include "analysis/exports/export_json.hpp"
+#include "analysis/fake_study.hpp"
+#include "analysis/report/report.hpp"
+#include "analysis/text_matching.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+namespace {
+
+using Fields = std::vector<std::string>;
+using CsvRow = std::map<std::string, std::string>;
+
+/// RFC 4180, read as its grammar says.
+std::vector<Fields> parse_csv(const std::string& text) {
+  std::vector<Fields> records{{""}};
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    std::string& field = records.back().back();
+    if (quoted && text[i] == '"' && i + 1 < text.size() && text[i + 1] == '"') {
+      field += text[++i];
+    } else if (text[i] == '"') {
+      quoted = !quoted;
+    } else if (!quoted && text[i] == ',') {
+      records.back().emplace_back();
+    } else if (!quoted && text[i] == '\n') {
+      records.push_back({""});
+    } else {
+      field += text[i];
+    }
+  }
+  records.pop_back();
+  return records;
+}
+
+std::string text_of_file(const std::filesystem::path& path) {
+  return text_of(ByteView(read_file(path)));
+}
+
+std::vector<CsvRow> rows_of(const std::filesystem::path& path) {
+  const std::vector<Fields> records = parse_csv(text_of_file(path));
+  std::vector<CsvRow> rows;
+  for (std::size_t i = 1; i < records.size(); ++i) {
+    REQUIRE(records[i].size() == records[0].size());
+    CsvRow& row = rows.emplace_back();
+    for (std::size_t k = 0; k < records[0].size(); ++k) row[records[0][k]] = records[i][k];
+  }
+  return rows;
+}
+
+void fill(FakeStudy& study) {
+  study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::confusing(0, 1)});
+  study.add({.participant = "P02", .enrolment = 2, .answers = [](const Presentation& shown) {
+               return shown.trial == 7 ? std::nullopt : std::optional(shown.stimulus.class_index);
+             }});
+}
+
+constexpr const char* kHeader =
+    "participant,session,trial,block,method,class,exemplar,response,correct,confidence,"
+    "reaction_time_s,from_contact_s,contact_s,path_mm,force_rms_n,saturated_share,valid,"
+    "presented_at_s";
+
+}  // namespace
+
+TEST_CASE("Exported trials count up to the report") {
+  FakeStudy study(Protocol::comparison, {.label = "bark, \"old\""});
+  fill(study);
+  study.close_and_unblind();
+  const Outcomes outcomes = load_outcomes(study.store(), study.key());
+  const StudyReport report = make_report(outcomes);
+  const std::filesystem::path out = study.folder() / "new" / "out";
+  const auto files = export_csv(study.store(), outcomes, out);
+  REQUIRE(files.size() == 5);
+
+  std::map<std::string, std::map<std::string, std::map<std::string, int>>> counts;
+  int correct = 0;
+  for (const CsvRow& row : rows_of(out / "trials.csv")) {
+    ++counts[row.at("method")][row.at("class")][row.at("response")];
+    correct += row.at("correct") == "1" ? 1 : 0;
+  }
+  int expected_correct = 0;
+  for (const MethodReport& method : report.methods) {
+    expected_correct += method.overall.correct;
+    const auto confusion = rows_of(out / ("confusion_" + method.method + ".csv"));
+    REQUIRE(confusion.size() == 3);
+    for (int i = 0; i < 3; ++i) {
+      auto& answers = counts[method.method][report.classes[i]];
+      CHECK(confusion[i].at("presented") == report.classes[i]);
+      CHECK(answers[""] == method.confusion.no_response(i));
+      CHECK(confusion[i].at("no_response") == std::to_string(answers[""]));
+      for (int j = 0; j < 3; ++j) {
+        CHECK(answers[report.classes[j]] == method.confusion.count(i, j));
+        CHECK(confusion[i].at(report.classes[j]) == std::to_string(method.confusion.count(i, j)));
+      }
+    }
+  }
+  CHECK(correct == expected_correct);
+}
+
+TEST_CASE("trials.csv has the published columns, exact times and figures") {
+  FakeStudy study(Protocol::classification);
+  fill(study);
+  study.close_and_unblind();
+  const Outcomes outcomes = load_outcomes(study.store(), study.key());
+  export_csv(study.store(), outcomes, study.folder());
+  const std::string text = text_of_file(study.folder() / "trials.csv");
+  CHECK(text.substr(0, text.find('\n')) == kHeader);
+  const std::vector<CsvRow> rows = rows_of(study.folder() / "trials.csv");
+  REQUIRE(rows.size() == 24);
+  const CsvRow& first = rows.front();
+  CHECK(first.at("participant") == "P01");
+  CHECK(first.at("trial") == "1");
+  CHECK(first.at("method") == "adaptive");
+  CHECK(first.at("presented_at_s") == "10");
+  CHECK(first.at("reaction_time_s") == "4.25");
+  CHECK(first.at("from_contact_s") == "3.75");
+  CHECK(first.at("contact_s") == "4");
+  CHECK(first.at("path_mm") == "300.5");
+  CHECK(first.at("force_rms_n") == "0.125");
+  CHECK(first.at("saturated_share") == "0.001");
+  CHECK(first.at("valid") == "1");
+  CHECK(first.at("confidence").empty());
+  const CsvRow& missed = rows[12 + 6];
+  CHECK(missed.at("response").empty());
+  CHECK(missed.at("correct") == "0");
+  CHECK(missed.at("reaction_time_s").empty());
+}
+
+TEST_CASE("An exported trial is valid by the rule's part in clear, then by its sealed part too") {
+  FakeStudy study(Protocol::classification);
+  study.add({.participant = "P01",
+             .enrolment = 1,
+             .answers = FakeStudy::always_right(),
+             .within_limits = false});
+  study.add(
+      {.participant = "P02", .enrolment = 2, .answers = FakeStudy::always_right(), .valid = false});
+  study.add({.participant = "P03", .enrolment = 3, .answers = FakeStudy::always_right()});
+  const auto check = [&](const std::map<std::string, std::string>& expected) {
+    const std::vector<CsvRow> rows = rows_of(study.folder() / "trials.csv");
+    REQUIRE(rows.size() == 36);
+    for (const CsvRow& row : rows) CHECK(row.at("valid") == expected.at(row.at("participant")));
+  };
+  export_csv(study.store(), std::nullopt, study.folder());
+  check({{"P01", "1"}, {"P02", "0"}, {"P03", "1"}});
+  study.close_and_unblind();
+  export_csv(study.store(), load_outcomes(study.store(), study.key()), study.folder());
+  check({{"P01", "0"}, {"P02", "0"}, {"P03", "1"}});
+}
+
+TEST_CASE("Before unblinding an export has no word of what was presented or answered") {
+  FakeStudy study(Protocol::comparison, {.label = "petrified wood"});
+  fill(study);
+  const std::filesystem::path out = study.folder() / "out";
+  const auto files = export_csv(study.store(), std::nullopt, out);
+  CHECK(files.size() == 3);
+  CHECK_FALSE(std::filesystem::exists(out / "confusion_adaptive.csv"));
+  const std::string json = text_of_file(export_json(study.store(), std::nullopt, out));
+  const std::string csv = text_of_file(out / "trials.csv");
+  CHECK(csv.starts_with("participant,session,trial,block,confidence,reaction_time_s,"));
+  for (const char* secret :
+       {"petrified", "cloth", "straw", "png", "adaptive", "tv-gabor", "correct", "exemplar"}) {
+    CHECK_FALSE(contains(csv, secret));
+    CHECK_FALSE(contains(json, secret));
+  }
+  for (const char* column : {"class", "response", "method"}) {
+    CHECK_FALSE(nlohmann::json::parse(json)["trials"][0].contains(column));
+  }
+  const std::vector<CsvRow> rows = rows_of(out / "trials.csv");
+  REQUIRE(rows.size() == 48);
+  CHECK(rows[0].size() == 13);
+  for (const CsvRow& row : rows) {
+    for (const char* sealed : {"contact_s", "path_mm", "force_rms_n", "saturated_share"}) {
+      CHECK(row.at(sealed).empty());
+    }
+  }
+}
+
+TEST_CASE("participants.csv tells whose sessions count and that they are simulated") {
+  FakeStudy study(Protocol::classification);
+  fill(study);
+  study.add({.participant = "P03",
+             .enrolment = 3,
+             .answers = FakeStudy::always_right(),
+             .complete = false,
+             .stop_after = 2});
+  export_csv(study.store(), std::nullopt, study.folder());
+  const std::vector<CsvRow> rows = rows_of(study.folder() / "participants.csv");
+  REQUIRE(rows.size() == 3);
+  CHECK(rows[0].at("counted") == "1");
+  CHECK(rows[2].at("participant") == "P03");
+  CHECK(rows[2].at("state") == "stopped");
+  CHECK(rows[2].at("counted") == "0");
+  for (const CsvRow& row : rows) CHECK(row.at("simulated") == "1");
+  const auto contents = nlohmann::json::parse(text_of_file(study.folder() / "export.json"));
+  CHECK(contents["stamp"] == "SIMULATED");
+  CHECK(contents["blinded"] == true);
+  CHECK(contents["files"] == nlohmann::json({"trials.csv", "participants.csv"}));
+}
+
+TEST_CASE("The JSON export holds the report and the same trials") {
+  FakeStudy study(Protocol::classification);
+  fill(study);
+  study.close_and_unblind();
+  const Outcomes outcomes = load_outcomes(study.store(), study.key());
+  export_csv(study.store(), outcomes, study.folder());
+  const auto json =
+      nlohmann::json::parse(text_of_file(export_json(study.store(), outcomes, study.folder())));
+  CHECK(json["stamp"] == "SIMULATED");
+  CHECK(json["report"] == nlohmann::json::parse(report_json(make_report(outcomes))));
+  CHECK(json["participants"].size() == 2);
+  const std::vector<CsvRow> rows = rows_of(study.folder() / "trials.csv");
+  REQUIRE(json["trials"].size() == rows.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto& trial = json["trials"][i];
+    CHECK(trial.size() == rows[i].size());
+    CHECK(trial["class"] == rows[i].at("class"));
+    CHECK(trial["response"].is_null() == rows[i].at("response").empty());
+  }
+  CHECK(json["trials"][0]["reaction_time_s"] == 4.25);
+}
+
+TEST_CASE("Exporting twice gives the same bytes and leaves other files alone") {
+  FakeStudy study(Protocol::classification);
+  fill(study);
+  study.close_and_unblind();
+  const Outcomes outcomes = load_outcomes(study.store(), study.key());
+  const std::filesystem::path out = study.folder() / "out";
+  std::filesystem::create_directory(out);
+  replace_file(out / "notes.txt", "mine");
+  std::map<std::filesystem::path, std::string> before;
+  for (const auto& file : export_csv(study.store(), outcomes, out)) {
+    before[file] = text_of_file(file);
+  }
+  const std::string json = text_of_file(export_json(study.store(), outcomes, out));
+  for (const auto& file : export_csv(study.store(), outcomes, out)) {
+    CHECK(before.at(file) == text_of_file(file));
+  }
+  CHECK(json == text_of_file(export_json(study.store(), outcomes, out)));
+  CHECK(text_of_file(out / "notes.txt") == "mine");
+}
+
+TEST_CASE("An export into a file instead of a folder is refused") {
+  FakeStudy study(Protocol::classification);
+  const std::string complaint =
+      complaint_of<FileError>([&] { export_csv(study.store(), std::nullopt, study.database()); });
+  CHECK(contains(complaint, study.database().string()));
+}
+
+}  // namespace touchtrial
