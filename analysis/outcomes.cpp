@@ -34,6 +34,7 @@ Outcomes labelled(const StudyStore& store, const Study& study) {
   Outcomes outcomes;
   const StudyCommitment& commitment = store.commitment();
   outcomes.study = commitment.study;
+  outcomes.design = study;
   outcomes.protocol = study.protocol;
   outcomes.simulated = commitment.simulated;
   outcomes.pilot = commitment.pilot;

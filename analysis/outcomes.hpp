@@ -1,6 +1,7 @@
 /// \file What participants answered to what they felt: a study after unblinding.
 #pragma once
 
+#include "analysis/collection.hpp"
 #include "protocols/design/study_key.hpp"
 #include "protocols/store/study_store.hpp"
 
@@ -49,6 +50,8 @@ struct Outcomes {
   int sessions_unseen =
       0;  ///< had not ended at an interim look: neither in `sessions` nor `trials`
   std::vector<TrialOutcome> trials;  ///< by session and trial; of withdrawn ones none
+  Study design;                      ///< the study file: by which rule orders were drawn
+  Collection collection;
 };
 
 /// "session 2, event 7: <what>"

@@ -2,10 +2,20 @@
 /// Format of the JSON: docs/data-dictionary.md, "Report".
 #pragma once
 
+#include "analysis/collection.hpp"
 #include "analysis/outcomes.hpp"
+#include "analysis/report/breakdown.hpp"
+#include "analysis/report/reaction_times.hpp"
+#include "analysis/report/robustness.hpp"
+#include "analysis/statistics/chance_test.hpp"
+#include "analysis/statistics/choice_model.hpp"
+#include "analysis/statistics/cochran_q.hpp"
 #include "analysis/statistics/confusion.hpp"
+#include "analysis/statistics/d_prime.hpp"
 #include "analysis/statistics/information_transfer.hpp"
+#include "analysis/statistics/label_matching.hpp"
 #include "analysis/statistics/method_comparison.hpp"
+#include "analysis/statistics/odds_ratio.hpp"
 #include "analysis/statistics/participant_mean.hpp"
 #include "analysis/statistics/proportion.hpp"
 
@@ -20,11 +30,14 @@ struct ClassAccuracy {
   Proportion accuracy;
   Interval wilson;
   Interval clopper_pearson;
+  Interval jeffreys{};
 };
 
 struct ParticipantAccuracy {
   std::string participant;
   Proportion accuracy;
+  LabelMatching matching{};           ///< what the best exchange of labels would give
+  std::optional<double> consistency;  ///< raw information transfer, bits; never to be headlined
 };
 
 /// One method's figures; trials without a response are wrong in all but information transfer.
@@ -36,6 +49,39 @@ struct MethodReport {
   MeanEstimate mean;                    ///< over participants' own accuracies: the headline
   InformationTransfer information;
   std::vector<ParticipantAccuracy> per_participant;  ///< by session
+  std::optional<Interval> bootstrap{};               ///< cluster_bootstrap of the headline
+  std::optional<ChanceTest> chance{};
+  DPrime d_prime{};  ///< of the pooled trials, nominal
+  std::optional<ChoiceModel> choice{};
+  LabelMatching matching{};             ///< of the pooled trials
+  std::vector<ReactionTimes> reaction;  ///< by class, then all
+  std::vector<Breakdown> breakdowns;
+  std::vector<SubsetAccuracy> robustness;
+};
+
+/// Two methods with one class (Fig. 7).
+struct ClassComparison {
+  Proportion first;
+  Proportion second;
+  MethodComparison paired;              ///< over participants; its p is not adjusted
+  std::optional<double> mcnemar_mid_p;  ///< only with one pair a participant
+};
+
+/// Two of the study's methods, first minus second.
+struct MethodPair {
+  int first = 0;  ///< indices into StudyReport::methods
+  int second = 1;
+  MethodComparison overall;
+  std::optional<double> p_holm;         ///< adjusted over all pairs, with three methods or more
+  std::optional<OddsRatio> odds_ratio;  ///< stratified by participant
+  std::optional<double> mcnemar_mid_p;  ///< only with one pair a participant
+  std::vector<ClassComparison> classes;
+};
+
+/// Three methods or more at once.
+struct MethodsTogether {
+  CochranQ cochran;
+  std::optional<double> permuted_p;  ///< methods exchanged within participants
 };
 
 struct StudyReport {
@@ -48,6 +94,10 @@ struct StudyReport {
   std::vector<std::string> classes;
   std::vector<MethodReport> methods;
   std::optional<MethodComparison> comparison;  ///< of exactly two methods
+  std::vector<MethodPair> pairs;               ///< of two methods or more: every pair
+  std::optional<MethodsTogether> together;     ///< of three methods or more
+  Collection collection;                       ///< how it was collected
+  Registration registration;                   ///< what was deposited beforehand
   std::vector<std::string> warnings;           ///< what a reader could take a figure for, wrongly
 };
 

@@ -1,4 +1,4 @@
-/// \file Two methods felt by the same participants. Source: docs/method.md, "Statistics".
+/// \file Two methods felt by the same participants. Source: docs/statistics.md.
 #pragma once
 
 #include "analysis/statistics/participant_mean.hpp"
@@ -18,10 +18,11 @@ struct PairedAccuracy {
 /// How much better the first method is than the second.
 struct MethodComparison {
   int participants = 0;
-  std::optional<double> difference;  ///< mean over participants of first minus second
-  Interval interval{-1.0, 1.0};      ///< t interval of that mean, within [-1, 1]
-  std::optional<double> p;           ///< sign_flip_p
-  std::optional<double> db;          ///< decibels of the two means
+  std::optional<double> difference;     ///< mean over participants of first minus second
+  Interval interval{-1.0, 1.0};         ///< t interval of that mean, within [-1, 1]
+  std::optional<double> p;              ///< sign_flip_p
+  std::optional<double> db;             ///< decibels of the two means
+  std::optional<Interval> bootstrap{};  ///< bootstrap_mean of the differences
 };
 
 /// 10 log10(a / b).

@@ -1,5 +1,5 @@
 /// \file Means over participants: the unit of which a study has a sample. Pooling all trials as if
-/// they were independent makes intervals too narrow. Source: docs/method.md, "Statistics".
+/// they were independent makes intervals too narrow. Source: docs/statistics.md.
 #pragma once
 
 #include "analysis/statistics/proportion.hpp"
@@ -14,6 +14,7 @@ struct MeanEstimate {
   int participants = 0;
   std::optional<double> mean;  ///< nothing without participants
   Interval interval;           ///< the whole range with fewer than two participants
+  std::optional<double> sd{};  ///< between participants, n - 1; nothing with fewer than two
 };
 
 /// The mean of one figure a participant.

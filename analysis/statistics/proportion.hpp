@@ -1,4 +1,4 @@
-/// \file Proportions and how far they can be trusted. Source: docs/method.md, "Statistics"; Brown,
+/// \file Proportions and how far they can be trusted. Source: docs/statistics.md; Brown,
 /// Cai, DasGupta 2001, Statistical Science 16(2).
 #pragma once
 
@@ -37,5 +37,9 @@ struct Proportion {
 /// Same arguments, result and errors as wilson_interval.
 [[nodiscard]] Interval clopper_pearson_interval(Proportion proportion,
                                                 double level = kConfidenceLevel);
+
+/// Jeffreys' interval: quantiles of Beta(correct + 1/2, n - correct + 1/2), with 0 where nothing
+/// and 1 where everything is correct. Same arguments, result and errors as wilson_interval.
+[[nodiscard]] Interval jeffreys_interval(Proportion proportion, double level = kConfidenceLevel);
 
 }  // namespace touchtrial
