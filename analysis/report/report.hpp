@@ -36,8 +36,8 @@ struct ClassAccuracy {
 struct ParticipantAccuracy {
   std::string participant;
   Proportion accuracy;
-  LabelMatching matching{};           ///< what the best exchange of labels would give
-  std::optional<double> consistency;  ///< raw information transfer, bits; never to be headlined
+  LabelMatching matching{};             ///< what the best exchange of labels would give
+  std::optional<double> consistency{};  ///< raw information transfer, bits; never to be headlined
 };
 
 /// One method's figures; trials without a response are wrong in all but information transfer.
@@ -63,8 +63,8 @@ struct MethodReport {
 struct ClassComparison {
   Proportion first;
   Proportion second;
-  MethodComparison paired;              ///< over participants; its p is not adjusted
-  std::optional<double> mcnemar_mid_p;  ///< only with one pair a participant
+  MethodComparison paired;                ///< over participants; its p is not adjusted
+  std::optional<double> mcnemar_mid_p{};  ///< only with one pair a participant
 };
 
 /// Two of the study's methods, first minus second.
@@ -72,9 +72,9 @@ struct MethodPair {
   int first = 0;  ///< indices into StudyReport::methods
   int second = 1;
   MethodComparison overall;
-  std::optional<double> p_holm;         ///< adjusted over all pairs, with three methods or more
-  std::optional<OddsRatio> odds_ratio;  ///< stratified by participant
-  std::optional<double> mcnemar_mid_p;  ///< only with one pair a participant
+  std::optional<double> p_holm{};         ///< adjusted over all pairs, with three methods or more
+  std::optional<OddsRatio> odds_ratio{};  ///< stratified by participant
+  std::optional<double> mcnemar_mid_p{};  ///< only with one pair a participant
   std::vector<ClassComparison> classes;
 };
 
