@@ -3,6 +3,7 @@
 #pragma once
 
 #include "analysis/collection.hpp"
+#include "analysis/cues/cue_report.hpp"
 #include "analysis/outcomes.hpp"
 #include "analysis/report/breakdown.hpp"
 #include "analysis/report/reaction_times.hpp"
@@ -98,6 +99,7 @@ struct StudyReport {
   std::optional<MethodsTogether> together;     ///< of three methods or more
   Collection collection;                       ///< how it was collected
   Registration registration;                   ///< what was deposited beforehand
+  std::optional<CueReport> cues{};             ///< if asked for: it takes reading every trace
   std::vector<std::string> warnings;           ///< what a reader could take a figure for, wrongly
 };
 
