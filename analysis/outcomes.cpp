@@ -77,6 +77,7 @@ TrialOutcome outcome_of(const TrialRow& row, const SessionOutcome& session,
   trial.participant = session.row.participant;
   trial.row = row;
   trial.stimulus = presentation.stimulus;
+  trial.kind = presentation.kind;
   trial.scored = presentation.kind == PresentationKind::scored;
   trial.counted = session.counted && trial.scored && ended;
   trial.response = response_of(row, schedule);

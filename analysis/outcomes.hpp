@@ -21,7 +21,8 @@ struct SessionOutcome {
 struct TrialOutcome {
   std::string participant;
   TrialRow row;
-  StimulusIndex stimulus;
+  StimulusIndex stimulus;  ///< of a catch trial it means nothing
+  PresentationKind kind = PresentationKind::scored;
   bool scored = false;          ///< by the schedule: no practice, no lead-in
   bool counted = false;         ///< enters accuracy
   std::optional<int> response;  ///< class index of the answer; empty: no response

@@ -3,7 +3,6 @@
 #include "analysis/exports/export_folder.hpp"
 #include "analysis/exports/export_tables.hpp"
 #include "analysis/json_figures.hpp"
-#include "core/files.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -12,14 +11,15 @@ namespace {
 
 /// What the folder holds, for whoever finds it without us.
 std::string contents_json(const StudyCommitment& commitment, bool blinded,
-                          const std::vector<std::filesystem::path>& files) {
+                          const std::vector<ExportFile>& files) {
   nlohmann::ordered_json contents{{"study", commitment.study}, {"protocol", commitment.protocol}};
   put_stamp(contents, commitment.simulated);
+  contents["study_id"] = commitment.study_id;
   contents["pilot"] = commitment.pilot;
   contents["blinded"] = blinded;
   contents["program_version"] = commitment.program_version;
   contents["files"] = nlohmann::ordered_json::array();
-  for (const auto& file : files) contents["files"].push_back(file.filename().string());
+  for (const ExportFile& file : files) contents["files"].push_back(file.name.string());
   return json_text(contents);
 }
 
@@ -28,22 +28,22 @@ std::string contents_json(const StudyCommitment& commitment, bool blinded,
 std::vector<std::filesystem::path> export_csv(const StudyStore& store,
                                               const std::optional<Outcomes>& outcomes,
                                               const std::filesystem::path& folder) {
-  make_export_folder(folder);
-  std::vector<std::filesystem::path> files;
-  const auto write = [&](const std::string& name, const DataTable& table) {
-    files.push_back(folder / name);
-    replace_file(files.back(), csv_text(table));
+  const StudyCommitment& commitment = store.commitment();
+  std::vector<ExportFile> files;
+  const auto add = [&](const std::string& name, const DataTable& table) {
+    files.push_back(text_file(name, csv_text(table)));
   };
-  write("trials.csv", trials_table(store, outcomes));
-  write("participants.csv", participants_table(store));
+  add("trials.csv", trials_table(store, outcomes));
+  add("participants.csv", participants_table(store));
   for (std::size_t i = 0; outcomes && i < outcomes->methods.size(); ++i) {
-    write("confusion_" + outcomes->methods[i] + ".csv",
-          confusion_table(*outcomes, static_cast<int>(i)));
+    add("confusion_" + outcomes->methods[i] + ".csv",
+        confusion_table(*outcomes, static_cast<int>(i)));
   }
-  const std::filesystem::path contents = folder / "export.json";
-  replace_file(contents, contents_json(store.commitment(), !outcomes, files));
-  files.push_back(contents);
-  return files;
+  if (outcomes) add("unscored_trials.csv", unscored_table(*outcomes));
+  add("study.csv", study_table(store, outcomes));
+  if (outcomes) files.push_back(text_file("study_file.json", outcomes->design.text));
+  files.push_back(text_file("export.json", contents_json(commitment, !outcomes, files)));
+  return write_export(folder, {commitment.study, commitment.study_id, "csv"}, files);
 }
 
 }  // namespace touchtrial

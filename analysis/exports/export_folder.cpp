@@ -1,18 +1,128 @@
 #include "analysis/exports/export_folder.hpp"
 
+#include "analysis/exports/export_mark_json.hpp"
 #include "core/errors.hpp"
+#include "core/files.hpp"
 
+#include <algorithm>
+#include <set>
 #include <system_error>
 
 namespace touchtrial {
+namespace {
 
-void make_export_folder(const std::filesystem::path& folder) {
+namespace fs = std::filesystem;
+
+void make_export_folder(const fs::path& folder) {
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (std::filesystem::is_directory(folder)) return;
+  fs::create_directories(folder, error);
+  if (fs::is_directory(folder)) return;
   const std::string reason = error ? error.message() : "a file of that name exists";
   throw FileError(one_line(folder.string()) + ": cannot be made a folder (" + reason +
                   "); give another folder or change its permissions");
+}
+
+/// Names as they stand in marks; sorted.
+std::set<std::string> names_of(const std::vector<ExportFile>& files) {
+  std::set<std::string> names;
+  for (const ExportFile& file : files) names.insert(file.name.generic_string());
+  return names;
+}
+
+FolderMark mark_of(const fs::path& folder, const ExportMark& mark) {
+  const fs::path path = folder / kExportMark;
+  if (!is_there(path)) return {mark.study, mark.study_id, {}};
+  FolderMark found = read_folder_mark(path);
+  if (found.study_id == mark.study_id) return found;
+  throw FileError(one_line(folder.string()) + ": holds an export of study " +
+                  one_line(found.study) + " (" + one_line(found.study_id) +
+                  "), another than this one; give another folder");
+}
+
+/// Any format may replace what another of this study's wrote under the same name, but for whole
+/// datasets: two in one folder would be neither.
+void require_no_other_dataset(const fs::path& folder, const ExportMark& mark,
+                              const FolderMark& found) {
+  const auto is_dataset = [](const std::string& format) {
+    return format == "bids" || format == "psych-ds";
+  };
+  for (const auto& [format, files] : found.files) {
+    if (format == mark.format || files.empty()) continue;
+    if (!is_dataset(format) && !is_dataset(mark.format)) continue;
+    throw FileError(one_line(folder.string()) + ": holds this study's export as " + format +
+                    ", and a dataset needs a folder of its own; give another folder");
+  }
+}
+
+void require_own_files(const fs::path& folder, const FolderMark& found,
+                       const std::set<std::string>& names) {
+  std::set<std::string> own;
+  for (const auto& [format, files] : found.files) own.insert(files.begin(), files.end());
+  for (const std::string& name : names) {
+    if (own.contains(name) || !is_there(folder / name)) continue;
+    throw FileError(one_line((folder / name).string()) +
+                    ": is there already, and no export of this study wrote it; give another "
+                    "folder, or move it away");
+  }
+}
+
+/// With the folders that are empty then. What cannot be removed is told by its name.
+void remove_obsolete(const fs::path& folder, const std::string& name) {
+  std::error_code error;
+  fs::remove(folder / name, error);
+  if (error) {
+    throw FileError(one_line((folder / name).string()) +
+                    ": is no longer part of the export and cannot be removed (" + error.message() +
+                    "); remove it");
+  }
+  for (fs::path above = fs::path(name).parent_path(); !above.empty(); above = above.parent_path()) {
+    if (!fs::remove(folder / above, error)) return;
+  }
+}
+
+/// A name comes from a file that anybody may have edited: it must stay in the folder.
+bool stays_inside(const std::string& name) {
+  const fs::path path(name);
+  return !path.empty() && path.is_relative() &&
+         std::none_of(path.begin(), path.end(), [](const fs::path& part) { return part == ".."; });
+}
+
+}  // namespace
+
+ExportFile text_file(fs::path name, std::function<std::string()> content) {
+  return {std::move(name), [content = std::move(content)](const fs::path& path) {
+            replace_file(path, std::string_view(content()));
+          }};
+}
+
+ExportFile text_file(fs::path name, std::string content) {
+  return {std::move(name), [content = std::move(content)](const fs::path& path) {
+            replace_file(path, std::string_view(content));
+          }};
+}
+
+std::vector<fs::path> write_export(const fs::path& folder, const ExportMark& mark,
+                                   const std::vector<ExportFile>& files) {
+  make_export_folder(folder);
+  FolderMark found = mark_of(folder, mark);
+  const std::set<std::string> names = names_of(files);
+  require_no_other_dataset(folder, mark, found);
+  require_own_files(folder, found, names);
+  const std::set<std::string> before = found.files[mark.format];
+  found.files[mark.format].insert(names.begin(), names.end());
+  replace_file(folder / kExportMark, folder_mark_json(found));
+  std::vector<fs::path> written;
+  for (const ExportFile& file : files) {
+    written.push_back(folder / file.name);
+    make_folder(written.back().parent_path());
+    file.write(written.back());
+  }
+  for (const std::string& name : before) {
+    if (!names.contains(name) && stays_inside(name)) remove_obsolete(folder, name);
+  }
+  found.files[mark.format] = names;
+  replace_file(folder / kExportMark, folder_mark_json(found));
+  return written;
 }
 
 }  // namespace touchtrial

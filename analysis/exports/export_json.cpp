@@ -3,7 +3,6 @@
 #include "analysis/exports/export_folder.hpp"
 #include "analysis/exports/export_tables.hpp"
 #include "analysis/json_figures.hpp"
-#include "core/files.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -39,9 +38,10 @@ Json rows_json(const DataTable& table) {
 
 std::filesystem::path export_json(const StudyStore& store, const std::optional<Outcomes>& outcomes,
                                   const std::filesystem::path& folder) {
-  make_export_folder(folder);
-  Json document{{"study", store.commitment().study}, {"protocol", store.commitment().protocol}};
-  put_stamp(document, store.commitment().simulated);
+  const StudyCommitment& commitment = store.commitment();
+  Json document{{"study", commitment.study}, {"protocol", commitment.protocol}};
+  put_stamp(document, commitment.simulated);
+  document["study_id"] = commitment.study_id;
   if (outcomes) {
     document["report"] = report_object(make_report(*outcomes));
   } else {
@@ -49,9 +49,10 @@ std::filesystem::path export_json(const StudyStore& store, const std::optional<O
   }
   document["participants"] = rows_json(participants_table(store));
   document["trials"] = rows_json(trials_table(store, outcomes));
-  const std::filesystem::path file = folder / "study.json";
-  replace_file(file, json_text(document));
-  return file;
+  if (outcomes) document["unscored_trials"] = rows_json(unscored_table(*outcomes));
+  return write_export(folder, {commitment.study, commitment.study_id, "json"},
+                      {text_file("study.json", json_text(document))})
+      .front();
 }
 
 }  // namespace touchtrial

@@ -1,3 +1,4 @@
+#include "analysis/exports/csv_reading.hpp"
 #include "analysis/exports/export_csv.hpp"
 #include "analysis/exports/export_json.hpp"
 #include "analysis/fake_study.hpp"
@@ -15,46 +16,6 @@
 namespace touchtrial {
 namespace {
 
-using Fields = std::vector<std::string>;
-using CsvRow = std::map<std::string, std::string>;
-
-/// RFC 4180, read as its grammar says.
-std::vector<Fields> parse_csv(const std::string& text) {
-  std::vector<Fields> records{{""}};
-  bool quoted = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    std::string& field = records.back().back();
-    if (quoted && text[i] == '"' && i + 1 < text.size() && text[i + 1] == '"') {
-      field += text[++i];
-    } else if (text[i] == '"') {
-      quoted = !quoted;
-    } else if (!quoted && text[i] == ',') {
-      records.back().emplace_back();
-    } else if (!quoted && text[i] == '\n') {
-      records.push_back({""});
-    } else {
-      field += text[i];
-    }
-  }
-  records.pop_back();
-  return records;
-}
-
-std::string text_of_file(const std::filesystem::path& path) {
-  return text_of(ByteView(read_file(path)));
-}
-
-std::vector<CsvRow> rows_of(const std::filesystem::path& path) {
-  const std::vector<Fields> records = parse_csv(text_of_file(path));
-  std::vector<CsvRow> rows;
-  for (std::size_t i = 1; i < records.size(); ++i) {
-    REQUIRE(records[i].size() == records[0].size());
-    CsvRow& row = rows.emplace_back();
-    for (std::size_t k = 0; k < records[0].size(); ++k) row[records[0][k]] = records[i][k];
-  }
-  return rows;
-}
-
 void fill(FakeStudy& study) {
   study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::confusing(0, 1)});
   study.add({.participant = "P02", .enrolment = 2, .answers = [](const Presentation& shown) {
@@ -65,7 +26,8 @@ void fill(FakeStudy& study) {
 constexpr const char* kHeader =
     "participant,session,trial,block,method,class,exemplar,response,correct,confidence,"
     "reaction_time_s,from_contact_s,contact_s,path_mm,force_rms_n,saturated_share,valid,"
-    "presented_at_s";
+    "presented_at_s,simulated,counted,kind,state,explorations,first_contact_s,position,"
+    "first_position,valid_in_clear,within_limits,limited_ticks,samples,sampling_hz,overruns";
 
 }  // namespace
 
@@ -77,7 +39,7 @@ TEST_CASE("Exported trials count up to the report") {
   const StudyReport report = make_report(outcomes);
   const std::filesystem::path out = study.folder() / "new" / "out";
   const auto files = export_csv(study.store(), outcomes, out);
-  REQUIRE(files.size() == 5);
+  REQUIRE(files.size() == 8);
 
   std::map<std::string, std::map<std::string, std::map<std::string, int>>> counts;
   int correct = 0;
@@ -159,7 +121,7 @@ TEST_CASE("Before unblinding an export has no word of what was presented or answ
   fill(study);
   const std::filesystem::path out = study.folder() / "out";
   const auto files = export_csv(study.store(), std::nullopt, out);
-  CHECK(files.size() == 3);
+  CHECK(files.size() == 4);
   CHECK_FALSE(std::filesystem::exists(out / "confusion_adaptive.csv"));
   const std::string json = text_of_file(export_json(study.store(), std::nullopt, out));
   const std::string csv = text_of_file(out / "trials.csv");
@@ -174,7 +136,7 @@ TEST_CASE("Before unblinding an export has no word of what was presented or answ
   }
   const std::vector<CsvRow> rows = rows_of(out / "trials.csv");
   REQUIRE(rows.size() == 48);
-  CHECK(rows[0].size() == 13);
+  CHECK(rows[0].size() == 21);
   for (const CsvRow& row : rows) {
     for (const char* sealed : {"contact_s", "path_mm", "force_rms_n", "saturated_share"}) {
       CHECK(row.at(sealed).empty());
@@ -201,7 +163,7 @@ TEST_CASE("participants.csv tells whose sessions count and that they are simulat
   const auto contents = nlohmann::json::parse(text_of_file(study.folder() / "export.json"));
   CHECK(contents["stamp"] == "SIMULATED");
   CHECK(contents["blinded"] == true);
-  CHECK(contents["files"] == nlohmann::json({"trials.csv", "participants.csv"}));
+  CHECK(contents["files"] == nlohmann::json({"trials.csv", "participants.csv", "study.csv"}));
 }
 
 TEST_CASE("The JSON export holds the report and the same trials") {

@@ -1,0 +1,21 @@
+/// \file The mark of a folder that holds exports, as JSON. Private to exports.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+
+namespace touchtrial {
+
+struct FolderMark {
+  std::string study;
+  std::string study_id;
+  std::map<std::string, std::set<std::string>> files{};  ///< names by format
+};
+
+[[nodiscard]] std::string folder_mark_json(const FolderMark& mark);
+/// \throws FileError if the file is no such mark
+[[nodiscard]] FolderMark read_folder_mark(const std::filesystem::path& path);
+
+}  // namespace touchtrial

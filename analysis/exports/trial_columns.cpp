@@ -1,0 +1,158 @@
+#include "analysis/exports/trial_columns.hpp"
+
+#include <array>
+#include <optional>
+
+namespace touchtrial {
+namespace {
+
+bool has_stimulus(const TrialView& trial) {
+  return trial.outcome->kind != PresentationKind::catch_trial;
+}
+
+/// From one moment of a trial to another, if both came.
+Cell time_between(const std::optional<std::chrono::nanoseconds>& from,
+                  const std::optional<std::chrono::nanoseconds>& to) {
+  if (!from || !to) return std::monostate{};
+  return *to - *from;
+}
+
+Cell response_of(const TrialView& trial) {
+  if (!trial.outcome->response) return std::monostate{};
+  return trial.study->classes[*trial.outcome->response];
+}
+
+/// Empty for a trial that never ended, so that a mean over the column is an accuracy.
+Cell correctness_of(const TrialView& trial) {
+  if (!has_stimulus(trial)) return std::monostate{};
+  const TrialState state = trial.row.state;
+  if (state != TrialState::answered && state != TrialState::timed_out) return std::monostate{};
+  return flag(trial.outcome->correct());
+}
+
+Cell method_of(const TrialView& trial) {
+  if (!has_stimulus(trial)) return std::monostate{};
+  return trial.study->methods[trial.outcome->stimulus.method];
+}
+
+Cell class_of(const TrialView& trial) {
+  if (!has_stimulus(trial)) return std::monostate{};
+  return trial.study->classes[trial.outcome->stimulus.class_index];
+}
+
+Cell exemplar_of(const TrialView& trial) {
+  if (!has_stimulus(trial)) return std::monostate{};
+  return image_of(*trial.study, *trial.outcome);
+}
+
+Cell kind_of(const TrialView& trial) {
+  switch (trial.outcome->kind) {
+    case PresentationKind::lead_in:
+      return std::string("lead-in");
+    case PresentationKind::catch_trial:
+      return std::string("catch");
+    case PresentationKind::scored:
+      break;
+  }
+  return std::string("scored");
+}
+
+Cell state_of(const TrialView& trial) {
+  switch (trial.row.state) {
+    case TrialState::answered:
+      return std::string("answered");
+    case TrialState::timed_out:
+      return std::string("timed-out");
+    case TrialState::interrupted:
+      return std::string("interrupted");
+    case TrialState::voided:
+      return std::string("voided");
+    case TrialState::presented:
+      break;
+  }
+  return std::string("presented");
+}
+
+template <std::optional<int> TrialRow::*kNumber>
+Cell number_of(const TrialView& trial) {
+  if (!(trial.row.*kNumber)) return std::monostate{};
+  return std::int64_t{*(trial.row.*kNumber)};
+}
+
+template <double TrialMeasures::*kMeasure>
+Cell measured(const TrialView& trial) {
+  if (trial.outcome == nullptr || !trial.outcome->measures) return std::monostate{};
+  return (*trial.outcome->measures).*kMeasure;
+}
+
+Cell limits_of(const TrialView& trial) {
+  if (!trial.outcome->measures) return std::monostate{};
+  return flag(trial.outcome->measures->within_limits);
+}
+
+Cell limited_ticks_of(const TrialView& trial) {
+  if (!trial.outcome->measures || !trial.outcome->measures->limited_ticks) return std::monostate{};
+  return *trial.outcome->measures->limited_ticks;
+}
+
+/// The rule judges traces; without one there is no verdict. Before unblinding, that of its part in
+/// clear.
+Cell validity_of(const TrialView& trial) {
+  if (trial.row.samples == 0) return std::monostate{};
+  return flag(trial.outcome != nullptr ? trial.outcome->valid() : trial.row.valid);
+}
+
+constexpr std::array<TrialColumn, 32> kTrialColumns{{
+    {"participant", false, [](const TrialView& t) -> Cell { return t.participant; }},
+    {"session", false, [](const TrialView& t) -> Cell { return std::int64_t{t.row.session}; }},
+    {"trial", false, [](const TrialView& t) -> Cell { return std::int64_t{t.row.trial}; }},
+    {"block", false, [](const TrialView& t) -> Cell { return std::int64_t{t.row.block}; }},
+    {"method", true, method_of},
+    {"class", true, class_of},
+    {"exemplar", true, exemplar_of},
+    {"response", true, response_of},
+    {"correct", true, correctness_of},
+    {"confidence", false, number_of<&TrialRow::confidence>},
+    {"reaction_time_s", false,
+     [](const TrialView& t) { return time_between(t.row.presented_at, t.row.answered_at); }},
+    {"from_contact_s", false,
+     [](const TrialView& t) { return time_between(t.row.contact_at, t.row.answered_at); }},
+    {"contact_s", false, measured<&TrialMeasures::contact_s>},
+    {"path_mm", false, measured<&TrialMeasures::path_mm>},
+    {"force_rms_n", false, measured<&TrialMeasures::force_rms_n>},
+    {"saturated_share", false, measured<&TrialMeasures::saturated_share>},
+    {"valid", false, validity_of},
+    {"presented_at_s", false, [](const TrialView& t) -> Cell { return t.row.presented_at; }},
+    {"simulated", false, [](const TrialView& t) { return flag(t.simulated); }},
+    {"counted", true, [](const TrialView& t) { return flag(t.outcome->counted); }},
+    {"kind", true, kind_of},
+    {"state", false, state_of},
+    {"explorations", false,
+     [](const TrialView& t) -> Cell { return std::int64_t{t.row.explorations}; }},
+    {"first_contact_s", false,
+     [](const TrialView& t) { return time_between(t.row.presented_at, t.row.contact_at); }},
+    {"position", true, number_of<&TrialRow::position>},
+    {"first_position", true, number_of<&TrialRow::first_position>},
+    {"valid_in_clear", false, [](const TrialView& t) { return flag(t.row.valid); }},
+    {"within_limits", true, limits_of},
+    {"limited_ticks", true, limited_ticks_of},
+    {"samples", false, [](const TrialView& t) -> Cell { return t.row.samples; }},
+    {"sampling_hz", false, [](const TrialView& t) -> Cell { return t.row.rate_hz; }},
+    {"overruns", false, [](const TrialView& t) -> Cell { return t.row.overruns; }},
+}};
+
+}  // namespace
+
+std::span<const TrialColumn> trial_columns() {
+  return kTrialColumns;
+}
+
+const std::string& image_of(const Outcomes& study, const TrialOutcome& trial) {
+  return study.exemplars[trial.stimulus.class_index][trial.stimulus.exemplar];
+}
+
+Cell flag(bool value) {
+  return std::int64_t{value ? 1 : 0};
+}
+
+}  // namespace touchtrial

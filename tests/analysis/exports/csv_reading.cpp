@@ -1,0 +1,222 @@
+#include "analysis/exports/csv_reading.hpp"
+
+#include "core/files.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+namespace touchtrial {
+namespace {
+
+template <typename Number>
+Number number_of(const std::string& text) {
+  Number value{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  REQUIRE(error == std::errc{});
+  REQUIRE(end == text.data() + text.size());
+  return value;
+}
+
+template <typename Number>
+std::optional<Number> maybe(const std::string& text) {
+  if (text.empty()) return std::nullopt;
+  return number_of<Number>(text);
+}
+
+bool is_set(const std::string& text) {
+  REQUIRE((text == "0" || text == "1"));
+  return text == "1";
+}
+
+/// Exact: whole seconds and decimals apart.
+std::chrono::nanoseconds time_of(const std::string& text) {
+  const std::size_t dot = std::min(text.find('.'), text.size());
+  std::string decimals = dot < text.size() ? text.substr(dot + 1) : "";
+  decimals.resize(9, '0');
+  return std::chrono::seconds(number_of<std::int64_t>(text.substr(0, dot))) +
+         std::chrono::nanoseconds(number_of<std::int64_t>(decimals));
+}
+
+int index_of(const std::vector<std::string>& labels, const std::string& label) {
+  const auto found = std::find(labels.begin(), labels.end(), label);
+  REQUIRE(found != labels.end());
+  return static_cast<int>(found - labels.begin());
+}
+
+void read_study(Outcomes& outcomes, const std::filesystem::path& folder) {
+  std::map<std::string, std::string> single;
+  for (const CsvRow& row : rows_of(folder / "study.csv")) {
+    const std::string& value = row.at("value");
+    if (row.at("key") == "class") {
+      outcomes.classes.push_back(value);
+      outcomes.exemplars.emplace_back();
+    } else if (row.at("key") == "exemplar") {
+      outcomes.exemplars[index_of(outcomes.classes, row.at("of"))].push_back(value);
+    } else if (row.at("key") == "method") {
+      outcomes.methods.push_back(value);
+    } else {
+      single[row.at("key")] = value;
+    }
+  }
+  outcomes.study = single.at("study");
+  outcomes.protocol = single.at("protocol") == name_of(Protocol::comparison)
+                          ? Protocol::comparison
+                          : Protocol::classification;
+  outcomes.simulated = is_set(single.at("simulated"));
+  outcomes.pilot = is_set(single.at("pilot"));
+  outcomes.visual = is_set(single.at("visual"));
+  outcomes.state.closed = is_set(single.at("closed"));
+  outcomes.state.unblinded = is_set(single.at("unblinded"));
+  outcomes.state.unblinding_reason = single.at("unblinding_reason");
+  if (is_set(single.at("interim"))) outcomes.state.interim.emplace();
+  outcomes.design = parse_study(text_of_file(folder / "study_file.json"), ".", "study_file.json");
+}
+
+SessionState session_state_of(const std::string& name) {
+  if (name == "completed") return SessionState::completed;
+  return name == "stopped" ? SessionState::stopped : SessionState::open;
+}
+
+TrialState trial_state_of(const std::string& name) {
+  const std::map<std::string, TrialState> states{{"presented", TrialState::presented},
+                                                 {"answered", TrialState::answered},
+                                                 {"timed-out", TrialState::timed_out},
+                                                 {"interrupted", TrialState::interrupted},
+                                                 {"voided", TrialState::voided}};
+  return states.at(name);
+}
+
+void read_sessions(Outcomes& outcomes, const std::filesystem::path& folder) {
+  for (const CsvRow& row : rows_of(folder / "participants.csv")) {
+    if (!is_set(row.at("shown"))) {
+      ++outcomes.sessions_unseen;
+      continue;
+    }
+    SessionRow session;
+    session.session = number_of<int>(row.at("session"));
+    session.participant = row.at("participant");
+    session.enrolment = number_of<int>(row.at("enrolment"));
+    session.state = session_state_of(row.at("state"));
+    session.simulated = is_set(row.at("simulated"));
+    session.pilot = is_set(row.at("pilot"));
+    session.excluded = is_set(row.at("excluded"));
+    session.withdrawn = is_set(row.at("withdrawn"));
+    session.device = row.at("device");
+    session.replaced_by = row.at("replaced_by");
+    if (outcomes.state.interim) outcomes.state.interim->insert(session.session);
+    outcomes.sessions.push_back({session, is_set(row.at("counted"))});
+  }
+}
+
+TrialRow trial_row_of(const CsvRow& row) {
+  TrialRow trial;
+  trial.session = number_of<int>(row.at("session"));
+  trial.trial = number_of<int>(row.at("trial"));
+  trial.block = number_of<int>(row.at("block"));
+  trial.state = trial_state_of(row.at("state"));
+  trial.presented_at = time_of(row.at("presented_at_s"));
+  if (!row.at("first_contact_s").empty()) {
+    trial.contact_at = trial.presented_at + time_of(row.at("first_contact_s"));
+  }
+  if (!row.at("reaction_time_s").empty()) {
+    trial.answered_at = trial.presented_at + time_of(row.at("reaction_time_s"));
+  }
+  trial.position = maybe<int>(row.at("position"));
+  trial.first_position = maybe<int>(row.at("first_position"));
+  trial.confidence = maybe<int>(row.at("confidence"));
+  trial.valid = is_set(row.at("valid_in_clear"));
+  trial.overruns = number_of<std::int64_t>(row.at("overruns"));
+  trial.samples = number_of<std::int64_t>(row.at("samples"));
+  trial.rate_hz = number_of<double>(row.at("sampling_hz"));
+  trial.explorations = number_of<int>(row.at("explorations"));
+  return trial;
+}
+
+std::optional<TrialMeasures> measures_of(const CsvRow& row) {
+  if (row.at("within_limits").empty()) return std::nullopt;
+  return TrialMeasures{
+      number_of<double>(row.at("contact_s")),   number_of<double>(row.at("path_mm")),
+      number_of<double>(row.at("force_rms_n")), number_of<double>(row.at("saturated_share")),
+      is_set(row.at("within_limits")),          maybe<std::int64_t>(row.at("limited_ticks"))};
+}
+
+StimulusIndex stimulus_of(const Outcomes& outcomes, const CsvRow& row) {
+  StimulusIndex stimulus;
+  stimulus.class_index = index_of(outcomes.classes, row.at("class"));
+  stimulus.exemplar = index_of(outcomes.exemplars[stimulus.class_index], row.at("exemplar"));
+  stimulus.method = index_of(outcomes.methods, row.at("method"));
+  return stimulus;
+}
+
+void read_trials(Outcomes& outcomes, const std::filesystem::path& file) {
+  for (const CsvRow& row : rows_of(file)) {
+    TrialOutcome& trial = outcomes.trials.emplace_back();
+    trial.participant = row.at("participant");
+    trial.row = trial_row_of(row);
+    const std::string& kind = row.at("kind");
+    if (kind == "lead-in") trial.kind = PresentationKind::lead_in;
+    if (kind == "catch") trial.kind = PresentationKind::catch_trial;
+    trial.scored = kind == "scored";
+    trial.counted = is_set(row.at("counted"));
+    if (kind != "catch") trial.stimulus = stimulus_of(outcomes, row);
+    if (!row.at("response").empty()) {
+      trial.response = index_of(outcomes.classes, row.at("response"));
+    }
+    trial.measures = measures_of(row);
+  }
+}
+
+}  // namespace
+
+std::vector<std::vector<std::string>> parse_csv(const std::string& text) {
+  std::vector<std::vector<std::string>> records{{""}};
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    std::string& field = records.back().back();
+    if (quoted && text[i] == '"' && i + 1 < text.size() && text[i + 1] == '"') {
+      field += text[++i];
+    } else if (text[i] == '"') {
+      quoted = !quoted;
+    } else if (!quoted && text[i] == ',') {
+      records.back().emplace_back();
+    } else if (!quoted && text[i] == '\n') {
+      records.push_back({""});
+    } else {
+      field += text[i];
+    }
+  }
+  records.pop_back();
+  return records;
+}
+
+std::string text_of_file(const std::filesystem::path& path) {
+  return text_of(ByteView(read_file(path)));
+}
+
+std::vector<CsvRow> rows_of(const std::filesystem::path& path) {
+  const std::vector<std::vector<std::string>> records = parse_csv(text_of_file(path));
+  std::vector<CsvRow> rows;
+  for (std::size_t i = 1; i < records.size(); ++i) {
+    REQUIRE(records[i].size() == records[0].size());
+    CsvRow& row = rows.emplace_back();
+    for (std::size_t k = 0; k < records[0].size(); ++k) row[records[0][k]] = records[i][k];
+  }
+  return rows;
+}
+
+Outcomes outcomes_from_csv(const std::filesystem::path& folder) {
+  Outcomes outcomes;
+  read_study(outcomes, folder);
+  read_sessions(outcomes, folder);
+  read_trials(outcomes, folder / "trials.csv");
+  read_trials(outcomes, folder / "unscored_trials.csv");
+  std::sort(outcomes.trials.begin(), outcomes.trials.end(),
+            [](const TrialOutcome& a, const TrialOutcome& b) {
+              return std::pair(a.row.session, a.row.trial) < std::pair(b.row.session, b.row.trial);
+            });
+  return outcomes;
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,26 @@
+/// \file Reads exported CSV files back, and from them what the report is made of.
+#pragma once
+
+#include "analysis/outcomes.hpp"
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+
+using CsvRow = std::map<std::string, std::string>;
+
+/// Records and their fields, as the grammar of RFC 4180 says.
+[[nodiscard]] std::vector<std::vector<std::string>> parse_csv(const std::string& text);
+
+[[nodiscard]] std::string text_of_file(const std::filesystem::path& path);
+
+/// Each row by the names of the header; fails the test if one is longer or shorter.
+[[nodiscard]] std::vector<CsvRow> rows_of(const std::filesystem::path& path);
+
+/// What an export after unblinding was made from, as far as its CSV files tell.
+[[nodiscard]] Outcomes outcomes_from_csv(const std::filesystem::path& folder);
+
+}  // namespace touchtrial
