@@ -15,12 +15,11 @@ double mean_of(std::span<const double> values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// Of the mean, from the sample's spread around it.
-double standard_error(std::span<const double> values, double mean) {
+/// Of the sample, around its mean, with n - 1.
+double standard_deviation(std::span<const double> values, double mean) {
   double squares = 0.0;
   for (const double value : values) squares += (value - mean) * (value - mean);
-  const auto n = static_cast<double>(values.size());
-  return std::sqrt(squares / (n - 1.0) / n);
+  return std::sqrt(squares / static_cast<double>(values.size() - 1));
 }
 
 }  // namespace
@@ -37,8 +36,11 @@ MeanEstimate participant_mean(std::span<const double> values, Interval range, do
   const double mean = mean_of(values);
   estimate.mean = mean;
   if (values.size() == 1) return estimate;
-  const boost::math::students_t_distribution<> t(static_cast<double>(values.size() - 1));
-  const double half = boost::math::quantile(t, 0.5 + level / 2.0) * standard_error(values, mean);
+  const double sd = standard_deviation(values, mean);
+  estimate.sd = sd;
+  const auto n = static_cast<double>(values.size());
+  const boost::math::students_t_distribution<> t(n - 1.0);
+  const double half = boost::math::quantile(t, 0.5 + level / 2.0) * sd / std::sqrt(n);
   estimate.interval = {std::clamp(mean - half, range.low, range.high),
                        std::clamp(mean + half, range.low, range.high)};
   return estimate;

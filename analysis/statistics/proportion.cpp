@@ -53,4 +53,14 @@ Interval clopper_pearson_interval(Proportion proportion, double level) {
           wrong == 0.0 ? 1.0 : beta_quantile(correct + 1.0, wrong, 1.0 - tail)};
 }
 
+Interval jeffreys_interval(Proportion proportion, double level) {
+  require_valid(proportion, level);
+  if (proportion.n == 0) return {};
+  const double tail = (1.0 - level) / 2.0;
+  const double a = proportion.correct + 0.5;
+  const double b = proportion.n - proportion.correct + 0.5;
+  return {proportion.correct == 0 ? 0.0 : beta_quantile(a, b, tail),
+          proportion.correct == proportion.n ? 1.0 : beta_quantile(a, b, 1.0 - tail)};
+}
+
 }  // namespace touchtrial

@@ -17,6 +17,7 @@ TEST_CASE("participant_mean gives Student's interval") {
   CHECK(estimate.mean.value() == Approx(0.792).margin(1e-12));
   CHECK(estimate.interval.low == Approx(0.637314378178071).margin(1e-12).epsilon(0));
   CHECK(estimate.interval.high == Approx(0.9466856218219291).margin(1e-12).epsilon(0));
+  CHECK(estimate.sd.value() == Approx(0.12457929201917951).margin(1e-12));
 }
 
 TEST_CASE("participant_mean knows nothing without participants and little from one") {
@@ -26,6 +27,7 @@ TEST_CASE("participant_mean knows nothing without participants and little from o
   const std::vector<double> one{0.8};
   CHECK(participant_mean(one).mean == 0.8);
   CHECK(participant_mean(one).interval == Interval{0.0, 1.0});
+  CHECK_FALSE(participant_mean(one).sd.has_value());
 }
 
 TEST_CASE("participant_mean keeps its interval within what is possible") {

@@ -35,7 +35,18 @@ TEST_CASE("clopper_pearson_interval gives the published values") {
   check_interval(clopper_pearson_interval({25, 20}, 0.99), 0.5302422820158431, 0.9541146545210458);
 }
 
+// Expected values: SciPy 1.10, beta.ppf of x + 0.5 and n - x + 0.5.
+TEST_CASE("jeffreys_interval gives the values of an independent implementation") {
+  check_interval(jeffreys_interval({25, 20}), 0.6157982096565614, 0.9193213125361809);
+  check_interval(jeffreys_interval({5, 5}), 0.6206228577009606, 1.0);
+  check_interval(jeffreys_interval({25, 0}), 0.0, 0.0946827641095835);
+  check_interval(jeffreys_interval({1, 1}), 0.1467463163095751, 1.0);
+  check_interval(jeffreys_interval({500, 312}), 0.5809264727053622, 0.6656426174301);
+  check_interval(jeffreys_interval({25, 20}, 0.99), 0.5530311238639567, 0.9442386786366499);
+}
+
 TEST_CASE("Without trials an interval is everything") {
+  CHECK(jeffreys_interval({0, 0}) == Interval{0.0, 1.0});
   CHECK(wilson_interval({0, 0}) == Interval{0.0, 1.0});
   CHECK(clopper_pearson_interval({0, 0}) == Interval{0.0, 1.0});
   CHECK_FALSE(Proportion{}.share().has_value());
@@ -53,6 +64,11 @@ TEST_CASE("Intervals reach the end of the scale exactly and mirror each other") 
       REQUIRE(p <= wilson.high);
       REQUIRE(exact.low <= p);
       REQUIRE(p <= exact.high);
+      const Interval jeffreys = jeffreys_interval({n, correct});
+      REQUIRE(exact.low <= jeffreys.low);
+      REQUIRE(jeffreys.low <= p);
+      REQUIRE(p <= jeffreys.high);
+      REQUIRE(jeffreys.high <= exact.high);
       const Interval mirrored = clopper_pearson_interval({n, n - correct});
       REQUIRE(exact.low == Approx(1.0 - mirrored.high).margin(1e-12));
     }
@@ -77,6 +93,8 @@ TEST_CASE("A Clopper-Pearson interval covers the truth at least as often as it s
 TEST_CASE("Proportions that cannot be are refused") {
   CHECK_THROWS_AS(wilson_interval({5, 6}), std::invalid_argument);
   CHECK_THROWS_AS(wilson_interval({5, -1}), std::invalid_argument);
+  CHECK_THROWS_AS(jeffreys_interval({5, 6}), std::invalid_argument);
+  CHECK_THROWS_AS(jeffreys_interval({5, 5}, 0.0), std::invalid_argument);
   CHECK_THROWS_AS(clopper_pearson_interval({5, 6}), std::invalid_argument);
   CHECK_THROWS_AS(clopper_pearson_interval({5, 5}, 1.0), std::invalid_argument);
   CHECK_THROWS_AS(wilson_interval({5, 5}, std::nan("")), std::invalid_argument);
