@@ -6,7 +6,8 @@
 
 namespace touchtrial {
 
-/// McNemar's mid-p test, two-sided, of the pairs that disagree.
+/// McNemar's mid-p test, two-sided, of the pairs that disagree: what is more extreme, and half of
+/// what is as extreme.
 /// \param first_only  pairs in which only the first is right, >= 0 \param second_only  likewise
 /// \return 1 if no pair disagrees
 /// \throws std::invalid_argument if a count is negative
