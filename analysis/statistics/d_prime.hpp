@@ -11,7 +11,7 @@ namespace touchtrial {
 
 /// Integral over z of phi(z - d) Phi(z)^(m - 1).
 /// \param alternatives  >= 2
-/// \return in (0, 1); error below 1e-10
+/// \return 0 .. 1; error below 1e-10
 /// \throws std::invalid_argument if d is not finite or alternatives < 2
 [[nodiscard]] double proportion_correct_of(double d_prime, int alternatives);
 

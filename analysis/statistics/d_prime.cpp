@@ -1,0 +1,64 @@
+#include "analysis/statistics/d_prime.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numeric>
+#include <stdexcept>
+#include <utility>
+
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/quadrature/trapezoidal.hpp>
+#include <boost/math/tools/toms748_solve.hpp>
+
+namespace touchtrial {
+namespace {
+
+/// Beyond this distance from its mean nothing of a normal variable is left in double precision.
+constexpr double kReach = 12.0;
+/// No proportion of counts needs a larger d'.
+constexpr double kLargest = 50.0;
+
+void require_alternatives(int alternatives) {
+  if (alternatives < 2) throw std::invalid_argument("d' needs at least two alternatives");
+}
+
+/// \param share  in (0, 1)
+double d_prime_of(double share, int alternatives) {
+  const auto excess = [&](double d) { return proportion_correct_of(d, alternatives) - share; };
+  std::uintmax_t most_steps = 200;
+  const std::pair<double, double> bracket = boost::math::tools::toms748_solve(
+      excess, -kLargest, kLargest, boost::math::tools::eps_tolerance<double>(44), most_steps);
+  return std::midpoint(bracket.first, bracket.second);
+}
+
+}  // namespace
+
+double proportion_correct_of(double d_prime, int alternatives) {
+  require_alternatives(alternatives);
+  if (!std::isfinite(d_prime)) throw std::invalid_argument("d' must be finite");
+  const boost::math::normal_distribution<> normal;
+  // The integral over z with z = u + d': its weight stays where it is whatever d' is.
+  const auto all_others_are_weaker = [&](double u) {
+    return boost::math::pdf(normal, u) *
+           std::pow(boost::math::cdf(normal, u + d_prime), alternatives - 1);
+  };
+  // A bell that has vanished at both ends: the trapezoidal rule converges exponentially.
+  const double share =
+      boost::math::quadrature::trapezoidal(all_others_are_weaker, -kReach, kReach, 1e-13);
+  return std::clamp(share, 0.0, 1.0);
+}
+
+DPrime d_prime(Proportion proportion, int alternatives, double level) {
+  require_alternatives(alternatives);
+  const Interval exact = clopper_pearson_interval(proportion, level);
+  DPrime result;
+  if (proportion.correct > 0) result.low = d_prime_of(exact.low, alternatives);
+  if (proportion.correct < proportion.n) result.high = d_prime_of(exact.high, alternatives);
+  if (result.low && result.high) {
+    result.estimate = d_prime_of(*proportion.share(), alternatives);
+  }
+  return result;
+}
+
+}  // namespace touchtrial
