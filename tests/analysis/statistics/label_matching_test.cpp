@@ -1,0 +1,107 @@
+#include "analysis/statistics/label_matching.hpp"
+
+#include "core/random.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <initializer_list>
+#include <numeric>
+#include <vector>
+
+namespace touchtrial {
+namespace {
+
+ConfusionMatrix matrix(std::initializer_list<std::initializer_list<int>> rows) {
+  ConfusionMatrix confusion(static_cast<int>(rows.size()));
+  int i = 0;
+  for (const auto& row : rows) {
+    int j = 0;
+    for (const int count : row) {
+      for (int k = 0; k < count; ++k) confusion.add({i, j});
+      ++j;
+    }
+    ++i;
+  }
+  return confusion;
+}
+
+ConfusionMatrix random_matrix(int classes, int trials, RandomStream& random) {
+  ConfusionMatrix confusion(classes);
+  for (int i = 0; i < trials; ++i) {
+    confusion.add(
+        {static_cast<int>(random.below(classes)), static_cast<int>(random.below(classes))});
+  }
+  return confusion;
+}
+
+int trials_of(const ConfusionMatrix& confusion, const std::vector<int>& answer_of) {
+  int trials = 0;
+  for (int i = 0; i < confusion.classes(); ++i) trials += confusion.count(i, answer_of[i]);
+  return trials;
+}
+
+int kept(const std::vector<int>& answer_of) {
+  int same = 0;
+  for (std::size_t i = 0; i < answer_of.size(); ++i) same += answer_of[i] == static_cast<int>(i);
+  return same;
+}
+
+}  // namespace
+
+TEST_CASE("Somebody who swaps two labels is right in everything after the best exchange") {
+  const LabelMatching best = best_label_matching(matrix(
+      {{5, 0, 0, 0, 0}, {0, 0, 0, 5, 0}, {0, 0, 5, 0, 0}, {0, 5, 0, 0, 0}, {0, 0, 0, 0, 5}}));
+  CHECK(best.accuracy == Proportion{25, 25});
+  CHECK(best.answer_of == std::vector<int>{0, 3, 2, 1, 4});
+}
+
+TEST_CASE("best_label_matching finds the most trials of all K! matchings, labels kept in a tie") {
+  RandomStream random(1, "label matching test");
+  for (int round = 0; round < 120; ++round) {
+    const int classes = 2 + round % 5;
+    const ConfusionMatrix confusion = random_matrix(classes, 3 * classes, random);
+    const LabelMatching best = best_label_matching(confusion);
+    REQUIRE(best.accuracy.correct == trials_of(confusion, best.answer_of));
+    std::vector<int> any(classes);
+    std::iota(any.begin(), any.end(), 0);
+    REQUIRE(std::is_permutation(any.begin(), any.end(), best.answer_of.begin()));
+    do {
+      const int trials = trials_of(confusion, any);
+      REQUIRE(trials <= best.accuracy.correct);
+      if (trials == best.accuracy.correct) REQUIRE(kept(any) <= kept(best.answer_of));
+    } while (std::next_permutation(any.begin(), any.end()));
+  }
+}
+
+TEST_CASE("Without anything to tell labels apart best_label_matching keeps them") {
+  const LabelMatching best = best_label_matching(ConfusionMatrix(4));
+  CHECK(best.answer_of == std::vector<int>{0, 1, 2, 3});
+  CHECK(best.accuracy == Proportion{0, 0});
+  CHECK(best_label_matching(ConfusionMatrix(1)).answer_of == std::vector<int>{0});
+}
+
+TEST_CASE("best_label_matching counts trials without a response as wrong") {
+  ConfusionMatrix confusion(2);
+  confusion.add({0, 1});
+  confusion.add({1, 0});
+  confusion.add({1, {}});
+  const LabelMatching best = best_label_matching(confusion);
+  CHECK(best.accuracy == Proportion{3, 2});
+  CHECK(best.answer_of == std::vector<int>{1, 0});
+}
+
+TEST_CASE("best_label_matching of twelve classes undoes any exchange") {
+  RandomStream random(2, "label matching test");
+  std::vector<int> exchange(12);
+  std::iota(exchange.begin(), exchange.end(), 0);
+  shuffle(std::span(exchange), random);
+  ConfusionMatrix confusion(12);
+  for (int i = 0; i < 12; ++i) {
+    for (int k = 0; k < 3; ++k) confusion.add({i, exchange[i]});
+  }
+  const LabelMatching best = best_label_matching(confusion);
+  CHECK(best.answer_of == exchange);
+  CHECK(best.accuracy == Proportion{36, 36});
+}
+
+}  // namespace touchtrial
