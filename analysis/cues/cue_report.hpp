@@ -7,6 +7,7 @@
 #include "analysis/statistics/proportion.hpp"
 
 #include <array>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -68,6 +69,7 @@ struct MethodCues {
   std::vector<std::string> participants;  ///< with a judged trial, in the order of sessions
   std::vector<int> participant_trials;    ///< judged, by participant
   std::vector<double> human_accuracy;     ///< by participant, on the same trials
+  int fewest_of_a_class = 0;  ///< judged trials of one class by one participant, at least
   MeanEstimate human_mean;
   AnswerCounts human_confusion;  ///< of judged trials with a response
   /// By presented class; wrong in accuracy, left out of confusions and divergence.
@@ -85,6 +87,11 @@ struct CueReport {
   std::vector<std::string> warnings;  ///< what a reader could take a figure for, wrongly
 };
 
+struct CueOptions {
+  int jobs = 0;                  ///< threads; 0: as many as there are
+  std::filesystem::path pack{};  ///< for the plane's size; empty: where the key says
+};
+
 /// Traces that make_cues would read: one for each counted trial.
 [[nodiscard]] int traces_to_read(const Outcomes& outcomes);
 
@@ -94,6 +101,6 @@ struct CueReport {
 /// \throws VerificationError if a participant's key or a trace's seal does not open
 /// \throws StoreError if the database cannot be read
 [[nodiscard]] CueReport make_cues(const StudyStore& store, const StudyKey& key,
-                                  const Outcomes& outcomes);
+                                  const Outcomes& outcomes, const CueOptions& options = {});
 
 }  // namespace touchtrial

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 namespace touchtrial {
 namespace {
@@ -22,11 +24,14 @@ struct Matrix {
   std::vector<double> values;
 };
 
-void check(std::span<const FeltExample> examples, double noise) {
-  if (examples.empty()) throw std::invalid_argument("FeltClassifier: there is no example");
+void check_noise(double noise) {
   if (!std::isfinite(noise) || noise < 0.0) {
     throw std::invalid_argument("FeltClassifier: noise must be a finite number >= 0");
   }
+}
+
+void check(std::span<const FeltExample> examples) {
+  if (examples.empty()) throw std::invalid_argument("FeltClassifier: there is no example");
   for (const FeltExample& example : examples) {
     const bool finite =
         std::ranges::all_of(example.features, [](double f) { return std::isfinite(f); });
@@ -58,27 +63,42 @@ std::vector<std::vector<double>> means_by_label(std::span<const FeltExample> exa
   return sums;
 }
 
-Matrix covariance_within(std::span<const FeltExample> examples,
-                         const std::vector<std::vector<double>>& means, double noise) {
+Matrix scatter_within(std::span<const FeltExample> examples,
+                      const std::vector<std::vector<double>>& means) {
   const std::size_t n = examples.front().features.size();
-  const auto freedom = static_cast<double>(examples.size() - means.size());
-  const double off_diagonal = freedom / (freedom + static_cast<double>(n));
-  Matrix covariance(n);
+  Matrix scatter(n);
   for (const FeltExample& example : examples) {
     const std::vector<double>& mean = means[example.label];
     for (std::size_t i = 0; i < n; ++i) {
       for (std::size_t j = 0; j < n; ++j) {
-        covariance.at(i, j) += (example.features[i] - mean[i]) * (example.features[j] - mean[j]);
+        scatter.at(i, j) += (example.features[i] - mean[i]) * (example.features[j] - mean[j]);
       }
     }
   }
+  return scatter;
+}
+
+/// \param freedom  degrees of freedom of the scatter within labels
+Matrix covariance_of(Matrix scatter, double freedom, double noise) {
+  const std::size_t n = scatter.size;
+  const double off_diagonal = freedom / (freedom + static_cast<double>(n));
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t j = 0; j < n; ++j) {
-      covariance.at(i, j) *= (i == j ? 1.0 : off_diagonal) / std::max(freedom, 1.0);
+      scatter.at(i, j) *= (i == j ? 1.0 : off_diagonal) / std::max(freedom, 1.0);
     }
-    covariance.at(i, i) += noise * noise + kResolution * kResolution;
+    scatter.at(i, i) += noise * noise + kResolution * kResolution;
   }
-  return covariance;
+  return scatter;
+}
+
+std::vector<std::vector<double>> means_of(const FeltStatistics& statistics) {
+  std::vector<std::vector<double>> means;
+  for (int label = 0; label < statistics.labels(); ++label) {
+    const std::span<const double> mean = statistics.mean(label);
+    means.emplace_back();
+    if (statistics.count(label) > 0) means.back().assign(mean.begin(), mean.end());
+  }
+  return means;
 }
 
 /// The lower triangle L with L L^T = matrix; the matrix is positive definite.
@@ -96,14 +116,39 @@ Matrix cholesky(Matrix matrix) {
 }  // namespace
 
 FeltClassifier::FeltClassifier(std::span<const FeltExample> examples, double noise) {
-  check(examples, noise);
-  means_ = means_by_label(examples);
-  Matrix factor = cholesky(covariance_within(examples, means_, noise));
-  dimensions_ = factor.size;
+  check(examples);
+  check_noise(noise);
+  dimensions_ = examples.front().features.size();
+  std::vector<std::vector<double>> means = means_by_label(examples);
+  const auto freedom = static_cast<double>(examples.size() - means.size());
+  settle(covariance_of(scatter_within(examples, means), freedom, noise).values, std::move(means));
+}
+
+FeltClassifier::FeltClassifier(const FeltStatistics& statistics, double noise)
+    : dimensions_(statistics.features()) {
+  check_noise(noise);
+  std::vector<std::vector<double>> means = means_of(statistics);
+  if (std::ranges::all_of(means, [](const auto& mean) { return mean.empty(); })) {
+    throw std::invalid_argument("FeltClassifier: there is no example");
+  }
+  Matrix scatter(statistics.features());
+  scatter.values.assign(statistics.scatter().begin(), statistics.scatter().end());
+  const double freedom = statistics.degrees_of_freedom();
+  settle(covariance_of(std::move(scatter), freedom, noise).values, std::move(means));
+}
+
+void FeltClassifier::settle(std::vector<double> covariance,
+                            std::vector<std::vector<double>> means) {
+  Matrix within(dimensions_);
+  within.values = std::move(covariance);
+  Matrix factor = cholesky(std::move(within));
   log_peak_ = -0.5 * static_cast<double>(dimensions_) * std::log(2.0 * std::numbers::pi);
   for (std::size_t i = 0; i < dimensions_; ++i) log_peak_ -= std::log(factor.at(i, i));
   factor_ = std::move(factor.values);
-  for (std::vector<double>& mean : means_) mean = whitened(mean);
+  means_ = std::move(means);
+  for (std::vector<double>& mean : means_) {
+    if (!mean.empty()) mean = whitened(mean);
+  }
 }
 
 std::vector<double> FeltClassifier::whitened(std::span<const double> features) const {
@@ -123,6 +168,10 @@ std::vector<double> FeltClassifier::log_likelihoods(std::span<const double> feat
   const std::vector<double> white = whitened(features);
   std::vector<double> logs;
   for (const std::vector<double>& mean : means_) {
+    if (mean.empty()) {
+      logs.push_back(-std::numeric_limits<double>::infinity());
+      continue;
+    }
     double squares = 0.0;
     for (std::size_t i = 0; i < dimensions_; ++i) {
       squares += (white[i] - mean[i]) * (white[i] - mean[i]);

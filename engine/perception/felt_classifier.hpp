@@ -2,17 +2,13 @@
 /// Source: docs/method.md, "Felt features".
 #pragma once
 
+#include "engine/perception/felt_statistics.hpp"
+
 #include <cstddef>
 #include <span>
 #include <vector>
 
 namespace touchtrial {
-
-/// What an example of a class felt like.
-struct FeltExample {
-  int label = 0;                 ///< from 0, without gaps
-  std::vector<double> features;  ///< logarithms of intensities, as many in every example
-};
 
 /// Gaussian classes with a mean each and one covariance: that of the examples within classes,
 /// shrunk towards its diagonal by d / (d + degrees of freedom) for d features, plus the noise with
@@ -25,18 +21,27 @@ class FeltClassifier {
   ///   length, or a number is not finite
   FeltClassifier(std::span<const FeltExample> examples, double noise);
 
+  /// The same from what is left of examples, but for rounding. A label without examples is never
+  /// likely.
+  /// \throws std::invalid_argument if no label has an example, or the noise is impossible
+  FeltClassifier(const FeltStatistics& statistics, double noise);
+
   [[nodiscard]] int labels() const noexcept { return static_cast<int>(means_.size()); }
 
-  /// Logarithm of each label's probability density at these features.
+  /// Logarithm of each label's probability density at these features; minus infinity for a label
+  /// without examples.
   /// \throws std::invalid_argument if their number is not that of the examples
   [[nodiscard]] std::vector<double> log_likelihoods(std::span<const double> features) const;
 
  private:
+  /// \param covariance  of the examples within labels, row-major, positive definite
+  /// \param means  by label; empty: no example
+  void settle(std::vector<double> covariance, std::vector<std::vector<double>> means);
   [[nodiscard]] std::vector<double> whitened(std::span<const double> features) const;
 
-  std::size_t dimensions_;
+  std::size_t dimensions_ = 0;
   std::vector<double> factor_;              ///< Cholesky factor, row-major, lower triangle
-  std::vector<std::vector<double>> means_;  ///< whitened, by label
+  std::vector<std::vector<double>> means_;  ///< whitened, by label; empty: no example
   double log_peak_ = 0.0;                   ///< density at a mean
 };
 

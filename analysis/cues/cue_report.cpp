@@ -1,0 +1,172 @@
+#include "analysis/cues/cue_report.hpp"
+
+#include "analysis/cues/cue_statistics.hpp"
+#include "analysis/cues/cue_warnings.hpp"
+#include "analysis/cues/felt_trials.hpp"
+#include "analysis/cues/ideal_observer.hpp"
+#include "analysis/cues/participant_answers.hpp"
+#include "analysis/cues/study_plane.hpp"
+#include "analysis/outcomes.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace touchtrial {
+namespace {
+
+/// The counted trials of a study, felt.
+struct FeltStudy {
+  std::vector<const TrialOutcome*> trials;
+  FeltTrials felt;
+  int classes = 0;
+  int jobs = 0;
+};
+
+StudyPlane plane_to_feel(const StudyStore& store, const StudyKey& key,
+                         std::span<const TrialOutcome* const> trials, const CueOptions& options) {
+  if (auto plane = study_plane(key, pack_of(store, key, options.pack))) return *plane;
+  return {touched_plane(store, key, trials, key.study.rendering.pitch_mm, options.jobs),
+          kPlaneFromTraces};
+}
+
+/// Places of a method's trials that can be felt.
+std::vector<std::size_t> felt_with(const FeltStudy& study, int method, MethodCues& cues) {
+  std::vector<std::size_t> places;
+  for (std::size_t place = 0; place < study.trials.size(); ++place) {
+    if (study.trials[place]->stimulus.method != method) continue;
+    if (study.felt.has_trace[place]) {
+      places.push_back(place);
+    } else {
+      ++cues.without_trace;
+    }
+  }
+  return places;
+}
+
+/// By observer and trial, in the order of kCues and of `places`.
+std::vector<std::vector<AnswerShares>> all_answers(const FeltStudy& study,
+                                                   const std::vector<std::size_t>& places) {
+  std::vector<ObservedTrial> observed;
+  for (const std::size_t place : places) {
+    const StimulusIndex& stimulus = study.trials[place]->stimulus;
+    observed.push_back({stimulus.class_index, stimulus.exemplar, study.felt.felt[place]});
+  }
+  std::vector<std::vector<AnswerShares>> answers;
+  for (const Cue cue : kCues) {
+    answers.push_back(ideal_answers(cue, observed, study.classes, study.jobs));
+  }
+  return answers;
+}
+
+/// By participant, in the order of their first trial, which is that of sessions.
+std::vector<ParticipantAnswers> by_participant(const FeltStudy& study, int method,
+                                               MethodCues& cues) {
+  const std::vector<std::size_t> places = felt_with(study, method, cues);
+  const auto answers = all_answers(study, places);
+  std::vector<ParticipantAnswers> all;
+  std::map<std::string, std::size_t> known;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (answers.front()[i].empty()) {
+      ++cues.unjudged;
+      continue;
+    }
+    const TrialOutcome& trial = *study.trials[places[i]];
+    JudgedTrial judged{trial.stimulus.class_index, trial.response, {}};
+    for (std::size_t o = 0; o < kCues.size(); ++o) judged.ideal[o] = answers[o][i];
+    const auto [at, is_new] = known.try_emplace(trial.participant, all.size());
+    if (is_new) all.emplace_back(trial.participant, study.classes);
+    all[at->second].add(judged);
+  }
+  return all;
+}
+
+void add_counts(AnswerCounts& sum, const FlatCounts& counts) {
+  const std::size_t side = sum.size();
+  for (std::size_t i = 0; i < counts.size(); ++i) sum[i / side][i % side] += counts[i];
+}
+
+AnswerCounts no_answers(int classes) {
+  const auto side = static_cast<std::size_t>(classes);
+  return AnswerCounts(side, std::vector<double>(side, 0.0));
+}
+
+void put_participants(MethodCues& cues, const std::vector<ParticipantAnswers>& all, int classes) {
+  cues.human_confusion = no_answers(classes);
+  cues.no_response.assign(static_cast<std::size_t>(classes), 0);
+  for (const ParticipantAnswers& one : all) {
+    cues.trials += one.trials();
+    cues.participants.push_back(one.participant());
+    cues.participant_trials.push_back(one.trials());
+    cues.human_accuracy.push_back(one.human_accuracy());
+    add_counts(cues.human_confusion, one.human());
+    for (int i = 0; i < classes; ++i) cues.no_response[i] += one.no_response(i);
+  }
+  cues.human_mean = participant_mean(cues.human_accuracy);
+}
+
+int fewest_of_a_class(const std::vector<ParticipantAnswers>& all) {
+  int fewest = all.front().trials();
+  for (const ParticipantAnswers& one : all) {
+    for (int i = 0; i < one.classes(); ++i) fewest = std::min(fewest, one.presented(i));
+  }
+  return fewest;
+}
+
+ObserverFigures observer_figures(std::size_t observer, const std::vector<ParticipantAnswers>& all,
+                                 const CueStatistics& statistics) {
+  ObserverFigures figures;
+  figures.cue = kCues[observer];
+  figures.confusion = no_answers(all.front().classes());
+  for (const ParticipantAnswers& one : all) {
+    figures.accuracy.push_back(one.available(observer));
+    add_counts(figures.confusion, one.ideal(observer));
+  }
+  figures.mean = participant_mean(figures.accuracy);
+  figures.efficiency = statistics.efficiency[observer];
+  figures.corrected_efficiency = statistics.corrected[observer];
+  figures.divergence = statistics.divergence[observer];
+  return figures;
+}
+
+MethodCues method_cues(const FeltStudy& study, int method, const std::string& label) {
+  MethodCues cues;
+  cues.method = label;
+  const std::vector<ParticipantAnswers> all = by_participant(study, method, cues);
+  put_participants(cues, all, study.classes);
+  if (all.empty()) return cues;
+  const CueStatistics statistics =
+      cue_statistics(all, static_cast<std::uint64_t>(method), study.jobs);
+  for (std::size_t observer = 0; observer < kCues.size(); ++observer) {
+    cues.observers.push_back(observer_figures(observer, all, statistics));
+  }
+  cues.match = statistics.match;
+  cues.fewest_of_a_class = fewest_of_a_class(all);
+  return cues;
+}
+
+}  // namespace
+
+int traces_to_read(const Outcomes& outcomes) {
+  return static_cast<int>(std::ranges::count_if(
+      outcomes.trials, [](const TrialOutcome& trial) { return trial.counted; }));
+}
+
+CueReport make_cues(const StudyStore& store, const StudyKey& key, const Outcomes& outcomes,
+                    const CueOptions& options) {
+  CueReport report;
+  report.simulated = outcomes.simulated;
+  report.classes = outcomes.classes;
+  report.chance = 1.0 / static_cast<double>(outcomes.classes.size());
+  FeltStudy study{
+      counted_trials(outcomes), {}, static_cast<int>(outcomes.classes.size()), options.jobs};
+  const StudyPlane plane = plane_to_feel(store, key, study.trials, options);
+  report.plane_source = plane.source;
+  study.felt = feel_traces(store, key, study.trials, plane.geometry, options.jobs);
+  for (std::size_t i = 0; i < outcomes.methods.size(); ++i) {
+    report.methods.push_back(method_cues(study, static_cast<int>(i), outcomes.methods[i]));
+  }
+  report.warnings = cue_warnings(outcomes, report);
+  return report;
+}
+
+}  // namespace touchtrial

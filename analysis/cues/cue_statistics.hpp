@@ -1,0 +1,32 @@
+/// \file Efficiencies and divergences of one method, with intervals over participants.
+/// Source: docs/cues.md; Davison, Hinkley 1997, section 5.2 (percentiles).
+#pragma once
+
+#include "analysis/cues/cue_report.hpp"
+#include "analysis/cues/participant_answers.hpp"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+
+namespace touchtrial {
+
+/// Figures of the observers, in the order of kCues.
+struct CueStatistics {
+  std::array<CueFigure, kCues.size()> efficiency;
+  std::array<CueFigure, kCues.size()> corrected;
+  std::array<CueFigure, kCues.size()> divergence;
+  std::optional<CueMatch> match;
+};
+
+/// Every figure's interval is the percentile interval (95 %) of 9,999 draws of whole participants
+/// with replacement, the same draws for all; a figure that a draw leaves undefined (an observer at
+/// or below chance, for what is corrected) has none.
+/// \param participants  of the same number of classes, each with a trial
+/// \param index  chooses the stream of random numbers
+/// \param jobs  threads, on which the result does not depend; 0: as many as there are
+[[nodiscard]] CueStatistics cue_statistics(std::span<const ParticipantAnswers> participants,
+                                           std::uint64_t index, int jobs = 0);
+
+}  // namespace touchtrial

@@ -1,0 +1,41 @@
+/// \file Observers who feel what a hand felt, use a part of it as well as it can be used, and
+/// answer. Source: docs/cues.md.
+#pragma once
+
+#include "analysis/cues/cue_report.hpp"
+#include "engine/perception/felt_features.hpp"
+
+#include <span>
+#include <vector>
+
+namespace touchtrial {
+
+/// A trial as an observer meets it.
+struct ObservedTrial {
+  int class_index = 0;
+  int exemplar = 0;
+  FeltFeatures felt{};
+};
+
+/// What an observer may use. `rms`: the logarithm of the lateral force's intensity in all five
+/// bands together. `spectrum`: the five lateral and the five normal bands, each relative to all
+/// five of its kind; adding a constant to all features, which is what a stronger force does,
+/// changes nothing. `everything`: the features as they are.
+[[nodiscard]] std::vector<double> cue_features(Cue cue, const FeltFeatures& felt);
+
+/// How far each class is the answer, summing to 1; empty if the trial cannot be
+/// judged.
+using AnswerShares = std::vector<double>;
+
+/// Judges every trial by all others: each stimulus (class and exemplar) has the mean of the others'
+/// features, all have one covariance, and the answer is the class of the likeliest stimulus, ties
+/// (within 1e-9 in logarithm) split evenly. A trial that is its exemplar's only one is judged by
+/// its class's other exemplars; if it is its class's only one it is not judged. \param classes  how
+/// many there are, >= 1 \param jobs  threads, on which the result does not depend; 0: as many as
+/// there are \throws std::invalid_argument if a class or exemplar is out of range, or a feature not
+/// finite Cost: some 10 us a trial and thread with 23 features and 5 stimuli.
+[[nodiscard]] std::vector<AnswerShares> ideal_answers(Cue cue,
+                                                      std::span<const ObservedTrial> trials,
+                                                      int classes, int jobs = 0);
+
+}  // namespace touchtrial
