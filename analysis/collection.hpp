@@ -77,7 +77,12 @@ struct Collection {
   std::vector<SessionRecord> sessions;   ///< by number
   std::vector<ServoTrial> servo_trials;  ///< by session and trial; of withdrawn ones none
   ParticipantFlow flow;
+  bool visual = false;  ///< sessions were seen on a screen, not felt; a database holds one kind
 };
+
+/// \param configuration  as the study's commitment has it, in clear
+/// \throws StoreError if it is not what this program writes
+[[nodiscard]] Prescription prescription_from_json(const std::string& configuration);
 
 /// Reads the clear part of every session's events; traces and sealed parts are not looked at.
 [[nodiscard]] Collection load_collection(const StudyStore& store);

@@ -1,6 +1,5 @@
 #include "analysis/outcomes.hpp"
 
-#include "analysis/report/servo_quality.hpp"
 #include "analysis/sealed_sessions.hpp"
 #include "analysis/session_rules.hpp"
 #include "core/errors.hpp"
@@ -38,7 +37,8 @@ Outcomes labelled(const StudyStore& store, const Study& study) {
   outcomes.protocol = study.protocol;
   outcomes.simulated = commitment.simulated;
   outcomes.pilot = commitment.pilot;
-  outcomes.visual = is_visual(store);
+  outcomes.collection = load_collection(store);
+  outcomes.visual = outcomes.collection.visual;
   outcomes.state = store.state();
   for (const StudyClass& one : study.classes) {
     outcomes.classes.push_back(one.label);

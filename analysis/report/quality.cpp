@@ -77,8 +77,9 @@ QualityReport make_quality(const StudyStore& store) {
     count_answer(trial, report.quality);
     count_trace(trial, report.quality);
   }
-  report.servo = servo_quality(store, withdrawn);
-  report.visual = is_visual(store);
+  report.collection = load_collection(store);
+  report.servo = servo_quality(report.collection);
+  report.visual = report.collection.visual;
   return report;
 }
 

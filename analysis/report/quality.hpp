@@ -2,6 +2,7 @@
 /// unblinded. Made from what the database holds in clear; it takes no key.
 #pragma once
 
+#include "analysis/collection.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <cstdint>
@@ -61,6 +62,7 @@ struct QualityReport {
   TrialQuality quality;
   std::optional<ServoQuality> servo;  ///< nothing if no session was in real time
   bool visual = false;                ///< sessions were seen on a screen, not felt
+  Collection collection;              ///< participant flow, deviations, stations
 };
 
 /// "collecting", "closed" or "unblinded"

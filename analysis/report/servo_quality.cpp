@@ -1,8 +1,7 @@
 #include "analysis/report/servo_quality.hpp"
 
-#include "protocols/store/payload_json.hpp"
-
 #include <algorithm>
+#include <set>
 
 namespace touchtrial {
 namespace {
@@ -24,35 +23,21 @@ void add_trial(const ServoHealth& trial, ServoQuality& all) {
 
 }  // namespace
 
-std::optional<ServoQuality> servo_quality(const StudyStore& store, const std::set<int>& withdrawn) {
+std::optional<ServoQuality> servo_quality(const Collection& collection) {
+  if (collection.servo_trials.empty()) return std::nullopt;
   ServoQuality all;
   std::vector<double> p99_us;
-  store.for_each(EventKind::trace_stored, [&](const Event& event) {
-    const TraceBody body = trace_body_from_json(event.body);
-    if (!body.servo || withdrawn.contains(event.session)) return;
-    add_trial(*body.servo, all);
-    p99_us.push_back(body.servo->lateness_p99_us);
-  });
-  if (all.trials == 0) return std::nullopt;
+  for (const ServoTrial& trial : collection.servo_trials) {
+    add_trial(trial.health, all);
+    p99_us.push_back(trial.health.lateness_p99_us);
+  }
   all.median_p99_us = median_of(std::move(p99_us));
   std::set<std::string> scheduling;
-  store.for_each(EventKind::opened, [&](const Event& event) {
-    const SessionOpening opening = opening_from_json(event.body);
-    if (opening.station && !withdrawn.contains(event.session)) {
-      scheduling.insert(opening.station->scheduling);
-    }
-  });
+  for (const SessionRecord& session : collection.sessions) {
+    if (session.station) scheduling.insert(session.station->scheduling);
+  }
   all.scheduling.assign(scheduling.begin(), scheduling.end());
   return all;
-}
-
-bool is_visual(const StudyStore& store) {
-  bool visual = false;
-  store.for_each(EventKind::opened, [&](const Event& event) {
-    const SessionOpening opening = opening_from_json(event.body);
-    visual = visual || (opening.station && opening.station->visual);
-  });
-  return visual;
 }
 
 }  // namespace touchtrial

@@ -43,6 +43,13 @@ Event event_of_row(const Query& row) {
           .hash = digest_of(row, 7)};
 }
 
+/// "|opened|closed|", which the database searches for a kind between bars.
+std::string bars_around(std::span<const EventKind> kinds) {
+  std::string names;
+  for (const EventKind kind : kinds) names += '|' + std::string(name_of(kind));
+  return names + '|';
+}
+
 }  // namespace
 
 void insert_event(const Database& database, const Event& event) {
@@ -73,13 +80,16 @@ void for_each_event(const Database& database, const EventFilter& filter,
                     const EventVisitor& visit) {
   std::optional<std::string_view> kind;
   if (filter.kind) kind = name_of(*filter.kind);
+  std::optional<std::string> any_of;
+  if (!filter.kinds.empty()) any_of = bars_around(filter.kinds);
   Query query = database.separate_query(
       "SELECT session, sequence, kind, at_ns, body, sealed, previous, hash FROM events "
       "WHERE session BETWEEN ? AND ? AND sequence BETWEEN ? AND ? AND kind = coalesce(?, kind) "
+      "AND (?6 IS NULL OR instr(?6, '|' || kind || '|') > 0) "
       "ORDER BY session, sequence");
   query.bind(filter.session.value_or(kLowest)).bind(filter.session.value_or(kHighest));
   query.bind(filter.sequence.value_or(kLowest)).bind(filter.sequence.value_or(kHighest));
-  query.bind(kind);
+  query.bind(kind).bind(any_of);
   while (query.step()) visit(event_of_row(query));
 }
 

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace touchtrial {
@@ -23,6 +24,7 @@ struct EventFilter {
   std::optional<std::int64_t> session;
   std::optional<std::int64_t> sequence;
   std::optional<EventKind> kind;
+  std::span<const EventKind> kinds{};  ///< any of these; empty: as `kind` says
 };
 
 /// Calls `visit` for the events that the filter names, by session and sequence; it may ask anything

@@ -169,6 +169,15 @@ void StudyStore::for_each(EventKind kind, const std::function<void(const Event&)
   });
 }
 
+void StudyStore::for_each_of(std::span<const EventKind> kinds,
+                             const std::function<void(const Event&)>& visit) const {
+  if (kinds.empty()) return;
+  impl_->run([&] {
+    for_each_event(impl_->database(), {.session = {}, .sequence = {}, .kind = {}, .kinds = kinds},
+                   visit);
+  });
+}
+
 int StudyStore::next_session() const {
   return impl_->run([&] { return impl_->study.next_session(); });
 }

@@ -145,6 +145,9 @@ class StudyStore {
   [[nodiscard]] std::vector<Event> events(int session) const;
   /// Calls `visit` for every event of one kind in all sessions, by session and sequence.
   void for_each(EventKind kind, const std::function<void(const Event&)>& visit) const;
+  /// The same of several kinds in one pass.
+  void for_each_of(std::span<const EventKind> kinds,
+                   const std::function<void(const Event&)>& visit) const;
 
   /// Stores a finished session in one transaction: its key, events and traces, its opening and
   /// closing on the file's chain, and its derived rows.

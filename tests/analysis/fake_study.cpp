@@ -136,6 +136,7 @@ void FakeStudy::add(const FakeSession& session) {
   opening.pilot = store_.commitment().pilot;
   opening.station = session.station;
   recorder.opened(milliseconds(0), opening, schedule_to_json(schedule, key_));
+  if (session.before_trials) session.before_trials(recorder);
   int place = 0;
   const Presentation* again = nullptr;
   for (const Presentation& presentation : schedule.presentations) {

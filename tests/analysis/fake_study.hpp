@@ -26,6 +26,8 @@ struct FakeSession {
   std::optional<ServoHealth> servo{};      ///< of every trial
   int interrupt_trial = 0;                 ///< interrupted, and presented again at the end; 0: none
   int stop_after = 1 << 20;                ///< presentations
+  /// Recorded after the opening, before 10 s have passed.
+  std::function<void(SessionRecorder&)> before_trials{};
 };
 
 struct FakeOptions {

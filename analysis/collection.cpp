@@ -1,0 +1,81 @@
+#include "analysis/collection.hpp"
+
+#include "analysis/collection_records.hpp"
+#include "protocols/store/payload_json.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace touchtrial {
+namespace {
+
+/// Of who has withdrawn nothing is told but that.
+SessionRow without_participant(const SessionRow& row) {
+  SessionRow bare;
+  bare.session = row.session;
+  bare.state = row.state;
+  bare.withdrawn = true;
+  return bare;
+}
+
+std::map<int, SessionRecord> empty_records(const std::vector<SessionRow>& rows) {
+  std::map<int, SessionRecord> records;
+  for (const SessionRow& row : rows) {
+    records[row.session].row = row.withdrawn ? without_participant(row) : row;
+  }
+  return records;
+}
+
+/// The session that an event is about, wherever it stands.
+int session_named_by(const Event& event) {
+  switch (event.kind) {
+    case EventKind::participant_excluded:
+      return participant_from_json(event.body).session;
+    case EventKind::participant_replaced:
+      return replacement_from_json(event.body).session;
+    case EventKind::participant_noted:
+      return note_from_json(event.body).session;
+    default:
+      return event.session;
+  }
+}
+
+bool is_practice_failure(const Deviation& deviation) {
+  return deviation.code == "practice-not-passed";
+}
+
+/// What follows from a session's events together.
+void finish(SessionRecord& record) {
+  if (record.practice) {
+    record.practice->passed = std::ranges::none_of(record.deviations, is_practice_failure);
+  }
+  // A stop from which the session was taken up again is none.
+  if (record.row.state != SessionState::stopped) record.stop_reason.clear();
+}
+
+}  // namespace
+
+Collection load_collection(const StudyStore& store) {
+  const std::vector<SessionRow> rows = store.sessions();
+  std::map<int, SessionRecord> records = empty_records(rows);
+  Collection collection;
+  collection.prescription = prescription_from_json(store.commitment().configuration);
+  const auto add = [&](const Event& event) {
+    const auto record = records.find(session_named_by(event));
+    if (record == records.end() || record->second.row.withdrawn) return;
+    add_to_record(event, record->second);
+    if (event.kind != EventKind::trace_stored) return;
+    if (const auto servo = servo_trial_of(event)) collection.servo_trials.push_back(*servo);
+  };
+  store.for_each_of(kinds_in_sessions(), add);
+  for (const Event& event : store.events(0)) add(event);  // what was noted later comes after
+  for (auto& [session, record] : records) {
+    finish(record);
+    collection.visual = collection.visual || (record.station && record.station->visual);
+    collection.sessions.push_back(std::move(record));
+  }
+  collection.flow = participant_flow(rows, collection.sessions, store.commitment(), store.state());
+  return collection;
+}
+
+}  // namespace touchtrial

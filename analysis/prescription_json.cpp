@@ -1,0 +1,47 @@
+/// What a study prescribes, from its configuration in clear.
+#include "analysis/collection.hpp"
+#include "core/errors.hpp"
+#include "protocols/design/session_plan.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+namespace {
+
+using nlohmann::json;
+
+/// A study without this section is as if it were all usual.
+void read_session(const json& session, Prescription& prescription) {
+  prescription.sight = session.at("sight").get<std::string>();
+  prescription.masking_wanted = session.at("masking").at("wanted").get<bool>();
+  prescription.masking_dbfs = session.at("masking").at("level_dbfs").get<double>();
+}
+
+Prescription prescription_of(const json& configuration) {
+  const MaskingPlan usual;
+  Prescription prescription;
+  prescription.sight = "curtain";
+  prescription.masking_wanted = usual.wanted;
+  prescription.masking_dbfs = usual.level_dbfs;
+  const json& trials = configuration.at("trials");
+  prescription.explore_limit_s = trials.at("explore_limit_s").get<double>();
+  prescription.on_timeout = trials.at("on_timeout").get<std::string>();
+  prescription.order = trials.at("order").get<std::string>();
+  prescription.repeats = trials.at("repeats").get<int>();
+  if (configuration.contains("session")) read_session(configuration["session"], prescription);
+  return prescription;
+}
+
+}  // namespace
+
+Prescription prescription_from_json(const std::string& configuration) {
+  try {
+    return prescription_of(json::parse(configuration));
+  } catch (const json::exception&) {
+    throw StoreError(
+        "the study's configuration in the database is not what this program writes; run "
+        "`touchtrial verify`, and restore a backup if it fails");
+  }
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,189 @@
+#include "analysis/collection.hpp"
+
+#include "analysis/fake_study.hpp"
+#include "analysis/report/quality.hpp"
+#include "core/errors.hpp"
+#include "support/catch.hpp"
+
+#include <chrono>
+
+namespace touchtrial {
+namespace {
+
+using std::chrono::milliseconds;
+
+FakeSession session_of(const std::string& participant, int enrolment) {
+  return {.participant = participant, .enrolment = enrolment, .answers = FakeStudy::always_right()};
+}
+
+StationRecord falcon() {
+  StationRecord station;
+  station.model = "Falcon";
+  return station;
+}
+
+int sum_of(const ParticipantFlow& flow) {
+  return flow.withdrawn + flow.replaced + flow.excluded + flow.stopped + flow.open +
+         flow.other_kind + flow.unseen + flow.analysed;
+}
+
+}  // namespace
+
+TEST_CASE("load_collection tells what the study prescribes") {
+  FakeStudy study(Protocol::classification,
+                  {.trials = R"({"explore_limit_s": 30, "on_timeout": "no-response"})"});
+  const Prescription prescription = load_collection(study.store()).prescription;
+  CHECK(prescription.explore_limit_s == 30.0);
+  CHECK(prescription.on_timeout == "no-response");
+  CHECK(prescription.order == "shuffled");
+  CHECK(prescription.repeats == 4);
+  CHECK(prescription.sight == "curtain");
+  CHECK(prescription.masking_wanted);
+  CHECK(prescription.masking_dbfs == -30.0);
+}
+
+TEST_CASE("A prescription follows the section on sessions where there is one") {
+  const Prescription prescription = prescription_from_json(
+      R"({"trials":{"explore_limit_s":5,"on_timeout":"fade","order":"uniform","repeats":2},
+          "session":{"sight":"blindfold","masking":{"wanted":false,"level_dbfs":-40.5}}})");
+  CHECK(prescription.sight == "blindfold");
+  CHECK_FALSE(prescription.masking_wanted);
+  CHECK(prescription.masking_dbfs == -40.5);
+  CHECK_THROWS_AS(prescription_from_json("{}"), StoreError);
+  CHECK_THROWS_AS(prescription_from_json("no JSON"), StoreError);
+}
+
+TEST_CASE("A session's record holds practice, deviations, resumptions and station") {
+  FakeStudy study(Protocol::classification, {.simulated = false});
+  FakeSession session = session_of("P01", 1);
+  session.station = falcon();
+  session.servo = ServoHealth{.rate_hz = 998.0, .lateness_p99_us = 40.0};
+  session.before_trials = [](SessionRecorder& recorder) {
+    recorder.practised(milliseconds(10), {.round = 1, .presentation = 1, .correct = false});
+    recorder.practised(milliseconds(20), {.round = 2, .presentation = 1, .correct = true});
+    recorder.practised(milliseconds(30), {.round = 2, .presentation = 2, .correct = true});
+    recorder.deviated(milliseconds(40), {"no-masking-noise", "no sound card"});
+    recorder.deviated(milliseconds(50), {"no-masking-noise", "no sound card"});
+    recorder.resumed(milliseconds(60), {.after = "pause", .away_s = 3.0});
+    recorder.resumed(milliseconds(70), {.after = "program-ended", .away_s = 60.0});
+  };
+  study.add(session);
+  study.store().note(1, milliseconds(100), "moved-hand", "during trial 3");
+  study.store().note(1, milliseconds(110), "", "a remark is no deviation");
+
+  const Collection collection = load_collection(study.store());
+  REQUIRE(collection.sessions.size() == 1);
+  const SessionRecord& record = collection.sessions[0];
+  CHECK(record.row.participant == "P01");
+  REQUIRE(record.practice);
+  CHECK(record.practice->rounds == 2);
+  CHECK(record.practice->presentations == 3);
+  CHECK(record.practice->correct == 2);
+  CHECK(record.practice->passed);
+  REQUIRE(record.deviations.size() == 2);
+  CHECK(record.deviations[0].code == "no-masking-noise");
+  CHECK(record.deviations[1].text == "during trial 3");
+  CHECK(record.resumed == 1);
+  REQUIRE(record.station);
+  CHECK(record.station->model == "Falcon");
+  REQUIRE(collection.servo_trials.size() == 12);
+  CHECK(collection.servo_trials[11].trial == 12);
+  CHECK(collection.servo_trials[11].health.lateness_p99_us == 40.0);
+  CHECK_FALSE(collection.visual);
+}
+
+TEST_CASE("Practice that did not reach its criterion is told") {
+  FakeStudy study(Protocol::classification);
+  FakeSession session = session_of("P01", 1);
+  session.before_trials = [](SessionRecorder& recorder) {
+    recorder.practised(milliseconds(10), {.round = 1, .presentation = 1, .correct = false});
+    recorder.deviated(milliseconds(20), {"practice-not-passed", "0 of 1"});
+  };
+  study.add(session);
+  study.add(session_of("P02", 2));
+  const Collection collection = load_collection(study.store());
+  CHECK_FALSE(collection.sessions[0].practice->passed);
+  CHECK_FALSE(collection.sessions[1].practice);
+}
+
+TEST_CASE("Every participant is counted once, by the session that stands") {
+  FakeStudy study(Protocol::classification);
+  study.add(session_of("complete", 1));
+  FakeSession stopped = session_of("stopped", 2);
+  stopped.complete = false;
+  stopped.before_trials = [](SessionRecorder& recorder) {
+    recorder.remarked(milliseconds(10), EventKind::stopped, "felt unwell");
+  };
+  study.add(stopped);
+  study.add(session_of("asleep", 3));
+  study.add(session_of("withdrew", 4));
+  stopped.participant = "gave-way";
+  stopped.enrolment = 5;
+  study.add(stopped);
+  stopped.participant = "again";
+  stopped.enrolment = 6;
+  study.add(stopped);
+  StudyStore& store = study.store();
+  store.exclude(3, milliseconds(10), "fell asleep");
+  store.withdraw(4, milliseconds(20), "no reason");
+  store.replace(5, "successor", milliseconds(30), "did not finish");
+  study.add(session_of("successor", 5));
+  store.replace(6, "again", milliseconds(40), "power cut");
+  study.add(session_of("again", 6));
+
+  const Collection collection = load_collection(store);
+  const ParticipantFlow& flow = collection.flow;
+  CHECK(flow.enrolled == 7);
+  CHECK(flow.analysed == 3);  // complete, successor, again
+  CHECK(flow.stopped == 1);
+  CHECK(flow.excluded == 1);
+  CHECK(flow.exclusion_reasons == std::vector<std::string>{"fell asleep"});
+  CHECK(flow.withdrawn == 1);
+  CHECK(flow.replaced == 1);
+  CHECK(flow.open == 0);
+  CHECK(sum_of(flow) == flow.enrolled);
+  REQUIRE(collection.sessions.size() == 8);
+  CHECK(collection.sessions[1].stop_reason == "felt unwell");
+  CHECK(collection.sessions[2].exclusion_reason == "fell asleep");
+  CHECK(collection.sessions[4].replacement_reason == "did not finish");
+}
+
+TEST_CASE("Of who withdrew a collection holds nothing but that") {
+  FakeStudy study(Protocol::classification, {.simulated = false});
+  FakeSession session = session_of("P01", 1);
+  session.station = falcon();
+  session.servo = ServoHealth{};
+  session.before_trials = [](SessionRecorder& recorder) {
+    recorder.deviated(milliseconds(40), {"no-curtain", "told a name"});
+  };
+  study.add(session);
+  study.store().exclude(1, milliseconds(10), "told a name");
+  study.store().withdraw(1, milliseconds(20), "");
+  const Collection collection = load_collection(study.store());
+  REQUIRE(collection.sessions.size() == 1);
+  const SessionRecord& record = collection.sessions[0];
+  CHECK(record.row.withdrawn);
+  CHECK(record.row.participant.empty());
+  CHECK(record.deviations.empty());
+  CHECK(record.exclusion_reason.empty());
+  CHECK_FALSE(record.station);
+  CHECK(collection.servo_trials.empty());
+  CHECK(collection.flow.withdrawn == 1);
+  CHECK(collection.flow.exclusion_reasons.empty());
+}
+
+TEST_CASE("Who completes after an interim look is not analysed yet") {
+  FakeStudy study(Protocol::classification);
+  study.add(session_of("P01", 1));
+  CHECK(load_collection(study.store()).flow.analysed == 1);  // blind: to be analysed
+  study.store().unblind(milliseconds(100), "safety", true);
+  study.add(session_of("P02", 2));
+  const ParticipantFlow flow = load_collection(study.store()).flow;
+  CHECK(flow.enrolled == 2);
+  CHECK(flow.analysed == 1);
+  CHECK(flow.unseen == 1);
+  study.close_and_unblind();
+  CHECK(load_collection(study.store()).flow.analysed == 2);
+}
+
+}  // namespace touchtrial
