@@ -382,10 +382,13 @@ void ConsoleWindow::draw() {
 
 std::optional<ColourImage> ConsoleWindow::picture(std::chrono::milliseconds longest) {
   State& s = *state_;
+  {
+    const std::lock_guard lock(s.mutex);
+    s.picture.reset();
+    s.picture_wanted = true;
+  }
   s.redraw();
   std::unique_lock lock(s.mutex);
-  s.picture.reset();
-  s.picture_wanted = true;
   s.for_picture.wait_for(lock, longest, [&s] { return s.picture.has_value(); });
   return std::exchange(s.picture, std::nullopt);
 }

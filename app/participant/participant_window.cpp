@@ -265,6 +265,7 @@ struct ParticipantWindow::State {
 
   // Between threads.
   std::atomic<int> gone{-1};
+  std::atomic<std::int64_t> pumps{0};
   std::atomic<bool> exploring{false};
   std::atomic<bool> comfort_asked{false};
   std::atomic<bool> finish_asked{false};
@@ -306,6 +307,7 @@ void ParticipantWindow::pump(milliseconds longest) {
   s.hide_pointer();
   s.publish_pointer();
   if (StopOnSignals::asked()) s.leave(WindowGone::signal);
+  ++s.pumps;
 }
 
 void ParticipantWindow::check() const {
@@ -395,6 +397,10 @@ std::optional<WindowGone> ParticipantWindow::gone() const noexcept {
   const int why = state_->gone;
   if (why < 0) return std::nullopt;
   return static_cast<WindowGone>(why);
+}
+
+std::int64_t ParticipantWindow::pumps() const noexcept {
+  return state_->pumps;
 }
 
 void ParticipantWindow::close() noexcept {

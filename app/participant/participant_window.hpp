@@ -9,6 +9,7 @@
 #include "protocols/session/participant.hpp"
 
 #include <chrono>
+#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -95,6 +96,9 @@ class ParticipantWindow final : public Participant {
   /// \name Any thread
   ///@{
   [[nodiscard]] std::optional<WindowGone> gone() const noexcept;
+  /// How often `pump` has come to its end: what the system had told the window before a call of it
+  /// began was taken by then.
+  [[nodiscard]] std::int64_t pumps() const noexcept;
   /// As if the window manager had closed it.
   void close() noexcept;
   /// What is now to happen: as if the event had come by itself.

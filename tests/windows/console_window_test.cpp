@@ -4,6 +4,7 @@
 #include "device/servo/servo_control.hpp"
 #include "engine/pictures/colour_image.hpp"
 #include "support/catch.hpp"
+#include "windows/heard.hpp"
 #include "windows/virtual_screen.hpp"
 
 #include <chrono>
@@ -53,7 +54,6 @@ struct Room {
     window.see_pictures({"bark", "cloth"});
     screen->xdotool("search --name '^Touchtrial$' windowmove 0 0");
     screen->xdotool("search --name '^Touchtrial console$' windowmove 1280 0");
-    std::this_thread::sleep_for(milliseconds(100));
   }
 
   template <typename Session>
@@ -61,7 +61,11 @@ struct Room {
     run_beside(window, [&] { session(); });
   }
 
-  void settle() { static_cast<void>(window.console_picture()); }
+  /// Waits until the console shows what was done to it.
+  void settle() {
+    wait_until_heard(window);
+    static_cast<void>(window.console_picture());
+  }
 
   /// Clicks in the experimenter's window, which gets the focus, as window managers give it.
   void click(std::pair<int, int> at) {
@@ -69,13 +73,11 @@ struct Room {
     screen->move_pointer(kParticipantWidth + at.first, at.second);
     screen->press();
     screen->release();
-    std::this_thread::sleep_for(milliseconds(300));
     settle();
   }
 
   void type(const std::string& keys) {
     screen->type(keys);
-    std::this_thread::sleep_for(milliseconds(300));
     settle();
   }
 
@@ -272,10 +274,10 @@ TEST_CASE("screenshots of every state of the console, for TOUCHTRIAL_SCREENSHOTS
     room.console.show(status("exploring"));
     keep(room.window.console_picture(), "console-exploring");
     room.screen->xdotool("search --name '^Touchtrial console$' windowsize 1280 720");
-    std::this_thread::sleep_for(milliseconds(500));
+    room.settle();
     keep(room.window.console_picture(), "console-1280x720");
     room.screen->xdotool("search --name '^Touchtrial console$' windowsize 1920 1080");
-    std::this_thread::sleep_for(milliseconds(500));
+    room.settle();
     keep(room.window.console_picture(), "console-1920x1080");
   });
 }

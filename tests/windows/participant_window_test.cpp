@@ -8,6 +8,7 @@
 #include "protocols/session/prompt_participant.hpp"
 #include "stimuli/generator.hpp"
 #include "support/catch.hpp"
+#include "windows/heard.hpp"
 #include "windows/virtual_screen.hpp"
 
 #include <algorithm>
@@ -72,6 +73,19 @@ struct Sitting {
     CHECK_FALSE(window.attend(step));
     CHECK(window.wait_until_shown(milliseconds(20'000)));
   }
+  /// Types until the window has heard it.
+  void type(const std::string& keys) {
+    screen->type(keys);
+    wait_until_heard(window);
+  }
+  /// Clicks until the window shows what came of it.
+  void click(int x, int y) {
+    screen->move_pointer(x, y);
+    screen->press();
+    screen->release();
+    wait_until_heard(window);
+    CHECK(window.wait_until_shown(milliseconds(20'000)));
+  }
   /// Attends until there is a reply, or a minute has gone by.
   std::optional<StepReply> reply_to(const Step& step) {
     const auto give_up = steady_clock::now() + std::chrono::seconds(60);
@@ -126,14 +140,8 @@ TEST_CASE("a picture and Next are clicked with a real mouse") {
     const AnswerStep step = answer_step();
     sitting.show(step);
     // The middle one of five, and the button below.
-    sitting.screen->move_pointer(640, 320);
-    sitting.screen->press();
-    sitting.screen->release();
-    CHECK(sitting.window.wait_until_shown(milliseconds(20'000)));
-    std::this_thread::sleep_for(milliseconds(200));
-    sitting.screen->move_pointer(640, 640);
-    sitting.screen->press();
-    sitting.screen->release();
+    sitting.click(640, 320);
+    sitting.click(640, 640);
     const auto reply = sitting.reply_to(step);
     REQUIRE(reply);
     CHECK(reply->position == 2);
@@ -144,7 +152,7 @@ TEST_CASE("a key that was pressed before a screen was shown does nothing on it")
   Sitting sitting;
   sitting.run([&] {
     sitting.show(ReadyStep{1, 25, false});
-    sitting.screen->type("Return Return Return");
+    sitting.type("Return Return Return");
     CHECK(sitting.reply_to(ReadyStep{1, 25, false}));
     sitting.show(BreakStep{1, 25});
     for (int i = 0; i < 10; ++i) CHECK_FALSE(sitting.window.attend(BreakStep{1, 25}));
@@ -155,7 +163,7 @@ TEST_CASE("Escape ends nothing, on no screen") {
   Sitting sitting;
   sitting.run([&] {
     sitting.show(ReadyStep{1, 25, false});
-    sitting.screen->type("Escape");
+    sitting.type("Escape");
     for (int i = 0; i < 20; ++i) CHECK_FALSE(sitting.window.attend(ReadyStep{1, 25, false}));
     CHECK_FALSE(sitting.window.gone());
   });
@@ -165,10 +173,10 @@ TEST_CASE("a pause covers a choice, which is still there afterwards") {
   Sitting sitting;
   sitting.run([&] {
     sitting.show(answer_step());
-    sitting.screen->type("4");
-    std::this_thread::sleep_for(milliseconds(300));
+    sitting.type("4");
+    CHECK(sitting.window.wait_until_shown(milliseconds(20'000)));
     sitting.show(PauseStep{});
-    sitting.screen->type("2 Return");
+    sitting.type("2 Return");
     for (int i = 0; i < 20; ++i) CHECK_FALSE(sitting.window.attend(PauseStep{}));
     const auto reply = sitting.answer(answer_step(), "Return");
     REQUIRE(reply);
@@ -232,6 +240,7 @@ TEST_CASE("the exploring screen is the same to the last byte, whatever is felt")
       sitting.window.show_exploring(kPlane);
       feel_texture(sitting.window, 0.4 * trial);
       sitting.screen->move_pointer(100 * trial, 60 * trial);
+      wait_until_heard(sitting.window);
       CHECK(sitting.window.wait_until_shown(milliseconds(20'000)));
       const ColourImage picture = sitting.window.picture();
       if (!first) first = picture;

@@ -18,7 +18,7 @@ bool is_installed(const std::string& program) {
   const std::string descriptor = std::to_string(number_to);
   const std::string screen = size + "x24";
   ::execlp("Xvfb", "Xvfb", "-displayfd", descriptor.c_str(), "-screen", "0", screen.c_str(),
-           "-nolisten", "tcp", "-noreset", static_cast<char*>(nullptr));
+           "-nolisten", "tcp", "-noreset", "-r", static_cast<char*>(nullptr));
   ::_exit(127);
 }
 
@@ -58,7 +58,10 @@ VirtualScreen::~VirtualScreen() {
 }
 
 void VirtualScreen::xdotool(const std::string& arguments) const {
-  if (std::system(("xdotool " + arguments).c_str()) != 0) {
+  // Two questions, of which the second is asked when the first is answered: by then the server has
+  // sent what the arguments made happen to whom it concerns.
+  const std::string questions = " getmouselocation getmouselocation >/dev/null";
+  if (std::system(("xdotool " + arguments + questions).c_str()) != 0) {
     throw std::runtime_error("xdotool " + arguments + " failed");
   }
 }
