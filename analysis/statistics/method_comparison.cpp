@@ -1,5 +1,6 @@
 #include "analysis/statistics/method_comparison.hpp"
 
+#include "analysis/statistics/cluster_bootstrap.hpp"
 #include "analysis/statistics/sign_flip.hpp"
 
 #include <cmath>
@@ -12,7 +13,8 @@ std::optional<double> decibels(double a, double b) {
   return 10.0 * std::log10(a / b);
 }
 
-MethodComparison compare_methods(std::span<const PairedAccuracy> participants) {
+MethodComparison compare_methods(std::span<const PairedAccuracy> participants, std::uint64_t index,
+                                 int draws) {
   std::vector<double> differences;
   double first = 0.0;
   double second = 0.0;
@@ -22,8 +24,9 @@ MethodComparison compare_methods(std::span<const PairedAccuracy> participants) {
     second += participant.second;
   }
   const MeanEstimate mean = participant_mean(differences, {-1.0, 1.0});
-  return {mean.participants, mean.mean, mean.interval, sign_flip_p(differences),
-          decibels(first, second)};
+  return {mean.participants,       mean.mean,
+          mean.interval,           sign_flip_p(differences),
+          decibels(first, second), bootstrap_mean(differences, index, draws)};
 }
 
 }  // namespace touchtrial

@@ -1,9 +1,12 @@
-/// \file Two methods felt by the same participants. Source: docs/statistics.md.
+/// \file Two methods felt by the same participants. Source: docs/statistics.md,
+/// "Two methods".
 #pragma once
 
+#include "analysis/statistics/cluster_bootstrap.hpp"
 #include "analysis/statistics/participant_mean.hpp"
 #include "analysis/statistics/proportion.hpp"
 
+#include <cstdint>
 #include <optional>
 #include <span>
 
@@ -29,7 +32,10 @@ struct MethodComparison {
 /// \return nothing unless both are > 0
 [[nodiscard]] std::optional<double> decibels(double a, double b);
 
-/// \throws std::invalid_argument if a proportion is not finite
-[[nodiscard]] MethodComparison compare_methods(std::span<const PairedAccuracy> participants);
+/// \param index,draws  of the bootstrap
+/// \throws std::invalid_argument if a proportion is not finite, or draws < 1
+[[nodiscard]] MethodComparison compare_methods(std::span<const PairedAccuracy> participants,
+                                               std::uint64_t index = 0,
+                                               int draws = kBootstrapDraws);
 
 }  // namespace touchtrial

@@ -18,6 +18,10 @@ TEST_CASE("compare_methods takes the second method from the first") {
   CHECK(comparison.interval.low == Approx(-0.020698378536599865).margin(1e-12).epsilon(0));
   CHECK(comparison.interval.high == Approx(0.30069837853659986).margin(1e-12).epsilon(0));
   CHECK(comparison.p == 0.125);
+  CHECK(comparison.bootstrap->low < 0.14);
+  CHECK(comparison.bootstrap->low > -0.05);
+  CHECK(comparison.bootstrap->high > 0.14);
+  CHECK(comparison.bootstrap->high < 0.3);
   CHECK(comparison.db.value() == Approx(10.0 * std::log10(4.3 / 3.6)).margin(1e-12));
 }
 
@@ -42,6 +46,7 @@ TEST_CASE("compare_methods says how little one participant or none can tell") {
   CHECK(compare_methods(one).difference == 0.5);
   CHECK(compare_methods(one).interval == Interval{-1.0, 1.0});
   CHECK(compare_methods(one).p == 1.0);
+  CHECK_FALSE(compare_methods(one).bootstrap.has_value());
 }
 
 TEST_CASE("compare_methods refuses values that are no numbers") {

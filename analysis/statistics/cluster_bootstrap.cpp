@@ -1,0 +1,118 @@
+#include "analysis/statistics/cluster_bootstrap.hpp"
+
+#include "core/random.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string_view>
+#include <vector>
+
+namespace touchtrial {
+namespace {
+
+void require_arguments(std::size_t participants, int draws, double level) {
+  if (draws < 1) throw std::invalid_argument("a bootstrap needs at least one draw");
+  if (!(level > 0.0 && level < 1.0)) {
+    throw std::invalid_argument("a confidence level lies between 0 and 1");
+  }
+  if (participants > std::numeric_limits<std::uint32_t>::max()) {
+    throw std::invalid_argument("a bootstrap takes fewer than 2^32 participants");
+  }
+}
+
+/// Indices below a bound, each equally likely, two of every 64 random bits: a study of a thousand
+/// participants needs ten million. Lemire 2019, ACM Transactions on Modeling and Computer
+/// Simulation 29(1).
+class IndexDraws {
+ public:
+  IndexDraws(RandomStream& random, std::size_t bound)
+      : random_(random),
+        bound_(static_cast<std::uint32_t>(bound)),
+        excess_((0U - bound_) % bound_) {}
+
+  [[nodiscard]] std::size_t next() {
+    while (true) {
+      const std::uint64_t product = std::uint64_t{half()} * bound_;
+      if (static_cast<std::uint32_t>(product) >= excess_) return product >> 32U;
+    }
+  }
+
+ private:
+  std::uint32_t half() {
+    second_ = !second_;
+    if (!second_) return static_cast<std::uint32_t>(word_ >> 32U);
+    word_ = random_.bits();
+    return static_cast<std::uint32_t>(word_);
+  }
+
+  RandomStream& random_;
+  std::uint32_t bound_;
+  std::uint32_t excess_;  // 2^32 mod bound
+  std::uint64_t word_ = 0;
+  bool second_ = false;
+};
+
+/// The value that a share of the statistic's distribution lies below: the ((draws + 1) share)-th of
+/// the sorted draws, between two of them where that is no whole number.
+double percentile(const std::vector<double>& sorted, double share) {
+  const auto draws = static_cast<double>(sorted.size());
+  const double place = std::clamp((draws + 1.0) * share, 1.0, draws) - 1.0;
+  const double below = std::floor(place + 1e-9);  // 10,000 * 0.025 is the 250th, not a hair before
+  const auto at = static_cast<std::size_t>(below);
+  if (at + 1 >= sorted.size()) return sorted.back();
+  return sorted[at] + std::max(0.0, place - below) * (sorted[at + 1] - sorted[at]);
+}
+
+Interval percentile_interval(std::vector<double> statistics, double level) {
+  std::sort(statistics.begin(), statistics.end());
+  return {percentile(statistics, (1.0 - level) / 2.0), percentile(statistics, (1.0 + level) / 2.0)};
+}
+
+}  // namespace
+
+std::optional<Interval> cluster_bootstrap(std::span<const Proportion> participants,
+                                          std::uint64_t index, int draws, double level) {
+  require_arguments(participants.size(), draws, level);
+  for (const Proportion& one : participants) {
+    if (one.n < 1 || one.correct < 0 || one.correct > one.n) {
+      throw std::invalid_argument("a bootstrap needs participants with 0 <= correct <= n, n >= 1");
+    }
+  }
+  if (participants.size() < 2) return std::nullopt;
+  RandomStream random(0, "cluster bootstrap", index);
+  IndexDraws drawn(random, participants.size());
+  std::vector<double> shares(static_cast<std::size_t>(draws));
+  for (double& share : shares) {
+    std::int64_t n = 0;
+    std::int64_t correct = 0;
+    for (std::size_t i = 0; i < participants.size(); ++i) {
+      const Proportion& one = participants[drawn.next()];
+      n += one.n;
+      correct += one.correct;
+    }
+    share = static_cast<double>(correct) / static_cast<double>(n);
+  }
+  return percentile_interval(std::move(shares), level);
+}
+
+std::optional<Interval> bootstrap_mean(std::span<const double> values, std::uint64_t index,
+                                       int draws, double level) {
+  require_arguments(values.size(), draws, level);
+  if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) {
+    throw std::invalid_argument("a bootstrap needs finite values");
+  }
+  if (values.size() < 2) return std::nullopt;
+  RandomStream random(0, "bootstrap of a mean", index);
+  IndexDraws drawn(random, values.size());
+  std::vector<double> means(static_cast<std::size_t>(draws));
+  for (double& mean : means) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < values.size(); ++i) sum += values[drawn.next()];
+    mean = sum / static_cast<double>(values.size());
+  }
+  return percentile_interval(std::move(means), level);
+}
+
+}  // namespace touchtrial
