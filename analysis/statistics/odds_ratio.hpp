@@ -20,6 +20,7 @@ struct OddsRatio {
 /// method's trials.
 /// \return nothing if it is 0 or infinite (one of the methods is all right or all wrong in every
 ///   participant who tells)
+/// \throws std::invalid_argument if a proportion is impossible, or the level is not in (0, 1)
 [[nodiscard]] std::optional<OddsRatio> mantel_haenszel(
     std::span<const std::pair<Proportion, Proportion>> participants,
     double level = kConfidenceLevel);
