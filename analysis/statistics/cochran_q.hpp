@@ -2,6 +2,7 @@
 /// Source: docs/statistics.md, "Three methods or more"; Cochran 1950.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
@@ -21,8 +22,12 @@ struct CochranQ {
 
 /// The same statistic's p when methods are exchanged within whole participants: holds although a
 /// participant's occasions are not independent. Monte Carlo, (b + 1) / (m + 1), fixed seed.
-/// \param by_participant  each participant's occasions
+/// \param by_participant  each participant's occasions \param deals  m, >= 1
+/// \param index  chooses the stream of random numbers
+/// \return nothing where cochran_q of all occasions is nothing
+/// \throws std::invalid_argument if lengths differ or deals < 1
 [[nodiscard]] std::optional<double> cochran_q_permuted_p(
-    std::span<const std::vector<std::vector<bool>>> by_participant, int deals = 9999);
+    std::span<const std::vector<std::vector<bool>>> by_participant, int deals = 9999,
+    std::uint64_t index = 0);
 
 }  // namespace touchtrial
