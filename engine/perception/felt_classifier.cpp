@@ -121,7 +121,8 @@ FeltClassifier::FeltClassifier(std::span<const FeltExample> examples, double noi
   dimensions_ = examples.front().features.size();
   std::vector<std::vector<double>> means = means_by_label(examples);
   const auto freedom = static_cast<double>(examples.size() - means.size());
-  settle(covariance_of(scatter_within(examples, means), freedom, noise).values, std::move(means));
+  Matrix covariance = covariance_of(scatter_within(examples, means), freedom, noise);
+  settle(std::move(covariance.values), std::move(means));
 }
 
 FeltClassifier::FeltClassifier(const FeltStatistics& statistics, double noise)
@@ -134,7 +135,8 @@ FeltClassifier::FeltClassifier(const FeltStatistics& statistics, double noise)
   Matrix scatter(statistics.features());
   scatter.values.assign(statistics.scatter().begin(), statistics.scatter().end());
   const double freedom = statistics.degrees_of_freedom();
-  settle(covariance_of(std::move(scatter), freedom, noise).values, std::move(means));
+  Matrix covariance = covariance_of(std::move(scatter), freedom, noise);
+  settle(std::move(covariance.values), std::move(means));
 }
 
 void FeltClassifier::settle(std::vector<double> covariance,
