@@ -3,7 +3,7 @@
 #include "analysis/cues/cue_statistics.hpp"
 #include "analysis/cues/cue_warnings.hpp"
 #include "analysis/cues/felt_trials.hpp"
-#include "analysis/cues/ideal_observer.hpp"
+#include "analysis/cues/observer_answers.hpp"
 #include "analysis/cues/participant_answers.hpp"
 #include "analysis/cues/study_plane.hpp"
 #include "analysis/outcomes.hpp"
@@ -43,39 +43,49 @@ std::vector<std::size_t> felt_with(const FeltStudy& study, int method, MethodCue
   return places;
 }
 
-/// By observer and trial, in the order of kCues and of `places`.
-std::vector<std::vector<AnswerShares>> all_answers(const FeltStudy& study,
-                                                   const std::vector<std::size_t>& places) {
+/// All observers, in the order of kCues; trials in the order of `places`.
+using Answers = std::vector<ObserverAnswers>;
+
+Answers all_answers(const FeltStudy& study, const std::vector<std::size_t>& places) {
   std::vector<ObservedTrial> observed;
+  std::vector<std::optional<int>> responses;
   for (const std::size_t place : places) {
-    const StimulusIndex& stimulus = study.trials[place]->stimulus;
-    observed.push_back({stimulus.class_index, stimulus.exemplar, study.felt.felt[place]});
+    const TrialOutcome& trial = *study.trials[place];
+    observed.push_back(
+        {trial.stimulus.class_index, trial.stimulus.exemplar, study.felt.felt[place]});
+    responses.push_back(trial.response);
   }
-  std::vector<std::vector<AnswerShares>> answers;
+  Answers answers;
   for (const Cue cue : kCues) {
-    answers.push_back(ideal_answers(cue, observed, study.classes, study.jobs));
+    answers.push_back(observer_answers(cue, observed, responses, study.classes, study.jobs));
   }
   return answers;
 }
 
+JudgedTrial judged(const TrialOutcome& trial, const Answers& answers, std::size_t i) {
+  JudgedTrial judged{trial.stimulus.class_index, trial.response, {}, {}};
+  for (std::size_t observer = 0; observer < kCues.size(); ++observer) {
+    judged.ideal[observer] = answers[observer].ideal[i];
+    judged.matched[observer] = answers[observer].matched[i];
+  }
+  return judged;
+}
+
 /// By participant, in the order of their first trial, which is that of sessions.
-std::vector<ParticipantAnswers> by_participant(const FeltStudy& study, int method,
-                                               MethodCues& cues) {
-  const std::vector<std::size_t> places = felt_with(study, method, cues);
-  const auto answers = all_answers(study, places);
+std::vector<ParticipantAnswers> by_participant(const FeltStudy& study,
+                                               const std::vector<std::size_t>& places,
+                                               const Answers& answers, MethodCues& cues) {
   std::vector<ParticipantAnswers> all;
   std::map<std::string, std::size_t> known;
   for (std::size_t i = 0; i < places.size(); ++i) {
-    if (answers.front()[i].empty()) {
+    if (answers.front().ideal[i].empty()) {
       ++cues.unjudged;
       continue;
     }
     const TrialOutcome& trial = *study.trials[places[i]];
-    JudgedTrial judged{trial.stimulus.class_index, trial.response, {}};
-    for (std::size_t o = 0; o < kCues.size(); ++o) judged.ideal[o] = answers[o][i];
     const auto [at, is_new] = known.try_emplace(trial.participant, all.size());
     if (is_new) all.emplace_back(trial.participant, study.classes);
-    all[at->second].add(judged);
+    all[at->second].add(judged(trial, answers, i));
   }
   return all;
 }
@@ -117,27 +127,33 @@ ObserverFigures observer_figures(std::size_t observer, const std::vector<Partici
   ObserverFigures figures;
   figures.cue = kCues[observer];
   figures.confusion = no_answers(all.front().classes());
+  figures.matched_confusion = figures.confusion;
   for (const ParticipantAnswers& one : all) {
     figures.accuracy.push_back(one.available(observer));
     add_counts(figures.confusion, one.ideal(observer));
+    add_counts(figures.matched_confusion, one.matched(observer));
   }
   figures.mean = participant_mean(figures.accuracy);
   figures.efficiency = statistics.efficiency[observer];
   figures.corrected_efficiency = statistics.corrected[observer];
   figures.divergence = statistics.divergence[observer];
+  figures.matched_divergence = statistics.matched_divergence[observer];
   return figures;
 }
 
 MethodCues method_cues(const FeltStudy& study, int method, const std::string& label) {
   MethodCues cues;
   cues.method = label;
-  const std::vector<ParticipantAnswers> all = by_participant(study, method, cues);
+  const std::vector<std::size_t> places = felt_with(study, method, cues);
+  const Answers answers = all_answers(study, places);
+  const std::vector<ParticipantAnswers> all = by_participant(study, places, answers, cues);
   put_participants(cues, all, study.classes);
   if (all.empty()) return cues;
   const CueStatistics statistics =
       cue_statistics(all, static_cast<std::uint64_t>(method), study.jobs);
   for (std::size_t observer = 0; observer < kCues.size(); ++observer) {
     cues.observers.push_back(observer_figures(observer, all, statistics));
+    cues.observers.back().matched_noise = answers[observer].matched_noise;
   }
   cues.match = statistics.match;
   cues.fewest_of_a_class = fewest_of_a_class(all);

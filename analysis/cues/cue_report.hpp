@@ -50,13 +50,19 @@ struct ObserverFigures {
   /// Mean over presented classes of the Jensen-Shannon divergence between participants' and
   /// observer's answers, bits: 0 if they confuse alike, at most 1.
   CueFigure divergence;
+  /// Noise of the sense (a Weber fraction) with which the observer is right as often as the
+  /// participants; 0 if it is not right more often without.
+  double matched_noise = 0.0;
+  AnswerCounts matched_confusion;  ///< with that noise
+  CueFigure matched_divergence;    ///< the divergence from these
 };
 
-/// Which observer confuses as participants do.
+/// Which observer confuses as participants do, each made as uncertain as they are: an observer that
+/// is never wrong has no confusions to be compared.
 struct CueMatch {
-  Cue best = Cue::rms;  ///< of the least divergence
+  Cue best = Cue::rms;  ///< of the least matched divergence
   Cue second = Cue::rms;
-  CueFigure difference;     ///< second's divergence less best's, bits
+  CueFigure difference;     ///< second's matched divergence less best's, bits
   bool told_apart = false;  ///< the difference's interval exists and does not hold 0
 };
 

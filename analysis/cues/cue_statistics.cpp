@@ -17,13 +17,14 @@ constexpr std::size_t kObservers = kCues.size();
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 /// All that the figures are made of, of one participant or summed over several: the participant's
-/// and the observers' accuracies, then their answers to the trials with a response.
+/// and the observers' accuracies, then the answers to the trials with a response of the
+/// participant, the observers, and the observers as unsure as participants.
 class Sums {
  public:
   explicit Sums(int classes)
       : classes_(classes),
         cells_(static_cast<std::size_t>(classes) * static_cast<std::size_t>(classes)),
-        values_(1 + kObservers + (1 + kObservers) * cells_, 0.0) {}
+        values_(1 + kObservers + (1 + 2 * kObservers) * cells_, 0.0) {}
 
   explicit Sums(const ParticipantAnswers& one) : Sums(one.classes()) {
     participants_ = 1;
@@ -32,6 +33,8 @@ class Sums {
     for (std::size_t i = 0; i < kObservers; ++i) {
       values_[1 + i] = one.available(i);
       std::ranges::copy(one.ideal_of_answered(i), values_.begin() + answers_at(1 + i));
+      std::ranges::copy(one.matched_of_answered(i),
+                        values_.begin() + answers_at(kFirstMatched + i));
     }
   }
 
@@ -58,8 +61,15 @@ class Sums {
   [[nodiscard]] double divergence(std::size_t observer) const noexcept {
     return answer_divergence(answers(0), answers(1 + observer), classes_).value_or(kNone);
   }
+  [[nodiscard]] double matched_divergence(std::size_t observer) const noexcept {
+    return answer_divergence(answers(0), answers(kFirstMatched + observer), classes_)
+        .value_or(kNone);
+  }
 
  private:
+  /// Whose answers come first among those of the matched observers.
+  static constexpr std::size_t kFirstMatched = 1 + kObservers;
+
   [[nodiscard]] std::ptrdiff_t answers_at(std::size_t whose) const noexcept {
     return static_cast<std::ptrdiff_t>(1 + kObservers + whose * cells_);
   }
@@ -73,17 +83,19 @@ class Sums {
   std::vector<double> values_;
 };
 
-/// Indices into the figures of one draw: three a kind, then the difference of two divergences.
+/// Indices into the figures of one draw: three a kind, then the difference of two matched
+/// divergences.
 enum : std::size_t {
   kEfficiencyAt = 0,
   kCorrectedAt = kObservers,
   kDivergenceAt = 2 * kObservers,
-  kDifferenceAt = 3 * kObservers,
+  kMatchedAt = 3 * kObservers,
+  kDifferenceAt = 4 * kObservers,
   kFigures
 };
 using Figures = std::array<double, kFigures>;
 
-/// The two observers whose answers come nearest.
+/// The two observers whose answers come nearest, as unsure as participants.
 struct Ranking {
   std::size_t best = 0;
   std::size_t second = 1;
@@ -92,7 +104,7 @@ struct Ranking {
 Ranking ranking_of(const Figures& figures) {
   std::array<std::size_t, kObservers> order{};
   for (std::size_t i = 0; i < kObservers; ++i) order[i] = i;
-  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return figures[kDivergenceAt + i]; });
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return figures[kMatchedAt + i]; });
   return {order[0], order[1]};
 }
 
@@ -102,13 +114,14 @@ Figures figures_of(const Sums& sums) {
     figures[kEfficiencyAt + i] = sums.efficiency(i);
     figures[kCorrectedAt + i] = sums.corrected(i);
     figures[kDivergenceAt + i] = sums.divergence(i);
+    figures[kMatchedAt + i] = sums.matched_divergence(i);
   }
   return figures;
 }
 
 void put_difference(Figures& figures, const Ranking& ranking) {
   figures[kDifferenceAt] =
-      figures[kDivergenceAt + ranking.second] - figures[kDivergenceAt + ranking.best];
+      figures[kMatchedAt + ranking.second] - figures[kMatchedAt + ranking.best];
 }
 
 std::vector<Figures> drawn(const std::vector<Sums>& participants, int classes,
@@ -178,6 +191,7 @@ CueStatistics cue_statistics(std::span<const ParticipantAnswers> participants, s
     statistics.efficiency[i] = figure_at(kEfficiencyAt + i, observed, draws);
     statistics.corrected[i] = figure_at(kCorrectedAt + i, observed, draws);
     statistics.divergence[i] = figure_at(kDivergenceAt + i, observed, draws);
+    statistics.matched_divergence[i] = figure_at(kMatchedAt + i, observed, draws);
   }
   statistics.match = match_of(ranking, observed, draws);
   return statistics;

@@ -17,6 +17,7 @@ struct CueStatistics {
   std::array<CueFigure, kCues.size()> efficiency;
   std::array<CueFigure, kCues.size()> corrected;
   std::array<CueFigure, kCues.size()> divergence;
+  std::array<CueFigure, kCues.size()> matched_divergence;
   std::optional<CueMatch> match;
 };
 

@@ -42,7 +42,11 @@ Json observers_json(const MethodCues& cues) {
                    {"efficiency", cue_figure_json(one.efficiency)},
                    {"efficiency_above_chance", cue_figure_json(one.corrected_efficiency)},
                    {"divergence_bits", cue_figure_json(one.divergence)},
-                   {"confusion", one.confusion}});
+                   {"confusion", one.confusion},
+                   {"matched",
+                    {{"noise", one.matched_noise},
+                     {"divergence_bits", cue_figure_json(one.matched_divergence)},
+                     {"confusion", one.matched_confusion}}}});
   }
   return all;
 }
@@ -71,18 +75,23 @@ Json method_json(const MethodCues& cues) {
 
 /// How each kind of figure is computed.
 Json by_json() {
-  return {{"available",
-           "ideal observer on each trial's own trace, leave-one-trial-out; mean over participants "
-           "with Student's t interval"},
-          {"human", "mean over participants with Student's t interval, on the same trials"},
-          {"efficiency",
-           "mean accuracy over mean available accuracy; percentile interval of a cluster bootstrap "
-           "over participants, 9,999 draws (Davison, Hinkley 1997)"},
-          {"efficiency_above_chance", "the same with chance taken from both"},
-          {"divergence_bits",
-           "Jensen-Shannon divergence (Lin 1991) of answers to a class, mean over classes, trials "
-           "without a response left out; the same bootstrap"},
-          {"difference_bits", "second least divergence less the least; the same bootstrap"}};
+  return {
+      {"available",
+       "ideal observer on each trial's own trace, leave-one-trial-out; mean over participants "
+       "with Student's t interval"},
+      {"human", "mean over participants with Student's t interval, on the same trials"},
+      {"efficiency",
+       "mean accuracy over mean available accuracy; percentile interval of a cluster bootstrap "
+       "over participants, 9,999 draws (Davison, Hinkley 1997)"},
+      {"efficiency_above_chance", "the same with chance taken from both"},
+      {"divergence_bits",
+       "Jensen-Shannon divergence (Lin 1991) of answers to a class, mean over classes, trials "
+       "without a response left out; the same bootstrap"},
+      {"matched",
+       "the observer with the noise of the sense (a Weber fraction, by bisection) that makes it "
+       "right as often as the participants"},
+      {"difference_bits",
+       "second least divergence of matched observers less the least; the same bootstrap"}};
 }
 
 }  // namespace

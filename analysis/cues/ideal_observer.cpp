@@ -1,12 +1,13 @@
 #include "analysis/cues/ideal_observer.hpp"
 
-#include "analysis/cues/jobs.hpp"
+#include "core/random.hpp"
 #include "engine/perception/felt_classifier.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -30,52 +31,6 @@ void append_shape(std::vector<double>& features, const FeltFeatures& felt, int f
   }
 }
 
-/// Trials as a classifier learns them: stimuli are its labels.
-struct Lessons {
-  std::vector<int> label;                     ///< by trial
-  std::vector<std::vector<double>> features;  ///< by trial
-  std::vector<int> class_of_label;
-  std::vector<int> trials_of_class;
-};
-
-Lessons lessons_of(Cue cue, std::span<const ObservedTrial> trials, int classes) {
-  Lessons lessons;
-  lessons.trials_of_class.resize(static_cast<std::size_t>(classes), 0);
-  std::map<std::pair<int, int>, int> label_of;
-  for (const ObservedTrial& trial : trials) {
-    if (trial.class_index < 0 || trial.class_index >= classes || trial.exemplar < 0) {
-      throw std::invalid_argument("ideal_answers: a trial's class or exemplar is out of range");
-    }
-    const auto [known, is_new] = label_of.try_emplace(
-        {trial.class_index, trial.exemplar}, static_cast<int>(lessons.class_of_label.size()));
-    if (is_new) lessons.class_of_label.push_back(trial.class_index);
-    lessons.label.push_back(known->second);
-    lessons.features.push_back(cue_features(cue, trial.felt));
-    ++lessons.trials_of_class[trial.class_index];
-  }
-  return lessons;
-}
-
-FeltStatistics learnt(const Lessons& lessons) {
-  FeltStatistics statistics(static_cast<int>(lessons.class_of_label.size()),
-                            lessons.features.front().size());
-  for (std::size_t i = 0; i < lessons.label.size(); ++i) {
-    statistics.learn(lessons.label[i], lessons.features[i]);
-  }
-  return statistics;
-}
-
-/// The best of each class's stimuli.
-std::vector<double> support_of_classes(const std::vector<double>& logs, const Lessons& lessons) {
-  std::vector<double> support(lessons.trials_of_class.size(),
-                              -std::numeric_limits<double>::infinity());
-  for (std::size_t label = 0; label < logs.size(); ++label) {
-    double& best = support[lessons.class_of_label[label]];
-    best = std::max(best, logs[label]);
-  }
-  return support;
-}
-
 AnswerShares shares_of(const std::vector<double>& support) {
   const double most = *std::ranges::max_element(support);
   AnswerShares shares(support.size(), 0.0);
@@ -86,17 +41,101 @@ AnswerShares shares_of(const std::vector<double>& support) {
   return shares;
 }
 
-AnswerShares judged(std::size_t trial, const Lessons& lessons, FeltStatistics statistics) {
-  const int label = lessons.label[trial];
-  if (lessons.trials_of_class[lessons.class_of_label[label]] < 2) return {};
-  statistics.forget(label, lessons.features[trial]);
-  // Without noise of the sense: the observer is ideal.
-  const FeltClassifier classifier(statistics, 0.0);
-  return shares_of(
-      support_of_classes(classifier.log_likelihoods(lessons.features[trial]), lessons));
+void check(std::span<const ObservedTrial> trials, int classes) {
+  if (classes < 1) throw std::invalid_argument("Observer: there must be a class");
+  for (const ObservedTrial& trial : trials) {
+    if (trial.class_index < 0 || trial.class_index >= classes || trial.exemplar < 0) {
+      throw std::invalid_argument("Observer: a trial's class or exemplar is out of range");
+    }
+  }
 }
 
 }  // namespace
+
+/// Trials as a classifier learns them: stimuli are its labels.
+struct Observer::Lessons {
+  Lessons(Cue cue, std::span<const ObservedTrial> trials, int classes);
+
+  /// Whether another trial tells what this one's class feels like.
+  [[nodiscard]] bool can_judge(std::size_t trial) const {
+    return trials_of_class[class_of_label[label[trial]]] >= 2;
+  }
+  [[nodiscard]] FeltClassifier without(std::size_t trial, double noise) const;
+  /// The class of the stimulus that a percept is likeliest of.
+  [[nodiscard]] AnswerShares answer(const FeltClassifier& classifier,
+                                    std::span<const double> percept) const;
+
+  std::vector<int> label;                     ///< by trial
+  std::vector<std::vector<double>> features;  ///< by trial
+  std::vector<int> class_of_label;
+  std::vector<int> trials_of_class;
+  std::optional<FeltStatistics> statistics;  ///< of all trials; nothing without any
+};
+
+Observer::Lessons::Lessons(Cue cue, std::span<const ObservedTrial> trials, int classes)
+    : trials_of_class(static_cast<std::size_t>(classes), 0) {
+  std::map<std::pair<int, int>, int> label_of;
+  for (const ObservedTrial& trial : trials) {
+    const auto [known, is_new] = label_of.try_emplace({trial.class_index, trial.exemplar},
+                                                      static_cast<int>(class_of_label.size()));
+    if (is_new) class_of_label.push_back(trial.class_index);
+    label.push_back(known->second);
+    features.push_back(cue_features(cue, trial.felt));
+    ++trials_of_class[trial.class_index];
+  }
+  if (trials.empty()) return;
+  statistics.emplace(static_cast<int>(class_of_label.size()), features.front().size());
+  for (std::size_t i = 0; i < label.size(); ++i) statistics->learn(label[i], features[i]);
+}
+
+FeltClassifier Observer::Lessons::without(std::size_t trial, double noise) const {
+  FeltStatistics others = *statistics;
+  others.forget(label[trial], features[trial]);
+  return {others, noise};
+}
+
+AnswerShares Observer::Lessons::answer(const FeltClassifier& classifier,
+                                       std::span<const double> percept) const {
+  const std::vector<double> logs = classifier.log_likelihoods(percept);
+  std::vector<double> support(trials_of_class.size(), -std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    double& best = support[class_of_label[i]];
+    best = std::max(best, logs[i]);
+  }
+  return shares_of(support);
+}
+
+Observer::Observer(Cue cue, std::span<const ObservedTrial> trials, int classes) {
+  check(trials, classes);
+  lessons_ = std::make_unique<const Lessons>(cue, trials, classes);
+}
+
+Observer::~Observer() = default;
+Observer::Observer(Observer&&) noexcept = default;
+Observer& Observer::operator=(Observer&&) noexcept = default;
+
+std::size_t Observer::trials() const noexcept {
+  return lessons_->label.size();
+}
+
+AnswerShares Observer::ideal_answer(std::size_t trial) const {
+  if (!lessons_->can_judge(trial)) return {};
+  return lessons_->answer(lessons_->without(trial, 0.0), lessons_->features[trial]);
+}
+
+AnswerShares Observer::noisy_answer(std::size_t trial, double noise) const {
+  if (!lessons_->can_judge(trial)) return {};
+  const FeltClassifier classifier = lessons_->without(trial, noise);
+  RandomStream random(0, "cues: noise of the sense", trial);
+  AnswerShares mean(lessons_->trials_of_class.size(), 0.0);
+  for (int draw = 0; draw < kNoisyPercepts; ++draw) {
+    std::vector<double> percept = lessons_->features[trial];
+    for (double& feature : percept) feature += noise * random.normal();
+    const AnswerShares shares = lessons_->answer(classifier, percept);
+    for (std::size_t i = 0; i < mean.size(); ++i) mean[i] += shares[i] / kNoisyPercepts;
+  }
+  return mean;
+}
 
 std::vector<double> cue_features(Cue cue, const FeltFeatures& felt) {
   if (cue == Cue::everything) return {felt.begin(), felt.end()};
@@ -105,18 +144,6 @@ std::vector<double> cue_features(Cue cue, const FeltFeatures& felt) {
   append_shape(shape, felt, kLateralBandsAt);
   append_shape(shape, felt, kNormalBandsAt);
   return shape;
-}
-
-std::vector<AnswerShares> ideal_answers(Cue cue, std::span<const ObservedTrial> trials, int classes,
-                                        int jobs) {
-  if (classes < 1) throw std::invalid_argument("ideal_answers: there must be a class");
-  std::vector<AnswerShares> answers(trials.size());
-  if (trials.empty()) return answers;
-  const Lessons lessons = lessons_of(cue, trials, classes);
-  const FeltStatistics statistics = learnt(lessons);
-  in_parallel(jobs, trials.size(),
-              [&](std::size_t i) { answers[i] = judged(i, lessons, statistics); });
-  return answers;
 }
 
 }  // namespace touchtrial

@@ -10,8 +10,9 @@ ParticipantAnswers::ParticipantAnswers(std::string participant, int classes)
   presented_.resize(side, 0);
   no_response_.resize(side, 0);
   human_.resize(side * side, 0.0);
-  ideal_.fill(human_);
-  ideal_of_answered_.fill(human_);
+  for (auto* counts : {&ideal_, &matched_, &ideal_of_answered_, &matched_of_answered_}) {
+    counts->fill(human_);
+  }
 }
 
 void ParticipantAnswers::add(const JudgedTrial& trial) {
@@ -24,13 +25,16 @@ void ParticipantAnswers::add(const JudgedTrial& trial) {
   } else {
     ++no_response_[trial.presented];
   }
+  const auto add_shares = [&](FlatCounts& counts, const AnswerShares& shares) {
+    for (int answer = 0; answer < classes_; ++answer) counts[row + answer] += shares[answer];
+  };
   for (std::size_t observer = 0; observer < kCues.size(); ++observer) {
-    const AnswerShares& shares = trial.ideal[observer];
-    right_[observer] += shares[trial.presented];
-    for (int answer = 0; answer < classes_; ++answer) {
-      ideal_[observer][row + answer] += shares[answer];
-      if (trial.response) ideal_of_answered_[observer][row + answer] += shares[answer];
-    }
+    right_[observer] += trial.ideal[observer][trial.presented];
+    add_shares(ideal_[observer], trial.ideal[observer]);
+    add_shares(matched_[observer], trial.matched[observer]);
+    if (!trial.response) continue;
+    add_shares(ideal_of_answered_[observer], trial.ideal[observer]);
+    add_shares(matched_of_answered_[observer], trial.matched[observer]);
   }
 }
 

@@ -18,7 +18,8 @@ using FlatCounts = std::vector<double>;
 struct JudgedTrial {
   int presented = 0;
   std::optional<int> response;
-  std::array<AnswerShares, kCues.size()> ideal;  ///< in the order of kCues, none empty
+  std::array<AnswerShares, kCues.size()> ideal;    ///< in the order of kCues, none empty
+  std::array<AnswerShares, kCues.size()> matched;  ///< the same, as unsure as participants
 };
 
 class ParticipantAnswers {
@@ -50,9 +51,15 @@ class ParticipantAnswers {
   [[nodiscard]] const FlatCounts& ideal(std::size_t observer) const noexcept {
     return ideal_[observer];
   }
+  [[nodiscard]] const FlatCounts& matched(std::size_t observer) const noexcept {
+    return matched_[observer];
+  }
   /// Of the trials with a response: to be held against human().
   [[nodiscard]] const FlatCounts& ideal_of_answered(std::size_t observer) const noexcept {
     return ideal_of_answered_[observer];
+  }
+  [[nodiscard]] const FlatCounts& matched_of_answered(std::size_t observer) const noexcept {
+    return matched_of_answered_[observer];
   }
 
  private:
@@ -65,7 +72,9 @@ class ParticipantAnswers {
   std::vector<int> no_response_;
   FlatCounts human_;
   std::array<FlatCounts, kCues.size()> ideal_;
+  std::array<FlatCounts, kCues.size()> matched_;
   std::array<FlatCounts, kCues.size()> ideal_of_answered_;
+  std::array<FlatCounts, kCues.size()> matched_of_answered_;
 };
 
 }  // namespace touchtrial
