@@ -1,0 +1,184 @@
+#include "analysis/statistics/chance_test.hpp"
+
+#include "analysis/statistics/match_counts.hpp"
+#include "core/random.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+#include <stdexcept>
+#include <string_view>
+
+#include <boost/math/distributions/binomial.hpp>
+
+namespace touchtrial {
+namespace {
+
+/// Orders of longer blocks are not counted: it would take too long.
+constexpr int kLongestCountedBlock = 400;
+/// A probability so small that what it adds is lost, and small enough to keep p meaningful at all.
+constexpr double kNegligible = 1e-290;
+
+void require_in_range(int classes, int index) {
+  if (index < 0 || index >= classes) {
+    throw std::invalid_argument("a chance test has no such class");
+  }
+}
+
+void require_valid(int classes, std::span<const AnsweredBlock> blocks) {
+  for (const AnsweredBlock& block : blocks) {
+    if (block.presented.size() != block.answered.size()) {
+      throw std::invalid_argument("a chance test needs an answer, or its absence, of every trial");
+    }
+    for (const int shown : block.presented) require_in_range(classes, shown);
+    for (const std::optional<int>& answer : block.answered) {
+      if (answer) require_in_range(classes, *answer);
+    }
+  }
+}
+
+int matches(std::span<const int> presented, std::span<const std::optional<int>> answered) {
+  int right = 0;
+  for (std::size_t i = 0; i < presented.size(); ++i) right += answered[i] == presented[i] ? 1 : 0;
+  return right;
+}
+
+ClassCounts counts_of(int classes, const AnsweredBlock& block) {
+  ClassCounts counts(static_cast<std::size_t>(classes));
+  for (const int shown : block.presented) ++counts[shown].first;
+  for (const std::optional<int>& answer : block.answered) {
+    if (answer) ++counts[*answer].second;
+  }
+  std::sort(counts.begin(), counts.end());  // which class is which does not matter
+  return counts;
+}
+
+/// The distribution of a sum of counts; what is negligible at its ends is left out.
+struct Distribution {
+  int first = 0;  ///< the count of the first probability
+  std::vector<double> probability{1.0};
+
+  void add(const std::vector<double>& other) {
+    std::vector<double> sum(probability.size() + other.size() - 1);
+    for (std::size_t i = 0; i < other.size(); ++i) {
+      for (std::size_t k = 0; k < probability.size(); ++k) sum[k + i] += probability[k] * other[i];
+    }
+    probability = std::move(sum);
+    const auto matters = [](double p) { return p > kNegligible; };
+    const auto begin = std::find_if(probability.begin(), probability.end(), matters);
+    const auto end = std::find_if(probability.rbegin(), probability.rend(), matters).base();
+    first += static_cast<int>(begin - probability.begin());
+    probability = std::vector<double>(begin, end);
+  }
+
+  [[nodiscard]] double at_least(int count) const {
+    const auto from = static_cast<std::size_t>(std::max(0, count - first));
+    if (from >= probability.size()) return 0.0;
+    // The smallest first, so that none is lost.
+    return std::min(1.0, std::accumulate(probability.rbegin(), probability.rend() - from, 0.0));
+  }
+};
+
+void count_orders(int classes, std::span<const AnsweredBlock> blocks, ChanceTest& test) {
+  std::map<ClassCounts, std::vector<double>> known;
+  Distribution right;
+  for (const AnsweredBlock& block : blocks) {
+    const auto trials = static_cast<int>(block.presented.size());
+    const ClassCounts counts = counts_of(classes, block);
+    const auto [place, is_new] = known.try_emplace(counts);
+    if (is_new) place->second = match_probabilities(counts, trials);
+    right.add(place->second);
+    for (const auto& [shown, chosen] : counts) {
+      if (trials > 0) test.expected += static_cast<double>(shown) * chosen / trials;
+    }
+  }
+  test.p = right.at_least(test.correct);
+}
+
+void take_binomial(int classes, std::span<const AnsweredBlock> blocks, ChanceTest& test) {
+  int answered = 0;
+  for (const AnsweredBlock& block : blocks) {
+    answered += static_cast<int>(std::count_if(block.answered.begin(), block.answered.end(),
+                                               [](const auto& a) { return a.has_value(); }));
+  }
+  test.expected = static_cast<double>(answered) / classes;
+  if (test.correct == 0) return;
+  const boost::math::binomial_distribution<> chance(answered, 1.0 / classes);
+  test.p = boost::math::cdf(boost::math::complement(chance, test.correct - 1));
+}
+
+void deal_anew(int classes, std::span<const AnsweredBlock> blocks, const RedrawnBlock& redraw,
+               int deals, ChanceTest& test) {
+  if (deals < 1) throw std::invalid_argument("a chance test needs at least one deal");
+  int as_many = 0;
+  double sum = 0.0;
+  for (int deal = 0; deal < deals; ++deal) {
+    int right = 0;
+    for (std::size_t block = 0; block < blocks.size(); ++block) {
+      const std::vector<int> presented = redraw(block, deal);
+      if (presented.size() != blocks[block].answered.size()) {
+        throw std::invalid_argument("a block that is dealt anew keeps its length");
+      }
+      for (const int shown : presented) require_in_range(classes, shown);
+      right += matches(presented, blocks[block].answered);
+    }
+    sum += right;
+    if (right >= test.correct) ++as_many;
+  }
+  test.expected = sum / deals;
+  test.p = (as_many + 1.0) / (deals + 1.0);
+  test.exact = false;
+  test.deals = deals;
+}
+
+/// Any order of a block's presentations; a function of block and deal as long as the deals rise.
+RedrawnBlock any_order(std::span<const AnsweredBlock> blocks, RandomStream& random) {
+  return [blocks, &random](std::size_t block, int /*deal*/) {
+    std::vector<int> presented = blocks[block].presented;
+    shuffle(std::span(presented), random);
+    return presented;
+  };
+}
+
+bool can_be_counted(std::span<const AnsweredBlock> blocks) {
+  return std::all_of(blocks.begin(), blocks.end(), [](const AnsweredBlock& block) {
+    return block.presented.size() <= std::size_t{kLongestCountedBlock};
+  });
+}
+
+void test_permuted(int classes, std::span<const AnsweredBlock> blocks, int deals,
+                   ChanceTest& test) {
+  if (can_be_counted(blocks)) return count_orders(classes, blocks, test);
+  RandomStream random(0, "chance test");
+  deal_anew(classes, blocks, any_order(blocks, random), deals, test);
+}
+
+}  // namespace
+
+std::optional<ChanceTest> chance_test(int classes, std::span<const AnsweredBlock> blocks,
+                                      DealtOrder order, const RedrawnBlock& redraw, int deals) {
+  require_valid(classes, blocks);
+  if (order == DealtOrder::redrawn && !redraw) {
+    throw std::invalid_argument("a chance test of redrawn blocks needs a rule to redraw them");
+  }
+  ChanceTest test;
+  for (const AnsweredBlock& block : blocks) {
+    test.trials += static_cast<int>(block.presented.size());
+    test.correct += matches(block.presented, block.answered);
+  }
+  if (test.trials == 0) return std::nullopt;
+  switch (order) {
+    case DealtOrder::permuted:
+      test_permuted(classes, blocks, deals, test);
+      break;
+    case DealtOrder::independent:
+      take_binomial(classes, blocks, test);
+      break;
+    case DealtOrder::redrawn:
+      deal_anew(classes, blocks, redraw, deals, test);
+      break;
+  }
+  return test;
+}
+
+}  // namespace touchtrial
