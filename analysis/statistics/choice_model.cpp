@@ -1,0 +1,196 @@
+#include "analysis/statistics/choice_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <boost/math/distributions/chi_squared.hpp>
+
+namespace touchtrial {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+
+bool every_class_occurs(const ConfusionMatrix& confusion) {
+  for (int i = 0; i < confusion.classes(); ++i) {
+    int row = 0;
+    int column = 0;
+    for (int j = 0; j < confusion.classes(); ++j) {
+      row += confusion.count(i, j);
+      column += confusion.count(j, i);
+    }
+    if (row == 0 || column == 0) return false;
+  }
+  return true;
+}
+
+/// Whether wrong answers lead from one class to another, over any number of steps.
+Plane<int> reachable(const ConfusionMatrix& confusion) {
+  const int classes = confusion.classes();
+  Plane<int> ways(classes, classes);
+  for (int i = 0; i < classes; ++i) {
+    for (int j = 0; j < classes; ++j) ways.at(i, j) = i == j || confusion.count(i, j) > 0 ? 1 : 0;
+  }
+  for (int over = 0; over < classes; ++over) {
+    for (int i = 0; i < classes; ++i) {
+      for (int j = 0; j < classes; ++j) {
+        ways.at(i, j) |= ways.at(i, over) & ways.at(over, j);
+      }
+    }
+  }
+  return ways;
+}
+
+void find_groups(const ConfusionMatrix& confusion, ChoiceModel& model) {
+  const Plane<int> ways = reachable(confusion);
+  model.group.assign(static_cast<std::size_t>(confusion.classes()), -1);
+  model.groups = 0;
+  for (int i = 0; i < confusion.classes(); ++i) {
+    if (model.group[i] >= 0) continue;
+    for (int j = i; j < confusion.classes(); ++j) {
+      if ((ways.at(i, j) & ways.at(j, i)) != 0) model.group[j] = model.groups;
+    }
+    ++model.groups;
+  }
+}
+
+bool fitted_together(const ChoiceModel& model, int i, int j) {
+  return i != j && model.group[i] == model.group[j];
+}
+
+/// The weight of each answer against the others. With the total of every pair of cells (i, j),
+/// (j, i) given, the quasi-symmetric table is Bradley and Terry's model of "j was answered, not i",
+/// whose maximum exists within a group: Zermelo's problem, by Newman's iteration (2023, Journal of
+/// Machine Learning Research 24), each step of which scales one class to its margins.
+class Weights {
+ public:
+  Weights(const ConfusionMatrix& confusion, const ChoiceModel& model)
+      : confusion_(confusion), model_(model), weights_(model.group.size(), 1.0) {
+    constexpr int kMostSweeps = 100'000;
+    for (int sweep = 0; sweep < kMostSweeps && !converged_; ++sweep) {
+      converged_ = change_of_sweep() < 1e-13;
+    }
+  }
+
+  [[nodiscard]] bool converged() const { return converged_; }
+  [[nodiscard]] double operator[](int i) const { return weights_[i]; }
+
+ private:
+  double change_of_sweep() {
+    double largest = 0.0;
+    for (int j = 0; j < confusion_.classes(); ++j) {
+      const double scale = scale_of(j);
+      weights_[j] *= scale;
+      largest = std::max(largest, std::abs(scale - 1.0));
+    }
+    keep_in_range();
+    return largest;
+  }
+
+  /// Answers j that were wrong, over answers that were wrong where j was right.
+  [[nodiscard]] double scale_of(int j) const {
+    double chosen = 0.0;
+    double passed_over = 0.0;
+    for (int i = 0; i < confusion_.classes(); ++i) {
+      if (!fitted_together(model_, i, j)) continue;
+      const double both = weights_[i] + weights_[j];
+      chosen += confusion_.count(i, j) * weights_[i] / both;
+      passed_over += confusion_.count(j, i) * weights_[j] / both;
+    }
+    return passed_over > 0.0 ? chosen / passed_over : 1.0;
+  }
+
+  /// Only their ratios matter: the largest of a group is 1.
+  void keep_in_range() {
+    std::vector<double> largest(static_cast<std::size_t>(model_.groups), 0.0);
+    for (std::size_t i = 0; i < weights_.size(); ++i) {
+      double& so_far = largest[model_.group[i]];
+      so_far = std::max(so_far, weights_[i]);
+    }
+    for (std::size_t i = 0; i < weights_.size(); ++i) weights_[i] /= largest[model_.group[i]];
+  }
+
+  const ConfusionMatrix& confusion_;
+  const ChoiceModel& model_;
+  std::vector<double> weights_;
+  bool converged_ = false;
+};
+
+/// Cells on the diagonal, and those across groups, are fitted exactly.
+void expect_counts(const ConfusionMatrix& confusion, const Weights& weights, ChoiceModel& model) {
+  const int classes = confusion.classes();
+  model.expected = Plane<double>(classes, classes);
+  for (int i = 0; i < classes; ++i) {
+    for (int j = 0; j < classes; ++j) {
+      const double both = confusion.count(i, j) + confusion.count(j, i);
+      model.expected.at(i, j) = fitted_together(model, i, j)
+                                    ? both * weights[j] / (weights[i] + weights[j])
+                                    : confusion.count(i, j);
+    }
+  }
+}
+
+double similarity_of(const Plane<double>& expected, int i, int j) {
+  if (i == j) return 1.0;
+  const double right = expected.at(i, i) * expected.at(j, j);
+  if (right == 0.0) return kNone;
+  const double there = expected.at(i, j);
+  const double back = expected.at(j, i);
+  if ((there == 0.0) != (back == 0.0)) return kNone;
+  return std::sqrt(there * back / right);
+}
+
+void find_similarities(ChoiceModel& model) {
+  const int classes = model.expected.height();
+  model.similarity = Plane<double>(classes, classes);
+  for (int i = 0; i < classes; ++i) {
+    for (int j = 0; j < classes; ++j) {
+      model.similarity.at(i, j) = similarity_of(model.expected, i, j);
+    }
+  }
+}
+
+void find_biases(const Weights& weights, ChoiceModel& model) {
+  std::vector<double> sum(static_cast<std::size_t>(model.groups));
+  for (std::size_t i = 0; i < model.group.size(); ++i) {
+    const auto place = static_cast<int>(i);
+    const double right = model.expected.at(place, place);
+    model.bias.push_back(right > 0.0 ? std::sqrt(weights[place] * right) : kNone);
+    if (right > 0.0) sum[model.group[i]] += model.bias[i];
+  }
+  for (std::size_t i = 0; i < model.group.size(); ++i) model.bias[i] /= sum[model.group[i]];
+}
+
+void judge_fit(const ConfusionMatrix& confusion, ChoiceModel& model) {
+  int pairs = 0;
+  for (int i = 0; i < confusion.classes(); ++i) {
+    for (int j = 0; j < confusion.classes(); ++j) {
+      if (!fitted_together(model, i, j)) continue;
+      const double count = confusion.count(i, j);
+      if (count > 0.0) model.g_squared += 2.0 * count * std::log(count / model.expected.at(i, j));
+      if (i < j && confusion.count(i, j) + confusion.count(j, i) > 0) ++pairs;
+    }
+  }
+  model.g_squared = std::max(0.0, model.g_squared);  // rounding may leave a hair below
+  model.degrees_of_freedom = pairs - (confusion.classes() - model.groups);
+  if (model.degrees_of_freedom == 0) return;
+  const boost::math::chi_squared_distribution<> chi_squared(model.degrees_of_freedom);
+  model.p = boost::math::cdf(boost::math::complement(chi_squared, model.g_squared));
+}
+
+}  // namespace
+
+std::optional<ChoiceModel> choice_model(const ConfusionMatrix& confusion) {
+  if (!every_class_occurs(confusion)) return std::nullopt;
+  ChoiceModel model;
+  find_groups(confusion, model);
+  const Weights weights(confusion, model);
+  model.converged = weights.converged();
+  expect_counts(confusion, weights, model);
+  find_similarities(model);
+  find_biases(weights, model);
+  judge_fit(confusion, model);
+  return model;
+}
+
+}  // namespace touchtrial
