@@ -97,7 +97,7 @@ void record_trial(SessionRecorder& recorder, const FakeSession& session, const S
   body.servo = session.servo;
   recorder.trace_stored(start + milliseconds(4500), body,
                         {4.0, 300.5, 0.125, 0.001 * shown.trial, session.within_limits},
-                        fake_trace());
+                        session.traces ? session.traces(shown) : fake_trace());
 }
 
 }  // namespace

@@ -14,6 +14,9 @@ namespace touchtrial {
 /// Class index of the answer to a presentation, or nothing to let the time run out.
 using FakeAnswers = std::function<std::optional<int>(const Presentation&)>;
 
+/// What was felt in a presentation.
+using FakeTraces = std::function<Trace(const Presentation&)>;
+
 /// How one fake session goes.
 struct FakeSession {
   std::string participant;
@@ -28,6 +31,7 @@ struct FakeSession {
   int stop_after = 1 << 20;                ///< presentations
   /// Recorded after the opening, before 10 s have passed.
   std::function<void(SessionRecorder&)> before_trials{};
+  FakeTraces traces{};  ///< empty: a touch too short to feel anything
 };
 
 struct FakeOptions {
