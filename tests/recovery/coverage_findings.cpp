@@ -1,0 +1,228 @@
+#include "analysis/statistics/cluster_bootstrap.hpp"
+#include "analysis/statistics/d_prime.hpp"
+#include "analysis/statistics/odds_ratio.hpp"
+#include "analysis/statistics/participant_mean.hpp"
+#include "analysis/statistics/proportion.hpp"
+#include "recovery/finding.hpp"
+#include "recovery/population.hpp"
+
+#include <cmath>
+
+#include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+#include <fmt/format.h>
+
+namespace touchtrial::recovery {
+namespace {
+
+constexpr int kDraws = 1999;  ///< of a bootstrap, fewer than in a report
+
+double holds(const Interval& interval, double truth) {
+  return interval.low <= truth && truth <= interval.high ? 1.0 : 0.0;
+}
+
+std::string described(const Population& population, int participants) {
+  return fmt::format("{} participants, d' {} (SD {}), lapse {}", participants, population.d_prime,
+                     population.spread, population.lapse);
+}
+
+Finding coverage(const std::string& what, const std::string& population, const Average& share,
+                 double least, double most, const std::string& why) {
+  return {"coverage", what, population, kConfidenceLevel, share.mean, share.standard_error,
+          least,      most, why};
+}
+
+/// Participants' own accuracies differ by this much, beside what trials add by chance.
+double between_variance(const Population& population) {
+  const double mean = true_accuracy(population);
+  double sum = 0.0;
+  double weights = 0.0;
+  constexpr int kSteps = 200;
+  for (int i = -kSteps; i <= kSteps; ++i) {
+    const double z = 5.0 * i / kSteps;
+    const double weight = std::exp(-0.5 * z * z);
+    Population one = population;
+    one.d_prime += z * population.spread;
+    one.spread = 0.0;
+    sum += weight * std::pow(true_accuracy(one) - mean, 2);
+    weights += weight;
+  }
+  return sum / weights;
+}
+
+/// What an interval that takes pooled trials for independent covers.
+double pooled_coverage(const Population& population) {
+  const double mean = true_accuracy(population);
+  const double trials = population.classes * population.repeats;
+  const double between = between_variance(population);
+  const double believed = mean * (1.0 - mean) / trials;
+  const double actual = between + (mean * (1.0 - mean) - between) / trials;
+  const boost::math::normal normal;
+  const double reach = boost::math::quantile(normal, 0.975) * std::sqrt(believed / actual);
+  return 2.0 * boost::math::cdf(normal, reach) - 1.0;
+}
+
+/// What percentiles of drawn means cover: they leave out that the spread is itself estimated.
+double percentile_coverage(int participants) {
+  const boost::math::students_t t(participants - 1.0);
+  const double reach = boost::math::quantile(boost::math::normal(), 0.975) *
+                       std::sqrt((participants - 1.0) / participants);
+  return 2.0 * boost::math::cdf(t, reach) - 1.0;
+}
+
+void add_group_level(const Population& population, int participants, int repetitions,
+                     std::vector<Finding>& findings) {
+  const double truth = true_accuracy(population);
+  const std::string who = described(population, participants);
+  const auto over_studies = [&](const std::string& purpose, auto interval_of) {
+    return average_of(repetitions, purpose + who, [&](RandomStream& random) {
+      const auto right = accuracies(study_of(population, participants, random));
+      return holds(interval_of(right), truth);
+    });
+  };
+  const Average t =
+      over_studies("t", [](const auto& right) { return participant_mean(shares(right)).interval; });
+  findings.push_back(coverage("mean over participants, t", who, t, 0.93, 0.965,
+                              "accuracies of 25 trials are steps of 4 %, and skewed near 100 %"));
+  const Average drawn = over_studies("bootstrap", [](const auto& right) {
+    return cluster_bootstrap(right, 0, kDraws).value_or(Interval{});
+  });
+  const double expected = percentile_coverage(participants);
+  findings.push_back(coverage(
+      "cluster bootstrap, percentiles", who, drawn, expected - 0.02, expected + 0.01,
+      fmt::format("percentiles take the spread for known: about {:.3f} for this many participants",
+                  expected)));
+  const Average pooled = over_studies("pooled", [](const auto& right) {
+    Proportion all;
+    for (const Proportion& one : right) all = {all.n + one.n, all.correct + one.correct};
+    return wilson_interval(all);
+  });
+  const double narrow = pooled_coverage(population);
+  findings.push_back(
+      coverage("all trials pooled, Wilson", who, pooled, narrow - 0.02, narrow + 0.02,
+               population.spread == 0.0
+                   ? "nobody differs: trials are independent"
+                   : fmt::format("pseudo-replication: {:.3f} by the design effect", narrow)));
+}
+
+/// Mean and least coverage over true proportions of 0.05 to 0.95, by adding up all outcomes.
+template <typename IntervalOf>
+std::pair<double, double> exact_coverage(int n, IntervalOf interval_of) {
+  constexpr int kSteps = 360;
+  double sum = 0.0;
+  double least = 1.0;
+  for (int step = 0; step <= kSteps; ++step) {
+    const double p = 0.05 + 0.9 * step / kSteps;
+    const boost::math::binomial binomial(n, p);
+    double covered = 0.0;
+    for (int correct = 0; correct <= n; ++correct) {
+      covered +=
+          boost::math::pdf(binomial, correct) * holds(interval_of(Proportion{n, correct}), p);
+    }
+    sum += covered;
+    least = std::min(least, covered);
+  }
+  return {sum / (kSteps + 1), least};
+}
+
+template <typename IntervalOf>
+void add_proportion(const std::string& name, int n, IntervalOf interval_of, double least_mean,
+                    double most_mean, double least_least, const std::string& why,
+                    std::vector<Finding>& findings) {
+  const auto [mean, least] = exact_coverage(n, interval_of);
+  const std::string who = fmt::format("{} independent trials, p 0.05 to 0.95", n);
+  findings.push_back({"coverage", name + ", mean over p", who, kConfidenceLevel, mean, 0.0,
+                      least_mean, most_mean, why});
+  findings.push_back({"coverage", name + ", least over p", who, kConfidenceLevel, least, 0.0,
+                      least_least, 1.0, "outcomes are whole numbers: coverage jumps with p"});
+}
+
+void add_proportions(std::vector<Finding>& findings) {
+  for (const int n : {25, 100}) {
+    add_proportion(
+        "Wilson", n, [](Proportion p) { return wilson_interval(p); }, 0.945, 0.96, 0.90,
+        "close to nominal on average", findings);
+    add_proportion(
+        "Clopper-Pearson", n, [](Proportion p) { return clopper_pearson_interval(p); }, 0.95, 0.985,
+        0.95, "never below nominal, so above it on average", findings);
+    add_proportion(
+        "Jeffreys", n, [](Proportion p) { return jeffreys_interval(p); }, 0.94, 0.96, 0.87,
+        "close to nominal on average", findings);
+  }
+}
+
+void add_d_prime(int repetitions, std::vector<Finding>& findings) {
+  const Population one{.d_prime = 1.75};
+  const Average share = average_of(repetitions, "d'", [&](RandomStream& random) {
+    const Proportion right = accuracies(study_of(one, 1, random)).front();
+    const DPrime found = d_prime(right, one.classes);
+    return (!found.low || *found.low <= one.d_prime) && (!found.high || one.d_prime <= *found.high)
+               ? 1.0
+               : 0.0;
+  });
+  findings.push_back(coverage("nominal d', Clopper-Pearson's ends", described(one, 1), share, 0.95,
+                              0.99, "Clopper-Pearson is never below nominal"));
+}
+
+double odds(double p) {
+  return p / (1.0 - p);
+}
+
+void add_differences(int participants, double spread, int repetitions,
+                     std::vector<Finding>& findings) {
+  const Population better{.d_prime = 1.75, .spread = spread};
+  const Population worse{.d_prime = 1.25, .spread = spread};
+  const double truth = true_accuracy(better) - true_accuracy(worse);
+  const std::string who = described(better, participants) + ", against d' 1.25";
+  const Average share = average_of(repetitions, "difference" + who, [&](RandomStream& random) {
+    std::vector<double> differences;
+    for (int i = 0; i < participants; ++i) {
+      const double own = spread * random.normal();
+      const auto first = accuracies({answers_of(better, better.d_prime + own, random)});
+      const auto second = accuracies({answers_of(worse, worse.d_prime + own, random)});
+      differences.push_back(shares(first).front() - shares(second).front());
+    }
+    return holds(participant_mean(differences, {-1.0, 1.0}).interval, truth);
+  });
+  findings.push_back(coverage("difference of two methods, t", who, share, 0.94, 0.96,
+                              "differences of 25 trials are steps of 4 %"));
+}
+
+void add_odds_ratio(int participants, int repetitions, std::vector<Finding>& findings) {
+  const Population better{.d_prime = 1.75};
+  const Population worse{.d_prime = 1.25};
+  const double truth = odds(true_accuracy(better)) / odds(true_accuracy(worse));
+  const std::string who = described(better, participants) + ", against d' 1.25";
+  const Average share = average_of(repetitions, "odds" + who, [&](RandomStream& random) {
+    const auto first = accuracies(study_of(better, participants, random));
+    const auto second = accuracies(study_of(worse, participants, random));
+    std::vector<std::pair<Proportion, Proportion>> strata;
+    for (std::size_t i = 0; i < first.size(); ++i) strata.emplace_back(first[i], second[i]);
+    const auto ratio = mantel_haenszel(strata);
+    return ratio ? holds(ratio->interval, truth) : 0.0;
+  });
+  findings.push_back(coverage("odds ratio, Mantel-Haenszel", who, share, 0.945, 0.96,
+                              "a normal approximation on the logarithm"));
+}
+
+}  // namespace
+
+std::vector<Finding> coverage_findings(int repetitions) {
+  std::vector<Finding> findings;
+  for (const double spread : {0.0, 0.4, 0.6}) {
+    for (const int participants : {8, 20}) {
+      add_group_level({.d_prime = 1.5, .spread = spread}, participants, repetitions, findings);
+    }
+  }
+  add_group_level({.d_prime = 2.0, .spread = 0.4, .lapse = 0.1}, 12, repetitions, findings);
+  add_proportions(findings);
+  add_d_prime(repetitions, findings);
+  for (const int participants : {8, 20}) {
+    add_differences(participants, 0.5, repetitions, findings);
+  }
+  add_odds_ratio(20, repetitions, findings);
+  return findings;
+}
+
+}  // namespace touchtrial::recovery

@@ -1,0 +1,52 @@
+/// \file Made-up participants of whom everything is known: what an analysis must find again.
+#pragma once
+
+#include "analysis/statistics/confusion.hpp"
+#include "core/plane.hpp"
+#include "core/random.hpp"
+
+#include <vector>
+
+namespace touchtrial::recovery {
+
+/// People who answer by signal detection: a class gives its own picture evidence d', every picture
+/// gets standard normal noise and its bias, and the strongest is answered; sometimes the answer is
+/// a guess.
+struct Population {
+  double d_prime = 1.75;         ///< mean over participants
+  double spread = 0.0;           ///< standard deviation of d' between participants
+  double lapse = 0.0;            ///< share of answers at random
+  std::vector<double> bias{};    ///< evidence added to each picture; empty: none
+  bool swaps_first_two = false;  ///< takes each of the first two classes for the other
+  int classes = 5;
+  int repeats = 5;  ///< presentations of each class a participant
+};
+
+/// P(answer | class) of somebody with this d', by quadrature.
+[[nodiscard]] Plane<double> answer_probabilities(const Population& population, double d_prime);
+
+/// The population's mean proportion correct, every class as often as any.
+[[nodiscard]] double true_accuracy(const Population& population);
+
+/// Bits of an unlimited number of answers, d' at the population's mean.
+[[nodiscard]] double true_information(const Population& population);
+
+/// One participant drawn from the population.
+[[nodiscard]] double drawn_d_prime(const Population& population, RandomStream& random);
+
+/// A participant's trials: a balanced order in random sequence.
+[[nodiscard]] std::vector<Choice> answers_of(const Population& population, double d_prime,
+                                             RandomStream& random);
+
+/// One study: this many participants.
+[[nodiscard]] std::vector<std::vector<Choice>> study_of(const Population& population,
+                                                        int participants, RandomStream& random);
+
+[[nodiscard]] ConfusionMatrix confusion_of(int classes,
+                                           const std::vector<std::vector<Choice>>& study);
+
+/// Each participant's right answers.
+[[nodiscard]] std::vector<Proportion> accuracies(const std::vector<std::vector<Choice>>& study);
+[[nodiscard]] std::vector<double> shares(const std::vector<Proportion>& accuracies);
+
+}  // namespace touchtrial::recovery

@@ -1,0 +1,47 @@
+#include "recovery/finding.hpp"
+#include "recovery/population.hpp"
+#include "support/catch.hpp"
+
+using namespace touchtrial;
+using namespace touchtrial::recovery;
+
+namespace {
+
+/// Enough to see what is wrong by 2 %; the table in docs/statistics-recovery.md takes more.
+constexpr int kRepetitions = 1000;
+
+void check_all(const std::vector<Finding>& findings) {
+  REQUIRE_FALSE(findings.empty());
+  for (const Finding& finding : findings) {
+    INFO(finding.group << ": " << finding.what << "; " << finding.population << ": found "
+                       << finding.found << " +- " << finding.monte_carlo << ", may be "
+                       << finding.least << " to " << finding.most);
+    CHECK(finding.holds());
+  }
+}
+
+}  // namespace
+
+TEST_CASE("intervals cover the truth as often as they say") {
+  check_all(coverage_findings(kRepetitions));
+}
+
+TEST_CASE("tests of a true null reject as seldom as they say") {
+  check_all(error_findings(kRepetitions));
+}
+
+TEST_CASE("known sensitivity, bias, lapses and swaps are found again") {
+  check_all(estimate_findings(kRepetitions));
+}
+
+TEST_CASE("made-up participants answer as their probabilities say") {
+  const Population people{
+      .d_prime = 1.2, .lapse = 0.2, .bias = {0.5, 0.0, -0.5}, .classes = 3, .repeats = 20000};
+  RandomStream random(1, "population");
+  const ConfusionMatrix counts = confusion_of(3, study_of(people, 1, random));
+  const Plane<double> p = answer_probabilities(people, people.d_prime);
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j)
+      CHECK(counts.count(i, j) / 20000.0 == Approx(p.at(i, j)).margin(0.015));
+  }
+}
