@@ -162,7 +162,7 @@ void add_holm(int repetitions, std::vector<Finding>& findings) {
 std::vector<Finding> error_findings(int repetitions) {
   std::vector<Finding> findings;
   add_chance(1, 0.015, repetitions, findings);
-  add_chance(20, 0.04, repetitions, findings);
+  add_chance(20, 0.035, repetitions, findings);
   add_sign_flip(5, 0.0, 0.0, "with 5 participants p is never below 0.0625", repetitions, findings);
   add_sign_flip(8, 0.03, kLevel, "equal differences count against", repetitions, findings);
   add_sign_flip(20, 0.04, kLevel, "equal differences count against", repetitions, findings);
