@@ -1,6 +1,6 @@
 /// \file Which cue was it? What ideal observers, who feel what each participant's hand felt, would
 /// have answered, beside what participants answered. Source: docs/cues.md. Format of the JSON:
-/// docs/data-dictionary.md, "Report".
+/// docs/data-dictionary.md, "Cues".
 #pragma once
 
 #include "analysis/statistics/participant_mean.hpp"

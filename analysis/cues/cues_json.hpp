@@ -1,5 +1,5 @@
 /// \file How cues stand in JSON. Not for public headers: it shows the JSON library.
-/// Format: docs/data-dictionary.md, "Report".
+/// Format: docs/data-dictionary.md, "Cues".
 #pragma once
 
 #include "analysis/cues/cue_report.hpp"
