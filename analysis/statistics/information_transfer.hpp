@@ -1,5 +1,5 @@
-/// \file How much an answer tells of what was presented, in bits. Source: docs/method.md,
-/// "Statistics"; Tan, Reed, Durlach 2010, IEEE Transactions on Haptics 3(2).
+/// \file How much an answer tells of what was presented, in bits. Source: docs/statistics.md,
+/// "Information transfer"; Tan, Reed, Durlach 2010, IEEE Transactions on Haptics 3(2).
 #pragma once
 
 #include "analysis/statistics/confusion.hpp"

@@ -1,5 +1,4 @@
-/// \file Two methods felt by the same participants. Source: docs/statistics.md,
-/// "Two methods".
+/// \file Two methods felt by the same participants. Source: docs/statistics.md, "Two methods".
 #pragma once
 
 #include "analysis/statistics/cluster_bootstrap.hpp"

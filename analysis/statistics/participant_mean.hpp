@@ -1,5 +1,6 @@
 /// \file Means over participants: the unit of which a study has a sample. Pooling all trials as if
-/// they were independent makes intervals too narrow. Source: docs/statistics.md.
+/// they were independent makes intervals too narrow. Source: docs/statistics.md, "Participants as
+/// clusters".
 #pragma once
 
 #include "analysis/statistics/proportion.hpp"

@@ -1,5 +1,5 @@
-/// \file Proportions and how far they can be trusted. Source: docs/statistics.md; Brown,
-/// Cai, DasGupta 2001, Statistical Science 16(2).
+/// \file Proportions and how far they can be trusted. Source: docs/statistics.md, "Proportions";
+/// Brown, Cai, DasGupta 2001, Statistical Science 16(2).
 #pragma once
 
 #include <optional>

@@ -1,4 +1,4 @@
-/// \file Median and quartiles. Source: Hyndman, Fan 1996, definition 7.
+/// \file Median and quartiles. Source: docs/statistics.md, "Reaction times"; Hyndman, Fan 1996.
 #pragma once
 
 #include <optional>

@@ -1,6 +1,6 @@
 /// \file The exact test of paired differences: had the two methods been the same, every
 /// participant's difference could as well have had the other sign.
-/// Source: docs/statistics.md; Phipson, Smyth 2010.
+/// Source: docs/statistics.md, "Two methods"; Phipson, Smyth 2010.
 #pragma once
 
 #include <optional>

@@ -1,0 +1,228 @@
+/// \file Prints the figures of analysis/statistics for cases that somebody else made, so that an
+/// independent package can be held against them (scripts/crosscheck-statistics).
+///
+/// Reads one JSON array of cases from standard input; each is an object whose "statistic" names one
+/// of the functions below and whose other members are its arguments. Writes an array of the same
+/// length: each element an array of numbers, null where a figure does not exist.
+#include "analysis/statistics/chance_test.hpp"
+#include "analysis/statistics/choice_model.hpp"
+#include "analysis/statistics/cluster_bootstrap.hpp"
+#include "analysis/statistics/cochran_q.hpp"
+#include "analysis/statistics/d_prime.hpp"
+#include "analysis/statistics/holm.hpp"
+#include "analysis/statistics/information_transfer.hpp"
+#include "analysis/statistics/label_matching.hpp"
+#include "analysis/statistics/mcnemar.hpp"
+#include "analysis/statistics/odds_ratio.hpp"
+#include "analysis/statistics/participant_mean.hpp"
+#include "analysis/statistics/proportion.hpp"
+#include "analysis/statistics/quantiles.hpp"
+#include "analysis/statistics/sign_flip.hpp"
+
+#include <cmath>
+#include <exception>
+#include <iostream>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+namespace {
+
+using nlohmann::json;
+using Figures = std::vector<std::optional<double>>;
+
+Figures both(const Interval& interval) {
+  return {interval.low, interval.high};
+}
+
+Figures both(const std::optional<Interval>& interval) {
+  return interval ? both(*interval) : Figures{std::nullopt, std::nullopt};
+}
+
+/// [correct, n]
+Proportion proportion(const json& value) {
+  return {value.at(1).get<int>(), value.at(0).get<int>()};
+}
+
+std::vector<double> numbers(const json& value) {
+  return value.get<std::vector<double>>();
+}
+
+/// Rows of counts.
+ConfusionMatrix confusion(const json& rows) {
+  ConfusionMatrix matrix(static_cast<int>(rows.size()));
+  for (int i = 0; i < matrix.classes(); ++i) {
+    for (int j = 0; j < matrix.classes(); ++j) {
+      for (int k = rows[i][j].get<int>(); k > 0; --k) matrix.add({i, j});
+    }
+  }
+  return matrix;
+}
+
+Figures wilson(const json& c) {
+  return both(wilson_interval(proportion(c.at("of")), c.at("level")));
+}
+
+Figures clopper_pearson(const json& c) {
+  return both(clopper_pearson_interval(proportion(c.at("of")), c.at("level")));
+}
+
+Figures jeffreys(const json& c) {
+  return both(jeffreys_interval(proportion(c.at("of")), c.at("level")));
+}
+
+Figures t_interval(const json& c) {
+  const MeanEstimate estimate =
+      participant_mean(numbers(c.at("values")), {-1e9, 1e9}, c.at("level"));
+  return {estimate.mean, estimate.sd, estimate.interval.low, estimate.interval.high};
+}
+
+Figures sign_flip(const json& c) {
+  return {sign_flip_p(numbers(c.at("values")))};
+}
+
+Figures mcnemar(const json& c) {
+  return {mcnemar_mid_p(c.at("first_only"), c.at("second_only"))};
+}
+
+Figures cochran(const json& c) {
+  const std::optional<CochranQ> result =
+      cochran_q(c.at("occasions").get<std::vector<std::vector<bool>>>());
+  if (!result) return {std::nullopt, std::nullopt};
+  return {result->q, result->p};
+}
+
+Figures holm(const json& c) {
+  const std::vector<double> adjusted = holm_adjusted(numbers(c.at("p")));
+  return {adjusted.begin(), adjusted.end()};
+}
+
+Figures odds_ratio(const json& c) {
+  std::vector<std::pair<Proportion, Proportion>> participants;
+  for (const json& one : c.at("participants")) {
+    participants.emplace_back(proportion(one.at(0)), proportion(one.at(1)));
+  }
+  const std::optional<OddsRatio> result = mantel_haenszel(participants, c.at("level"));
+  if (!result) return {std::nullopt, std::nullopt, std::nullopt};
+  return {result->estimate, result->interval.low, result->interval.high};
+}
+
+Figures nominal_d_prime(const json& c) {
+  const DPrime result = d_prime(proportion(c.at("of")), c.at("alternatives"), c.at("level"));
+  return {result.estimate, result.low, result.high};
+}
+
+Figures transfer(const json& c) {
+  const ConfusionMatrix matrix = confusion(c.at("counts"));
+  std::vector<std::vector<Choice>> choices(1);
+  for (int i = 0; i < matrix.classes(); ++i) {
+    for (int j = 0; j < matrix.classes(); ++j) {
+      choices[0].insert(choices[0].end(), matrix.count(i, j), Choice{i, j});
+    }
+  }
+  const InformationTransfer result = information_transfer(matrix.classes(), choices, 0, 1);
+  return {result.raw, result.corrected};
+}
+
+Figures chance(const json& c) {
+  std::vector<AnsweredBlock> blocks;
+  for (const json& one : c.at("blocks")) {
+    AnsweredBlock& block = blocks.emplace_back();
+    block.presented = one.at("presented").get<std::vector<int>>();
+    for (const json& answer : one.at("answered")) {
+      block.answered.push_back(answer.is_null() ? std::nullopt : std::optional(answer.get<int>()));
+    }
+  }
+  const DealtOrder order =
+      c.at("order") == "permuted" ? DealtOrder::permuted : DealtOrder::independent;
+  const std::optional<ChanceTest> test = chance_test(c.at("classes"), blocks, order);
+  if (!test) return {std::nullopt, std::nullopt};
+  return {test->p, test->expected};
+}
+
+/// Expected counts by row, G squared, degrees of freedom.
+Figures choices(const json& c) {
+  const std::optional<ChoiceModel> model = choice_model(confusion(c.at("counts")));
+  if (!model) return {};
+  Figures figures(model->expected.samples().begin(), model->expected.samples().end());
+  figures.emplace_back(model->g_squared);
+  figures.emplace_back(model->degrees_of_freedom);
+  return figures;
+}
+
+Figures matching(const json& c) {
+  return {best_label_matching(confusion(c.at("counts"))).accuracy.correct};
+}
+
+Figures three_quartiles(const json& c) {
+  const Quartiles result = quartiles(numbers(c.at("values")));
+  return {result.lower, result.median, result.upper};
+}
+
+Figures bootstrap(const json& c) {
+  std::vector<Proportion> participants;
+  for (const json& one : c.at("participants")) participants.push_back(proportion(one));
+  return both(cluster_bootstrap(participants, 0, c.at("draws"), c.at("level")));
+}
+
+Figures mean_bootstrap(const json& c) {
+  return both(bootstrap_mean(numbers(c.at("values")), 0, c.at("draws"), c.at("level")));
+}
+
+Figures figures_of(const json& one) {
+  static const std::map<std::string, Figures (*)(const json&)> kStatistics{
+      {"wilson", wilson},
+      {"clopper_pearson", clopper_pearson},
+      {"jeffreys", jeffreys},
+      {"t_interval", t_interval},
+      {"sign_flip", sign_flip},
+      {"mcnemar", mcnemar},
+      {"cochran_q", cochran},
+      {"holm", holm},
+      {"odds_ratio", odds_ratio},
+      {"d_prime", nominal_d_prime},
+      {"information_transfer", transfer},
+      {"chance_test", chance},
+      {"choice_model", choices},
+      {"label_matching", matching},
+      {"quartiles", three_quartiles},
+      {"cluster_bootstrap", bootstrap},
+      {"bootstrap_mean", mean_bootstrap}};
+  const std::string name = one.at("statistic");
+  const auto found = kStatistics.find(name);
+  if (found == kStatistics.end()) throw std::invalid_argument("no statistic is called " + name);
+  return found->second(one);
+}
+
+json as_json(const Figures& figures) {
+  json list = json::array();
+  for (const std::optional<double>& figure : figures) {
+    list.push_back(figure && std::isfinite(*figure) ? json(*figure) : json());
+  }
+  return list;
+}
+
+void answer_all(std::istream& cases, std::ostream& answers) {
+  json list = json::array();
+  for (const json& one : json::parse(cases)) list.push_back(as_json(figures_of(one)));
+  answers << list << '\n';
+}
+
+}  // namespace
+}  // namespace touchtrial
+
+int main() {
+  try {
+    touchtrial::answer_all(std::cin, std::cout);
+    return 0;
+  } catch (const std::exception& error) {
+    std::cerr << "statistics_figures: " << error.what() << "; see the top of its source\n";
+    return 1;
+  }
+}
