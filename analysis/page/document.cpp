@@ -1,0 +1,67 @@
+#include "analysis/page/document.hpp"
+
+#include <algorithm>
+
+namespace touchtrial {
+namespace {
+
+void add_sources(const Cited& cited, std::vector<Source>& references) {
+  for (const Source source : cited.sources) {
+    if (reference_number(source, references) == 0) references.push_back(source);
+  }
+}
+
+void add_sources(const Table& table, std::vector<Source>& references) {
+  for (const Cited& note : table.notes) add_sources(note, references);
+}
+
+}  // namespace
+
+std::vector<Source> references_of(const Document& document) {
+  std::vector<Source> references;
+  for (const Section& section : document.sections) {
+    for (const Block& block : section.blocks) {
+      if (const auto* cited = std::get_if<Cited>(&block)) add_sources(*cited, references);
+      if (const auto* table = std::get_if<Table>(&block)) add_sources(*table, references);
+    }
+  }
+  return references;
+}
+
+std::vector<Source> references_of(const Table& table) {
+  std::vector<Source> references;
+  add_sources(table, references);
+  return references;
+}
+
+std::size_t reference_number(Source source, const std::vector<Source>& references) {
+  const auto found = std::find(references.begin(), references.end(), source);
+  if (found == references.end()) return 0;
+  return static_cast<std::size_t>(found - references.begin()) + 1;
+}
+
+std::string citation_mark(const Cited& cited, const std::vector<Source>& references) {
+  if (cited.sources.empty()) return "";
+  std::string mark;
+  for (const Source source : cited.sources) {
+    mark += (mark.empty() ? " [" : ", ") + std::to_string(reference_number(source, references));
+  }
+  return mark + "]";
+}
+
+std::string stamped(const std::string& caption, const std::string& stamp) {
+  if (stamp.empty() || caption.find(stamp) != std::string::npos) return caption;
+  return caption + " [" + stamp + "]";
+}
+
+std::vector<const Table*> tables_of(const Document& document) {
+  std::vector<const Table*> tables;
+  for (const Section& section : document.sections) {
+    for (const Block& block : section.blocks) {
+      if (const auto* table = std::get_if<Table>(&block)) tables.push_back(table);
+    }
+  }
+  return tables;
+}
+
+}  // namespace touchtrial

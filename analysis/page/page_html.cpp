@@ -1,0 +1,238 @@
+#include "analysis/page/inline_svg.hpp"
+#include "analysis/page/page_style.hpp"
+#include "analysis/page/renderings.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace touchtrial {
+namespace {
+
+/// Longer tables are folded away, and may break across printed pages.
+constexpr std::size_t kFoldedRows = 60;
+constexpr std::size_t kWholeRows = 30;
+/// Text columns with longer cells keep a width that reads well.
+constexpr std::size_t kWideCell = 40;
+
+constexpr const char* kHead = R"(<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:">
+)";
+
+/// Text for elements and quoted attributes; control characters that HTML forbids become spaces.
+std::string escaped(const std::string& text) {
+  std::string safe;
+  safe.reserve(text.size());
+  for (const char c : text) {
+    const auto code = static_cast<unsigned char>(c);
+    if (c == '&') {
+      safe += "&amp;";
+    } else if (c == '<') {
+      safe += "&lt;";
+    } else if (c == '>') {
+      safe += "&gt;";
+    } else if (c == '"') {
+      safe += "&quot;";
+    } else if (c == '\'') {
+      safe += "&#39;";
+    } else {
+      safe += code < 0x20 || code == 0x7f ? ' ' : c;
+    }
+  }
+  return safe;
+}
+
+/// Counts tables and figures while the page is written.
+struct Writer {
+  const Document& document;
+  std::vector<Source> references;
+  int tables = 0;
+  int figures = 0;
+};
+
+std::string cited_html(const Writer& writer, const Cited& cited) {
+  std::string text = escaped(cited.text);
+  for (std::size_t i = 0; i < cited.sources.size(); ++i) {
+    const std::size_t number = reference_number(cited.sources[i], writer.references);
+    text += fmt::format("{}<a href=\"#reference-{}\" aria-label=\"reference {}\">{}</a>",
+                        i == 0 ? " [" : ", ", number, number, number);
+  }
+  return cited.sources.empty() ? text : text + "]";
+}
+
+std::string html_of(Writer& writer, const Cited& paragraph) {
+  return "<p>" + cited_html(writer, paragraph) + "</p>\n";
+}
+
+std::string html_of(Writer& /*writer*/, const Subheading& heading) {
+  return "<h3 id=\"" + heading.id + "\">" + escaped(heading.title) + "</h3>\n";
+}
+
+std::string html_of(Writer& /*writer*/, const Warnings& warnings) {
+  std::string html = "<ul class=\"warnings\">\n";
+  for (const std::string& one : warnings.sentences) html += "<li>" + escaped(one) + "</li>\n";
+  return warnings.sentences.empty() ? "" : html + "</ul>\n";
+}
+
+std::string html_of(Writer& /*writer*/, const Definitions& definitions) {
+  std::string html = "<dl>\n";
+  for (const auto& [name, meaning] : definitions.entries) {
+    html += "<dt>" + escaped(name) + "</dt><dd>" + escaped(meaning) + "</dd>\n";
+  }
+  return definitions.entries.empty() ? "" : html + "</dl>\n";
+}
+
+std::string header_row(const Table& table) {
+  std::string html = "<thead><tr>";
+  for (const Column& column : table.columns) {
+    html += fmt::format("<th scope=\"col\"{}>{}</th>",
+                        column.align == Align::left ? " class=\"l\"" : "", escaped(column.title));
+  }
+  return html + "</tr></thead>\n";
+}
+
+std::string cell_html(const Column& column, const Cell& cell, bool wide) {
+  std::string kinds = column.align == Align::left ? "l" : "";
+  if (wide) kinds += " wide";
+  if (cell.strong) kinds += kinds.empty() ? "s" : " s";
+  return (kinds.empty() ? "<td>" : "<td class=\"" + kinds + "\">") + escaped(cell.text) + "</td>";
+}
+
+bool is_wide(const Table& table, std::size_t column) {
+  return table.columns[column].align == Align::left &&
+         std::any_of(table.rows.begin(), table.rows.end(), [&](const std::vector<Cell>& row) {
+           return row[column].text.size() > kWideCell;
+         });
+}
+
+std::string body_rows(const Table& table) {
+  std::vector<bool> wide;
+  for (std::size_t i = 0; i < table.columns.size(); ++i) wide.push_back(is_wide(table, i));
+  std::string html = "<tbody>\n";
+  for (const std::vector<Cell>& row : table.rows) {
+    html += "<tr><th scope=\"row\">" + escaped(row[0].text) + "</th>";
+    for (std::size_t i = 1; i < row.size(); ++i) {
+      html += cell_html(table.columns[i], row[i], wide[i]);
+    }
+    html += "</tr>\n";
+  }
+  return html + "</tbody>\n";
+}
+
+std::string notes_html(const Writer& writer, const Table& table) {
+  if (table.notes.empty()) return "";
+  std::string html = "<div class=\"notes\">\n";
+  for (const Cited& note : table.notes) html += "<p>" + cited_html(writer, note) + "</p>\n";
+  return html + "</div>\n";
+}
+
+std::string html_of(Writer& writer, const Table& table) {
+  const std::string caption = fmt::format("<b>Table {}.</b> {}", ++writer.tables,
+                                          escaped(stamped(table.caption, writer.document.stamp)));
+  std::string html = fmt::format(
+      "<div class=\"scroll\" role=\"region\" tabindex=\"0\" "
+      "aria-labelledby=\"table-{0}-caption\">\n"
+      "<table>\n<caption id=\"table-{0}-caption\"><span>{1}</span></caption>\n",
+      table.id, caption);
+  html += header_row(table) + body_rows(table) + "</table>\n</div>\n" + notes_html(writer, table);
+  if (table.rows.size() > kFoldedRows) {
+    html = fmt::format("<details>\n<summary>Table {}, {} rows</summary>\n", writer.tables,
+                       table.rows.size()) +
+           html + "</details>\n";
+  }
+  return fmt::format("<div class=\"table{}\" id=\"table-{}\">\n",
+                     table.rows.size() <= kWholeRows ? " whole" : "", table.id) +
+         html + "</div>\n";
+}
+
+std::string html_of(Writer& writer, const Picture& picture) {
+  const std::string svg = inline_svg(picture.svg, "figure-" + picture.id + "-");
+  const int number = ++writer.figures;
+  std::string html = "<figure id=\"figure-" + picture.id + "\">\n";
+  if (!svg.empty()) {
+    html += fmt::format(
+        "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"Figure {}\">"
+        "<div class=\"plot\" role=\"img\" aria-label=\"{}\">\n{}\n</div></div>\n",
+        number, escaped(picture.alt), svg);
+  }
+  html += fmt::format("<figcaption><b>Figure {}.</b> {}</figcaption>\n", number,
+                      escaped(stamped(picture.caption, writer.document.stamp)));
+  return html +
+         fmt::format("<details{}><summary>Figure {} in words</summary><p>{}</p></details>\n",
+                     svg.empty() ? " open" : "", number, escaped(picture.alt)) +
+         "</figure>\n";
+}
+
+std::string html_of(Writer& writer, const Flow& flow) {
+  std::string html = "<figure class=\"flow\" id=\"figure-" + flow.id + "\">\n<ol>\n";
+  for (const FlowStep& step : flow.steps) {
+    html += "<li><div class=\"box\">" + escaped(step.text) + "</div>";
+    if (!step.leaving.empty()) html += "<ul class=\"leaving\">";
+    for (const std::string& one : step.leaving) html += "<li>" + escaped(one) + "</li>";
+    html += step.leaving.empty() ? "</li>\n" : "</ul></li>\n";
+  }
+  return html + fmt::format("</ol>\n<figcaption><b>Figure {}.</b> {}</figcaption>\n</figure>\n",
+                            ++writer.figures,
+                            escaped(stamped(flow.caption, writer.document.stamp)));
+}
+
+std::string section_html(Writer& writer, const Section& section) {
+  std::string html = fmt::format("<section aria-labelledby=\"{0}\">\n<h2 id=\"{0}\">{1}</h2>\n",
+                                 section.id, escaped(section.title));
+  for (const Block& block : section.blocks) {
+    html += std::visit([&](const auto& one) { return html_of(writer, one); }, block);
+  }
+  return html + "</section>\n";
+}
+
+std::string references_html(const Writer& writer) {
+  if (writer.references.empty()) return "";
+  std::string html =
+      "<section aria-labelledby=\"references\">\n<h2 id=\"references\">References</h2>\n"
+      "<ol class=\"references\">\n";
+  for (std::size_t i = 0; i < writer.references.size(); ++i) {
+    html += fmt::format("<li id=\"reference-{}\">{}</li>\n", i + 1,
+                        escaped(std::string(citation_of(writer.references[i]))));
+  }
+  return html + "</ol>\n</section>\n";
+}
+
+std::string navigation(const Writer& writer) {
+  std::string html =
+      "<nav aria-labelledby=\"contents\">\n<h2 id=\"contents\">Contents</h2>\n<ul>\n";
+  for (const Section& section : writer.document.sections) {
+    html += "<li><a href=\"#" + section.id + "\">" + escaped(section.title) + "</a></li>\n";
+  }
+  if (!writer.references.empty()) html += "<li><a href=\"#references\">References</a></li>\n";
+  return html + "</ul>\n</nav>\n";
+}
+
+std::string header_html(Writer& writer) {
+  std::string html = "<header>\n";
+  for (const std::string& banner : writer.document.banners) {
+    html += "<p class=\"banner\">" + escaped(banner) + "</p>\n";
+  }
+  return html + "<h1>" + escaped(writer.document.title) + "</h1>\n" +
+         html_of(writer, writer.document.header) + "</header>\n";
+}
+
+}  // namespace
+
+std::string page_html(const Document& document) {
+  Writer writer{document, references_of(document)};
+  const std::string title = escaped(stamped(document.title, document.stamp));
+  std::string html = kHead + ("<title>" + title + "</title>\n<style>") + kPageStyle +
+                     "</style>\n</head>\n<body>\n"
+                     "<a class=\"skip\" href=\"#main\">Skip to the results</a>\n";
+  html += header_html(writer) + navigation(writer) + "<main id=\"main\" tabindex=\"-1\">\n";
+  for (const Section& section : document.sections) html += section_html(writer, section);
+  html +=
+      references_html(writer) + "</main>\n<footer>" + escaped(document.colophon) + "</footer>\n";
+  return html + "</body>\n</html>\n";
+}
+
+}  // namespace touchtrial

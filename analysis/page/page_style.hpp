@@ -1,0 +1,8 @@
+/// \file The style sheet of report pages. Private to analysis/page.
+#pragma once
+
+namespace touchtrial {
+
+extern const char* const kPageStyle;
+
+}  // namespace touchtrial

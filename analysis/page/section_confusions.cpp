@@ -1,0 +1,148 @@
+#include "analysis/page/sections.hpp"
+#include "analysis/page/wording.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+
+namespace touchtrial {
+namespace {
+
+/// A count and its share of the row.
+std::string count_cell(int count, int of) {
+  if (count == 0) return "0";
+  const auto share = percentage(count, of);
+  return fmt::format("{} ({}%)", count, plain_figure(share, 0));
+}
+
+std::vector<Column> class_columns(const std::string& first, const StudyReport& report) {
+  std::vector<Column> columns{{first, Align::left}};
+  for (const std::string& label : report.classes) columns.push_back({label});
+  return columns;
+}
+
+std::vector<Cell> marginal_row(const ConfusionMatrix& confusion) {
+  std::vector<Cell> row{"all answers"};
+  const int n = confusion.accuracy().n;
+  int missed = 0;
+  for (int j = 0; j < confusion.classes(); ++j) {
+    int column = 0;
+    for (int i = 0; i < confusion.classes(); ++i) column += confusion.count(i, j);
+    missed += confusion.no_response(j);
+    row.emplace_back(count_cell(column, n));
+  }
+  row.emplace_back(count_cell(missed, n));
+  row.emplace_back(std::to_string(n));
+  return row;
+}
+
+Table confusion_table(const StudyReport& report, std::size_t index) {
+  const ConfusionMatrix& confusion = report.methods[index].confusion;
+  Table table{"confusions-" + method_slug(report, index),
+              method_prefix(report, index) +
+                  "answers (columns) to the textures presented (rows), counts and row percentages",
+              class_columns("presented", report)};
+  table.columns.push_back({"no response"});
+  table.columns.push_back({"n"});
+  for (int i = 0; i < confusion.classes(); ++i) {
+    const int n = confusion.presented(i);
+    std::vector<Cell> row{report.classes[i]};
+    for (int j = 0; j < confusion.classes(); ++j) {
+      row.emplace_back(count_cell(confusion.count(i, j), n), i == j);
+    }
+    row.emplace_back(count_cell(confusion.no_response(i), n));
+    row.emplace_back(std::to_string(n));
+    table.rows.push_back(std::move(row));
+  }
+  table.rows.push_back(marginal_row(confusion));
+  table.notes = {
+      {"All participants' trials pooled; right answers are emphasised. The last row is "
+       "what was answered whatever was presented: a preference for an answer shows "
+       "there."}};
+  return table;
+}
+
+Table choice_table(const StudyReport& report, std::size_t index) {
+  const ChoiceModel& model = *report.methods[index].choice;
+  Table table{"choice-model-" + method_slug(report, index),
+              method_prefix(report, index) + "similarity of textures, and bias of answers",
+              class_columns("similarity", report)};
+  const auto classes = static_cast<int>(report.classes.size());
+  for (int i = 0; i < classes; ++i) {
+    std::vector<Cell> row{report.classes[i]};
+    for (int j = 0; j < classes; ++j) {
+      const double similarity = model.similarity.at(i, j);
+      row.emplace_back(std::isfinite(similarity) ? plain_figure(similarity, 3) : kNoFigure);
+    }
+    table.rows.push_back(std::move(row));
+  }
+  std::vector<Cell> bias{"bias"};
+  for (const double one : model.bias) bias.emplace_back(plain_figure(one, 3));
+  table.rows.push_back(std::move(bias));
+  std::string fit = fmt::format("Fit: G² = {} on {} degrees of freedom",
+                                plain_figure(model.g_squared, 2), model.degrees_of_freedom);
+  if (model.p) fit += ", " + p_phrase(*model.p) + " under chi-square for independent trials";
+  if (!model.converged) fit += "; the fit did not converge";
+  table.notes = {{"Similarity choice model, maximum likelihood over trials with a response: "
+                  "similarity 1 is the same, 0 never taken for each other; biases add up to 1.",
+                  {Source::luce, Source::townsend_landon}},
+                 {fit + "."}};
+  return table;
+}
+
+std::string bound_of(const DPrime& sensitivity) {
+  if (!sensitivity.estimate && !sensitivity.low && !sensitivity.high) return kNoFigure;
+  if (!sensitivity.low) return "up to " + plain_figure(sensitivity.high, 2);
+  if (!sensitivity.high) return "at least " + plain_figure(sensitivity.low, 2);
+  return plain_range(Interval{*sensitivity.low, *sensitivity.high}, 2);
+}
+
+Table information_table(const StudyReport& report) {
+  Table table{"information",
+              "Information transfer and nominal sensitivity, all participants' trials pooled",
+              {{"method", Align::left},
+               {"n"},
+               {"raw (bit)"},
+               {"corrected (bit)"},
+               {"at random (bit)"},
+               {"categories"},
+               {"d′"},
+               {"d′ 95%"}}};
+  for (const MethodReport& method : report.methods) {
+    const InformationTransfer& information = method.information;
+    const auto categories =
+        information.corrected ? std::optional(std::exp2(*information.corrected)) : std::nullopt;
+    table.rows.push_back({method.method, std::to_string(method.confusion.answered()),
+                          plain_figure(information.raw, 2), plain_figure(information.corrected, 2),
+                          plain_figure(information.null_mean, 2), plain_figure(categories, 1),
+                          plain_figure(method.d_prime.estimate, 2), bound_of(method.d_prime)});
+  }
+  table.notes = {
+      {"Information transfer over trials with a response: raw (biased upward), with Miller and "
+       "Madow's bias taken off, and the mean of the raw figure when each participant's answers "
+       "are dealt at random; categories are two to the power of the corrected figure.",
+       {Source::tan_reed_durlach, Source::miller}},
+      {"d′ is what an unbiased observer of as many equally distant textures would need for this "
+       "accuracy: nominal; a bound in place of infinity. Its interval follows from Clopper and "
+       "Pearson's.",
+       {Source::green_swets, Source::hacker_ratcliff}}};
+  return table;
+}
+
+}  // namespace
+
+Section confusions_section(const StudyReport& report) {
+  Section section{"confusions", "Confusions", {}};
+  for (std::size_t i = 0; i < report.methods.size(); ++i) {
+    add_method_heading(report, i, section);
+    section.blocks.emplace_back(confusion_table(report, i));
+    if (report.methods[i].choice) section.blocks.emplace_back(choice_table(report, i));
+  }
+  if (report.methods.size() > 1) {
+    section.blocks.emplace_back(Subheading{"information-transfer", "Information transfer"});
+  }
+  section.blocks.emplace_back(information_table(report));
+  return section;
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,136 @@
+#include "analysis/page/study_document.hpp"
+
+#include "analysis/page/sections.hpp"
+#include "analysis/page/wording.hpp"
+#include "analysis/text_figures.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace touchtrial {
+namespace {
+
+using std::string_view;
+
+/// Where pictures stand: an id that begins so belongs to that section; the first that fits.
+struct PicturePlace {
+  string_view beginning;
+  string_view section;
+};
+constexpr std::array<PicturePlace, 13> kPlaces{{{"accuracy-by-class", "accuracy"},
+                                                {"accuracy-over-trials", "order"},
+                                                {"accuracy-by-trial", "order"},
+                                                {"accuracy", "accuracy"},
+                                                {"participants", "accuracy"},
+                                                {"methods", "methods-compared"},
+                                                {"confusion", "confusions"},
+                                                {"reaction", "reaction-times"},
+                                                {"observers", "cues"},
+                                                {"ideal", "cues"},
+                                                {"cue", "cues"},
+                                                {"exploration", "cues"},
+                                                {"servo", "servo-and-validity"}}};
+
+string_view section_for(const Picture& picture) {
+  const auto* place = std::find_if(kPlaces.begin(), kPlaces.end(), [&](const PicturePlace& one) {
+    return picture.id.starts_with(one.beginning);
+  });
+  return place == kPlaces.end() ? string_view() : place->section;
+}
+
+/// Pictures stand before the section's first table or subheading, and below its sentences.
+void add_picture(const Picture& picture, Section& section) {
+  const auto place =
+      std::find_if(section.blocks.begin(), section.blocks.end(), [](const Block& one) {
+        return std::holds_alternative<Table>(one) || std::holds_alternative<Subheading>(one);
+      });
+  section.blocks.insert(place, picture);
+}
+
+/// \return those that belong to no section
+Pictures place_pictures(const Pictures& pictures, std::vector<Section>& sections) {
+  Pictures left;
+  // Each is put before the section's first table, so the last one comes last.
+  for (const Picture& picture : pictures) {
+    const string_view wanted = section_for(picture);
+    const auto section = std::find_if(sections.begin(), sections.end(),
+                                      [&](const Section& one) { return one.id == wanted; });
+    if (section == sections.end()) {
+      left.push_back(picture);
+    } else {
+      add_picture(picture, *section);
+    }
+  }
+  return left;
+}
+
+std::vector<std::string> banners_of(const StudyReport& report, const Provenance& provenance) {
+  std::vector<std::string> banners;
+  if (report.simulated) {
+    banners.emplace_back(
+        "SIMULATED: these figures come from simulated participants. They say what a model of a "
+        "hand and of a sense of touch does, not what people do.");
+  }
+  if (report.pilot) {
+    banners.emplace_back("PILOT: not to be pooled with the study's data, nor reported as it.");
+  }
+  if (provenance.state.unblinded && !provenance.state.closed) {
+    banners.emplace_back(
+        "INTERIM LOOK: the study is still open. What is seen here may not decide when it ends.");
+  }
+  return banners;
+}
+
+Definitions header_of(const StudyReport& report, const Provenance& provenance) {
+  Definitions header;
+  header.entries = {{"protocol", report.protocol},
+                    {"participants", std::to_string(report.participants)},
+                    {"trials", std::to_string(report.trials)},
+                    {"textures", listed(report.classes)}};
+  const Definitions evidence = evidence_header(provenance);
+  header.entries.insert(header.entries.end(), evidence.entries.begin(), evidence.entries.end());
+  return header;
+}
+
+/// Sections that have anything to say.
+void add_sections(const StudyReport& report, Document& document) {
+  for (Section section :
+       {headline_section(report), warnings_section(report), participants_section(report.collection),
+        registration_section(report.registration), accuracy_section(report),
+        confusions_section(report), comparison_section(report), order_section(report),
+        times_section(report), cues_section(report), robustness_section(report),
+        methods_section(report)}) {
+    if (!section.blocks.empty()) document.sections.push_back(std::move(section));
+  }
+}
+
+/// What is in the way is an unknown picture's: before the section on methods.
+void add_further(const Pictures& pictures, Document& document) {
+  if (pictures.empty()) return;
+  Section further{"further-figures", "Further figures", {}};
+  for (const Picture& one : pictures) further.blocks.emplace_back(one);
+  document.sections.insert(document.sections.end() - 1, std::move(further));
+}
+
+}  // namespace
+
+Document study_document(const StudyReport& report, const Provenance& provenance,
+                        const Pictures& pictures) {
+  Document document;
+  document.title = "Report of the study " + report.study;
+  document.stamp = report.simulated ? "SIMULATED" : "";
+  document.banners = banners_of(report, provenance);
+  document.header = header_of(report, provenance);
+  add_sections(report, document);
+  add_further(place_pictures(pictures, document.sections), document);
+  document.colophon =
+      fmt::format("{}touchtrial {}, {}, event {} of the file's chain, {}",
+                  simulated_line(report.simulated), provenance.program_version, provenance.database,
+                  provenance.head.length, to_hex(provenance.head.hash));
+  return document;
+}
+
+}  // namespace touchtrial

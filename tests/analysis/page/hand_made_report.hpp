@@ -1,0 +1,19 @@
+/// \file A report whose every part has something, with labels that try to break out.
+#pragma once
+
+#include "analysis/page/study_document.hpp"
+
+namespace touchtrial {
+
+/// What a user could call a texture, by mistake or not.
+inline constexpr const char* kHostile = "<script>alert('x')</script> & \"b|rk\" \\_$%#{~^}";
+
+/// Two methods and three classes, six participants. \param label  of the first class
+[[nodiscard]] StudyReport hand_made_report(const std::string& label = "bark");
+
+[[nodiscard]] Provenance hand_made_provenance();
+
+/// An SVG file with ids, as a drawing program writes it.
+[[nodiscard]] Picture hand_made_picture(const std::string& id);
+
+}  // namespace touchtrial

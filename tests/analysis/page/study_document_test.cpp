@@ -1,0 +1,108 @@
+// What a report says, and under which name.
+#include "analysis/page/hand_made_report.hpp"
+#include "analysis/page/renderings.hpp"
+#include "analysis/page/wording.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <set>
+
+using namespace touchtrial;
+
+namespace {
+
+Table table_named(const Document& document, const std::string& id) {
+  for (const Table* table : tables_of(document)) {
+    if (table->id == id) return *table;
+  }
+  FAIL("no table " << id);
+  return {};
+}
+
+std::vector<std::string> texts_of(const std::vector<Cell>& row) {
+  std::vector<std::string> texts;
+  for (const Cell& cell : row) texts.push_back(cell.text);
+  return texts;
+}
+
+Document hand_made() {
+  return study_document(hand_made_report(), hand_made_provenance());
+}
+
+}  // namespace
+
+TEST_CASE("document: sections come in the order of a results section") {
+  std::vector<std::string> ids;
+  for (const Section& section : hand_made().sections) ids.push_back(section.id);
+  CHECK(ids == std::vector<std::string>{"result", "to-bear-in-mind", "participants", "registration",
+                                        "accuracy", "confusions", "methods-compared", "order",
+                                        "reaction-times", "cues", "servo-and-validity", "methods"});
+}
+
+TEST_CASE("document: every table has a name of its own and as many cells as columns") {
+  std::set<std::string> ids;
+  StudyReport report = hand_made_report();
+  report.methods[1].method = "Adaptive!";  // the same name once it is a file's
+  const Document document = study_document(report, hand_made_provenance());
+  for (const Table* table : tables_of(document)) {
+    INFO(table->id);
+    CHECK(ids.insert(table->id).second);
+    CHECK(table->id.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") ==
+          std::string::npos);
+    for (const std::vector<Cell>& row : table->rows) CHECK(row.size() == table->columns.size());
+  }
+}
+
+TEST_CASE("document: confusions hold counts, row percentages, marginals and missing responses") {
+  const Table table = table_named(hand_made(), "confusions-adaptive");
+  CHECK(texts_of(table.rows.front()) ==
+        std::vector<std::string>{"bark", "20 (80%)", "3 (12%)", "1 (4%)", "1 (4%)", "25"});
+  CHECK(texts_of(table.rows.back()) == std::vector<std::string>{"all answers", "24 (32%)",
+                                                                "26 (35%)", "22 (29%)", "3 (4%)",
+                                                                "75"});
+  CHECK(table.rows[1][2].strong);
+  CHECK_FALSE(table.rows[1][1].strong);
+}
+
+TEST_CASE("document: the headline is the mean over participants, with both intervals and chance") {
+  const Table table = table_named(hand_made(), "headline");
+  CHECK(texts_of(table.rows.front()) == std::vector<std::string>{"adaptive", "6", "75", "79.0%",
+                                                                 "[63.0, 95.0]", "[68.0, 90.0]",
+                                                                 "15.5", "< 0.001"});
+}
+
+TEST_CASE("document: methods are compared with differences, odds and the decibel's name") {
+  const Table table = table_named(hand_made(), "methods");
+  CHECK(texts_of(table.rows.front()) ==
+        std::vector<std::string>{"adaptive less tv-gabor", "6", "−8.3", "[−20.0, 3.4]",
+                                 "[−16.0, −1.0]", "0.125", "0.66 [0.31, 1.40]", "−0.42"});
+  CHECK(table.columns.back().title == "dB (10 log10)");
+  const std::string text = tables_markdown(hand_made());
+  CHECK_THAT(text, holds_text("20 log10 would be twice that"));
+}
+
+TEST_CASE("document: every cited source is in the list of references, once") {
+  const std::vector<Source> references = references_of(hand_made());
+  CHECK(references.size() > 10);
+  CHECK(std::set<Source>(references.begin(), references.end()).size() == references.size());
+  CHECK(reference_number(references[2], references) == 3);
+  for (const Source source : references) CHECK_FALSE(citation_of(source).empty());
+}
+
+TEST_CASE("document: what was not asked for says how to ask") {
+  StudyReport report = hand_made_report();
+  report.cues.reset();
+  CHECK_THAT(page_html(study_document(report, hand_made_provenance())), holds_text("--cues yes"));
+}
+
+TEST_CASE(
+    "document: figures that do not exist are dashes, and what rounds to nothing has no sign") {
+  CHECK(share_figure({}) == "–");
+  CHECK(points_figure(-0.0001) == "0.0");
+  CHECK(points_figure(-0.083) == "−8.3");
+  CHECK(plain_figure(-0.001, 2) == "0.00");
+  CHECK(p_figure(0.0004) == "< 0.001");
+  CHECK(p_phrase(0.0312) == "p = 0.031");
+  CHECK(slug_of("TV-Gabor (2)") == "tv-gabor-2");
+  CHECK(slug_of("木").empty());
+}
