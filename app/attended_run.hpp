@@ -26,6 +26,9 @@ enum class AttendedStop {
   signal,   ///< Ctrl-C, or the program was asked to end
 };
 
+/// A person needs no longer to home a device.
+inline constexpr double kReadyLimitS = 120.0;
+
 /// One device and everything around its servo. Belongs to the main thread.
 class AttendedRun {
  public:

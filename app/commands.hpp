@@ -14,6 +14,9 @@ namespace touchtrial {
 /// What the chosen command does; returns the exit code. Throws touchtrial::Error.
 using Action = std::function<int()>;
 
+/// The exit code where data are not what they should be.
+inline constexpr int kNotVerified = 3;
+
 /// A whole number from 0 to 2^64 - 1 and nothing else; the parser itself would take -1 for 2^64
 /// - 1.
 [[nodiscard]] CLI::Validator seed_validator();

@@ -19,7 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kReadyLimitS = 120.0;
 constexpr double kLightestG = 10.0;
 /// Of the largest force that may be sent: the rest holds the handle itself.
 constexpr double kWeightShare = 0.6;

@@ -21,7 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kReadyLimitS = 120.0;
 /// In which the texture rises out of the wall.
 constexpr double kBlendS = 0.2;
 /// 40 mm, which every supported device has room for.

@@ -23,7 +23,6 @@ namespace {
 
 constexpr int kFailed = 1;
 constexpr int kBadInput = 2;
-constexpr int kNotVerified = 3;
 
 void add_commands(CLI::App& program, Action& action) {
   add_extract_command(program, action);

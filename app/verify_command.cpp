@@ -14,8 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kNotVerified = 3;
-
 struct VerifyArguments {
   fs::path database;
   fs::path key;

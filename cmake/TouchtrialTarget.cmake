@@ -2,6 +2,10 @@
 # values that are not there.
 set(TOUCHTRIAL_UNHURRIED -O1 -Wno-maybe-uninitialized)
 
+option(TOUCHTRIAL_UNITY "Compile several files at a time: sooner done, but less is rebuilt alone" OFF)
+
+set(TOUCHTRIAL_TEST_BATCH 8)
+
 # touchtrial_library(NAME [UNHURRIED] [PUBLIC targets...] [PRIVATE libraries...])
 # One static library a folder, of every .cpp file in and below it. PUBLIC: targets of ours, along
 # the arrows of docs/architecture.md; PRIVATE: third-party libraries, whose headers no public header
@@ -28,18 +32,68 @@ function(touchtrial_library name)
     COMPILE_OPTIONS "$<$<CONFIG:Release>:${TOUCHTRIAL_UNHURRIED}>")
 endfunction()
 
+# touchtrial_compile_together(TARGET BATCH REGEX)
+# With TOUCHTRIAL_UNITY, those of the target's sources that match are compiled so many at a time, as
+# they share a header that costs more than they do: their names without linkage must differ.
+function(touchtrial_compile_together target batch regex)
+  if(NOT TOUCHTRIAL_UNITY)
+    return()
+  endif()
+  get_target_property(sources ${target} SOURCES)
+  list(FILTER sources INCLUDE REGEX "${regex}")
+  set(number 0)
+  foreach(source IN LISTS sources)
+    math(EXPR group "${number} / ${batch}")
+    set_source_files_properties("${source}" PROPERTIES UNITY_GROUP "together_${group}")
+    math(EXPR number "${number} + 1")
+  endforeach()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+endfunction()
+
+# touchtrial_joined(VARIABLE BATCH NAME sources...)
+# Sets the variable to translation units that hold so many of the sources each; TOUCHTRIAL_UNITY off,
+# to the sources.
+function(touchtrial_joined variable batch name)
+  if(NOT TOUCHTRIAL_UNITY)
+    set(${variable} ${ARGN} PARENT_SCOPE)
+    return()
+  endif()
+  set(joiner "${CMAKE_SOURCE_DIR}/cmake/JoinedTests.cmake")
+  set(units "")
+  list(LENGTH ARGN count)
+  math(EXPR last "${count} - 1")
+  foreach(first RANGE 0 ${last} ${batch})
+    list(SUBLIST ARGN ${first} ${batch} part)
+    string(REPLACE ";" "," joined "${part}")
+    set(unit "${CMAKE_CURRENT_BINARY_DIR}/${name}_from_${first}.cpp")
+    add_custom_command(OUTPUT "${unit}"
+      COMMAND "${CMAKE_COMMAND}" -D "OUTPUT=${unit}" -D "SOURCES=${joined}" -P "${joiner}"
+      DEPENDS ${part} "${joiner}" COMMENT "" VERBATIM)
+    list(APPEND units "${unit}")
+  endforeach()
+  set(${variable} ${units} PARENT_SCOPE)
+endfunction()
+
 # touchtrial_test(NAME [EXCEPT folders...] [LIBRARIES ...])
 # One test program a folder, of every *_test.cpp file in and below it, except those of folders that
 # have a program of their own; each test case is a CTest test.
 function(touchtrial_test name)
-  cmake_parse_arguments(ARG "" "" "EXCEPT;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "JOINED" "" "EXCEPT;LIBRARIES" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*_test.cpp")
   foreach(folder ${ARG_EXCEPT})
     list(FILTER sources EXCLUDE REGEX "^${CMAKE_CURRENT_SOURCE_DIR}/${folder}/")
   endforeach()
-  add_executable(${name} ${sources})
-  target_include_directories(${name} PRIVATE "${CMAKE_SOURCE_DIR}/tests")
+  set(units ${sources})
+  if(ARG_JOINED)
+    touchtrial_joined(units ${TOUCHTRIAL_TEST_BATCH} ${name} ${sources})
+  endif()
+  add_executable(${name} ${units})
+  target_include_directories(${name} PRIVATE "${CMAKE_SOURCE_DIR}/tests" "${CMAKE_SOURCE_DIR}")
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} touchtrial_test_support touchtrial_settings)
+  if(TOUCHTRIAL_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    # Whatever is not in the translation unit's own file counts as a header.
+    target_compile_options(${name} PRIVATE -Wno-subobject-linkage)
+  endif()
   # Optimising the test framework costs more time than the tests then save.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:${TOUCHTRIAL_UNHURRIED}>)
   catch_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES TIMEOUT 600)
