@@ -27,7 +27,7 @@ function(touchtrial_library name)
     target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:${TOUCHTRIAL_UNHURRIED}>)
     return()
   endif()
-  list(FILTER sources INCLUDE REGEX "(_json|_text|_csv|_html|_object|manifest|_key_file)\\.cpp$")
+  list(FILTER sources INCLUDE REGEX "(_json|_text|_csv|_html|_figure|_object|manifest|_key_file)\\.cpp$")
   set_source_files_properties(${sources} PROPERTIES
     COMPILE_OPTIONS "$<$<CONFIG:Release>:${TOUCHTRIAL_UNHURRIED}>")
 endfunction()

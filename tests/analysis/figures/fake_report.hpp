@@ -1,0 +1,25 @@
+/// \file A report with figures made up by a rule, for figures to be drawn from.
+#pragma once
+
+#include "analysis/cues/cue_report.hpp"
+#include "analysis/report/report.hpp"
+
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+
+struct FakeReportOptions {
+  std::vector<std::string> classes = {"bark", "cloth", "pebbles", "straw", "brick"};
+  std::vector<std::string> methods = {"adaptive"};
+  int participants = 20;
+  int repeats = 5;  ///< trials a class, participant and method
+  int servo_trials = 0;
+};
+
+[[nodiscard]] StudyReport fake_report(const FakeReportOptions& options = {});
+
+/// Of the same classes, methods and participants.
+[[nodiscard]] CueReport fake_cues(const FakeReportOptions& options = {});
+
+}  // namespace touchtrial
