@@ -62,7 +62,7 @@ std::string panel_script(const CueReport& cues, const MethodCues& method, std::s
                        accuracy_axis("correct, %") +
                        chance_line(static_cast<int>(std::max<std::size_t>(cues.classes.size(), 1)));
   script += fmt::format(
-      "plot $dots{0} using 1:2 with points pt 6 ps 0.3 lc rgb '{1}' notitle, "
+      "plot $dots{0} using 1:2 with points pt 7 ps 0.26 lc rgb '{1}' notitle, "
       "$observers{0} using 1:2:3:4 with yerrorbars {2} notitle",
       number, kFaint, observer_look);
   if (!humans.empty()) {
@@ -91,7 +91,7 @@ std::optional<Figure> cues_figure(const CueReport& cues) {
       panels.sheet(), 1.5,
       std::vector<LegendEntry>{mark_entry(5, series_colour(0), "ideal observer"),
                                mark_entry(7, series_colour(1), "participants"),
-                               mark_entry(6, kFaint, "each participant"),
+                               mark_entry(7, kFaint, "each participant"),
                                chance_entry(static_cast<int>(cues.classes.size()))});
   Figure figure{
       .id = "ideal-observers",

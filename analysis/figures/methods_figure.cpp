@@ -115,7 +115,7 @@ std::string differences_panel(const StudyReport& report, const NamesBelow& below
              static_cast<double>(i + 1));
     if (rows.empty() || !pair.overall.difference) continue;
     data += data_block(fmt::format("pair{}", i), rows);
-    plot += fmt::format("{}$pair{} using 1:2 with points pt 6 ps 0.45 lc rgb '#5c5c5c' notitle",
+    plot += fmt::format("{}$pair{} using 1:2 with points pt 7 ps 0.33 lc rgb '#7a7a7a' notitle",
                         plot.empty() ? "plot " : ", ", i);
     means.push_back({static_cast<double>(i + 1), 100.0 * *pair.overall.difference,
                      100.0 * pair.overall.interval.low, 100.0 * pair.overall.interval.high});
@@ -195,7 +195,7 @@ std::optional<Figure> methods_figure(const StudyReport& report) {
       report.simulated,
       "methods side by side. Left: accuracy by presented class, all participants' trials pooled, "
       "with 95 % Wilson intervals." +
-          std::string(paired ? " Right: each participant's difference (circles), and the mean with "
+          std::string(paired ? " Right: each participant's difference (dots), and the mean with "
                                "its 95 % t interval over participants."
                              : ""));
   return figure;

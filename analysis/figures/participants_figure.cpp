@@ -88,6 +88,7 @@ std::optional<Figure> participants_figure(const StudyReport& report) {
   Sheet sheet{16.0, 2.2 + kRow_cm * std::min(rows, 6), report.simulated};
   Margins margins;
   margins.left_cm = 3.2;
+  margins.bottom_cm = 1.25;
   const auto classes = static_cast<int>(report.classes.size());
   const Legend legend(
       sheet, margins.left_cm,

@@ -102,7 +102,7 @@ Figure path_figure(const ExplorationPath& path) {
   const double longer_mm = std::max({geometry.width_mm(), geometry.height_mm(), 1e-6});
   const double width_cm = kPicture_cm * std::max(geometry.width_mm() / longer_mm, 0.2);
   const double height_cm = kPicture_cm * std::max(geometry.height_mm() / longer_mm, 0.2);
-  const Margins margins{1.4, 2.6, 0.8, 1.1};
+  const Margins margins{1.7, 2.6, 0.8, 1.25};
   const Sheet sheet{width_cm + margins.left_cm + margins.right_cm,
                     height_cm + margins.top_cm + margins.bottom_cm, path.simulated};
   const double force_n = strongest(path.points);

@@ -89,7 +89,7 @@ std::optional<Figure> servo_figure(const StudyReport& report) {
   Margins margins;
   margins.left_cm = 1.7;
   margins.top_cm = 1.1;
-  margins.bottom_cm = 1.1;
+  margins.bottom_cm = 1.25;
   const std::vector<std::string> looks = {
       fmt::format("with points pt 7 ps 0.35 lc rgb '{}'", series_colour(0)),
       fmt::format("with points pt 9 ps 0.45 lc rgb '{}'", series_colour(2)),

@@ -87,7 +87,7 @@ std::optional<Figure> trials_figure(const StudyReport& report) {
   }
   if (shown.empty()) return {};
   const auto classes = static_cast<int>(report.classes.size());
-  const Panels panels(shown.size(), 2, 6.0, {1.5, 0.4, 0.6, 1.1}, report.simulated);
+  const Panels panels(shown.size(), 2, 6.0, {1.5, 0.4, 0.6, 1.25}, report.simulated);
   Figure figure{.id = "accuracy-over-trials",
                 .caption = {},
                 .alt =

@@ -184,6 +184,31 @@ TEST_CASE("figures cannot be broken out of by labels") {
   CHECK_FALSE(std::filesystem::exists("/tmp/broken-out"));
 }
 
+TEST_CASE("figures of an exploration show the path in contact, in newtons, over the texture") {
+  ExplorationPath path;
+  path.simulated = true;
+  path.session = 3;
+  path.trial = 7;
+  path.class_label = "it's </text> bark";
+  path.texture.geometry = {0.2, 20, 30};
+  path.texture.grey = GreyImage(20, 30, 100);
+  path.points = {{0.0, {9.0, 9.0}, {}, 0.0, 0.0, false},
+                 {0.1, {1.5, 2.5}, {}, 0.25, 1.0, true},
+                 {0.2, {2.0, 3.0}, {}, 0.5, 1.0, true}};
+  const std::vector<Figure> figures = report_figures(StudyReport{}, {.explorations = {&path, 1}});
+  REQUIRE(ids_of(figures) == std::vector<std::string>{"exploration-3-7"});
+  CHECK(contains(figures[0].script, "$path << EOD\n1.5 2.5 0.25\n2 3 0.5\nEOD\n"));
+  CHECK(contains(figures[0].script, "tangential force, N"));
+  CHECK(contains(figures[0].script, "'SIMULATED'"));
+  const std::string svg = drawn(figures[0], FigureFormat::svg);
+  CHECK(balanced(svg));
+  CHECK(contains(svg, "data:image/png;base64,"));
+  path.points.clear();
+  path.texture.grey = {};
+  const std::vector<Figure> bare = report_figures(StudyReport{}, {.explorations = {&path, 1}});
+  CHECK(balanced(drawn(bare[0], FigureFormat::svg)));
+}
+
 TEST_CASE("figures as SVG are described, stand alone, and share a page without sharing ids") {
   FakeReportOptions options;
   options.servo_trials = 30;
