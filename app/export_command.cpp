@@ -1,15 +1,20 @@
+#include "analysis/exports/bids/export_bids.hpp"
 #include "analysis/exports/export_csv.hpp"
 #include "analysis/exports/export_json.hpp"
+#include "analysis/exports/export_psych_ds.hpp"
+#include "analysis/exports/r/mixed_model.hpp"
 #include "analysis/outcomes.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/key_of_database.hpp"
+#include "core/errors.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace touchtrial {
 namespace {
@@ -21,24 +26,77 @@ struct ExportArguments {
   fs::path key;
   fs::path folder;
   std::string format = "csv";
+  bool with_database = false;
+  DatasetOptions dataset;
 };
 
+/// An option that a format has no use for would otherwise be passed over in silence.
+void require_fitting(const ExportArguments& arguments) {
+  const DatasetOptions& dataset = arguments.dataset;
+  const bool for_bids =
+      dataset.traces || dataset.stimuli || arguments.with_database || !dataset.institution.empty();
+  if (for_bids && arguments.format != "bids") {
+    throw UsageError(
+        "--traces, --with-stimuli, --with-database and --institution belong to --format bids");
+  }
+  const bool for_datasets = !dataset.authors.empty() || !dataset.license.empty();
+  if (for_datasets && arguments.format != "bids" && arguments.format != "psych-ds") {
+    throw UsageError("--author and --license belong to --format bids and --format psych-ds");
+  }
+}
+
+std::vector<fs::path> export_model(const StudyStore& store, const std::optional<Outcomes>& outcomes,
+                                   const fs::path& folder) {
+  if (!outcomes) {
+    throw StoreError(
+        "the study has not been unblinded, and a model is all outcomes; run `touchtrial close` and "
+        "`touchtrial unblind`");
+  }
+  return export_mixed_model(store, *outcomes, folder);
+}
+
+std::vector<fs::path> write_files(const ExportArguments& arguments, const StudyStore& store,
+                                  const std::optional<StudyKey>& key,
+                                  const std::optional<Outcomes>& outcomes) {
+  const std::string& format = arguments.format;
+  if (format == "csv") return export_csv(store, outcomes, arguments.folder);
+  if (format == "json") return {export_json(store, outcomes, arguments.folder)};
+  if (format == "r") return export_model(store, outcomes, arguments.folder);
+  const DatasetSource study{store, outcomes ? &*outcomes : nullptr, key ? &*key : nullptr};
+  DatasetOptions options = arguments.dataset;
+  if (format == "psych-ds") return export_psych_ds(study, options, arguments.folder);
+  if (arguments.with_database) options.database = arguments.database;
+  if (options.traces) options.progress = progress_bar("export");
+  return export_bids(study, options, arguments.folder);
+}
+
 int export_study(const ExportArguments& arguments) {
+  require_fitting(arguments);
   const StudyStore store = StudyStore::open(arguments.database, StudyStore::Access::read_only);
+  std::optional<StudyKey> key;
   std::optional<Outcomes> outcomes;
   if (store.state().unblinded) {
-    outcomes = load_outcomes(store, key_of_database(store, arguments.database, arguments.key));
+    key = key_of_database(store, arguments.database, arguments.key);
+    outcomes = load_outcomes(store, *key);
   }
   std::string written;
-  if (arguments.format == "json") {
-    written = export_json(store, outcomes, arguments.folder).string() + "\n";
-  } else {
-    for (const fs::path& file : export_csv(store, outcomes, arguments.folder)) {
-      written += file.string() + "\n";
-    }
+  for (const fs::path& file : write_files(arguments, store, key, outcomes)) {
+    written += file.string() + "\n";
   }
   print(written);
   return 0;
+}
+
+void add_dataset_options(CLI::App& command, ExportArguments& arguments) {
+  DatasetOptions& dataset = arguments.dataset;
+  command.add_flag("--traces", dataset.traces,
+                   "bids: positions and forces of every trial (25 trials of 10 s: about 3 MB)");
+  command.add_flag("--with-stimuli", dataset.stimuli, "bids: the study's images");
+  command.add_flag("--with-database", arguments.with_database,
+                   "bids: a copy of the database in sourcedata/, never its key");
+  command.add_option("--author", dataset.authors, "bids, psych-ds: an author; may be repeated");
+  command.add_option("--license", dataset.license, "bids, psych-ds: for instance CC0");
+  command.add_option("--institution", dataset.institution, "bids: where it was collected");
 }
 
 }  // namespace
@@ -48,10 +106,11 @@ void add_export_command(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("export", "Write a study's data for other programs");
   command->add_option("DB", arguments->database, "Database of the study")->required();
   command->add_option("--format", arguments->format, "What to write")
-      ->check(CLI::IsMember({"csv", "json"}))
+      ->check(CLI::IsMember({"csv", "json", "bids", "psych-ds", "r"}))
       ->capture_default_str();
   command->add_option("-o,--out", arguments->folder, "Folder to write into")->required();
   command->add_option("--key", arguments->key, "Key of the study (default: DB.key)");
+  add_dataset_options(*command, *arguments);
   command->callback([=, &action] { action = [=] { return export_study(*arguments); }; });
 }
 

@@ -50,11 +50,11 @@ std::string csv_text(const DataTable& table) {
     text += '\n';
   };
   add_line(table.columns, [](const std::string& name) { return quoted(name); });
-  for (const std::vector<Cell>& row : table.rows) {
+  for (const std::vector<DataCell>& row : table.rows) {
     if (row.size() != table.columns.size()) {
       throw std::invalid_argument("a row needs as many cells as the table has columns");
     }
-    add_line(row, [](const Cell& cell) { return std::visit(CsvField{}, cell); });
+    add_line(row, [](const DataCell& cell) { return std::visit(CsvField{}, cell); });
   }
   return text;
 }

@@ -10,12 +10,12 @@
 namespace touchtrial {
 
 /// One value: nothing, a text, a whole number, a number, or a time (written in seconds).
-using Cell =
+using DataCell =
     std::variant<std::monostate, std::string, std::int64_t, double, std::chrono::nanoseconds>;
 
 struct DataTable {
   std::vector<std::string> columns;
-  std::vector<std::vector<Cell>> rows;  ///< each as long as `columns`
+  std::vector<std::vector<DataCell>> rows;  ///< each as long as `columns`
 };
 
 /// Seconds with as many decimals as the nanoseconds need: exact, with a decimal dot.

@@ -24,7 +24,7 @@ struct JsonValue {
 /// An array of objects with the columns as keys.
 Json rows_json(const DataTable& table) {
   Json rows = Json::array();
-  for (const std::vector<Cell>& cells : table.rows) {
+  for (const std::vector<DataCell>& cells : table.rows) {
     Json row = Json::object();
     for (std::size_t i = 0; i < cells.size(); ++i) {
       row[table.columns[i]] = std::visit(JsonValue{}, cells[i]);

@@ -1,5 +1,6 @@
 #include "analysis/exports/export_tables.hpp"
 
+#include "analysis/exports/session_words.hpp"
 #include "analysis/exports/trial_columns.hpp"
 #include "analysis/session_rules.hpp"
 #include "analysis/statistics/confusion.hpp"
@@ -10,7 +11,7 @@ namespace touchtrial {
 namespace {
 
 void add_trial(DataTable& table, const TrialView& trial) {
-  std::vector<Cell>& row = table.rows.emplace_back();
+  std::vector<DataCell>& row = table.rows.emplace_back();
   row.reserve(table.columns.size());
   for (const TrialColumn& column : trial_columns()) {
     if (trial.study != nullptr || !column.after_unblinding) row.push_back(column.value(trial));
@@ -46,18 +47,6 @@ DataTable trials_that_are(bool scored, const Outcomes& outcomes) {
     add_trial(table, {trial.participant, trial.row, outcomes.simulated, &outcomes, &trial});
   }
   return table;
-}
-
-const char* text_of(SessionState state) {
-  switch (state) {
-    case SessionState::completed:
-      return "completed";
-    case SessionState::stopped:
-      return "stopped";
-    case SessionState::open:
-      break;
-  }
-  return "open";
 }
 
 void add_labels(DataTable& table, const Outcomes& outcomes) {
@@ -110,7 +99,7 @@ DataTable confusion_table(const Outcomes& outcomes, int method) {
   table.columns.emplace_back("no_response");
   table.columns.emplace_back("simulated");
   for (int i = 0; i < classes; ++i) {
-    std::vector<Cell> row{outcomes.classes[i]};
+    std::vector<DataCell> row{outcomes.classes[i]};
     for (int j = 0; j < classes; ++j) row.emplace_back(std::int64_t{confusion.count(i, j)});
     row.emplace_back(std::int64_t{confusion.no_response(i)});
     row.push_back(flag(outcomes.simulated));
@@ -123,7 +112,7 @@ DataTable study_table(const StudyStore& store, const std::optional<Outcomes>& ou
   const StudyCommitment& commitment = store.commitment();
   const StudyState state = store.state();
   DataTable table{{"key", "of", "value"}, {}};
-  const auto add = [&](const char* key, Cell value) {
+  const auto add = [&](const char* key, DataCell value) {
     table.rows.push_back({std::string(key), std::monostate{}, std::move(value)});
   };
   add("study", commitment.study);

@@ -11,41 +11,41 @@ bool has_stimulus(const TrialView& trial) {
 }
 
 /// From one moment of a trial to another, if both came.
-Cell time_between(const std::optional<std::chrono::nanoseconds>& from,
-                  const std::optional<std::chrono::nanoseconds>& to) {
+DataCell time_between(const std::optional<std::chrono::nanoseconds>& from,
+                      const std::optional<std::chrono::nanoseconds>& to) {
   if (!from || !to) return std::monostate{};
   return *to - *from;
 }
 
-Cell response_of(const TrialView& trial) {
+DataCell response_of(const TrialView& trial) {
   if (!trial.outcome->response) return std::monostate{};
   return trial.study->classes[*trial.outcome->response];
 }
 
 /// Empty for a trial that never ended, so that a mean over the column is an accuracy.
-Cell correctness_of(const TrialView& trial) {
+DataCell correctness_of(const TrialView& trial) {
   if (!has_stimulus(trial)) return std::monostate{};
   const TrialState state = trial.row.state;
   if (state != TrialState::answered && state != TrialState::timed_out) return std::monostate{};
   return flag(trial.outcome->correct());
 }
 
-Cell method_of(const TrialView& trial) {
+DataCell method_of(const TrialView& trial) {
   if (!has_stimulus(trial)) return std::monostate{};
   return trial.study->methods[trial.outcome->stimulus.method];
 }
 
-Cell class_of(const TrialView& trial) {
+DataCell class_of(const TrialView& trial) {
   if (!has_stimulus(trial)) return std::monostate{};
   return trial.study->classes[trial.outcome->stimulus.class_index];
 }
 
-Cell exemplar_of(const TrialView& trial) {
+DataCell exemplar_of(const TrialView& trial) {
   if (!has_stimulus(trial)) return std::monostate{};
   return image_of(*trial.study, *trial.outcome);
 }
 
-Cell kind_of(const TrialView& trial) {
+DataCell kind_of(const TrialView& trial) {
   switch (trial.outcome->kind) {
     case PresentationKind::lead_in:
       return std::string("lead-in");
@@ -57,7 +57,7 @@ Cell kind_of(const TrialView& trial) {
   return std::string("scored");
 }
 
-Cell state_of(const TrialView& trial) {
+DataCell state_of(const TrialView& trial) {
   switch (trial.row.state) {
     case TrialState::answered:
       return std::string("answered");
@@ -74,39 +74,39 @@ Cell state_of(const TrialView& trial) {
 }
 
 template <std::optional<int> TrialRow::*kNumber>
-Cell number_of(const TrialView& trial) {
+DataCell number_of(const TrialView& trial) {
   if (!(trial.row.*kNumber)) return std::monostate{};
   return std::int64_t{*(trial.row.*kNumber)};
 }
 
 template <double TrialMeasures::*kMeasure>
-Cell measured(const TrialView& trial) {
+DataCell measured(const TrialView& trial) {
   if (trial.outcome == nullptr || !trial.outcome->measures) return std::monostate{};
   return (*trial.outcome->measures).*kMeasure;
 }
 
-Cell limits_of(const TrialView& trial) {
+DataCell limits_of(const TrialView& trial) {
   if (!trial.outcome->measures) return std::monostate{};
   return flag(trial.outcome->measures->within_limits);
 }
 
-Cell limited_ticks_of(const TrialView& trial) {
+DataCell limited_ticks_of(const TrialView& trial) {
   if (!trial.outcome->measures || !trial.outcome->measures->limited_ticks) return std::monostate{};
   return *trial.outcome->measures->limited_ticks;
 }
 
 /// The rule judges traces; without one there is no verdict. Before unblinding, that of its part in
 /// clear.
-Cell validity_of(const TrialView& trial) {
+DataCell validity_of(const TrialView& trial) {
   if (trial.row.samples == 0) return std::monostate{};
   return flag(trial.outcome != nullptr ? trial.outcome->valid() : trial.row.valid);
 }
 
 constexpr std::array<TrialColumn, 32> kTrialColumns{{
-    {"participant", false, [](const TrialView& t) -> Cell { return t.participant; }},
-    {"session", false, [](const TrialView& t) -> Cell { return std::int64_t{t.row.session}; }},
-    {"trial", false, [](const TrialView& t) -> Cell { return std::int64_t{t.row.trial}; }},
-    {"block", false, [](const TrialView& t) -> Cell { return std::int64_t{t.row.block}; }},
+    {"participant", false, [](const TrialView& t) -> DataCell { return t.participant; }},
+    {"session", false, [](const TrialView& t) -> DataCell { return std::int64_t{t.row.session}; }},
+    {"trial", false, [](const TrialView& t) -> DataCell { return std::int64_t{t.row.trial}; }},
+    {"block", false, [](const TrialView& t) -> DataCell { return std::int64_t{t.row.block}; }},
     {"method", true, method_of},
     {"class", true, class_of},
     {"exemplar", true, exemplar_of},
@@ -122,13 +122,13 @@ constexpr std::array<TrialColumn, 32> kTrialColumns{{
     {"force_rms_n", false, measured<&TrialMeasures::force_rms_n>},
     {"saturated_share", false, measured<&TrialMeasures::saturated_share>},
     {"valid", false, validity_of},
-    {"presented_at_s", false, [](const TrialView& t) -> Cell { return t.row.presented_at; }},
+    {"presented_at_s", false, [](const TrialView& t) -> DataCell { return t.row.presented_at; }},
     {"simulated", false, [](const TrialView& t) { return flag(t.simulated); }},
     {"counted", true, [](const TrialView& t) { return flag(t.outcome->counted); }},
     {"kind", true, kind_of},
     {"state", false, state_of},
     {"explorations", false,
-     [](const TrialView& t) -> Cell { return std::int64_t{t.row.explorations}; }},
+     [](const TrialView& t) -> DataCell { return std::int64_t{t.row.explorations}; }},
     {"first_contact_s", false,
      [](const TrialView& t) { return time_between(t.row.presented_at, t.row.contact_at); }},
     {"position", true, number_of<&TrialRow::position>},
@@ -136,9 +136,9 @@ constexpr std::array<TrialColumn, 32> kTrialColumns{{
     {"valid_in_clear", false, [](const TrialView& t) { return flag(t.row.valid); }},
     {"within_limits", true, limits_of},
     {"limited_ticks", true, limited_ticks_of},
-    {"samples", false, [](const TrialView& t) -> Cell { return t.row.samples; }},
-    {"sampling_hz", false, [](const TrialView& t) -> Cell { return t.row.rate_hz; }},
-    {"overruns", false, [](const TrialView& t) -> Cell { return t.row.overruns; }},
+    {"samples", false, [](const TrialView& t) -> DataCell { return t.row.samples; }},
+    {"sampling_hz", false, [](const TrialView& t) -> DataCell { return t.row.rate_hz; }},
+    {"overruns", false, [](const TrialView& t) -> DataCell { return t.row.overruns; }},
 }};
 
 }  // namespace
@@ -151,7 +151,7 @@ const std::string& image_of(const Outcomes& study, const TrialOutcome& trial) {
   return study.exemplars[trial.stimulus.class_index][trial.stimulus.exemplar];
 }
 
-Cell flag(bool value) {
+DataCell flag(bool value) {
   return std::int64_t{value ? 1 : 0};
 }
 

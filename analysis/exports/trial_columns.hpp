@@ -22,7 +22,7 @@ struct TrialView {
 struct TrialColumn {
   const char* name;
   bool after_unblinding;  ///< exists only then
-  Cell (*value)(const TrialView&);
+  DataCell (*value)(const TrialView&);
 };
 
 /// In the order in which they stand in trials.csv.
@@ -31,6 +31,6 @@ struct TrialColumn {
 /// The file name, as the study calls it, of a trial's image.
 [[nodiscard]] const std::string& image_of(const Outcomes& study, const TrialOutcome& trial);
 
-[[nodiscard]] Cell flag(bool value);
+[[nodiscard]] DataCell flag(bool value);
 
 }  // namespace touchtrial

@@ -158,14 +158,6 @@ void make_second_version(SQLite::Database& database) {
 constexpr std::array<Migration, kSchemaVersion> kMigrations = {make_first_version,
                                                                make_second_version};
 
-void write_copy(const Database& database, const std::filesystem::path& to) {
-  SQLite::Database target(to.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-  if (SQLite::Backup(target, database.connection()).executeStep(-1) != SQLITE_DONE) {
-    throw StoreError(database.refusal(
-        "cannot be copied, because another program uses it; close it there, and try again"));
-  }
-}
-
 /// A backup that is there is whole; one that a broken-off migration left, and that is equal to what
 /// it would be now, stands.
 void back_up(const Database& database, int version) {
@@ -186,6 +178,14 @@ void back_up(const Database& database, int version) {
 }
 
 }  // namespace
+
+void write_copy(const Database& database, const std::filesystem::path& to) {
+  SQLite::Database target(to.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  if (SQLite::Backup(target, database.connection()).executeStep(-1) != SQLITE_DONE) {
+    throw StoreError(database.refusal(
+        "cannot be copied, because another program uses it; close it there, and try again"));
+  }
+}
 
 std::span<const Migration> migrations() {
   return kMigrations;

@@ -25,6 +25,10 @@ void migrate(const Database& database, std::span<const Migration> steps);
 
 [[nodiscard]] int schema_version(const Database& database);
 
+/// A copy of the whole database, whatever else is written meanwhile, under a name that is free.
+/// \throws StoreError if another program keeps it from being read
+void write_copy(const Database& database, const std::filesystem::path& to);
+
 /// `<db>.v<version>.backup`
 [[nodiscard]] std::filesystem::path backup_path(const std::filesystem::path& database, int version);
 

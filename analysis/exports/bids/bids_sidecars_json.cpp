@@ -1,0 +1,113 @@
+#include "analysis/exports/bids/bids_sidecars_json.hpp"
+
+#include "analysis/exports/bids/bids_traces.hpp"
+#include "analysis/exports/column_meanings.hpp"
+#include "analysis/json_figures.hpp"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+void put_if_given(Json& object, const char* key, const std::string& value) {
+  if (!value.empty()) object[key] = value;
+}
+
+Json generated_by(const DatasetSource& study) {
+  return Json::array({{{"Name", "Touchtrial"},
+                       {"Version", study.store.commitment().program_version},
+                       {"Description", "touchtrial export --format bids"}}});
+}
+
+std::string stamped(const std::string& text, bool simulated) {
+  return simulated ? text + " (SIMULATED)" : text;
+}
+
+void put_columns(Json& object, const std::vector<std::string>& columns) {
+  for (const std::string& column : columns) {
+    if (column == "participant_id" || column == "session_id") continue;
+    const ColumnMeaning& meaning = meaning_of(column);
+    Json described{{"Description", meaning.description}};
+    put_if_given(described, "Units", meaning.unit);
+    for (const auto& [value, means] : meaning.levels) described["Levels"][value] = means;
+    object[column] = described;
+  }
+}
+
+std::string task_description(const DatasetSource& study) {
+  const StudyCommitment& commitment = study.store.commitment();
+  return fmt::format(
+      "Each trial presents a texture through a force-feedback device, without anything to see of "
+      "it; the participant explores it and then says which of {} textures it was. Protocol: {}.",
+      commitment.positions, commitment.protocol);
+}
+
+/// The study's own, or which of the program's.
+std::string instructions(const Study& study) {
+  const auto own = study.session.instructions.find(study.session.language);
+  if (own == study.session.instructions.end()) {
+    return "Touchtrial's own, in the language \"" + study.session.language + "\"";
+  }
+  return fmt::format("{}", fmt::join(own->second, "\n\n"));
+}
+
+}  // namespace
+
+std::string dataset_description_json(const DatasetSource& study, const DatasetOptions& options) {
+  const StudyCommitment& commitment = study.store.commitment();
+  Json object{{"Name", stamped(commitment.study, commitment.simulated)},
+              {"BIDSVersion", kBidsVersion},
+              {"DatasetType", "raw"}};
+  put_if_given(object, "License", options.license);
+  if (!options.authors.empty()) object["Authors"] = options.authors;
+  if (study.key != nullptr && !study.key->study.session.ethics_number.empty()) {
+    object["EthicsApprovals"] = {study.key->study.session.ethics_number};
+  }
+  object["GeneratedBy"] = generated_by(study);
+  put_stamp(object, commitment.simulated);
+  object["pilot"] = commitment.pilot;
+  object["study_id"] = commitment.study_id;
+  return json_text(object);
+}
+
+std::string derivative_description_json(const DatasetSource& study) {
+  const StudyCommitment& commitment = study.store.commitment();
+  Json object{{"Name", stamped("Report of " + commitment.study, commitment.simulated)},
+              {"BIDSVersion", kBidsVersion},
+              {"DatasetType", "derivative"},
+              {"GeneratedBy", generated_by(study)}};
+  put_stamp(object, commitment.simulated);
+  return json_text(object);
+}
+
+std::string columns_json(const std::vector<std::string>& columns, bool simulated) {
+  Json object = Json::object();
+  put_columns(object, columns);
+  if (simulated) object["stamp"] = {{"Description", "SIMULATED: no row comes from a person"}};
+  return json_text(object);
+}
+
+std::string task_json(const DatasetSource& study, const DatasetOptions& options,
+                      const std::vector<std::string>& columns) {
+  const StudyCommitment& commitment = study.store.commitment();
+  Json object{{"TaskName", commitment.study}, {"TaskDescription", task_description(study)}};
+  if (study.key != nullptr) object["Instructions"] = instructions(study.key->study);
+  put_if_given(object, "InstitutionName", options.institution);
+  put_stamp(object, commitment.simulated);
+  put_columns(object, columns);
+  return json_text(object);
+}
+
+std::string trace_sidecar_json(const TrialRow& row, bool simulated) {
+  Json object{{"SamplingFrequency", row.rate_hz},
+              {"StartTime", std::chrono::duration<double>(row.presented_at).count()},
+              {"Columns", trace_columns()}};
+  put_stamp(object, simulated);
+  put_columns(object, trace_columns());
+  return json_text(object);
+}
+
+}  // namespace touchtrial

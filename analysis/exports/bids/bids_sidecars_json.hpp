@@ -1,0 +1,30 @@
+/// \file The JSON files of a BIDS dataset. Private to exports.
+/// Source: BIDS specification 1.10; docs/exports.md.
+#pragma once
+
+#include "analysis/exports/dataset.hpp"
+
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+
+/// The version of BIDS that datasets keep to.
+inline constexpr const char* kBidsVersion = "1.10.0";
+
+[[nodiscard]] std::string dataset_description_json(const DatasetSource& study,
+                                                   const DatasetOptions& options);
+/// Of derivatives/touchtrial.
+[[nodiscard]] std::string derivative_description_json(const DatasetSource& study);
+
+/// Describes every column of a table but `participant_id` and `session_id`, which BIDS defines.
+[[nodiscard]] std::string columns_json(const std::vector<std::string>& columns, bool simulated);
+
+/// task-*_beh.json: the task, and the columns of every *_beh.tsv.
+[[nodiscard]] std::string task_json(const DatasetSource& study, const DatasetOptions& options,
+                                    const std::vector<std::string>& columns);
+
+/// Of one recording, whose time counts from the session's opening.
+[[nodiscard]] std::string trace_sidecar_json(const TrialRow& row, bool simulated);
+
+}  // namespace touchtrial

@@ -1,0 +1,27 @@
+/// \file Positions and forces of trials as BIDS stimulus recordings. Private to exports.
+/// Source: BIDS specification 1.10, "Physiological and other continuous recordings".
+#pragma once
+
+#include "analysis/exports/bids/bids_people.hpp"
+#include "analysis/exports/export_folder.hpp"
+#include "protocols/store/trace.hpp"
+
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+
+/// The columns of a recording, in order; meaning_of describes them.
+[[nodiscard]] const std::vector<std::string>& trace_columns();
+
+/// Rows without a header: millimetres with three decimals and newtons with five, finer than what a
+/// trace stores.
+[[nodiscard]] std::string trace_text(const Trace& trace);
+
+/// For every trial with a trace a recording and its JSON. Traces are opened when they are written.
+/// \param study  unblinded, with its key
+[[nodiscard]] std::vector<ExportFile> trace_files(const DatasetSource& study,
+                                                  const std::vector<BidsSession>& sessions,
+                                                  const std::string& task);
+
+}  // namespace touchtrial

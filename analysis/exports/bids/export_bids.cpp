@@ -1,0 +1,112 @@
+#include "analysis/exports/bids/export_bids.hpp"
+
+#include "analysis/exports/bids/bids_people.hpp"
+#include "analysis/exports/bids/bids_sidecars_json.hpp"
+#include "analysis/exports/bids/bids_stimuli.hpp"
+#include "analysis/exports/bids/bids_traces.hpp"
+#include "analysis/exports/bids/bids_trials.hpp"
+#include "analysis/exports/bids/bids_tsv.hpp"
+#include "analysis/exports/dataset_readme.hpp"
+#include "analysis/exports/export_folder.hpp"
+#include "analysis/report/quality.hpp"
+#include "analysis/report/report.hpp"
+#include "core/errors.hpp"
+#include "protocols/store/database_copy.hpp"
+
+#include <set>
+
+namespace touchtrial {
+namespace {
+
+using Files = std::vector<ExportFile>;
+
+void append(Files& files, Files more) {
+  files.insert(files.end(), std::make_move_iterator(more.begin()),
+               std::make_move_iterator(more.end()));
+}
+
+void require_unblinded(const DatasetSource& study, const DatasetOptions& options) {
+  if (study.outcomes != nullptr || !(options.traces || options.stimuli)) return;
+  throw UsageError(
+      "traces and stimuli tell what was presented, and are exported after unblinding; leave out "
+      "--traces and --with-stimuli");
+}
+
+void add_people(Files& files, const DatasetSource& study,
+                const std::vector<BidsSession>& sessions) {
+  const bool simulated = study.store.commitment().simulated;
+  const DataTable people = bids_participants(study, sessions);
+  files.push_back(text_file("participants.tsv", tsv_text(people)));
+  files.push_back(text_file("participants.json", columns_json(people.columns, simulated)));
+  std::set<std::string> done;
+  for (const BidsSession& session : sessions) {
+    if (session.label.empty() || !done.insert(session.subject).second) continue;
+    const DataTable table = bids_sessions_of(session.subject, sessions);
+    const std::string name = session.subject + "/" + session.subject + "_sessions";
+    files.push_back(text_file(name + ".tsv", tsv_text(table)));
+    files.push_back(text_file(name + ".json", columns_json(table.columns, simulated)));
+  }
+}
+
+void add_trials(Files& files, const DatasetSource& study, const DatasetOptions& options,
+                const std::vector<BidsSession>& sessions, const std::string& task) {
+  const BidsTrials trials = bids_trials(study, options.stimuli);
+  files.push_back(
+      text_file("task-" + task + "_beh.json", task_json(study, options, trials.columns)));
+  for (const BidsSession& session : sessions) {
+    files.push_back(
+        text_file(session.folder() + "/" + session.stem() + "_task-" + task + "_beh.tsv",
+                  tsv_text(trials.by_session.at(session.row.session))));
+  }
+}
+
+void add_report(Files& files, const DatasetSource& study) {
+  const std::string folder = "derivatives/touchtrial/";
+  files.push_back(
+      text_file(folder + "dataset_description.json", derivative_description_json(study)));
+  files.push_back(
+      study.outcomes != nullptr
+          ? text_file(folder + "results.json", report_json(make_report(*study.outcomes)))
+          : text_file(folder + "quality.json", quality_json(make_quality(study.store))));
+}
+
+/// Tells of the files that are written, one after the other.
+void tell_progress(Files& files, const DatasetOptions& options) {
+  if (!options.progress) return;
+  const int of = static_cast<int>(files.size());
+  for (int i = 0; i < of; ++i) {
+    files[i].write = [write = std::move(files[i].write), tell = options.progress, i,
+                      of](const std::filesystem::path& path) {
+      write(path);
+      tell(i + 1, of);
+    };
+  }
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> export_bids(const DatasetSource& study,
+                                               const DatasetOptions& options,
+                                               const std::filesystem::path& folder) {
+  require_unblinded(study, options);
+  const StudyCommitment& commitment = study.store.commitment();
+  const std::string task = plain_label(commitment.study);
+  const std::vector<BidsSession> sessions = bids_sessions(study.store);
+  Files files{text_file("dataset_description.json", dataset_description_json(study, options)),
+              text_file("README", bids_readme(study, options))};
+  add_people(files, study, sessions);
+  add_trials(files, study, options, sessions, task);
+  if (options.stimuli) append(files, stimulus_files(study.key->study));
+  if (options.traces) append(files, trace_files(study, sessions, task));
+  add_report(files, study);
+  if (!options.database.empty()) {
+    files.push_back({"sourcedata/" + options.database.filename().string(),
+                     [from = options.database](const std::filesystem::path& path) {
+                       copy_database(from, path);
+                     }});
+  }
+  tell_progress(files, options);
+  return write_export(folder, {commitment.study, commitment.study_id, "bids"}, files);
+}
+
+}  // namespace touchtrial

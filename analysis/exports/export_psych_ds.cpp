@@ -1,0 +1,71 @@
+#include "analysis/exports/export_psych_ds.hpp"
+
+#include "analysis/exports/dataset_readme.hpp"
+#include "analysis/exports/export_folder.hpp"
+#include "analysis/exports/export_tables.hpp"
+#include "analysis/exports/psych_ds_description_json.hpp"
+#include "analysis/report/quality.hpp"
+#include "analysis/report/report.hpp"
+
+#include <algorithm>
+
+namespace touchtrial {
+namespace {
+
+/// participants.csv without those who withdrew, and without names that mean something else of
+/// trials: a variable of a dataset has one meaning.
+DataTable people_table(const StudyStore& store) {
+  DataTable table = participants_table(store);
+  std::replace(table.columns.begin(), table.columns.end(), std::string("state"),
+               std::string("session_state"));
+  std::replace(table.columns.begin(), table.columns.end(), std::string("counted"),
+               std::string("counted_session"));
+  const auto column = std::find(table.columns.begin(), table.columns.end(), "withdrawn");
+  const auto at = static_cast<std::size_t>(column - table.columns.begin());
+  std::erase_if(table.rows, [&](const std::vector<DataCell>& row) {
+    return row[at] == DataCell(std::int64_t{1});
+  });
+  return table;
+}
+
+void add_columns(std::vector<std::string>& all, const DataTable& table) {
+  for (const std::string& column : table.columns) {
+    if (std::find(all.begin(), all.end(), column) == all.end()) all.push_back(column);
+  }
+}
+
+std::string changes_text(const StudyCommitment& commitment) {
+  return "# Changes\n\n- Exported by Touchtrial " + commitment.program_version + ".\n";
+}
+
+}  // namespace
+
+std::vector<std::filesystem::path> export_psych_ds(const DatasetSource& study,
+                                                   const DatasetOptions& options,
+                                                   const std::filesystem::path& folder) {
+  const StudyCommitment& commitment = study.store.commitment();
+  const std::optional<Outcomes> outcomes =
+      study.outcomes != nullptr ? std::optional(*study.outcomes) : std::nullopt;
+  std::vector<ExportFile> files;
+  std::vector<std::string> columns;
+  const auto add_data = [&](const char* description, const DataTable& table) {
+    files.push_back(text_file(
+        "data/study-" + plain_label(commitment.study) + "_description-" + description + "_data.csv",
+        csv_text(table)));
+    add_columns(columns, table);
+  };
+  add_data("trials", trials_table(study.store, outcomes));
+  if (outcomes) add_data("unscored", unscored_table(*outcomes));
+  add_data("participants", people_table(study.store));
+  files.push_back(outcomes
+                      ? text_file("results/report.json", report_json(make_report(*outcomes)))
+                      : text_file("results/quality.json", quality_json(make_quality(study.store))));
+  files.push_back(text_file("README.md", psych_ds_readme(study)));
+  files.push_back(text_file("CHANGES.md", changes_text(commitment)));
+  files.push_back(text_file(".psychds-ignore", std::string(kExportMark) + "\n"));
+  files.push_back(
+      text_file("dataset_description.json", psych_ds_description_json(study, options, columns)));
+  return write_export(folder, {commitment.study, commitment.study_id, "psych-ds"}, files);
+}
+
+}  // namespace touchtrial

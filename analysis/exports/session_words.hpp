@@ -1,0 +1,11 @@
+/// \file How sessions' states stand in exports. Private to exports.
+#pragma once
+
+#include "protocols/store/study_store.hpp"
+
+namespace touchtrial {
+
+/// "completed", "stopped" or "open"
+[[nodiscard]] const char* text_of(SessionState state);
+
+}  // namespace touchtrial

@@ -1,0 +1,215 @@
+#include "analysis/exports/bids/export_bids.hpp"
+#include "analysis/exports/csv_reading.hpp"
+#include "analysis/exports/dataset_rules.hpp"
+#include "analysis/exports/export_psych_ds.hpp"
+#include "analysis/exports/gunzip.hpp"
+#include "analysis/fake_study.hpp"
+#include "analysis/report/report.hpp"
+#include "analysis/text_matching.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::milliseconds;
+
+const std::vector<std::string> kNoFaults;
+
+void fill(FakeStudy& study) {
+  study.add({.participant = "P-01", .enrolment = 1, .answers = FakeStudy::confusing(0, 1)});
+  study.add({.participant = "Z_2+", .enrolment = 2, .answers = [](const Presentation& shown) {
+               return shown.trial == 7 ? std::nullopt : std::optional(shown.stimulus.class_index);
+             }});
+  study.add({.participant = "P03",
+             .enrolment = 3,
+             .answers = FakeStudy::always_right(),
+             .complete = false,
+             .stop_after = 2});
+}
+
+/// An unblinded study, and what exporting it takes.
+struct OpenStudy {
+  explicit OpenStudy(FakeStudy& study)
+      : outcomes(load_outcomes(study.store(), study.key())),
+        source{study.store(), &outcomes, &study.key()} {}
+
+  Outcomes outcomes;
+  DatasetSource source;
+};
+
+std::map<std::string, std::string> contents(const fs::path& folder) {
+  std::map<std::string, std::string> all;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (entry.is_regular_file()) {
+      all[entry.path().lexically_relative(folder).generic_string()] = text_of_file(entry.path());
+    }
+  }
+  return all;
+}
+
+}  // namespace
+
+TEST_CASE("participant_label gives different ids different labels of letters and digits") {
+  CHECK(participant_label("P07") == "P07");
+  CHECK(participant_label("P-07") == "PZd07");
+  CHECK(participant_label("P_07") == "PZu07");
+  CHECK(participant_label("P+07") == "PZp07");
+  CHECK(participant_label("PZd07") == "PZZd07");
+  CHECK(plain_label("comparison-textures") == "comparisontextures");
+  CHECK(plain_label("--") == "study");
+}
+
+TEST_CASE("A study as BIDS keeps to the specification, with traces, database and without") {
+  FakeStudy study(Protocol::comparison, {.label = "bark \"old\""});
+  fill(study);
+  study.close_and_unblind();
+  const OpenStudy open(study);
+  const fs::path out = study.folder() / "bids";
+  DatasetOptions options{.authors = {"A. Author"}, .license = "CC0", .institution = "A lab"};
+  export_bids(open.source, options, out);
+  CHECK(bids_faults(out) == kNoFaults);
+  options.traces = true;
+  options.database = study.database();
+  export_bids(open.source, options, out);
+  CHECK(bids_faults(out) == kNoFaults);
+  const fs::path copy = out / "sourcedata" / "study.db";
+  CHECK(StudyStore::open(copy, StudyStore::Access::read_only).trials() == study.store().trials());
+  CHECK_FALSE(is_there(copy.string() + ".key"));
+  const std::string report = text_of_file(out / "derivatives/touchtrial/results.json");
+  CHECK(report == report_json(make_report(open.outcomes)));
+}
+
+TEST_CASE("A BIDS recording holds the trace and its beginning") {
+  FakeStudy study(Protocol::classification);
+  fill(study);
+  study.close_and_unblind();
+  const OpenStudy open(study);
+  const fs::path out = study.folder() / "bids";
+  export_bids(open.source, {.traces = true}, out);
+  const fs::path stem = out / "sub-PZd01/beh/sub-PZd01_task-single_recording-trial002_stim";
+  const std::string rows = gunzip(read_file(stem.string() + ".tsv.gz"));
+  CHECK(rows.starts_with("0.000\t0.000\t-0.500\t0.00000\t0.00000\t0.25000\n0.100\t"));
+  CHECK(std::count(rows.begin(), rows.end(), '\n') == 20);
+  const auto sidecar = nlohmann::json::parse(text_of_file(stem.string() + ".json"));
+  CHECK(sidecar["StartTime"] == 20.0);
+  CHECK(sidecar["SamplingFrequency"] == 1000.0);
+  CHECK(sidecar["stamp"] == "SIMULATED");
+}
+
+TEST_CASE("A BIDS dataset loses its traces and withdrawn participants when it is exported again") {
+  FakeStudy study(Protocol::classification);
+  fill(study);
+  study.close_and_unblind();
+  const fs::path out = study.folder() / "bids";
+  export_bids(OpenStudy(study).source, {.traces = true}, out);
+  CHECK(is_there(out / "sub-PZd01"));
+  study.store().withdraw(1, milliseconds(2000), "asked to");
+  export_bids(OpenStudy(study).source, {}, out);
+  CHECK(bids_faults(out) == kNoFaults);
+  CHECK_FALSE(is_there(out / "sub-PZd01"));
+  for (const auto& [name, text] : contents(out)) {
+    INFO(name);
+    CHECK_FALSE(contains(text, "P-01"));
+    CHECK_FALSE(name.ends_with(".gz"));
+  }
+}
+
+TEST_CASE("Participants with several sessions have folders for them") {
+  FakeStudy study(Protocol::classification, {.simulated = false});
+  study.add({.participant = "P01",
+             .enrolment = 1,
+             .answers = FakeStudy::always_right(),
+             .complete = false,
+             .stop_after = 3});
+  study.store().replace(1, "P01", milliseconds(900), "the device failed");
+  study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()});
+  study.add({.participant = "P02", .enrolment = 2, .answers = FakeStudy::always_right()});
+  study.close_and_unblind();
+  const fs::path out = study.folder() / "bids";
+  export_bids(OpenStudy(study).source, {}, out);
+  CHECK(bids_faults(out) == kNoFaults);
+  CHECK(is_there(out / "sub-P01/ses-2/beh/sub-P01_ses-2_task-single_beh.tsv"));
+  CHECK(is_there(out / "sub-P02/ses-1/beh/sub-P02_ses-1_task-single_beh.tsv"));
+  CHECK(is_there(out / "sub-P01/sub-P01_sessions.tsv"));
+}
+
+TEST_CASE("Before unblinding datasets have no word of what was presented or answered") {
+  FakeStudy study(Protocol::comparison, {.label = "petrified wood"});
+  fill(study);
+  const DatasetSource source{study.store()};
+  const fs::path bids = study.folder() / "bids";
+  const fs::path psych = study.folder() / "psych";
+  export_bids(source, {.database = study.database()}, bids);
+  export_psych_ds(source, {}, psych);
+  CHECK(bids_faults(bids) == kNoFaults);
+  CHECK(psych_ds_faults(psych) == kNoFaults);
+  for (const fs::path& folder : {bids, psych}) {
+    for (const auto& [name, text] : contents(folder)) {
+      INFO(name);
+      if (name == "sourcedata/study.db") continue;  // what a database tells is tested there
+      for (const char* secret : {"petrified", "cloth", "straw", "tv-gabor", "trial_type"}) {
+        CHECK_FALSE(contains(text, secret));
+      }
+    }
+  }
+  CHECK_THROWS_AS(export_bids(source, {.traces = true}, bids), UsageError);
+  CHECK_THROWS_AS(export_bids(source, {.stimuli = true}, bids), UsageError);
+}
+
+TEST_CASE("A study as Psych-DS keeps to the schema") {
+  FakeStudy study(Protocol::comparison,
+                  {.label = "bark, \"old\"", .trials = R"({"lead_in": 1, "catch": 1})"});
+  fill(study);
+  study.store().withdraw(3, milliseconds(900), "asked to");
+  study.close_and_unblind();
+  const fs::path out = study.folder() / "psych";
+  export_psych_ds(OpenStudy(study).source, {.authors = {"A. Author"}, .license = "CC0"}, out);
+  CHECK(psych_ds_faults(out) == kNoFaults);
+  for (const auto& [name, text] : contents(out)) CHECK_FALSE(contains(text, "P03"));
+  const std::string description = text_of_file(out / "dataset_description.json");
+  CHECK(contains(description, "SIMULATED"));
+}
+
+TEST_CASE("The checkers of datasets find what is wrong") {
+  FakeStudy study(Protocol::classification);
+  fill(study);
+  study.close_and_unblind();
+  const OpenStudy open(study);
+  const fs::path bids = study.folder() / "bids";
+  const fs::path psych = study.folder() / "psych";
+  export_bids(open.source, {.traces = true}, bids);
+  export_psych_ds(open.source, {}, psych);
+  const auto spoilt = [](const fs::path& file, const std::string& text, const auto& faults_of) {
+    const std::string before = text_of_file(file);
+    replace_file(file, text);
+    const bool found = !faults_of(file).empty();
+    replace_file(file, before);
+    return found;
+  };
+  const auto in_bids = [&](const fs::path&) { return bids_faults(bids); };
+  const auto in_psych = [&](const fs::path&) { return psych_ds_faults(psych); };
+  const fs::path trials = bids / "sub-P03/beh/sub-P03_task-single_beh.tsv";
+  CHECK(spoilt(trials, text_of_file(trials) + "1\t2\n", in_bids));
+  CHECK(spoilt(trials, "colour\nred\n", in_bids));
+  CHECK(spoilt(trials, "stim_file\nnone.png\n", in_bids));
+  CHECK(spoilt(bids / "participants.tsv", "participant_id\nsub-other\n", in_bids));
+  CHECK(spoilt(bids / "task-single_beh.json", "{}", in_bids));
+  CHECK(spoilt(bids / "README", "short", in_bids));
+  replace_file(bids / "stray.tsv", "a\n1\n");
+  CHECK_FALSE(bids_faults(bids).empty());
+  const fs::path table = psych / "data/study-single_description-trials_data.csv";
+  CHECK(spoilt(table, "colour\nred\n", in_psych));
+  CHECK(spoilt(psych / "dataset_description.json", "{}", in_psych));
+  replace_file(psych / "data/notes.csv", "a\n1\n");
+  CHECK_FALSE(psych_ds_faults(psych).empty());
+}
+
+}  // namespace touchtrial
