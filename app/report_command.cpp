@@ -1,4 +1,7 @@
+#include "analysis/cues/cue_report.hpp"
+#include "analysis/figures/figures.hpp"
 #include "analysis/outcomes.hpp"
+#include "analysis/page/drawn_figures.hpp"
 #include "analysis/page/report_folder.hpp"
 #include "analysis/page/study_document.hpp"
 #include "analysis/report/quality.hpp"
@@ -8,6 +11,7 @@
 #include "app/key_of_database.hpp"
 #include "protocols/store/study_store.hpp"
 
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 
@@ -16,17 +20,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// More traces than these are read only if somebody asks: it takes seconds.
+constexpr int kTracesUnasked = 2500;
+
 struct ReportArguments {
   fs::path database;
   fs::path key;
   fs::path folder;
+  std::string cues = "auto";
+  bool paper_values = false;
   bool json = false;
 };
 
-void write_report(const ReportArguments& arguments, const Document& document,
-                  const std::string& results) {
-  write_report_folder(arguments.folder, report_files(document, results));
+void write_report(const ReportArguments& arguments, const ReportFiles& files) {
+  write_report_folder(arguments.folder, files);
   print((arguments.folder / "report.html").string() + "\n");
+}
+
+Provenance provenance_for(const StudyStore& store, const ReportArguments& arguments) {
+  return provenance_of(store, arguments.database.filename().string());
 }
 
 int report_quality(const StudyStore& store, const ReportArguments& arguments) {
@@ -35,9 +47,29 @@ int report_quality(const StudyStore& store, const ReportArguments& arguments) {
     print(arguments.json ? quality_json(quality) : quality_text(quality));
     return 0;
   }
-  const Provenance provenance = provenance_of(store, arguments.database.filename().string());
-  write_report(arguments, quality_document(quality, load_collection(store), provenance),
-               quality_json(quality));
+  const Document document =
+      quality_document(quality, load_collection(store), provenance_for(store, arguments));
+  write_report(arguments, report_files(document, quality_json(quality)));
+  return 0;
+}
+
+bool reads_traces(const ReportArguments& arguments, const Outcomes& outcomes) {
+  if (arguments.cues != "auto") return arguments.cues == "yes";
+  return !arguments.folder.empty() && traces_to_read(outcomes) <= kTracesUnasked;
+}
+
+int write_outcomes(const StudyStore& store, const StudyReport& report,
+                   const ReportArguments& arguments) {
+  const FigureOptions options{arguments.paper_values, report.cues ? &*report.cues : nullptr};
+  const DrawnFigures figures = draw_report_figures(report_figures(report, options));
+  if (!figures.missing.empty()) {
+    std::fputs(("touchtrial: warning: without figures: " + figures.missing + "\n").c_str(), stderr);
+  }
+  const Document document =
+      study_document(report, provenance_for(store, arguments), figures.pictures);
+  ReportFiles files = report_files(document, report_json(report));
+  files.insert(figures.files.begin(), figures.files.end());
+  write_report(arguments, files);
   return 0;
 }
 
@@ -46,13 +78,11 @@ int report(const ReportArguments& arguments) {
   if (!arguments.folder.empty()) refuse_other_study(arguments.folder, store.commitment().study);
   if (!store.state().unblinded) return report_quality(store, arguments);
   const StudyKey key = key_of_database(store, arguments.database, arguments.key);
-  const StudyReport outcomes = make_report(load_outcomes(store, key));
-  if (arguments.folder.empty()) {
-    print(arguments.json ? report_json(outcomes) : report_text(outcomes));
-    return 0;
-  }
-  const Provenance provenance = provenance_of(store, arguments.database.filename().string());
-  write_report(arguments, study_document(outcomes, provenance), report_json(outcomes));
+  const Outcomes outcomes = load_outcomes(store, key);
+  StudyReport study = make_report(outcomes);
+  if (reads_traces(arguments, outcomes)) study.cues = make_cues(store, key, outcomes);
+  if (!arguments.folder.empty()) return write_outcomes(store, study, arguments);
+  print(arguments.json ? report_json(study) : report_text(study));
   return 0;
 }
 
@@ -67,9 +97,17 @@ void add_report_command(CLI::App& program, Action& action) {
   auto* json = command->add_flag("--json", arguments->json, "One JSON object in place of tables");
   command
       ->add_option("-o,--out", arguments->folder,
-                   "Folder for a page with all tables, the tables as Markdown and LaTeX, and "
-                   "results.json")
+                   "Folder for a page with all tables and figures, the tables as Markdown and "
+                   "LaTeX, the figures as SVG and PDF, and results.json")
       ->excludes(json);
+  command
+      ->add_option("--cues", arguments->cues,
+                   "Read all traces for ideal observers; auto: with --out, up to 2,500 traces")
+      ->check(CLI::IsMember({"auto", "yes", "no"}))
+      ->capture_default_str();
+  command->add_flag("--paper-values", arguments->paper_values,
+                    "The source paper's accuracies as marks in the figure by class: other images, "
+                    "another device");
   command->callback([=, &action] { action = [=] { return report(*arguments); }; });
 }
 
