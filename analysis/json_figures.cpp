@@ -1,14 +1,27 @@
 #include "analysis/json_figures.hpp"
 
+#include <cmath>
+
 namespace touchtrial {
 
 nlohmann::ordered_json figure_json(std::optional<double> figure) {
-  if (!figure) return nullptr;
+  if (!figure || !std::isfinite(*figure)) return nullptr;
   return *figure;
 }
 
 nlohmann::ordered_json interval_json(const Interval& interval) {
-  return nlohmann::ordered_json::array({interval.low, interval.high});
+  return nlohmann::ordered_json::array({figure_json(interval.low), figure_json(interval.high)});
+}
+
+nlohmann::ordered_json interval_json(const std::optional<Interval>& interval) {
+  if (!interval) return nullptr;
+  return interval_json(*interval);
+}
+
+void put_proportion(nlohmann::ordered_json& object, const Proportion& proportion) {
+  object["n"] = proportion.n;
+  object["correct"] = proportion.correct;
+  object["p"] = figure_json(proportion.share());
 }
 
 void put_stamp(nlohmann::ordered_json& object, bool simulated) {

@@ -13,11 +13,16 @@
 
 namespace touchtrial {
 
-/// The number, or null where it does not exist.
+/// The number, or null where it does not exist or is not finite.
 [[nodiscard]] nlohmann::ordered_json figure_json(std::optional<double> figure);
 
 /// [low, high]
 [[nodiscard]] nlohmann::ordered_json interval_json(const Interval& interval);
+/// The same, or null where there is none.
+[[nodiscard]] nlohmann::ordered_json interval_json(const std::optional<Interval>& interval);
+
+/// Adds n, correct and p to an object that may have begun with a name.
+void put_proportion(nlohmann::ordered_json& object, const Proportion& proportion);
 
 [[nodiscard]] nlohmann::ordered_json statistics_json(const GlcmStatistics& statistics);
 
@@ -27,6 +32,8 @@ void put_stamp(nlohmann::ordered_json& object, bool simulated);
 /// Indented, ending with a line feed; bytes that are no UTF-8 become replacement characters.
 [[nodiscard]] std::string json_text(const nlohmann::ordered_json& object);
 
+/// How sessions were conducted: prescription, flow, deviations, sessions.
+[[nodiscard]] nlohmann::ordered_json collection_object(const Collection& collection);
 [[nodiscard]] nlohmann::ordered_json report_object(const StudyReport& report);
 [[nodiscard]] nlohmann::ordered_json quality_object(const QualityReport& report);
 

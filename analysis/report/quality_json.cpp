@@ -44,6 +44,7 @@ nlohmann::ordered_json quality_object(const QualityReport& report) {
                      {"lowest_rate_hz", figure_json(quality.lowest_rate_hz)}};
   if (report.servo) put_real_time(object["servo"], *report.servo);
   if (report.visual) object["visual"] = true;
+  object["collection"] = collection_object(report.collection);
   return object;
 }
 

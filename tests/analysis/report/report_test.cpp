@@ -118,11 +118,17 @@ TEST_CASE("report_json has the published keys in their order") {
     return keys;
   };
   CHECK(keys_of(json) ==
-        "study protocol simulated stamp participants trials classes methods comparison warnings ");
+        "study protocol simulated stamp participants trials classes methods comparison warnings "
+        "pairs "
+        "accuracy_intervals reaction_times registration collection references ");
   CHECK(keys_of(json["methods"][1]) ==
-        "method confusion no_response accuracy overall information_transfer per_participant ");
-  CHECK(keys_of(json["methods"][1]["accuracy"][0]) == "class n correct p wilson clopper_pearson ");
-  CHECK(keys_of(json["methods"][1]["overall"]) == "n correct p mean interval ");
+        "method confusion no_response accuracy overall information_transfer per_participant "
+        "marginals chance d_prime best_matching choice_model reaction_time_s breakdowns "
+        "robustness ");
+  CHECK(keys_of(json["methods"][1]["accuracy"][0]) ==
+        "class n correct p wilson clopper_pearson jeffreys ");
+  CHECK(keys_of(json["methods"][1]["overall"]) ==
+        "n correct p mean interval sd bootstrap method references ");
   CHECK(keys_of(json["comparison"]) == "difference interval p db ");
   CHECK(json["methods"][1]["confusion"] ==
         nlohmann::ordered_json({{4, 0, 4}, {0, 8, 0}, {0, 0, 8}}));

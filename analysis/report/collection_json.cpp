@@ -1,0 +1,101 @@
+#include "analysis/json_figures.hpp"
+
+#include <map>
+
+namespace touchtrial {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json prescription_json(const Prescription& prescription) {
+  return {{"explore_limit_s", figure_json(prescription.explore_limit_s)},
+          {"on_timeout", prescription.on_timeout},
+          {"order", prescription.order},
+          {"repeats", prescription.repeats},
+          {"sight", prescription.sight},
+          {"masking",
+           {{"wanted", prescription.masking_wanted},
+            {"level_dbfs", figure_json(prescription.masking_dbfs)}}}};
+}
+
+Json flow_json(const ParticipantFlow& flow) {
+  return {{"enrolled", flow.enrolled},
+          {"withdrawn", flow.withdrawn},
+          {"replaced", flow.replaced},
+          {"excluded", flow.excluded},
+          {"exclusion_reasons", flow.exclusion_reasons},
+          {"stopped", flow.stopped},
+          {"open", flow.open},
+          {"other_kind", flow.other_kind},
+          {"unseen", flow.unseen},
+          {"analysed", flow.analysed}};
+}
+
+std::string name_of(SessionState state) {
+  switch (state) {
+    case SessionState::open:
+      return "open";
+    case SessionState::completed:
+      return "completed";
+    case SessionState::stopped:
+      break;
+  }
+  return "stopped";
+}
+
+Json practice_json(const std::optional<PracticeRecord>& practice) {
+  if (!practice) return nullptr;
+  return {{"rounds", practice->rounds},
+          {"presentations", practice->presentations},
+          {"correct", practice->correct},
+          {"passed", practice->passed}};
+}
+
+Json session_json(const SessionRecord& session) {
+  Json object{{"session", session.row.session}, {"state", name_of(session.row.state)}};
+  object["withdrawn"] = session.row.withdrawn;
+  if (session.row.withdrawn) return object;
+  object["participant"] = session.row.participant;
+  object["excluded"] = session.row.excluded;
+  object["replaced_by"] = session.row.replaced_by;
+  object["device"] = session.row.device;
+  object["device_serial"] = session.device_serial;
+  object["practice"] = practice_json(session.practice);
+  object["exclusion_reason"] = session.exclusion_reason;
+  object["replacement_reason"] = session.replacement_reason;
+  object["stop_reason"] = session.stop_reason;
+  object["resumed"] = session.resumed;
+  object["deviations"] = Json::array();
+  for (const auto& [code, text] : session.deviations) {
+    object["deviations"].push_back({{"code", code}, {"text", text}});
+  }
+  return object;
+}
+
+/// In how many sessions each deviation was recorded.
+Json deviations_json(const Collection& collection) {
+  std::map<std::string, int> sessions;
+  for (const SessionRecord& session : collection.sessions) {
+    std::map<std::string, int> own;
+    for (const Deviation& deviation : session.deviations) own[deviation.code] = 1;
+    for (const auto& [code, once] : own) sessions[code] += once;
+  }
+  Json all = Json::object();
+  for (const auto& [code, n] : sessions) all[code] = n;
+  return all;
+}
+
+}  // namespace
+
+nlohmann::ordered_json collection_object(const Collection& collection) {
+  Json sessions = Json::array();
+  for (const SessionRecord& session : collection.sessions) {
+    sessions.push_back(session_json(session));
+  }
+  return {{"prescription", prescription_json(collection.prescription)},
+          {"flow", flow_json(collection.flow)},
+          {"deviations", deviations_json(collection)},
+          {"sessions", std::move(sessions)}};
+}
+
+}  // namespace touchtrial
