@@ -124,8 +124,15 @@ void put_difference(Figures& figures, const Ranking& ranking) {
       figures[kMatchedAt + ranking.second] - figures[kMatchedAt + ranking.best];
 }
 
-std::vector<Figures> drawn(const std::vector<Sums>& participants, int classes,
-                           const Ranking& ranking, std::uint64_t index, int jobs) {
+/// What studies of as many participants, drawn from these, would have found.
+struct Draws {
+  std::size_t participants = 0;
+  std::vector<Figures> figures{};  ///< none if there is but one participant
+};
+
+Draws drawn(const std::vector<Sums>& participants, int classes, const Ranking& ranking,
+            std::uint64_t index, int jobs) {
+  if (participants.size() < 2) return {participants.size()};
   std::vector<Figures> draws(kBootstrapDraws);
   const auto draw = [&](std::size_t i) {
     // A stream for each draw, so that it does not matter which thread makes it.
@@ -138,31 +145,27 @@ std::vector<Figures> drawn(const std::vector<Sums>& participants, int classes,
     put_difference(draws[i], ranking);
   };
   in_parallel(jobs, draws.size(), draw);
-  return draws;
+  return {participants.size(), std::move(draws)};
 }
 
-/// The (R + 1) q th of R draws in order, on both sides.
-std::optional<Interval> percentiles(const std::vector<Figures>& draws, std::size_t figure) {
+/// Nothing if a single draw leaves the figure undefined.
+std::optional<Interval> interval_of(const Draws& draws, std::size_t figure) {
   std::vector<double> values;
-  for (const Figures& one : draws) {
+  for (const Figures& one : draws.figures) {
     if (std::isnan(one[figure])) return std::nullopt;
     values.push_back(one[figure]);
   }
   if (values.empty()) return std::nullopt;
-  std::ranges::sort(values);
-  constexpr double kTail = 0.5 * (1.0 - kConfidenceLevel);
-  const auto from_end =
-      static_cast<std::size_t>(std::lround(kTail * static_cast<double>(values.size() + 1)));
-  return Interval{values[from_end - 1], values[values.size() - from_end]};
+  return expanded_percentiles(std::move(values), draws.participants);
 }
 
-CueFigure figure_at(std::size_t at, const Figures& observed, const std::vector<Figures>& draws) {
+CueFigure figure_at(std::size_t at, const Figures& observed, const Draws& draws) {
   if (std::isnan(observed[at])) return {};
-  return {observed[at], percentiles(draws, at)};
+  return {observed[at], interval_of(draws, at)};
 }
 
 std::optional<CueMatch> match_of(const Ranking& ranking, const Figures& observed,
-                                 const std::vector<Figures>& draws) {
+                                 const Draws& draws) {
   if (std::isnan(observed[kDifferenceAt])) return std::nullopt;
   CueMatch match;
   match.best = kCues[ranking.best];
@@ -184,8 +187,7 @@ CueStatistics cue_statistics(std::span<const ParticipantAnswers> participants, s
   Figures observed = figures_of(together);
   const Ranking ranking = ranking_of(observed);
   put_difference(observed, ranking);
-  std::vector<Figures> draws;
-  if (each.size() > 1) draws = drawn(each, classes, ranking, index, jobs);
+  const Draws draws = drawn(each, classes, ranking, index, jobs);
   CueStatistics statistics;
   for (std::size_t i = 0; i < kObservers; ++i) {
     statistics.efficiency[i] = figure_at(kEfficiencyAt + i, observed, draws);

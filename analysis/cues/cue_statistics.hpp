@@ -1,5 +1,5 @@
 /// \file Efficiencies and divergences of one method, with intervals over participants.
-/// Source: docs/cues.md; Davison, Hinkley 1997, section 5.2 (percentiles).
+/// Source: docs/cues.md; docs/statistics.md, "Participants as clusters".
 #pragma once
 
 #include "analysis/cues/cue_report.hpp"
@@ -21,7 +21,7 @@ struct CueStatistics {
   std::optional<CueMatch> match;
 };
 
-/// Every figure's interval is the percentile interval (95 %) of 9,999 draws of whole participants
+/// Every figure's interval is expanded_percentiles (95 %) of 9,999 draws of whole participants
 /// with replacement, the same draws for all; a figure that a draw leaves undefined (an observer at
 /// or below chance, for what is corrected) has none.
 /// \param participants  of the same number of classes, each with a trial

@@ -81,7 +81,7 @@ Json by_json() {
        "with Student's t interval"},
       {"human", "mean over participants with Student's t interval, on the same trials"},
       {"efficiency",
-       "mean accuracy over mean available accuracy; percentile interval of a cluster bootstrap "
+       "mean accuracy over mean available accuracy; expanded percentiles of a cluster bootstrap "
        "over participants, 9,999 draws (Davison, Hinkley 1997)"},
       {"efficiency_above_chance", "the same with chance taken from both"},
       {"divergence_bits",

@@ -82,7 +82,8 @@ Table pair_table(const StudyReport& report) {
   }
   table.notes = {
       {"Mean of participants' differences, with Student's t interval.", {Source::student}},
-      {"Bootstrap: percentiles over draws of whole participants.", {Source::davison_hinkley}},
+      {"Bootstrap: expanded percentiles over draws of whole participants.",
+       {Source::davison_hinkley, Source::hesterberg}},
       {"Sign-flip permutation over participants, two-sided.", {Source::phipson_smyth}},
       {"Odds ratio: common to participants, each a stratum, with its interval.",
        {Source::mantel_haenszel, Source::robins_breslow_greenland}},

@@ -79,8 +79,8 @@ Table headline_table(const StudyReport& report) {
   for (const MethodReport& method : report.methods) table.rows.push_back(headline_row(method));
   table.notes = {
       {"Mean of participants' own proportions, with Student's t interval.", {Source::student}},
-      {"Bootstrap: percentiles over draws of whole participants with all their trials.",
-       {Source::davison_hinkley}},
+      {"Bootstrap: expanded percentiles over draws of whole participants with all their trials.",
+       {Source::davison_hinkley, Source::hesterberg}},
       {"Above chance: permutation over the orders that the study's design could have dealt, "
        "one-sided.",
        {Source::phipson_smyth}},

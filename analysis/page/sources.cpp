@@ -18,6 +18,10 @@ std::string_view citation_of(Source source) noexcept {
     case Source::davison_hinkley:
       return "Davison, A. C., & Hinkley, D. V. (1997). Bootstrap Methods and their Application. "
              "Cambridge University Press.";
+    case Source::hesterberg:
+      return "Hesterberg, T. C. (2015). What teachers should know about the bootstrap: Resampling "
+             "in "
+             "the undergraduate statistics curriculum. The American Statistician, 69(4), 371–386.";
     case Source::phipson_smyth:
       return "Phipson, B., & Smyth, G. K. (2010). Permutation p-values should never be zero: "
              "calculating exact p-values when permutations are randomly drawn. Statistical "

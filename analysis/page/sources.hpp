@@ -12,6 +12,7 @@ enum class Source {
   brown_cai_dasgupta,
   student,
   davison_hinkley,
+  hesterberg,
   phipson_smyth,
   green_swets,
   hacker_ratcliff,

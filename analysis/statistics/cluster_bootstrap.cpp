@@ -9,6 +9,9 @@
 #include <string_view>
 #include <vector>
 
+#include <boost/math/distributions/normal.hpp>
+#include <boost/math/distributions/students_t.hpp>
+
 namespace touchtrial {
 namespace {
 
@@ -65,12 +68,22 @@ double percentile(const std::vector<double>& sorted, double share) {
   return sorted[at] + std::max(0.0, place - below) * (sorted[at + 1] - sorted[at]);
 }
 
-Interval percentile_interval(std::vector<double> statistics, double level) {
-  std::sort(statistics.begin(), statistics.end());
-  return {percentile(statistics, (1.0 - level) / 2.0), percentile(statistics, (1.0 + level) / 2.0)};
+/// The share of a statistic's distribution to leave out at either end.
+double expanded_tail(std::size_t participants, double level) {
+  const auto n = static_cast<double>(participants);
+  const double t = boost::math::quantile(boost::math::students_t(n - 1.0), 0.5 * (1.0 + level));
+  return boost::math::cdf(boost::math::normal(), -t * std::sqrt(n / (n - 1.0)));
 }
 
 }  // namespace
+
+Interval expanded_percentiles(std::vector<double> draws, std::size_t participants, double level) {
+  require_arguments(participants, static_cast<int>(draws.size()), level);
+  if (participants < 2) throw std::invalid_argument("a bootstrap takes two participants or more");
+  std::sort(draws.begin(), draws.end());
+  const double tail = expanded_tail(participants, level);
+  return {percentile(draws, tail), percentile(draws, 1.0 - tail)};
+}
 
 std::optional<Interval> cluster_bootstrap(std::span<const Proportion> participants,
                                           std::uint64_t index, int draws, double level) {
@@ -94,7 +107,7 @@ std::optional<Interval> cluster_bootstrap(std::span<const Proportion> participan
     }
     share = static_cast<double>(correct) / static_cast<double>(n);
   }
-  return percentile_interval(std::move(shares), level);
+  return expanded_percentiles(std::move(shares), participants.size(), level);
 }
 
 std::optional<Interval> bootstrap_mean(std::span<const double> values, std::uint64_t index,
@@ -112,7 +125,7 @@ std::optional<Interval> bootstrap_mean(std::span<const double> values, std::uint
     for (std::size_t i = 0; i < values.size(); ++i) sum += values[drawn.next()];
     mean = sum / static_cast<double>(values.size());
   }
-  return percentile_interval(std::move(means), level);
+  return expanded_percentiles(std::move(means), values.size(), level);
 }
 
 }  // namespace touchtrial

@@ -34,11 +34,12 @@ TEST_CASE("cluster_bootstrap finds the quantiles of all possible draws") {
   const std::vector<Proportion> five{{25, 12}, {24, 20}, {25, 25}, {20, 13}, {25, 18}};
   const std::vector<double> shares = every_draw(five);
   const Interval interval = *cluster_bootstrap(five, 0, 99'999);
-  // Four standard errors of a share of .025 in 99,999 draws are .002.
-  CHECK(interval.low >= shares[static_cast<std::size_t>(0.023 * 3125)]);
-  CHECK(interval.low <= shares[static_cast<std::size_t>(0.027 * 3125)]);
-  CHECK(interval.high >= shares[static_cast<std::size_t>(0.973 * 3125)]);
-  CHECK(interval.high <= shares[static_cast<std::size_t>(0.977 * 3125)]);
+  // Five participants: t of 4 degrees is 2.7764, times sqrt(5 / 4) 3.1041; below minus that lie
+  // .000954. Four standard errors of that share in 99,999 draws are .0004.
+  CHECK(interval.low >= shares[static_cast<std::size_t>(0.0005 * 3125)]);
+  CHECK(interval.low <= shares[static_cast<std::size_t>(0.0014 * 3125)]);
+  CHECK(interval.high >= shares[static_cast<std::size_t>(0.9986 * 3125) - 1]);
+  CHECK(interval.high <= shares[static_cast<std::size_t>(0.9995 * 3125)]);
 }
 
 TEST_CASE("Of two participants a bootstrap gives the two") {
