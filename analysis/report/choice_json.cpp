@@ -23,13 +23,15 @@ nlohmann::ordered_json choice_object(const ChoiceModel& model) {
   for (const double figure : model.bias) bias.push_back(figure_json(figure));
   Json object{{"similarity", rows_json(model.similarity)},
               {"bias", std::move(bias)},
+              {"group", model.group},
               {"expected", rows_json(model.expected)},
               {"g_squared", figure_json(model.g_squared)},
               {"degrees_of_freedom", model.degrees_of_freedom},
               {"p", figure_json(model.p)},
               {"converged", model.converged}};
   put_method(object,
-             "similarity choice model, maximum likelihood; p of G squared under chi-square against "
+             "similarity choice model, maximum likelihood; biases sum to 1 within a group of "
+             "classes that answers lead between both ways; p of G squared under chi-square against "
              "the saturated model",
              {"luce1963", "townsend1982"});
   return object;

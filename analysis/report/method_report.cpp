@@ -70,6 +70,7 @@ void add_confusions(int classes, const CountedTrials& counted, int method, Metho
   report.overall = report.confusion.accuracy();
   report.information = information_transfer(classes, choices, static_cast<std::uint64_t>(method),
                                             null_deals(report.overall.n));
+  report.choice = choice_model(report.confusion);
   report.matching = best_label_matching(report.confusion);
   report.d_prime = d_prime(report.overall, classes);
 }
@@ -83,6 +84,7 @@ MethodReport method_report(const Outcomes& outcomes, int method, const CountedTr
   add_confusions(classes, counted, method, report);
   add_class_accuracies(report);
   add_participants(classes, counted, method, report);
+  report.chance = chance_of(outcomes, method);
   report.reaction = reaction_times(outcomes, method);
   report.breakdowns = breakdowns(outcomes, method);
   report.robustness = robustness(outcomes, method);
