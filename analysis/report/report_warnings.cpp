@@ -1,9 +1,9 @@
 #include "analysis/report/report_warnings.hpp"
 
+#include "analysis/report/figure_warnings.hpp"
 #include "analysis/text_figures.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 
 #include <fmt/format.h>
@@ -126,27 +126,6 @@ void warn_of_information(const StudyReport& report, Warnings& warnings) {
   }
 }
 
-void warn_of_comparison(const Outcomes& outcomes, const StudyReport& report, Warnings& warnings) {
-  if (report.methods.size() > 2) {
-    warnings.emplace_back("Three or more methods: no two of them are compared here.");
-  }
-  if (!report.comparison) return;
-  const int n = report.comparison->participants;
-  if (n > 0 && std::ldexp(2.0, -n) > 0.05) {
-    warnings.push_back(
-        fmt::format("With {} the sign-flip p cannot fall below {}, whatever the methods do.",
-                    counted(n, "participant"), std::ldexp(2.0, -n)));
-  }
-  const bool one_image_each =
-      std::all_of(outcomes.exemplars.begin(), outcomes.exemplars.end(),
-                  [](const std::vector<std::string>& images) { return images.size() == 1; });
-  if (one_image_each) {
-    warnings.push_back(
-        fmt::format("The comparison holds for these {} images; it does not generalise over images.",
-                    outcomes.exemplars.size()));
-  }
-}
-
 }  // namespace
 
 std::vector<std::string> report_warnings(const Outcomes& outcomes, const StudyReport& report) {
@@ -156,7 +135,10 @@ std::vector<std::string> report_warnings(const Outcomes& outcomes, const StudyRe
   warn_of_time_outs(report, warnings);
   warn_of_participants(report, warnings);
   warn_of_information(report, warnings);
-  warn_of_comparison(outcomes, report, warnings);
+  for (const Warnings& more :
+       {figure_warnings(outcomes, report), comparison_warnings(outcomes, report)}) {
+    warnings.insert(warnings.end(), more.begin(), more.end());
+  }
   return warnings;
 }
 

@@ -247,6 +247,11 @@ to bear in mind [SIMULATED]
     classes.
   - tv-gabor: information transfer from 23 trials is biased upward; 45 are the usual minimum for 3
     classes.
+  - adaptive: everything was right, so that d' has a lower bound alone and differences cannot show.
+  - One participant's accuracy with one class rests on 5 trials or fewer in 12 of 12 cells: its
+    interval is nearly uninformative, even of 5 of 5 (56.6 to 100 %, Wilson).
+  - 2 participants are few: the design can show large effects alone, how people differ hardly at
+    all, and the t interval leans on normality.
   - With 2 participants the sign-flip p cannot fall below 0.5, whatever the methods do.
   - The comparison holds for these 3 images; it does not generalise over images.
 
