@@ -1,3 +1,4 @@
+#include "analysis/cues/cues_json.hpp"
 #include "analysis/json_figures.hpp"
 #include "analysis/report/references.hpp"
 #include "analysis/report/report_sections.hpp"
@@ -70,6 +71,7 @@ nlohmann::ordered_json report_object(const StudyReport& report) {
   object["reaction_times"] = quantiles_json();
   object["registration"] = registration_object(report.registration);
   object["collection"] = collection_object(report.collection);
+  if (report.cues) object["cues"] = cues_object(*report.cues);
   object["references"] = references_object();
   return object;
 }

@@ -1,4 +1,5 @@
 #include "analysis/report/report.hpp"
+#include "analysis/report/report_text_parts.hpp"
 #include "analysis/text_figures.hpp"
 #include "analysis/text_table.hpp"
 
@@ -15,6 +16,23 @@ std::string cell(int count, int row_total) {
   return fmt::format("{} {:>6}", count, '(' + percent(percentage(count, row_total), 0) + ')');
 }
 
+/// How often each answer was given: beside how often it was there, what is preferred.
+std::vector<std::string> answered_row(const ConfusionMatrix& confusion) {
+  std::vector<std::string> row{"all"};
+  int missing = 0;
+  int all = 0;
+  for (int j = 0; j < confusion.classes(); ++j) {
+    int answered = 0;
+    for (int i = 0; i < confusion.classes(); ++i) answered += confusion.count(i, j);
+    row.push_back(std::to_string(answered));
+    missing += confusion.no_response(j);
+    all += confusion.presented(j);
+  }
+  row.push_back(std::to_string(missing));
+  row.push_back(std::to_string(all));
+  return row;
+}
+
 std::string confusion_text(const MethodReport& method, const std::vector<std::string>& classes) {
   std::vector<std::string> header{"presented"};
   header.insert(header.end(), classes.begin(), classes.end());
@@ -29,6 +47,7 @@ std::string confusion_text(const MethodReport& method, const std::vector<std::st
     row.push_back(std::to_string(n));
     table.add(row);
   }
+  table.add(answered_row(confusion));
   return table.text();
 }
 
@@ -57,22 +76,6 @@ std::string participants_text(const MethodReport& method) {
     text += fmt::format("{}{:<{}} {:>7} {:>6}{}", i % per_line == 0 ? "  " : "   ", one.participant,
                         name_width, fmt::format("{}/{}", one.accuracy.correct, one.accuracy.n),
                         percent_of(one.accuracy), last ? "\n" : "");
-  }
-  return text;
-}
-
-std::string overall_text(const MethodReport& method) {
-  std::string text =
-      fmt::format("  mean over {} {}, 95 % interval {}\n  pooled {} of {}, {}\n",
-                  counted(method.mean.participants, "participant"),
-                  percent_of_share(method.mean.mean), percent_range(method.mean.interval),
-                  method.overall.correct, method.overall.n, percent_of(method.overall));
-  const InformationTransfer& information = method.information;
-  if (information.raw) {
-    text += fmt::format(
-        "  information transfer {:.2f} bit raw, {:.2f} corrected, {:.2f} if answers were dealt at "
-        "random\n",
-        *information.raw, information.corrected.value_or(0.0), information.null_mean.value_or(0.0));
   }
   return text;
 }
@@ -131,8 +134,10 @@ std::string report_text(const StudyReport& report) {
   text += fmt::format("{} ({}): {}, {}; chance is {}\n", report.study, report.protocol,
                       counted(report.participants, "participant"), counted(report.trials, "trial"),
                       percent(100.0 / static_cast<double>(report.classes.size()), 1));
+  text += flow_text(report.collection.flow);
   for (const MethodReport& method : report.methods) text += method_text(report, method);
   if (report.comparison) text += comparison_text(report);
+  text += pairs_text(report);
   text += warnings_text(report);
   if (report.simulated) text += '\n' + simulated_line(report.simulated);
   return text;

@@ -189,12 +189,14 @@ TEST_CASE("report_text keeps its layout") {
   const std::string text = report_text(make_report(load_outcomes(study.store(), study.key())));
   CHECK(text == R"(SIMULATED: these figures come from simulated participants.
 pair (comparison): 2 participants, 48 trials; chance is 33.3%
+2 enrolled, 2 analysed
 
 adaptive: confusions (rows: presented, columns: answered; count and row %) [SIMULATED]
-  presented      bark     cloth     straw  no response  n
-  bark       8 (100%)         .         .            .  8
-  cloth             .  8 (100%)         .            .  8
-  straw             .         .  8 (100%)            .  8
+  presented      bark     cloth     straw  no response   n
+  bark       8 (100%)         .         .            .   8
+  cloth             .  8 (100%)         .            .   8
+  straw             .         .  8 (100%)            .   8
+  all               8         8         8            0  24
 
 adaptive: accuracy of each class [SIMULATED]
   class  n  correct  accuracy    Wilson 95 %  Clopper-Pearson 95 %
@@ -206,15 +208,18 @@ adaptive: accuracy of each participant [SIMULATED]
   P01     12/12 100.0%   Ann+1   12/12 100.0%
 
 adaptive: overall [SIMULATED]
-  mean over 2 participants 100.0%, 95 % interval [100.0, 100.0]
-  pooled 24 of 24, 100.0%
+  mean over 2 participants 100.0%, 95 % interval [100.0, 100.0], bootstrap [100.0, 100.0]
+  pooled 24 of 24, 100.0%; by chance 8.0, p = 8.33e-10 (exact)
+  100.0% under the best exchange of labels
   information transfer 1.58 bit raw, 1.46 corrected, 0.14 if answers were dealt at random
+  answered after 4.25 s [4.25, 4.25] (median, quartiles), 3.75 s [3.75, 3.75] from contact
 
 tv-gabor: confusions (rows: presented, columns: answered; count and row %) [SIMULATED]
-  presented      bark     cloth     straw  no response  n
-  bark       4  (50%)         .  4  (50%)            .  8
-  cloth             .  7  (88%)         .     1  (12%)  8
-  straw             .         .  8 (100%)            .  8
+  presented      bark     cloth     straw  no response   n
+  bark       4  (50%)         .  4  (50%)            .   8
+  cloth             .  7  (88%)         .     1  (12%)   8
+  straw             .         .  8 (100%)            .   8
+  all               4         7        12            1  24
 
 tv-gabor: accuracy of each class [SIMULATED]
   class  n  correct  accuracy    Wilson 95 %  Clopper-Pearson 95 %
@@ -226,9 +231,12 @@ tv-gabor: accuracy of each participant [SIMULATED]
   P01      8/12  66.7%   Ann+1   11/12  91.7%
 
 tv-gabor: overall [SIMULATED]
-  mean over 2 participants 79.2%, 95 % interval [0.0, 100.0]
-  pooled 19 of 24, 79.2%
+  mean over 2 participants 79.2%, 95 % interval [0.0, 100.0], bootstrap [66.7, 91.7]
+  pooled 19 of 24, 79.2%; by chance 7.7, p = 5.83e-08 (exact)
+  79.2% under the best exchange of labels
   information transfer 1.10 bit raw, 0.98 corrected, 0.14 if answers were dealt at random
+  answered after 4.25 s [4.25, 4.25] (median, quartiles), 3.75 s [3.75, 3.75] from contact
+  mean of answered trials alone 83.3%
 
 adaptive beside tv-gabor (differences: first minus second) [SIMULATED]
   class  adaptive  tv-gabor  difference     dB
