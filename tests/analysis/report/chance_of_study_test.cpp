@@ -1,0 +1,134 @@
+#include "analysis/report/chance_of_study.hpp"
+
+#include "analysis/fake_study.hpp"
+#include "core/random.hpp"
+#include "support/catch.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+namespace {
+
+/// Whether a participant answers right, or has an answer that knows nothing of what was felt.
+enum class Sense { everything, nothing };
+
+Study study_with(const std::string& trials) {
+  auto text = nlohmann::json::parse(fake_study_text(Protocol::classification, "bark"));
+  text["trials"].update(nlohmann::json::parse(trials));
+  return parse_study(text.dump(), ".", "fake.json");
+}
+
+void add_session(Outcomes& outcomes, int session, Sense sense, RandomStream& random) {
+  for (const Presentation& shown : make_schedule(outcomes.design, session).presentations) {
+    TrialOutcome trial;
+    trial.row.session = session;
+    trial.row.trial = shown.trial;
+    trial.row.block = shown.block;
+    trial.row.state = TrialState::answered;
+    trial.stimulus = shown.stimulus;
+    trial.kind = shown.kind;
+    trial.scored = shown.kind == PresentationKind::scored;
+    trial.counted = trial.scored;
+    const auto guess = static_cast<int>(random.below(outcomes.classes.size()));
+    trial.response = sense == Sense::everything ? shown.stimulus.class_index : guess;
+    outcomes.trials.push_back(trial);
+  }
+}
+
+Outcomes outcomes_of(const Study& study, Sense sense, int participants, std::uint64_t index) {
+  Outcomes outcomes;
+  outcomes.design = study;
+  outcomes.classes = {"bark", "cloth", "straw"};
+  outcomes.methods = {"adaptive"};
+  RandomStream random(3, "chance of study: guesses", index);
+  for (int i = 1; i <= participants; ++i) add_session(outcomes, i, sense, random);
+  return outcomes;
+}
+
+constexpr const char* kRules[] = {R"({"order": "de-bruijn", "repeats": 3})",
+                                  R"({"order": "williams", "repeats": 4})",
+                                  R"({"max_run": 1, "repeats": 4})"};
+
+}  // namespace
+
+TEST_CASE("The order of a study says how chance is dealt") {
+  CHECK(dealt_order(study_with("{}")) == DealtOrder::permuted);
+  CHECK(dealt_order(study_with(R"({"order": "uniform"})")) == DealtOrder::independent);
+  for (const char* rule : kRules) CHECK(dealt_order(study_with(rule)) == DealtOrder::redrawn);
+}
+
+TEST_CASE("Guesses are above chance no more often than p says, whatever the order") {
+  constexpr int kStudies = 30;
+  for (const char* rule : kRules) {
+    CAPTURE(rule);
+    const Study study = study_with(rule);
+    int significant = 0;
+    double sum = 0.0;
+    for (int i = 0; i < kStudies; ++i) {
+      const auto test = chance_of(outcomes_of(study, Sense::nothing, 2, i), 0);
+      REQUIRE(test);
+      CHECK_FALSE(test->exact);
+      significant += test->p <= 0.05 ? 1 : 0;
+      sum += test->p;
+    }
+    CHECK(significant <= 5);  // binomial(30, 0.05): more in 0.3 % of runs
+    CHECK(sum / kStudies > 0.4);
+    CHECK(sum / kStudies < 0.7);  // p of counts are above 0.5 on average
+  }
+}
+
+TEST_CASE("Everything right is as far above chance as deals can tell") {
+  for (const char* rule : kRules) {
+    CAPTURE(rule);
+    const Outcomes outcomes = outcomes_of(study_with(rule), Sense::everything, 4, 0);
+    const auto test = chance_of(outcomes, 0);
+    REQUIRE(test);
+    CHECK(test->correct == test->trials);
+    CHECK(test->p == Approx(1.0 / (test->deals + 1.0)));
+    CHECK(test->expected == Approx(test->trials / 3.0).epsilon(0.05));
+  }
+}
+
+TEST_CASE("Trials that do not count leave the places of the others as they are") {
+  Outcomes outcomes = outcomes_of(study_with(kRules[0]), Sense::everything, 3, 0);
+  const int all = chance_of(outcomes, 0)->trials;
+  for (TrialOutcome& trial : outcomes.trials) {
+    if (trial.scored && trial.row.trial % 3 == 0) trial.counted = false;
+  }
+  const auto test = chance_of(outcomes, 0);
+  REQUIRE(test);
+  CHECK(test->trials < all);
+  CHECK(test->correct == test->trials);
+  CHECK_FALSE(test->exact);
+}
+
+TEST_CASE("A block that began anew is dealt as one, without what is void") {
+  Outcomes outcomes = outcomes_of(study_with(kRules[1]), Sense::everything, 2, 0);
+  const int all = chance_of(outcomes, 0)->trials;
+  std::vector<TrialOutcome> again = outcomes.trials;
+  for (TrialOutcome& trial : again) {
+    trial.row.state = TrialState::voided;
+    trial.counted = false;
+  }
+  outcomes.trials.insert(outcomes.trials.begin(), again.begin(), again.end());
+  const auto test = chance_of(outcomes, 0);
+  REQUIRE(test);
+  CHECK(test->trials == all);
+  CHECK_FALSE(test->exact);
+}
+
+TEST_CASE("A longer course than the study's is dealt without its rule") {
+  Outcomes outcomes = outcomes_of(study_with(kRules[0]), Sense::everything, 2, 0);
+  const std::vector<TrialOutcome> again = outcomes.trials;
+  outcomes.trials.insert(outcomes.trials.end(), again.begin(), again.end());
+  const auto test = chance_of(outcomes, 0);
+  REQUIRE(test);
+  CHECK(test->exact);
+}
+
+TEST_CASE("The chance test of the same outcomes is the same") {
+  const Outcomes outcomes = outcomes_of(study_with(kRules[0]), Sense::nothing, 2, 9);
+  CHECK(chance_of(outcomes, 0)->p == chance_of(outcomes, 0)->p);
+}
+
+}  // namespace touchtrial
