@@ -80,6 +80,27 @@ Meanings of_sessions() {
   };
 }
 
+Meanings of_collection() {
+  return {
+      {"practice_rounds", {"Rounds of practice"}},
+      {"practice_presentations", {"Textures presented in practice"}},
+      {"practice_correct", {"Of them: named correctly"}},
+      {"practice_passed", yes_or_no("Whether practice was passed")},
+      {"resumed", {"Times that the session was taken up again after the program had ended"}},
+      {"stop_reason", {"Why the session was stopped"}},
+      {"exclusion_reason", {"Why the session was excluded"}},
+      {"replacement_reason", {"Why the participant was replaced"}},
+      {"device_serial", {"Serial number of the haptic device"}},
+      {"device_model", {"Model of the haptic device, as it tells it"}},
+      {"device_firmware", {"Firmware of the haptic device, as it tells it"}},
+      {"device_max_force_n", {"Largest force of the haptic device", "N"}},
+      {"certificate", {"SHA-256 of the device's calibration certificate"}},
+      {"servo_hz", {"Servo rate that was asked for", "Hz"}},
+      {"scheduling", {"Scheduling that the servo's thread obtained"}},
+      {"visual", yes_or_no("Whether textures were shown on a screen instead of felt")},
+  };
+}
+
 Meanings of_participants() {
   return {
       {"participant_id", {"The participant's label in this dataset"}},
@@ -110,6 +131,7 @@ Meanings of_traces() {
 Meanings all_meanings() {
   Meanings all = of_trials();
   all.merge(of_sessions());
+  all.merge(of_collection());
   all.merge(of_participants());
   all.merge(of_traces());
   return all;

@@ -1,5 +1,6 @@
 #include "analysis/exports/export_csv.hpp"
 
+#include "analysis/exports/collection_tables.hpp"
 #include "analysis/exports/export_folder.hpp"
 #include "analysis/exports/export_tables.hpp"
 #include "analysis/json_figures.hpp"
@@ -29,18 +30,21 @@ std::vector<std::filesystem::path> export_csv(const StudyStore& store,
                                               const std::optional<Outcomes>& outcomes,
                                               const std::filesystem::path& folder) {
   const StudyCommitment& commitment = store.commitment();
+  const Collection collection = collection_of(store, outcomes);
   std::vector<ExportFile> files;
   const auto add = [&](const std::string& name, const DataTable& table) {
     files.push_back(text_file(name, csv_text(table)));
   };
   add("trials.csv", trials_table(store, outcomes));
-  add("participants.csv", participants_table(store));
+  add("participants.csv", participants_table(store, collection));
+  add("deviations.csv", deviations_table(collection, commitment.simulated));
+  add("servo.csv", servo_table(collection, commitment.simulated));
   for (std::size_t i = 0; outcomes && i < outcomes->methods.size(); ++i) {
     add("confusion_" + outcomes->methods[i] + ".csv",
         confusion_table(*outcomes, static_cast<int>(i)));
   }
   if (outcomes) add("unscored_trials.csv", unscored_table(*outcomes));
-  add("study.csv", study_table(store, outcomes));
+  add("study.csv", study_table(store, outcomes, collection));
   if (outcomes) files.push_back(text_file("study_file.json", outcomes->design.text));
   files.push_back(text_file("export.json", contents_json(commitment, !outcomes, files)));
   return write_export(folder, {commitment.study, commitment.study_id, "csv"}, files);

@@ -1,5 +1,6 @@
 #include "analysis/exports/export_json.hpp"
 
+#include "analysis/exports/collection_tables.hpp"
 #include "analysis/exports/export_folder.hpp"
 #include "analysis/exports/export_tables.hpp"
 #include "analysis/json_figures.hpp"
@@ -47,7 +48,10 @@ std::filesystem::path export_json(const StudyStore& store, const std::optional<O
   } else {
     document["quality"] = quality_object(make_quality(store));
   }
-  document["participants"] = rows_json(participants_table(store));
+  const Collection collection = collection_of(store, outcomes);
+  document["participants"] = rows_json(participants_table(store, collection));
+  document["deviations"] = rows_json(deviations_table(collection, commitment.simulated));
+  document["servo"] = rows_json(servo_table(collection, commitment.simulated));
   document["trials"] = rows_json(trials_table(store, outcomes));
   if (outcomes) document["unscored_trials"] = rows_json(unscored_table(*outcomes));
   return write_export(folder, {commitment.study, commitment.study_id, "json"},

@@ -1,5 +1,6 @@
 #include "analysis/exports/export_psych_ds.hpp"
 
+#include "analysis/exports/collection_tables.hpp"
 #include "analysis/exports/dataset_readme.hpp"
 #include "analysis/exports/export_folder.hpp"
 #include "analysis/exports/export_tables.hpp"
@@ -14,8 +15,8 @@ namespace {
 
 /// participants.csv without those who withdrew, and without names that mean something else of
 /// trials: a variable of a dataset has one meaning.
-DataTable people_table(const StudyStore& store) {
-  DataTable table = participants_table(store);
+DataTable people_table(const StudyStore& store, const Collection& collection) {
+  DataTable table = participants_table(store, collection);
   std::replace(table.columns.begin(), table.columns.end(), std::string("state"),
                std::string("session_state"));
   std::replace(table.columns.begin(), table.columns.end(), std::string("counted"),
@@ -56,7 +57,7 @@ std::vector<std::filesystem::path> export_psych_ds(const DatasetSource& study,
   };
   add_data("trials", trials_table(study.store, outcomes));
   if (outcomes) add_data("unscored", unscored_table(*outcomes));
-  add_data("participants", people_table(study.store));
+  add_data("participants", people_table(study.store, collection_of(study.store, outcomes)));
   files.push_back(outcomes
                       ? text_file("results/report.json", report_json(make_report(*outcomes)))
                       : text_file("results/quality.json", quality_json(make_quality(study.store))));

@@ -1,8 +1,7 @@
 #include "analysis/exports/export_tables.hpp"
 
-#include "analysis/exports/session_words.hpp"
+#include "analysis/exports/collection_tables.hpp"
 #include "analysis/exports/trial_columns.hpp"
-#include "analysis/session_rules.hpp"
 #include "analysis/statistics/confusion.hpp"
 
 #include <map>
@@ -71,22 +70,6 @@ DataTable unscored_table(const Outcomes& outcomes) {
   return trials_that_are(false, outcomes);
 }
 
-DataTable participants_table(const StudyStore& store) {
-  DataTable table{{"participant", "session", "enrolment", "state", "excluded", "withdrawn", "pilot",
-                   "simulated", "counted", "device", "replaced_by", "shown"},
-                  {}};
-  const StudyState state = store.state();
-  for (const SessionRow& row : store.sessions()) {
-    const bool shown = !state.unblinded || state.shows(row.session);
-    table.rows.push_back({row.participant, std::int64_t{row.session}, std::int64_t{row.enrolment},
-                          text_of(row.state), flag(row.excluded), flag(row.withdrawn),
-                          flag(row.pilot), flag(row.simulated),
-                          flag(shown && session_counts(row, store.commitment())), row.device,
-                          row.replaced_by, flag(shown)});
-  }
-  return table;
-}
-
 DataTable confusion_table(const Outcomes& outcomes, int method) {
   const auto classes = static_cast<int>(outcomes.classes.size());
   ConfusionMatrix confusion(classes);
@@ -108,7 +91,8 @@ DataTable confusion_table(const Outcomes& outcomes, int method) {
   return table;
 }
 
-DataTable study_table(const StudyStore& store, const std::optional<Outcomes>& outcomes) {
+DataTable study_table(const StudyStore& store, const std::optional<Outcomes>& outcomes,
+                      const Collection& collection) {
   const StudyCommitment& commitment = store.commitment();
   const StudyState state = store.state();
   DataTable table{{"key", "of", "value"}, {}};
@@ -124,11 +108,16 @@ DataTable study_table(const StudyStore& store, const std::optional<Outcomes>& ou
   add("unblinded", flag(state.unblinded));
   add("interim", flag(state.interim.has_value()));
   add("program_version", commitment.program_version);
+  add_prescription(table, collection.prescription);
   if (!outcomes) return table;
   add("unblinding_reason", state.unblinding_reason);
   add("visual", flag(outcomes->visual));
   add_labels(table, *outcomes);
   return table;
+}
+
+Collection collection_of(const StudyStore& store, const std::optional<Outcomes>& outcomes) {
+  return outcomes ? outcomes->collection : load_collection(store);
 }
 
 }  // namespace touchtrial

@@ -20,9 +20,6 @@ namespace touchtrial {
 /// what came before a scored trial is found here. A catch trial has neither class nor method.
 [[nodiscard]] DataTable unscored_table(const Outcomes& outcomes);
 
-/// One row a session; `counted` is 1 if its trials enter the report.
-[[nodiscard]] DataTable participants_table(const StudyStore& store);
-
 /// Counts of one method's counted trials: a row a presented class, a column an answer, then
 /// the trials without a response.
 [[nodiscard]] DataTable confusion_table(const Outcomes& outcomes, int method);
@@ -30,6 +27,11 @@ namespace touchtrial {
 /// What holds for the study as a whole: rows of a key, what it is of (of an exemplar: its class),
 /// and a value. Classes, exemplars and methods, in their order, only with outcomes.
 [[nodiscard]] DataTable study_table(const StudyStore& store,
-                                    const std::optional<Outcomes>& outcomes);
+                                    const std::optional<Outcomes>& outcomes,
+                                    const Collection& collection);
+
+/// That of the outcomes, or, without them, as the store tells it in clear.
+[[nodiscard]] Collection collection_of(const StudyStore& store,
+                                       const std::optional<Outcomes>& outcomes);
 
 }  // namespace touchtrial

@@ -1,34 +1,14 @@
 #include "analysis/exports/csv_reading.hpp"
 
+#include "analysis/exports/collection_reading.hpp"
 #include "core/files.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <optional>
 
 namespace touchtrial {
 namespace {
-
-template <typename Number>
-Number number_of(const std::string& text) {
-  Number value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  REQUIRE(error == std::errc{});
-  REQUIRE(end == text.data() + text.size());
-  return value;
-}
-
-template <typename Number>
-std::optional<Number> maybe(const std::string& text) {
-  if (text.empty()) return std::nullopt;
-  return number_of<Number>(text);
-}
-
-bool is_set(const std::string& text) {
-  REQUIRE((text == "0" || text == "1"));
-  return text == "1";
-}
 
 /// Exact: whole seconds and decimals apart.
 std::chrono::nanoseconds time_of(const std::string& text) {
@@ -74,11 +54,6 @@ void read_study(Outcomes& outcomes, const std::filesystem::path& folder) {
   outcomes.design = parse_study(text_of_file(folder / "study_file.json"), ".", "study_file.json");
 }
 
-SessionState session_state_of(const std::string& name) {
-  if (name == "completed") return SessionState::completed;
-  return name == "stopped" ? SessionState::stopped : SessionState::open;
-}
-
 TrialState trial_state_of(const std::string& name) {
   const std::map<std::string, TrialState> states{{"presented", TrialState::presented},
                                                  {"answered", TrialState::answered},
@@ -94,17 +69,7 @@ void read_sessions(Outcomes& outcomes, const std::filesystem::path& folder) {
       ++outcomes.sessions_unseen;
       continue;
     }
-    SessionRow session;
-    session.session = number_of<int>(row.at("session"));
-    session.participant = row.at("participant");
-    session.enrolment = number_of<int>(row.at("enrolment"));
-    session.state = session_state_of(row.at("state"));
-    session.simulated = is_set(row.at("simulated"));
-    session.pilot = is_set(row.at("pilot"));
-    session.excluded = is_set(row.at("excluded"));
-    session.withdrawn = is_set(row.at("withdrawn"));
-    session.device = row.at("device");
-    session.replaced_by = row.at("replaced_by");
+    const SessionRow session = session_row_of(row);
     if (outcomes.state.interim) outcomes.state.interim->insert(session.session);
     outcomes.sessions.push_back({session, is_set(row.at("counted"))});
   }
@@ -210,6 +175,7 @@ Outcomes outcomes_from_csv(const std::filesystem::path& folder) {
   Outcomes outcomes;
   read_study(outcomes, folder);
   read_sessions(outcomes, folder);
+  outcomes.collection = collection_from_csv(folder, outcomes.state);
   read_trials(outcomes, folder / "trials.csv");
   read_trials(outcomes, folder / "unscored_trials.csv");
   std::sort(outcomes.trials.begin(), outcomes.trials.end(),

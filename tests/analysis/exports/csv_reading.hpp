@@ -1,16 +1,14 @@
 /// \file Reads exported CSV files back, and from them what the report is made of.
 #pragma once
 
+#include "analysis/exports/csv_cells.hpp"
 #include "analysis/outcomes.hpp"
 
 #include <filesystem>
-#include <map>
 #include <string>
 #include <vector>
 
 namespace touchtrial {
-
-using CsvRow = std::map<std::string, std::string>;
 
 /// Records and their fields, as the grammar of RFC 4180 says.
 [[nodiscard]] std::vector<std::vector<std::string>> parse_csv(const std::string& text);

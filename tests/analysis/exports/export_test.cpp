@@ -39,7 +39,7 @@ TEST_CASE("Exported trials count up to the report") {
   const StudyReport report = make_report(outcomes);
   const std::filesystem::path out = study.folder() / "new" / "out";
   const auto files = export_csv(study.store(), outcomes, out);
-  REQUIRE(files.size() == 8);
+  REQUIRE(files.size() == 10);
 
   std::map<std::string, std::map<std::string, std::map<std::string, int>>> counts;
   int correct = 0;
@@ -121,14 +121,16 @@ TEST_CASE("Before unblinding an export has no word of what was presented or answ
   fill(study);
   const std::filesystem::path out = study.folder() / "out";
   const auto files = export_csv(study.store(), std::nullopt, out);
-  CHECK(files.size() == 4);
+  CHECK(files.size() == 6);
   CHECK_FALSE(std::filesystem::exists(out / "confusion_adaptive.csv"));
   const std::string json = text_of_file(export_json(study.store(), std::nullopt, out));
   const std::string csv = text_of_file(out / "trials.csv");
+  const std::string people = text_of_file(out / "participants.csv");
   CHECK(csv.starts_with("participant,session,trial,block,confidence,reaction_time_s,"));
   for (const char* secret :
        {"petrified", "cloth", "straw", "png", "adaptive", "tv-gabor", "correct", "exemplar"}) {
     CHECK_FALSE(contains(csv, secret));
+    CHECK_FALSE(contains(people, secret));
     CHECK_FALSE(contains(json, secret));
   }
   for (const char* column : {"class", "response", "method"}) {
@@ -163,7 +165,8 @@ TEST_CASE("participants.csv tells whose sessions count and that they are simulat
   const auto contents = nlohmann::json::parse(text_of_file(study.folder() / "export.json"));
   CHECK(contents["stamp"] == "SIMULATED");
   CHECK(contents["blinded"] == true);
-  CHECK(contents["files"] == nlohmann::json({"trials.csv", "participants.csv", "study.csv"}));
+  CHECK(contents["files"] == nlohmann::json({"trials.csv", "participants.csv", "deviations.csv",
+                                             "servo.csv", "study.csv"}));
 }
 
 TEST_CASE("The JSON export holds the report and the same trials") {

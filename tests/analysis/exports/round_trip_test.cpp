@@ -11,12 +11,29 @@ namespace {
 
 using std::chrono::milliseconds;
 
+/// Figures of the servo and the page's list of devices are in no JSON.
+void check_same_station(const Collection& read_back, const Collection& collection) {
+  REQUIRE(read_back.servo_trials.size() == collection.servo_trials.size());
+  for (std::size_t i = 0; i < collection.servo_trials.size(); ++i) {
+    const ServoTrial& one = collection.servo_trials[i];
+    const ServoTrial& same = read_back.servo_trials[i];
+    CHECK(std::pair(same.session, same.trial) == std::pair(one.session, one.trial));
+    CHECK(same.health == one.health);
+    CHECK(same.overruns == one.overruns);
+  }
+  REQUIRE(read_back.sessions.size() == collection.sessions.size());
+  for (std::size_t i = 0; i < collection.sessions.size(); ++i) {
+    CHECK(read_back.sessions[i].station == collection.sessions[i].station);
+  }
+  CHECK(read_back.visual == collection.visual);
+}
+
 /// What the report of a study says, and what it says of its CSV files.
 void check_round_trip(FakeStudy& study) {
   const Outcomes outcomes = load_outcomes(study.store(), study.key());
   const std::filesystem::path out = study.folder() / "out";
   export_csv(study.store(), outcomes, out);
-  Outcomes read_back = outcomes_from_csv(out);
+  const Outcomes read_back = outcomes_from_csv(out);
   REQUIRE(read_back.trials.size() == outcomes.trials.size());
   for (std::size_t i = 0; i < outcomes.trials.size(); ++i) {
     CHECK(read_back.trials[i].row == outcomes.trials[i].row);
@@ -26,8 +43,7 @@ void check_round_trip(FakeStudy& study) {
   for (std::size_t i = 0; i < outcomes.sessions.size(); ++i) {
     CHECK(read_back.sessions[i].row == outcomes.sessions[i].row);
   }
-  // How it was collected is no figure, and in other files than these.
-  read_back.collection = outcomes.collection;
+  check_same_station(read_back.collection, outcomes.collection);
   CHECK(report_json(make_report(read_back)) == report_json(make_report(outcomes)));
 }
 
@@ -80,6 +96,38 @@ TEST_CASE("A study with lead-ins and catch trials reports the same from its CSV 
   study.close_and_unblind();
   check_round_trip(study);
   CHECK(rows_of(study.folder() / "out" / "unscored_trials.csv").size() == 5 * 3 + 1);
+}
+
+TEST_CASE("How a study was collected is the same from its CSV files, in words and figures") {
+  FakeStudy study(Protocol::classification, {.simulated = false});
+  fill(study);
+  FakeSession felt{.participant = "P07", .enrolment = 7, .answers = imperfect(7)};
+  felt.station =
+      StationRecord{"Falcon", "1.2, beta", 8.9, false, 1000.0, "SCHED_FIFO 80", "c0ffee"};
+  felt.servo = ServoHealth{999.75, 1.5, 40.25, 80.125, 1e3 / 3.0, 2, 17};
+  felt.before_trials = [](SessionRecorder& recorder) {
+    recorder.practised(milliseconds(10), {.round = 1, .presentation = 1, .correct = false});
+    recorder.practised(milliseconds(20), {.round = 2, .presentation = 1, .correct = true});
+    recorder.deviated(milliseconds(40), {"no-masking-noise", "no \"sound\" card,\nnone"});
+    recorder.deviated(milliseconds(45), {"practice-not-passed", ""});
+    recorder.resumed(milliseconds(70), {.after = "program-ended", .away_s = 60.0});
+  };
+  study.add(felt);
+  study.store().note(7, milliseconds(800), "moved-hand", "during trial 3");
+  study.store().note(2, milliseconds(810), "late", "came late");
+  study.store().withdraw(2, milliseconds(850), "asked to");
+  study.store().exclude(3, milliseconds(900), "did not follow, at all");
+  study.store().replace(6, "P08", milliseconds(950), "the device failed");
+  study.add({.participant = "P08", .enrolment = 6, .answers = imperfect(8)});
+  study.close_and_unblind();
+  check_round_trip(study);
+  const std::filesystem::path out = study.folder() / "out";
+  CHECK(rows_of(out / "servo.csv").size() == 12);
+  CHECK(rows_of(out / "deviations.csv").size() == 3);
+  const std::vector<CsvRow> people = rows_of(out / "participants.csv");
+  CHECK(people[2].at("exclusion_reason") == "did not follow, at all");
+  CHECK(people[5].at("replacement_reason") == "the device failed");
+  CHECK(people[6].at("practice_passed") == "0");
 }
 
 TEST_CASE("An interim look reports the same from its CSV files") {

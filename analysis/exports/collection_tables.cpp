@@ -1,0 +1,152 @@
+#include "analysis/exports/collection_tables.hpp"
+
+#include "analysis/exports/session_words.hpp"
+#include "analysis/exports/trial_columns.hpp"
+#include "analysis/session_rules.hpp"
+
+#include <map>
+
+namespace touchtrial {
+namespace {
+
+struct RecordColumn {
+  const char* name;
+  DataCell (*value)(const SessionRecord&);
+  bool after_unblinding = false;  ///< exists only then
+};
+
+template <int PracticeRecord::*kNumber>
+DataCell practised(const SessionRecord& record) {
+  if (!record.practice) return std::monostate{};
+  return std::int64_t{(*record.practice).*kNumber};
+}
+
+template <std::string StationRecord::*kText>
+DataCell station_text(const SessionRecord& record) {
+  if (!record.station) return std::monostate{};
+  return (*record.station).*kText;
+}
+
+template <double StationRecord::*kNumber>
+DataCell station_number(const SessionRecord& record) {
+  if (!record.station) return std::monostate{};
+  return (*record.station).*kNumber;
+}
+
+/// How a session was collected, without the deviations, of which there may be several.
+constexpr RecordColumn kRecordColumns[] = {
+    {"practice_rounds", practised<&PracticeRecord::rounds>},
+    {"practice_presentations", practised<&PracticeRecord::presentations>},
+    {"practice_correct", practised<&PracticeRecord::correct>, true},
+    {"practice_passed",
+     [](const SessionRecord& record) -> DataCell {
+       if (!record.practice) return std::monostate{};
+       return flag(record.practice->passed);
+     }},
+    {"resumed",
+     [](const SessionRecord& record) -> DataCell { return std::int64_t{record.resumed}; }},
+    {"stop_reason", [](const SessionRecord& record) -> DataCell { return record.stop_reason; }},
+    {"exclusion_reason",
+     [](const SessionRecord& record) -> DataCell { return record.exclusion_reason; }},
+    {"replacement_reason",
+     [](const SessionRecord& record) -> DataCell { return record.replacement_reason; }},
+    {"device_serial", [](const SessionRecord& record) -> DataCell { return record.device_serial; }},
+    {"device_model", station_text<&StationRecord::model>},
+    {"device_firmware", station_text<&StationRecord::firmware>},
+    {"device_max_force_n", station_number<&StationRecord::max_force_n>},
+    {"certificate", station_text<&StationRecord::calibration>},
+    {"servo_hz", station_number<&StationRecord::rate_hz>},
+    {"scheduling", station_text<&StationRecord::scheduling>},
+    {"visual",
+     [](const SessionRecord& record) -> DataCell {
+       if (!record.station) return std::monostate{};
+       return flag(record.station->visual);
+     }},
+};
+
+void add_record(std::vector<DataCell>& row, const SessionRecord& record, bool unblinded) {
+  for (const RecordColumn& column : kRecordColumns) {
+    if (column.after_unblinding && !unblinded) continue;
+    if (record.row.withdrawn) {
+      row.emplace_back(std::monostate{});
+    } else {
+      row.push_back(column.value(record));
+    }
+  }
+}
+
+std::vector<DataCell> session_cells(const SessionRow& row, const StudyStore& store,
+                                    const StudyState& state) {
+  const bool shown = !state.unblinded || state.shows(row.session);
+  return {row.participant,
+          std::int64_t{row.session},
+          std::int64_t{row.enrolment},
+          std::string(text_of(row.state)),
+          flag(row.excluded),
+          flag(row.withdrawn),
+          flag(row.pilot),
+          flag(row.simulated),
+          flag(shown && session_counts(row, store.commitment())),
+          row.device,
+          row.replaced_by,
+          flag(shown)};
+}
+
+}  // namespace
+
+DataTable participants_table(const StudyStore& store, const Collection& collection) {
+  DataTable table{{"participant", "session", "enrolment", "state", "excluded", "withdrawn", "pilot",
+                   "simulated", "counted", "device", "replaced_by", "shown"},
+                  {}};
+  std::map<int, const SessionRecord*> records;
+  for (const SessionRecord& record : collection.sessions) records[record.row.session] = &record;
+  const StudyState state = store.state();
+  for (const RecordColumn& column : kRecordColumns) {
+    if (state.unblinded || !column.after_unblinding) table.columns.emplace_back(column.name);
+  }
+  for (const SessionRow& row : store.sessions()) {
+    table.rows.push_back(session_cells(row, store, state));
+    add_record(table.rows.back(), *records.at(row.session), state.unblinded);
+  }
+  return table;
+}
+
+DataTable deviations_table(const Collection& collection, bool simulated) {
+  DataTable table{{"participant", "session", "code", "text", "simulated"}, {}};
+  for (const SessionRecord& record : collection.sessions) {
+    for (const auto& [code, text] : record.deviations) {
+      table.rows.push_back(
+          {record.row.participant, std::int64_t{record.row.session}, code, text, flag(simulated)});
+    }
+  }
+  return table;
+}
+
+DataTable servo_table(const Collection& collection, bool simulated) {
+  DataTable table{
+      {"session", "trial", "rate_hz", "lateness_p50_us", "lateness_p99_us", "lateness_p999_us",
+       "lateness_worst_us", "lost", "held", "overruns", "simulated"},
+      {}};
+  for (const auto& [session, trial, health, overruns] : collection.servo_trials) {
+    table.rows.push_back({std::int64_t{session}, std::int64_t{trial}, health.rate_hz,
+                          health.lateness_p50_us, health.lateness_p99_us, health.lateness_p999_us,
+                          health.lateness_worst_us, health.lost, health.held, overruns,
+                          flag(simulated)});
+  }
+  return table;
+}
+
+void add_prescription(DataTable& study, const Prescription& prescription) {
+  const auto add = [&](const char* key, DataCell value) {
+    study.rows.push_back({std::string(key), std::monostate{}, std::move(value)});
+  };
+  add("explore_limit_s", prescription.explore_limit_s);
+  add("on_timeout", prescription.on_timeout);
+  add("order", prescription.order);
+  add("repeats", std::int64_t{prescription.repeats});
+  add("sight", prescription.sight);
+  add("masking_wanted", flag(prescription.masking_wanted));
+  add("masking_dbfs", prescription.masking_dbfs);
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,132 @@
+#include "analysis/exports/collection_reading.hpp"
+
+#include "analysis/collection_records.hpp"
+#include "analysis/exports/csv_reading.hpp"
+
+#include <algorithm>
+
+namespace touchtrial {
+namespace {
+
+SessionState session_state_of(const std::string& name) {
+  if (name == "completed") return SessionState::completed;
+  return name == "stopped" ? SessionState::stopped : SessionState::open;
+}
+
+std::optional<PracticeRecord> practice_of(const CsvRow& row) {
+  if (row.at("practice_rounds").empty()) return std::nullopt;
+  return PracticeRecord{
+      number_of<int>(row.at("practice_rounds")), number_of<int>(row.at("practice_presentations")),
+      number_of<int>(row.at("practice_correct")), is_set(row.at("practice_passed"))};
+}
+
+std::optional<StationRecord> station_of(const CsvRow& row) {
+  if (row.at("visual").empty()) return std::nullopt;
+  return StationRecord{row.at("device_model"),
+                       row.at("device_firmware"),
+                       number_of<double>(row.at("device_max_force_n")),
+                       is_set(row.at("visual")),
+                       number_of<double>(row.at("servo_hz")),
+                       row.at("scheduling"),
+                       row.at("certificate")};
+}
+
+SessionRecord record_of(const CsvRow& row) {
+  SessionRecord record;
+  if (is_set(row.at("withdrawn"))) {
+    record.row.session = number_of<int>(row.at("session"));
+    record.row.state = session_state_of(row.at("state"));
+    record.row.withdrawn = true;
+    return record;
+  }
+  record.row = session_row_of(row);
+  record.device_serial = row.at("device_serial");
+  record.station = station_of(row);
+  record.practice = practice_of(row);
+  record.exclusion_reason = row.at("exclusion_reason");
+  record.replacement_reason = row.at("replacement_reason");
+  record.stop_reason = row.at("stop_reason");
+  record.resumed = number_of<int>(row.at("resumed"));
+  return record;
+}
+
+Prescription prescription_of(const std::filesystem::path& study) {
+  CsvRow single;
+  for (const CsvRow& row : rows_of(study)) single[row.at("key")] = row.at("value");
+  return {number_of<double>(single.at("explore_limit_s")),
+          single.at("on_timeout"),
+          single.at("order"),
+          number_of<int>(single.at("repeats")),
+          single.at("sight"),
+          is_set(single.at("masking_wanted")),
+          number_of<double>(single.at("masking_dbfs"))};
+}
+
+void add_deviations(Collection& collection, const std::filesystem::path& file) {
+  for (const CsvRow& row : rows_of(file)) {
+    const int session = number_of<int>(row.at("session"));
+    const auto record = std::ranges::find(collection.sessions, session,
+                                          [](const SessionRecord& one) { return one.row.session; });
+    REQUIRE(record != collection.sessions.end());
+    CHECK(record->row.participant == row.at("participant"));
+    record->deviations.push_back({row.at("code"), row.at("text")});
+  }
+}
+
+ServoTrial servo_trial_of(const CsvRow& row) {
+  return {
+      number_of<int>(row.at("session")),
+      number_of<int>(row.at("trial")),
+      {number_of<double>(row.at("rate_hz")), number_of<double>(row.at("lateness_p50_us")),
+       number_of<double>(row.at("lateness_p99_us")), number_of<double>(row.at("lateness_p999_us")),
+       number_of<double>(row.at("lateness_worst_us")), number_of<std::int64_t>(row.at("lost")),
+       number_of<std::int64_t>(row.at("held"))},
+      number_of<std::int64_t>(row.at("overruns"))};
+}
+
+/// What decides which sessions count.
+StudyCommitment commitment_of(const std::filesystem::path& study) {
+  StudyCommitment commitment;
+  for (const CsvRow& row : rows_of(study)) {
+    if (row.at("key") == "simulated") commitment.simulated = is_set(row.at("value"));
+    if (row.at("key") == "pilot") commitment.pilot = is_set(row.at("value"));
+  }
+  return commitment;
+}
+
+}  // namespace
+
+SessionRow session_row_of(const CsvRow& row) {
+  SessionRow session;
+  session.session = number_of<int>(row.at("session"));
+  session.participant = row.at("participant");
+  session.enrolment = number_of<int>(row.at("enrolment"));
+  session.state = session_state_of(row.at("state"));
+  session.simulated = is_set(row.at("simulated"));
+  session.pilot = is_set(row.at("pilot"));
+  session.excluded = is_set(row.at("excluded"));
+  session.withdrawn = is_set(row.at("withdrawn"));
+  session.device = row.at("device");
+  session.replaced_by = row.at("replaced_by");
+  return session;
+}
+
+Collection collection_from_csv(const std::filesystem::path& folder, const StudyState& state) {
+  Collection collection;
+  collection.prescription = prescription_of(folder / "study.csv");
+  std::vector<SessionRow> rows;
+  for (const CsvRow& row : rows_of(folder / "participants.csv")) {
+    rows.push_back(session_row_of(row));
+    collection.sessions.push_back(record_of(row));
+    collection.visual = collection.visual || row.at("visual") == "1";
+  }
+  add_deviations(collection, folder / "deviations.csv");
+  for (const CsvRow& row : rows_of(folder / "servo.csv")) {
+    collection.servo_trials.push_back(servo_trial_of(row));
+  }
+  collection.flow =
+      participant_flow(rows, collection.sessions, commitment_of(folder / "study.csv"), state);
+  return collection;
+}
+
+}  // namespace touchtrial
