@@ -8,6 +8,8 @@
 #include <set>
 #include <system_error>
 
+#include <tbb/parallel_for.h>
+
 namespace touchtrial {
 namespace {
 
@@ -80,6 +82,25 @@ void remove_obsolete(const fs::path& folder, const std::string& name) {
   }
 }
 
+void write_one(const fs::path& folder, const ExportFile& file) {
+  const fs::path path = folder / file.name;
+  make_folder(path.parent_path());
+  file.write(path);
+}
+
+void write_all(const fs::path& folder, const std::vector<ExportFile>& files) {
+  std::vector<const ExportFile*> concurrent;
+  for (const ExportFile& file : files) {
+    if (file.concurrent) {
+      concurrent.push_back(&file);
+    } else {
+      write_one(folder, file);
+    }
+  }
+  tbb::parallel_for(std::size_t{0}, concurrent.size(),
+                    [&](std::size_t i) { write_one(folder, *concurrent[i]); });
+}
+
 /// A name comes from a file that anybody may have edited: it must stay in the folder.
 bool stays_inside(const std::string& name) {
   const fs::path path(name);
@@ -111,17 +132,14 @@ std::vector<fs::path> write_export(const fs::path& folder, const ExportMark& mar
   const std::set<std::string> before = found.files[mark.format];
   found.files[mark.format].insert(names.begin(), names.end());
   replace_file(folder / kExportMark, folder_mark_json(found));
-  std::vector<fs::path> written;
-  for (const ExportFile& file : files) {
-    written.push_back(folder / file.name);
-    make_folder(written.back().parent_path());
-    file.write(written.back());
-  }
+  write_all(folder, files);
   for (const std::string& name : before) {
     if (!names.contains(name) && stays_inside(name)) remove_obsolete(folder, name);
   }
   found.files[mark.format] = names;
   replace_file(folder / kExportMark, folder_mark_json(found));
+  std::vector<fs::path> written;
+  for (const ExportFile& file : files) written.push_back(folder / file.name);
   return written;
 }
 

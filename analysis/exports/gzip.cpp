@@ -7,7 +7,8 @@
 namespace touchtrial {
 namespace {
 
-constexpr int kLevel = 6;
+// Of traces level 6 makes 4 % less in two and a half times the time.
+constexpr int kLevel = 4;
 constexpr int kGzipWindow = 15 + 16;  ///< the largest, with a gzip header (zlib.h, deflateInit2)
 constexpr int kMemoryLevel = 8;
 

@@ -7,7 +7,7 @@
 
 namespace touchtrial {
 
-/// RFC 1952 with level 6; no name and no time in the header, so that equal contents give equal
+/// RFC 1952 with level 4; no name and no time in the header, so that equal contents give equal
 /// bytes. \throws FileError if there is no memory
 [[nodiscard]] Bytes gzip(std::string_view content);
 

@@ -7,20 +7,31 @@
 #include "core/files.hpp"
 
 #include <cmath>
-#include <iterator>
+#include <cstdint>
+#include <cstdlib>
 #include <map>
 #include <memory>
+#include <mutex>
 
 #include <fmt/format.h>
 
 namespace touchtrial {
 namespace {
 
-Trace opened_trace(const DatasetSource& study, const TrialRow& row, const SecretKey& own) {
-  const auto box = study.store.sealed_trace(row.session, row.trial);
+/// What recordings that are written at the same time share.
+struct SharedReading {
+  std::map<int, SecretKey> keys;  ///< by session
+  std::mutex store;               ///< which one thread reads at a time
+};
+
+Trace opened_trace(const DatasetSource& study, const TrialRow& row, SharedReading& shared) {
+  const auto box = [&] {
+    const std::lock_guard lock(shared.store);
+    return study.store.sealed_trace(row.session, row.trial);
+  }();
   if (box) {
-    auto trace =
-        unsealed_trace(row.session, row.trial, *box, own, static_cast<std::size_t>(row.samples));
+    auto trace = unsealed_trace(row.session, row.trial, *box, shared.keys.at(row.session),
+                                static_cast<std::size_t>(row.samples));
     if (trace) return *std::move(trace);
   }
   throw VerificationError(fmt::format(
@@ -29,9 +40,23 @@ Trace opened_trace(const DatasetSource& study, const TrialRow& row, const Secret
       row.session, row.trial));
 }
 
-/// Rounded as it will be printed, so that nothing is printed as -0.000.
-double rounded(double value, double steps) {
-  return std::round(value * steps) / steps + 0.0;
+/// Appends a value with its decimals and what comes after it. Whole steps are several times faster
+/// than a general formatting of doubles, and have no -0.000.
+template <int kDecimals>
+void put_fixed(std::string& text, double value, char after) {
+  constexpr std::int64_t kSteps = kDecimals == 3 ? 1000 : 10'000;
+  static_assert(kDecimals == 3 || kDecimals == 4);
+  const std::int64_t steps = std::llround(value * static_cast<double>(kSteps));
+  const std::int64_t size = std::abs(steps);
+  if (steps < 0) text += '-';
+  const fmt::format_int whole(size / kSteps);
+  text.append(whole.data(), whole.size());
+  text += '.';
+  std::int64_t rest = size % kSteps;
+  for (std::int64_t place = kSteps / 10; place > 0; rest %= place, place /= 10) {
+    text += static_cast<char>('0' + rest / place);
+  }
+  text += after;
 }
 
 }  // namespace
@@ -48,9 +73,9 @@ std::string trace_text(const Trace& trace) {
   for (const TraceSample& sample : trace.samples) {
     const Vec3& at = sample.position_mm;
     const Vec3& force = sample.force_n;
-    fmt::format_to(std::back_inserter(text), "{:.3f}\t{:.3f}\t{:.3f}\t{:.5f}\t{:.5f}\t{:.5f}\n",
-                   rounded(at.x, 1e3), rounded(at.y, 1e3), rounded(at.z, 1e3),
-                   rounded(force.x, 1e5), rounded(force.y, 1e5), rounded(force.z, 1e5));
+    for (const double position_mm : {at.x, at.y, at.z}) put_fixed<3>(text, position_mm, '\t');
+    for (const double force_n : {force.x, force.y}) put_fixed<4>(text, force_n, '\t');
+    put_fixed<4>(text, force.z, '\n');
   }
   return text;
 }
@@ -58,8 +83,8 @@ std::string trace_text(const Trace& trace) {
 std::vector<ExportFile> trace_files(const DatasetSource& study,
                                     const std::vector<BidsSession>& sessions,
                                     const std::string& task) {
-  const auto keys =
-      std::make_shared<std::map<int, SecretKey>>(participant_keys(study.store, *study.key));
+  const auto shared = std::make_shared<SharedReading>();
+  shared->keys = participant_keys(study.store, *study.key);
   std::map<int, const BidsSession*> by_number;
   for (const BidsSession& session : sessions) by_number[session.row.session] = &session;
   std::vector<ExportFile> files;
@@ -69,10 +94,12 @@ std::vector<ExportFile> trace_files(const DatasetSource& study,
     const std::string name =
         fmt::format("{}/{}_task-{}_recording-trial{:03}_stim", session->second->folder(),
                     session->second->stem(), task, row.trial);
-    files.push_back({name + ".tsv.gz", [study, row, keys](const std::filesystem::path& path) {
-                       const Trace trace = opened_trace(study, row, keys->at(row.session));
+    files.push_back({name + ".tsv.gz",
+                     [study, row, shared](const std::filesystem::path& path) {
+                       const Trace trace = opened_trace(study, row, *shared);
                        replace_file(path, ByteView(gzip(trace_text(trace))));
-                     }});
+                     },
+                     true});
     files.push_back(
         text_file(name + ".json", trace_sidecar_json(row, session->second->row.simulated)));
   }

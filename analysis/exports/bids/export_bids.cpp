@@ -13,6 +13,8 @@
 #include "core/errors.hpp"
 #include "protocols/store/database_copy.hpp"
 
+#include <memory>
+#include <mutex>
 #include <set>
 
 namespace touchtrial {
@@ -70,15 +72,31 @@ void add_report(Files& files, const DatasetSource& study) {
           : text_file(folder + "quality.json", quality_json(make_quality(study.store))));
 }
 
-/// Tells of the files that are written, one after the other.
+/// How many files are written, told by one thread at a time.
+class Progress {
+ public:
+  Progress(std::function<void(int, int)> tell, int of) : tell_(std::move(tell)), of_(of) {}
+
+  void one_more() {
+    const std::lock_guard lock(mutex_);
+    tell_(++done_, of_);
+  }
+
+ private:
+  std::mutex mutex_;
+  std::function<void(int, int)> tell_;
+  int of_;
+  int done_ = 0;
+};
+
 void tell_progress(Files& files, const DatasetOptions& options) {
   if (!options.progress) return;
-  const int of = static_cast<int>(files.size());
-  for (int i = 0; i < of; ++i) {
-    files[i].write = [write = std::move(files[i].write), tell = options.progress, i,
-                      of](const std::filesystem::path& path) {
+  const auto progress =
+      std::make_shared<Progress>(options.progress, static_cast<int>(files.size()));
+  for (ExportFile& file : files) {
+    file.write = [write = std::move(file.write), progress](const std::filesystem::path& path) {
       write(path);
-      tell(i + 1, of);
+      progress->one_more();
     };
   }
 }

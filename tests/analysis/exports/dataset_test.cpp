@@ -1,3 +1,4 @@
+#include "analysis/exports/bids/bids_traces.hpp"
 #include "analysis/exports/bids/export_bids.hpp"
 #include "analysis/exports/csv_reading.hpp"
 #include "analysis/exports/dataset_rules.hpp"
@@ -11,7 +12,10 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <map>
+#include <sstream>
 
 #include <nlohmann/json.hpp>
 
@@ -96,12 +100,28 @@ TEST_CASE("A BIDS recording holds the trace and its beginning") {
   export_bids(open.source, {.traces = true}, out);
   const fs::path stem = out / "sub-PZd01/beh/sub-PZd01_task-single_recording-trial002_stim";
   const std::string rows = gunzip(read_file(stem.string() + ".tsv.gz"));
-  CHECK(rows.starts_with("0.000\t0.000\t-0.500\t0.00000\t0.00000\t0.25000\n0.100\t"));
+  CHECK(rows.starts_with("0.000\t0.000\t-0.500\t0.0000\t0.0000\t0.2500\n0.100\t"));
   CHECK(std::count(rows.begin(), rows.end(), '\n') == 20);
   const auto sidecar = nlohmann::json::parse(text_of_file(stem.string() + ".json"));
   CHECK(sidecar["StartTime"] == 20.0);
   CHECK(sidecar["SamplingFrequency"] == 1000.0);
   CHECK(sidecar["stamp"] == "SIMULATED");
+}
+
+TEST_CASE("A BIDS recording tells a trace's steps apart, and writes no zero with a sign") {
+  Trace trace;
+  for (int i = -9000; i <= 9000; i += 7) {
+    trace.samples.push_back({{i / 1000.0, -0.0004, 0.0}, {i / 4096.0, 1 / 4096.0, -0.00004}});
+  }
+  const std::string text = trace_text(trace);
+  CHECK(text.starts_with("-9.000\t0.000\t0.000\t-2.1973\t0.0002\t0.0000\n-8.993\t"));
+  std::istringstream lines(text);
+  for (int i = -9000; i <= 9000; i += 7) {
+    std::array<double, 6> read{};
+    for (double& number : read) lines >> number;
+    CHECK(std::lround(read[0] * 1000.0) == i);
+    CHECK(std::lround(read[3] * 4096.0) == i);
+  }
 }
 
 TEST_CASE("A BIDS dataset loses its traces and withdrawn participants when it is exported again") {
