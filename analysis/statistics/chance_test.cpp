@@ -18,6 +18,8 @@ namespace {
 constexpr int kLongestCountedBlock = 400;
 /// A probability so small that what it adds is lost, and small enough to keep p meaningful at all.
 constexpr double kNegligible = 1e-290;
+/// A p is never 0. What was left out as negligible is less than this, whatever the blocks.
+constexpr double kSmallestP = 1e-280;
 
 void require_in_range(int classes, int index) {
   if (index < 0 || index >= classes) {
@@ -178,6 +180,7 @@ std::optional<ChanceTest> chance_test(int classes, std::span<const AnsweredBlock
       deal_anew(classes, blocks, redraw, deals, test);
       break;
   }
+  test.p = std::max(test.p, kSmallestP);
   return test;
 }
 

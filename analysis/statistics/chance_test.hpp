@@ -34,7 +34,7 @@ struct ChanceTest {
   int correct = 0;
   int trials = 0;
   double expected = 0.0;  ///< right answers under the null
-  double p = 1.0;         ///< one-sided: as many right answers or more
+  double p = 1.0;         ///< one-sided: as many right answers or more; 1e-280 stands for less
   bool exact = true;      ///< else (b + 1) / (deals + 1)
   int deals = 0;          ///< of a Monte Carlo
 };

@@ -283,4 +283,16 @@ TEST_CASE("chance_test refuses what cannot be") {
   CHECK_THROWS_AS(match_probabilities({{3, -1}}, 3), std::invalid_argument);
 }
 
+TEST_CASE("A p against chance is never 0, however many were right") {
+  std::vector<AnsweredBlock> blocks(400);
+  for (AnsweredBlock& block : blocks) {
+    for (int i = 0; i < 20; ++i) {
+      block.presented.push_back(i % 5);
+      block.answered.emplace_back(i % 5);
+    }
+  }
+  CHECK(chance_test(5, blocks, DealtOrder::permuted)->p == 1e-280);
+  CHECK(chance_test(5, blocks, DealtOrder::independent)->p == 1e-280);
+}
+
 }  // namespace touchtrial
