@@ -1,3 +1,4 @@
+#include "analysis/cues/chosen_explorations.hpp"
 #include "analysis/cues/cue_report.hpp"
 #include "analysis/figures/figures.hpp"
 #include "analysis/outcomes.hpp"
@@ -9,6 +10,7 @@
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/key_of_database.hpp"
+#include "core/errors.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <cstdio>
@@ -28,6 +30,7 @@ struct ReportArguments {
   fs::path key;
   fs::path folder;
   std::string cues = "auto";
+  std::string trial;
   bool paper_values = false;
   bool json = false;
 };
@@ -39,6 +42,14 @@ void write_report(const ReportArguments& arguments, const ReportFiles& files) {
 
 Provenance provenance_for(const StudyStore& store, const ReportArguments& arguments) {
   return provenance_of(store, arguments.database.filename().string());
+}
+
+/// Both show what was presented.
+void refuse_while_blind(const ReportArguments& arguments) {
+  if (arguments.trial.empty() && arguments.cues != "yes") return;
+  throw UsageError(one_line(arguments.database.string()) +
+                   ": not unblinded, and --trial and --cues yes are of outcomes; run `touchtrial "
+                   "close` and `touchtrial unblind`, or leave them out");
 }
 
 int report_quality(const StudyStore& store, const ReportArguments& arguments) {
@@ -58,9 +69,19 @@ bool reads_traces(const ReportArguments& arguments, const Outcomes& outcomes) {
   return !arguments.folder.empty() && traces_to_read(outcomes) <= kTracesUnasked;
 }
 
+std::vector<ExplorationPath> explorations(const StudyStore& store, const StudyKey& key,
+                                          const Outcomes& outcomes,
+                                          const ReportArguments& arguments) {
+  if (!arguments.trial.empty()) {
+    return {exploration_named(store, key, outcomes, trial_name(arguments.trial))};
+  }
+  if (arguments.folder.empty() || !reads_traces(arguments, outcomes)) return {};
+  return first_explorations(store, key, outcomes);
+}
+
 int write_outcomes(const StudyStore& store, const StudyReport& report,
-                   const ReportArguments& arguments) {
-  const FigureOptions options{arguments.paper_values, report.cues ? &*report.cues : nullptr};
+                   const std::vector<ExplorationPath>& paths, const ReportArguments& arguments) {
+  const FigureOptions options{arguments.paper_values, report.cues ? &*report.cues : nullptr, paths};
   const DrawnFigures figures = draw_report_figures(report_figures(report, options));
   if (!figures.missing.empty()) {
     std::fputs(("touchtrial: warning: without figures: " + figures.missing + "\n").c_str(), stderr);
@@ -76,12 +97,19 @@ int write_outcomes(const StudyStore& store, const StudyReport& report,
 int report(const ReportArguments& arguments) {
   const StudyStore store = StudyStore::open(arguments.database, StudyStore::Access::read_only);
   if (!arguments.folder.empty()) refuse_other_study(arguments.folder, store.commitment().study);
-  if (!store.state().unblinded) return report_quality(store, arguments);
+  if (!store.state().unblinded) {
+    refuse_while_blind(arguments);
+    return report_quality(store, arguments);
+  }
   const StudyKey key = key_of_database(store, arguments.database, arguments.key);
   const Outcomes outcomes = load_outcomes(store, key);
+  // First what may be refused.
+  const std::vector<ExplorationPath> paths = explorations(store, key, outcomes, arguments);
   StudyReport study = make_report(outcomes);
-  if (reads_traces(arguments, outcomes)) study.cues = make_cues(store, key, outcomes);
-  if (!arguments.folder.empty()) return write_outcomes(store, study, arguments);
+  if (reads_traces(arguments, outcomes)) {
+    study.cues = make_cues(store, key, outcomes, {.progress = progress_bar("reading traces")});
+  }
+  if (!arguments.folder.empty()) return write_outcomes(store, study, paths, arguments);
   print(arguments.json ? report_json(study) : report_text(study));
   return 0;
 }
@@ -95,19 +123,27 @@ void add_report_command(CLI::App& program, Action& action) {
   command->add_option("DB", arguments->database, "Database of the study")->required();
   command->add_option("--key", arguments->key, "Key of the study (default: DB.key)");
   auto* json = command->add_flag("--json", arguments->json, "One JSON object in place of tables");
-  command
-      ->add_option("-o,--out", arguments->folder,
-                   "Folder for a page with all tables and figures, the tables as Markdown and "
-                   "LaTeX, the figures as SVG and PDF, and results.json")
-      ->excludes(json);
+  auto* folder = command->add_option(
+      "-o,--out", arguments->folder,
+      "Folder for a page with all tables and figures, the tables as Markdown and "
+      "LaTeX, the figures as SVG and PDF, and results.json");
+  folder->excludes(json);
   command
       ->add_option("--cues", arguments->cues,
                    "Read all traces for ideal observers; auto: with --out, up to 2,500 traces")
       ->check(CLI::IsMember({"auto", "yes", "no"}))
       ->capture_default_str();
-  command->add_flag("--paper-values", arguments->paper_values,
-                    "The source paper's accuracies as marks in the figure by class: other images, "
-                    "another device");
+  command
+      ->add_option("--trial", arguments->trial,
+                   "Trial whose exploration is drawn over its texture, as P01:3; else, if traces "
+                   "are read, each method's first counted one")
+      ->type_name("PARTICIPANT:N")
+      ->needs(folder);
+  command
+      ->add_flag("--paper-values", arguments->paper_values,
+                 "The source paper's accuracies as marks in the figure by class: other images, "
+                 "another device")
+      ->needs(folder);
   command->callback([=, &action] { action = [=] { return report(*arguments); }; });
 }
 

@@ -177,7 +177,8 @@ CueReport make_cues(const StudyStore& store, const StudyKey& key, const Outcomes
       counted_trials(outcomes), {}, static_cast<int>(outcomes.classes.size()), options.jobs};
   const StudyPlane plane = plane_to_feel(store, key, study.trials, options);
   report.plane_source = plane.source;
-  study.felt = feel_traces(store, key, study.trials, plane.geometry, options.jobs);
+  study.felt =
+      feel_traces(store, key, study.trials, plane.geometry, options.jobs, options.progress);
   for (std::size_t i = 0; i < outcomes.methods.size(); ++i) {
     report.methods.push_back(method_cues(study, static_cast<int>(i), outcomes.methods[i]));
   }

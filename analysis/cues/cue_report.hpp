@@ -8,6 +8,7 @@
 
 #include <array>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -96,6 +97,8 @@ struct CueReport {
 struct CueOptions {
   int jobs = 0;                  ///< threads; 0: as many as there are
   std::filesystem::path pack{};  ///< for the plane's size; empty: where the key says
+  /// Told on the calling thread how many traces are read.
+  std::function<void(int done, int of)> progress{};
 };
 
 /// Traces that make_cues would read: one for each counted trial.

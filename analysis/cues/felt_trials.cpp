@@ -1,6 +1,5 @@
 #include "analysis/cues/felt_trials.hpp"
 
-#include "analysis/cues/trace_reader.hpp"
 #include "core/vec.hpp"
 #include "engine/perception/texture_sense.hpp"
 
@@ -38,14 +37,14 @@ std::vector<const TrialOutcome*> counted_trials(const Outcomes& outcomes) {
 
 FeltTrials feel_traces(const StudyStore& store, const StudyKey& key,
                        std::span<const TrialOutcome* const> trials, const PlaneGeometry& plane,
-                       int jobs) {
+                       int jobs, const TraceProgress& progress) {
   FeltTrials all;
   all.felt.resize(trials.size());
   all.has_trace.resize(trials.size(), true);
   const auto feel = [&](std::size_t place, const Trace& trace) {
     all.felt[place] = felt_in(trace, plane);
   };
-  for (const std::size_t place : visit_traces(store, key, trials, jobs, feel)) {
+  for (const std::size_t place : visit_traces(store, key, trials, jobs, feel, progress)) {
     all.has_trace[place] = false;
   }
   return all;

@@ -2,6 +2,7 @@
 /// Source: docs/method.md, "Felt features".
 #pragma once
 
+#include "analysis/cues/trace_reader.hpp"
 #include "analysis/outcomes.hpp"
 #include "core/plane_geometry.hpp"
 #include "engine/perception/felt_features.hpp"
@@ -29,7 +30,8 @@ struct FeltTrials {
 /// \throws VerificationError, naming the first trial, if a trace does not open
 [[nodiscard]] FeltTrials feel_traces(const StudyStore& store, const StudyKey& key,
                                      std::span<const TrialOutcome* const> trials,
-                                     const PlaneGeometry& plane, int jobs = 0);
+                                     const PlaneGeometry& plane, int jobs = 0,
+                                     const TraceProgress& progress = {});
 
 /// A plane from its corner to the farthest that any hand had contact, for when its size is not
 /// known. Reads all traces; never empty.

@@ -60,7 +60,7 @@ void visit_batch(std::vector<WaitingTrace>& batch, int jobs, const TraceVisitor&
 
 std::vector<std::size_t> visit_traces(const StudyStore& store, const StudyKey& key,
                                       std::span<const TrialOutcome* const> trials, int jobs,
-                                      const TraceVisitor& visit) {
+                                      const TraceVisitor& visit, const TraceProgress& progress) {
   const std::map<int, SecretKey> keys = participant_keys(store, key);
   std::vector<std::size_t> missing;
   std::vector<WaitingTrace> batch;
@@ -73,9 +73,12 @@ std::vector<std::size_t> visit_traces(const StudyStore& store, const StudyKey& k
       continue;
     }
     batch.push_back({place, &row, &own->second, *std::move(box), {}});
-    if (batch.size() == kBatch) visit_batch(batch, jobs, visit);
+    if (batch.size() < kBatch) continue;
+    visit_batch(batch, jobs, visit);
+    if (progress) progress(static_cast<int>(place), static_cast<int>(trials.size()));
   }
   visit_batch(batch, jobs, visit);
+  if (progress) progress(static_cast<int>(trials.size()), static_cast<int>(trials.size()));
   return missing;
 }
 

@@ -14,6 +14,9 @@ namespace touchtrial {
 /// What is done with one trace. \param place  of its trial in the list of trials
 using TraceVisitor = std::function<void(std::size_t place, const Trace& trace)>;
 
+/// Told now and then how many traces are done, on the calling thread; may be empty.
+using TraceProgress = std::function<void(int done, int of)>;
+
 /// Reads each trial's trace on the calling thread, a few dozen at a time, and opens and visits
 /// those of one batch on several threads, in no order; the visitor may write to what belongs to its
 /// place alone. At most 64 sealed traces, and one open trace a thread, are in memory. \param jobs
@@ -21,6 +24,7 @@ using TraceVisitor = std::function<void(std::size_t place, const Trace& trace)>;
 /// VerificationError, naming the first trial, if a trace does not open
 std::vector<std::size_t> visit_traces(const StudyStore& store, const StudyKey& key,
                                       std::span<const TrialOutcome* const> trials, int jobs,
-                                      const TraceVisitor& visit);
+                                      const TraceVisitor& visit,
+                                      const TraceProgress& progress = {});
 
 }  // namespace touchtrial

@@ -54,12 +54,14 @@ nav li { padding: .15rem 0; break-inside: avoid; }
 table { border-collapse: collapse; font-variant-numeric: tabular-nums; font-size: .9rem;
         border-bottom: 1.5px solid var(--rule); }
 caption { text-align: left; padding: 0 0 .5rem; font-size: 1rem; }
-caption span { display: block; position: sticky; left: 0; width: fit-content;
-               max-width: min(46rem, calc(100vw - 2.5rem)); }
+/* Wider than a narrow table, without making it wider: the margin takes the width back. */
+caption span { display: block; position: sticky; left: 0; width: max-content;
+               max-width: min(46rem, calc(100vw - 2.5rem)); margin-right: -46rem; }
 caption b, figcaption b { font-weight: 600; }
 thead th { border-top: 1.5px solid var(--rule); border-bottom: 1px solid var(--rule);
            vertical-align: bottom; font-weight: 600; }
 th, td { padding: .3rem .75rem; text-align: right; white-space: nowrap; }
+thead th { white-space: normal; }
 th:first-child, td:first-child { padding-left: .25rem; }
 th:last-child, td:last-child { padding-right: .25rem; }
 th.l, td.l { text-align: left; }
@@ -75,8 +77,9 @@ summary { cursor: pointer; padding: .25rem 0; }
 figure { margin: 1.6rem 0 2rem; }
 figcaption { margin-top: .5rem; max-width: 46rem; overflow-wrap: anywhere; }
 figure details { margin: .3rem 0 0; font-size: .9rem; }
-.plot { background: #fff; padding: .4rem; border: 1px solid var(--line); width: max-content;
+.plot { background: #fff; padding: .4rem; border: 1px solid var(--line); width: 46rem;
         max-width: 100%; min-width: 34rem; }
+figure[id^="figure-exploration"] .plot { width: 34rem; }
 .plot svg { display: block; width: 100%; height: auto; max-width: 100%; }
 .flow ol { list-style: none; margin: 0; padding: 0; max-width: 34rem; }
 .flow ol > li { position: relative; padding-bottom: 1.6rem; }
@@ -119,7 +122,7 @@ footer { border-top: 1px solid var(--line); margin-top: 3rem; padding-top: .8rem
   th, td { padding: .6mm 1.6mm; }
   th, td.l { white-space: normal; }
   caption { font-size: 9.5pt; break-after: avoid; }
-  caption span { max-width: 100%; }
+  caption span { max-width: 175mm; }
   tbody tr:nth-child(even), tbody tr td.s { print-color-adjust: exact;
     -webkit-print-color-adjust: exact; }
   .notes { font-size: 7.8pt; }

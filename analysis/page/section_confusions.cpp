@@ -62,6 +62,39 @@ Table confusion_table(const StudyReport& report, std::size_t index) {
   return table;
 }
 
+/// "{basket, leaf} and {log}"
+std::string groups_of(const ChoiceModel& model, const std::vector<std::string>& classes) {
+  std::vector<std::string> groups(static_cast<std::size_t>(model.groups));
+  for (std::size_t i = 0; i < model.group.size() && i < classes.size(); ++i) {
+    std::string& group = groups[static_cast<std::size_t>(model.group[i])];
+    group += (group.empty() ? "" : ", ") + classes[i];
+  }
+  for (std::string& group : groups) group = "{" + group + "}";
+  return listed(groups);
+}
+
+/// What a reader has to know of zeros among the counts.
+std::vector<Cited> choice_notes(const ChoiceModel& model, const std::vector<std::string>& classes) {
+  std::string fit = fmt::format("Fit: G² = {} on {} degrees of freedom",
+                                plain_figure(model.g_squared, 2), model.degrees_of_freedom);
+  if (model.p) fit += ", " + p_phrase(*model.p) + " under chi-square for independent trials";
+  if (!model.converged) fit += "; the fit did not converge";
+  std::vector<Cited> notes{
+      {fmt::format("Similarity choice model, maximum likelihood over trials with a response: "
+                   "similarity 1 is the same, 0 never taken for each other, – has no value; "
+                   "biases add up to 1{}.",
+                   model.groups > 1 ? " within each group" : ""),
+       {Source::luce, Source::townsend_landon}},
+      {fit + "."}};
+  if (model.groups > 1) {
+    notes.push_back({fmt::format(
+        "Only within the {} groups {} were textures taken for each other both ways: between groups "
+        "no similarity can be told from a bias, and biases cannot be compared.",
+        model.groups, groups_of(model, classes))});
+  }
+  return notes;
+}
+
 Table choice_table(const StudyReport& report, std::size_t index) {
   const ChoiceModel& model = *report.methods[index].choice;
   Table table{"choice-model-" + method_slug(report, index),
@@ -71,22 +104,14 @@ Table choice_table(const StudyReport& report, std::size_t index) {
   for (int i = 0; i < classes; ++i) {
     std::vector<Cell> row{report.classes[i]};
     for (int j = 0; j < classes; ++j) {
-      const double similarity = model.similarity.at(i, j);
-      row.emplace_back(std::isfinite(similarity) ? plain_figure(similarity, 3) : kNoFigure);
+      row.emplace_back(plain_figure(model.similarity.at(i, j), 3));
     }
     table.rows.push_back(std::move(row));
   }
   std::vector<Cell> bias{"bias"};
   for (const double one : model.bias) bias.emplace_back(plain_figure(one, 3));
   table.rows.push_back(std::move(bias));
-  std::string fit = fmt::format("Fit: G² = {} on {} degrees of freedom",
-                                plain_figure(model.g_squared, 2), model.degrees_of_freedom);
-  if (model.p) fit += ", " + p_phrase(*model.p) + " under chi-square for independent trials";
-  if (!model.converged) fit += "; the fit did not converge";
-  table.notes = {{"Similarity choice model, maximum likelihood over trials with a response: "
-                  "similarity 1 is the same, 0 never taken for each other; biases add up to 1.",
-                  {Source::luce, Source::townsend_landon}},
-                 {fit + "."}};
+  table.notes = choice_notes(model, report.classes);
   return table;
 }
 

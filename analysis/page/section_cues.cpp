@@ -11,6 +11,10 @@ std::string mean_range(const MeanEstimate& mean) {
   return mean.participants > 1 ? share_range(mean.interval) : kNoFigure;
 }
 
+std::string prefix_of(const StudyReport& report, const MethodCues& method) {
+  return report.methods.size() > 1 ? method.method + ": " : "";
+}
+
 std::vector<Cell> observer_row(const ObserverFigures& observer) {
   return {std::string(title_of(observer.cue)),
           share_figure(observer.mean.mean),
@@ -18,27 +22,23 @@ std::vector<Cell> observer_row(const ObserverFigures& observer) {
           plain_figure(observer.efficiency.value, 2),
           plain_range(observer.efficiency.interval, 2),
           plain_figure(observer.corrected_efficiency.value, 2),
-          plain_range(observer.corrected_efficiency.interval, 2),
-          plain_figure(observer.divergence.value, 3),
-          plain_range(observer.divergence.interval, 3)};
+          plain_range(observer.corrected_efficiency.interval, 2)};
 }
 
+/// How much there was to feel.
 Table cue_table(const StudyReport& report, const MethodCues& method, std::size_t index) {
-  Table table{"cues-" + std::to_string(index + 1),
-              (report.methods.size() > 1 ? method.method + ": " : "") +
-                  "what ideal observers would have made of what each hand felt",
-              {{"observer uses", Align::left},
-               {"accuracy"},
-               {"95% (%)"},
-               {"efficiency"},
-               {"95%"},
-               {"above chance"},
-               {"95%"},
-               {"divergence (bit)"},
-               {"95%"}}};
-  table.rows.push_back({"(participants themselves)",
-                        Cell(share_figure(method.human_mean.mean), true),
-                        mean_range(method.human_mean), "", "", "", "", "", ""});
+  Table table{
+      "cues-" + std::to_string(index + 1),
+      prefix_of(report, method) + "what ideal observers would have made of what each hand felt",
+      {{"observer uses", Align::left},
+       {"accuracy"},
+       {"95% (%)"},
+       {"efficiency"},
+       {"95%"},
+       {"above chance"},
+       {"95%"}}};
+  table.rows.push_back({"(participants)", Cell(share_figure(method.human_mean.mean), true),
+                        mean_range(method.human_mean), "", "", "", ""});
   for (const ObserverFigures& one : method.observers) table.rows.push_back(observer_row(one));
   table.notes = {
       {fmt::format("{} of {}; observers judge each trial by the others' and know nothing of "
@@ -48,10 +48,39 @@ Table cue_table(const StudyReport& report, const MethodCues& method, std::size_t
        {Source::student}},
       {"Efficiency: participants' accuracy over the observer's; above chance: the same of what "
        "both have above chance. Intervals: bootstrap over participants.",
-       {Source::davison_hinkley}},
+       {Source::davison_hinkley}}};
+  return table;
+}
+
+std::vector<Cell> confusing_row(const ObserverFigures& observer, bool best) {
+  return {std::string(title_of(observer.cue)),
+          plain_figure(observer.divergence.value, 3),
+          plain_range(observer.divergence.interval, 3),
+          plain_figure(observer.matched_noise, 2),
+          Cell(plain_figure(observer.matched_divergence.value, 3), best),
+          plain_range(observer.matched_divergence.interval, 3)};
+}
+
+/// Which of them confuses as participants do.
+Table confusing_table(const StudyReport& report, const MethodCues& method, std::size_t index) {
+  Table table{"cues-confusing-" + std::to_string(index + 1),
+              prefix_of(report, method) + "how far observers' confusions are from participants'",
+              {{"observer uses", Align::left},
+               {"divergence (bit)"},
+               {"95%"},
+               {"noise to match"},
+               {"divergence, matched (bit)"},
+               {"95%"}}};
+  for (const ObserverFigures& one : method.observers) {
+    table.rows.push_back(confusing_row(one, method.match && method.match->best == one.cue));
+  }
+  table.notes = {
       {"Divergence: Jensen-Shannon, between participants' and the observer's answers, mean over "
-       "textures; 0 if they confuse alike.",
-       {Source::lin}}};
+       "textures; 0 if they confuse alike, 1 at most. Intervals: bootstrap over participants.",
+       {Source::lin, Source::davison_hinkley}},
+      {"Matched: an observer that is hardly ever wrong has no confusions to be compared, so its "
+       "sense is given noise (a Weber fraction) until it is right as often as participants; 0 if "
+       "it is not right more often without. The least is emphasised."}};
   return table;
 }
 
@@ -61,8 +90,8 @@ Cited match_of(const MethodCues& method) {
   const std::string verdict = match.told_apart
                                   ? "the two are told apart"
                                   : "the interval holds 0, so the two are not told apart";
-  return {fmt::format("{}: participants' confusions are most like those of the observer of {} "
-                      "({} bit less divergence than {}, {}: {}).",
+  return {fmt::format("{}: once all are as uncertain as participants, their confusions are most "
+                      "like those of the observer of {} ({} bit less divergence than {}, {}: {}).",
                       method.method, title_of(match.best), plain_figure(match.difference.value, 3),
                       title_of(match.second), plain_range(match.difference.interval, 3), verdict),
           {Source::lin}};
@@ -100,6 +129,7 @@ Section cues_section(const StudyReport& report) {
     }
     section.blocks.emplace_back(match_of(method));
     section.blocks.emplace_back(cue_table(report, method, i));
+    section.blocks.emplace_back(confusing_table(report, method, i));
     const std::string left_out = left_out_of(method);
     if (!left_out.empty()) section.blocks.emplace_back(Cited{left_out, {}});
   }

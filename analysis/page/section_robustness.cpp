@@ -93,7 +93,9 @@ Section robustness_section(const StudyReport& report) {
     section.blocks.emplace_back(*servo);
   } else {
     section.blocks.emplace_back(
-        Cited{"No trial was in real time: nothing is known of a servo's lateness.", {}});
+        Cited{"There is no table and no figure of the servo: no trial ran in real time. In virtual "
+              "time every tick is on time by construction, and says nothing of a device.",
+              {}});
   }
   for (std::size_t i = 0; i < report.methods.size(); ++i) {
     if (report.methods[i].robustness.empty()) continue;

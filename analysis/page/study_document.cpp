@@ -20,7 +20,7 @@ struct PicturePlace {
   string_view beginning;
   string_view section;
 };
-constexpr std::array<PicturePlace, 13> kPlaces{{{"accuracy-by-class", "accuracy"},
+constexpr std::array<PicturePlace, 12> kPlaces{{{"accuracy-by-class", "accuracy"},
                                                 {"accuracy-over-trials", "order"},
                                                 {"accuracy-by-trial", "order"},
                                                 {"accuracy", "accuracy"},
@@ -31,8 +31,11 @@ constexpr std::array<PicturePlace, 13> kPlaces{{{"accuracy-by-class", "accuracy"
                                                 {"observers", "cues"},
                                                 {"ideal", "cues"},
                                                 {"cue", "cues"},
-                                                {"exploration", "cues"},
                                                 {"servo", "servo-and-validity"}}};
+
+/// The page draws participants' flow itself, as text that can be read aloud: this is for papers.
+constexpr string_view kFlow = "participant-flow";
+constexpr string_view kExploration = "exploration";
 
 string_view section_for(const Picture& picture) {
   const auto* place = std::find_if(kPlaces.begin(), kPlaces.end(), [&](const PicturePlace& one) {
@@ -50,11 +53,26 @@ void add_picture(const Picture& picture, Section& section) {
   section.blocks.insert(place, picture);
 }
 
+/// What single hands did comes last among the cues.
+void add_explorations(const Pictures& pictures, std::vector<Section>& sections) {
+  const auto cues = std::find_if(sections.begin(), sections.end(),
+                                 [](const Section& one) { return one.id == "cues"; });
+  if (cues == sections.end()) return;
+  bool first = true;
+  for (const Picture& picture : pictures) {
+    if (!picture.id.starts_with(kExploration)) continue;
+    if (first) cues->blocks.emplace_back(Subheading{"explorations", "How a hand explored"});
+    first = false;
+    cues->blocks.emplace_back(picture);
+  }
+}
+
 /// \return those that belong to no section
 Pictures place_pictures(const Pictures& pictures, std::vector<Section>& sections) {
   Pictures left;
   // Each is put before the section's first table, so the last one comes last.
   for (const Picture& picture : pictures) {
+    if (picture.id == kFlow || picture.id.starts_with(kExploration)) continue;
     const string_view wanted = section_for(picture);
     const auto section = std::find_if(sections.begin(), sections.end(),
                                       [&](const Section& one) { return one.id == wanted; });
@@ -64,6 +82,7 @@ Pictures place_pictures(const Pictures& pictures, std::vector<Section>& sections
       add_picture(picture, *section);
     }
   }
+  add_explorations(pictures, sections);
   return left;
 }
 

@@ -1,5 +1,6 @@
 /// \file How figures stand in a report's tables and sentences: typographic minus and dashes, a
-/// decimal dot whatever the locale, "–" where there is no figure. Private to analysis/page.
+/// decimal dot whatever the locale, "–" where there is no figure or it is
+/// not finite. Private to analysis/page.
 #pragma once
 
 #include "analysis/statistics/proportion.hpp"

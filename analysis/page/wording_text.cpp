@@ -1,5 +1,7 @@
 #include "analysis/page/wording.hpp"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 namespace touchtrial {
@@ -18,7 +20,8 @@ std::string typeset(const std::string& figure) {
 }  // namespace
 
 std::string plain_figure(std::optional<double> figure, int decimals) {
-  return figure ? typeset(fmt::format("{:.{}f}", *figure, decimals)) : kNoFigure;
+  if (!figure || !std::isfinite(*figure)) return kNoFigure;
+  return typeset(fmt::format("{:.{}f}", *figure, decimals));
 }
 
 std::string plain_range(const std::optional<Interval>& interval, int decimals) {
@@ -28,7 +31,7 @@ std::string plain_range(const std::optional<Interval>& interval, int decimals) {
 }
 
 std::string signed_plain_figure(std::optional<double> figure, int decimals) {
-  if (!figure) return kNoFigure;
+  if (!figure || !std::isfinite(*figure)) return kNoFigure;
   const std::string text = fmt::format("{:+.{}f}", *figure, decimals);
   return rounds_to_zero(text) ? text.substr(1) : typeset(text);
 }

@@ -39,6 +39,7 @@ ChoiceModel choice_of() {
   model.similarity = Plane<double>(3, 3, 0.25);
   for (int i = 0; i < 3; ++i) model.similarity.at(i, i) = 1.0;
   model.bias = {0.5, 0.3, 0.2};
+  model.group = {0, 0, 0};
   model.g_squared = 1.75;
   model.degrees_of_freedom = 1;
   model.p = 0.1859;

@@ -5,6 +5,7 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 using namespace touchtrial;
@@ -79,6 +80,35 @@ TEST_CASE("document: methods are compared with differences, odds and the decibel
   CHECK(table.columns.back().title == "dB (10 log10)");
   const std::string text = tables_markdown(hand_made());
   CHECK_THAT(text, holds_text("20 log10 would be twice that"));
+}
+
+TEST_CASE("document: a choice model in groups says which, and has dashes where nothing exists") {
+  StudyReport report = hand_made_report();
+  ChoiceModel& model = *report.methods[0].choice;
+  model.groups = 2;
+  model.group = {0, 0, 1};
+  model.similarity.at(0, 2) = std::nan("");
+  model.bias = {0.6, 0.4, std::nan("")};
+  const Document document = study_document(report, hand_made_provenance());
+  const Table table = table_named(document, "choice-model-adaptive");
+  CHECK(table.rows[0][3].text == "–");
+  CHECK(table.rows.back()[3].text == "–");
+  CHECK_THAT(table.notes.back().text, holds_text("{bark, cloth} and {straw}"));
+  CHECK_THAT(table_markdown(table_named(document, "choice-model-tv-gabor"), ""),
+             !holds_text("Only within"));
+}
+
+TEST_CASE("document: participants' flow is drawn once, explorations come last among the cues") {
+  const Document document =
+      study_document(hand_made_report(), hand_made_provenance(),
+                     {hand_made_picture("participant-flow"), hand_made_picture("exploration-1-2")});
+  CHECK_THAT(page_html(document), !holds_text("figure-participant-flow"));
+  for (const Section& section : document.sections) {
+    CHECK(section.id != "further-figures");
+    if (section.id != "cues") continue;
+    REQUIRE(std::holds_alternative<Picture>(section.blocks.back()));
+    CHECK(std::get<Picture>(section.blocks.back()).id == "exploration-1-2");
+  }
 }
 
 TEST_CASE("document: every cited source is in the list of references, once") {

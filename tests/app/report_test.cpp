@@ -1,0 +1,96 @@
+// The folder of a report as its user gets it. Figures are drawn only where gnuplot is.
+#include "app/study_folder.hpp"
+#include "support/catch.hpp"
+
+#include <string>
+
+using namespace touchtrial;
+
+namespace {
+
+/// Every file in a report but figures and what lists the files, in one text.
+std::string texts_in(const fs::path& folder) {
+  std::string all;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    const bool figure = entry.path().parent_path().filename() == "figures";
+    if (entry.is_regular_file() && !figure) all += content(entry.path());
+  }
+  return all;
+}
+
+ProgramResult without_gnuplot(const StudyFolder& study, const std::vector<std::string>& arguments) {
+  std::vector<std::string> words = {"PATH=" + study.in("nowhere"), TOUCHTRIAL_PROGRAM};
+  words.insert(words.end(), arguments.begin(), arguments.end());
+  return run_program("/usr/bin/env", study.path(), words);
+}
+
+}  // namespace
+
+TEST_CASE("report --out without gnuplot writes all but figures, and says so in one line") {
+  const StudyFolder study;
+  REQUIRE(study.simulate("s.db").exit_code == 0);
+  const std::vector<std::string> report = {"report", study.in("s.db"), "--out", study.in("out")};
+  const ProgramResult ran = without_gnuplot(study, report);
+  INFO(ran.errors);
+  REQUIRE(ran.exit_code == 0);
+  CHECK(ran.output == study.in("out/report.html") + "\n");
+  CHECK(line_count(ran.errors) == 1);
+  CHECK_THAT(ran.errors, holds_text("gnuplot"));
+  CHECK_FALSE(fs::exists(study.path() / "out/figures"));
+  const std::string page = content(study.path() / "out/report.html");
+  CHECK_THAT(page, holds_text("SIMULATED"));
+  CHECK_THAT(page, holds_text("figure-exploration-1-"));
+  CHECK_THAT(page, !holds_text("<svg"));
+  const ProgramResult json = study.run({"report", study.in("s.db"), "--json", "--cues", "yes"});
+  CHECK(content(study.path() / "out/results.json") == json.output);
+
+  // The same report without cues has fewer tables: the others go, and nothing else does.
+  replace_file(study.path() / "out/tables/mine.md", std::string("mine"));
+  REQUIRE(fs::exists(study.path() / "out/tables/cues-1.md"));
+  std::vector<std::string> fewer = report;
+  fewer.insert(fewer.end(), {"--cues", "no"});
+  REQUIRE(without_gnuplot(study, fewer).exit_code == 0);
+  CHECK_FALSE(fs::exists(study.path() / "out/tables/cues-1.md"));
+  CHECK(content(study.path() / "out/tables/mine.md") == "mine");
+}
+
+TEST_CASE("report --out refuses a file, another study's folder, and a trial that is not there") {
+  const StudyFolder study;
+  REQUIRE(study.simulate("s.db").exit_code == 0);
+  replace_file(study.path() / "file", std::string("text"));
+  fs::create_directory(study.path() / "other");
+  replace_file(study.path() / "other/results.json", std::string(R"({"study": "leaves"})"));
+  for (const std::string out : {"file", "other"}) {
+    const ProgramResult ran = study.run({"report", study.in("s.db"), "--out", study.in(out)});
+    INFO(ran.errors);
+    CHECK(ran.exit_code == 1);
+    CHECK(line_count(ran.errors) == 1);
+  }
+  CHECK_FALSE(fs::exists(study.path() / "other/report.html"));
+  for (const std::string trial : {"P001", "P001:999", "nobody:1"}) {
+    const ProgramResult ran =
+        study.run({"report", study.in("s.db"), "--out", study.in("out"), "--trial", trial});
+    INFO(ran.errors);
+    CHECK(ran.exit_code == 2);
+    CHECK(line_count(ran.errors) == 1);
+  }
+  CHECK_FALSE(fs::exists(study.path() / "out"));
+}
+
+TEST_CASE("report --out of a blind study tells nothing of what was presented") {
+  const StudyFolder study;
+  REQUIRE(study.simulate("s.db", {"--keep-blind"}).exit_code == 0);
+  const ProgramResult ran = study.run({"report", study.in("s.db"), "--out", study.in("out")});
+  INFO(ran.errors);
+  REQUIRE(ran.exit_code == 0);
+  const std::string all = texts_in(study.path() / "out");
+  for (const std::string& label : kLabels) CHECK_THAT(all, !holds_text(label));
+  CHECK_THAT(all, !holds_text("accuracy"));
+  CHECK_FALSE(fs::exists(study.path() / "out/figures"));
+  for (const std::vector<std::string>& asked :
+       {std::vector<std::string>{"--trial", "P001:1"}, {"--cues", "yes"}}) {
+    std::vector<std::string> words = {"report", study.in("s.db"), "--out", study.in("out")};
+    words.insert(words.end(), asked.begin(), asked.end());
+    CHECK(study.run(words).exit_code == 2);
+  }
+}
