@@ -96,7 +96,10 @@ int write_outcomes(const StudyStore& store, const StudyReport& report,
 
 int report(const ReportArguments& arguments) {
   const StudyStore store = StudyStore::open(arguments.database, StudyStore::Access::read_only);
-  if (!arguments.folder.empty()) refuse_other_study(arguments.folder, store.commitment().study);
+  if (!arguments.folder.empty()) {
+    refuse_other_study(arguments.folder, store.commitment().study);
+    refuse_strangers(arguments.folder);
+  }
   if (!store.state().unblinded) {
     refuse_while_blind(arguments);
     return report_quality(store, arguments);

@@ -2,6 +2,7 @@
 
 #include "analysis/page/renderings.hpp"
 #include "core/bytes.hpp"
+#include "core/errors.hpp"
 #include "core/files.hpp"
 
 #include <set>
@@ -24,15 +25,31 @@ bool could_be_ours(const std::string& path) {
          name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-.") == std::string::npos;
 }
 
-std::set<std::string> listed_before(const fs::path& folder) {
+/// Every line of an earlier report's list, as it stands there.
+std::set<std::string> claimed_in(const fs::path& folder) {
   std::set<std::string> paths;
   if (!is_there(folder / kList)) return paths;
   const Bytes bytes = read_file(folder / kList, kLongestList);
   std::istringstream lines(std::string(bytes.begin(), bytes.end()));
-  for (std::string line; std::getline(lines, line);) {
-    if (could_be_ours(line)) paths.insert(line);
+  for (std::string line; std::getline(lines, line);) paths.insert(line);
+  return paths;
+}
+
+/// What may be taken away.
+std::set<std::string> removable(const std::set<std::string>& claimed) {
+  std::set<std::string> paths;
+  for (const std::string& path : claimed) {
+    if (could_be_ours(path)) paths.insert(path);
   }
   return paths;
+}
+
+void require_own(const fs::path& folder, const std::set<std::string>& claimed,
+                 const std::string& path) {
+  if (claimed.contains(path) || !is_there(folder / path)) return;
+  throw FileError(one_line((folder / path).string()) +
+                  ": is there already, and no report wrote it; give another folder with --out, or "
+                  "move it away");
 }
 
 std::string list_of(const ReportFiles& files) {
@@ -56,9 +73,16 @@ ReportFiles report_files(const Document& document, const std::string& results) {
   return files;
 }
 
+void refuse_strangers(const fs::path& folder) {
+  const std::set<std::string> claimed = claimed_in(folder);
+  for (const char* path : {"report.html", "results.json"}) require_own(folder, claimed, path);
+}
+
 void write_report_folder(const fs::path& folder, const ReportFiles& files) {
   make_folder(folder);
-  const std::set<std::string> before = listed_before(folder);
+  const std::set<std::string> claimed = claimed_in(folder);
+  for (const auto& [path, content] : files) require_own(folder, claimed, path);
+  const std::set<std::string> before = removable(claimed);
   // The list comes first: after a crash the next report still knows what is its own.
   std::string list = list_of(files);
   for (const std::string& path : before) {

@@ -22,9 +22,15 @@ using ReportFiles = std::map<std::string, std::string>;
 ///   report's
 void refuse_other_study(const std::filesystem::path& folder, const std::string& study);
 
+/// For before long work too: page and results that no report's list names are somebody else's.
+/// \throws FileError if there is one
+void refuse_strangers(const std::filesystem::path& folder);
+
 /// Writes every file, each as a whole, and takes away those that an earlier report wrote and this
 /// one does not have (their list is "report-files.txt"); touches nothing else in the folder.
-/// \throws FileError if a folder or file cannot be written
+/// \throws FileError if a file is there that the list does not name (nothing is written then), or
+/// if
+///   a folder or file cannot be written
 void write_report_folder(const std::filesystem::path& folder, const ReportFiles& files);
 
 }  // namespace touchtrial

@@ -84,16 +84,31 @@ Table confusing_table(const StudyReport& report, const MethodCues& method, std::
   return table;
 }
 
+/// With fewer a bootstrap over participants is no ground for a verdict.
+constexpr std::size_t kFewestToTell = 6;
+
+std::string verdict_of(const MethodCues& method, const CueMatch& match) {
+  const std::size_t participants = method.participants.size();
+  if (participants < kFewestToTell) {
+    return fmt::format("with {} it is not told whether the two differ",
+                       counted(static_cast<std::int64_t>(participants), "participant"));
+  }
+  if (!match.difference.interval) {
+    return "without an interval it is not told whether the two differ";
+  }
+  return "95% interval " + plain_range(match.difference.interval, 3) +
+         (match.told_apart ? ", so the two are told apart"
+                           : ", which holds 0, so the two are not told apart");
+}
+
 Cited match_of(const MethodCues& method) {
   if (!method.match) return {method.method + ": no trial tells which observer confuses alike."};
   const CueMatch& match = *method.match;
-  const std::string verdict = match.told_apart
-                                  ? "the two are told apart"
-                                  : "the interval holds 0, so the two are not told apart";
   return {fmt::format("{}: once all are as uncertain as participants, their confusions are most "
-                      "like those of the observer of {} ({} bit less divergence than {}, {}: {}).",
+                      "like those of the observer of {} ({} bit less matched divergence than {}; "
+                      "{}).",
                       method.method, title_of(match.best), plain_figure(match.difference.value, 3),
-                      title_of(match.second), plain_range(match.difference.interval, 3), verdict),
+                      title_of(match.second), verdict_of(method, match)),
           {Source::lin}};
 }
 

@@ -96,6 +96,8 @@ CueReport cues_of(const std::vector<std::string>& classes) {
     observer.mean = {2, 0.9, {0.8, 1.0}};
     observer.efficiency = {0.78, Interval{0.6, 0.95}};
     observer.divergence = {0.123, Interval{0.1, 0.2}};
+    observer.matched_noise = 0.25;
+    observer.matched_divergence = {0.045, Interval{0.03, 0.06}};
     method.observers.push_back(observer);
   }
   method.match = CueMatch{Cue::spectrum, Cue::everything, {0.02, Interval{-0.01, 0.05}}, false};

@@ -51,8 +51,9 @@ TEST_CASE("report folder: a list that was tampered with takes away nothing outsi
   write_report_folder(out, {{"results.json", "1"}});
   replace_file(folder.path() / "precious.md", std::string_view("mine"));
   replace_file(out / "notes.txt", std::string_view("mine"));
-  replace_file(out / "report-files.txt",
-               std::string_view("tables/../../precious.md\n../precious.md\nnotes.txt\n"));
+  replace_file(
+      out / "report-files.txt",
+      std::string_view("results.json\ntables/../../precious.md\n../precious.md\nnotes.txt\n"));
   write_report_folder(out, {{"results.json", "2"}});
   CHECK(is_there(folder.path() / "precious.md"));
   CHECK(is_there(out / "notes.txt"));
@@ -67,4 +68,18 @@ TEST_CASE("report folder: refuses the report of another study, and a results.jso
   CHECK_THROWS_AS(refuse_other_study(out, "other"), FileError);
   replace_file(out / "results.json", std::string_view("[1, 2"));
   CHECK_THROWS_AS(refuse_other_study(out, "mine"), FileError);
+}
+
+TEST_CASE("report folder: refuses to write over a file that no report's list names") {
+  const TempFolder folder;
+  const fs::path out = folder.path();
+  make_folder(out / "tables");
+  CHECK_NOTHROW(refuse_strangers(out));
+  for (const std::string path : {"report.html", "tables/a.md"}) {
+    replace_file(out / path, std::string_view("mine"));
+    CHECK_THROWS_AS(write_report_folder(out, {{"results.json", "1"}, {path, "ours"}}), FileError);
+    CHECK(content_of(out / path) == "mine");
+    CHECK_FALSE(is_there(out / "results.json"));
+  }
+  CHECK_THROWS_AS(refuse_strangers(out), FileError);
 }

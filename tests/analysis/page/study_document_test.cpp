@@ -111,6 +111,18 @@ TEST_CASE("document: participants' flow is drawn once, explorations come last am
   }
 }
 
+TEST_CASE("document: which observer confuses alike is not told of few participants") {
+  StudyReport report = hand_made_report();
+  const auto page = [&] { return page_html(study_document(report, hand_made_provenance())); };
+  CHECK_THAT(page(), holds_text("with 2 participants it is not told whether the two differ"));
+  report.cues->methods[0].participants.assign(6, "P");
+  CHECK_THAT(page(), holds_text("0.020 bit less matched divergence than everything felt; "
+                                "95% interval [−0.010, 0.050], which holds 0, so the two are not "
+                                "told apart"));
+  report.cues->methods[0].match->difference.interval.reset();
+  CHECK_THAT(page(), holds_text("without an interval it is not told"));
+}
+
 TEST_CASE("document: every cited source is in the list of references, once") {
   const std::vector<Source> references = references_of(hand_made());
   CHECK(references.size() > 10);
