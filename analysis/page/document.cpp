@@ -1,9 +1,12 @@
 #include "analysis/page/document.hpp"
 
 #include <algorithm>
+#include <string_view>
 
 namespace touchtrial {
 namespace {
+
+constexpr const char* kBetweenWords = ", ";
 
 void add_sources(const Cited& cited, std::vector<Source>& references) {
   for (const Source source : cited.sources) {
@@ -50,8 +53,16 @@ std::string citation_mark(const Cited& cited, const std::vector<Source>& referen
 }
 
 std::string stamped(const std::string& caption, const std::string& stamp) {
-  if (stamp.empty() || caption.find(stamp) != std::string::npos) return caption;
-  return caption + " [" + stamp + "]";
+  std::string missing;
+  for (std::size_t at = 0; at < stamp.size();) {
+    const std::size_t end = std::min(stamp.find(kBetweenWords, at), stamp.size());
+    const std::string word = stamp.substr(at, end - at);
+    if (caption.find(word) == std::string::npos) {
+      missing += (missing.empty() ? "" : kBetweenWords) + word;
+    }
+    at = end + std::string_view(kBetweenWords).size();
+  }
+  return missing.empty() ? caption : caption + " [" + missing + "]";
 }
 
 std::vector<const Table*> tables_of(const Document& document) {

@@ -159,11 +159,17 @@ std::string html_of(Writer& writer, const Picture& picture) {
         "<div class=\"plot\" role=\"img\" aria-label=\"{}\">\n{}\n</div></div>\n",
         number, escaped(picture.alt), svg);
   }
+  if (svg.empty()) {
+    // The caption tells of marks and bars that are not there.
+    return html +
+           fmt::format("<figcaption><b>Figure {}, not drawn.</b> {}</figcaption>\n</figure>\n",
+                       number, escaped(stamped(picture.alt, writer.document.stamp)));
+  }
   html += fmt::format("<figcaption><b>Figure {}.</b> {}</figcaption>\n", number,
                       escaped(stamped(picture.caption, writer.document.stamp)));
   return html +
-         fmt::format("<details{}><summary>Figure {} in words</summary><p>{}</p></details>\n",
-                     svg.empty() ? " open" : "", number, escaped(picture.alt)) +
+         fmt::format("<details><summary>Figure {} in words</summary><p>{}</p></details>\n", number,
+                     escaped(picture.alt)) +
          "</figure>\n";
 }
 

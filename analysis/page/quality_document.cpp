@@ -100,6 +100,7 @@ Document quality_document(const QualityReport& report, const Collection& collect
   Document document;
   document.title = "Quality of the study " + report.study;
   document.stamp = report.simulated ? "SIMULATED" : "";
+  if (report.pilot) document.stamp += document.stamp.empty() ? "PILOT" : ", PILOT";
   document.banners = banners_of(report);
   document.header = evidence_header(provenance);
   document.header.entries.insert(document.header.entries.begin(),

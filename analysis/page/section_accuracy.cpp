@@ -33,7 +33,8 @@ Table class_table(const StudyReport& report, std::size_t index) {
   }
   table.notes = {{"Wilson: score interval.", {Source::wilson}},
                  {"Clopper-Pearson: exact, never below its level.", {Source::clopper_pearson}},
-                 {"Jeffreys: quantiles of a beta distribution. All three take trials as "
+                 {"Jeffreys: quantiles of a beta distribution, by convention from 0 where no "
+                  "answer is right and to 1 where all are. All three take trials as "
                   "independent, which a participant's are not, "
                   "so they are too narrow; the interval to quote is that of the headline.",
                   {Source::brown_cai_dasgupta}}};

@@ -11,6 +11,7 @@ namespace touchtrial {
 namespace {
 
 constexpr double kUsualLevel = 0.05;
+constexpr const char* kNoWidth = " *";  ///< mark of a note
 
 std::string pair_name(const StudyReport& report, const MethodPair& pair) {
   return report.methods[pair.first].method + " less " + report.methods[pair.second].method;
@@ -98,6 +99,12 @@ Table pair_table(const StudyReport& report) {
   return table;
 }
 
+/// All participants' differences are equal: an interval without width is no certainty.
+bool has_no_width(const MethodComparison& paired) {
+  return paired.participants > 1 && paired.difference &&
+         paired.interval.high - paired.interval.low < 1e-9;
+}
+
 std::vector<Cell> class_row(const std::string& label, const ClassComparison& one, bool mcnemar) {
   const auto difference = one.first.share() && one.second.share()
                               ? std::optional(*one.first.share() - *one.second.share())
@@ -109,7 +116,7 @@ std::vector<Cell> class_row(const std::string& label, const ClassComparison& one
                         fmt::format("{}/{}", one.second.correct, one.second.n),
                         share_figure(one.second.share()),
                         points_figure(difference),
-                        t_range(one.paired),
+                        t_range(one.paired) + (has_no_width(one.paired) ? kNoWidth : ""),
                         p_figure(one.paired.p)};
   if (mcnemar) row.emplace_back(p_figure(one.mcnemar_mid_p));
   row.emplace_back(signed_plain_figure(db, 2));
@@ -142,6 +149,12 @@ Table class_table(const StudyReport& report, const MethodPair& pair, std::size_t
        "differences, two-sided and not adjusted for the number of textures: to look "
        "at, not to test with.",
        {Source::student, Source::phipson_smyth}}};
+  if (std::any_of(pair.classes.begin(), pair.classes.end(),
+                  [](const ClassComparison& one) { return has_no_width(one.paired); })) {
+    table.notes.push_back(
+        {"* Every participant has the same difference, so that the interval has no width: it says "
+         "nothing of how sure the figure is."});
+  }
   return table;
 }
 

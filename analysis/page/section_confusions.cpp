@@ -1,5 +1,6 @@
 #include "analysis/page/sections.hpp"
 #include "analysis/page/wording.hpp"
+#include "analysis/text_figures.hpp"
 
 #include <cmath>
 
@@ -7,6 +8,8 @@
 
 namespace touchtrial {
 namespace {
+
+constexpr double kUsualLevel = 0.05;
 
 /// A count and its share of the row.
 std::string count_cell(int count, int of) {
@@ -73,19 +76,30 @@ std::string groups_of(const ChoiceModel& model, const std::vector<std::string>& 
   return listed(groups);
 }
 
+/// How well the model fits, in a sentence or two.
+std::string fit_of(const ChoiceModel& model) {
+  std::string fit = "No degree of freedom is left to test the fit.";
+  if (model.degrees_of_freedom > 0) {
+    fit = fmt::format("Fit: G² = {} on {}", plain_figure(model.g_squared, 2),
+                      counted(model.degrees_of_freedom, "degree") + " of freedom");
+    if (model.p) fit += ", " + p_phrase(*model.p) + " under chi-square for independent trials";
+    fit += ".";
+    if (model.p && *model.p <= kUsualLevel) {
+      fit += " The model does not fit: its similarities and biases describe, and explain nothing.";
+    }
+  }
+  return model.converged ? fit : fit + " The fit did not converge.";
+}
+
 /// What a reader has to know of zeros among the counts.
 std::vector<Cited> choice_notes(const ChoiceModel& model, const std::vector<std::string>& classes) {
-  std::string fit = fmt::format("Fit: G² = {} on {} degrees of freedom",
-                                plain_figure(model.g_squared, 2), model.degrees_of_freedom);
-  if (model.p) fit += ", " + p_phrase(*model.p) + " under chi-square for independent trials";
-  if (!model.converged) fit += "; the fit did not converge";
   std::vector<Cited> notes{
       {fmt::format("Similarity choice model, maximum likelihood over trials with a response: "
                    "similarity 1 is the same, 0 never taken for each other, – has no value; "
                    "biases add up to 1{}.",
                    model.groups > 1 ? " within each group" : ""),
        {Source::luce, Source::townsend_landon}},
-      {fit + "."}};
+      {fit_of(model)}};
   if (model.groups > 1) {
     notes.push_back({fmt::format(
         "Only within the {} groups {} were textures taken for each other both ways: between groups "

@@ -86,6 +86,19 @@ Pictures place_pictures(const Pictures& pictures, std::vector<Section>& sections
   return left;
 }
 
+std::string joined(const std::string& first, const std::string& second) {
+  return first + (first.empty() || second.empty() ? "" : ", ") + second;
+}
+
+bool is_interim(const Provenance& provenance) {
+  return provenance.state.unblinded && !provenance.state.closed;
+}
+
+/// What stands on every table beside SIMULATED.
+std::string further_stamp(const StudyReport& report, const Provenance& provenance) {
+  return joined(report.pilot ? "PILOT" : "", is_interim(provenance) ? "INTERIM LOOK" : "");
+}
+
 std::vector<std::string> banners_of(const StudyReport& report, const Provenance& provenance) {
   std::vector<std::string> banners;
   if (report.simulated) {
@@ -96,14 +109,15 @@ std::vector<std::string> banners_of(const StudyReport& report, const Provenance&
   if (report.pilot) {
     banners.emplace_back("PILOT: not to be pooled with the study's data, nor reported as it.");
   }
-  if (provenance.state.unblinded && !provenance.state.closed) {
+  if (is_interim(provenance)) {
     banners.emplace_back(
         "INTERIM LOOK: the study is still open. What is seen here may not decide when it ends.");
   }
   return banners;
 }
 
-Definitions header_of(const StudyReport& report, const Provenance& provenance) {
+Definitions header_of(const StudyReport& report, const Provenance& provenance,
+                      const Pictures& pictures) {
   Definitions header;
   header.entries = {{"protocol", report.protocol},
                     {"participants", std::to_string(report.participants)},
@@ -111,6 +125,14 @@ Definitions header_of(const StudyReport& report, const Provenance& provenance) {
                     {"textures", listed(report.classes)}};
   const Definitions evidence = evidence_header(provenance);
   header.entries.insert(header.entries.end(), evidence.entries.begin(), evidence.entries.end());
+  const bool missing = std::any_of(pictures.begin(), pictures.end(),
+                                   [](const Picture& one) { return one.svg.empty(); });
+  if (missing) {
+    header.entries.emplace_back(
+        "figures",
+        "Figures were not drawn: gnuplot could not be used. Install "
+        "gnuplot-nox and make the report again; here each is told in words.");
+  }
   return header;
 }
 
@@ -123,6 +145,18 @@ void add_sections(const StudyReport& report, Document& document) {
         times_section(report), cues_section(report), robustness_section(report),
         methods_section(report)}) {
     if (!section.blocks.empty()) document.sections.push_back(std::move(section));
+  }
+}
+
+/// With several methods a caption begins with a method's name, which stays as it is.
+void capitalise_captions(Document& document) {
+  for (Section& section : document.sections) {
+    for (Block& block : section.blocks) {
+      auto* table = std::get_if<Table>(&block);
+      if (table == nullptr || table->caption.empty()) continue;
+      char& first = table->caption.front();
+      if (first >= 'a' && first <= 'z') first = static_cast<char>(first - 'a' + 'A');
+    }
   }
 }
 
@@ -140,10 +174,11 @@ Document study_document(const StudyReport& report, const Provenance& provenance,
                         const Pictures& pictures) {
   Document document;
   document.title = "Report of the study " + report.study;
-  document.stamp = report.simulated ? "SIMULATED" : "";
+  document.stamp = joined(report.simulated ? "SIMULATED" : "", further_stamp(report, provenance));
   document.banners = banners_of(report, provenance);
-  document.header = header_of(report, provenance);
+  document.header = header_of(report, provenance, pictures);
   add_sections(report, document);
+  if (report.methods.size() < 2) capitalise_captions(document);
   add_further(place_pictures(pictures, document.sections), document);
   document.colophon =
       fmt::format("{}touchtrial {}, {}, event {} of the file's chain, {}",

@@ -54,12 +54,26 @@ std::string rows_latex(const Table& table) {
   return lines;
 }
 
-std::string notes_latex(const Table& table, const std::vector<Source>& references) {
+/// Where a table stands alone, its references stand beneath.
+enum class References { elsewhere, beneath };
+
+std::string references_beneath(const std::vector<Source>& references) {
+  std::string text;
+  for (std::size_t i = 0; i < references.size(); ++i) {
+    text += "\\par\\noindent " +
+            latex_escaped(fmt::format("[{}] {}", i + 1, citation_of(references[i]))) + "\n";
+  }
+  return text;
+}
+
+std::string notes_latex(const Table& table, const std::vector<Source>& references,
+                        References where) {
   std::string text;
   for (const Cited& note : table.notes) {
     text += "\\par\\smallskip\\noindent " + latex_escaped(note.text) +
             latex_escaped(citation_mark(note, references)) + "\n";
   }
+  if (where == References::beneath) text += references_beneath(references);
   return text.empty()
              ? ""
              : "\\begin{minipage}{\\linewidth}\\footnotesize\n" + text + "\\end{minipage}\n";
@@ -72,30 +86,31 @@ std::string size_of(const Table& table) {
 }
 
 std::string float_latex(const Table& table, const std::string& caption,
-                        const std::vector<Source>& references) {
+                        const std::vector<Source>& references, References where) {
   return fmt::format(
              "\\begin{{table}}[htbp]\n\\centering{}\n\\caption{{{}}}\n\\label{{tab:{}}}\n"
              "\\begin{{tabular}}{{@{{}}{}@{{}}}}\n\\toprule\n",
              size_of(table), caption, table.id, column_letters(table)) +
          titles_latex(table) + "\\midrule\n" + rows_latex(table) +
-         "\\bottomrule\n\\end{tabular}\n\n" + notes_latex(table, references) + "\\end{table}\n";
+         "\\bottomrule\n\\end{tabular}\n\n" + notes_latex(table, references, where) +
+         "\\end{table}\n";
 }
 
 std::string long_latex(const Table& table, const std::string& caption,
-                       const std::vector<Source>& references) {
+                       const std::vector<Source>& references, References where) {
   return fmt::format(
              "{{{}\n\\begin{{longtable}}{{@{{}}{}@{{}}}}\n\\caption{{{}}}\\label{{tab:{}}}\\\\\n"
              "\\toprule\n",
              size_of(table), column_letters(table), caption, table.id) +
          titles_latex(table) + "\\midrule\n\\endhead\n\\bottomrule\n\\endfoot\n" +
-         rows_latex(table) + "\\end{longtable}}\n" + notes_latex(table, references);
+         rows_latex(table) + "\\end{longtable}}\n" + notes_latex(table, references, where);
 }
 
 std::string one_table(const Table& table, const std::string& stamp,
-                      const std::vector<Source>& references) {
+                      const std::vector<Source>& references, References where) {
   const std::string caption = latex_escaped(stamped(table.caption, stamp));
-  return table.rows.size() > kLongRows ? long_latex(table, caption, references)
-                                       : float_latex(table, caption, references);
+  return table.rows.size() > kLongRows ? long_latex(table, caption, references, where)
+                                       : float_latex(table, caption, references, where);
 }
 
 std::string references_latex(const std::vector<Source>& references) {
@@ -107,7 +122,7 @@ std::string references_latex(const std::vector<Source>& references) {
   return text + "\\end{enumerate}\n";
 }
 
-/// The references of one table are told, not printed: a paper has a list of its own.
+/// For whoever has a list of references and takes the printed one away.
 std::string references_as_comment(const std::vector<Source>& references) {
   std::string text;
   for (std::size_t i = 0; i < references.size(); ++i) {
@@ -116,9 +131,17 @@ std::string references_as_comment(const std::vector<Source>& references) {
   return text;
 }
 
-bool has_table(const Section& section) {
-  return std::any_of(section.blocks.begin(), section.blocks.end(),
-                     [](const Block& block) { return std::holds_alternative<Table>(block); });
+std::string warnings_latex(const Warnings& warnings) {
+  if (warnings.sentences.empty()) return "";
+  std::string text = "\\begin{itemize}\n";
+  for (const std::string& one : warnings.sentences) text += "\\item " + latex_escaped(one) + "\n";
+  return text + "\\end{itemize}\n";
+}
+
+bool is_shown(const Section& section) {
+  return std::any_of(section.blocks.begin(), section.blocks.end(), [](const Block& block) {
+    return std::holds_alternative<Table>(block) || std::holds_alternative<Warnings>(block);
+  });
 }
 
 }  // namespace
@@ -126,7 +149,7 @@ bool has_table(const Section& section) {
 std::string table_latex(const Table& table, const std::string& stamp) {
   const std::vector<Source> references = references_of(table);
   return header_of(kPackages) + references_as_comment(references) +
-         one_table(table, stamp, references);
+         one_table(table, stamp, references, References::beneath);
 }
 
 std::string tables_latex(const Document& document) {
@@ -136,11 +159,13 @@ std::string tables_latex(const Document& document) {
     text += "\\noindent\\textbf{" + latex_escaped(banner) + "}\\par\\medskip\n";
   }
   for (const Section& section : document.sections) {
-    if (!has_table(section)) continue;
+    if (!is_shown(section)) continue;
     text += "\\section*{" + latex_escaped(section.title) + "}\n";
     for (const Block& block : section.blocks) {
+      if (const auto* warnings = std::get_if<Warnings>(&block)) text += warnings_latex(*warnings);
       const auto* table = std::get_if<Table>(&block);
-      if (table != nullptr) text += one_table(*table, document.stamp, references);
+      if (table != nullptr)
+        text += one_table(*table, document.stamp, references, References::elsewhere);
     }
     text += "\\clearpage\n";
   }

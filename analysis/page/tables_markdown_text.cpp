@@ -10,7 +10,7 @@ namespace {
 
 /// Text that shows as it is; line breaks become spaces, as a row is one line.
 std::string escaped(const std::string& text) {
-  constexpr std::string_view kMarkup = "\\`*_{}[]<>#|~&!";
+  constexpr std::string_view kMarkup = "\\`*_{}[]<>#|~&!$^";
   std::string safe;
   for (const char c : text) {
     const auto code = static_cast<unsigned char>(c);
@@ -60,9 +60,16 @@ std::string references_text(const std::vector<Source>& references) {
   return text;
 }
 
-bool has_table(const Section& section) {
-  return std::any_of(section.blocks.begin(), section.blocks.end(),
-                     [](const Block& block) { return std::holds_alternative<Table>(block); });
+std::string warnings_text(const Warnings& warnings) {
+  std::string text;
+  for (const std::string& one : warnings.sentences) text += "- " + escaped(one) + '\n';
+  return text + '\n';
+}
+
+bool is_shown(const Section& section) {
+  return std::any_of(section.blocks.begin(), section.blocks.end(), [](const Block& block) {
+    return std::holds_alternative<Table>(block) || std::holds_alternative<Warnings>(block);
+  });
 }
 
 }  // namespace
@@ -78,9 +85,10 @@ std::string tables_markdown(const Document& document) {
   std::string text = "# " + escaped(stamped(document.title, document.stamp)) + "\n\n";
   for (const std::string& banner : document.banners) text += "**" + escaped(banner) + "**\n\n";
   for (const Section& section : document.sections) {
-    if (!has_table(section)) continue;
+    if (!is_shown(section)) continue;
     text += "## " + escaped(section.title) + "\n\n";
     for (const Block& block : section.blocks) {
+      if (const auto* warnings = std::get_if<Warnings>(&block)) text += warnings_text(*warnings);
       const auto* table = std::get_if<Table>(&block);
       if (table != nullptr) text += table_text(*table, document.stamp, references) + '\n';
     }

@@ -123,6 +123,62 @@ TEST_CASE("document: which observer confuses alike is not told of few participan
   CHECK_THAT(page(), holds_text("without an interval it is not told"));
 }
 
+TEST_CASE("document: an interim look and a pilot stand on every table") {
+  StudyReport report = hand_made_report();
+  Provenance provenance = hand_made_provenance();
+  CHECK(study_document(report, provenance).stamp == "SIMULATED");
+  report.pilot = true;
+  provenance.state.closed = false;
+  const Document document = study_document(report, provenance);
+  for (const Table* table : tables_of(document)) {
+    CHECK_THAT(table_markdown(*table, document.stamp),
+               holds_text("SIMULATED, PILOT, INTERIM LOOK"));
+    CHECK_THAT(table_latex(*table, document.stamp), holds_text("SIMULATED, PILOT, INTERIM LOOK"));
+  }
+  CHECK(stamped("SIMULATED: x", document.stamp) == "SIMULATED: x [PILOT, INTERIM LOOK]");
+}
+
+TEST_CASE("document: figures that were not drawn are told of, without their captions") {
+  Picture picture = hand_made_picture("methods");
+  const auto page = [&] {
+    return page_html(study_document(hand_made_report(), hand_made_provenance(), {picture}));
+  };
+  CHECK_THAT(page(), !holds_text("Figures were not drawn"));
+  CHECK_THAT(page(), holds_text("A picture."));
+  picture.svg.clear();
+  CHECK_THAT(page(), holds_text("Figures were not drawn: gnuplot"));
+  CHECK_THAT(page(), holds_text("not drawn.</b> Three bars: 80, 76 and 72%."));
+  CHECK_THAT(page(), !holds_text("A picture."));
+}
+
+TEST_CASE("document: a choice model that does not fit, or cannot be tested, says so") {
+  StudyReport report = hand_made_report();
+  ChoiceModel& model = *report.methods[0].choice;
+  const auto notes = [&] {
+    std::string text;
+    const Document document = study_document(report, hand_made_provenance());
+    for (const Cited& one : table_named(document, "choice-model-adaptive").notes) text += one.text;
+    return text;
+  };
+  CHECK_THAT(notes(), !holds_text("does not fit"));
+  model.p = 0.05;
+  CHECK_THAT(notes(), holds_text("does not fit"));
+  model.degrees_of_freedom = 0;
+  model.p.reset();
+  CHECK_THAT(notes(), !holds_text("G²"));
+}
+
+TEST_CASE("document: an interval without width is marked") {
+  StudyReport report = hand_made_report();
+  report.pairs[0].classes[1].paired.interval = {-0.08, -0.08};
+  const Document document = study_document(report, hand_made_provenance());
+  const Table table = table_named(document, "methods-by-class-1");
+  CHECK(table.rows[1][6].text == "[−8.0, −8.0] *");
+  CHECK_THAT(table.notes.back().text, holds_text("* Every participant has the same difference"));
+  CHECK_THAT(table_named(hand_made(), "methods-by-class-1").notes.back().text,
+             !holds_text("no width"));
+}
+
 TEST_CASE("document: every cited source is in the list of references, once") {
   const std::vector<Source> references = references_of(hand_made());
   CHECK(references.size() > 10);

@@ -48,6 +48,26 @@ TEST_CASE(
   CHECK(latex_escaped("a\nb\xff") == "a b{[}U+FFFD{]}");
 }
 
+TEST_CASE("tables: a LaTeX table alone prints its references, all together print them once") {
+  CHECK_THAT(table_latex(small_table("bark"), ""),
+             holds_text(". {[}1{]}\n\\par\\noindent {[}1{]} Wilson, E. B. (1927)."));
+  const Document document = study_document(hand_made_report(), hand_made_provenance());
+  const std::string latex = tables_latex(document);
+  const std::size_t at = latex.find("Wilson, E. B. (1927).");
+  REQUIRE(at != std::string::npos);
+  CHECK(latex.find("Wilson, E. B. (1927).", at + 1) == std::string::npos);
+}
+
+TEST_CASE("tables: all together hold the report's warnings") {
+  const Document document = study_document(hand_made_report(), hand_made_provenance());
+  CHECK_THAT(tables_markdown(document), holds_text("- Intervals of a class pool all trials.\n"));
+  CHECK_THAT(tables_latex(document), holds_text("\\item Intervals of a class pool all trials.\n"));
+}
+
+TEST_CASE("tables: Markdown leaves no formula to be set") {
+  CHECK_THAT(table_markdown(small_table("$x^2$"), ""), holds_text("| \\$x\\^2\\$ | 3 |"));
+}
+
 TEST_CASE("tables: a long table may break across pages") {
   Table table = small_table("bark");
   table.rows.insert(table.rows.end(), 50, {"again", "1"});
