@@ -18,6 +18,10 @@ nlohmann::ordered_json interval_json(const std::optional<Interval>& interval) {
   return interval_json(*interval);
 }
 
+std::optional<Interval> known(const Interval& interval, const Proportion& of) {
+  return of.n == 0 ? std::nullopt : std::optional(interval);
+}
+
 void put_proportion(nlohmann::ordered_json& object, const Proportion& proportion) {
   object["n"] = proportion.n;
   object["correct"] = proportion.correct;
@@ -27,6 +31,12 @@ void put_proportion(nlohmann::ordered_json& object, const Proportion& proportion
 void put_stamp(nlohmann::ordered_json& object, bool simulated) {
   object["simulated"] = simulated;
   if (simulated) object["stamp"] = "SIMULATED";
+}
+
+void put_state(nlohmann::ordered_json& object, const StudyState& state, bool pilot) {
+  object["state"] = name_of(state);
+  object["interim"] = state.unblinded && !state.closed;
+  object["pilot"] = pilot;
 }
 
 nlohmann::ordered_json statistics_json(const GlcmStatistics& statistics) {

@@ -21,6 +21,9 @@ namespace touchtrial {
 /// The same, or null where there is none.
 [[nodiscard]] nlohmann::ordered_json interval_json(const std::optional<Interval>& interval);
 
+/// An interval around a share of trials, or nothing without a trial.
+[[nodiscard]] std::optional<Interval> known(const Interval& interval, const Proportion& of);
+
 /// Adds n, correct and p to an object that may have begun with a name.
 void put_proportion(nlohmann::ordered_json& object, const Proportion& proportion);
 
@@ -28,6 +31,9 @@ void put_proportion(nlohmann::ordered_json& object, const Proportion& proportion
 
 /// Says whether the figures come from simulated participants; if so, twice.
 void put_stamp(nlohmann::ordered_json& object, bool simulated);
+
+/// Adds state ("collecting", "closed", "unblinded"), interim (unblinded, but not closed) and pilot.
+void put_state(nlohmann::ordered_json& object, const StudyState& state, bool pilot);
 
 /// Indented, ending with a line feed; bytes that are no UTF-8 become replacement characters.
 [[nodiscard]] std::string json_text(const nlohmann::ordered_json& object);

@@ -22,8 +22,17 @@ std::string percent_range(const Interval& interval) {
   return fmt::format("[{:.1f}, {:.1f}]", 100.0 * interval.low, 100.0 * interval.high);
 }
 
+std::string percent_range(const std::optional<Interval>& interval) {
+  return interval ? percent_range(*interval) : "-";
+}
+
 std::string points(double difference) {
   return signed_figure(100.0 * difference, 1);
+}
+
+std::string points_range(const std::optional<Interval>& interval) {
+  if (!interval) return "-";
+  return fmt::format("[{}, {}]", points(interval->low), points(interval->high));
 }
 
 std::string signed_figure(std::optional<double> figure, int decimals) {
@@ -34,7 +43,8 @@ std::string signed_figure(std::optional<double> figure, int decimals) {
 }
 
 std::string p_value(double p) {
-  return fmt::format("{:.3g}", p);
+  // Half up: the floor 0.03125 may not come out as less.
+  return fmt::format("{:.3g}", p * (1.0 + 1e-9));
 }
 
 std::string counted(std::int64_t n, const std::string& noun) {

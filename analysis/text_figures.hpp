@@ -17,9 +17,13 @@ namespace touchtrial {
 [[nodiscard]] std::string percent_of(const Proportion& proportion);
 /// "[60.9, 91.1]" of 0.609 to 0.911
 [[nodiscard]] std::string percent_range(const Interval& interval);
+/// The same, or "-" where there is none.
+[[nodiscard]] std::string percent_range(const std::optional<Interval>& interval);
 
 /// "+7.5" of 0.075: percentage points, with their sign.
 [[nodiscard]] std::string points(double difference);
+/// An interval of such differences: "[-1.0, +3.5]", or "-" where there is none.
+[[nodiscard]] std::string points_range(const std::optional<Interval>& interval);
 /// With its sign.
 [[nodiscard]] std::string signed_figure(std::optional<double> figure, int decimals);
 /// Three significant digits, never "0".

@@ -58,13 +58,17 @@ struct ObserverFigures {
   CueFigure matched_divergence;    ///< the divergence from these
 };
 
+/// Fewer participants leave open which observer confuses as they do, whatever the interval says: a
+/// bootstrap of so few is too narrow.
+inline constexpr int kFewestForVerdict = 6;
+
 /// Which observer confuses as participants do, each made as uncertain as they are: an observer that
 /// is never wrong has no confusions to be compared.
 struct CueMatch {
   Cue best = Cue::rms;  ///< of the least matched divergence
   Cue second = Cue::rms;
   CueFigure difference;     ///< second's matched divergence less best's, bits
-  bool told_apart = false;  ///< the difference's interval exists and does not hold 0
+  bool told_apart = false;  ///< its interval does not hold 0, of kFewestForVerdict
 };
 
 /// One method: the counted trials that every observer could judge, and who felt them.

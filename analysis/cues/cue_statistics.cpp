@@ -171,7 +171,8 @@ std::optional<CueMatch> match_of(const Ranking& ranking, const Figures& observed
   match.best = kCues[ranking.best];
   match.second = kCues[ranking.second];
   match.difference = figure_at(kDifferenceAt, observed, draws);
-  match.told_apart = match.difference.interval && match.difference.interval->low > 0.0;
+  match.told_apart = draws.participants >= kFewestForVerdict && match.difference.interval &&
+                     match.difference.interval->low > 0.0;
   return match;
 }
 

@@ -10,7 +10,6 @@ namespace {
 
 using Warnings = std::vector<std::string>;
 
-constexpr int kFewestParticipants = 3;
 constexpr int kFewestTrials = 2;
 
 void warn_of_study(const Outcomes& outcomes, const CueReport& report, Warnings& warnings) {
@@ -52,9 +51,15 @@ void warn_of_numbers(const MethodCues& cues, Warnings& warnings) {
                     cues.method, kFewestTrials));
   }
   const auto participants = static_cast<int>(cues.participants.size());
-  if (participants < kFewestParticipants) {
-    warnings.push_back(fmt::format("{}: intervals over {} say next to nothing.", cues.method,
-                                   counted(participants, "participant")));
+  if (participants < kFewestForVerdict) {
+    warnings.push_back(
+        fmt::format("{}: {} cannot decide which cue was used: from {} on there is a verdict, and "
+                    "intervals over fewer are too narrow.",
+                    cues.method, counted(participants, "participant"), kFewestForVerdict));
+  } else if (cues.match && !cues.match->difference.interval) {
+    warnings.push_back(cues.method +
+                       ": the observers' difference has no interval, so there is no verdict on "
+                       "which cue was used.");
   }
 }
 

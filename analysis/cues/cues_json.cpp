@@ -17,7 +17,7 @@ Json cue_figure_json(const CueFigure& figure) {
 }
 
 Json mean_json(const MeanEstimate& mean) {
-  return {{"mean", figure_json(mean.mean)}, {"interval", interval_json(mean.interval)}};
+  return {{"mean", figure_json(mean.mean)}, {"interval", interval_json(mean.known_interval())}};
 }
 
 Json participants_json(const MethodCues& cues) {
@@ -82,7 +82,7 @@ Json by_json() {
       {"human", "mean over participants with Student's t interval, on the same trials"},
       {"efficiency",
        "mean accuracy over mean available accuracy; expanded percentiles of a cluster bootstrap "
-       "over participants, 9,999 draws (Davison, Hinkley 1997)"},
+       "over participants, 9,999 draws (Davison, Hinkley 1997; Hesterberg 2015)"},
       {"efficiency_above_chance", "the same with chance taken from both"},
       {"divergence_bits",
        "Jensen-Shannon divergence (Lin 1991) of answers to a class, mean over classes, trials "
@@ -91,7 +91,8 @@ Json by_json() {
        "the observer with the noise of the sense (a Weber fraction, by bisection) that makes it "
        "right as often as the participants"},
       {"difference_bits",
-       "second least divergence of matched observers less the least; the same bootstrap"}};
+       "second least divergence of matched observers less the least; the same bootstrap; "
+       "told_apart only from 6 participants on"}};
 }
 
 }  // namespace

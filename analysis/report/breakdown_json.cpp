@@ -18,7 +18,7 @@ Json groups_json(const Breakdown& breakdown) {
   for (const GroupAccuracy& one : breakdown.groups) {
     Json entry{{"group", one.group}};
     put_proportion(entry, one.accuracy);
-    entry["wilson"] = interval_json(one.wilson);
+    entry["wilson"] = interval_json(known(one.wilson, one.accuracy));
     groups.push_back(std::move(entry));
   }
   return groups;
@@ -51,7 +51,7 @@ nlohmann::ordered_json robustness_array(const std::vector<SubsetAccuracy>& subse
     put_proportion(entry, one.pooled);
     entry["participants"] = one.mean.participants;
     entry["mean"] = figure_json(one.mean.mean);
-    entry["interval"] = interval_json(one.mean.interval);
+    entry["interval"] = interval_json(one.mean.known_interval());
     all.push_back(std::move(entry));
   }
   return all;

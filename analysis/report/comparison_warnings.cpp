@@ -15,6 +15,18 @@ using Warnings = std::vector<std::string>;
 constexpr int kFewParticipants = 10;
 constexpr double kLevel = 0.05;
 
+/// Of n participants all 2^n sign patterns are as likely, and Holm multiplies the least p of
+/// several pairs by their number. Powers of two print exactly.
+void warn_of_floor(int n, std::size_t pairs, Warnings& warnings) {
+  const double floor = std::ldexp(2.0, -n);
+  const double adjusted = std::min(1.0, floor * static_cast<double>(pairs));
+  if (adjusted <= kLevel) return;
+  std::string text =
+      fmt::format("With {} the sign-flip p cannot fall below {}", counted(n, "participant"), floor);
+  if (pairs > 1) text += fmt::format(", nor the least p adjusted by Holm below {}", adjusted);
+  warnings.push_back(text + ", whatever the methods do.");
+}
+
 /// Of the pair with the fewest participants: the floor under its p.
 void warn_of_sign_flips(const StudyReport& report, Warnings& warnings) {
   int n = 0;
@@ -22,11 +34,7 @@ void warn_of_sign_flips(const StudyReport& report, Warnings& warnings) {
     const int own = pair.overall.participants;
     if (own > 0 && (n == 0 || own < n)) n = own;
   }
-  if (n > 0 && std::ldexp(2.0, -n) > kLevel) {
-    warnings.push_back(
-        fmt::format("With {} the sign-flip p cannot fall below {}, whatever the methods do.",
-                    counted(n, "participant"), std::ldexp(2.0, -n)));
-  }
+  if (n > 0) warn_of_floor(n, report.pairs.size(), warnings);
   const auto at_floor = [](const MethodPair& pair) {
     constexpr double kFloor = 1.5e-5;  // of 99,999 random patterns
     return pair.overall.participants > kExactSignFlips && pair.overall.p.value_or(1.0) < kFloor;

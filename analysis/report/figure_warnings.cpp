@@ -3,8 +3,6 @@
 #include "analysis/text_figures.hpp"
 
 #include <algorithm>
-#include <map>
-#include <tuple>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -42,23 +40,6 @@ void warn_of_small_classes(const MethodReport& method, const std::vector<std::st
       fmt::format("{}: the interval of {} rests on {} trials or fewer and is nearly uninformative: "
                   "even 5 of 5 has 56.6 to 100 % (Wilson).",
                   method.method, few(small), kSmallCell));
-}
-
-/// A participant's accuracy with one class, which a reader might make of the trials.
-void warn_of_small_cells(const Outcomes& outcomes, const StudyReport& report, Warnings& warnings) {
-  if (report.participants < 2) return;  // their classes are the cells
-  std::map<std::tuple<int, int, int>, int> cells;
-  for (const TrialOutcome& trial : outcomes.trials) {
-    if (!trial.counted) continue;
-    ++cells[{trial.row.session, trial.stimulus.method, trial.stimulus.class_index}];
-  }
-  const auto small =
-      std::ranges::count_if(cells, [](const auto& cell) { return cell.second <= kSmallCell; });
-  if (small == 0) return;
-  warnings.push_back(fmt::format(
-      "One participant's accuracy with one class rests on {} trials or fewer in {} of {} cells: "
-      "its interval is nearly uninformative, even of 5 of 5 (56.6 to 100 %, Wilson).",
-      kSmallCell, small, cells.size()));
 }
 
 void warn_of_unanswered_classes(const MethodReport& method, const std::vector<std::string>& classes,
@@ -168,7 +149,6 @@ std::vector<std::string> figure_warnings(const Outcomes& outcomes, const StudyRe
     warn_of_ceiling(method, warnings);
     warn_of_chance(method, warnings);
   }
-  warn_of_small_cells(outcomes, report, warnings);
   warn_of_order(outcomes, warnings);
   return warnings;
 }

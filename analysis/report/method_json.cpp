@@ -43,9 +43,9 @@ Json classes_json(const MethodReport& method, const std::vector<std::string>& cl
     const ClassAccuracy& one = method.accuracy[i];
     Json entry{{"class", classes[i]}};
     put_proportion(entry, one.accuracy);
-    entry["wilson"] = interval_json(one.wilson);
-    entry["clopper_pearson"] = interval_json(one.clopper_pearson);
-    entry["jeffreys"] = interval_json(one.jeffreys);
+    entry["wilson"] = interval_json(known(one.wilson, one.accuracy));
+    entry["clopper_pearson"] = interval_json(known(one.clopper_pearson, one.accuracy));
+    entry["jeffreys"] = interval_json(known(one.jeffreys, one.accuracy));
     all.push_back(std::move(entry));
   }
   return all;
@@ -75,13 +75,13 @@ Json overall_json(const MethodReport& method) {
   Json overall;
   put_proportion(overall, method.overall);
   overall["mean"] = figure_json(method.mean.mean);
-  overall["interval"] = interval_json(method.mean.interval);
+  overall["interval"] = interval_json(method.mean.known_interval());
   overall["sd"] = figure_json(method.mean.sd);
   overall["bootstrap"] = interval_json(method.bootstrap);
   put_method(overall,
              "mean: of participants' own accuracies, with Student's t interval; bootstrap: "
-             "percentiles of the pooled share when whole participants are drawn; 95 %",
-             {"student1908", "davison1997"});
+             "expanded percentiles of the pooled share in 9,999 draws of whole participants; 95 %",
+             {"student1908", "davison1997", "hesterberg2015"});
   return overall;
 }
 
@@ -119,8 +119,9 @@ Json information_json(const InformationTransfer& information) {
               {"corrected", figure_json(information.corrected)},
               {"null_mean", figure_json(information.null_mean)}};
   put_method(object,
-             "bits, over trials with a response; corrected by Miller and Madow; null_mean: answers "
-             "permuted within participants",
+             fmt::format("bits, over trials with a response; corrected by Miller and Madow; "
+                         "null_mean: of {} deals, answers permuted within participants",
+                         information.deals),
              {"tan2010", "miller1955"});
   return object;
 }

@@ -12,7 +12,7 @@ namespace {
 std::string mean_line(const MethodReport& method) {
   std::string text = fmt::format(
       "mean over {} {}, 95 % interval {}", counted(method.mean.participants, "participant"),
-      percent_of_share(method.mean.mean), percent_range(method.mean.interval));
+      percent_of_share(method.mean.mean), percent_range(method.mean.known_interval()));
   if (method.bootstrap) text += fmt::format(", bootstrap {}", percent_range(*method.bootstrap));
   return text;
 }
@@ -57,13 +57,13 @@ std::string robustness_line(const MethodReport& method) {
   constexpr std::pair<TrialSubset, const char*> kTold[] = {
       {TrialSubset::answered, "answered trials alone"},
       {TrialSubset::valid, "valid trials alone"},
-      {TrialSubset::with_excluded_sessions, "with those excluded"}};
+      {TrialSubset::with_excluded_sessions, "excluded sessions put back"}};
   std::string text;
   for (const SubsetAccuracy& one : method.robustness) {
     if (one.pooled.n == method.overall.n) continue;
     for (const auto& [subset, name] : kTold) {
       if (subset != one.subset) continue;
-      text += fmt::format("{}{} {}", text.empty() ? "mean of " : ", ", name,
+      text += fmt::format("{}{} {}", text.empty() ? "the mean with other trials: " : ", ", name,
                           percent_of_share(one.mean.mean));
     }
   }

@@ -15,7 +15,7 @@ Json proportion_json(const Proportion& proportion) {
 void put_comparison(Json& object, const MethodComparison& comparison) {
   object["participants"] = comparison.participants;
   object["difference"] = figure_json(comparison.difference);
-  object["interval"] = interval_json(comparison.interval);
+  object["interval"] = interval_json(comparison.known_interval());
   object["bootstrap"] = interval_json(comparison.bootstrap);
   object["p"] = figure_json(comparison.p);
   object["db"] = figure_json(comparison.db);
@@ -52,12 +52,15 @@ Json pair_json(const MethodPair& pair, const StudyReport& report) {
   for (std::size_t i = 0; i < pair.classes.size(); ++i) {
     object["classes"].push_back(class_json(pair.classes[i], report.classes[i]));
   }
-  put_method(object,
-             "differences of participants' accuracies, first minus second: t interval, bootstrap "
-             "over participants, p of the two-sided sign-flip test; db: 10 log10 of the ratio of "
-             "means; p_holm: adjusted over all pairs, with three methods or more; mcnemar_mid_p: "
-             "with one pair a participant; p of classes are not adjusted",
-             {"student1908", "davison1997", "phipson2010", "holm1979", "fagerland2013"});
+  put_method(
+      object,
+      "differences of participants' accuracies, first minus second: t interval, bootstrap "
+      "(expanded percentiles of 9,999 draws of participants), p of the two-sided sign-flip "
+      "test (exact up to 32 participants, then 99,999 random patterns); db: 10 log10 of the ratio "
+      "of "
+      "means; p_holm: adjusted over all pairs, with three methods or more; mcnemar_mid_p: "
+      "with one pair a participant; p of classes are not adjusted",
+      {"student1908", "davison1997", "hesterberg2015", "phipson2010", "holm1979", "fagerland2013"});
   return object;
 }
 
@@ -77,7 +80,7 @@ nlohmann::ordered_json together_object(const MethodsTogether& together) {
   put_method(object,
              "Cochran's Q over occasions (participant, class, n-th presentation); p under "
              "chi-square takes occasions as independent; permuted_p exchanges methods within "
-             "participants, Monte Carlo, (b+1)/(m+1)",
+             "participants, Monte Carlo over 9,999 deals, (b+1)/(m+1)",
              {"cochran1950", "phipson2010"});
   return object;
 }

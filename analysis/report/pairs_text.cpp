@@ -11,11 +11,6 @@ std::string p_or_none(const std::optional<double>& p) {
   return p ? p_value(*p) : "-";
 }
 
-std::string interval_of_points(const MethodComparison& pair) {
-  if (!pair.difference) return "-";
-  return fmt::format("[{}, {}]", points(pair.interval.low), points(pair.interval.high));
-}
-
 std::string odds_text(const std::optional<OddsRatio>& ratio) {
   if (!ratio) return "-";
   return fmt::format("{:.2f} [{:.2f}, {:.2f}]", ratio->estimate, ratio->interval.low,
@@ -37,8 +32,9 @@ std::string pairs_text(const StudyReport& report) {
   for (const MethodPair& pair : report.pairs) {
     const MethodComparison& overall = pair.overall;
     table.add({report.methods[pair.first].method + " - " + report.methods[pair.second].method,
-               overall.difference ? points(*overall.difference) : "-", interval_of_points(overall),
-               p_or_none(overall.p), p_or_none(pair.p_holm), odds_text(pair.odds_ratio)});
+               overall.difference ? points(*overall.difference) : "-",
+               points_range(overall.known_interval()), p_or_none(overall.p), p_or_none(pair.p_holm),
+               odds_text(pair.odds_ratio)});
   }
   std::string text = heading("every two methods", report.simulated) + table.text();
   if (report.together) text += together_text(*report.together);

@@ -36,7 +36,7 @@ struct TrialQuality {
   int valid = 0;              ///< of those with a trace, by the study's rule
   std::int64_t overruns = 0;  ///< servo ticks that came late
   int with_overruns = 0;
-  std::optional<double> lowest_rate_hz;
+  std::optional<double> lowest_rate_hz;  ///< of a trace: as it was asked of the servo
 };
 
 /// How the servo kept its time, of all trials in real time whose participant has not withdrawn.
@@ -44,8 +44,8 @@ struct ServoQuality {
   int trials = 0;
   double median_p99_us = 0.0;  ///< of the trials' 99th percentiles of lateness
   double highest_p99_us = 0.0;
-  double worst_us = 0.0;  ///< the latest tick of all
-  double lowest_rate_hz = 0.0;
+  double worst_us = 0.0;                ///< the latest tick of all
+  double lowest_rate_hz = 0.0;          ///< that the servo had, over a trial
   std::int64_t lost = 0;                ///< samples that did not reach their trace
   std::vector<std::string> scheduling;  ///< what sessions' servo threads obtained, each kind once
 };

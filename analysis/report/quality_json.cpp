@@ -23,7 +23,7 @@ nlohmann::ordered_json quality_object(const QualityReport& report) {
   const TrialQuality& quality = report.quality;
   nlohmann::ordered_json object{{"study", report.study}, {"protocol", report.protocol}};
   put_stamp(object, report.simulated);
-  object["state"] = name_of(report.state);
+  put_state(object, report.state, report.pilot);
   object["blinded"] = !report.state.unblinded;
   object["participants"] = report.participants;
   object["trials"] = report.trials;

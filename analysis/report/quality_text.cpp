@@ -46,7 +46,7 @@ std::string health_text(const QualityReport& report) {
   text += fmt::format("  servo overruns {} in {}", quality.overruns,
                       counted(quality.with_overruns, "trial"));
   if (quality.lowest_rate_hz) {
-    text += fmt::format(", lowest mean rate {:.1f} Hz", *quality.lowest_rate_hz);
+    text += fmt::format(", lowest rate of a trace {:.1f} Hz", *quality.lowest_rate_hz);
   }
   return text + '\n';
 }
@@ -58,8 +58,8 @@ std::string microseconds(double time_us) {
 
 std::string servo_text(const QualityReport& report) {
   const ServoQuality& servo = *report.servo;
-  TextTable table(
-      {"servo", "trials", "lowest rate", "late p99", "highest p99", "worst", "overruns", "lost"});
+  TextTable table({"servo", "trials", "lowest had rate", "late p99", "highest p99", "worst",
+                   "overruns", "lost"});
   table.add({"", std::to_string(servo.trials), fmt::format("{:.1f} Hz", servo.lowest_rate_hz),
              microseconds(servo.median_p99_us), microseconds(servo.highest_p99_us),
              microseconds(servo.worst_us), std::to_string(report.quality.overruns),
@@ -79,6 +79,7 @@ std::string quality_text(const QualityReport& report) {
   if (!report.state.unblinded) {
     text += wrapped("", "Blinded: outcomes are shown once the study has been unblinded.");
   }
+  if (report.pilot) text += wrapped("", "PILOT: not to be pooled with the study's data.");
   if (report.visual) {
     text += wrapped("", "Seen on a screen, not felt: never to be pooled with what was felt.");
   }

@@ -27,6 +27,9 @@ constexpr std::array kReferences = {
     Reference{"hacker1979",
               "Hacker MJ, Ratcliff R (1979). A revised table of d' for M-alternative forced "
               "choice. Perception & Psychophysics 26(2), 168-170."},
+    Reference{"hesterberg2015",
+              "Hesterberg TC (2015). What teachers should know about the bootstrap: resampling in "
+              "the undergraduate statistics curriculum. The American Statistician 69(4), 371-386."},
     Reference{"holm1979",
               "Holm S (1979). A simple sequentially rejective multiple test procedure. "
               "Scandinavian Journal of Statistics 6(2), 65-70."},

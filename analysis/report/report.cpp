@@ -14,6 +14,7 @@ StudyReport titled(const Outcomes& outcomes) {
   report.protocol = name_of(outcomes.protocol);
   report.simulated = outcomes.simulated;
   report.pilot = outcomes.pilot;
+  report.state = outcomes.state;
   report.classes = outcomes.classes;
   report.collection = outcomes.collection;
   report.registration = outcomes.design.registration;

@@ -98,6 +98,7 @@ struct StudyReport {
   std::vector<MethodPair> pairs;               ///< of two methods or more: every pair
   std::optional<MethodsTogether> together;     ///< of three methods or more
   Collection collection;                       ///< how it was collected
+  StudyState state{};                          ///< unblinded; not closed: an interim look
   Registration registration;                   ///< what was deposited beforehand
   std::optional<CueReport> cues{};             ///< if asked for: it takes reading every trace
   std::vector<std::string> warnings;           ///< what a reader could take a figure for, wrongly

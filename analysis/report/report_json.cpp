@@ -10,7 +10,7 @@ using Json = nlohmann::ordered_json;
 
 Json comparison_json(const MethodComparison& comparison) {
   return {{"difference", figure_json(comparison.difference)},
-          {"interval", interval_json(comparison.interval)},
+          {"interval", interval_json(comparison.known_interval())},
           {"p", figure_json(comparison.p)},
           {"db", figure_json(comparison.db)}};
 }
@@ -56,6 +56,7 @@ nlohmann::ordered_json registration_object(const Registration& registration) {
 nlohmann::ordered_json report_object(const StudyReport& report) {
   Json object{{"study", report.study}, {"protocol", report.protocol}};
   put_stamp(object, report.simulated);
+  put_state(object, report.state, report.pilot);
   object["participants"] = report.participants;
   object["trials"] = report.trials;
   object["classes"] = report.classes;

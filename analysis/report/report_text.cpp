@@ -56,8 +56,8 @@ std::string accuracy_text(const MethodReport& method, const std::vector<std::str
   for (std::size_t i = 0; i < classes.size(); ++i) {
     const ClassAccuracy& one = method.accuracy[i];
     table.add({classes[i], std::to_string(one.accuracy.n), std::to_string(one.accuracy.correct),
-               percent_of(one.accuracy), percent_range(one.wilson),
-               percent_range(one.clopper_pearson)});
+               percent_of(one.accuracy), one.accuracy.n > 0 ? percent_range(one.wilson) : "-",
+               one.accuracy.n > 0 ? percent_range(one.clopper_pearson) : "-"});
   }
   return table.text();
 }
@@ -114,10 +114,10 @@ std::string comparison_text(const StudyReport& report) {
   if (!comparison.difference) return text;
   return text + fmt::format(
                     "  mean difference over {} {} points, 95 % interval "
-                    "[{}, {}]\n  sign-flip p = {}; {} dB (10 log10 of the ratio of means)\n",
+                    "{}\n  sign-flip p = {}; {} dB (10 log10 of the ratio of means)\n",
                     counted(comparison.participants, "participant"), points(*comparison.difference),
-                    points(comparison.interval.low), points(comparison.interval.high),
-                    p_value(comparison.p.value_or(1.0)), signed_figure(comparison.db, 2));
+                    points_range(comparison.known_interval()), p_value(comparison.p.value_or(1.0)),
+                    signed_figure(comparison.db, 2));
 }
 
 std::string warnings_text(const StudyReport& report) {
@@ -139,6 +139,7 @@ std::string report_text(const StudyReport& report) {
   if (report.comparison) text += comparison_text(report);
   text += pairs_text(report);
   text += warnings_text(report);
+  if (report.cues) text += cues_text(*report.cues);
   if (report.simulated) text += '\n' + simulated_line(report.simulated);
   return text;
 }

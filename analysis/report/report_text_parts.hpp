@@ -17,4 +17,7 @@ namespace touchtrial {
 /// Every two methods of three or more, and all at once; empty with fewer.
 [[nodiscard]] std::string pairs_text(const StudyReport& report);
 
+/// A table of observers for each method, and what a reader could take wrongly in it.
+[[nodiscard]] std::string cues_text(const CueReport& cues);
+
 }  // namespace touchtrial

@@ -1,5 +1,6 @@
 #include "analysis/statistics/cluster_bootstrap.hpp"
 
+#include "analysis/statistics/rounding_noise.hpp"
 #include "core/random.hpp"
 
 #include <algorithm>
@@ -82,7 +83,7 @@ Interval expanded_percentiles(std::vector<double> draws, std::size_t participant
   if (participants < 2) throw std::invalid_argument("a bootstrap takes two participants or more");
   std::sort(draws.begin(), draws.end());
   const double tail = expanded_tail(participants, level);
-  return {percentile(draws, tail), percentile(draws, 1.0 - tail)};
+  return {without_noise(percentile(draws, tail)), without_noise(percentile(draws, 1.0 - tail))};
 }
 
 std::optional<Interval> cluster_bootstrap(std::span<const Proportion> participants,

@@ -82,6 +82,7 @@ InformationTransfer information_transfer(int classes,
   InformationTransfer transfer;
   transfer.raw = raw_information_transfer(confusion);
   if (!transfer.raw) return transfer;
+  transfer.deals = permutations;
   const double freedom = static_cast<double>(classes - 1) * (classes - 1);
   transfer.corrected = *transfer.raw - freedom / (2.0 * confusion.answered() * std::numbers::ln2);
   RandomStream random(0, "information transfer null", index);

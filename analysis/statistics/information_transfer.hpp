@@ -16,6 +16,7 @@ struct InformationTransfer {
   std::optional<double> raw;        ///< estimate from the counts, bits, >= 0, biased upward
   std::optional<double> corrected;  ///< Miller and Madow's bias taken off; may be below 0
   std::optional<double> null_mean;  ///< mean of raw when answers are dealt at random
+  int deals = 0;                    ///< that null_mean is of
 };
 
 /// Fewer trials than this make an estimate for K classes that misleads: 5 K^2.

@@ -1,6 +1,7 @@
 #include "analysis/statistics/method_comparison.hpp"
 
 #include "analysis/statistics/cluster_bootstrap.hpp"
+#include "analysis/statistics/rounding_noise.hpp"
 #include "analysis/statistics/sign_flip.hpp"
 
 #include <cmath>
@@ -10,7 +11,7 @@ namespace touchtrial {
 
 std::optional<double> decibels(double a, double b) {
   if (!(a > 0.0 && b > 0.0)) return std::nullopt;
-  return 10.0 * std::log10(a / b);
+  return without_noise(10.0 * std::log10(a / b));
 }
 
 MethodComparison compare_methods(std::span<const PairedAccuracy> participants, std::uint64_t index,
@@ -19,7 +20,7 @@ MethodComparison compare_methods(std::span<const PairedAccuracy> participants, s
   double first = 0.0;
   double second = 0.0;
   for (const PairedAccuracy& participant : participants) {
-    differences.push_back(participant.first - participant.second);
+    differences.push_back(without_noise(participant.first - participant.second));
     first += participant.first;
     second += participant.second;
   }

@@ -25,6 +25,11 @@ struct MethodComparison {
   std::optional<double> p;              ///< sign_flip_p
   std::optional<double> db;             ///< decibels of the two means
   std::optional<Interval> bootstrap{};  ///< bootstrap_mean of the differences
+
+  /// What may be shown: `interval`, or nothing with fewer than two participants.
+  [[nodiscard]] std::optional<Interval> known_interval() const noexcept {
+    return participants < 2 ? std::nullopt : std::optional(interval);
+  }
 };
 
 /// 10 log10(a / b).

@@ -1,5 +1,7 @@
 #include "analysis/statistics/participant_mean.hpp"
 
+#include "analysis/statistics/rounding_noise.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -33,16 +35,16 @@ MeanEstimate participant_mean(std::span<const double> values, Interval range, do
   }
   MeanEstimate estimate{static_cast<int>(values.size()), std::nullopt, range};
   if (values.empty()) return estimate;
-  const double mean = mean_of(values);
+  const double mean = without_noise(mean_of(values));
   estimate.mean = mean;
   if (values.size() == 1) return estimate;
-  const double sd = standard_deviation(values, mean);
+  const double sd = without_noise(standard_deviation(values, mean));
   estimate.sd = sd;
   const auto n = static_cast<double>(values.size());
   const boost::math::students_t_distribution<> t(n - 1.0);
   const double half = boost::math::quantile(t, 0.5 + level / 2.0) * sd / std::sqrt(n);
-  estimate.interval = {std::clamp(mean - half, range.low, range.high),
-                       std::clamp(mean + half, range.low, range.high)};
+  estimate.interval = {std::clamp(without_noise(mean - half), range.low, range.high),
+                       std::clamp(without_noise(mean + half), range.low, range.high)};
   return estimate;
 }
 

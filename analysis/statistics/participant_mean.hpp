@@ -16,6 +16,11 @@ struct MeanEstimate {
   std::optional<double> mean;  ///< nothing without participants
   Interval interval;           ///< the whole range with fewer than two participants
   std::optional<double> sd{};  ///< between participants, n - 1; nothing with fewer than two
+
+  /// What may be shown: `interval`, or nothing with fewer than two participants.
+  [[nodiscard]] std::optional<Interval> known_interval() const noexcept {
+    return participants < 2 ? std::nullopt : std::optional(interval);
+  }
 };
 
 /// The mean of one figure a participant.

@@ -143,7 +143,7 @@ TEST_CASE("cues do not depend on the number of threads") {
 TEST_CASE("few participants are warned of, and have no intervals if there is but one") {
   FeltStudy study(stronger_by_class, FakeStudy::always_right(), 1);
   const CueReport report = cues_of(study);
-  CHECK(any_holds(report.warnings, "intervals over 1 participant"));
+  CHECK(any_holds(report.warnings, "1 participant cannot decide which cue was used"));
   CHECK_FALSE(report.methods.at(0).observers.at(0).efficiency.interval);
   CHECK_FALSE(report.methods.at(0).match.value().told_apart);
 }

@@ -60,6 +60,14 @@ TEST_CASE("the observer whose confusions are the participants' is found, and tol
   CHECK(match.difference.interval.value().high >= match.difference.value.value());
 }
 
+TEST_CASE("five participants decide nothing, although the interval does not hold 0") {
+  std::vector<ParticipantAnswers> all;
+  for (int i = 0; i < kFewestForVerdict - 1; ++i) all.push_back(like_strength(i, 5, i % 3));
+  const CueMatch match = cue_statistics(all, 0).match.value();
+  CHECK(match.difference.interval.value().low > 0.0);
+  CHECK_FALSE(match.told_apart);
+}
+
 TEST_CASE("one participant has figures but no intervals, and tells no observers apart") {
   const std::vector<ParticipantAnswers> alone{like_strength(1, 5)};
   const CueStatistics statistics = cue_statistics(alone, 0);

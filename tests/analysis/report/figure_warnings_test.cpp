@@ -56,6 +56,13 @@ TEST_CASE("Classes with five trials or fewer have uninformative intervals") {
   CHECK(warnings_with(report, "bark, cloth, straw rests on 5 trials or fewer") == 1);
 }
 
+TEST_CASE("Classes of more than five pooled trials are not warned of") {
+  FakeStudy study(Protocol::classification);
+  study.add({.participant = "P01", .enrolment = 1, .answers = swapping});
+  study.add({.participant = "P02", .enrolment = 2, .answers = swapping});
+  CHECK(warnings_with(report_of(study), "trials or fewer") == 0);
+}
+
 TEST_CASE("The headline is told again without what is not valid") {
   FakeStudy study(Protocol::classification);
   study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()});

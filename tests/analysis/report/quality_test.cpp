@@ -89,6 +89,8 @@ TEST_CASE("A quality report says how the study stands") {
   const auto open = nlohmann::json::parse(quality_json(make_quality(study.store())));
   CHECK(open["state"] == "collecting");
   CHECK(open["blinded"] == true);
+  CHECK(open["interim"] == false);
+  CHECK(open["pilot"] == false);
   CHECK(open["stamp"] == "SIMULATED");
   CHECK(open["validity"]["share"].is_null());
   study.store().close_study(std::chrono::seconds(1));

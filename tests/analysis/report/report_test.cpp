@@ -118,7 +118,8 @@ TEST_CASE("report_json has the published keys in their order") {
     return keys;
   };
   CHECK(keys_of(json) ==
-        "study protocol simulated stamp participants trials classes methods comparison warnings "
+        "study protocol simulated stamp state interim pilot participants trials classes methods "
+        "comparison warnings "
         "pairs "
         "accuracy_intervals reaction_times registration collection references ");
   CHECK(keys_of(json["methods"][1]) ==
@@ -236,7 +237,7 @@ tv-gabor: overall [SIMULATED]
   79.2% under the best exchange of labels
   information transfer 1.10 bit raw, 0.98 corrected, 0.14 if answers were dealt at random
   answered after 4.25 s [4.25, 4.25] (median, quartiles), 3.75 s [3.75, 3.75] from contact
-  mean of answered trials alone 83.3%
+  the mean with other trials: answered trials alone 83.3%
 
 adaptive beside tv-gabor (differences: first minus second) [SIMULATED]
   class  adaptive  tv-gabor  difference     dB
@@ -256,8 +257,6 @@ to bear in mind [SIMULATED]
   - tv-gabor: information transfer from 23 trials is biased upward; 45 are the usual minimum for 3
     classes.
   - adaptive: everything was right, so that d' has a lower bound alone and differences cannot show.
-  - One participant's accuracy with one class rests on 5 trials or fewer in 12 of 12 cells: its
-    interval is nearly uninformative, even of 5 of 5 (56.6 to 100 %, Wilson).
   - 2 participants are few: the design can show large effects alone, how people differ hardly at
     all, and the t interval leans on normality.
   - With 2 participants the sign-flip p cannot fall below 0.5, whatever the methods do.

@@ -45,6 +45,7 @@ TEST_CASE("compare_methods says how little one participant or none can tell") {
   const std::vector<PairedAccuracy> one{{1.0, 0.5}};
   CHECK(compare_methods(one).difference == 0.5);
   CHECK(compare_methods(one).interval == Interval{-1.0, 1.0});
+  CHECK_FALSE(compare_methods(one).known_interval());
   CHECK(compare_methods(one).p == 1.0);
   CHECK_FALSE(compare_methods(one).bootstrap.has_value());
 }
@@ -52,6 +53,16 @@ TEST_CASE("compare_methods says how little one participant or none can tell") {
 TEST_CASE("compare_methods refuses values that are no numbers") {
   const std::vector<PairedAccuracy> bad{{std::nan(""), 0.5}};
   CHECK_THROWS_AS(compare_methods(bad), std::invalid_argument);
+}
+
+TEST_CASE("rounding leaves no difference where there is none") {
+  // 0.1 + 0.2 is no 0.3 in binary, and so are the differences.
+  const std::vector<PairedAccuracy> same{{0.1 + 0.2, 0.3}, {0.7, 0.1 + 0.6}, {0.8, 0.1 + 0.7}};
+  const MethodComparison comparison = compare_methods(same);
+  CHECK(comparison.difference == 0.0);
+  CHECK(comparison.db == 0.0);
+  CHECK(comparison.known_interval() == Interval{0.0, 0.0});
+  CHECK(comparison.bootstrap == Interval{0.0, 0.0});
 }
 
 }  // namespace touchtrial

@@ -27,6 +27,8 @@ TEST_CASE("participant_mean knows nothing without participants and little from o
   const std::vector<double> one{0.8};
   CHECK(participant_mean(one).mean == 0.8);
   CHECK(participant_mean(one).interval == Interval{0.0, 1.0});
+  CHECK_FALSE(none.known_interval());
+  CHECK_FALSE(participant_mean(one).known_interval());
   CHECK_FALSE(participant_mean(one).sd.has_value());
 }
 
