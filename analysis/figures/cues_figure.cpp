@@ -25,8 +25,8 @@ void add_dots(std::vector<std::vector<double>>& rows, double at, std::vector<dou
 
 void add_mean(std::vector<std::vector<double>>& rows, double at, const MeanEstimate& mean) {
   if (!mean.mean) return;
-  rows.push_back(
-      {at + 0.12, 100.0 * *mean.mean, 100.0 * mean.interval.low, 100.0 * mean.interval.high});
+  const Interval bar = mean.known_interval().value_or(Interval{*mean.mean, *mean.mean});
+  rows.push_back({at + 0.12, 100.0 * *mean.mean, 100.0 * bar.low, 100.0 * bar.high});
 }
 
 std::string alt_of(const MethodCues& method) {
@@ -34,11 +34,11 @@ std::string alt_of(const MethodCues& method) {
   for (const ObserverFigures& observer : method.observers) {
     if (!observer.mean.mean) continue;
     alt += fmt::format(" {} {};", title_of(observer.cue),
-                       with_interval(*observer.mean.mean, observer.mean.interval));
+                       with_interval(*observer.mean.mean, observer.mean.known_interval()));
   }
   if (method.human_mean.mean) {
     alt += fmt::format(" participants {}.",
-                       with_interval(*method.human_mean.mean, method.human_mean.interval));
+                       with_interval(*method.human_mean.mean, method.human_mean.known_interval()));
   }
   return alt;
 }

@@ -117,8 +117,9 @@ std::string differences_panel(const StudyReport& report, const NamesBelow& below
     data += data_block(fmt::format("pair{}", i), rows);
     plot += fmt::format("{}$pair{} using 1:2 with points pt 7 ps 0.33 lc rgb '#7a7a7a' notitle",
                         plot.empty() ? "plot " : ", ", i);
-    means.push_back({static_cast<double>(i + 1), 100.0 * *pair.overall.difference,
-                     100.0 * pair.overall.interval.low, 100.0 * pair.overall.interval.high});
+    const double mean = *pair.overall.difference;
+    const Interval bar = pair.overall.known_interval().value_or(Interval{mean, mean});
+    means.push_back({static_cast<double>(i + 1), 100.0 * mean, 100.0 * bar.low, 100.0 * bar.high});
   }
   if (means.empty()) return {};
   return data + data_block("means", means) + "unset label\nunset arrow\n" + below.script() +
@@ -149,10 +150,12 @@ std::string alt_of(const StudyReport& report) {
   }
   for (const MethodPair& pair : report.pairs) {
     if (!pair.overall.difference) continue;
-    alt += fmt::format(" {}: {:+.1f} percentage points ({:+.1f} to {:+.1f}), {} participants.",
-                       pair_name(report, pair), 100.0 * *pair.overall.difference,
-                       100.0 * pair.overall.interval.low, 100.0 * pair.overall.interval.high,
-                       pair.overall.participants);
+    alt += fmt::format(" {}: {:+.1f} percentage points", pair_name(report, pair),
+                       100.0 * *pair.overall.difference);
+    if (const auto interval = pair.overall.known_interval()) {
+      alt += fmt::format(" ({:+.1f} to {:+.1f})", 100.0 * interval->low, 100.0 * interval->high);
+    }
+    alt += fmt::format(", participants: {}.", pair.overall.participants);
   }
   return alt;
 }

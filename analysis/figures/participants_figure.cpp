@@ -73,7 +73,7 @@ std::string alt_of(const StudyReport& report) {
   for (const MethodReport& method : report.methods) {
     if (!method.mean.mean) continue;
     alt += fmt::format(" {}: {} participants, mean {}.", method.method, method.mean.participants,
-                       with_interval(*method.mean.mean, method.mean.interval));
+                       with_interval(*method.mean.mean, method.mean.known_interval()));
   }
   return alt;
 }
@@ -111,8 +111,9 @@ std::optional<Figure> participants_figure(const StudyReport& report) {
     if (!method.mean.mean) continue;
     data += data_block(fmt::format("heap{}", i), marks_of(heaps, base, bars));
     plot += (plot.empty() ? "plot " : ", ") + (bars ? bars_plot(at, heaps) : dots_plot(at, heaps));
-    means.push_back({100.0 * *method.mean.mean, base - 0.13, 100.0 * method.mean.interval.low,
-                     100.0 * method.mean.interval.high});
+    const double mean = *method.mean.mean;
+    const Interval bar = method.mean.known_interval().value_or(Interval{mean, mean});
+    means.push_back({100.0 * mean, base - 0.13, 100.0 * bar.low, 100.0 * bar.high});
   }
 
   Figure figure{.id = "participants", .caption = {}, .alt = alt_of(report), .script = {}};

@@ -192,9 +192,10 @@ std::string stamped(bool simulated, const std::string& sentence) {
   return (simulated ? "SIMULATED participants: " : "") + sentence;
 }
 
-std::string with_interval(double share, const Interval& interval) {
-  return fmt::format("{:.1f} % ({:.1f} to {:.1f} %)", 100.0 * share, 100.0 * interval.low,
-                     100.0 * interval.high);
+std::string with_interval(double share, const std::optional<Interval>& interval) {
+  if (!interval) return fmt::format("{:.1f} %", 100.0 * share);
+  return fmt::format("{:.1f} % ({:.1f} to {:.1f} %)", 100.0 * share, 100.0 * interval->low,
+                     100.0 * interval->high);
 }
 
 }  // namespace touchtrial

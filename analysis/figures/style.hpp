@@ -7,6 +7,7 @@
 #include "analysis/statistics/proportion.hpp"
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -99,7 +100,7 @@ class Legend {
 
 /// "SIMULATED participants: " where it is due, then the sentence.
 [[nodiscard]] std::string stamped(bool simulated, const std::string& sentence);
-/// "87.0 % (60.9 to 91.1 %)"
-[[nodiscard]] std::string with_interval(double share, const Interval& interval);
+/// "87.0 % (60.9 to 91.1 %)", or "87.0 %" without an interval
+[[nodiscard]] std::string with_interval(double share, const std::optional<Interval>& interval);
 
 }  // namespace touchtrial

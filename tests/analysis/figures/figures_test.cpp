@@ -166,6 +166,17 @@ TEST_CASE("figures leave out what is no number") {
   CHECK(balanced(drawn(figure, FigureFormat::svg)));
 }
 
+TEST_CASE("figures of one participant state no interval over participants") {
+  FakeReportOptions options;
+  options.methods = {"adaptive", "tv-gabor"};
+  options.participants = 1;
+  const CueReport cues = fake_cues(options);
+  for (const Figure& figure : report_figures(fake_report(options), {.cues = &cues})) {
+    CHECK_FALSE(contains(figure.alt, "0.0 to 100.0 %"));
+    CHECK_FALSE(contains(figure.alt, "-100.0 to +100.0"));
+  }
+}
+
 TEST_CASE("figures cannot be broken out of by labels") {
   FakeReportOptions options;
   options.classes = hostile_labels();
