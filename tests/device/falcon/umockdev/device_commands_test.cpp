@@ -88,9 +88,11 @@ TEST_CASE("device test guides through homing and ends with the motors at rest") 
   moves = true;
   const int code = test.finish();
   INFO(test.output());
-  CHECK(emulator.all_homed());
-  CHECK(emulator.motors() == std::array<std::int16_t, 3>{});
   // A thousand transfers a second are too few for some machines: then the driver's words are due.
+  const bool stalled =
+      code == 1 && test.output().find("falcon: fault while homing: stalled") != std::string::npos;
+  CHECK((emulator.all_homed() || stalled));
+  CHECK(emulator.motors() == std::array<std::int16_t, 3>{});
   if (code == 0) {
     CHECK_THAT(test.output(), holds_text("time was up"));
   } else {
