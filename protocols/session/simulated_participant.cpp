@@ -13,11 +13,6 @@ namespace {
 constexpr double kQuickestThoughtS = 0.8;
 constexpr double kSlowestThoughtS = 4.0;
 
-double individual_weber(const SubjectModel& subject, std::uint64_t seed, int number) {
-  RandomStream random(seed, "subject: acuity", static_cast<std::uint64_t>(number));
-  return subject.weber * std::exp(subject.weber_spread * random.normal());
-}
-
 /// The label whose picture a feeling is matched to.
 const std::string& matched_label(const SubjectModel& subject, const std::string& label) {
   for (const auto& [one, other] : subject.label_swap) {
@@ -25,19 +20,6 @@ const std::string& matched_label(const SubjectModel& subject, const std::string&
     if (label == other) return one;
   }
   return label;
-}
-
-std::vector<double> bias_by_position(const SubjectModel& subject,
-                                     const std::vector<std::string>& labels) {
-  std::vector<double> bias(labels.size(), 0.0);
-  const double last = std::max(1.0, static_cast<double>(labels.size()) - 1.0);
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    bias[i] = subject.position_bias * (1.0 - static_cast<double>(i) / last);
-    for (const ClassBias& preferred : subject.class_bias) {
-      if (preferred.label == labels[i]) bias[i] += preferred.log_odds;
-    }
-  }
-  return bias;
 }
 
 /// The strongest, one of the strongest at random if several are equal.
@@ -59,8 +41,8 @@ SimulatedParticipant::SimulatedParticipant(const SubjectModel& subject,
       knowledge_(knowledge),
       seed_(seed),
       number_(number),
-      weber_(individual_weber(subject, seed, number)),
-      classifier_(knowledge.examples, weber_) {}
+      individual_(subject, seed, number),
+      classifier_(knowledge.examples, individual_.weber()) {}
 
 RandomStream SimulatedParticipant::stream(const char* purpose) const {
   constexpr unsigned kTrialBits = 24;
@@ -68,7 +50,7 @@ RandomStream SimulatedParticipant::stream(const char* purpose) const {
 }
 
 void SimulatedParticipant::see_pictures(const std::vector<std::string>& labels) {
-  bias_ = bias_by_position(subject_, labels);
+  bias_ = individual_.bias(labels);
   picture_of_prototype_.clear();
   for (const std::string& felt : knowledge_.label_of_prototype) {
     const auto picture = std::ranges::find(labels, matched_label(subject_, felt));
@@ -92,7 +74,7 @@ void SimulatedParticipant::feel(const ServoSample& sample) noexcept {
 
 std::vector<double> SimulatedParticipant::support_of_pictures(RandomStream& random) const {
   FeltFeatures perceived = sense_.features();
-  for (double& feature : perceived) feature += weber_ * random.normal();
+  for (double& feature : perceived) feature += individual_.weber() * random.normal();
   const std::vector<double> logs = classifier_.log_likelihoods(perceived);
   std::vector<double> support(bias_.size(), -std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < logs.size(); ++i) {
@@ -105,7 +87,7 @@ std::vector<double> SimulatedParticipant::support_of_pictures(RandomStream& rand
 ParticipantAnswer SimulatedParticipant::answer() {
   // Every draw is made whether it is needed or not, so that none shifts another.
   RandomStream random = stream("subject: answer");
-  const bool lapses = random.uniform() < subject_.lapse;
+  const bool lapses = random.uniform() < individual_.lapse();
   const int anything = static_cast<int>(random.below(bias_.size()));
   const double thought_s = random.uniform(kQuickestThoughtS, kSlowestThoughtS);
   const int felt = strongest(support_of_pictures(random), random);

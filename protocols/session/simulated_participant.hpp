@@ -6,6 +6,7 @@
 #include "engine/perception/felt_classifier.hpp"
 #include "engine/perception/texture_sense.hpp"
 #include "protocols/session/felt_knowledge.hpp"
+#include "protocols/session/individual.hpp"
 #include "protocols/session/prompt_participant.hpp"
 #include "protocols/session/subject_model.hpp"
 
@@ -40,7 +41,7 @@ class SimulatedParticipant final : public PromptParticipant {
   const FeltKnowledge& knowledge_;
   std::uint64_t seed_;
   int number_;
-  double weber_;
+  Individual individual_;
   FeltClassifier classifier_;
   TextureSense sense_;
   std::optional<SimulatedHand> hand_;

@@ -15,6 +15,7 @@ constexpr NumberRange kWeber{0.0, 10.0};
 constexpr NumberRange kSpread{0.0, 3.0};
 constexpr NumberRange kShare{0.0, 1.0};
 constexpr NumberRange kLogOdds{-100.0, 100.0};
+constexpr NumberRange kLogOddsSpread{0.0, 10.0};
 constexpr NumberRange kExploreS{0.5, 600.0};
 constexpr NumberRange kPushN{0.1, 3.0};
 constexpr NumberRange kSpeedMmS{1.0, 1000.0};
@@ -27,8 +28,10 @@ void read_number(const JsonObject& object, std::string_view key, const NumberRan
 }
 
 void read_bias(const JsonValue& value, SubjectModel& model) {
-  const JsonObject bias = value.object({"position", "classes"});
+  const JsonObject bias = value.object({"position", "position_spread", "classes", "class_spread"});
   read_number(bias, "position", kLogOdds, model.position_bias);
+  read_number(bias, "position_spread", kLogOddsSpread, model.position_bias_spread);
+  read_number(bias, "class_spread", kLogOddsSpread, model.class_bias_spread);
   const auto classes = bias.find("classes");
   if (!classes) return;
   for (const JsonValue& item : classes->items(0, kMostLabels)) {
@@ -63,13 +66,14 @@ void read_speeds(const JsonObject& object, SubjectModel& model) {
 
 SubjectModel read_model(const JsonValue& document, const std::string& source) {
   const JsonObject object =
-      document.object({"weber", "weber_spread", "lapse", "bias", "label_swap", "explore_s",
-                       "push_n", "slowest_mm_s", "fastest_mm_s", "training_passes"});
+      document.object({"weber", "weber_spread", "lapse", "lapse_spread", "bias", "label_swap",
+                       "explore_s", "push_n", "slowest_mm_s", "fastest_mm_s", "training_passes"});
   SubjectModel model;
   model.source = source;
   read_number(object, "weber", kWeber, model.weber);
   read_number(object, "weber_spread", kSpread, model.weber_spread);
   read_number(object, "lapse", kShare, model.lapse);
+  read_number(object, "lapse_spread", kSpread, model.lapse_spread);
   if (const auto bias = object.find("bias")) read_bias(*bias, model);
   if (const auto swap = object.find("label_swap")) read_label_swap(*swap, model);
   read_number(object, "explore_s", kExploreS, model.explore_s);

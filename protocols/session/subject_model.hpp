@@ -20,7 +20,8 @@ struct ClassBias {
   friend bool operator==(const ClassBias&, const ClassBias&) = default;
 };
 
-/// How somebody explores, perceives, errs and answers.
+/// How people explore, perceive, err and answer, and how they differ
+/// (protocols/session/individual.hpp).
 struct SubjectModel {
   /// Standard deviation of the noise on the logarithm of every felt intensity, >= 0.
   double weber = 0.0;
@@ -28,9 +29,14 @@ struct SubjectModel {
   /// standard normal.
   double weber_spread = 0.0;
   double lapse = 0.0;  ///< probability of an answer at random, 0 .. 1
+  /// Standard deviation between participants of the log odds of a lapse, >= 0.
+  double lapse_spread = 0.0;
   /// Log odds by which the first picture is preferred to the last, falling evenly in between.
   double position_bias = 0.0;
+  double position_bias_spread = 0.0;  ///< standard deviation of it between participants, >= 0
   std::vector<ClassBias> class_bias;
+  /// Standard deviation between participants of the preference for each class, >= 0.
+  double class_bias_spread = 0.0;
   /// Pairs of labels whose pictures are matched to each other's feelings.
   std::vector<std::pair<std::string, std::string>> label_swap;
   double explore_s = 10.0;  ///< exploration time of a trial, > 0

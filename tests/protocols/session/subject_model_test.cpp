@@ -41,21 +41,28 @@ Study study_of(const std::vector<std::string>& labels) {
 }
 
 TEST_CASE("a subject file says everything about a subject") {
-  const SubjectModel subject =
-      parsed({{"weber", 0.3},
-              {"weber_spread", 0.1},
-              {"lapse", 0.02},
-              {"bias", {{"position", 0.5}, {"classes", {{{"label", "bark"}, {"log_odds", -1}}}}}},
-              {"label_swap", pairs({{"straw", "brick"}})},
-              {"explore_s", 8},
-              {"push_n", 0.6},
-              {"slowest_mm_s", 60},
-              {"fastest_mm_s", 90},
-              {"training_passes", 3}});
+  const SubjectModel subject = parsed({{"weber", 0.3},
+                                       {"weber_spread", 0.1},
+                                       {"lapse", 0.02},
+                                       {"lapse_spread", 0.4},
+                                       {"bias",
+                                        {{"position", 0.5},
+                                         {"position_spread", 0.25},
+                                         {"classes", {{{"label", "bark"}, {"log_odds", -1}}}},
+                                         {"class_spread", 0.75}}},
+                                       {"label_swap", pairs({{"straw", "brick"}})},
+                                       {"explore_s", 8},
+                                       {"push_n", 0.6},
+                                       {"slowest_mm_s", 60},
+                                       {"fastest_mm_s", 90},
+                                       {"training_passes", 3}});
   CHECK(subject.weber == 0.3);
   CHECK(subject.weber_spread == 0.1);
   CHECK(subject.lapse == 0.02);
+  CHECK(subject.lapse_spread == 0.4);
   CHECK(subject.position_bias == 0.5);
+  CHECK(subject.position_bias_spread == 0.25);
+  CHECK(subject.class_bias_spread == 0.75);
   CHECK(subject.class_bias == std::vector<ClassBias>{{"bark", -1.0}});
   REQUIRE(subject.label_swap.size() == 1);
   CHECK(subject.label_swap[0] == std::pair<std::string, std::string>{"straw", "brick"});
@@ -136,8 +143,29 @@ TEST_CASE("the schema of subject files and the reader know the same keys and bou
     CHECK_THAT(with(low - 0.001), Catch::Contains("/" + key));
     CHECK_THAT(with(high + 0.001), Catch::Contains("/" + key));
   }
-  CHECK(bounded == 8);
+  CHECK(bounded == 9);
   for (const json& example : schema.at("examples")) CHECK(refusal(example).empty());
+}
+
+TEST_CASE("the schema and the reader know the same keys and bounds of a bias") {
+  const json schema =
+      json::parse(text_of(read_file(kRoot / "config" / "schema" / "subject.schema.json")));
+  const json& bias = schema.at("properties").at("bias").at("properties");
+  const std::string known = refusal({{"bias", {{"no such key at all", 1}}}});
+  int bounded = 0;
+  for (const auto& item : bias.items()) {
+    CHECK_THAT(known, Catch::Contains(item.key()));
+    if (!item.value().contains("minimum")) continue;
+    ++bounded;
+    const auto with = [&](double number) { return refusal({{"bias", {{item.key(), number}}}}); };
+    const double low = item.value().at("minimum");
+    const double high = item.value().at("maximum");
+    CHECK(with(low).empty());
+    CHECK(with(high).empty());
+    CHECK_THAT(with(low - 0.001), Catch::Contains("/bias/" + item.key()));
+    CHECK_THAT(with(high + 0.001), Catch::Contains("/bias/" + item.key()));
+  }
+  CHECK(bounded == 3);
 }
 
 }  // namespace
