@@ -70,7 +70,7 @@ AttendedRun::AttendedRun(OpenedDevice& opened, HapticDevice& device, const Safet
       device_(device),
       options_(options_for(limits, rate_hz)),
       recorder_(kRecordedS, rate_hz),
-      watchdog_(device, control_, heartbeat_),
+      watchdog_(device, control_, heartbeat_, Watchdog::silence_for(device.info())),
       signals_(device, control_),
       on_terminal_(::isatty(STDERR_FILENO) != 0) {
   if (!keys) return;

@@ -48,7 +48,7 @@ MonitorRun::MonitorRun(HapticDevice& device, double rate_hz, const SafetyLimits&
       wall_(rate_hz),
       ring_(static_cast<std::size_t>(kRingS * rate_hz)),
       sink_(ring_),
-      watchdog_(device, control_, heartbeat_, Watchdog::kSilence, time),
+      watchdog_(device, control_, heartbeat_, Watchdog::silence_for(device.info()), time),
       signals_(device, control_) {}
 
 MonitorRun::~MonitorRun() {

@@ -36,7 +36,17 @@ class WatchdogTime {
 /// starve it, and goes on without. All functions may be called from any thread.
 class Watchdog {
  public:
+  /// On a device whose force a hand feels.
   static constexpr std::chrono::milliseconds kSilence{10};
+  /// Where none does.
+  static constexpr std::chrono::milliseconds kForcelessSilence{1000};
+
+  /// How long the servo of a device may be silent. A force that stays as it is pushes a hand on; a
+  /// simulated hand, and a hand at a mouse, are pushed by nothing, so that there only a servo that
+  /// does not come back is a fault, and not a busy machine.
+  [[nodiscard]] static std::chrono::milliseconds silence_for(const DeviceInfo& device) noexcept {
+    return device.simulated || device.visual ? kForcelessSilence : kSilence;
+  }
 
   /// \param device,control,heartbeat  must outlive this; the last two are those of the ServoHooks
   /// \param silence  > 0

@@ -87,7 +87,8 @@ ServoReport RealTimeExplorer::Machinery::run(HapticDevice& device, const Renderi
   hooks.recorder = &*recorder;
   hooks.heat = &heat;
   const StopOnSignals signals(device, control);
-  Watchdog watchdog(device, control, heartbeat, Watchdog::kSilence, *options.watchdog_time);
+  Watchdog watchdog(device, control, heartbeat, Watchdog::silence_for(device.info()),
+                    *options.watchdog_time);
   watchdog.arm();
   ServoReport report;
   RunningServo running(thread, control, [&] {

@@ -192,6 +192,16 @@ TEST_CASE("watchdogs come and go, armed and disarmed, between two threads") {
   CHECK(device.halts == 0);
 }
 
+TEST_CASE("a watchdog is patient where no hand feels a force, and nowhere else") {
+  DeviceInfo device;
+  CHECK(Watchdog::silence_for(device) == Watchdog::kSilence);
+  device.visual = true;
+  CHECK(Watchdog::silence_for(device) == Watchdog::kForcelessSilence);
+  device.visual = false;
+  device.simulated = true;
+  CHECK(Watchdog::silence_for(device) == Watchdog::kForcelessSilence);
+}
+
 TEST_CASE("a watchdog refuses a silence of no length") {
   RestingDevice device;
   ServoControl control;
