@@ -12,7 +12,7 @@ LabelledFields::LabelledFields(const StudyKey& key, const StimulusSource& source
     by_meaning[keyed.stimulus] = &source.model(keyed.code);
   }
   for (const auto& [stimulus, model] : by_meaning) {
-    fields_.push_back({key.study.classes[stimulus.class_index].label, model});
+    fields_.push_back({key.study.classes[stimulus.class_index].label, model, stimulus});
   }
 }
 

@@ -14,6 +14,7 @@ namespace touchtrial {
 struct LabelledField {
   std::string label;
   const RenderingModel* model = nullptr;
+  StimulusIndex stimulus{};
 };
 
 /// Every presented stimulus of a study with its label, by class, image and method. Refers to the

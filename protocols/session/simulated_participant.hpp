@@ -1,10 +1,9 @@
 /// \file A participant who feels: knows the classes by touch, and answers from what was felt.
 #pragma once
 
-#include "core/random.hpp"
 #include "device/simulated/simulated_hand.hpp"
-#include "engine/perception/felt_classifier.hpp"
 #include "engine/perception/texture_sense.hpp"
+#include "protocols/session/felt_decision.hpp"
 #include "protocols/session/felt_knowledge.hpp"
 #include "protocols/session/individual.hpp"
 #include "protocols/session/prompt_participant.hpp"
@@ -34,19 +33,15 @@ class SimulatedParticipant final : public PromptParticipant {
   [[nodiscard]] ParticipantAnswer answer() override;
 
  private:
-  [[nodiscard]] RandomStream stream(const char* purpose) const;
-  [[nodiscard]] std::vector<double> support_of_pictures(RandomStream& random) const;
-
   const SubjectModel& subject_;
   const FeltKnowledge& knowledge_;
   std::uint64_t seed_;
   int number_;
   Individual individual_;
-  FeltClassifier classifier_;
+  FeltDecision decision_;
   TextureSense sense_;
   std::optional<SimulatedHand> hand_;
-  std::vector<double> bias_;  ///< log odds by position
-  std::vector<std::size_t> picture_of_prototype_;
+  SeenPictures pictures_;
   std::uint64_t trials_begun_ = 0;
 };
 

@@ -1,32 +1,23 @@
 #include "protocols/session/trial_run.hpp"
 
 #include "protocols/session/interruption_words.hpp"
+#include "protocols/session/trial_servo_options.hpp"
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 
 namespace touchtrial {
 namespace {
 
 using Time = SessionClock::Time;
 
-constexpr std::chrono::milliseconds kFade{100};
 /// With less time left than this, nobody is let back to the plane.
 constexpr double kLeastAgainS = 0.5;
 
 }  // namespace
 
 ServoOptions servo_options(const SessionParts& parts) {
-  const Study& study = parts.key.study;
-  const double rate_hz = parts.rate_hz;
-  ServoOptions options;
-  options.rate_hz = rate_hz;
-  options.limit_ticks = std::llround(study.trials.explore_limit_s * rate_hz);
-  options.fade_ticks = std::llround(std::chrono::duration<double>(kFade).count() * rate_hz);
-  options.limits.max_force_n = study.rendering.max_force_n;
-  options.limits = stricter_of(options.limits, parts.limits);
-  return options;
+  return trial_servo_options(parts.key.study, parts.rate_hz, parts.limits);
 }
 
 TrialRun::TrialRun(SessionDesk& desk)
