@@ -21,6 +21,7 @@ endif()
 find_package(ZLIB REQUIRED)
 pkg_check_modules(fftw3 REQUIRED IMPORTED_TARGET GLOBAL fftw3)
 pkg_check_modules(fftw3f REQUIRED IMPORTED_TARGET GLOBAL fftw3f)
+pkg_check_modules(nlopt REQUIRED IMPORTED_TARGET GLOBAL nlopt)
 pkg_check_modules(libsodium REQUIRED IMPORTED_TARGET GLOBAL libsodium)
 
 pkg_check_modules(libusb REQUIRED IMPORTED_TARGET GLOBAL libusb-1.0)

@@ -6,15 +6,19 @@ option(TOUCHTRIAL_UNITY "Compile several files at a time: sooner done, but less 
 
 set(TOUCHTRIAL_TEST_BATCH 8)
 
-# touchtrial_library(NAME [UNHURRIED] [PUBLIC targets...] [PRIVATE libraries...])
-# One static library a folder, of every .cpp file in and below it. PUBLIC: targets of ours, along
+# touchtrial_library(NAME [UNHURRIED] [EXCEPT folders...] [PUBLIC targets...] [PRIVATE libraries...])
+# One static library a folder, of every .cpp file in and below it, except those of folders that are
+# libraries of their own. PUBLIC: targets of ours, along
 # the arrows of docs/architecture.md; PRIVATE: third-party libraries, whose headers no public header
 # includes. UNHURRIED: nothing in it is worth optimising; files that read and write JSON and other
 # texts are so everywhere.
 function(touchtrial_library name)
-  cmake_parse_arguments(ARG "UNHURRIED" "" "PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "UNHURRIED" "" "EXCEPT;PUBLIC;PRIVATE" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cpp")
   list(FILTER sources EXCLUDE REGEX "/main\\.cpp$")
+  foreach(folder ${ARG_EXCEPT})
+    list(FILTER sources EXCLUDE REGEX "^${CMAKE_CURRENT_SOURCE_DIR}/${folder}/")
+  endforeach()
   if(NOT sources)
     add_library(${name} INTERFACE)
     target_link_libraries(${name} INTERFACE ${ARG_PUBLIC})
