@@ -24,6 +24,9 @@ pkg_check_modules(fftw3f REQUIRED IMPORTED_TARGET GLOBAL fftw3f)
 pkg_check_modules(nlopt REQUIRED IMPORTED_TARGET GLOBAL nlopt)
 pkg_check_modules(libsodium REQUIRED IMPORTED_TARGET GLOBAL libsodium)
 
+# A newer libpqxx may bring a CMake package; pkg-config finds every version.
+pkg_check_modules(libpqxx REQUIRED IMPORTED_TARGET GLOBAL libpqxx libpq)
+
 pkg_check_modules(libusb REQUIRED IMPORTED_TARGET GLOBAL libusb-1.0)
 
 find_package(glfw3 REQUIRED)
