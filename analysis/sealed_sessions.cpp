@@ -58,7 +58,7 @@ std::optional<SecretKey> participant_key(const StudyStore& store, const StudyKey
                     "restore a backup of the database",
                     session.session));
   }
-  const auto own = unwrap_participant_key(key.master, session.session, *wrapped);
+  const auto own = unwrap_participant_key(key.master, session.own_session, *wrapped);
   if (!own) {
     throw VerificationError(
         fmt::format("session {}: the participant's key does not open with this study key; "

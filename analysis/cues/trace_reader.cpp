@@ -20,7 +20,7 @@ struct WaitingTrace {
   std::size_t place = 0;
   const TrialRow* row = nullptr;
   const SecretKey* own = nullptr;
-  Bytes box;
+  SealedTrace box;
   std::string fault;  ///< why it did not open; empty: it did
 };
 
@@ -36,8 +36,7 @@ std::string refusal(const TrialRow& row, const std::string& why) {
 void open_and_visit(WaitingTrace& sealed, const TraceVisitor& visit) {
   try {
     const std::optional<Trace> trace =
-        unsealed_trace(sealed.row->session, sealed.row->trial, sealed.box, *sealed.own,
-                       static_cast<std::size_t>(sealed.row->samples));
+        unsealed_trace(sealed.box, *sealed.own, static_cast<std::size_t>(sealed.row->samples));
     if (trace) {
       visit(sealed.place, *trace);
     } else {
@@ -66,7 +65,7 @@ std::vector<std::size_t> visit_traces(const StudyStore& store, const StudyKey& k
   std::vector<WaitingTrace> batch;
   for (std::size_t place = 0; place < trials.size(); ++place) {
     const TrialRow& row = trials[place]->row;
-    std::optional<Bytes> box = store.sealed_trace(row.session, row.trial);
+    std::optional<SealedTrace> box = store.sealed_trace(row.session, row.trial);
     const auto own = keys.find(row.session);
     if (!box || own == keys.end()) {
       missing.push_back(place);

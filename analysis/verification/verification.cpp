@@ -133,7 +133,7 @@ void check_trace(const StudyStore& store, const Event& event, const SecretKey& o
   };
   if (!box) return fail("is missing");
   const auto samples = static_cast<std::size_t>(body.samples);
-  const auto trace = unsealed_trace(event.session, body.trial, *box, own, samples);
+  const auto trace = unsealed_trace(*box, own, samples);
   if (!trace) return fail("does not open");
   if (trace->samples.size() != samples) fail("has another number of samples than its event says");
 }

@@ -76,7 +76,7 @@ Session restored(const RunStudy& study, const StudyStore& store, const SessionRo
   const std::vector<Event> events = store.events(row.session);
   const auto wrapped = store.wrapped_key(row.session);
   const auto key =
-      wrapped ? unwrap_participant_key(study.key.master, row.session, *wrapped) : std::nullopt;
+      wrapped ? unwrap_participant_key(study.key.master, row.own_session, *wrapped) : std::nullopt;
   const auto secret = key ? unsealed(events.front(), *key) : std::nullopt;
   if (!secret) {
     throw StoreError(fmt::format("session {}: its schedule cannot be read; run `touchtrial verify`",

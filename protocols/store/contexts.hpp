@@ -1,5 +1,6 @@
-/// \file What a sealed box is bound to, so that none can be passed off as another. Part of the
-/// format: docs/data-dictionary.md, "Events".
+/// \file What a sealed box is bound to, so that none can be passed off as another. Sessions are
+/// named by their own number (Event::own_session). Part of the format: docs/data-dictionary.md,
+/// "Events".
 #pragma once
 
 #include "protocols/store/event.hpp"
@@ -9,17 +10,18 @@
 
 namespace touchtrial {
 
-[[nodiscard]] inline std::string event_context(int session, std::int64_t sequence, EventKind kind) {
-  return "event|" + std::to_string(session) + "|" + std::to_string(sequence) + "|" +
+[[nodiscard]] inline std::string event_context(int own_session, std::int64_t sequence,
+                                               EventKind kind) {
+  return "event|" + std::to_string(own_session) + "|" + std::to_string(sequence) + "|" +
          std::string(name_of(kind));
 }
 
-[[nodiscard]] inline std::string trace_context(int session, int trial) {
-  return "trace|" + std::to_string(session) + "|" + std::to_string(trial);
+[[nodiscard]] inline std::string trace_context(int own_session, int trial) {
+  return "trace|" + std::to_string(own_session) + "|" + std::to_string(trial);
 }
 
-[[nodiscard]] inline std::string participant_key_context(int session) {
-  return "participant-key|" + std::to_string(session);
+[[nodiscard]] inline std::string participant_key_context(int own_session) {
+  return "participant-key|" + std::to_string(own_session);
 }
 
 }  // namespace touchtrial

@@ -74,7 +74,9 @@ SessionRow session_of_row(const Query& query) {
           .excluded = row.flag(6),
           .withdrawn = row.flag(7),
           .device = query.text(8),
-          .replaced_by = query.text(9)};
+          .replaced_by = query.text(9),
+          .own_session = row.whole(10),
+          .station = row.whole(11)};
 }
 
 TrialRow trial_of_row(const Query& query) {
@@ -101,8 +103,8 @@ void visit_sessions(const Database& database, std::int64_t first, std::int64_t l
                     const std::function<void(const SessionRow&)>& visit) {
   Query query = database.query(
       "SELECT session, participant, enrolment, state, simulated, pilot, excluded, withdrawn, "
-      "device, coalesce(replaced_by, '') FROM sessions WHERE session BETWEEN ? AND ? ORDER BY "
-      "session");
+      "device, coalesce(replaced_by, ''), coalesce(own_session, session), station FROM sessions "
+      "WHERE session BETWEEN ? AND ? ORDER BY session");
   query.bind(first).bind(last);
   while (query.step()) visit(session_of_row(query));
 }
@@ -134,10 +136,11 @@ void write_session(const Database& database, const SessionRow& row) {
   database
       .query(
           "INSERT INTO sessions(session, participant, enrolment, state, simulated, pilot, "
-          "excluded, withdrawn, device, replaced_by) VALUES(?,?,?,?,?,?,?,?,?,?) "
+          "excluded, withdrawn, device, replaced_by, own_session, station) "
+          "VALUES(?,?,?,?,?,?,?,?,?,?,?,?) "
           "ON CONFLICT(session) DO UPDATE SET state = excluded.state, "
           "excluded = excluded.excluded, withdrawn = excluded.withdrawn, "
-          "replaced_by = excluded.replaced_by")
+          "replaced_by = excluded.replaced_by, station = excluded.station")
       .bind(row.session)
       .bind(row.participant)
       .bind(row.enrolment)
@@ -148,6 +151,8 @@ void write_session(const Database& database, const SessionRow& row) {
       .bind(row.withdrawn)
       .bind(row.device)
       .bind(row.replaced_by.empty() ? std::nullopt : std::optional(row.replaced_by))
+      .bind(row.own_session == row.session ? std::nullopt : std::optional(row.own_session))
+      .bind(row.station)
       .run();
 }
 

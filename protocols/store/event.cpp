@@ -61,7 +61,7 @@ bool belongs_to_file_chain(EventKind kind) {
 
 Digest event_hash(const Event& event) {
   return FieldHasher()
-      .add(std::int64_t{event.session})
+      .add(std::int64_t{event.own_session()})
       .add(event.sequence)
       .add(name_of(event.kind))
       .add(std::int64_t{event.at.count()})

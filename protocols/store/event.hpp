@@ -58,6 +58,7 @@ enum class EventKind {
 /// under the participant's key.
 struct Event {
   int session = 0;            ///< 0 for the file's chain, else the session's number, from 1
+                              ///< (-1, -2, ...: a collected station's file chain)
   std::int64_t sequence = 0;  ///< place in its chain, from 0
   EventKind kind{};
   std::chrono::nanoseconds at{};  ///< session: since its opening, monotonic; file: UTC since 1970
@@ -65,9 +66,16 @@ struct Event {
   Bytes sealed;                   ///< empty if the event has no secret part
   Digest previous{};              ///< hash of the event before; zeros for the first
   Digest hash{};                  ///< event_hash of this one
+  /// In a collected database, where sessions have other numbers than in the station's file that
+  /// they come from: the number there. Empty: the same.
+  std::optional<int> renumbered_from{};
+
+  /// The session's number in the file that it was recorded in. Hash and sealed part are bound to
+  /// it.
+  [[nodiscard]] int own_session() const noexcept { return renumbered_from.value_or(session); }
 };
 
-/// SHA-256 over all other members, ciphertext included.
+/// SHA-256 over own_session() and all other members, ciphertext included.
 [[nodiscard]] Digest event_hash(const Event& event);
 
 }  // namespace touchtrial

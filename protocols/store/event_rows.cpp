@@ -23,14 +23,24 @@ Digest digest_of(const Query& row, int column) {
   return digest;
 }
 
-/// \param row  session, sequence, kind, at_ns, body, sealed, previous, hash
+/// \throws EventFault if the number is none that a session can have had in its station's file
+std::optional<int> renumbered_from(const Query& row, int column) {
+  if (row.is_null(column)) return std::nullopt;
+  const std::int64_t number = row.integer(column);
+  if (number < 0 || number > std::numeric_limits<int>::max()) {
+    throw EventFault(row.integer(0), row.integer(1), "no session of a station has this number");
+  }
+  return static_cast<int>(number);
+}
+
+/// \param row  session, sequence, kind, at_ns, body, sealed, previous, hash, own_session
 Event event_of_row(const Query& row) {
   const std::int64_t session = row.integer(0);
   const std::int64_t sequence = row.integer(1);
   const std::string name = row.text(2);
   const std::optional<EventKind> kind = event_kind_from_name(name);
   if (!kind) throw EventFault(session, sequence, "unknown kind of event '" + name + "'");
-  if (session < 0 || session > std::numeric_limits<int>::max()) {
+  if (session < std::numeric_limits<int>::min() || session > std::numeric_limits<int>::max()) {
     throw EventFault(session, sequence, "no session has this number");
   }
   return {.session = static_cast<int>(session),
@@ -40,7 +50,8 @@ Event event_of_row(const Query& row) {
           .body = row.text(4),
           .sealed = row.blob(5),
           .previous = digest_of(row, 6),
-          .hash = digest_of(row, 7)};
+          .hash = digest_of(row, 7),
+          .renumbered_from = renumbered_from(row, 8)};
 }
 
 /// "|opened|closed|", which the database searches for a kind between bars.
@@ -55,8 +66,8 @@ std::string bars_around(std::span<const EventKind> kinds) {
 void insert_event(const Database& database, const Event& event) {
   database
       .query(
-          "INSERT INTO events(session, sequence, kind, at_ns, body, sealed, previous, hash) "
-          "VALUES(?,?,?,?,?,?,?,?)")
+          "INSERT INTO events(session, sequence, kind, at_ns, body, sealed, previous, hash, "
+          "own_session) VALUES(?,?,?,?,?,?,?,?,?)")
       .bind(event.session)
       .bind(event.sequence)
       .bind(name_of(event.kind))
@@ -65,6 +76,7 @@ void insert_event(const Database& database, const Event& event) {
       .bind(event.sealed)
       .bind(event.previous)
       .bind(event.hash)
+      .bind(event.renumbered_from)
       .run();
 }
 
@@ -83,7 +95,8 @@ void for_each_event(const Database& database, const EventFilter& filter,
   std::optional<std::string> any_of;
   if (!filter.kinds.empty()) any_of = bars_around(filter.kinds);
   Query query = database.separate_query(
-      "SELECT session, sequence, kind, at_ns, body, sealed, previous, hash FROM events "
+      "SELECT session, sequence, kind, at_ns, body, sealed, previous, hash, own_session FROM "
+      "events "
       "WHERE session BETWEEN ? AND ? AND sequence BETWEEN ? AND ? AND kind = coalesce(?, kind) "
       "AND (?6 IS NULL OR instr(?6, '|' || kind || '|') > 0) "
       "ORDER BY session, sequence");

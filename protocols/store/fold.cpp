@@ -29,7 +29,9 @@ void open_session(DerivedRows& rows, const Event& event) {
                                   .excluded = false,
                                   .withdrawn = false,
                                   .device = opening.device,
-                                  .replaced_by = {}};
+                                  .replaced_by = {},
+                                  .own_session = event.own_session(),
+                                  .station = 0};
 }
 
 SessionRow& open_row(DerivedRows& rows, const Event& event) {

@@ -111,6 +111,16 @@ std::vector<std::int64_t> JsonObject::optional_integers(const char* key) const {
   return numbers;
 }
 
+std::optional<std::vector<int>> JsonObject::optional_counts(const char* key, int least) const {
+  if (!object_.contains(key)) return std::nullopt;
+  std::vector<int> counts;
+  for (const std::int64_t number : optional_integers(key)) {
+    if (number < least || number > std::numeric_limits<int>::max()) refuse(key, "is out of range");
+    counts.push_back(static_cast<int>(number));
+  }
+  return counts;
+}
+
 std::optional<JsonObject> JsonObject::optional_object(const char* key) const {
   if (!object_.contains(key)) return std::nullopt;
   const nlohmann::json& value = at(key);

@@ -40,6 +40,8 @@ class JsonObject {
   [[nodiscard]] std::optional<std::int64_t> optional_integer(const char* key) const;
   /// Whole numbers >= 0, or none if the key is absent.
   [[nodiscard]] std::vector<std::int64_t> optional_integers(const char* key) const;
+  /// Whole numbers in [least, largest int], or nothing if the key is absent.
+  [[nodiscard]] std::optional<std::vector<int>> optional_counts(const char* key, int least) const;
   /// An object within this one, or nothing if the key is absent. Its errors name both keys.
   [[nodiscard]] std::optional<JsonObject> optional_object(const char* key) const;
 

@@ -14,16 +14,16 @@ SecretKey wrapping_key(const SecretKey& study_master) {
 
 }  // namespace
 
-Bytes wrap_participant_key(const SecretKey& study_master, int session,
+Bytes wrap_participant_key(const SecretKey& study_master, int own_session,
                            const SecretKey& participant_key) {
-  return seal(wrapping_key(study_master), participant_key_context(session), participant_key,
+  return seal(wrapping_key(study_master), participant_key_context(own_session), participant_key,
               kWrapPadding);
 }
 
-std::optional<SecretKey> unwrap_participant_key(const SecretKey& study_master, int session,
+std::optional<SecretKey> unwrap_participant_key(const SecretKey& study_master, int own_session,
                                                 const Bytes& wrapped) {
-  const std::optional<Bytes> bytes =
-      unseal(wrapping_key(study_master), participant_key_context(session), wrapped, kWrapPadding);
+  const std::optional<Bytes> bytes = unseal(
+      wrapping_key(study_master), participant_key_context(own_session), wrapped, kWrapPadding);
   SecretKey key{};
   if (!bytes || bytes->size() != key.size()) return std::nullopt;
   std::copy(bytes->begin(), bytes->end(), key.begin());
@@ -31,18 +31,23 @@ std::optional<SecretKey> unwrap_participant_key(const SecretKey& study_master, i
 }
 
 std::optional<std::string> unsealed(const Event& event, const SecretKey& participant_key) {
-  const std::string context = event_context(event.session, event.sequence, event.kind);
+  const std::string context = event_context(event.own_session(), event.sequence, event.kind);
   const std::optional<Bytes> bytes = unseal(participant_key, context, event.sealed);
   if (!bytes) return std::nullopt;
   return text_of(*bytes);
 }
 
-std::optional<Trace> unsealed_trace(int session, int trial, const Bytes& box,
+std::optional<Trace> unsealed_trace(int own_session, int trial, const Bytes& box,
                                     const SecretKey& participant_key, std::size_t sample_count) {
   const std::optional<Bytes> bytes =
-      unseal(participant_key, trace_context(session, trial), box, trace_padding(sample_count));
+      unseal(participant_key, trace_context(own_session, trial), box, trace_padding(sample_count));
   if (!bytes) return std::nullopt;
   return decode_trace(*bytes);
+}
+
+std::optional<Trace> unsealed_trace(const SealedTrace& sealed, const SecretKey& participant_key,
+                                    std::size_t sample_count) {
+  return unsealed_trace(sealed.session, sealed.trial, sealed.box, participant_key, sample_count);
 }
 
 }  // namespace touchtrial

@@ -255,7 +255,9 @@ SessionOpenedBody session_opened_from_json(const std::string& text) {
           .participant = object.text("participant"),
           .enrolment = object.count("enrolment", 1),
           .first = object.digest("first"),
-          .key = object.digest("key")};
+          .key = object.digest("key"),
+          .station = object.optional_count("station", 1).value_or(0),
+          .own_session = object.optional_count("own_session", 1).value_or(0)};
 }
 
 std::string to_json(const SessionClosedBody& body) {
@@ -305,12 +307,16 @@ NoteBody note_from_json(const std::string& text) {
 }
 
 std::string to_json(const UnblindingBody& body) {
-  return compact({{"reason", body.reason}, {"interim", body.interim}});
+  json object = {{"reason", body.reason}, {"interim", body.interim}};
+  if (body.sessions) object["sessions"] = *body.sessions;
+  return compact(object);
 }
 
 UnblindingBody unblinding_from_json(const std::string& text) {
   const JsonObject object(text);
-  return {.reason = object.text("reason"), .interim = object.flag("interim")};
+  return {.reason = object.text("reason"),
+          .interim = object.flag("interim"),
+          .sessions = object.optional_counts("sessions", 1)};
 }
 
 std::string presented_to_json(int trial, int block) {
@@ -355,6 +361,23 @@ std::string completion_to_json(bool complete) {
 
 bool completion_from_json(const std::string& text) {
   return JsonObject(text).flag("complete");
+}
+
+// Not by way of the structs, so that what they gain later changes no collected chain.
+std::string renumbered(const std::string& body, int session) {
+  static_cast<void>(JsonObject(body).count("session", 1));
+  json object = json::parse(body);
+  object["session"] = session;
+  return compact(object);
+}
+
+std::string renumbered_opening(const std::string& body, int session, int station) {
+  const int own_session = JsonObject(body).count("session", 1);
+  json object = json::parse(body);
+  object["session"] = session;
+  object["own_session"] = own_session;
+  object["station"] = station;
+  return compact(object);
 }
 
 }  // namespace touchtrial

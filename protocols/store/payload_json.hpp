@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace touchtrial {
 
@@ -19,6 +20,9 @@ struct SessionOpenedBody {
   int enrolment = 0;
   Digest first{};  ///< hash of the session's `opened`
   Digest key{};    ///< SHA-256 of the wrapped participant key
+  /// In a collected study: the station that the session comes from, from 1, and its number there.
+  int station = 0;
+  int own_session = 0;
 };
 
 /// `session-closed` on the file's chain: how the session's chain ends.
@@ -53,6 +57,8 @@ struct NoteBody {
 struct UnblindingBody {
   std::string reason;
   bool interim = false;
+  /// In a collected study: the sessions that the stations' interim looks show.
+  std::optional<std::vector<int>> sessions{};
 };
 
 /// `block-restarted`: which block, from 0, and the number of its first trial from now on.
@@ -84,6 +90,13 @@ struct BlockBody {
 [[nodiscard]] std::string block_to_json(int block, int first_trial);
 [[nodiscard]] std::string remark_to_json(const std::string& text);
 [[nodiscard]] std::string completion_to_json(bool complete);
+
+/// The body of a station's event as it stands in a collected study: all as it was, but `session`,
+/// the number of the session that it is about.
+/// \throws StoreError if the text is no body about a session
+[[nodiscard]] std::string renumbered(const std::string& body, int session);
+/// The same of a `session-opened`, which also says where the session comes from.
+[[nodiscard]] std::string renumbered_opening(const std::string& body, int session, int station);
 
 /// All readers throw StoreError if the text is no such body; the message names the key.
 [[nodiscard]] StudyCommitment commitment_from_json(const std::string& text);

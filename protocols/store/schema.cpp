@@ -155,8 +155,17 @@ void make_second_version(SQLite::Database& database) {
       "DROP TABLE old_responses; DROP TABLE old_trials; DROP TABLE old_sessions;");
 }
 
-constexpr std::array<Migration, kSchemaVersion> kMigrations = {make_first_version,
-                                                               make_second_version};
+/// Several stations' files may be collected into one, where sessions get other numbers. No row is
+/// written anew: NULL stands for the number that a session has here.
+void make_third_version(SQLite::Database& database) {
+  database.exec(
+      "ALTER TABLE events ADD COLUMN own_session INTEGER;"
+      "ALTER TABLE sessions ADD COLUMN own_session INTEGER;"
+      "ALTER TABLE sessions ADD COLUMN station INTEGER NOT NULL DEFAULT 0;");
+}
+
+constexpr std::array<Migration, kSchemaVersion> kMigrations = {
+    make_first_version, make_second_version, make_third_version};
 
 /// A backup that is there is whole; one that a broken-off migration left, and that is equal to what
 /// it would be now, stands.

@@ -9,7 +9,7 @@
 
 namespace touchtrial {
 
-inline constexpr int kSchemaVersion = 2;
+inline constexpr int kSchemaVersion = 3;
 
 /// One step forward; runs inside a transaction.
 using Migration = void (*)(SQLite::Database&);

@@ -16,11 +16,13 @@
 
 namespace touchtrial {
 
-/// An encrypted trace on its way to the database.
+/// An encrypted trace, on its way to a database or from one.
 struct SealedTrace {
-  int session = 0;
+  int session = 0;  ///< its own number, see Event::own_session: the box is bound to it
   int trial = 0;
   Bytes box;
+
+  friend bool operator==(const SealedTrace&, const SealedTrace&) = default;
 };
 
 /// An event, and the trace that comes with one of kind trace_stored.

@@ -1,6 +1,7 @@
 #include "protocols/store/stored_study.hpp"
 
 #include "protocols/store/chain_link.hpp"
+#include "protocols/store/collected_chain.hpp"
 #include "protocols/store/derived_rows.hpp"
 #include "protocols/store/event_rows.hpp"
 #include "protocols/store/payload_json.hpp"
@@ -9,6 +10,7 @@
 #include <limits>
 #include <optional>
 #include <set>
+#include <vector>
 
 namespace touchtrial {
 namespace {
@@ -52,29 +54,25 @@ const StudyCommitment& StoredStudy::commitment() const {
 }
 
 StudyState StoredStudy::state() const {
-  StudyState state;
-  state.closed = is_closed(database_);
-  std::set<int> ended;
-  for_each_event(database_, 0, [&](const Event& event) {
-    if (event.kind == EventKind::session_closed) {
-      ended.insert(body_of(event, session_closed_from_json).session);
-    }
-    if (event.kind != EventKind::study_unblinded) return;
-    const UnblindingBody body = body_of(event, unblinding_from_json);
-    state.unblinded = true;
-    state.unblinding_reason = body.reason;
-    state.interim = body.interim ? std::optional(ended) : std::nullopt;
-  });
-  return state;
+  std::vector<Event> chain;
+  for_each_event(database_, 0, [&](const Event& event) { chain.push_back(event); });
+  return state_of_chain(chain);
+}
+
+int StoredStudy::stations() const {
+  Query query = database_.query("SELECT min(session) FROM events");
+  const std::int64_t lowest = query.step() ? query.integer(0) : 0;
+  if (lowest > 0 || lowest < -std::int64_t{std::numeric_limits<int>::max()}) return 0;
+  return static_cast<int>(-lowest);
 }
 
 int StoredStudy::next_session() const {
   Query query = database_.query("SELECT max(session) FROM events");
   const std::int64_t last = query.step() ? query.integer(0) : 0;
-  if (last < 0 || last >= std::numeric_limits<int>::max()) {
+  if (last >= std::numeric_limits<int>::max()) {
     refuse("has events of session " + std::to_string(last) + "; restore it from a backup");
   }
-  return static_cast<int>(last) + 1;
+  return static_cast<int>(std::max(last, std::int64_t{0})) + 1;
 }
 
 SessionRow StoredStudy::session(int session) const {

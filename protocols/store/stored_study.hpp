@@ -29,6 +29,8 @@ class StoredStudy {
   /// Where a chain ends (0: the file's).
   [[nodiscard]] ChainHead head(int session) const;
   [[nodiscard]] std::optional<Event> last_event(int session) const;
+  /// How many stations' files were collected into this one.
+  [[nodiscard]] int stations() const;
   [[nodiscard]] int next_session() const;
   /// The smallest number that nobody has and that is kept for nobody.
   [[nodiscard]] int next_enrolment() const;

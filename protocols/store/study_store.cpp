@@ -43,6 +43,13 @@ void check_tables(const Database& database) {
   }
 }
 
+/// What the stations' own chains say stands on the collected study's chain again.
+EventVisitor unless_of_station(const EventVisitor& visit) {
+  return [&visit](const Event& event) {
+    if (event.session >= 0) visit(event);
+  };
+}
+
 }  // namespace
 
 struct StudyStore::Impl {
@@ -67,6 +74,7 @@ struct StudyStore::Impl {
   [[nodiscard]] const Database& database() const { return study.database(); }
 
   StoredStudy study;
+  TraceFetch fetch_trace;  ///< of what was collected without its traces
 };
 
 StudyStore::StudyStore(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
@@ -165,7 +173,8 @@ std::vector<Event> StudyStore::events(int session) const {
 
 void StudyStore::for_each(EventKind kind, const std::function<void(const Event&)>& visit) const {
   impl_->run([&] {
-    for_each_event(impl_->database(), {.session = {}, .sequence = {}, .kind = kind}, visit);
+    for_each_event(impl_->database(), {.session = {}, .sequence = {}, .kind = kind},
+                   unless_of_station(visit));
   });
 }
 
@@ -174,7 +183,7 @@ void StudyStore::for_each_of(std::span<const EventKind> kinds,
   if (kinds.empty()) return;
   impl_->run([&] {
     for_each_event(impl_->database(), {.session = {}, .sequence = {}, .kind = {}, .kinds = kinds},
-                   visit);
+                   unless_of_station(visit));
   });
 }
 
@@ -199,13 +208,32 @@ std::optional<Bytes> StudyStore::wrapped_key(int session) const {
   });
 }
 
-std::optional<Bytes> StudyStore::sealed_trace(int session, int trial) const {
-  return impl_->run([&]() -> std::optional<Bytes> {
-    Query query = impl_->database().query("SELECT box FROM traces WHERE session = ? AND trial = ?");
+std::optional<SealedTrace> StudyStore::sealed_trace(int session, int trial) const {
+  return impl_->run([&]() -> std::optional<SealedTrace> {
+    Query query = impl_->database().query(
+        "SELECT coalesce(s.own_session, s.session), t.box FROM traces t JOIN sessions s "
+        "USING(session) WHERE t.session = ? AND t.trial = ?");
     query.bind(session).bind(trial);
-    if (!query.step()) return std::nullopt;
-    return query.blob(0);
+    if (query.step()) {
+      return SealedTrace{
+          .session = static_cast<int>(query.integer(0)), .trial = trial, .box = query.blob(1)};
+    }
+    if (!impl_->fetch_trace) return std::nullopt;
+    return impl_->fetch_trace(session, trial);
   });
+}
+
+int StudyStore::stations() const {
+  return impl_->run([&] { return impl_->study.stations(); });
+}
+
+std::vector<Event> StudyStore::station_chain(int station) const {
+  std::vector<Event> chain = events(-station);
+  for (Event& event : chain) {
+    event.session = 0;
+    event.renumbered_from.reset();
+  }
+  return chain;
 }
 
 void StudyStore::add_session(const BufferedEvents& session, const Bytes& wrapped_key,
@@ -309,7 +337,7 @@ void StudyStore::rebuild_derived() {
     DerivedRows rows;
     const auto add = [&](const Event& event) { fold(rows, event); };
     for (const std::int64_t session : sessions_with_events(impl_->database())) {
-      for_each_event(impl_->database(), session, add);
+      if (session > 0) for_each_event(impl_->database(), session, add);
     }
     for_each_event(impl_->database(), 0, add);
     delete_all_rows(impl_->database());

@@ -1,5 +1,6 @@
 /// \file One SQLite file a station and study: events, sealed traces, wrapped participant keys, and
-/// tables derived from the events. Format: docs/data-dictionary.md, "Database".
+/// tables derived from the events; or one that several stations' files were collected into
+/// (protocols/store/collected_store.hpp). Format: docs/data-dictionary.md, "Database".
 #pragma once
 
 #include "core/cipher.hpp"
@@ -36,6 +37,10 @@ struct SessionRow {
   /// Participant who took this one's place in the order of enrolment, the same one if the session
   /// was restarted; empty: nobody.
   std::string replaced_by{};
+  /// The number in the file that it was recorded in (Event::own_session): participant keys and
+  /// whatever is sealed are bound to it.
+  int own_session = 0;
+  int station = 0;  ///< that it was collected from, from 1; 0: recorded in this file
 
   friend bool operator==(const SessionRow&, const SessionRow&) = default;
 };
@@ -97,6 +102,9 @@ struct ChainFault {
   std::int64_t sequence = 0;
   std::string what;
 };
+
+/// Asks for the sealed trace of a session, by its number here, and trial; it may throw StoreError.
+using TraceFetch = std::function<std::optional<SealedTrace>(int, int)>;
 
 /// UTC since 1970; the file's chain is stamped with it.
 using UtcClock = std::function<std::chrono::nanoseconds()>;
@@ -218,7 +226,14 @@ class StudyStore {
 
   /// The participant's wrapped key; empty after withdrawal.
   [[nodiscard]] std::optional<Bytes> wrapped_key(int session) const;
-  [[nodiscard]] std::optional<Bytes> sealed_trace(int session, int trial) const;
+  /// \throws StoreError if the trace must be fetched from elsewhere, in vain
+  [[nodiscard]] std::optional<SealedTrace> sealed_trace(int session, int trial) const;
+
+  /// How many stations' files were collected into this one; 0: it is a station's own. What was
+  /// collected takes no sessions and no replacements: those are recorded at the stations.
+  [[nodiscard]] int stations() const;
+  /// A station's file chain as it stood in its own file. \param station  from 1
+  [[nodiscard]] std::vector<Event> station_chain(int station) const;
 
   /// Recomputes every hash of every chain, holds the file's chain against the sessions' heads and
   /// lengths, stored traces against their events, and the derived tables against the events. What a
@@ -235,21 +250,29 @@ class StudyStore {
   struct Impl;
   static void fill_new(const std::filesystem::path& draft, const StudyCommitment& commitment,
                        std::chrono::nanoseconds at);
+  friend class CollectedDraft;
   explicit StudyStore(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;
 };
 
 /// A participant's random key, encrypted under the study's. Destroying the row that holds it makes
 /// the participant's payloads unreadable for ever.
-[[nodiscard]] Bytes wrap_participant_key(const SecretKey& study_master, int session,
+/// \param own_session  the session's own number, see SessionRow
+[[nodiscard]] Bytes wrap_participant_key(const SecretKey& study_master, int own_session,
                                          const SecretKey& participant_key);
+/// \return nothing if the bytes are no such key, or another session's
 [[nodiscard]] std::optional<SecretKey> unwrap_participant_key(const SecretKey& study_master,
-                                                              int session, const Bytes& wrapped);
+                                                              int own_session,
+                                                              const Bytes& wrapped);
 
 /// The secret text of an event (schedule, measures), or nothing if key or bytes are wrong.
 [[nodiscard]] std::optional<std::string> unsealed(const Event& event,
                                                   const SecretKey& participant_key);
-[[nodiscard]] std::optional<Trace> unsealed_trace(int session, int trial, const Bytes& box,
+/// \param own_session  the session's own number, see SessionRow
+[[nodiscard]] std::optional<Trace> unsealed_trace(int own_session, int trial, const Bytes& box,
+                                                  const SecretKey& participant_key,
+                                                  std::size_t sample_count);
+[[nodiscard]] std::optional<Trace> unsealed_trace(const SealedTrace& sealed,
                                                   const SecretKey& participant_key,
                                                   std::size_t sample_count);
 /// TrialMeasures from the secret text of a trace_stored event.

@@ -115,7 +115,7 @@ Opened opened_by(const StudyStore& store, int session, const SecretKey& key) {
     const auto body = json::parse(event.body);
     const int trial = body.at("trial");
     const auto box = store.sealed_trace(session, trial);
-    if (box && unsealed_trace(session, trial, *box, key, body.at("samples"))) ++opened.traces;
+    if (box && unsealed_trace(*box, key, body.at("samples"))) ++opened.traces;
   }
   return opened;
 }

@@ -21,6 +21,7 @@ const std::map<std::string, std::set<std::string>> kArrows = {
     {"engine", {"core"}},
     {"device", {"core"}},
     {"protocols/store", {"core"}},
+    {"protocols/collect", {"core", "protocols/store"}},
     {"protocols/design", {"core", "engine"}},
     {"protocols/session", {"core", "engine", "device", "protocols/store", "protocols/design"}},
     {"analysis", {"core", "engine", "protocols/store", "protocols/design"}},

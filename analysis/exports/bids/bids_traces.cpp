@@ -30,8 +30,8 @@ Trace opened_trace(const DatasetSource& study, const TrialRow& row, SharedReadin
     return study.store.sealed_trace(row.session, row.trial);
   }();
   if (box) {
-    auto trace = unsealed_trace(row.session, row.trial, *box, shared.keys.at(row.session),
-                                static_cast<std::size_t>(row.samples));
+    auto trace =
+        unsealed_trace(*box, shared.keys.at(row.session), static_cast<std::size_t>(row.samples));
     if (trace) return *std::move(trace);
   }
   throw VerificationError(fmt::format(

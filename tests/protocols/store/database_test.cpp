@@ -2,9 +2,9 @@
 #include "protocols/store/store_fixture.hpp"
 #include "support/catch.hpp"
 
-#include <array>
 #include <fstream>
 #include <sstream>
+#include <vector>
 
 #include <sys/stat.h>
 
@@ -50,6 +50,14 @@ void add_a_table(SQLite::Database& database) {
 void fail(SQLite::Database& database) {
   database.exec("CREATE TABLE half(x INTEGER) STRICT");
   database.exec("no SQL");
+}
+
+constexpr int kNext = kSchemaVersion + 1;
+
+std::vector<Migration> with_one_more(Migration step) {
+  std::vector<Migration> steps(migrations().begin(), migrations().end());
+  steps.push_back(step);
+  return steps;
 }
 
 }  // namespace
@@ -159,10 +167,10 @@ TEST_CASE("what is no database of ours is refused untouched") {
 TEST_CASE("a newer database is refused untouched") {
   StoredFixture study(1);
   study.store.reset();
-  SQLite::Database(study.path.string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 3");
+  SQLite::Database(study.path.string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 4");
   for (const Access access : {Access::read_only, Access::read_write}) {
     REQUIRE(contains(refusal_untouched(study.path, access),
-                     "newer Touchtrial (schema 3, this one knows 2)"));
+                     "newer Touchtrial (schema 4, this one knows 3)"));
   }
 }
 
@@ -217,15 +225,15 @@ TEST_CASE("an older database is brought forward after a backup") {
   StoredFixture study(2);
   const auto trials = study.store->trials();
   study.store.reset();
-  const std::array<Migration, 3> steps = {migrations()[0], migrations()[1], add_a_table};
+  const std::vector<Migration> steps = with_one_more(add_a_table);
   {
-    const Database database = Database::open(study.path, Database::Mode::read_write, 3);
+    const Database database = Database::open(study.path, Database::Mode::read_write, kNext);
     migrate(database, steps);
-    REQUIRE(schema_version(database) == 3);
+    REQUIRE(schema_version(database) == kNext);
     migrate(database, steps);  // nothing is left to do
   }
-  const auto backup = backup_path(study.path, 2);
-  REQUIRE(backup.string() == study.path.string() + ".v2.backup");
+  const auto backup = backup_path(study.path, kSchemaVersion);
+  REQUIRE(backup.string() == study.path.string() + ".v3.backup");
   const StudyStore before = StudyStore::open(backup, Access::read_only);
   REQUIRE(before.trials() == trials);
   REQUIRE_FALSE(before.first_fault());
@@ -239,20 +247,20 @@ TEST_CASE("an older database is brought forward after a backup") {
 TEST_CASE("a migration that fails leaves the database as it was") {
   StoredFixture study(1);
   study.store.reset();
-  const std::array<Migration, 3> steps = {migrations()[0], migrations()[1], fail};
+  const std::vector<Migration> steps = with_one_more(fail);
   {
-    const Database database = Database::open(study.path, Database::Mode::read_write, 3);
+    const Database database = Database::open(study.path, Database::Mode::read_write, kNext);
     REQUIRE_THROWS_AS(migrate(database, steps), StoreError);
-    REQUIRE(schema_version(database) == 2);
+    REQUIRE(schema_version(database) == kSchemaVersion);
     REQUIRE_FALSE(database.connection().tableExists("half"));
     // The same again: the backup that stands there is the one that would be made.
     REQUIRE_FALSE(
-        contains(refusal_of([&] { migrate(database, steps); }), ".v2.backup exists already"));
+        contains(refusal_of([&] { migrate(database, steps); }), ".v3.backup exists already"));
   }
   StudyStore::open(study.path, Access::read_write).exclude(1, kUtc, "changes the file");
   {
-    const Database database = Database::open(study.path, Database::Mode::read_write, 3);
-    REQUIRE(contains(refusal_of([&] { migrate(database, steps); }), ".v2.backup exists already"));
+    const Database database = Database::open(study.path, Database::Mode::read_write, kNext);
+    REQUIRE(contains(refusal_of([&] { migrate(database, steps); }), ".v3.backup exists already"));
   }
   REQUIRE_FALSE(StudyStore::open(study.path, Access::read_only).first_fault());
 }

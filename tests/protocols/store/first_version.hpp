@@ -92,7 +92,10 @@ inline void write_first_version(const std::filesystem::path& path,
   old.exec("PRAGMA journal_mode = WAL");
   old.exec(kFirstSchema);
   old.exec("ATTACH DATABASE '" + study.string() + "' AS now");
-  for (const char* const table : {"events", "traces", "participant_keys"}) {
+  old.exec(
+      "INSERT INTO main.events SELECT session, sequence, kind, at_ns, body, sealed, previous, hash "
+      "FROM now.events");
+  for (const char* const table : {"traces", "participant_keys"}) {
     old.exec(std::string("INSERT INTO main.") + table + " SELECT * FROM now." + table);
   }
   old.exec(

@@ -125,5 +125,5 @@ TEST_CASE("a sink takes a trace with its event and with no other") {
   REQUIRE(contains(refusal_of([&] { sink->accept(session.events[5], session.traces[1]); }),
                    "the trace of trial 1 is missing"));
   sink->accept(session.events[5], session.traces[0]);
-  REQUIRE(study.store->sealed_trace(1, 1) == session.traces[0].box);
+  REQUIRE(study.store->sealed_trace(1, 1) == session.traces[0]);
 }

@@ -59,7 +59,7 @@ TEST_CASE("what was added is there after the database is opened again") {
     REQUIRE(stored[i].hash == second.events[i].hash);
     REQUIRE(event_hash(stored[i]) == second.events[i].hash);
   }
-  REQUIRE(store.sealed_trace(2, 3) == second.traces[2].box);
+  REQUIRE(store.sealed_trace(2, 3) == second.traces[2]);
   REQUIRE_FALSE(store.sealed_trace(2, 4));
   REQUIRE(store.wrapped_key(2) == wrapped_key_of(2));
   REQUIRE_FALSE(store.wrapped_key(3));
@@ -78,7 +78,10 @@ TEST_CASE("sessions and trials are derived from the events") {
                                     .pilot = false,
                                     .excluded = false,
                                     .withdrawn = false,
-                                    .device = "simulated"});
+                                    .device = "simulated",
+                                    .replaced_by = {},
+                                    .own_session = 2,
+                                    .station = 0});
   const auto trials = study.store->trials();
   REQUIRE(trials.size() == 6);
   const TrialRow second{.session = 1,

@@ -1,0 +1,61 @@
+/// \file Several stations' file chains made one: a function of what they hold and of nothing else,
+/// so that whoever has the stations' chains can make the collected one again and compare.
+/// Source: docs/data-dictionary.md, "Collected studies"; docs/decisions/0041.
+#pragma once
+
+#include "protocols/store/event.hpp"
+#include "protocols/store/study_store.hpp"
+
+#include <compare>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+
+/// A station's file chain as it stands in its own file, and what messages call the station.
+struct StationChain {
+  std::string name;
+  std::vector<Event> events;
+};
+
+/// Where a session of a collected study comes from.
+struct SessionPlace {
+  int station = 0;  ///< from 1
+  int own_session = 0;
+
+  friend auto operator<=>(const SessionPlace&, const SessionPlace&) = default;
+};
+
+/// The chain that stations' chains come to.
+struct CollectedChain {
+  std::vector<Event> events;           ///< of session 0, hashed
+  std::vector<SessionPlace> sessions;  ///< by number, from 1; those that have ended
+  std::vector<SessionPlace> left_out;  ///< those that have not
+};
+
+/// What tells stations apart: the hash of the event with which the first session was opened, which
+/// is the second of the chain. Nothing: no session was ever opened there.
+[[nodiscard]] std::optional<Digest> station_identity(std::span<const Event> chain);
+
+/// Orders stations by their first sessions' openings, and where those are at one time, by identity.
+/// \pre all have an identity
+void sort_stations(std::vector<StationChain>& stations);
+
+/// The collected chain. It begins with the commitment of the first station. Then come the events of
+/// the stations about sessions that have ended, each station's in their order: of those that are
+/// next, the one at the earliest time, and in simulated studies, whose times mean nothing, the one
+/// about the smallest enrolment number; a session waits for the replacement of whoever has its
+/// participant id or enrolment number. Sessions are numbered as they are opened here. At last, if
+/// it is so at all stations, that the study is closed, and that it is unblinded.
+/// \param stations  in the order of sort_stations, each chain valid by itself (FileChain)
+/// \throws StoreError if they are not of one study, or a participant id or enrolment number is
+///   taken in two of them by sessions that nobody replaced
+/// \throws EventFault if an event's body is no such
+[[nodiscard]] CollectedChain collected_chain(std::span<const StationChain> stations);
+
+/// What `state` of a chain (the events of session 0) is: see StudyStore::state.
+[[nodiscard]] StudyState state_of_chain(std::span<const Event> chain);
+
+}  // namespace touchtrial
