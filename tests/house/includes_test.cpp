@@ -30,11 +30,11 @@ const std::map<std::string, std::set<std::string>> kArrows = {
       "analysis"}},
     {"stimuli", {"core", "engine"}},
     {"app",
-     {"core", "engine", "device", "protocols/store", "protocols/design", "protocols/session",
-      "analysis", "analysis/planning", "stimuli"}},
+     {"core", "engine", "device", "protocols/store", "protocols/collect", "protocols/design",
+      "protocols/session", "analysis", "analysis/planning", "stimuli"}},
     {"bench",
-     {"core", "engine", "device", "protocols/store", "protocols/design", "protocols/session",
-      "analysis", "analysis/planning", "stimuli", "app"}},
+     {"core", "engine", "device", "protocols/store", "protocols/collect", "protocols/design",
+      "protocols/session", "analysis", "analysis/planning", "stimuli", "app"}},
 };
 
 /// Layers that look inside the others, as tests do, and share the tests' slow references.
