@@ -67,7 +67,8 @@ struct Prescription {
   std::string on_timeout;
   std::string order;
   int repeats = 0;
-  std::string sight;  ///< "curtain" or "blindfold"
+  int method_orders = 1;  ///< that participants take in turn, by their enrolment numbers
+  std::string sight;      ///< "curtain" or "blindfold"
   bool masking_wanted = true;
   double masking_dbfs = 0.0;
 };

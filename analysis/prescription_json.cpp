@@ -1,6 +1,7 @@
 /// What a study prescribes, from its configuration in clear.
 #include "analysis/collection.hpp"
 #include "core/errors.hpp"
+#include "protocols/design/schedule.hpp"
 #include "protocols/design/session_plan.hpp"
 
 #include <nlohmann/json.hpp>
@@ -17,6 +18,15 @@ void read_session(const json& session, Prescription& prescription) {
   prescription.masking_dbfs = session.at("masking").at("level_dbfs").get<double>();
 }
 
+/// Only comparisons present several methods, and only in blocks of their own do these have an
+/// order.
+int method_orders_of(const json& configuration) {
+  const bool compares = configuration.value("protocol", "") == "comparison";
+  const json trials = configuration.at("trials");
+  if (!compares || trials.value("blocks", "by-method") != "by-method") return 1;
+  return williams_rows(static_cast<int>(configuration.at("methods").size()));
+}
+
 Prescription prescription_of(const json& configuration) {
   const MaskingPlan usual;
   Prescription prescription;
@@ -28,6 +38,7 @@ Prescription prescription_of(const json& configuration) {
   prescription.on_timeout = trials.at("on_timeout").get<std::string>();
   prescription.order = trials.at("order").get<std::string>();
   prescription.repeats = trials.at("repeats").get<int>();
+  prescription.method_orders = method_orders_of(configuration);
   if (configuration.contains("session")) read_session(configuration["session"], prescription);
   return prescription;
 }

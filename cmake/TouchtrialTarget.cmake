@@ -78,11 +78,12 @@ function(touchtrial_joined variable batch name)
   set(${variable} ${units} PARENT_SCOPE)
 endfunction()
 
-# touchtrial_test(NAME [EXCEPT folders...] [LIBRARIES ...])
+# touchtrial_test(NAME [WHOLE] [JOINED] [EXCEPT folders...] [LIBRARIES ...])
 # One test program a folder, of every *_test.cpp file in and below it, except those of folders that
-# have a program of their own; each test case is a CTest test.
+# have a program of their own; each test case is a CTest test, or with WHOLE the program is, whose
+# cases then share what is dear to make.
 function(touchtrial_test name)
-  cmake_parse_arguments(ARG "JOINED" "" "EXCEPT;LIBRARIES" ${ARGN})
+  cmake_parse_arguments(ARG "JOINED;WHOLE" "" "EXCEPT;LIBRARIES" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*_test.cpp")
   foreach(folder ${ARG_EXCEPT})
     list(FILTER sources EXCLUDE REGEX "^${CMAKE_CURRENT_SOURCE_DIR}/${folder}/")
@@ -100,5 +101,10 @@ function(touchtrial_test name)
   endif()
   # Optimising the test framework costs more time than the tests then save.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:${TOUCHTRIAL_UNHURRIED}>)
+  if(ARG_WHOLE)
+    add_test(NAME ${name} COMMAND ${name})
+    set_tests_properties(${name} PROPERTIES TIMEOUT 600)
+    return()
+  endif()
   catch_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES TIMEOUT 600)
 endfunction()

@@ -110,11 +110,16 @@ std::vector<Presentation> restarted_block(const Study& study, int enrolment, int
   return again;
 }
 
+int williams_rows(int methods) {
+  if (methods < 1) throw std::invalid_argument("williams_rows: needs at least one method");
+  return methods % 2 == 1 ? 2 * methods : methods;
+}
+
 std::vector<int> williams_row(int methods, int enrolment) {
   if (methods < 1) throw std::invalid_argument("williams_row: needs at least one method");
   if (enrolment < 0) throw std::invalid_argument("williams_row: enrolment cannot be negative");
   const bool odd = methods % 2 == 1;
-  const int row = enrolment % (odd ? 2 * methods : methods);
+  const int row = enrolment % williams_rows(methods);
   std::vector<int> order;
   for (int i = 0; i < methods; ++i) {
     // 0, 1, m-1, 2, m-2, ..: the differences of neighbours are all different modulo m.

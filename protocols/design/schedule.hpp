@@ -59,6 +59,9 @@ struct Schedule {
 /// images.
 [[nodiscard]] std::vector<int> williams_row(int methods, int enrolment);
 
+/// How many different rows there are. \param methods  >= 1
+[[nodiscard]] int williams_rows(int methods);
+
 /// Names this rule and its version; the seal commits to it.
 [[nodiscard]] std::string schedule_rule(const Study& study);
 

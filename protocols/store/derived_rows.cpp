@@ -1,6 +1,7 @@
 #include "protocols/store/derived_rows.hpp"
 
 #include "protocols/store/event_fault.hpp"
+#include "protocols/store/state_names.hpp"
 
 #include <algorithm>
 #include <array>
@@ -16,11 +17,6 @@ namespace {
 
 constexpr std::int64_t kLowest = std::numeric_limits<std::int64_t>::min();
 constexpr std::int64_t kHighest = std::numeric_limits<std::int64_t>::max();
-
-/// In the order of the enumerators.
-constexpr std::array<std::string_view, 3> kSessionStates = {"open", "completed", "stopped"};
-constexpr std::array<std::string_view, 5> kTrialStates = {"presented", "answered", "timed-out",
-                                                          "interrupted", "voided"};
 
 /// A row whose values are taken only if an event can have given rise to them.
 class DerivedRow {

@@ -3,13 +3,12 @@
 #pragma once
 
 #include "protocols/store/database.hpp"
+#include "protocols/store/tables.hpp"
 
 #include <filesystem>
 #include <span>
 
 namespace touchtrial {
-
-inline constexpr int kSchemaVersion = 3;
 
 /// One step forward; runs inside a transaction.
 using Migration = void (*)(SQLite::Database&);

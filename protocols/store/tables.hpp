@@ -8,6 +8,9 @@
 
 namespace touchtrial {
 
+/// Counts every change of the tables, in files and on servers.
+inline constexpr int kSchemaVersion = 3;
+
 /// integer: 64 bits, signed. real: 64 bits. text: UTF-8. blob: bytes.
 enum class ColumnType { integer, real, text, blob };
 

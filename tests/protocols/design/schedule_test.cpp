@@ -286,6 +286,9 @@ TEST_CASE("a Williams design has each method after each other equally often") {
 
 TEST_CASE("williams_row follows the published square of four") {
   CHECK(williams_row(4, 4) == std::vector<int>{0, 1, 3, 2});
+  CHECK(williams_rows(4) == 4);
+  CHECK(williams_rows(3) == 6);
+  CHECK_THROWS_AS(williams_rows(0), std::invalid_argument);
   CHECK(williams_row(4, 1) == std::vector<int>{1, 2, 0, 3});
   CHECK(williams_row(4, 5) == williams_row(4, 1));
   CHECK(williams_row(3, 3) == std::vector<int>{2, 1, 0});

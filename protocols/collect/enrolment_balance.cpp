@@ -1,0 +1,79 @@
+#include "protocols/collect/enrolment_balance.hpp"
+
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+
+namespace touchtrial {
+namespace {
+
+template <typename Counts, typename CountOf>
+bool uneven(const Counts& counts, CountOf count_of) {
+  const auto less = [&](const auto& a, const auto& b) { return count_of(a) < count_of(b); };
+  const auto [least, most] = std::minmax_element(counts.begin(), counts.end(), less);
+  return least != counts.end() && count_of(*most) - count_of(*least) > 1;
+}
+
+void add_gaps(EnrolmentBalance& balance, const std::set<int>& taken) {
+  for (int number = 1; number < balance.highest; ++number) {
+    if (taken.contains(number)) continue;
+    ++balance.gap_count;
+    if (balance.gaps.size() < kMostGaps) balance.gaps.push_back(number);
+  }
+}
+
+std::string listed_stations(const EnrolmentBalance& balance) {
+  std::string text;
+  for (const auto& [station, count] : balance.stations) {
+    text += (text.empty() ? "station " : ", station ") + std::to_string(station) + " has " +
+            std::to_string(count);
+  }
+  return text;
+}
+
+std::string listed(const std::vector<int>& numbers) {
+  std::string text;
+  for (const int number : numbers) text += (text.empty() ? "" : ", ") + std::to_string(number);
+  return text;
+}
+
+std::string gaps_line(const EnrolmentBalance& balance) {
+  std::string line =
+      "enrolment numbers without a complete session that counts: " + listed(balance.gaps);
+  const std::size_t more = static_cast<std::size_t>(balance.gap_count) - balance.gaps.size();
+  return more == 0 ? line : line + " and " + std::to_string(more) + " more";
+}
+
+}  // namespace
+
+EnrolmentBalance enrolment_balance(std::span<const EnrolledSession> sessions, int method_rows) {
+  if (method_rows < 1) throw std::invalid_argument("enrolment_balance: no rows");
+  EnrolmentBalance balance;
+  balance.rows.resize(static_cast<std::size_t>(method_rows));
+  std::set<int> taken;
+  for (const EnrolledSession& session : sessions) {
+    if (session.enrolment < 1) throw std::invalid_argument("enrolment_balance: numbers start at 1");
+    balance.highest = std::max(balance.highest, session.enrolment);
+    int& at_station = balance.stations[session.station];
+    if (!session.counts || session.state != SessionState::completed) continue;
+    ++at_station;
+    ++balance.rows[static_cast<std::size_t>(session.enrolment % method_rows)];
+    taken.insert(session.enrolment);
+  }
+  add_gaps(balance, taken);
+  return balance;
+}
+
+std::vector<std::string> imbalances(const EnrolmentBalance& balance) {
+  std::vector<std::string> lines;
+  if (uneven(balance.stations, [](const auto& entry) { return entry.second; })) {
+    lines.push_back("complete sessions differ over the stations: " + listed_stations(balance));
+  }
+  if (uneven(balance.rows, [](int count) { return count; })) {
+    lines.push_back("orders of methods were not used equally often: " + listed(balance.rows));
+  }
+  if (balance.gap_count > 0) lines.push_back(gaps_line(balance));
+  return lines;
+}
+
+}  // namespace touchtrial

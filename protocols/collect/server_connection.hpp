@@ -1,0 +1,108 @@
+/// \file One connection to a PostgreSQL server, and its errors. Private to protocols/collect: the
+/// only header that shows libpqxx.
+#pragma once
+
+#include "core/bytes.hpp"
+#include "core/errors.hpp"
+#include "protocols/collect/server_address.hpp"
+#include "protocols/store/event_fault.hpp"
+
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include <pqxx/pqxx>
+
+namespace touchtrial {
+
+/// The connection broke or the server went away: what was not committed is not there, and what was
+/// being committed may be. Trying again on a new connection may help.
+class LostConnection : public StoreError {
+ public:
+  using StoreError::StoreError;
+};
+
+/// Somebody else was at the same rows: nothing was changed, and trying again helps.
+class Contention : public StoreError {
+ public:
+  using StoreError::StoreError;
+};
+
+/// A statement's bytes, sent as they are.
+[[nodiscard]] inline pqxx::binarystring binary(ByteView bytes) {
+  return {bytes.data(), bytes.size()};
+}
+[[nodiscard]] Bytes bytes_of(const pqxx::field& field);
+
+/// Not to be shared between threads.
+class ServerConnection {
+ public:
+  /// \throws LostConnection if the server cannot be reached or is starting up
+  /// \throws StoreError if it is there and refuses (password, database, version, encoding)
+  explicit ServerConnection(const ServerAddress& address);
+
+  [[nodiscard]] const ServerAddress& address() const noexcept { return address_; }
+
+  /// Calls `work` with a transaction, which is committed unless `work` throws.
+  template <typename Work>
+  auto change(Work&& work) {
+    return translated([&] {
+      pqxx::work transaction(connection_);
+      // A program that hangs must not keep others waiting for ever.
+      transaction.exec("SET LOCAL idle_in_transaction_session_timeout = '5min'");
+      if constexpr (std::is_void_v<decltype(work(transaction))>) {
+        work(transaction);
+        transaction.commit();
+      } else {
+        auto result = work(transaction);
+        transaction.commit();
+        return result;
+      }
+    });
+  }
+
+  /// Calls `work` with a transaction that sees one moment and changes nothing.
+  template <typename Work>
+  auto look(Work&& work) {
+    return translated([&] {
+      const std::unique_ptr<pqxx::work> transaction = begin_look();
+      return work(*transaction);
+    });
+  }
+
+  /// A transaction that sees this moment for as long as it lives, and changes nothing. Work with it
+  /// inside `translated`; it must not outlive the connection.
+  [[nodiscard]] std::unique_ptr<pqxx::work> begin_look();
+
+  /// \throws StoreError "<address>: <text>"
+  [[noreturn]] void refuse(const std::string& text) const;
+
+  /// Calls `work`; errors of libpqxx, and of rows that cannot be believed, come out as ours, naming
+  /// the address.
+  template <typename Work>
+  decltype(auto) translated(Work&& work) const {
+    try {
+      return work();
+    } catch (const EventFault& fault) {
+      refuse_damage(fault);
+    } catch (const pqxx::failure& error) {
+      translate(error);
+    } catch (const pqxx::conversion_error& error) {
+      refuse_garbage(error.what());
+    } catch (const pqxx::range_error& error) {
+      refuse_garbage(error.what());
+    }
+  }
+
+ private:
+  [[noreturn]] void translate(const pqxx::failure& error) const;
+  [[noreturn]] void refuse_damage(const EventFault& fault) const;
+  [[noreturn]] void refuse_garbage(const std::string& what) const;
+  void check_server();
+
+  ServerAddress address_;
+  pqxx::connection connection_;
+};
+
+}  // namespace touchtrial

@@ -1,0 +1,269 @@
+#include "protocols/collect/server_rows.hpp"
+
+#include "protocols/collect/server_array.hpp"
+#include "protocols/store/event_fault.hpp"
+#include "protocols/store/state_names.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+#include <utility>
+
+namespace touchtrial {
+namespace {
+
+/// As much as goes to or comes from the server at a time, roughly, in bytes.
+constexpr std::size_t kBatch = 8U << 20U;
+/// No event and no trace of a session is nearly as large; what is was not written by us.
+constexpr std::int64_t kLargestEvent = 64 << 20;
+constexpr std::int64_t kLargestTrace = 512 << 20;
+
+/// Columns of rows of events, on their way.
+class EventBatch {
+ public:
+  EventBatch(pqxx::work& work, int session) : work_(work), session_(session) {}
+
+  void add(const Event& event) {
+    sequences_.add(event.sequence);
+    kinds_.add(name_of(event.kind));
+    times_.add(event.at.count());
+    bodies_.add(std::string_view(event.body));
+    sealed_.add(ByteView(event.sealed));
+    previous_.add(ByteView(event.previous));
+    hashes_.add(ByteView(event.hash));
+    own_.add(event.own_session());
+    if (bodies_.size() + sealed_.size() > kBatch) send();
+  }
+
+  void send() {
+    if (sequences_.size() == 0) return;
+    work_.exec_params0(
+        "INSERT INTO events(session, sequence, kind, at_ns, body, sealed, previous, hash, "
+        "own_session) SELECT $1::bigint, e.* FROM unnest($2::bigint[], $3::text[], $4::bigint[], "
+        "$5::text[], $6::bytea[], $7::bytea[], $8::bytea[], $9::bigint[]) AS e",
+        session_, sequences_.text(), kinds_.text(), times_.text(), bodies_.text(), sealed_.text(),
+        previous_.text(), hashes_.text(), own_.text());
+    sequences_ = kinds_ = times_ = bodies_ = sealed_ = previous_ = hashes_ = own_ = {};
+  }
+
+ private:
+  pqxx::work& work_;
+  int session_;
+  ServerArray sequences_, kinds_, times_, bodies_, sealed_, previous_, hashes_, own_;
+};
+
+/// Traces on their way, one after the other in one parameter that is sent as it is: as text they
+/// would be twice as long.
+class TraceBatch {
+ public:
+  TraceBatch(pqxx::work& work, int session) : work_(work), session_(session) {}
+
+  void add(int trial, const Bytes& box) {
+    if (!boxes_.empty() && boxes_.size() + box.size() > kBatch) send();
+    trials_.add(trial);
+    starts_.add(boxes_.size() + 1);
+    lengths_.add(box.size());
+    boxes_.insert(boxes_.end(), box.begin(), box.end());
+  }
+
+  void send() {
+    if (trials_.size() == 0) return;
+    work_.exec_params0(
+        "INSERT INTO traces(session, trial, box) SELECT $1::bigint, t.trial, "
+        "substring($2::bytea FROM t.start FOR t.length) "
+        "FROM unnest($3::bigint[], $4::integer[], $5::integer[]) AS t(trial, start, length)",
+        session_, binary(boxes_), trials_.text(), starts_.text(), lengths_.text());
+    boxes_.clear();
+    trials_ = starts_ = lengths_ = {};
+  }
+
+ private:
+  pqxx::work& work_;
+  int session_;
+  Bytes boxes_;
+  ServerArray trials_, starts_, lengths_;
+};
+
+std::optional<std::int64_t> count_of(const std::optional<std::chrono::nanoseconds>& time) {
+  if (!time) return std::nullopt;
+  return time->count();
+}
+
+void insert_trial_rows(pqxx::work& work, int session, const DerivedRows& rows) {
+  ServerArray trials, blocks, states, presented, contacts, valid, overruns, samples, rates,
+      explorations;
+  for (const auto& [id, row] : rows.trials) {
+    trials.add(row.trial);
+    blocks.add(row.block);
+    states.add(name_of(row.state));
+    presented.add(row.presented_at.count());
+    contacts.add(count_of(row.contact_at));
+    valid.add(row.valid);
+    overruns.add(row.overruns);
+    samples.add(row.samples);
+    rates.add(row.rate_hz);
+    explorations.add(row.explorations);
+  }
+  work.exec_params0(
+      "INSERT INTO trials(session, trial, block, state, presented_at_ns, contact_at_ns, valid, "
+      "overruns, samples, rate_hz, explorations) SELECT $1::bigint, t.* FROM unnest($2::bigint[], "
+      "$3::bigint[], $4::text[], $5::bigint[], $6::bigint[], $7::bigint[], $8::bigint[], "
+      "$9::bigint[], $10::double precision[], $11::bigint[]) AS t",
+      session, trials.text(), blocks.text(), states.text(), presented.text(), contacts.text(),
+      valid.text(), overruns.text(), samples.text(), rates.text(), explorations.text());
+}
+
+void insert_response_rows(pqxx::work& work, int session, const DerivedRows& rows) {
+  ServerArray trials, times, positions, firsts, confidences;
+  for (const auto& [id, row] : rows.trials) {
+    if (!row.answered_at || !row.position) continue;
+    trials.add(row.trial);
+    times.add(row.answered_at->count());
+    positions.add(*row.position);
+    firsts.add(row.first_position);
+    confidences.add(row.confidence);
+  }
+  work.exec_params0(
+      "INSERT INTO responses(session, trial, answered_at_ns, position, first_position, confidence) "
+      "SELECT $1::bigint, r.* FROM unnest($2::bigint[], $3::bigint[], $4::bigint[], $5::bigint[], "
+      "$6::bigint[]) AS r",
+      session, trials.text(), times.text(), positions.text(), firsts.text(), confidences.text());
+}
+
+Digest digest_of(const pqxx::field& field, int session, std::int64_t sequence) {
+  const Bytes bytes = bytes_of(field);
+  Digest digest{};
+  if (bytes.size() != digest.size()) {
+    throw EventFault(session, sequence, "a hash of the event is not 32 bytes long");
+  }
+  std::copy(bytes.begin(), bytes.end(), digest.begin());
+  return digest;
+}
+
+/// \param row  sequence, kind, at_ns, body, sealed, previous, hash, own_session
+Event event_of(const pqxx::row& row, int session) {
+  const auto sequence = row[0].as<std::int64_t>();
+  const auto name = row[1].as<std::string>();
+  const std::optional<EventKind> kind = event_kind_from_name(name);
+  if (!kind) throw EventFault(session, sequence, "unknown kind of event '" + name + "'");
+  const auto own = row[7].is_null() ? session : row[7].as<std::int64_t>();
+  if (own < 0 || own > std::numeric_limits<int>::max() || (own == 0) != (session < 0)) {
+    throw EventFault(session, sequence, "no session of a station has this number");
+  }
+  return {.session = static_cast<int>(own),
+          .sequence = sequence,
+          .kind = *kind,
+          .at = std::chrono::nanoseconds(row[2].as<std::int64_t>()),
+          .body = row[3].as<std::string>(),
+          .sealed = bytes_of(row[4]),
+          .previous = digest_of(row[5], session, sequence),
+          .hash = digest_of(row[6], session, sequence)};
+}
+
+void refuse_large_events(pqxx::work& work, int session) {
+  const pqxx::result found = work.exec_params(
+      "SELECT sequence FROM events WHERE session = $1 AND octet_length(kind) + "
+      "octet_length(body) + octet_length(sealed) + octet_length(previous) + octet_length(hash) > "
+      "$2 "
+      "ORDER BY sequence LIMIT 1",
+      session, kLargestEvent);
+  if (found.empty()) return;
+  throw EventFault(session, found[0][0].as<std::int64_t>(), "the event is absurdly large");
+}
+
+}  // namespace
+
+void insert_events(pqxx::work& work, int session, std::span<const Event> events) {
+  EventBatch batch(work, session);
+  for (const Event& event : events) batch.add(event);
+  batch.send();
+}
+
+void insert_traces(pqxx::work& work, int session, StationFile& station, int own_session) {
+  TraceBatch batch(work, session);
+  station.for_each_trace(own_session, [&](int trial, const Bytes& box) { batch.add(trial, box); });
+  batch.send();
+}
+
+void insert_key(pqxx::work& work, int session, const Bytes& wrapped) {
+  work.exec_params0("INSERT INTO participant_keys(session, wrapped) VALUES($1, $2)", session,
+                    binary(wrapped));
+}
+
+void insert_session(pqxx::work& work, const SessionRow& row) {
+  work.exec_params0(
+      "INSERT INTO sessions(session, participant, enrolment, state, simulated, pilot, excluded, "
+      "withdrawn, device, replaced_by, own_session, station) "
+      "VALUES($1, $2, $3, $4, $5, $6, $7, $8, $9, nullif($10, ''), $11, $12)",
+      row.session, row.participant, row.enrolment, std::string(name_of(row.state)),
+      int{row.simulated}, int{row.pilot}, int{row.excluded}, int{row.withdrawn}, row.device,
+      row.replaced_by, row.own_session, row.station);
+}
+
+void insert_trials(pqxx::work& work, int session, const DerivedRows& rows) {
+  insert_trial_rows(work, session, rows);
+  insert_response_rows(work, session, rows);
+}
+
+std::vector<Event> read_events(pqxx::work& work, int session, std::int64_t first) {
+  refuse_large_events(work, session);
+  const pqxx::result rows = work.exec_params(
+      "SELECT sequence, kind, at_ns, body, sealed, previous, hash, own_session FROM events "
+      "WHERE session = $1 AND sequence >= $2 ORDER BY sequence",
+      session, first);
+  std::vector<Event> events;
+  events.reserve(rows.size());
+  for (const pqxx::row& row : rows) events.push_back(event_of(row, session));
+  return events;
+}
+
+std::optional<Bytes> read_key(pqxx::work& work, int session) {
+  const pqxx::result rows = work.exec_params(
+      "SELECT wrapped FROM participant_keys WHERE session = $1 AND octet_length(wrapped) < 4096",
+      session);
+  if (rows.empty()) return std::nullopt;
+  return bytes_of(rows[0][0]);
+}
+
+std::optional<Bytes> read_trace(pqxx::work& work, int session, int trial) {
+  const pqxx::result rows = work.exec_params(
+      "SELECT box FROM traces WHERE session = $1 AND trial = $2 AND octet_length(box) <= $3",
+      session, trial, kLargestTrace);
+  if (rows.empty()) return std::nullopt;
+  return bytes_of(rows[0][0]);
+}
+
+void for_each_trace(pqxx::work& work, int session,
+                    const std::function<void(int, const Bytes&)>& visit) {
+  const pqxx::result sizes = work.exec_params(
+      "SELECT trial, octet_length(box)::bigint FROM traces WHERE session = $1 ORDER BY trial",
+      session);
+  for (std::size_t first = 0; first < sizes.size();) {
+    std::int64_t bytes = 0;
+    std::size_t end = first;
+    for (; end < sizes.size(); ++end) {
+      const auto size = sizes[static_cast<int>(end)][1].as<std::int64_t>();
+      if (size > kLargestTrace) throw EventFault(session, kNoEvent, "a trace is absurdly large");
+      if (end > first && bytes + size > static_cast<std::int64_t>(kBatch)) break;
+      bytes += size;
+    }
+    const pqxx::result boxes = work.exec_params(
+        "SELECT trial, box FROM traces WHERE session = $1 AND trial BETWEEN $2 AND $3 "
+        "ORDER BY trial",
+        session, sizes[static_cast<int>(first)][0].as<std::int64_t>(),
+        sizes[static_cast<int>(end - 1)][0].as<std::int64_t>());
+    for (const pqxx::row& row : boxes) visit(row[0].as<int>(), bytes_of(row[1]));
+    first = end;
+  }
+}
+
+std::map<std::int64_t, Bytes> trace_digests(pqxx::work& work, int session) {
+  std::map<std::int64_t, Bytes> digests;
+  for (const pqxx::row& row :
+       work.exec_params("SELECT trial, sha256(box) FROM traces WHERE session = $1", session)) {
+    digests[row[0].as<std::int64_t>()] = bytes_of(row[1]);
+  }
+  return digests;
+}
+
+}  // namespace touchtrial

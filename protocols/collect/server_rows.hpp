@@ -1,0 +1,42 @@
+/// \file Events, traces, keys and derived rows in a server's tables. Private to protocols/collect.
+/// Sessions have two numbers: the one on the server, and their own, which hashes are bound to.
+/// Statements are the same for every call; whatever varies is a parameter.
+#pragma once
+
+#include "protocols/collect/server_connection.hpp"
+#include "protocols/collect/station_file.hpp"
+#include "protocols/store/event.hpp"
+#include "protocols/store/fold.hpp"
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace touchtrial {
+
+/// \param session  the number on the server; -1, -2, ... for a station's file chain
+void insert_events(pqxx::work& work, int session, std::span<const Event> events);
+/// All of a session's traces, a few megabytes at a time.
+void insert_traces(pqxx::work& work, int session, StationFile& station, int own_session);
+void insert_key(pqxx::work& work, int session, const Bytes& wrapped);
+/// Its number on the server is row.session.
+void insert_session(pqxx::work& work, const SessionRow& row);
+/// Rows of trials and responses. \param rows  by own numbers
+void insert_trials(pqxx::work& work, int session, const DerivedRows& rows);
+
+/// Events as the station wrote them: with the session's own number, 0 for a file chain.
+/// \param first  sequence from which on
+/// \throws EventFault, by the number on the server, if a row is no event or absurdly large
+[[nodiscard]] std::vector<Event> read_events(pqxx::work& work, int session, std::int64_t first = 0);
+[[nodiscard]] std::optional<Bytes> read_key(pqxx::work& work, int session);
+[[nodiscard]] std::optional<Bytes> read_trace(pqxx::work& work, int session, int trial);
+/// By trial, a few megabytes at a time. \throws EventFault if a trace is absurdly large
+void for_each_trace(pqxx::work& work, int session,
+                    const std::function<void(int, const Bytes&)>& visit);
+/// SHA-256 of every trace of a session, by trial, as the server has it.
+[[nodiscard]] std::map<std::int64_t, Bytes> trace_digests(pqxx::work& work, int session);
+
+}  // namespace touchtrial

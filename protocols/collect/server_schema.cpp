@@ -1,0 +1,161 @@
+#include "protocols/collect/server_schema.hpp"
+
+#include "protocols/store/tables.hpp"
+
+#include <array>
+
+namespace touchtrial {
+namespace {
+
+// A station's name is that of its file when it first came, for messages. Session numbers come from
+// a sequence, so that two stations can push at once; gaps in them mean nothing.
+constexpr const char* kServerAlone = R"sql(
+CREATE TABLE touchtrial_schema(
+  one     BOOLEAN PRIMARY KEY DEFAULT TRUE CHECK(one),
+  version INTEGER NOT NULL
+);
+CREATE TABLE stations(
+  station  INTEGER PRIMARY KEY,
+  identity BYTEA NOT NULL UNIQUE,
+  name     TEXT NOT NULL
+);
+CREATE SEQUENCE session_numbers AS INTEGER;
+CREATE FUNCTION touchtrial_append_only() RETURNS trigger LANGUAGE plpgsql AS
+  $$ BEGIN RAISE EXCEPTION '% are append-only', TG_TABLE_NAME; END $$;
+)sql";
+
+std::string name_of(ColumnType type) {
+  switch (type) {
+    case ColumnType::integer:
+      return "BIGINT";
+    case ColumnType::real:
+      return "DOUBLE PRECISION";
+    case ColumnType::text:
+      return "TEXT";
+    case ColumnType::blob:
+      return "BYTEA";
+  }
+  return {};
+}
+
+std::string listed(std::span<const std::string_view> names) {
+  std::string text;
+  for (const std::string_view name : names) text += (text.empty() ? "" : ", ") + std::string(name);
+  return text;
+}
+
+std::string column_sql(const TableColumn& column) {
+  std::string sql = std::string(column.name) + " " + name_of(column.type);
+  if (!column.nullable) sql += " NOT NULL";
+  if (!column.default_value.empty()) sql += " DEFAULT " + std::string(column.default_value);
+  return sql;
+}
+
+std::string table_sql(const TableDefinition& table) {
+  const std::string name(table.name);
+  std::string sql = "CREATE TABLE " + name + "(";
+  for (const TableColumn& column : table.columns) sql += column_sql(column) + ", ";
+  for (const TableReference& reference : table.references) {
+    sql += "FOREIGN KEY(" + listed(reference.columns) + ") REFERENCES " +
+           std::string(reference.table) + "(" + listed(reference.columns) + "), ";
+  }
+  sql += "PRIMARY KEY(" + listed(table.key) + "));";
+  for (const UniqueIndex& index : table.unique) {
+    sql += "CREATE UNIQUE INDEX " + std::string(index.name) + " ON " + name + "(" +
+           std::string(index.column) + ") WHERE " + std::string(index.where) + ";";
+  }
+  if (table.append_only) {
+    sql += "CREATE TRIGGER " + name + "_append_only BEFORE UPDATE OR DELETE OR TRUNCATE ON " +
+           name + " FOR EACH STATEMENT EXECUTE FUNCTION touchtrial_append_only();";
+  }
+  return sql;
+}
+
+void make_first_version(pqxx::work& work) {
+  work.exec(kServerAlone);
+  for (const TableDefinition& table : table_definitions()) work.exec(table_sql(table));
+  // Sealed bytes do not shrink, and trying costs more than all the rest of storing them.
+  work.exec("ALTER TABLE traces ALTER COLUMN box SET STORAGE EXTERNAL");
+  work.exec("CREATE UNIQUE INDEX sessions_of_station ON sessions(station, own_session)");
+}
+
+constexpr std::array<ServerMigration, 1> kMigrations = {make_first_version};
+static_assert(kFirstServerVersion + kMigrations.size() - 1 == kSchemaVersion);
+
+std::string our_names() {
+  std::string names = "{stations";
+  for (const TableDefinition& table : table_definitions()) names += "," + std::string(table.name);
+  return names + "}";
+}
+
+std::optional<int> version_in(pqxx::work& work, const ServerConnection& server) {
+  const auto place = work.exec1("SELECT current_schema()")[0];
+  if (place.is_null()) {
+    server.refuse("the search_path names no schema that exists; make it with CREATE SCHEMA");
+  }
+  const auto tables_named = [&](const std::string& names) {
+    return work
+        .exec_params1(
+            "SELECT count(*) FROM pg_class c JOIN pg_namespace n ON n.oid = c.relnamespace "
+            "WHERE n.nspname = current_schema() AND c.relkind IN ('r','p','v','m','f') "
+            "AND c.relname = ANY($1::text[])",
+            names)[0]
+        .as<int>();
+  };
+  if (tables_named("{touchtrial_schema}") > 0) {
+    return work.exec1("SELECT version FROM touchtrial_schema")[0].as<int>();
+  }
+  if (tables_named(our_names()) > 0) {
+    server.refuse(
+        "has tables of another program under the names that Touchtrial uses; make a database for "
+        "the study alone (createdb), or a schema of its own");
+  }
+  return std::nullopt;
+}
+
+[[noreturn]] void refuse_newer(const ServerConnection& server, int version, int known) {
+  server.refuse("was written by a newer Touchtrial (schema " + std::to_string(version) +
+                ", this one knows " + std::to_string(known) + "); install that");
+}
+
+}  // namespace
+
+std::span<const ServerMigration> server_migrations() {
+  return kMigrations;
+}
+
+std::optional<int> server_version(ServerConnection& server) {
+  return server.look([&](pqxx::work& work) { return version_in(work, server); });
+}
+
+void bring_forward(ServerConnection& server, std::span<const ServerMigration> steps) {
+  const int newest = kFirstServerVersion + static_cast<int>(steps.size()) - 1;
+  const auto is_current = [&](std::optional<int> version) {
+    if (version && *version > newest) refuse_newer(server, *version, newest);
+    return version == newest;
+  };
+  // Whoever may only add rows must not need more rights than that.
+  if (is_current(server_version(server))) return;
+  server.change([&](pqxx::work& work) {
+    work.exec(
+        "SELECT pg_advisory_xact_lock(hashtextextended('touchtrial ' || current_schema(), 0))");
+    const std::optional<int> version = version_in(work, server);
+    if (is_current(version)) return;
+    const int done = version ? *version - kFirstServerVersion + 1 : 0;
+    for (const ServerMigration step : steps.subspan(static_cast<std::size_t>(done))) step(work);
+    work.exec_params0(version ? "UPDATE touchtrial_schema SET version = $1"
+                              : "INSERT INTO touchtrial_schema(version) VALUES($1)",
+                      newest);
+  });
+}
+
+void require_current(ServerConnection& server) {
+  const std::optional<int> version = server_version(server);
+  if (!version) server.refuse("holds no study yet; push one with `touchtrial sync`");
+  if (*version > kSchemaVersion) refuse_newer(server, *version, kSchemaVersion);
+  if (*version < kSchemaVersion) {
+    server.refuse("is of an older schema; the next `touchtrial sync` brings it up to date");
+  }
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,47 @@
+/// \file The study and its stations on a server. Private to protocols/collect.
+#pragma once
+
+#include "core/hash.hpp"
+#include "protocols/collect/server_connection.hpp"
+#include "protocols/collect/station_course.hpp"
+#include "protocols/store/study_store.hpp"
+
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+
+/// The session number under which a station's file chain is kept.
+[[nodiscard]] constexpr int chain_number(int station) {
+  return -station;
+}
+
+/// Until the transaction ends, nobody else changes this station.
+void lock_station(pqxx::work& work, const Digest& identity);
+[[nodiscard]] std::optional<int> find_station(pqxx::work& work, const Digest& identity);
+/// \param commitment  first event of its file chain
+/// \throws StoreError if the server has another study
+[[nodiscard]] int register_station(pqxx::work& work, const ServerConnection& server,
+                                   const Digest& identity, const std::string& name,
+                                   const Event& commitment);
+/// \throws StoreError if there is a study, and it is another
+void refuse_other_study(pqxx::work& work, const ServerConnection& server, const Event& commitment);
+
+[[nodiscard]] ChainHead chain_head(pqxx::work& work, int station);
+/// The first event at which the server's copy of a chain is another one; nothing if one of the two
+/// is the beginning of the other.
+[[nodiscard]] std::optional<std::int64_t> parting(pqxx::work& work, int station,
+                                                  std::span<const Event> file_chain);
+
+/// \throws StoreError, naming the session that is there, if its participant or enrolment number is
+///   taken by one that nobody replaced
+void refuse_if_taken(pqxx::work& work, const ServerConnection& server, const SessionRow& row);
+
+/// Brings a session that is there up to date with the chain up to `end`: exclusion, replacement,
+/// withdrawal, which destroys its key.
+void update_session(pqxx::work& work, int station, int own_session, const SessionCourse& course,
+                    std::int64_t end);
+
+}  // namespace touchtrial

@@ -1,0 +1,308 @@
+#include "protocols/collect/station_push.hpp"
+
+#include "protocols/collect/arrival_check.hpp"
+#include "protocols/collect/server_connection.hpp"
+#include "protocols/collect/server_rows.hpp"
+#include "protocols/collect/server_schema.hpp"
+#include "protocols/collect/server_study.hpp"
+#include "protocols/store/event_fault.hpp"
+#include "protocols/store/state_names.hpp"
+
+#include <algorithm>
+#include <memory>
+#include <span>
+#include <thread>
+#include <utility>
+
+namespace touchtrial {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// Failures without anything pushed between them, until pushing gives up: half a minute.
+constexpr int kMostFailures = 10;
+constexpr milliseconds kFirstWait{100};
+constexpr milliseconds kLongestWait{5000};
+
+/// Somebody else pushed the same station meanwhile: what is there must be looked at again.
+class Overtaken : public Contention {
+ public:
+  using Contention::Contention;
+};
+
+class StationPush {
+ public:
+  StationPush(StationFile& station, const ServerAddress& server, const PushOptions& options,
+              PushReport& report)
+      : station_(station), address_(server), options_(options), report_(report) {
+    chain_ = station.file_chain();
+    if (chain_.empty()) throw StoreError(station.name() + ": its file chain is empty");
+    courses_ = courses_of(chain_);
+    commitment_ = body_of(chain_.front(), commitment_from_json);
+    for (const auto& [session, course] : courses_) {
+      if (!course.closed_at) report_.left_open.push_back(named(session));
+    }
+  }
+
+  void run();
+  /// Sessions that the server did not have at first.
+  [[nodiscard]] int to_push() const noexcept { return to_push_; }
+
+ private:
+  [[nodiscard]] PushedSession named(int session) const {
+    const SessionOpenedBody& opened = courses_.at(session).opened;
+    return {session, opened.participant, opened.enrolment};
+  }
+  /// Nobody has the same second event: it holds the first session's key and first event.
+  [[nodiscard]] const Digest& identity() const { return chain_[1].hash; }
+  [[nodiscard]] std::span<const Event> chain_to(std::int64_t end) const {
+    return std::span(chain_).first(static_cast<std::size_t>(end));
+  }
+
+  void attempt();
+  void look_only();
+  void wait_after(int failures) const;
+  [[noreturn]] void give_up(const StoreError& error) const;
+  [[nodiscard]] std::int64_t stored_length();
+  [[nodiscard]] std::int64_t length_there(pqxx::work& work, int station) const;
+  void note_plan(std::int64_t stored);
+  [[nodiscard]] std::vector<ChainSegment> segments(std::int64_t stored);
+  void push(const ChainSegment& segment);
+  [[nodiscard]] int station_number(pqxx::work& work);
+  void push_session(pqxx::work& work, int station, int session, std::int64_t end);
+  [[nodiscard]] SessionRow row_of(const DerivedRows& rows, int session, std::int64_t end) const;
+  void note_pushed(const ChainSegment& segment);
+
+  StationFile& station_;
+  const ServerAddress& address_;
+  const PushOptions& options_;
+  PushReport& report_;
+  std::vector<Event> chain_;
+  std::map<int, SessionCourse> courses_;
+  StudyCommitment commitment_;
+  std::unique_ptr<ServerConnection> server_;
+  bool was_connected_ = false;
+  bool planned_ = false;
+  int to_push_ = 0;
+  std::optional<ChainSegment> sent_;  ///< of which no answer has come
+  int done_ = 0;                      ///< transactions, so that failures after progress count anew
+};
+
+void StationPush::run() {
+  if (options_.dry_run) return look_only();
+  int failures = 0;
+  while (true) {
+    const int before = done_;
+    try {
+      return attempt();
+    } catch (const LostConnection& error) {
+      server_.reset();
+      // An address where nothing ever answered is more likely wrong than late.
+      if (!was_connected_) throw;
+      if (done_ > before) failures = 0;
+      if (++failures > kMostFailures) give_up(error);
+      ++report_.reconnections;
+    } catch (const Contention& error) {
+      if (done_ > before) failures = 0;
+      if (++failures > kMostFailures) give_up(error);
+    }
+    wait_after(failures);
+  }
+}
+
+void StationPush::wait_after(int failures) const {
+  const milliseconds time = std::min(kFirstWait * (1 << (failures - 1)), kLongestWait);
+  if (options_.wait) return options_.wait(time);
+  std::this_thread::sleep_for(time);
+}
+
+void StationPush::give_up(const StoreError& error) const {
+  throw StoreError(std::string(error.what()) + "; gave up after " + std::to_string(kMostFailures) +
+                   " attempts; run the same command again to go on from there");
+}
+
+void StationPush::attempt() {
+  if (!server_) server_ = std::make_unique<ServerConnection>(address_);
+  was_connected_ = true;
+  bring_forward(*server_);
+  const std::int64_t stored = stored_length();
+  note_plan(stored);
+  // Of a commit whose answer was lost, only the server knows how it ended.
+  if (const auto sent = std::exchange(sent_, std::nullopt); sent && sent->end <= stored) {
+    note_pushed(*sent);
+  }
+  for (const ChainSegment& segment : segments(stored)) {
+    sent_ = segment;
+    push(segment);
+    note_pushed(segment);
+    sent_.reset();
+  }
+}
+
+void StationPush::look_only() {
+  server_ = std::make_unique<ServerConnection>(address_);
+  const bool has_tables = server_version(*server_).has_value();
+  if (has_tables) require_current(*server_);
+  const std::int64_t stored = has_tables ? stored_length() : 0;
+  note_plan(stored);
+  for (const ChainSegment& segment : segments(stored)) {
+    for (const int session : segment.sessions) report_.pushed.push_back(named(session));
+    report_.chain_events += segment.end - segment.first;
+    if (!has_tables) continue;
+    server_->look([&](pqxx::work& work) {
+      for (const int session : segment.sessions) {
+        DerivedRows rows;
+        for (const Event& event : station_.events(session)) fold(rows, event);
+        refuse_if_taken(work, *server_, row_of(rows, session, segment.end));
+      }
+    });
+  }
+}
+
+/// How much of the file chain the server has. \throws StoreError if it has another one
+std::int64_t StationPush::stored_length() {
+  return server_->look([&](pqxx::work& work) -> std::int64_t {
+    refuse_other_study(work, *server_, chain_.front());
+    if (chain_.size() < 2) return 0;
+    const std::optional<int> station = find_station(work, identity());
+    if (!station) return 0;
+    report_.station = *station;
+    return length_there(work, *station);
+  });
+}
+
+std::int64_t StationPush::length_there(pqxx::work& work, int station) const {
+  const ChainHead head = chain_head(work, station);
+  const auto here = static_cast<std::int64_t>(chain_.size());
+  if (const auto parted = parting(work, station, chain_)) {
+    server_->refuse("has another event " + std::to_string(*parted) + " of the chain of " +
+                    station_.name() + " (station " + std::to_string(station) +
+                    "): two copies of this file went on by themselves; find out which is to count, "
+                    "and sync that one");
+  }
+  report_.ahead = std::max<std::int64_t>(head.length - here, 0);
+  return std::min(head.length, here);
+}
+
+/// \pre nothing of this push has arrived, or it is the plan's continuation
+void StationPush::note_plan(std::int64_t stored) {
+  if (std::exchange(planned_, true)) return;
+  for (const auto& [session, course] : courses_) {
+    if (!course.closed_at) continue;
+    ++(*course.closed_at < stored ? report_.already_there : to_push_);
+  }
+}
+
+std::vector<ChainSegment> StationPush::segments(std::int64_t stored) {
+  // Before its first session a file has no identity, and nothing to collect.
+  if (chain_.size() < 2) return {};
+  return segments_of(chain_, stored,
+                     [&](int session) { return station_.wrapped_key(session).has_value(); });
+}
+
+void StationPush::push(const ChainSegment& segment) {
+  server_->change([&](pqxx::work& work) {
+    lock_station(work, identity());
+    const int station = station_number(work);
+    if (chain_head(work, station).length != segment.first) {
+      throw Overtaken(address_.shown() + ": another program pushes this station");
+    }
+    for (const auto& [session, course] : courses_) {
+      if (course.closed_at && *course.closed_at < segment.first) {
+        update_session(work, station, session, course, segment.end);
+      }
+    }
+    for (const int session : segment.sessions) push_session(work, station, session, segment.end);
+    const std::span<const Event> chain = chain_to(segment.end);
+    insert_events(work, chain_number(station),
+                  chain.subspan(static_cast<std::size_t>(segment.first)));
+    check_chain_arrival(work, *server_, station, chain, segment.first);
+    report_.station = station;
+  });
+}
+
+int StationPush::station_number(pqxx::work& work) {
+  if (const std::optional<int> known = find_station(work, identity())) return *known;
+  return register_station(work, *server_, identity(), station_.name(), chain_.front());
+}
+
+void StationPush::push_session(pqxx::work& work, int station, int session, std::int64_t end) {
+  const std::vector<Event> events = station_.events(session);
+  DerivedRows rows;
+  for (const Event& event : events) fold(rows, event);
+  SessionRow row = row_of(rows, session, end);
+  row.station = station;
+  refuse_if_taken(work, *server_, row);
+  row.session = work.exec1("SELECT nextval('session_numbers')")[0].as<int>();
+  insert_session(work, row);
+  insert_events(work, row.session, events);
+  const std::optional<Bytes> key = row.withdrawn ? std::nullopt : station_.wrapped_key(session);
+  if (key) insert_key(work, row.session, *key);
+  insert_trials(work, row.session, rows);
+  insert_traces(work, row.session, station_, session);
+  check_session_arrival(work, *server_, row.session, session, courses_.at(session), commitment_,
+                        options_.master, !row.withdrawn);
+}
+
+SessionRow StationPush::row_of(const DerivedRows& rows, int session, std::int64_t end) const {
+  const auto found = rows.sessions.find(session);
+  if (found == rows.sessions.end()) {
+    throw StoreError(station_.name() + ": session " + std::to_string(session) +
+                     " has no events; run `touchtrial verify`");
+  }
+  const SessionCourse& course = courses_.at(session);
+  const auto holds = [&](const std::optional<std::int64_t>& at) { return at && *at < end; };
+  SessionRow row = found->second;
+  row.excluded = holds(course.excluded_at);
+  row.withdrawn = holds(course.withdrawn_at);
+  if (holds(course.replaced_at)) row.replaced_by = course.replaced_by;
+  row.own_session = session;
+  return row;
+}
+
+void StationPush::note_pushed(const ChainSegment& segment) {
+  ++done_;
+  report_.chain_events += segment.end - segment.first;
+  for (const int session : segment.sessions) report_.pushed.push_back(named(session));
+  if (options_.progress) options_.progress(static_cast<int>(report_.pushed.size()), to_push_);
+}
+
+SessionState state_named(const std::string& name) {
+  const auto* const found = std::find(kSessionStates.begin(), kSessionStates.end(), name);
+  if (found == kSessionStates.end()) throw StoreError("no state of a session: " + one_line(name));
+  return static_cast<SessionState>(found - kSessionStates.begin());
+}
+
+}  // namespace
+
+void push_station(StationFile& station, const ServerAddress& server, const PushOptions& options,
+                  PushReport& report) {
+  StationPush push(station, server, options, report);
+  try {
+    push.run();
+  } catch (const StoreError& error) {
+    if (report.pushed.empty() || options.dry_run) throw;
+    throw StoreError(std::string(error.what()) + "; before that, " +
+                     std::to_string(report.pushed.size()) + " of " +
+                     std::to_string(push.to_push()) + " sessions were pushed");
+  }
+}
+
+std::vector<EnrolledSession> sessions_on_server(const ServerAddress& address) {
+  ServerConnection server(address);
+  if (!server_version(server)) return {};
+  return server.look([&](pqxx::work& work) {
+    std::vector<EnrolledSession> sessions;
+    for (const pqxx::row& row : work.exec(
+             "SELECT station, enrolment, state, excluded = 0 AND withdrawn = 0 AND replaced_by IS "
+             "NULL FROM sessions ORDER BY session")) {
+      sessions.push_back({.station = row[0].as<int>(),
+                          .enrolment = row[1].as<int>(),
+                          .state = state_named(row[2].as<std::string>()),
+                          .counts = row[3].as<bool>()});
+    }
+    return sessions;
+  });
+}
+
+}  // namespace touchtrial

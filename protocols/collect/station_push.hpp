@@ -1,0 +1,63 @@
+/// \file Pushing a station's finished sessions into a PostgreSQL database. Source:
+/// docs/several-stations.md, docs/decisions/0042.
+#pragma once
+
+#include "core/cipher.hpp"
+#include "protocols/collect/enrolment_balance.hpp"
+#include "protocols/collect/server_address.hpp"
+#include "protocols/collect/station_file.hpp"
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+
+/// A session of the station, as the pushing is told about.
+struct PushedSession {
+  int session = 0;  ///< its own number
+  std::string participant;
+  int enrolment = 0;
+
+  friend bool operator==(const PushedSession&, const PushedSession&) = default;
+};
+
+struct PushReport {
+  int station = 0;                       ///< its number on the server; 0: it has none yet
+  std::vector<PushedSession> pushed;     ///< by this push, in the order of their ends
+  std::vector<PushedSession> left_open;  ///< not finished, and left for later
+  int already_there = 0;                 ///< finished sessions that had come before
+  std::int64_t chain_events = 0;         ///< of the file chain, by this push
+  std::int64_t ahead = 0;  ///< events that the server has beyond this file: it is an older copy
+  int reconnections = 0;   ///< after the connection was lost
+};
+
+struct PushOptions {
+  /// Looks at what would be pushed and whether anything stands against it, and changes nothing.
+  bool dry_run = false;
+  /// The study's master key: the sealed ends of sessions are then held against their chains.
+  std::optional<SecretKey> master{};
+  /// Called with how many sessions have been pushed, and how many there are to push.
+  std::function<void(int, int)> progress{};
+  /// Waits before another attempt; empty: really.
+  std::function<void(std::chrono::milliseconds)> wait{};
+};
+
+/// Pushes what the server does not have, each session in a transaction of its own that also checks
+/// what arrived. Can be broken off anywhere and run again; any number of stations may push at once.
+/// The first push makes the tables.
+/// \param station  whole: StudyStore::first_fault found nothing
+/// \param report  what has been done, also if this throws
+/// \throws StoreError, naming the server and what stands against it: another study there, a
+///   participant or enrolment number that another session has (which), a chain that is not the one
+///   the server knows, no rights, or a connection that stayed lost
+void push_station(StationFile& station, const ServerAddress& server, const PushOptions& options,
+                  PushReport& report);
+
+/// All sessions on a server, of every station. \throws StoreError if they cannot be read
+[[nodiscard]] std::vector<EnrolledSession> sessions_on_server(const ServerAddress& server);
+
+}  // namespace touchtrial

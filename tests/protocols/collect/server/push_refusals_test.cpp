@@ -1,0 +1,272 @@
+// What stands against a push: another study, a place that is taken, tables that are not ours, a
+// chain that went on by itself, no rights.
+#include "protocols/collect/server/server_fixture.hpp"
+#include "protocols/collect/server_schema.hpp"
+#include "support/catch.hpp"
+
+using namespace touchtrial;
+using namespace touchtrial::fixture;
+
+namespace {
+
+std::string push_refusal(const ServerFixture& there, const StudyStore& store,
+                         const PushOptions& options = {}) {
+  return refusal_of([&] { there.push(store, options); });
+}
+
+/// Nothing of the file's came to the server.
+void check_untouched(const ServerFixture& there, const std::string& counts_before) {
+  CHECK(there.counts() == counts_before);
+}
+
+void add_another_table(pqxx::work& work) {
+  work.exec("ALTER TABLE stations ADD COLUMN room TEXT");
+}
+
+}  // namespace
+
+TEST_CASE("a participant whom another station has is refused, by whom") {
+  const ServerFixture there;
+  StoredFixture first(1);
+  StoredFixture second;
+  SessionOpening how = opening(1);
+  how.enrolment = 7;
+  how.device = "falcon";
+  how.device_serial = "F42";
+  how.opened_utc = "2026-01-05T10:00:00Z";
+  second.store->add_session(session_of(1, 2, stroking(20, 0.05), how), wrapped_key_of(1), kUtc);
+  OpenStation station(*second.store, "room-b.db");
+  there.push(station);
+  const std::string counts = there.counts();
+  for (const bool dry_run : {true, false}) {
+    const std::string line = push_refusal(there, *first.store, {.dry_run = dry_run});
+    CHECK_THAT(line,
+               holds_text("session 1: participant P1 is taken already by session 1 of station "
+                          "1 (room-b.db)"));
+    CHECK_THAT(line, holds_text("opened 2026-01-05T10:00:00Z on falcon F42"));
+    CHECK_THAT(line, holds_text("touchtrial replace"));
+  }
+  check_untouched(there, counts);
+}
+
+TEST_CASE("an enrolment number that another station has is refused, by whom") {
+  const ServerFixture there;
+  StoredFixture first(2);
+  StoredFixture second;
+  add_visit(*second.store, {1, "Q1", 2});
+  there.push(*second.store);
+  const std::string line = push_refusal(there, *first.store);
+  CHECK_THAT(line, holds_text("session 2: enrolment number 2 is taken already by session 1"));
+  CHECK_THAT(line, holds_text("participant Q1, enrolment 2"));
+  CHECK_THAT(line, holds_text("1 of 2 sessions were pushed"));
+  CHECK(there.first("SELECT count(*) FROM sessions") == "2");
+}
+
+TEST_CASE("replacing one of two who have the same number lets the other in") {
+  const ServerFixture there;
+  StoredFixture first(1);
+  StoredFixture second;
+  add_visit(*second.store, {1, "Q1", 1});
+  there.push(*second.store);
+  CHECK_THAT(push_refusal(there, *first.store), holds_text("enrolment number 1 is taken"));
+  second.store->exclude(1, kUtc, "wrong number");
+  second.store->replace(1, "Q2", kUtc, "wrong number");
+  there.push(*second.store);
+  CHECK(there.push(*first.store).pushed.size() == 1);
+}
+
+TEST_CASE("another study, or another kind of the same, is refused with the remedy") {
+  const ServerFixture there;
+  StoredFixture ours(1);
+  there.push(*ours.store);
+  const std::string counts = there.counts();
+  const auto refused = [&](const StudyCommitment& body, const std::string& why) {
+    TempFolder folder;
+    StudyStore other = StudyStore::create(folder.path() / "other.db", body, kUtc);
+    SessionOpening how = opening(1);
+    how.participant = "Q1";
+    how.enrolment = 9;
+    how.study_id = body.study_id;
+    how.seal = body.seal;
+    how.simulated = body.simulated;
+    how.pilot = body.pilot;
+    other.add_session(session_of(1, 1, stroking(20, 0.05), how), wrapped_key_of(1), kUtc);
+    for (const bool dry_run : {true, false}) {
+      const std::string line = push_refusal(there, other, {.dry_run = dry_run});
+      CHECK_THAT(line, holds_text("holds " + why));
+      CHECK_THAT(line, holds_text("createdb"));
+    }
+  };
+  StudyCommitment body = commitment();
+  body.study_id = "ffeeddccbbaa99887766554433221100";
+  refused(body, "another study");
+  body = commitment();
+  body.seal = digest_of("another seal");
+  refused(body, "this study under another seal");
+  body = commitment();
+  body.configuration = R"({"classes":["c0"]})";
+  refused(body, "this study with another configuration");
+  body = commitment();
+  body.simulated = false;
+  refused(body, "simulated participants");
+  body = commitment();
+  body.pilot = true;
+  refused(body, "the study and not its pilot");
+  check_untouched(there, counts);
+}
+
+TEST_CASE("tables of another program are left alone") {
+  const ServerFixture there;
+  there.ask("CREATE TABLE events(id INTEGER); INSERT INTO events VALUES(5)");
+  StoredFixture study(1);
+  CHECK_THAT(push_refusal(there, *study.store), holds_text("tables of another program"));
+  CHECK(there.ask("SELECT id FROM events") == std::vector<std::string>{"5"});
+  CHECK(there.first("SELECT count(*) FROM pg_tables WHERE schemaname = 'public'") == "1");
+}
+
+TEST_CASE("a study has a schema of its own if the address says so") {
+  const ServerFixture there;
+  there.ask("CREATE TABLE events(id INTEGER); CREATE SCHEMA pilot");
+  StoredFixture study(1);
+  OpenStation station(*study.store);
+  PushReport report;
+  const std::string url = there.url() + "&options=-csearch_path%3D";
+  push_station(station, ServerAddress(url + "pilot"), {}, report);
+  CHECK(there.first("SELECT count(*) FROM pilot.sessions") == "1");
+  CHECK_THAT(refusal_of([&] { push_station(station, ServerAddress(url + "none"), {}, report); }),
+             holds_text("CREATE SCHEMA"));
+}
+
+TEST_CASE("a newer schema is refused untouched, an older one brought forward") {
+  const ServerFixture there;
+  StoredFixture study(1);
+  there.push(*study.store);
+  const std::array steps = {server_migrations()[0], ServerMigration{add_another_table}};
+  ServerConnection server(there.address());
+  bring_forward(server, steps);
+  CHECK(there.first("SELECT version FROM touchtrial_schema") == "4");
+  CHECK(there.first("SELECT count(*) FROM information_schema.columns WHERE column_name = 'room'") ==
+        "1");
+  bring_forward(server, steps);
+  add(*study.store, 2);
+  const std::string counts = there.counts();
+  CHECK_THAT(push_refusal(there, *study.store),
+             holds_text("newer Touchtrial (schema 4, this one knows 3)"));
+  CHECK_THAT(push_refusal(there, *study.store, {.dry_run = true}), holds_text("newer Touchtrial"));
+  check_untouched(there, counts);
+}
+
+TEST_CASE("a step that fails leaves the schema as it was") {
+  const ServerFixture there;
+  StoredFixture study(1);
+  there.push(*study.store);
+  const std::array steps = {server_migrations()[0], ServerMigration{add_another_table},
+                            ServerMigration{[](pqxx::work& work) { work.exec("NONSENSE"); }}};
+  ServerConnection server(there.address());
+  CHECK_THAT(refusal_of([&] { bring_forward(server, steps); }), holds_text("syntax error"));
+  CHECK(there.first("SELECT version FROM touchtrial_schema") == "3");
+  CHECK(there.first("SELECT count(*) FROM information_schema.columns WHERE column_name = 'room'") ==
+        "0");
+}
+
+TEST_CASE("a copy that went on by itself is refused where it parts") {
+  const ServerFixture there;
+  StoredFixture study(2);
+  study.store.reset();
+  StoredFixture copy(study.path);
+  copy.store = StudyStore::open(copy.path, StudyStore::Access::read_write);
+  study.store = StudyStore::open(study.path, StudyStore::Access::read_write);
+  add(*study.store, 3);
+  add_visit(*copy.store, {3, "Q3", 9});
+  there.push(*study.store);
+  const std::string counts = there.counts();
+  CHECK_THAT(push_refusal(there, *copy.store), holds_text("has another event 5 of the chain of"));
+  check_untouched(there, counts);
+}
+
+TEST_CASE("an older copy adds nothing, and is told of what the server has beyond it") {
+  const ServerFixture there;
+  StoredFixture study(2);
+  study.store.reset();
+  StoredFixture copy(study.path);
+  copy.store = StudyStore::open(copy.path, StudyStore::Access::read_write);
+  study.store = StudyStore::open(study.path, StudyStore::Access::read_write);
+  add(*study.store, 3);
+  there.push(*study.store);
+  const PushReport report = there.push(*copy.store);
+  CHECK(report.pushed.empty());
+  CHECK(report.already_there == 2);
+  CHECK(report.ahead == 2);
+}
+
+TEST_CASE("what is altered on its way does not arrive") {
+  const ServerFixture there;
+  StoredFixture study(2);
+  OpenStation station(*study.store);
+  const auto refused = [&](const std::string& why) {
+    CHECK_THAT(refusal_of([&] { there.push(station); }), holds_text(why));
+    CHECK(there.first("SELECT count(*) FROM sessions") == "0");
+    CHECK(there.first("SELECT count(*) FROM events") == "0");
+  };
+  station.alter = [](std::vector<Event>& events) { events[3].body += " "; };
+  refused("session 1 did not arrive whole: event 3");
+  station.alter = [](std::vector<Event>& events) { events[2].sealed.push_back(0); };
+  refused("session 1 did not arrive whole: event 2");
+  station.alter = [](std::vector<Event>& events) { events.pop_back(); };
+  refused("session 1 did not arrive whole: it ends with another event");
+  station.alter = {};
+  station.alter_trace = [](int trial, Bytes& box) {
+    if (trial == 2) box.back() ^= 1;
+  };
+  refused("session 1 did not arrive whole: the trace of trial 2");
+  station.alter_trace = {};
+  CHECK(there.push(station).pushed.size() == 2);
+}
+
+TEST_CASE("a role without rights is told so in one line") {
+  const ServerFixture there;
+  there.ask("CREATE ROLE guest LOGIN");
+  StoredFixture study(1);
+  OpenStation station(*study.store);
+  PushReport report;
+  CHECK_THAT(refusal_of([&] { push_station(station, there.address("guest"), {}, report); }),
+             holds_text("permission denied"));
+  there.push(*study.store);
+  add(*study.store, 2);
+  CHECK_THAT(refusal_of([&] { push_station(station, there.address("guest"), {}, report); }),
+             holds_text("docs/several-stations.md"));
+}
+
+TEST_CASE("a role with the rights that the documentation lists can push") {
+  const ServerFixture there;
+  StoredFixture study;
+  there.push(*study.store);
+  there.ask(
+      "CREATE ROLE station LOGIN;"
+      "GRANT SELECT, INSERT ON events, traces, participant_keys, sessions, trials, responses, "
+      "stations TO station; GRANT SELECT ON touchtrial_schema TO station;"
+      "GRANT UPDATE ON sessions TO station; GRANT DELETE ON participant_keys TO station;"
+      "GRANT USAGE ON SEQUENCE session_numbers TO station");
+  add(*study.store, 1);
+  add(*study.store, 2);
+  OpenStation station(*study.store);
+  PushReport report;
+  push_station(station, there.address("station"), {}, report);
+  CHECK(report.pushed.size() == 2);
+  study.store->withdraw(1, kUtc, "asked");
+  study.store->exclude(2, kUtc, "slept");
+  push_station(station, there.address("station"), {}, report);
+  CHECK(there.ask("SELECT session FROM participant_keys").size() == 1);
+}
+
+TEST_CASE("a database whose encoding would change texts is refused") {
+  const ServerFixture there;
+  there.server.make_database("latin", "LATIN1");
+  StoredFixture study(1);
+  OpenStation station(*study.store);
+  PushReport report;
+  CHECK_THAT(refusal_of([&] {
+               push_station(station, ServerAddress(there.server.url("latin")), {}, report);
+             }),
+             holds_text("createdb --encoding=UTF8"));
+}
