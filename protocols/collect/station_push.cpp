@@ -103,6 +103,7 @@ void StationPush::run() {
       if (++failures > kMostFailures) give_up(error);
       ++report_.reconnections;
     } catch (const Contention& error) {
+      sent_.reset();  // it is certain how that ended
       if (done_ > before) failures = 0;
       if (++failures > kMostFailures) give_up(error);
     }
