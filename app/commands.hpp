@@ -31,6 +31,7 @@ void add_stimuli_measure_command(CLI::App& stimuli, Action& action);
 void add_prepare_command(CLI::App& program, Action& action);
 void add_prereg_command(CLI::App& program, Action& action);
 void add_simulate_command(CLI::App& program, Action& action);
+void add_plan_command(CLI::App& program, Action& action);
 void add_run_command(CLI::App& program, Action& action);
 void add_consent_command(CLI::App& program, Action& action);
 void add_close_command(CLI::App& program, Action& action);

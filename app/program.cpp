@@ -31,6 +31,7 @@ void add_commands(CLI::App& program, Action& action) {
   add_prepare_command(program, action);
   add_prereg_command(program, action);
   add_simulate_command(program, action);
+  add_plan_command(program, action);
   add_run_command(program, action);
   add_consent_command(program, action);
   add_close_command(program, action);

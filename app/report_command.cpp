@@ -81,7 +81,10 @@ std::vector<ExplorationPath> explorations(const StudyStore& store, const StudyKe
 
 int write_outcomes(const StudyStore& store, const StudyReport& report,
                    const std::vector<ExplorationPath>& paths, const ReportArguments& arguments) {
-  const FigureOptions options{arguments.paper_values, report.cues ? &*report.cues : nullptr, paths};
+  const FigureOptions options{.paper_values = arguments.paper_values,
+                              .cues = report.cues ? &*report.cues : nullptr,
+                              .explorations = paths,
+                              .stamp = further_stamp(report, provenance_for(store, arguments))};
   const DrawnFigures figures = draw_report_figures(report_figures(report, options));
   if (!figures.missing.empty()) {
     std::fputs(("touchtrial: warning: without figures: " + figures.missing + "\n").c_str(), stderr);

@@ -1,6 +1,7 @@
 #include "app/commands.hpp"
 #include "app/run/run_session.hpp"
 #include "core/errors.hpp"
+#include "protocols/design/enrolment_plan.hpp"
 
 #include <charconv>
 #include <map>
@@ -55,7 +56,13 @@ void add_session_options(CLI::App& command, RunOptions& options) {
       .add_option("--enrolment", options.enrolment,
                   "Place in the order of participants, which decides the schedule (default: the "
                   "smallest that is free)")
-      ->check(CLI::Range(1, 1'000'000));
+      ->check(CLI::Range(1, kMostPlanned));
+  command
+      .add_option("--station", options.station,
+                  "This station's name in the plan: its next enrolment number is taken")
+      ->excludes("--enrolment");
+  command.add_option("--plan", options.plan,
+                     "Enrolment plan (default: <study>.plan.json, if it is there)");
 }
 
 void add_device_options(CLI::App& command, RunOptions& options) {

@@ -18,6 +18,7 @@ struct FigureOptions {
   bool paper_values = false;
   const CueReport* cues = nullptr;                  ///< not owned; without it no ideal observers
   std::span<const ExplorationPath> explorations{};  ///< a figure each, drawn last
+  std::string stamp{};  ///< on every figure beside SIMULATED, as "INTERIM LOOK"; empty: nothing
 };
 
 /// Those that have something to show, in the order of a results section; a study without counted

@@ -13,6 +13,9 @@ namespace {
 
 /// Share of the sheet for participants' differences.
 constexpr double kDifferences_cm = 6.0;
+/// The right panel's slanted names have the left one's below-axis room to reach into.
+constexpr std::size_t kPairColumns = 32;
+constexpr double kPanel_cm = 6.0;  ///< at least, with what is above it
 constexpr double kSpread = 0.6;    ///< of methods beside each other, in classes
 constexpr double kHalfRow = 0.36;  ///< of the dots of one pair
 /// Participants drawn as dots a pair; of more, evenly spaced ones in order of their difference.
@@ -171,8 +174,6 @@ std::optional<Figure> methods_figure(const StudyReport& report) {
       std::any_of(report.pairs.begin(), report.pairs.end(),
                   [](const MethodPair& p) { return p.overall.difference.has_value(); });
   Margins left;
-  const Legend legend(sheet, left.left_cm, legend_of(report));
-  left.top_cm = legend.room_cm() + 0.3;
   left.right_cm = paired ? kDifferences_cm : 0.4;
   Margins right = left;
   right.left_cm = sheet.width_cm - kDifferences_cm + 1.9;
@@ -180,9 +181,14 @@ std::optional<Figure> methods_figure(const StudyReport& report) {
   std::vector<std::string> pairs;
   for (const MethodPair& pair : report.pairs) pairs.push_back(pair_name(report, pair));
   const NamesBelow below(report.classes, sheet.width_cm - left.left_cm - left.right_cm);
-  const NamesBelow below_pairs(pairs, sheet.width_cm - right.left_cm - right.right_cm);
+  const NamesBelow below_pairs(pairs, sheet.width_cm - right.left_cm - right.right_cm,
+                               kPairColumns);
   left.bottom_cm = std::max(below.room_cm(), paired ? below_pairs.room_cm() : 0.0) + 0.3;
+  sheet.height_cm = std::max(sheet.height_cm, kPanel_cm + left.bottom_cm);
+  const Legend legend(sheet, left.left_cm, legend_of(report));
+  left.top_cm = legend.room_cm() + 0.3;
   right.bottom_cm = left.bottom_cm;
+  right.top_cm = left.top_cm;
 
   Figure figure{.id = "methods", .caption = {}, .alt = alt_of(report), .script = {}};
   figure.width_cm = sheet.width_cm;

@@ -20,8 +20,6 @@ constexpr std::array<int, 5> kMarks = {7, 5, 9, 13, 11};
 
 /// Of an average letter of 8 points, in the widest of the usual fonts.
 constexpr double kLetter_cm = 0.17;
-/// Slanted names are cut to this many columns: longer ones leave the sheet on the left.
-constexpr std::size_t kSlantedColumns = 18;
 constexpr double kSlant = 0.707;  ///< sine of 45 degrees
 
 constexpr const char* kStyle = R"(set encoding utf8
@@ -137,17 +135,18 @@ std::string chance_words(int classes) {
   return fmt::format("chance (1 of {})", classes);
 }
 
-NamesBelow::NamesBelow(std::span<const std::string> names, double axis_cm) {
+NamesBelow::NamesBelow(std::span<const std::string> names, double axis_cm,
+                       std::size_t slanted_columns) {
   const double slot_cm = axis_cm / static_cast<double>(std::max<std::size_t>(names.size(), 1));
   const auto columns = static_cast<std::size_t>(slot_cm / kLetter_cm);
   std::size_t widest = 0;
   for (const std::string& name : names) widest = std::max(widest, display_width(name));
   slanted_ = widest > std::max<std::size_t>(columns, 1);
   for (const std::string& name : names) {
-    names_.push_back(fitted(name, slanted_ ? kSlantedColumns : widest));
+    names_.push_back(fitted(name, slanted_ ? slanted_columns : widest));
   }
   if (slanted_) {
-    const auto longest = static_cast<double>(std::min(widest, kSlantedColumns));
+    const auto longest = static_cast<double>(std::min(widest, slanted_columns));
     room_cm_ = 0.5 + longest * kLetter_cm * kSlant;
   }
 }

@@ -58,10 +58,15 @@ struct Margins {
 /// "chance (1 of 5)"
 [[nodiscard]] std::string chance_words(int classes);
 
+/// Of a panel on the sheet's left.
+inline constexpr std::size_t kSlantedColumns = 18;
+
 /// Names below an axis from 1 to names.size(): level where they fit, else slanted and shortened.
 class NamesBelow {
  public:
-  NamesBelow(std::span<const std::string> names, double axis_cm);
+  /// \param slanted_columns  to which slanted names are cut: longer ones leave the sheet
+  NamesBelow(std::span<const std::string> names, double axis_cm,
+             std::size_t slanted_columns = kSlantedColumns);
   /// Room that they need below the axis.
   [[nodiscard]] double room_cm() const noexcept { return room_cm_; }
   /// Sets the axis' range and writes the names.

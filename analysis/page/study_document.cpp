@@ -94,11 +94,6 @@ bool is_interim(const Provenance& provenance) {
   return provenance.state.unblinded && !provenance.state.closed;
 }
 
-/// What stands on every table beside SIMULATED.
-std::string further_stamp(const StudyReport& report, const Provenance& provenance) {
-  return joined(report.pilot ? "PILOT" : "", is_interim(provenance) ? "INTERIM LOOK" : "");
-}
-
 std::vector<std::string> banners_of(const StudyReport& report, const Provenance& provenance) {
   std::vector<std::string> banners;
   if (report.simulated) {
@@ -169,6 +164,10 @@ void add_further(const Pictures& pictures, Document& document) {
 }
 
 }  // namespace
+
+std::string further_stamp(const StudyReport& report, const Provenance& provenance) {
+  return joined(report.pilot ? "PILOT" : "", is_interim(provenance) ? "INTERIM LOOK" : "");
+}
 
 Document study_document(const StudyReport& report, const Provenance& provenance,
                         const Pictures& pictures) {

@@ -22,6 +22,9 @@ struct Provenance {
 /// \param database  file name to show
 [[nodiscard]] Provenance provenance_of(const StudyStore& store, const std::string& database);
 
+/// What stands on every table and figure beside SIMULATED: PILOT, INTERIM LOOK, or nothing.
+[[nodiscard]] std::string further_stamp(const StudyReport& report, const Provenance& provenance);
+
 /// A picture for a report, whose id says to which section it belongs (docs/report.md).
 using Pictures = std::vector<Picture>;
 

@@ -23,7 +23,9 @@ struct RunOptions {
   std::filesystem::path certificate;  ///< empty: NAME-certificate.json, if it is there
   bool pilot = false;
   OnExisting on_existing = OnExisting::refuse;
-  int enrolment = 0;  ///< 0: the smallest that is free
+  int enrolment = 0;  ///< 0: the smallest that is free, or the station's next
+  std::string station{};         ///< whose numbers of the plan are taken; empty: none's
+  std::filesystem::path plan{};  ///< empty: as `plan` lays it
   /// A simulated participant instead of a person: a model file, or "default".
   std::optional<std::filesystem::path> subject;
   std::uint64_t seed = 1;  ///< of the simulated participant

@@ -1,6 +1,7 @@
 #include "app/run/session_entry.hpp"
 
 #include "app/console.hpp"
+#include "app/run/enrolment_of.hpp"
 #include "core/cipher.hpp"
 #include "core/errors.hpp"
 #include "core/version.hpp"
@@ -203,9 +204,8 @@ EnteredSession enter_session(const RunOptions& options, const RunStudy& study, S
   if (const auto row = store.session_of(options.participant)) {
     return existing_session(options, study, store, *row, describe);
   }
-  const int enrolment =
-      options.enrolment > 0 ? options.enrolment : store.enrolment_for(options.participant);
-  return new_session(options, study, store, enrolment, describe);
+  return new_session(options, study, store, enrolment_of(options, study.key.study, store),
+                     describe);
 }
 
 }  // namespace touchtrial

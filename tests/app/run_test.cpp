@@ -90,6 +90,46 @@ TEST_CASE("run makes the database, acknowledges every response, and is refused a
   check_balanced(study, 2);
 }
 
+TEST_CASE("stations take their own numbers of a plan, and a replacement its predecessor's") {
+  const StudyFolder study;
+  const auto plan = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments = {"plan", study.in("cloths.json"), "--participants"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return study.run(arguments);
+  };
+  REQUIRE(plan({"4", "--names", "attic,cellar"}).exit_code == 0);
+  const ProgramResult again = plan({"6", "--names", "attic,cellar"});
+  CHECK(again.exit_code == 2);
+  CHECK_THAT(again.errors, Catch::Contains("--extend"));
+
+  const ProgramResult nowhere = run(study, "P01");
+  CHECK(nowhere.exit_code == 2);
+  CHECK_THAT(nowhere.errors, Catch::Contains("--station"));
+  const ProgramResult unknown = run(study, "P01", {"--station", "roof"});
+  CHECK(unknown.exit_code == 2);
+  CHECK_THAT(unknown.errors, Catch::Contains("it has attic, cellar"));
+
+  REQUIRE(run(study, "P01", {"--station", "cellar"}).exit_code == 0);
+  REQUIRE(run(study, "P02", {"--station", "cellar"}).exit_code == 0);
+  const ProgramResult full = run(study, "P03", {"--station", "cellar"});
+  CHECK(full.exit_code == 2);
+  CHECK_THAT(full.errors, Catch::Contains("all numbers of station cellar are taken"));
+  REQUIRE(plan({"6", "--extend"}).exit_code == 0);
+  REQUIRE(run(study, "P03", {"--station", "cellar"}).exit_code == 0);
+  REQUIRE(study.run({"exclude", study.in("db"), "--participant", "P01", "--reason", "test"})
+              .exit_code == 0);
+  REQUIRE(study
+              .run({"replace", study.in("db"), "--participant", "P01", "--with", "P04", "--reason",
+                    "test"})
+              .exit_code == 0);
+  REQUIRE(run(study, "P04", {"--station", "cellar"}).exit_code == 0);
+
+  const StudyStore store = StudyStore::open(study.in("db"), StudyStore::Access::read_only);
+  std::vector<int> numbers;
+  for (const SessionRow& row : store.sessions()) numbers.push_back(row.enrolment);
+  CHECK(numbers == std::vector<int>{3, 4, 6, 3});
+}
+
 TEST_CASE("a session that was killed goes on after the responses that were acknowledged") {
   const StudyFolder study;
   const ProgramResult killed = run_until(study, "P01", "trial", SIGKILL);

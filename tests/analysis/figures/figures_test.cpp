@@ -120,6 +120,15 @@ TEST_CASE("figures of people bear no stamp") {
   }
 }
 
+TEST_CASE("figures of a pilot or an interim look say so beside SIMULATED") {
+  for (const Figure& figure : report_figures(fake_report(), {.stamp = "PILOT, INTERIM LOOK"})) {
+    CHECK(contains(figure.script, "'PILOT, INTERIM LOOK'"));
+    CHECK(contains(figure.script, "'SIMULATED'"));
+    CHECK(figure.alt.starts_with("PILOT, INTERIM LOOK. "));
+    CHECK(contains(drawn(figure, FigureFormat::svg), ">PILOT, INTERIM LOOK<"));
+  }
+}
+
 TEST_CASE("figures hold the report's counts and intervals") {
   StudyReport report = fake_report();
   ClassAccuracy& bark = report.methods[0].accuracy[0];

@@ -1,0 +1,147 @@
+#include "analysis/text_table.hpp"
+#include "app/commands.hpp"
+#include "app/console.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "protocols/design/enrolment_plan.hpp"
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct PlanArguments {
+  fs::path study;
+  fs::path output;
+  int participants = 0;
+  int stations = 0;
+  std::vector<std::string> names;
+  bool extend = false;
+  bool json = false;
+};
+
+std::vector<std::string> station_names(const PlanArguments& arguments) {
+  if (!arguments.names.empty()) return arguments.names;
+  std::vector<std::string> names;
+  for (int i = 1; i <= arguments.stations; ++i) names.push_back(std::to_string(i));
+  return names;
+}
+
+std::string ranges_text(const StationShare& share) {
+  std::string text;
+  for (const EnrolmentRange& range : share.ranges) {
+    text += (text.empty() ? "" : ", ") + (range.size() == 1
+                                              ? std::to_string(range.first)
+                                              : fmt::format("{} to {}", range.first, range.last));
+  }
+  return text;
+}
+
+std::string orders_text(const std::vector<int>& counts) {
+  return fmt::format("{}", fmt::join(counts, " "));
+}
+
+std::string plan_text(const Study& study, const EnrolmentPlan& plan, const fs::path& path) {
+  TextTable table({"station", "enrolment numbers", "participants", "of each order of methods"});
+  for (const StationShare& share : plan.stations) {
+    table.add({share.station, ranges_text(share), std::to_string(share.size()),
+               orders_text(orders_of(study, share.ranges))});
+  }
+  const std::vector<EnrolmentRange> all = {{1, plan.participants()}};
+  table.add({"all", fmt::format("1 to {}", plan.participants()),
+             std::to_string(plan.participants()), orders_text(orders_of(study, all))});
+  return fmt::format(
+      "{}: {} participants at {} stations\n{}plan  {}\nGive every station this file beside its "
+      "study file; there, `touchtrial run ... --station NAME` takes its next number.\n",
+      plan.study, plan.participants(), plan.stations.size(), table.text(), path.string());
+}
+
+std::string plan_json(const Study& study, const EnrolmentPlan& plan, const fs::path& path) {
+  nlohmann::ordered_json stations = nlohmann::ordered_json::array();
+  for (const StationShare& share : plan.stations) {
+    nlohmann::ordered_json ranges = nlohmann::ordered_json::array();
+    for (const EnrolmentRange& range : share.ranges) ranges.push_back({range.first, range.last});
+    stations.push_back({{"station", share.station},
+                        {"participants", share.size()},
+                        {"enrolments", ranges},
+                        {"method_orders", orders_of(study, share.ranges)}});
+  }
+  const nlohmann::ordered_json document = {{"study", plan.study},
+                                           {"participants", plan.participants()},
+                                           {"stations", stations},
+                                           {"plan", path.string()}};
+  return document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+/// The plan that is there, to be extended; or an empty one.
+EnrolmentPlan plan_to_fill(const PlanArguments& arguments, const Study& study,
+                           const fs::path& path) {
+  if (!arguments.extend) {
+    if (is_there(path)) {
+      throw UsageError(path.string() +
+                       ": is there already and stations may go by it; hand out further numbers "
+                       "with --extend, or give another --output");
+    }
+    return empty_plan(study, station_names(arguments));
+  }
+  EnrolmentPlan plan = load_plan(path, study);
+  if (arguments.participants < plan.participants()) {
+    throw UsageError(fmt::format(
+        "{}: has numbers for {} participants, which cannot be taken back; give --participants {} "
+        "or more",
+        path.string(), plan.participants(), plan.participants()));
+  }
+  return plan;
+}
+
+int plan_enrolment(const PlanArguments& arguments) {
+  if (!arguments.extend && arguments.stations == 0 && arguments.names.empty()) {
+    throw UsageError("plan: for how many stations? Give --stations N, or their --names");
+  }
+  const Study study = load_study(arguments.study);
+  const fs::path path =
+      arguments.output.empty() ? plan_path_for(arguments.study) : arguments.output;
+  EnrolmentPlan plan = plan_to_fill(arguments, study, path);
+  extend_plan(plan, arguments.participants);
+  save_plan(path, plan);
+  print(arguments.json ? plan_json(study, plan, path) : plan_text(study, plan, path));
+  return 0;
+}
+
+}  // namespace
+
+void add_plan_command(CLI::App& program, Action& action) {
+  auto arguments = std::make_shared<PlanArguments>();
+  CLI::App* command = program.add_subcommand(
+      "plan", "Hand out enrolment numbers to several stations, before anybody comes");
+  command->add_option("STUDY", arguments->study, "Study file")->required();
+  command->add_option("--participants", arguments->participants, "How many in all")
+      ->check(CLI::Range(1, kMostPlanned))
+      ->required();
+  auto* stations = command
+                       ->add_option("--stations", arguments->stations,
+                                    "How many stations, named 1, 2, and so on")
+                       ->check(CLI::Range(1, static_cast<int>(kMostStations)));
+  auto* names = command->add_option("--names", arguments->names, "Their names instead")
+                    ->delimiter(',')
+                    ->excludes(stations);
+  command
+      ->add_flag("--extend", arguments->extend,
+                 "Add numbers to the plan that is there; its own stay where they are")
+      ->excludes(stations)
+      ->excludes(names);
+  command->add_option("-o,--output", arguments->output,
+                      "File to write (default: <study>.plan.json beside the study file)");
+  command->add_flag("--json", arguments->json, "One JSON object in place of the table");
+  command->callback([=, &action] { action = [=] { return plan_enrolment(*arguments); }; });
+}
+
+}  // namespace touchtrial

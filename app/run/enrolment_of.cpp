@@ -1,0 +1,46 @@
+#include "app/run/enrolment_of.hpp"
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "protocols/design/enrolment_plan.hpp"
+
+#include <filesystem>
+#include <set>
+
+namespace touchtrial {
+namespace {
+
+/// Numbers that are kept for somebody are among them: their first session still stands there.
+std::set<int> taken_numbers(const StudyStore& store) {
+  std::set<int> taken;
+  for (const SessionRow& row : store.sessions()) taken.insert(row.enrolment);
+  return taken;
+}
+
+/// Two stations that both take what is free would take the same.
+void require_station(const RunOptions& options, const std::filesystem::path& plan) {
+  if (!options.station.empty() && !is_there(plan)) {
+    throw UsageError(plan.string() +
+                     ": is not there, and --station takes numbers from it; copy it here, or make "
+                     "it with `touchtrial plan`");
+  }
+  if (!options.station.empty() || options.pilot || !is_there(plan)) return;
+  throw UsageError(plan.string() +
+                   ": hands out enrolment numbers to stations; say with --station which this is");
+}
+
+}  // namespace
+
+int enrolment_of(const RunOptions& options, const Study& study, const StudyStore& store) {
+  if (options.enrolment > 0) return options.enrolment;
+  const int free_or_inherited = store.enrolment_for(options.participant);
+  const std::set<int> taken = taken_numbers(store);
+  if (taken.contains(free_or_inherited)) return free_or_inherited;
+  const std::filesystem::path plan =
+      options.plan.empty() ? plan_path_for(options.study) : options.plan;
+  require_station(options, plan);
+  if (options.station.empty()) return free_or_inherited;
+  return next_of_station(load_plan(plan, study), options.station, taken, plan.string());
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,134 @@
+#include "protocols/design/enrolment_plan.hpp"
+
+#include "core/errors.hpp"
+#include "core/strict_json.hpp"
+#include "protocols/design/schedule.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <queue>
+#include <stdexcept>
+#include <utility>
+
+namespace touchtrial {
+namespace {
+
+constexpr std::size_t kLongestName = 32;
+
+bool is_name_letter(char letter) {
+  return (letter >= '0' && letter <= '9') || (letter >= 'A' && letter <= 'Z') ||
+         (letter >= 'a' && letter <= 'z') || letter == '+' || letter == '-' || letter == '_';
+}
+
+void require_station_name(const std::string& name) {
+  if (!name.empty() && name.size() <= kLongestName && std::ranges::all_of(name, is_name_letter)) {
+    return;
+  }
+  throw UsageError(in_quotes(name) +
+                   " is no name of a station; use 1 to 32 of 0-9, A-Z, a-z, '+', '-', '_'");
+}
+
+/// How many more numbers each station gets: always one to the smallest, the first of several.
+std::vector<int> numbers_to_hand_out(const EnrolmentPlan& plan, int number) {
+  using Standing = std::pair<int, std::size_t>;  // numbers so far, place
+  std::priority_queue<Standing, std::vector<Standing>, std::greater<>> smallest;
+  for (std::size_t i = 0; i < plan.stations.size(); ++i) {
+    smallest.emplace(plan.stations[i].size(), i);
+  }
+  std::vector<int> more(plan.stations.size(), 0);
+  for (int i = 0; i < number; ++i) {
+    const auto [size, place] = smallest.top();
+    smallest.pop();
+    smallest.emplace(size + 1, place);
+    ++more[place];
+  }
+  return more;
+}
+
+void add_numbers(StationShare& share, int first, int number) {
+  const int last = first + number - 1;
+  if (!share.ranges.empty() && share.ranges.back().last == first - 1) {
+    share.ranges.back().last = last;
+  } else {
+    share.ranges.push_back({first, last});
+  }
+}
+
+}  // namespace
+
+int StationShare::size() const noexcept {
+  int numbers = 0;
+  for (const EnrolmentRange& range : ranges) numbers += range.size();
+  return numbers;
+}
+
+int EnrolmentPlan::participants() const noexcept {
+  int numbers = 0;
+  for (const StationShare& share : stations) numbers += share.size();
+  return numbers;
+}
+
+EnrolmentPlan empty_plan(const Study& study, std::span<const std::string> stations) {
+  if (stations.empty() || stations.size() > kMostStations) {
+    throw UsageError("a plan is for 1 to " + std::to_string(kMostStations) + " stations");
+  }
+  EnrolmentPlan plan{.study = study.name, .stations = {}};
+  std::set<std::string> names;
+  for (const std::string& name : stations) {
+    require_station_name(name);
+    if (!names.insert(name).second) {
+      throw UsageError("station " + name + " is named twice; give every station its own name");
+    }
+    plan.stations.push_back({name, {}});
+  }
+  return plan;
+}
+
+void extend_plan(EnrolmentPlan& plan, int participants) {
+  const int had = plan.participants();
+  if (plan.stations.empty() || participants < had || participants > kMostPlanned) {
+    throw std::invalid_argument("extend_plan: no stations, or an impossible number");
+  }
+  const std::vector<int> more = numbers_to_hand_out(plan, participants - had);
+  int next = had + 1;
+  for (std::size_t i = 0; i < more.size(); ++i) {
+    if (more[i] == 0) continue;
+    add_numbers(plan.stations[i], next, more[i]);
+    next += more[i];
+  }
+}
+
+std::vector<int> orders_of(const Study& study, std::span<const EnrolmentRange> ranges) {
+  const int methods = study.presented_methods();
+  const bool has_orders = methods > 1 && study.trials.blocks != Blocks::mixed;
+  const int rows = has_orders ? williams_rows(methods) : 1;
+  std::vector<int> counts(static_cast<std::size_t>(rows), 0);
+  for (const EnrolmentRange& range : ranges) {
+    for (int number = range.first; number <= range.last; ++number) {
+      ++counts[static_cast<std::size_t>(number % rows)];
+    }
+  }
+  return counts;
+}
+
+int next_of_station(const EnrolmentPlan& plan, const std::string& station,
+                    const std::set<int>& taken, const std::string& source) {
+  const auto share = std::ranges::find(plan.stations, station, &StationShare::station);
+  if (share == plan.stations.end()) {
+    std::string names;
+    for (const StationShare& known : plan.stations) {
+      names += (names.empty() ? "" : ", ") + known.station;
+    }
+    throw StudyError(source + ": has no station " + in_quotes(station) + "; it has " + names);
+  }
+  for (const EnrolmentRange& range : share->ranges) {
+    for (int number = range.first; number <= range.last; ++number) {
+      if (!taken.contains(number)) return number;
+    }
+  }
+  throw StudyError(source + ": all numbers of station " + station +
+                   " are taken; hand out more with `touchtrial plan --extend`, and give every "
+                   "station the new plan");
+}
+
+}  // namespace touchtrial
