@@ -1,5 +1,6 @@
 // One session after the other, run as an experimenter runs them, with a simulated participant.
 #include "app/study_folder.hpp"
+#include "protocols/store/study_store.hpp"
 #include "support/catch.hpp"
 
 #include <csignal>
