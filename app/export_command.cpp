@@ -8,6 +8,7 @@
 #include "app/console.hpp"
 #include "app/key_of_database.hpp"
 #include "core/errors.hpp"
+#include "protocols/collect/open_study.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <filesystem>
@@ -72,7 +73,7 @@ std::vector<fs::path> write_files(const ExportArguments& arguments, const StudyS
 
 int export_study(const ExportArguments& arguments) {
   require_fitting(arguments);
-  const StudyStore store = StudyStore::open(arguments.database, StudyStore::Access::read_only);
+  const StudyStore store = open_study(arguments.database.string());
   std::optional<StudyKey> key;
   std::optional<Outcomes> outcomes;
   if (store.state().unblinded) {

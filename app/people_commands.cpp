@@ -137,6 +137,7 @@ int withdraw(const PeopleArguments& arguments) {
   }
   print(place_of(arguments) + ": withdrawn; what was sealed of this person cannot be read again" +
         (removed ? ", and the personal data are removed\n" : "\n") +
+        (store.stations() > 0 ? "this is a merged database: withdraw in the station's too\n" : "") +
         remaining_text(arguments.database));
   return 0;
 }

@@ -11,6 +11,7 @@
 #include "app/console.hpp"
 #include "app/key_of_database.hpp"
 #include "core/errors.hpp"
+#include "protocols/collect/open_study.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <cstdio>
@@ -98,7 +99,7 @@ int write_outcomes(const StudyStore& store, const StudyReport& report,
 }
 
 int report(const ReportArguments& arguments) {
-  const StudyStore store = StudyStore::open(arguments.database, StudyStore::Access::read_only);
+  const StudyStore store = open_study(arguments.database.string());
   if (!arguments.folder.empty()) {
     refuse_other_study(arguments.folder, store.commitment().study);
     refuse_strangers(arguments.folder);

@@ -99,6 +99,11 @@ void add_simulate_command(CLI::App& program, Action& action) {
   command->add_option("--participants", options.participants, "How many")
       ->check(CLI::Range(1, 100000))
       ->capture_default_str();
+  command
+      ->add_option("--first-participant", options.first_participant,
+                   "Number of the first, for a station that is to be merged with others")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
   command->add_option("--seed", options.seed, "Seed of everything random in participants")
       ->check(seed_validator())
       ->capture_default_str();

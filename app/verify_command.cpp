@@ -3,6 +3,7 @@
 #include "app/console.hpp"
 #include "core/errors.hpp"
 #include "core/hash.hpp"
+#include "protocols/collect/open_study.hpp"
 
 #include <filesystem>
 #include <memory>
@@ -38,7 +39,9 @@ int verify(const VerifyArguments& arguments) {
                          .key = key_path_for(arguments.database, arguments.key),
                          .key_named = !arguments.key.empty(),
                          .pack = arguments.pack};
-  const Verification verification = verify_files(files, head);
+  const Verification verification = verify_files(files, head, [](const fs::path& database) {
+    return open_study(database.string(), TraceUse::copied);
+  });
   print(arguments.json ? verification_json(verification) : verification_text(verification));
   return verification.holds() ? 0 : kNotVerified;
 }

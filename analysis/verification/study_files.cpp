@@ -108,8 +108,10 @@ Verification of_damaged(const DamagedStore& error) {
 
 }  // namespace
 
-Verification verify_files(const StudyFiles& files, const std::optional<Digest>& head) try {
-  const StudyStore store = StudyStore::open(files.database, StudyStore::Access::read_only);
+Verification verify_files(const StudyFiles& files, const std::optional<Digest>& head,
+                          const StudyOpener& open) try {
+  const StudyStore store =
+      open ? open(files.database) : StudyStore::open(files.database, StudyStore::Access::read_only);
   const Opened<StudyKey> key = open_key(files);
   const Opened<Pack> pack = open_pack(files, store, key.file);
   Verification verification =

@@ -4,6 +4,7 @@
 #include "analysis/verification/verification.hpp"
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 
 namespace touchtrial {
@@ -16,8 +17,13 @@ struct StudyFiles {
   std::filesystem::path pack;  ///< empty: where the key says, if it is there and of this study
 };
 
+/// How the database is opened; it may throw what StudyStore::open throws.
+using StudyOpener = std::function<StudyStore(const std::filesystem::path&)>;
+
 /// As verify_study. A damaged database, key or pack is a failed check.
+/// \param open  for reading; empty: as StudyStore does
 /// \throws StoreError if the database is missing, none of Touchtrial, or of a newer schema
-[[nodiscard]] Verification verify_files(const StudyFiles& files, const std::optional<Digest>& head);
+[[nodiscard]] Verification verify_files(const StudyFiles& files, const std::optional<Digest>& head,
+                                        const StudyOpener& open = {});
 
 }  // namespace touchtrial

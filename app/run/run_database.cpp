@@ -43,6 +43,11 @@ StudyStore run_database_for(const RunOptions& options, const RunStudy& study) {
   if (!is_there(options.database)) return StudyStore::create(options.database, ours, utc_now());
   StudyStore store = StudyStore::open(options.database, StudyStore::Access::read_write);
   require_same(store.commitment(), ours, options);
+  if (store.stations() > 0) {
+    refuse(options,
+           "was merged from several stations' databases and takes no sessions of its own; run them "
+           "in this station's database, and merge again");
+  }
   return store;
 }
 

@@ -1,11 +1,13 @@
 #include "protocols/store/chain_check.hpp"
 
 #include "protocols/store/chain_link.hpp"
+#include "protocols/store/collected_chain.hpp"
 #include "protocols/store/derived_rows.hpp"
 #include "protocols/store/event_fault.hpp"
 #include "protocols/store/event_rows.hpp"
 #include "protocols/store/file_chain.hpp"
 #include "protocols/store/schema_check.hpp"
+#include "protocols/store/session_check.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -15,12 +17,6 @@
 
 namespace touchtrial {
 namespace {
-
-/// What a trace-stored event says of its trace.
-struct TraceClaim {
-  std::int64_t sequence = 0;
-  Digest digest{};
-};
 
 [[noreturn]] void fault(std::int64_t session, std::int64_t sequence, const std::string& what) {
   throw EventFault(session, sequence, what);
@@ -37,8 +33,13 @@ class Inspection {
 
   void run(TraceCheck traces) {
     if (traces == TraceCheck::full) inspect_structure();
-    walk(0, [&](const Event& event) { file_.add(event); });
+    const std::vector<Event> collected = inspect_stations();
+    walk(0, [&](const Event& event) {
+      if (!collected.empty()) inspect_collected(event, collected);
+      file_.add(event);
+    });
     if (!file_.commitment()) fault(0, kNoEvent, "the file's chain is empty");
+    inspect_length(collected);
     inspect_sessions();
     // Exclusions and withdrawals change rows of sessions, which exist only now.
     for_each_event(database_, 0, [&](const Event& event) { fold(expected_, event); });
@@ -53,11 +54,12 @@ class Inspection {
   void inspect_structure() const;
   template <typename Visit>
   ChainLink walk(int session, Visit visit) const;
+  [[nodiscard]] std::vector<Event> inspect_stations();
+  [[nodiscard]] StationChain inspect_station(int station) const;
+  void inspect_collected(const Event& event, const std::vector<Event>& collected) const;
+  void inspect_length(const std::vector<Event>& collected) const;
   void inspect_sessions();
   void inspect_session(int session, const SessionOnFile& on_file);
-  void inspect_opening(const Event& event, const SessionOnFile& on_file) const;
-  void inspect_end(int session, const ChainLink& chain, const SessionOnFile& on_file) const;
-  void note_trace(const Event& event);
   void inspect_keys() const;
   void inspect_traces();
   void inspect_session_rows() const;
@@ -67,6 +69,7 @@ class Inspection {
 
   const Database& database_;
   FileChain file_;
+  bool is_collected_ = false;
   DerivedRows expected_;
   std::map<TrialId, TraceClaim> claims_;
 };
@@ -93,70 +96,81 @@ ChainLink Inspection::walk(int session, Visit visit) const {
   return chain;
 }
 
-void Inspection::inspect_sessions() {
-  for (const auto& [session, on_file] : file_.sessions()) inspect_session(session, on_file);
+/// What the stations' chains come to; empty if there are none.
+std::vector<Event> Inspection::inspect_stations() {
+  std::vector<StationChain> stations;
+  std::int64_t lowest = 0;
   for (const std::int64_t session : sessions_with_events(database_)) {
-    const bool known = session > 0 && session <= std::numeric_limits<int>::max() &&
+    lowest = std::clamp(session, -std::int64_t{std::numeric_limits<int>::max()}, lowest);
+  }
+  for (int station = 1; station <= -lowest; ++station) {
+    stations.push_back(inspect_station(station));
+    if (station > 1 && !comes_before(stations[stations.size() - 2], stations.back())) {
+      fault(-station, kNoEvent, "does not come after that of the station before");
+    }
+  }
+  if (stations.empty()) return {};
+  try {
+    is_collected_ = true;
+    return collected_chain(stations).events;
+  } catch (const EventFault&) {
+    throw;
+  } catch (const StoreError& error) {
+    fault(0, kNoEvent, error.what());
+  }
+}
+
+StationChain Inspection::inspect_station(int station) const {
+  StationChain found{.name = "station " + std::to_string(station), .events = {}};
+  FileChain file;
+  walk(-station, [&](const Event& event) {
+    file.add(event);
+    found.events.push_back(event);
+  });
+  if (!station_identity(found.events)) fault(-station, kNoEvent, "opens no session");
+  return found;
+}
+
+/// A collected study's chain is what its stations' come to, and then what was decided later.
+void Inspection::inspect_collected(const Event& event, const std::vector<Event>& collected) const {
+  if (event.sequence < static_cast<std::int64_t>(collected.size())) {
+    if (event.hash == collected[static_cast<std::size_t>(event.sequence)].hash) return;
+    fault(0, event.sequence, "is not what the stations' chains come to");
+  }
+  if (event.kind == EventKind::session_opened || event.kind == EventKind::session_closed ||
+      event.kind == EventKind::participant_replaced) {
+    fault(0, event.sequence, "stands at no station; a collected study has no sessions of its own");
+  }
+}
+
+void Inspection::inspect_length(const std::vector<Event>& collected) const {
+  const auto length = static_cast<std::int64_t>(collected.size());
+  const std::optional<Event> last =
+      length > 0 ? read_event(database_, 0, length - 1) : std::nullopt;
+  if (length > 0 && !last) fault(0, kNoEvent, "lacks events that the stations' chains come to");
+}
+
+void Inspection::inspect_sessions() {
+  for (const auto& [session, on_file] : file_.sessions()) {
+    if (on_file.opened.station > 0 && !is_collected_) {
+      fault(0, on_file.opened_at, "a session comes from a station that is not here");
+    }
+    inspect_session(session, on_file);
+  }
+  for (const std::int64_t session : sessions_with_events(database_)) {
+    if (session < 0) continue;
+    const bool known = session <= std::numeric_limits<int>::max() &&
                        file_.sessions().count(static_cast<int>(session)) > 0;
     if (!known) fault(session, kNoEvent, "the file's chain knows no such session");
   }
 }
 
 void Inspection::inspect_session(int session, const SessionOnFile& on_file) {
-  const ChainLink chain = walk(session, [&](const Event& event) {
-    if (event.sequence == 0) inspect_opening(event, on_file);
-    fold(expected_, event);
-    if (event.kind == EventKind::trace_stored) note_trace(event);
-  });
-  inspect_end(session, chain, on_file);
-}
-
-void Inspection::inspect_opening(const Event& event, const SessionOnFile& on_file) const {
-  if (event.hash != on_file.opened.first) {
-    fault(event.session, 0, "the session's first event is not the one on the file's chain");
-  }
-  const SessionOpening opening = body_of(event, opening_from_json);
-  const StudyCommitment& commitment = *file_.commitment();
-  if (opening.study_id != commitment.study_id || opening.seal != commitment.seal) {
-    fault(event.session, 0, "the session belongs to another study");
-  }
-  if (opening.participant != on_file.opened.participant ||
-      opening.enrolment != on_file.opened.enrolment) {
-    fault(event.session, 0, "participant or enrolment differs from the file's chain");
-  }
-}
-
-void Inspection::inspect_end(int session, const ChainLink& chain,
-                             const SessionOnFile& on_file) const {
-  const std::int64_t last = chain.length() - 1;
-  if (last < 0) {
-    fault(0, on_file.opened_at, "session " + std::to_string(session) + " has no events");
-  }
-  const SessionState state = expected_.sessions.at(session).state;
-  if (!on_file.closed) {
-    if (state == SessionState::open) return;
-    fault(session, last, "the session is closed, but not on the file's chain");
-  }
-  const SessionClosedBody& closed = *on_file.closed;
-  if (closed.length != chain.length()) {
-    fault(session, last,
-          "session " + std::to_string(session) + " ends at event " + std::to_string(last) +
-              ", the file's chain says " + std::to_string(closed.length - 1));
-  }
-  if (closed.head != chain.head()) {
-    fault(session, last, "the session's last event is not the one on the file's chain");
-  }
-  if (state != (closed.complete ? SessionState::completed : SessionState::stopped)) {
-    fault(session, last, "the session's end differs from the file's chain");
-  }
-}
-
-void Inspection::note_trace(const Event& event) {
-  const TraceBody body = body_of(event, trace_body_from_json);
-  const TrialId id(event.session, body.trial);
-  const TraceClaim claim{.sequence = event.sequence, .digest = body.trace};
-  if (!claims_.emplace(id, claim).second) {
-    fault(event.session, event.sequence, trace_of(id) + " is stored twice");
+  SessionCheck check(session, on_file, *file_.commitment());
+  for_each_event(database_, session, [&](const Event& event) { check.add(event, expected_); });
+  check.finish(expected_);
+  for (const auto& [trial, claim] : check.claims()) {
+    claims_.emplace(TrialId(session, trial), claim);
   }
 }
 
@@ -166,14 +180,8 @@ void Inspection::inspect_keys() const {
   while (query.step()) stored[query.integer(0)] = sha256(query.blob(1));
   for (const auto& [session, on_file] : file_.sessions()) {
     const auto key = stored.extract(session);
-    if (key.empty() && !on_file.withdrawn) {
-      fault(session, kNoEvent, "the participant's key is missing without a withdrawal");
-    }
-    if (key.empty()) continue;
-    if (on_file.withdrawn)
-      fault(session, kNoEvent, "the participant withdrew, but the key is still there");
-    if (key.mapped() != on_file.opened.key)
-      fault(session, kNoEvent, "the participant's key was altered");
+    SessionCheck(session, on_file, *file_.commitment())
+        .check_key(key.empty() ? std::nullopt : std::optional(key.mapped()));
   }
   if (!stored.empty()) fault(stored.begin()->first, kNoEvent, "a participant's key has no session");
 }
@@ -262,7 +270,8 @@ std::optional<ChainFault> find_first_fault(const Database& database, TraceCheck 
     Inspection(database).run(traces);
     return std::nullopt;
   } catch (const EventFault& found) {
-    const bool is_int = found.session() >= 0 && found.session() <= std::numeric_limits<int>::max();
+    const bool is_int = found.session() >= std::numeric_limits<int>::min() &&
+                        found.session() <= std::numeric_limits<int>::max();
     return ChainFault{.session = is_int ? static_cast<int>(found.session()) : 0,
                       .sequence = std::max(found.sequence(), std::int64_t{0}),
                       .what = found.bare()};

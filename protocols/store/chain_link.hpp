@@ -3,6 +3,7 @@
 
 #include "protocols/store/event.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <optional>
@@ -13,8 +14,10 @@ namespace touchtrial {
 /// The growing end of one chain. What events mean is the business of fold; this is about the chain.
 class ChainLink {
  public:
-  /// \param session  0 for the file's chain
-  explicit ChainLink(int session) : session_(session) {}
+  /// \param session  0 for the file's chain, -1, -2, ... for a collected station's
+  explicit ChainLink(int session) : ChainLink(session, std::max(session, 0)) {}
+  /// \param own_session  Event::own_session of its events
+  ChainLink(int session, int own_session) : session_(session), own_session_(own_session) {}
 
   /// The end of a chain that is stored already. \param last  its last event
   [[nodiscard]] static ChainLink after(const Event& last);
@@ -31,6 +34,7 @@ class ChainLink {
 
  private:
   int session_;
+  int own_session_;
   std::int64_t length_ = 0;
   Digest head_{};
   std::chrono::nanoseconds last_at_{0};

@@ -49,6 +49,7 @@ class Feed {
         opened_.emplace(body.session, body);
       }
       if (event.kind == EventKind::session_closed) ended_.insert(session_about(event));
+      if (event.kind == EventKind::participant_replaced) replaced_.insert(session_about(event));
     }
     skip();
   }
@@ -62,6 +63,8 @@ class Feed {
   [[nodiscard]] const std::map<int, SessionOpenedBody>& opened() const noexcept { return opened_; }
   [[nodiscard]] const std::set<int>& ended() const noexcept { return ended_; }
 
+  /// Whether a session's place is taken by another sooner or later.
+  [[nodiscard]] bool is_replaced(int session) const { return replaced_.contains(session); }
   /// Decides whose head comes first.
   [[nodiscard]] std::tuple<int, nanoseconds, int> rank() const {
     return {simulated_ ? session().enrolment : 0, head().at, simulated_ ? 0 : session().enrolment};
@@ -85,6 +88,7 @@ class Feed {
   bool simulated_;
   std::map<int, SessionOpenedBody> opened_;
   std::set<int> ended_;
+  std::set<int> replaced_;
   std::size_t next_ = 0;
   int about_ = 0;
 };
@@ -124,6 +128,13 @@ class Collection {
     const bool simulated = body_of(stations.front().events.front(), commitment_from_json).simulated;
     int number = 0;
     for (const StationChain& station : stations) feeds_.emplace_back(station, ++number, simulated);
+    for (const Feed& feed : feeds_) {
+      for (const int session : feed.ended()) {
+        if (!feed.is_replaced(session)) continue;
+        former_participants_.insert(feed.opened().at(session).participant);
+        former_enrolments_.insert(feed.opened().at(session).enrolment);
+      }
+    }
   }
 
   CollectedChain made() {
@@ -164,18 +175,33 @@ class Collection {
     return std::nullopt;
   }
 
+  /// Whether a feed opens a session that stays, in a place that another had before, who is still
+  /// to come: clocks of stations may differ by more than it took to replace somebody.
+  [[nodiscard]] bool comes_later(const Feed& feed) const {
+    if (feed.head().kind != EventKind::session_opened) return false;
+    const SessionOpenedBody& session = feed.session();
+    if (feed.is_replaced(session.session)) return false;
+    return former_participants_.contains(session.participant) ||
+           former_enrolments_.contains(session.enrolment);
+  }
+
   /// The feed whose head comes next; none when all are done.
   Feed* next_feed() {
     Feed* best = nullptr;
+    Feed* later = nullptr;
     const Feed* waits = nullptr;
+    const auto prefer = [](Feed*& known, Feed& feed) {
+      if (known == nullptr || feed.rank() < known->rank()) known = &feed;
+    };
     for (Feed& feed : feeds_) {
       if (feed.is_done()) continue;
       if (taken_by(feed)) {
         if (waits == nullptr) waits = &feed;
-      } else if (best == nullptr || feed.rank() < best->rank()) {
-        best = &feed;
+      } else {
+        prefer(comes_later(feed) ? later : best, feed);
       }
     }
+    if (best == nullptr) best = later;
     if (best == nullptr && waits != nullptr) refuse_taken(*waits);
     return best;
   }
@@ -212,6 +238,8 @@ class Collection {
       if (event.kind == EventKind::participant_replaced) {
         participants_.erase(session.participant);
         enrolments_.erase(session.enrolment);
+        former_participants_.extract(session.participant);
+        former_enrolments_.extract(session.enrolment);
       }
       append(event.kind, event.at, body_of(event, [&](const std::string& body) {
                return renumbered(body, numbers_.at(place));
@@ -276,6 +304,9 @@ class Collection {
   /// Of sessions that nobody replaced.
   std::map<std::string, SessionPlace> participants_;
   std::map<int, SessionPlace> enrolments_;
+  /// Of sessions that somebody replaced, until that has come.
+  std::multiset<std::string> former_participants_;
+  std::multiset<int> former_enrolments_;
   bool closed_ = false;
 };
 
@@ -286,14 +317,14 @@ std::optional<Digest> station_identity(std::span<const Event> chain) {
   return chain[1].hash;
 }
 
-void sort_stations(std::vector<StationChain>& stations) {
+bool comes_before(const StationChain& a, const StationChain& b) {
   const auto rank = [](const StationChain& station) {
     const Event& first = station.events[1];
     const bool simulated = body_of(station.events.front(), commitment_from_json).simulated;
     const int enrolment = body_of(first, session_opened_from_json).enrolment;
     return std::tuple(simulated ? enrolment : 0, first.at, simulated ? 0 : enrolment, first.hash);
   };
-  std::ranges::sort(stations, {}, rank);
+  return rank(a) < rank(b);
 }
 
 CollectedChain collected_chain(std::span<const StationChain> stations) {

@@ -39,18 +39,19 @@ struct CollectedChain {
 /// is the second of the chain. Nothing: no session was ever opened there.
 [[nodiscard]] std::optional<Digest> station_identity(std::span<const Event> chain);
 
-/// Orders stations by their first sessions' openings, and where those are at one time, by identity.
-/// \pre all have an identity
-void sort_stations(std::vector<StationChain>& stations);
+/// The order of stations: by their first sessions' openings (in simulated studies, whose times mean
+/// nothing, by those sessions' enrolment numbers), and where those are the same, by identity.
+/// \pre both have an identity
+[[nodiscard]] bool comes_before(const StationChain& a, const StationChain& b);
 
 /// The collected chain. It begins with the commitment of the first station. Then come the events of
 /// the stations about sessions that have ended, each station's in their order: of those that are
 /// next, the one at the earliest time, and in simulated studies, whose times mean nothing, the one
-/// about the smallest enrolment number; a session waits for the replacement of whoever has its
-/// participant id or enrolment number. Sessions are numbered as they are opened here. At last, if
-/// it is so at all stations, that the study is closed, and that it is unblinded.
-/// \param stations  in the order of sort_stations, each chain valid by itself (FileChain)
-/// \throws StoreError if they are not of one study, or a participant id or enrolment number is
+/// about the smallest enrolment number; a session waits for the replacement of whoever had its
+/// participant id or enrolment number before. Sessions are numbered as they are opened here. At
+/// last, if it is so at all stations, that the study is closed, and that it is unblinded. \param
+/// stations  in the order of comes_before, each chain valid by itself (FileChain) \throws
+/// StoreError if they are not of one study, or a participant id or enrolment number is
 ///   taken in two of them by sessions that nobody replaced
 /// \throws EventFault if an event's body is no such
 [[nodiscard]] CollectedChain collected_chain(std::span<const StationChain> stations);

@@ -75,9 +75,13 @@ void set_up_for_writing(const Database& database) {
   require_setting(database, "secure_delete", "1", remedy);
 }
 
-void set_up(const Database& database, Database::Mode mode) {
+void set_up_for_all(const Database& database) {
   database.connection().exec(
       "PRAGMA foreign_keys = ON; PRAGMA trusted_schema = OFF; PRAGMA cell_size_check = ON;");
+}
+
+void set_up(const Database& database, Database::Mode mode) {
+  set_up_for_all(database);
   if (mode == Database::Mode::read_only) {
     database.connection().exec("PRAGMA query_only = ON;");
   } else {
@@ -149,6 +153,18 @@ Database Database::create(const std::filesystem::path& path) {
   }
 }
 
+Database Database::temporary(const std::string& name) {
+  try {
+    Database database(name, SQLite::Database("", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE));
+    database.connection_.exec("PRAGMA page_size = 8192;");
+    set_up_for_all(database);
+    database.write_carelessly();
+    return database;
+  } catch (const SQLite::Exception& error) {
+    rethrow(name, error);
+  }
+}
+
 Database Database::open(const std::filesystem::path& path, Mode mode, int newest_version) {
   check_header(path, newest_version);
   try {
@@ -177,6 +193,16 @@ Query Database::query(const char* sql) const {
 
 Query Database::separate_query(const char* sql) const {
   return Query(std::make_unique<SQLite::Statement>(connection_, sql));
+}
+
+void Database::write_carelessly() const {
+  connection_.exec("PRAGMA journal_mode = OFF; PRAGMA synchronous = OFF;");
+}
+
+void Database::write_safely() const {
+  // The first of these makes the change to the second reach the disk, and all before it.
+  connection_.exec("PRAGMA synchronous = FULL;");
+  set_up_for_writing(*this);
 }
 
 SQLite::Transaction Database::write_transaction() const {

@@ -25,6 +25,10 @@ class Database {
   /// A new, empty database of ours, without tables. \throws StoreError if the file exists
   [[nodiscard]] static Database create(const std::filesystem::path& path);
 
+  /// An empty one that SQLite keeps to itself, in memory and in a file without a name, which is
+  /// gone with the connection or the program. \param name  for messages
+  [[nodiscard]] static Database temporary(const std::string& name);
+
   /// An existing one. For reading it leaves no files behind and works in a folder that cannot be
   /// written, if the file has no log beside it.
   /// \param newest_version  the newest schema that the program knows
@@ -41,6 +45,12 @@ class Database {
   [[nodiscard]] Query query(const char* sql) const;
   /// One of its own, for loops whose body may ask anything else of this database.
   [[nodiscard]] Query separate_query(const char* sql) const;
+
+  /// For filling a file that nobody knows yet, and that is thrown away if anything fails: without a
+  /// log, and without waiting for the disk.
+  void write_carelessly() const;
+  /// After write_carelessly: from now on as every database of ours, with all of it on the disk.
+  void write_safely() const;
 
   /// A transaction that holds the write lock from its beginning; rolled back unless committed.
   [[nodiscard]] SQLite::Transaction write_transaction() const;

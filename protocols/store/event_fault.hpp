@@ -12,12 +12,19 @@ namespace touchtrial {
 /// In place of a sequence number: the fault is not in an event.
 inline constexpr std::int64_t kNoEvent = -1;
 
+/// \param session  as Event::session
+[[nodiscard]] inline std::string chain_named(std::int64_t session) {
+  if (session == 0) return "the file's chain";
+  if (session < 0) return "the chain of station " + std::to_string(-session);
+  return "session " + std::to_string(session);
+}
+
 /// Thrown where events and rows are read or understood; Database::run adds file and remedy,
 /// StudyStore::first_fault turns it into a ChainFault.
 class EventFault : public StoreError {
  public:
   EventFault(std::int64_t session, std::int64_t sequence, const std::string& what)
-      : StoreError((session == 0 ? "the file's chain" : "session " + std::to_string(session)) +
+      : StoreError(chain_named(session) +
                    (sequence < 0 ? "" : ", event " + std::to_string(sequence)) + ": " +
                    one_line(what)),
         session_(session),

@@ -159,6 +159,12 @@ void replace_participant(DerivedRows& rows, const Event& event) {
   row.replaced_by = body.by;
 }
 
+/// The file's chain says where a session was collected from; in a station's own file, nothing.
+void place_session(DerivedRows& rows, const Event& event) {
+  const SessionOpenedBody body = body_of(event, session_opened_from_json);
+  if (body.station > 0) named_row(rows, event, body.session).station = body.station;
+}
+
 void fold_session_event(DerivedRows& rows, const Event& event) {
   open_row(rows, event);
   switch (event.kind) {
@@ -203,6 +209,9 @@ FoldScope scope_of(const Event& event) {
   if (event.kind == EventKind::participant_replaced) {
     return {.session = body_of(event, replacement_from_json).session, .trial = {}};
   }
+  if (event.kind == EventKind::session_opened) {
+    return {.session = body_of(event, session_opened_from_json).session, .trial = {}};
+  }
   if (belongs_to_file_chain(event.kind)) return {};
   FoldScope scope{.session = event.session, .trial = {}};
   if (is_about_a_trial(event.kind)) {
@@ -223,6 +232,7 @@ void fold(DerivedRows& rows, const Event& event) {
     return mark_participant(rows, event, &SessionRow::withdrawn);
   }
   if (event.kind == EventKind::participant_replaced) return replace_participant(rows, event);
+  if (event.kind == EventKind::session_opened) return place_session(rows, event);
   if (!belongs_to_file_chain(event.kind)) fold_session_event(rows, event);
 }
 

@@ -44,6 +44,13 @@ void StoredStudy::require_reason(const std::string& reason, const std::string& w
   if (reason.empty()) refuse(what + " needs a reason, which is recorded; give one");
 }
 
+void StoredStudy::refuse_if_collected() const {
+  if (stations() == 0) return;
+  refuse(
+      "was collected from several stations and takes no sessions of its own; record them in a "
+      "station's database, and merge again");
+}
+
 const StudyCommitment& StoredStudy::commitment() const {
   if (!commitment_) {
     const std::optional<Event> first = read_event(database_, 0, 0);
@@ -187,6 +194,7 @@ Event StoredStudy::last_of_open(int session) const {
 
 void StoredStudy::admit(const Event& opened, const Bytes& wrapped_key,
                         std::chrono::nanoseconds at) {
+  refuse_if_collected();
   if (is_closed(database_)) refuse("the study is closed; it takes no more sessions");
   if (opened.session != next_session()) {
     refuse("session " + std::to_string(opened.session) + " is not the next one (" +
@@ -300,6 +308,7 @@ void StoredStudy::withdraw(int session, std::chrono::nanoseconds at, const std::
 }
 
 void StoredStudy::replace(const ReplacementBody& replacement, std::chrono::nanoseconds at) {
+  refuse_if_collected();
   if (is_closed(database_)) refuse("the study is closed; it takes no more sessions");
   const SessionRow row = session(replacement.session);
   check_replaced(row);

@@ -69,6 +69,7 @@ class StoredStudy {
   void require_reason(const std::string& reason, const std::string& what) const;
 
  private:
+  void refuse_if_collected() const;
   void refuse_after_withdrawal(const DerivedRows& rows, const Event& event) const;
   void check_opening(const SessionOpening& opening) const;
   /// Pilots and others, what is seen and what is felt: one database holds one kind.

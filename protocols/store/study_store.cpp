@@ -2,6 +2,7 @@
 
 #include "core/files.hpp"
 #include "protocols/store/chain_check.hpp"
+#include "protocols/store/collected_draft.hpp"
 #include "protocols/store/damaged_store.hpp"
 #include "protocols/store/derived_rows.hpp"
 #include "protocols/store/event_rows.hpp"
@@ -119,6 +120,12 @@ StudyStore StudyStore::open(const std::filesystem::path& path, Access access) {
         "is of an older schema; `touchtrial migrate` brings it up to date and keeps a copy");
   }
   impl->run([&] { check_tables(impl->database()); });
+  return StudyStore(std::move(impl));
+}
+
+StudyStore CollectedDraft::store_of(Database database, TraceFetch fetch) {
+  auto impl = std::make_unique<StudyStore::Impl>(std::move(database));
+  impl->fetch_trace = std::move(fetch);
   return StudyStore(std::move(impl));
 }
 

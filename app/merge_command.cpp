@@ -1,0 +1,130 @@
+// merge: several stations' databases made one.
+#include "app/commands.hpp"
+#include "app/console.hpp"
+#include "app/simulated_study.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "protocols/collect/collect.hpp"
+#include "protocols/design/study_key.hpp"
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+
+namespace touchtrial {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct MergeArguments {
+  std::vector<fs::path> databases;
+  fs::path target;
+  bool json = false;
+};
+
+void refuse_existing(const fs::path& path) {
+  if (!is_there(path)) return;
+  throw StoreError(one_line(path.string()) + ": exists already; give another name with -o");
+}
+
+Stations stations_of(const std::vector<fs::path>& databases) {
+  Stations stations;
+  for (const fs::path& database : databases) {
+    for (auto& station : stations_of_file(database)) stations.push_back(std::move(station));
+  }
+  return stations;
+}
+
+/// The key beside one of the databases, if it is that of a simulated study with this seal.
+std::optional<StudyKey> simulated_key_beside(const std::vector<fs::path>& databases,
+                                             const Digest& seal) {
+  for (const fs::path& database : databases) {
+    const fs::path path = key_path_for(database, {});
+    if (!is_there(path)) continue;
+    StudyKey key = load_study_key(path);
+    if (key.simulated && study_seal(key) == seal) return key;
+  }
+  return std::nullopt;
+}
+
+/// Lays the key beside a database of simulated participants, as `simulate` does: it follows from
+/// the study file, and blinds nobody. That of a study with people stays where it is.
+/// \return whether a key lies there now
+bool lay_simulated_key(const MergeArguments& arguments) {
+  const StudyStore store = StudyStore::open(arguments.target, StudyStore::Access::read_only);
+  if (!store.commitment().simulated) return false;
+  const auto key = simulated_key_beside(arguments.databases, store.commitment().seal);
+  if (!key) return false;
+  const fs::path path = key_path_for(arguments.target, {});
+  refuse_other_key(path, *key);
+  save_study_key(path, *key);
+  return true;
+}
+
+void warn_of(const CollectReport& report) {
+  for (const SessionLeftOut& session : report.left_out) {
+    spdlog::warn("{}",
+                 one_line(fmt::format("{}: session {} (participant {}) has not ended and is "
+                                      "left out; merge again when it has",
+                                      session.station, session.session, session.participant)));
+  }
+  for (const std::string& name : report.superfluous) {
+    spdlog::warn("{}", one_line(name + ": holds no session that the others do not hold"));
+  }
+}
+
+std::string summary_of(const MergeArguments& arguments, const CollectReport& report, bool key) {
+  const std::string key_path = key_path_for(arguments.target, {}).string();
+  if (!arguments.json) {
+    return fmt::format(
+        "{}: {} sessions of {} {}\n{}", arguments.target.string(), report.sessions, report.stations,
+        report.stations == 1 ? "station" : "stations",
+        key ? "key " + key_path + "\n" : "the study's key is where it was: name it with --key\n");
+  }
+  nlohmann::json left_out = nlohmann::json::array();
+  for (const SessionLeftOut& session : report.left_out) {
+    left_out.push_back({{"station", session.station},
+                        {"session", session.session},
+                        {"participant", session.participant}});
+  }
+  const nlohmann::json summary = {
+      {"database", arguments.target.string()}, {"stations", report.stations},
+      {"sessions", report.sessions},           {"left_out", left_out},
+      {"superfluous", report.superfluous},     {"key", key ? nlohmann::json(key_path) : nullptr}};
+  return summary.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+int merge(const MergeArguments& arguments) {
+  if (arguments.target.empty()) throw UsageError("merge: -o is empty; give it a file name");
+  refuse_existing(arguments.target);
+  const CollectReport report = collect_into_file(stations_of(arguments.databases), arguments.target,
+                                                 progress_bar("merging"));
+  warn_of(report);
+  const bool key = lay_simulated_key(arguments);
+  print(summary_of(arguments, report, key));
+  return 0;
+}
+
+}  // namespace
+
+void add_merge_command(CLI::App& program, Action& action) {
+  auto arguments = std::make_shared<MergeArguments>();
+  CLI::App* command = program.add_subcommand(
+      "merge", "Make one database of several stations' databases of one study");
+  command->add_option("DB", arguments->databases, "Databases of the stations")->required();
+  command
+      ->add_option("-o,--out", arguments->target,
+                   "Database to make; the same for any order of the stations")
+      ->required();
+  command->add_flag("--json", arguments->json, "Summary as one JSON object");
+  command->callback([=, &action] { action = [=] { return merge(*arguments); }; });
+}
+
+}  // namespace touchtrial

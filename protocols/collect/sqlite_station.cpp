@@ -1,0 +1,107 @@
+// Stations that are SQLite files, or were collected into one.
+#include "core/errors.hpp"
+#include "protocols/collect/collect.hpp"
+#include "protocols/store/collected_chain.hpp"
+#include "protocols/store/event_fault.hpp"
+#include "protocols/store/payload_json.hpp"
+
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace touchtrial {
+namespace {
+
+[[noreturn]] void refuse(const std::filesystem::path& database, const std::string& why) {
+  throw StoreError(one_line(database.string() + ": " + why));
+}
+
+class SqliteStation final : public StationFile {
+ public:
+  /// \param station  0: the file is a station's own
+  SqliteStation(std::shared_ptr<const StudyStore> store, const std::string& file, int station)
+      : store_(std::move(store)),
+        station_(station),
+        name_(station == 0 ? file : fmt::format("{}, station {}", file, station)) {
+    for (const SessionRow& row : store_->sessions()) {
+      if (row.station == station) sessions_[row.own_session] = row.session;
+    }
+  }
+
+  [[nodiscard]] const std::string& name() const override { return name_; }
+  [[nodiscard]] std::vector<Event> file_chain() override {
+    return station_ == 0 ? store_->events(0) : store_->station_chain(station_);
+  }
+  [[nodiscard]] std::vector<Event> events(int own_session) override {
+    const auto found = sessions_.find(own_session);
+    if (found == sessions_.end()) return {};
+    std::vector<Event> events = store_->events(found->second);
+    for (Event& event : events) {
+      event.session = event.own_session();
+      event.renumbered_from.reset();
+    }
+    return events;
+  }
+  [[nodiscard]] std::optional<Bytes> wrapped_key(int own_session) override {
+    const auto found = sessions_.find(own_session);
+    return found == sessions_.end() ? std::nullopt : store_->wrapped_key(found->second);
+  }
+  [[nodiscard]] std::optional<Bytes> trace(int own_session, int trial) override {
+    const auto found = sessions_.find(own_session);
+    if (found == sessions_.end()) return std::nullopt;
+    std::optional<SealedTrace> sealed = store_->sealed_trace(found->second, trial);
+    if (!sealed) return std::nullopt;
+    return std::move(sealed->box);
+  }
+  void for_each_trace(int own_session,
+                      const std::function<void(int, const Bytes&)>& visit) override {
+    for (const Event& event : events(own_session)) {
+      if (event.kind != EventKind::trace_stored) continue;
+      const int trial = trace_body_from_json(event.body).trial;
+      if (const std::optional<Bytes> box = trace(own_session, trial)) visit(trial, *box);
+    }
+  }
+
+ private:
+  std::shared_ptr<const StudyStore> store_;
+  int station_;
+  std::string name_;
+  std::map<int, int> sessions_;  ///< number in the file, by own number
+};
+
+/// What was decided on a collected file after it was made would be lost with it.
+void refuse_own_decisions(const StudyStore& store, const std::filesystem::path& database) {
+  std::vector<StationChain> chains;
+  for (int station = 1; station <= store.stations(); ++station) {
+    chains.push_back({.name = "", .events = store.station_chain(station)});
+  }
+  const std::size_t collected = collected_chain(chains).events.size();
+  const std::vector<Event> events = store.events(0);
+  if (events.size() == collected) return;
+  refuse(database,
+         fmt::format("was collected from stations, and then '{}' was recorded in it, which no "
+                     "other file would have; record that at the station, or after the last merge, "
+                     "and merge the stations' own files",
+                     name_of(events[collected].kind)));
+}
+
+}  // namespace
+
+Stations stations_of_file(const std::filesystem::path& database) {
+  const auto store =
+      std::make_shared<const StudyStore>(StudyStore::open(database, StudyStore::Access::read_only));
+  if (const auto fault = store->first_fault(TraceCheck::skip)) {
+    refuse(database, fmt::format("{}, event {}: {}; restore it from a backup, or leave it out",
+                                 chain_named(fault->session), fault->sequence, fault->what));
+  }
+  Stations stations;
+  const int count = store->stations();
+  if (count > 0) refuse_own_decisions(*store, database);
+  for (int station = count > 0 ? 1 : 0; station <= count; ++station) {
+    stations.push_back(std::make_unique<SqliteStation>(store, database.string(), station));
+  }
+  return stations;
+}
+
+}  // namespace touchtrial

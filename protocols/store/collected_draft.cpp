@@ -1,0 +1,244 @@
+#include "protocols/store/collected_draft.hpp"
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "protocols/store/database.hpp"
+#include "protocols/store/derived_rows.hpp"
+#include "protocols/store/event_rows.hpp"
+#include "protocols/store/schema.hpp"
+#include "protocols/store/session_check.hpp"
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <unistd.h>
+
+namespace touchtrial {
+namespace {
+
+template <typename Visit>
+void walk(std::span<const Event> chain, Visit visit) {
+  ChainLink link(0);
+  for (const Event& event : chain) {
+    if (const auto broken = link.broken_by(event)) {
+      throw EventFault(0, std::min(event.sequence, link.length()), *broken);
+    }
+    link.extend(event);
+    visit(event);
+  }
+}
+
+[[noreturn]] void refuse_taken(const std::filesystem::path& path) {
+  throw StoreError(one_line(path.string()) + ": exists already; choose another name");
+}
+
+/// A file that is thrown away unless it is let go.
+class DraftFile {
+ public:
+  explicit DraftFile(std::filesystem::path path) : path_(std::move(path)) { remove(); }
+  ~DraftFile() { remove(); }
+  DraftFile(const DraftFile&) = delete;
+  DraftFile& operator=(const DraftFile&) = delete;
+  [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
+
+ private:
+  void remove() const noexcept {
+    for (const char* const suffix : {"", "-wal", "-shm", "-journal"}) {
+      std::error_code ignored;
+      std::filesystem::remove(path_.string() + suffix, ignored);
+    }
+  }
+  std::filesystem::path path_;
+};
+
+}  // namespace
+
+void check_file_chain(std::span<const Event> chain) {
+  FileChain file;
+  walk(chain, [&](const Event& event) { file.add(event); });
+  if (!file.commitment()) throw EventFault(0, kNoEvent, "the file's chain is empty");
+}
+
+struct CollectedDraft::Impl {
+  /// \param file  nullptr: temporary
+  Impl(std::unique_ptr<DraftFile> draft, Database made, std::filesystem::path name)
+      : file(std::move(draft)), database(std::move(made)), target(std::move(name)) {
+    migrate(database, migrations());
+    database.run([&] { database.write_carelessly(); });
+  }
+
+  template <typename Work>
+  void change(Work&& work) {
+    database.run([&] {
+      SQLite::Transaction transaction = database.write_transaction();
+      work();
+      transaction.commit();
+    });
+  }
+
+  void keep_chain(int number, const StationChain& station);
+  void check_kind(const Event& opened);
+  [[nodiscard]] static Event renumbered(int session, const Event& event);
+  /// Calls `work` with faults of the session that is added named by its own number.
+  template <typename Work>
+  void named_as_at_its_station(Work&& work) const;
+  void settle(int number, DerivedRows& rows) const;
+
+  std::unique_ptr<DraftFile> file;
+  Database database;
+  std::filesystem::path target;
+  CollectedChain chain;
+  FileChain on_file;
+  std::multimap<int, std::size_t> about;  ///< places in `chain` of what changes a session's row
+  std::optional<bool> visual;
+  int session = 0;  ///< that was added last
+  std::map<int, TraceClaim> claims;
+};
+
+void CollectedDraft::Impl::keep_chain(int number, const StationChain& station) {
+  for (Event event : station.events) {
+    event.session = -number;
+    event.renumbered_from = 0;
+    insert_event(database, event);
+  }
+}
+
+/// What is seen and what is felt are never pooled.
+void CollectedDraft::Impl::check_kind(const Event& opened) {
+  const SessionOpening opening = body_of(opened, opening_from_json);
+  const bool seen = opening.station && opening.station->visual;
+  if (visual.value_or(seen) != seen) {
+    throw StoreError(
+        "session " + std::to_string(opened.own_session()) + " is " +
+        (seen ? "seen on a screen, and others are felt" : "felt, and others are seen on a screen") +
+        ": they are never pooled; collect them apart");
+  }
+  visual = seen;
+}
+
+Event CollectedDraft::Impl::renumbered(int number, const Event& event) {
+  Event here = event;
+  here.session = number;
+  if (event.session != number) here.renumbered_from = event.session;
+  return here;
+}
+
+template <typename Work>
+void CollectedDraft::Impl::named_as_at_its_station(Work&& work) const {
+  try {
+    work();
+  } catch (const EventFault& fault) {
+    const int own = chain.sessions.at(static_cast<std::size_t>(session) - 1).own_session;
+    throw EventFault(fault.session() == session ? own : fault.session(), fault.sequence(),
+                     fault.bare());
+  }
+}
+
+/// Where the session is from, and that somebody was excluded, withdrew or was replaced.
+void CollectedDraft::Impl::settle(int number, DerivedRows& rows) const {
+  const auto [first, last] = about.equal_range(number);
+  for (auto event = first; event != last; ++event) fold(rows, chain.events[event->second]);
+}
+
+CollectedDraft::CollectedDraft(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+CollectedDraft::~CollectedDraft() = default;
+CollectedDraft::CollectedDraft(CollectedDraft&&) noexcept = default;
+
+CollectedDraft CollectedDraft::in_file(const std::filesystem::path& target) {
+  if (is_there(target)) refuse_taken(target);
+  auto draft = std::make_unique<DraftFile>(target.string() + ".new" + std::to_string(::getpid()));
+  Database database = Database::create(draft->path());
+  return CollectedDraft(std::make_unique<Impl>(std::move(draft), std::move(database), target));
+}
+
+CollectedDraft CollectedDraft::temporary(const std::string& name) {
+  return CollectedDraft(std::make_unique<Impl>(nullptr, Database::temporary(name), name));
+}
+
+const CollectedChain& CollectedDraft::begin(std::span<const StationChain> stations) {
+  impl_->chain = collected_chain(stations);
+  for (const Event& event : impl_->chain.events) {
+    impl_->on_file.add(event);
+    const auto place = static_cast<std::size_t>(event.sequence);
+    if (const auto session = scope_of(event).session) impl_->about.emplace(*session, place);
+  }
+  impl_->change([&] {
+    // In the order of the table's key, so that it only ever grows at its end.
+    for (int number = static_cast<int>(stations.size()); number > 0; --number) {
+      impl_->keep_chain(number, stations[static_cast<std::size_t>(number) - 1]);
+    }
+    for (const Event& event : impl_->chain.events) insert_event(impl_->database, event);
+  });
+  return impl_->chain;
+}
+
+void CollectedDraft::add_session(int session, std::span<const Event> events,
+                                 const std::optional<Bytes>& key) {
+  impl_->session = session;
+  const SessionOnFile& on_file = impl_->on_file.sessions().at(session);
+  SessionCheck check(session, on_file, *impl_->on_file.commitment());
+  DerivedRows rows;
+  std::vector<Event> here;
+  impl_->named_as_at_its_station([&] {
+    for (const Event& event : events) {
+      here.push_back(impl_->renumbered(session, event));
+      check.add(here.back(), rows);
+    }
+    check.finish(rows);
+    impl_->settle(session, rows);
+    check.check_key(key ? std::optional(sha256(*key)) : std::nullopt);
+    impl_->check_kind(here.front());
+  });
+  impl_->claims = check.claims();
+  impl_->change([&] {
+    for (const Event& event : here) insert_event(impl_->database, event);
+    write_rows(impl_->database, rows);
+    if (!key) return;
+    impl_->database.query("INSERT INTO participant_keys(session, wrapped) VALUES(?,?)")
+        .bind(session)
+        .bind(*key)
+        .run();
+  });
+}
+
+void CollectedDraft::add_trace(int trial, const Bytes& box) {
+  impl_->named_as_at_its_station([&] {
+    const auto claim = impl_->claims.find(trial);
+    const std::string name = "trace of trial " + std::to_string(trial);
+    if (claim == impl_->claims.end()) {
+      throw EventFault(impl_->session, kNoEvent, name + " has no event, or is there twice");
+    }
+    if (sha256(box) != claim->second.digest) {
+      throw EventFault(impl_->session, claim->second.sequence, name + " was altered");
+    }
+    impl_->claims.erase(claim);
+  });
+  impl_->database.run([&] {
+    insert_trace(impl_->database, {.session = impl_->session, .trial = trial, .box = box});
+  });
+}
+
+void CollectedDraft::end_traces() const {
+  if (impl_->claims.empty()) return;
+  impl_->named_as_at_its_station([&] {
+    const auto& [trial, claim] = *impl_->claims.begin();
+    throw EventFault(impl_->session, claim.sequence,
+                     "trace of trial " + std::to_string(trial) + " is missing");
+  });
+}
+
+StudyStore CollectedDraft::finished(TraceFetch fetch) && {
+  if (!impl_->file) return store_of(std::move(impl_->database), std::move(fetch));
+  impl_->database.run([&] { impl_->database.write_safely(); });
+  const std::filesystem::path target = impl_->target;
+  const auto file = std::move(impl_->file);
+  impl_.reset();  // closes it, so that nothing lies beside it
+  if (!move_to_free_name(file->path(), target)) refuse_taken(target);
+  return StudyStore::open(target, StudyStore::Access::read_only);
+}
+
+}  // namespace touchtrial
