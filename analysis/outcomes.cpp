@@ -3,6 +3,7 @@
 #include "analysis/sealed_sessions.hpp"
 #include "analysis/session_rules.hpp"
 #include "core/errors.hpp"
+#include "protocols/store/event_fault.hpp"
 
 #include <algorithm>
 #include <map>
@@ -96,9 +97,8 @@ void require_whole(const StudyStore& store) {
 }  // namespace
 
 std::string shown(const ChainFault& fault) {
-  const std::string chain =
-      fault.session == 0 ? "the file's chain" : fmt::format("session {}", fault.session);
-  return fmt::format("{}, event {}: {}", chain, fault.sequence, one_line(fault.what));
+  return fmt::format("{}, event {}: {}", chain_named(fault.session), fault.sequence,
+                     one_line(fault.what));
 }
 
 Outcomes load_outcomes(const StudyStore& store, const StudyKey& key) {

@@ -102,7 +102,7 @@ TEST_CASE("deleted, swapped and moved events are named") {
   REQUIRE(
       fault_after("INSERT INTO events SELECT -1, sequence, kind, at_ns, body, sealed, previous, "
                   "hash, NULL FROM events WHERE session = 1") ==
-      "0/0 the file's chain knows no such session");
+      "-1/0 the event belongs to another chain");
 }
 
 TEST_CASE("a session cut short is held against the file's chain") {
