@@ -39,6 +39,7 @@ void add_unblind_command(CLI::App& program, Action& action);
 void add_verify_command(CLI::App& program, Action& action);
 void add_report_command(CLI::App& program, Action& action);
 void add_export_command(CLI::App& program, Action& action);
+void add_fit_command(CLI::App& program, Action& action);
 /// exclude, replace, withdraw, note, migrate.
 void add_people_commands(CLI::App& program, Action& action);
 void add_merge_command(CLI::App& program, Action& action);

@@ -39,6 +39,7 @@ void add_commands(CLI::App& program, Action& action) {
   add_verify_command(program, action);
   add_report_command(program, action);
   add_export_command(program, action);
+  add_fit_command(program, action);
   add_people_commands(program, action);
   add_merge_command(program, action);
   add_device_command(program, action);

@@ -1,0 +1,278 @@
+#include "analysis/planning/answer_model.hpp"
+
+#include "analysis/planning/fit_jobs.hpp"
+#include "analysis/planning/linear_supports.hpp"
+#include "analysis/planning/noise_lines.hpp"
+#include "analysis/planning/noise_points.hpp"
+#include "analysis/planning/radial_distribution.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <stdexcept>
+
+namespace touchtrial {
+namespace {
+
+constexpr int kAcuityGroups = 8;
+/// Pieces of a stimulus's explorations, which threads share; sums are added up in their order.
+constexpr int kPieces = 4;
+
+/// What a layout adds to the support of each class's picture.
+struct LayoutBias {
+  std::vector<double> of_class;  ///< log odds that everybody has
+  std::vector<double> nearness;  ///< of each class's picture to the first position, 0 .. 1
+};
+
+std::vector<double> nearness_of(const PictureLayout& layout) {
+  std::vector<double> nearness(layout.size(), 0.0);
+  const double last = std::max(1.0, static_cast<double>(layout.size()) - 1.0);
+  for (std::size_t i = 0; i < layout.size(); ++i) {
+    nearness[layout[i]] = 1.0 - static_cast<double>(i) / last;
+  }
+  return nearness;
+}
+
+std::vector<LayoutBias> biases(const SubjectModel& subject, const std::vector<std::string>& classes,
+                               std::span<const PictureLayout> layouts) {
+  std::vector<LayoutBias> all;
+  for (const PictureLayout& layout : layouts) {
+    LayoutBias bias{std::vector<double>(classes.size()), nearness_of(layout)};
+    for (std::size_t c = 0; c < classes.size(); ++c) {
+      bias.of_class[c] = subject.position_bias * bias.nearness[c];
+      for (const ClassBias& preferred : subject.class_bias) {
+        if (preferred.label == classes[c]) bias.of_class[c] += preferred.log_odds;
+      }
+    }
+    all.push_back(std::move(bias));
+  }
+  return all;
+}
+
+std::size_t place_in(const std::vector<std::string>& classes, const std::string& label) {
+  const auto found = std::ranges::find(classes, label);
+  if (found == classes.end()) {
+    throw std::invalid_argument("AnswerModel: a class of the subject is none of the study");
+  }
+  return static_cast<std::size_t>(found - classes.begin());
+}
+
+}  // namespace
+
+double mean_lapse(const SubjectModel& subject) {
+  if (subject.lapse_spread == 0.0 || subject.lapse <= 0.0 || subject.lapse >= 1.0) {
+    return subject.lapse;
+  }
+  constexpr int kGroups = 32;
+  static const std::vector<double> groups = normal_groups(kGroups);
+  const double median = std::log(subject.lapse / (1.0 - subject.lapse));
+  double sum = 0.0;
+  for (const double z : groups) sum += 1.0 / (1.0 + std::exp(-median - subject.lapse_spread * z));
+  return sum / kGroups;
+}
+
+AnswerTable::AnswerTable(int layouts, int stimuli, int classes, bool slopes)
+    : stimuli_(stimuli), classes_(classes) {
+  const auto cells = static_cast<std::size_t>(layouts) * stimuli * classes;
+  answers_.assign(cells, 0.0);
+  if (slopes) slopes_.assign(cells * classes, 0.0);
+}
+
+std::span<double> AnswerTable::answers(int layout, int stimulus) noexcept {
+  const auto row = static_cast<std::size_t>(layout) * stimuli_ + stimulus;
+  return {answers_.data() + row * classes_, static_cast<std::size_t>(classes_)};
+}
+
+std::span<const double> AnswerTable::answers(int layout, int stimulus) const noexcept {
+  return const_cast<AnswerTable*>(this)->answers(layout, stimulus);
+}
+
+std::span<double> AnswerTable::slopes(int layout, int stimulus) noexcept {
+  if (slopes_.empty()) return {};
+  const auto square = static_cast<std::size_t>(classes_) * classes_;
+  const auto row = static_cast<std::size_t>(layout) * stimuli_ + stimulus;
+  return {slopes_.data() + row * square, square};
+}
+
+std::span<const double> AnswerTable::slopes(int layout, int stimulus) const noexcept {
+  return const_cast<AnswerTable*>(this)->slopes(layout, stimulus);
+}
+
+struct AnswerModel::State {
+  State(const FeltKnowledge& learnt, const FeltBank& bank, std::vector<std::string> labels,
+        const AnswerModelOptions& chosen);
+
+  /// All lines of noise of one piece of a stimulus's explorations, each in every layout.
+  void add_piece(int place, int piece, const SubjectModel& subject,
+                 const std::vector<LinearSupports>& groups, const std::vector<LayoutBias>& layouts,
+                 BankPart part, AnswerTable& sums) const;
+  [[nodiscard]] std::vector<int> pictures_of(const SubjectModel& subject) const;
+  [[nodiscard]] std::vector<LinearSupports> acuities(const SubjectModel& subject) const;
+
+  FeltKnowledge knowledge;
+  std::vector<std::string> classes;
+  AnswerModelOptions options;
+  std::vector<StimulusIndex> stimuli;
+  std::vector<std::vector<FeltFeatures>> felt;    ///< by stimulus
+  std::vector<NoisePoints> points;                ///< by stimulus
+  std::vector<std::vector<std::uint8_t>> acuity;  ///< group of each line's person, by stimulus
+  int dimensions;                                 ///< of noise
+  RadialDistribution radial;
+};
+
+AnswerModel::State::State(const FeltKnowledge& learnt, const FeltBank& bank,
+                          std::vector<std::string> labels, const AnswerModelOptions& chosen)
+    : knowledge(learnt),
+      classes(std::move(labels)),
+      options(chosen),
+      dimensions(noise_dimensions(static_cast<int>(learnt.label_of_prototype.size()))),
+      radial(dimensions) {
+  if (options.directions < 1 || options.jobs < 1) {
+    throw std::invalid_argument("AnswerModel: directions and jobs start at 1");
+  }
+  // After the noise's own, a point has numbers for a person: position bias, class biases, acuity.
+  const int numbers = dimensions + 2 + static_cast<int>(classes.size());
+  for (int place = 0; place < bank.stimuli(); ++place) {
+    const std::span<const FeltFeatures> own = bank.felt(place);
+    stimuli.push_back(bank.stimulus(place));
+    felt.emplace_back(own.begin(), own.end());
+    points.emplace_back(numbers, own.size() * static_cast<std::size_t>(options.directions),
+                        options.seed, static_cast<std::uint64_t>(place));
+    auto& groups = acuity.emplace_back();
+    for (std::size_t i = 0; i < own.size() * static_cast<std::size_t>(options.directions); ++i) {
+      const double z = points.back().point(i).back();
+      const double share = 0.5 * std::erfc(-z / std::numbers::sqrt2);
+      groups.push_back(static_cast<std::uint8_t>(
+          std::min(kAcuityGroups - 1, static_cast<int>(share * kAcuityGroups))));
+    }
+  }
+}
+
+std::vector<int> AnswerModel::State::pictures_of(const SubjectModel& subject) const {
+  std::vector<int> matched(classes.size());
+  for (std::size_t c = 0; c < classes.size(); ++c) matched[c] = static_cast<int>(c);
+  for (const auto& [one, other] : subject.label_swap) {
+    std::swap(matched[place_in(classes, one)], matched[place_in(classes, other)]);
+  }
+  std::vector<int> pictures;
+  for (const std::string& label : knowledge.label_of_prototype) {
+    pictures.push_back(matched[place_in(classes, label)]);
+  }
+  return pictures;
+}
+
+std::vector<LinearSupports> AnswerModel::State::acuities(const SubjectModel& subject) const {
+  std::vector<LinearSupports> groups;
+  for (const double z : normal_groups(subject.weber_spread > 0.0 ? kAcuityGroups : 1)) {
+    groups.emplace_back(knowledge, subject.weber * std::exp(subject.weber_spread * z));
+  }
+  return groups;
+}
+
+void AnswerModel::State::add_piece(int place, int piece, const SubjectModel& subject,
+                                   const std::vector<LinearSupports>& groups,
+                                   const std::vector<LayoutBias>& layouts, BankPart part,
+                                   AnswerTable& sums) const {
+  const std::vector<int> pictures = pictures_of(subject);
+  const auto prototypes = pictures.size();
+  const auto directions = static_cast<std::size_t>(options.directions);
+  const auto noise_numbers = static_cast<std::size_t>(dimensions);
+  std::vector<double> felt_at(prototypes), at(prototypes), slope(prototypes),
+      direction(noise_numbers);
+  const bool people_differ =
+      subject.position_bias_spread != 0.0 || subject.class_bias_spread != 0.0;
+  std::vector<std::vector<double>> bias_of_prototype;
+  for (const LayoutBias& layout : layouts) {
+    bias_of_prototype.emplace_back();
+    for (const int picture : pictures) {
+      bias_of_prototype.back().push_back(layout.of_class[picture]);
+    }
+  }
+  // Runs of Sobol's points are spread as evenly as the whole.
+  const std::size_t pieces = static_cast<std::size_t>(part.of) * kPieces;
+  const std::size_t own = static_cast<std::size_t>(part.part) * kPieces + piece;
+  const std::size_t last = felt[place].size() * (own + 1) / pieces;
+  for (std::size_t i = felt[place].size() * own / pieces; i < last; ++i) {
+    for (std::size_t j = 0; j < directions; ++j) {
+      const std::size_t line = i * directions + j;
+      const std::span<const double> numbers = points[place].point(line);
+      const LinearSupports& person = groups[groups.size() > 1 ? acuity[place][line] : 0];
+      double length = 0.0;
+      for (std::size_t n = 0; n < noise_numbers; ++n) length += numbers[n] * numbers[n];
+      length = std::sqrt(length);
+      for (std::size_t n = 0; n < noise_numbers; ++n) direction[n] = numbers[n] / length;
+      person.at(felt[place][i], felt_at);
+      person.noise(direction, slope);
+      for (std::size_t l = 0; l < layouts.size(); ++l) {
+        const std::vector<double>& bias = bias_of_prototype[l];
+        for (std::size_t k = 0; k < prototypes; ++k) at[k] = felt_at[k] + bias[k];
+        if (people_differ) {
+          for (std::size_t k = 0; k < prototypes; ++k) {
+            const auto picture = static_cast<std::size_t>(pictures[k]);
+            at[k] += subject.position_bias_spread * numbers[noise_numbers] *
+                         layouts[l].nearness[picture] +
+                     subject.class_bias_spread * numbers[noise_numbers + 1 + picture];
+          }
+        }
+        add_winners(at, slope, pictures, radial, 1.0, sums.answers(static_cast<int>(l), 0),
+                    sums.slopes(static_cast<int>(l), 0));
+      }
+    }
+  }
+}
+
+AnswerModel::AnswerModel(const FeltKnowledge& knowledge, const FeltBank& bank,
+                         std::vector<std::string> classes, const AnswerModelOptions& options)
+    : state_(std::make_unique<State>(knowledge, bank, std::move(classes), options)) {}
+AnswerModel::~AnswerModel() = default;
+AnswerModel::AnswerModel(AnswerModel&&) noexcept = default;
+
+const std::vector<std::string>& AnswerModel::classes() const noexcept {
+  return state_->classes;
+}
+
+const std::vector<StimulusIndex>& AnswerModel::stimuli() const noexcept {
+  return state_->stimuli;
+}
+
+AnswerTable AnswerModel::answers(const SubjectModel& subject,
+                                 std::span<const PictureLayout> layouts, bool slopes,
+                                 BankPart part) const {
+  const State& state = *state_;
+  const auto classes = static_cast<int>(state.classes.size());
+  const auto stimuli = static_cast<int>(state.stimuli.size());
+  // Where positions are nothing to anybody, all layouts are one.
+  const bool alike = subject.position_bias == 0.0 && subject.position_bias_spread == 0.0;
+  const std::vector<LayoutBias> bias =
+      biases(subject, state.classes, alike ? layouts.first(1) : layouts);
+  const auto rows = static_cast<int>(bias.size());
+  const std::vector<LinearSupports> groups = state.acuities(subject);
+  const auto tasks = static_cast<std::size_t>(stimuli) * kPieces;
+  std::vector<AnswerTable> sums(tasks, AnswerTable(rows, 1, classes, slopes));
+  on_threads(state.options.jobs, tasks, [&](std::size_t task) {
+    state.add_piece(static_cast<int>(task / kPieces), static_cast<int>(task % kPieces), subject,
+                    groups, bias, part, sums[task]);
+  });
+  AnswerTable table(static_cast<int>(layouts.size()), stimuli, classes, slopes);
+  const double lapse = mean_lapse(subject);
+  for (int place = 0; place < stimuli; ++place) {
+    for (int l = 0; l < static_cast<int>(layouts.size()); ++l) {
+      const int row = alike ? 0 : l;
+      const std::span<double> answers = table.answers(l, place);
+      const std::span<double> own_slopes = table.slopes(l, place);
+      double lines = 0.0;
+      for (int piece = 0; piece < kPieces; ++piece) {
+        const AnswerTable& sum = sums[static_cast<std::size_t>(place) * kPieces + piece];
+        for (int c = 0; c < classes; ++c) answers[c] += sum.answers(row, 0)[c];
+        for (std::size_t c = 0; c < own_slopes.size(); ++c) own_slopes[c] += sum.slopes(row, 0)[c];
+      }
+      for (const double value : answers) lines += value;
+      for (double& value : answers) value = lapse / classes + (1.0 - lapse) * value / lines;
+      for (double& value : own_slopes) value *= (1.0 - lapse) / lines;
+    }
+  }
+  return table;
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,119 @@
+#include "analysis/planning/fit_counts.hpp"
+
+#include "core/errors.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace touchtrial {
+namespace {
+
+int place_of_layout(std::vector<PictureLayout>& layouts, const PictureLayout& layout) {
+  const auto found = std::ranges::find(layouts, layout);
+  const auto place = static_cast<int>(found - layouts.begin());
+  if (found == layouts.end()) layouts.push_back(layout);
+  return place;
+}
+
+std::size_t place_of_stimulus(const std::vector<StimulusIndex>& stimuli,
+                              const StimulusIndex& stimulus) {
+  const auto found = std::ranges::lower_bound(stimuli, stimulus);
+  if (found == stimuli.end() || *found != stimulus) {
+    throw StudyError("the database presents a stimulus that its study does not have");
+  }
+  return static_cast<std::size_t>(found - stimuli.begin());
+}
+
+Confusions empty_confusions(const FitCounts& counts) {
+  const auto classes = counts.classes.size();
+  return {counts.methods.size(),
+          std::vector<std::vector<double>>(classes, std::vector<double>(classes, 0.0))};
+}
+
+}  // namespace
+
+FitCounts count_answers(const Outcomes& outcomes, const std::map<int, Schedule>& schedules,
+                        const std::vector<StimulusIndex>& stimuli) {
+  FitCounts counts;
+  counts.classes = outcomes.classes;
+  counts.methods = outcomes.methods;
+  counts.stimuli = stimuli;
+  std::map<int, std::size_t> person_of_session;
+  const std::size_t cells = stimuli.size() * counts.classes.size();
+  for (const TrialOutcome& trial : outcomes.trials) {
+    if (!trial.counted || trial.kind != PresentationKind::scored) continue;
+    if (!trial.response) {
+      ++counts.no_response;
+      continue;
+    }
+    const int session = trial.row.session;
+    const auto [entry, is_new] = person_of_session.emplace(session, counts.people.size());
+    if (is_new) {
+      const int layout = place_of_layout(counts.layouts, schedules.at(session).layout);
+      counts.people.push_back({layout, std::vector<double>(cells, 0.0)});
+    }
+    const std::size_t row = place_of_stimulus(stimuli, trial.stimulus) * counts.classes.size();
+    counts.people[entry->second].counts[row + static_cast<std::size_t>(*trial.response)] += 1.0;
+    ++counts.trials;
+  }
+  if (counts.trials == 0) {
+    throw StudyError("no counted trial has an answer: there is nothing to fit");
+  }
+  return counts;
+}
+
+std::vector<std::vector<double>> by_layout(const FitCounts& counts,
+                                           std::span<const CountedPerson> people) {
+  const std::size_t cells = counts.stimuli.size() * counts.classes.size();
+  std::vector<std::vector<double>> sums(counts.layouts.size(), std::vector<double>(cells, 0.0));
+  for (const CountedPerson& person : people) {
+    for (std::size_t i = 0; i < cells; ++i) sums[person.layout][i] += person.counts[i];
+  }
+  return sums;
+}
+
+Confusions observed_confusions(const FitCounts& counts, std::span<const CountedPerson> people) {
+  Confusions table = empty_confusions(counts);
+  const std::size_t classes = counts.classes.size();
+  for (const CountedPerson& person : people) {
+    for (std::size_t i = 0; i < person.counts.size(); ++i) {
+      const StimulusIndex& stimulus = counts.stimuli[i / classes];
+      table[stimulus.method][stimulus.class_index][i % classes] += person.counts[i];
+    }
+  }
+  return table;
+}
+
+Confusions expected_confusions(const FitCounts& counts, const AnswerTable& table) {
+  Confusions expected = empty_confusions(counts);
+  const std::size_t classes = counts.classes.size();
+  for (const CountedPerson& person : counts.people) {
+    for (std::size_t place = 0; place < counts.stimuli.size(); ++place) {
+      double presented = 0.0;
+      for (std::size_t c = 0; c < classes; ++c) presented += person.counts[place * classes + c];
+      const StimulusIndex& stimulus = counts.stimuli[place];
+      const auto answers = table.answers(person.layout, static_cast<int>(place));
+      for (std::size_t c = 0; c < classes; ++c) {
+        expected[stimulus.method][stimulus.class_index][c] += presented * answers[c];
+      }
+    }
+  }
+  return expected;
+}
+
+double g_squared(const Confusions& observed, const Confusions& expected) {
+  constexpr double kLeast = 1e-12;
+  double sum = 0.0;
+  for (std::size_t m = 0; m < observed.size(); ++m) {
+    for (std::size_t c = 0; c < observed[m].size(); ++c) {
+      for (std::size_t a = 0; a < observed[m][c].size(); ++a) {
+        const double seen = observed[m][c][a];
+        if (seen > 0.0) sum += seen * std::log(seen / std::max(expected[m][c][a], kLeast));
+      }
+    }
+  }
+  return std::max(0.0, 2.0 * sum);
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,194 @@
+#include "analysis/planning/fit_problem.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace touchtrial {
+namespace {
+
+// Beyond these the answers are perfect, or at chance, or all the same.
+constexpr double kLeastWeber = 1e-3;
+constexpr double kMostWeber = 10.0;
+constexpr double kMostLapse = 0.98;
+constexpr double kMostLogOdds = 20.0;
+/// Of ln(weber), for its derivative.
+constexpr double kStep = 2e-4;
+
+double bias_of(const SubjectModel& subject, const std::string& label) {
+  double bias = 0.0;
+  for (const ClassBias& preferred : subject.class_bias) {
+    if (preferred.label == label) bias += preferred.log_odds;
+  }
+  return bias;
+}
+
+/// d mean lapse / d lapse.
+double lapse_slope(SubjectModel subject) {
+  if (subject.lapse_spread == 0.0) return 1.0;
+  constexpr double kLapseStep = 1e-5;
+  const double here = mean_lapse(subject);
+  subject.lapse += kLapseStep;
+  return (mean_lapse(subject) - here) / kLapseStep;
+}
+
+}  // namespace
+
+FitProblem::FitProblem(const AnswerModel& model, const FitEvidence& evidence, SubjectModel subject,
+                       const FreeParameters& free, int eliminated)
+    : model_(model),
+      evidence_(evidence),
+      subject_(std::move(subject)),
+      eliminated_(eliminated),
+      classes_free_(free.classes) {
+  // Nobody feels without any noise here: the probabilities would be steps.
+  subject_.weber = std::max(subject_.weber, kLeastWeber);
+  if (free.weber) add({ParameterKind::weber}, std::log(kLeastWeber), std::log(kMostWeber));
+  if (free.lapse) add({ParameterKind::lapse}, 0.0, kMostLapse);
+  if (free.position) add({ParameterKind::position}, -kMostLogOdds, kMostLogOdds);
+  const auto classes = static_cast<int>(model_.classes().size());
+  for (int c = 0; free.classes && c < classes; ++c) {
+    if (c != eliminated_) add({ParameterKind::class_bias, c}, -kMostLogOdds, kMostLogOdds);
+  }
+  for (const PictureLayout& layout : evidence_.layouts()) {
+    std::vector<double>& nearness = nearness_.emplace_back(layout.size(), 0.0);
+    const double last = std::max(1.0, static_cast<double>(layout.size()) - 1.0);
+    for (std::size_t i = 0; i < layout.size(); ++i) {
+      nearness[layout[i]] = 1.0 - static_cast<double>(i) / last;
+    }
+  }
+}
+
+void FitProblem::add(Parameter parameter, double lower, double upper) {
+  parameters_.push_back(parameter);
+  bounds_.lower.push_back(lower);
+  bounds_.upper.push_back(upper);
+}
+
+std::vector<double> FitProblem::scales() const {
+  constexpr double kNoise = 0.1;
+  constexpr double kLapse = 0.03;
+  constexpr double kBias = 0.3;
+  std::vector<double> scales;
+  for (const Parameter& parameter : parameters_) {
+    const bool is_weber = parameter.kind == ParameterKind::weber;
+    const bool is_lapse = parameter.kind == ParameterKind::lapse;
+    scales.push_back(is_weber ? kNoise : is_lapse ? kLapse : kBias);
+  }
+  return scales;
+}
+
+SubjectModel FitProblem::subject_at(std::span<const double> at) const {
+  SubjectModel subject = subject_;
+  std::vector<double> biases(model_.classes().size(), 0.0);
+  for (std::size_t i = 0; i < parameters_.size(); ++i) {
+    const Parameter& parameter = parameters_[i];
+    if (parameter.kind == ParameterKind::weber) subject.weber = std::exp(at[i]);
+    if (parameter.kind == ParameterKind::lapse) subject.lapse = at[i];
+    if (parameter.kind == ParameterKind::position) subject.position_bias = at[i];
+    if (parameter.kind == ParameterKind::class_bias) {
+      biases[parameter.class_index] = at[i];
+      biases[eliminated_] -= at[i];
+    }
+  }
+  if (!classes_free_) return subject;
+  subject.class_bias.clear();
+  for (std::size_t c = 0; c < biases.size(); ++c) {
+    subject.class_bias.push_back({model_.classes()[c], biases[c]});
+  }
+  return subject;
+}
+
+std::vector<double> FitProblem::numbers_of(const SubjectModel& subject) const {
+  double mean = 0.0;
+  for (const std::string& label : model_.classes()) {
+    mean += bias_of(subject, label) / static_cast<double>(model_.classes().size());
+  }
+  std::vector<double> numbers;
+  for (const Parameter& parameter : parameters_) {
+    switch (parameter.kind) {
+      case ParameterKind::weber:
+        numbers.push_back(std::log(std::max(subject.weber, kLeastWeber)));
+        break;
+      case ParameterKind::lapse:
+        numbers.push_back(subject.lapse);
+        break;
+      case ParameterKind::position:
+        numbers.push_back(subject.position_bias);
+        break;
+      case ParameterKind::class_bias:
+        numbers.push_back(bias_of(subject, model_.classes()[parameter.class_index]) - mean);
+        break;
+    }
+  }
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    numbers[i] = std::clamp(numbers[i], bounds_.lower[i], bounds_.upper[i]);
+  }
+  return numbers;
+}
+
+double FitProblem::slope_of(const Parameter& parameter, const AnswerTable& table, int layout,
+                            int place, int answer, double lapse_rate, double lapse) const {
+  const auto classes = static_cast<std::size_t>(table.classes());
+  if (parameter.kind == ParameterKind::lapse) {
+    const double chance = 1.0 / static_cast<double>(classes);
+    const double felt = (table.answers(layout, place)[answer] - lapse * chance) / (1.0 - lapse);
+    return lapse_rate * (chance - felt);
+  }
+  const auto by_bias = table.slopes(layout, place).subspan(answer * classes, classes);
+  if (parameter.kind == ParameterKind::class_bias) {
+    return by_bias[parameter.class_index] - by_bias[eliminated_];
+  }
+  double sum = 0.0;
+  for (std::size_t c = 0; c < classes; ++c) sum += by_bias[c] * nearness_[layout][c];
+  return sum;
+}
+
+FitProblem::Tangent FitProblem::tangent(std::span<const double> at, BankPart part) const {
+  const SubjectModel subject = subject_at(at);
+  const std::span<const PictureLayout> layouts = evidence_.layouts();
+  Tangent tangent{model_.answers(subject, layouts, true, part), {}};
+  const AnswerTable& table = tangent.table;
+  const int classes = table.classes();
+  const auto cells = static_cast<std::size_t>(table.stimuli()) * classes;
+  const double rate = lapse_slope(subject);
+  const double lapse = mean_lapse(subject);
+  SubjectModel noisier = subject;
+  noisier.weber *= std::exp(kStep);
+  const bool by_weber = std::ranges::count(parameters_, Parameter{ParameterKind::weber}) > 0;
+  const AnswerTable more = by_weber ? model_.answers(noisier, layouts, false, part) : table;
+  for (const Parameter& parameter : parameters_) {
+    auto& slopes = tangent.slopes.emplace_back(layouts.size(), std::vector<double>(cells));
+    for (int layout = 0; layout < static_cast<int>(layouts.size()); ++layout) {
+      for (std::size_t cell = 0; cell < cells; ++cell) {
+        const int place = static_cast<int>(cell) / classes;
+        const int answer = static_cast<int>(cell) % classes;
+        slopes[layout][cell] =
+            parameter.kind == ParameterKind::weber
+                ? (more.answers(layout, place)[answer] - table.answers(layout, place)[answer]) /
+                      kStep
+                : slope_of(parameter, table, layout, place, answer, rate, lapse);
+      }
+    }
+  }
+  return tangent;
+}
+
+double FitProblem::value(std::span<const double> at, std::span<double> slopes) const {
+  if (slopes.empty()) {
+    return evidence_.log_likelihood(model_.answers(subject_at(at), evidence_.layouts()), nullptr);
+  }
+  const Tangent here = tangent(at);
+  std::vector<std::vector<double>> by_cell;
+  const double value = evidence_.log_likelihood(here.table, &by_cell);
+  for (std::size_t i = 0; i < slopes.size(); ++i) {
+    slopes[i] = 0.0;
+    for (std::size_t layout = 0; layout < by_cell.size(); ++layout) {
+      for (std::size_t cell = 0; cell < by_cell[layout].size(); ++cell) {
+        slopes[i] += by_cell[layout][cell] * here.slopes[i][layout][cell];
+      }
+    }
+  }
+  return value;
+}
+
+}  // namespace touchtrial

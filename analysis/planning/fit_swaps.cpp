@@ -1,0 +1,121 @@
+#include "analysis/planning/fit_swaps.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace touchtrial {
+namespace {
+
+constexpr std::array<double, 4> kCoarseWeber{0.1, 0.3, 0.8, 2.0};
+constexpr std::array<double, 2> kCoarseLapse{0.02, 0.2};
+constexpr std::size_t kFitted = 2;
+
+struct Start {
+  SubjectModel subject;
+  double value = 0.0;
+};
+
+/// Without preferences, so that one layout stands for all: a coarse look costs little.
+Start coarse_look(const AnswerModel& model, const FitEvidence& evidence, SubjectModel subject,
+                  const FreeParameters& free) {
+  const FitProblem problem(model, evidence, subject, free);
+  Start best{subject, -1e300};
+  for (const double weber : kCoarseWeber) {
+    for (const double lapse : kCoarseLapse) {
+      SubjectModel tried = subject;
+      tried.weber = weber;
+      tried.lapse = lapse;
+      if (free.position) tried.position_bias = 0.0;
+      if (free.classes) tried.class_bias.clear();
+      const std::vector<double> numbers = problem.numbers_of(tried);
+      const double value = problem.value(numbers, {});
+      if (value > best.value) best = {problem.subject_at(numbers), value};
+    }
+  }
+  return best;
+}
+
+bool is_swapped(const SubjectModel& subject, const std::string& label) {
+  return std::ranges::any_of(subject.label_swap, [&](const auto& pair) {
+    return pair.first == label || pair.second == label;
+  });
+}
+
+std::vector<std::pair<std::string, std::string>> pairs_left(const SubjectModel& subject,
+                                                            const std::vector<std::string>& all) {
+  std::vector<std::pair<std::string, std::string>> pairs;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    for (std::size_t j = i + 1; j < all.size(); ++j) {
+      if (!is_swapped(subject, all[i]) && !is_swapped(subject, all[j])) {
+        pairs.emplace_back(all[i], all[j]);
+      }
+    }
+  }
+  return pairs;
+}
+
+Start fitted(const AnswerModel& model, const FitEvidence& evidence, const SubjectModel& start,
+             const FreeParameters& free) {
+  const FitProblem problem(model, evidence, start, free);
+  const Optimum best = best_of_starts(problem, start);
+  return {problem.subject_at(best.at), best.value};
+}
+
+/// The best swap of one more pair, fitted.
+struct Tried {
+  SwapCandidate candidate;
+  Start fit;
+};
+
+std::vector<Tried> best_pairs(const AnswerModel& model, const FitEvidence& evidence,
+                              const Start& without, const FreeParameters& free) {
+  std::vector<std::pair<Start, std::pair<std::string, std::string>>> looks;
+  for (const auto& pair : pairs_left(without.subject, model.classes())) {
+    SubjectModel subject = without.subject;
+    subject.label_swap.push_back(pair);
+    looks.emplace_back(coarse_look(model, evidence, subject, free), pair);
+  }
+  std::ranges::stable_sort(looks, std::ranges::greater{},
+                           [](const auto& look) { return look.first.value; });
+  if (looks.size() > kFitted) looks.resize(kFitted);
+  std::vector<Tried> tried;
+  for (const auto& [look, pair] : looks) {
+    Start fit = fitted(model, evidence, look.subject, free);
+    tried.push_back({{pair, fit.value - without.value, false}, std::move(fit)});
+  }
+  std::ranges::stable_sort(tried, std::ranges::greater{},
+                           [](const Tried& one) { return one.candidate.gain; });
+  return tried;
+}
+
+}  // namespace
+
+double swap_threshold(int pairs) noexcept {
+  constexpr double kTimesLikelier = 20.0;
+  return std::log(kTimesLikelier * std::max(1, pairs));
+}
+
+SwapSearch search_swaps(const AnswerModel& model, const FitEvidence& evidence, SubjectModel subject,
+                        const FreeParameters& free) {
+  SwapSearch search;
+  const auto classes = static_cast<int>(model.classes().size());
+  search.threshold = swap_threshold(classes * (classes - 1) / 2);
+  if (free.swaps) subject.label_swap.clear();
+  Start now = fitted(model, evidence, subject, free);
+  while (free.swaps) {
+    std::vector<Tried> tried = best_pairs(model, evidence, now, free);
+    const bool take = !tried.empty() && tried.front().candidate.gain > search.threshold;
+    if (take) {
+      tried.front().candidate.taken = true;
+      now = std::move(tried.front().fit);
+    }
+    for (const Tried& one : tried) search.candidates.push_back(one.candidate);
+    if (!take) break;
+  }
+  search.subject = std::move(now.subject);
+  search.log_likelihood = now.value;
+  return search;
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,135 @@
+#include "analysis/planning/fit_warnings.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace touchtrial {
+namespace {
+
+constexpr double kHardlyApart = 0.9;
+constexpr double kMisfit = 0.05;
+constexpr double kLargeMonteCarloShare = 0.3;
+
+double total(const Confusions& table, bool only_correct) {
+  double sum = 0.0;
+  for (const auto& method : table) {
+    for (std::size_t c = 0; c < method.size(); ++c) {
+      for (std::size_t a = 0; a < method[c].size(); ++a) {
+        if (!only_correct || a == c) sum += method[c][a];
+      }
+    }
+  }
+  return sum;
+}
+
+const ParameterEstimate* estimate_of(const SubjectFit& fit, std::string_view name) {
+  const auto found = std::ranges::find(fit.estimates, name, &ParameterEstimate::name);
+  return found == fit.estimates.end() ? nullptr : &*found;
+}
+
+void warn_of_extremes(const SubjectFit& fit, std::vector<std::string>& warnings) {
+  const double all = total(fit.observed, false);
+  const double correct = total(fit.observed, true);
+  if (correct == all) {
+    warnings.push_back(
+        "every answer is right: the data set no lower limit to noise and lapses, and bias cannot "
+        "be "
+        "told");
+  }
+  if (correct == 0.0) {
+    warnings.push_back(
+        "no answer is right: worse than chance, which noise and lapses cannot make; look at the "
+        "label "
+        "swaps");
+  }
+}
+
+void warn_of_classes(const SubjectFit& fit, std::vector<std::string>& warnings) {
+  for (std::size_t c = 0; c < fit.classes.size(); ++c) {
+    double presented = 0.0;
+    double answered = 0.0;
+    for (const auto& method : fit.observed) {
+      for (std::size_t a = 0; a < fit.classes.size(); ++a) {
+        presented += method[c][a];
+        answered += method[a][c];
+      }
+    }
+    if (presented == 0.0) {
+      warnings.push_back(fmt::format(
+          "\"{}\" was never presented: its confusions are the model's word alone", fit.classes[c]));
+    }
+    if (answered == 0.0) {
+      warnings.push_back(fmt::format("\"{}\" was never answered: the bias against it has no limit",
+                                     fit.classes[c]));
+    }
+  }
+}
+
+void warn_of_flatness(const SubjectFit& fit, std::vector<std::string>& warnings) {
+  const auto r = fit.weber_lapse_correlation;
+  if (r && std::abs(*r) > kHardlyApart) {
+    warnings.push_back(
+        fmt::format("noise and lapse can hardly be told apart (their estimates correlate {:.2f}): "
+                    "fix one of them "
+                    "with --fix",
+                    *r));
+  }
+  for (const ParameterEstimate& one : fit.estimates) {
+    const std::string name = one.label.empty() ? one.name : "the bias of \"" + one.label + "\"";
+    if (!one.standard_error) {
+      warnings.push_back(name +
+                         " cannot be told from the others by these answers: fix it with --fix");
+      continue;
+    }
+    const bool is_lapse = one.name == "lapse";
+    if (one.at_bound && !is_lapse) {
+      warnings.push_back(name +
+                         " lies at the end of what is searched: the answers set no limit to it");
+    }
+    if (one.monte_carlo_error > kLargeMonteCarloShare * *one.standard_error) {
+      warnings.push_back(name +
+                         " depends on which explorations the bank happens to have: give more "
+                         "--explorations");
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> fit_warnings(const FitCounts& counts, const SubjectFit& fit,
+                                      const FreeParameters& free, const FreeParameters& used) {
+  std::vector<std::string> warnings;
+  if (counts.people.size() == 1) {
+    warnings.push_back(
+        "one participant: the fit is of this person, and tells nothing of differences between "
+        "people");
+  }
+  if (free.position && !used.position) {
+    warnings.push_back(
+        "all participants had the pictures in one order: a preference for positions cannot be told "
+        "from one for classes, and stays as the subject model has it");
+  }
+  warn_of_extremes(fit, warnings);
+  warn_of_classes(fit, warnings);
+  warn_of_flatness(fit, warnings);
+  if (const ParameterEstimate* lapse = estimate_of(fit, "lapse"); lapse && lapse->value == 0.0) {
+    warnings.push_back(
+        "the answers need no lapses: 0 is the most likely value, and the interval's end");
+  }
+  if (counts.methods.size() > 1) {
+    warnings.push_back(
+        "one noise, lapse and bias for all methods: methods differ by what is felt alone");
+  }
+  if (fit.p && *fit.p < kMisfit) {
+    warnings.push_back(
+        fmt::format("the model does not fit the confusions (p = {:.3f}): its parameters describe "
+                    "something else",
+                    *fit.p));
+  }
+  return warnings;
+}
+
+}  // namespace touchtrial

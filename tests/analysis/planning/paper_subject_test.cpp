@@ -1,0 +1,49 @@
+/// docs/fitting.md, "Published accuracies": what it says of config/subjects/paper.json.
+#include "analysis/planning/felt_study.hpp"
+#include "analysis/planning/fit_counts.hpp"
+#include "protocols/design/prepare.hpp"
+#include "support/catch.hpp"
+#include "support/temp_folder.hpp"
+
+namespace touchtrial {
+namespace {
+
+const std::filesystem::path kConfig = std::filesystem::path(TOUCHTRIAL_SOURCE_DIR) / "config";
+
+TEST_CASE("the paper's subject has the paper's accuracies, nearly, and so has quite another") {
+  const TempFolder folder;
+  SeededEntropy entropy(1);
+  const StudyKey key = make_study_key(load_study(kConfig / "classification.json"), entropy, true);
+  prepare_pack(key, folder.path() / "pack");
+  const SubjectModel paper = load_subject_model(kConfig / "subjects/paper.json");
+  SubjectModel other = paper;
+  other.weber = 0.157;
+  other.lapse = 0.08;
+  other.class_bias = {
+      {"bark", -2.05}, {"cloth", -3.06}, {"pebbles", 0.57}, {"straw", 2.83}, {"brick", 1.71}};
+  const AnswerModel model = answer_model_of(key, Pack(folder.path() / "pack"), paper,
+                                            {.explorations = 250, .directions = 4, .jobs = 2});
+  const std::vector<PictureLayout> layouts = layouts_of(key.study, 20);
+  const std::vector<double> published = {0.87, 0.72, 0.81, 0.91, 0.83};
+  std::vector<double> cloth_for_bark;
+  for (const SubjectModel& subject : {paper, other}) {
+    const AnswerTable table = model.answers(subject, layouts);
+    cloth_for_bark.push_back(0.0);
+    for (int c = 0; c < 5; ++c) {
+      double right = 0.0;
+      for (int layout = 0; layout < static_cast<int>(layouts.size()); ++layout) {
+        right += table.answers(layout, c)[c] / static_cast<double>(layouts.size());
+      }
+      INFO(key.study.classes[c].label);
+      // A quarter of the bank that it was fitted with: a point and a half of standard error.
+      CHECK(right == Approx(published[c]).margin(0.05));
+    }
+    for (int layout = 0; layout < static_cast<int>(layouts.size()); ++layout) {
+      cloth_for_bark.back() += table.answers(layout, 0)[1] / static_cast<double>(layouts.size());
+    }
+  }
+  CHECK(cloth_for_bark[1] > 2.0 * cloth_for_bark[0]);
+}
+
+}  // namespace
+}  // namespace touchtrial

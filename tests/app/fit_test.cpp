@@ -1,0 +1,121 @@
+// Fitting a subject model as its user does it.
+#include "app/study_folder.hpp"
+#include "support/catch.hpp"
+
+using namespace touchtrial;
+
+namespace {
+
+/// Few explorations: these tests are of the command, not of estimates.
+ProgramResult fit(const StudyFolder& study, const std::vector<std::string>& more) {
+  std::vector<std::string> arguments = {
+      "fit", study.in("s.db"), "--subject", study.in("quick.json"), "--explorations",
+      "16",  "--bootstraps",   "9"};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return study.run(arguments);
+}
+
+void require_refused(const ProgramResult& ran, int exit_code, const std::string& words) {
+  INFO(ran.errors);
+  CHECK(ran.exit_code == exit_code);
+  CHECK(line_count(ran.errors) == 1);
+  CHECK_THAT(ran.errors, holds_text(words));
+}
+
+}  // namespace
+
+TEST_CASE("fit prints tables, writes a subject file that simulate reads, and stamps both") {
+  const StudyFolder study;
+  REQUIRE(study.simulate("s.db").exit_code == 0);
+  const ProgramResult ran = fit(study, {"-o", study.in("fitted.json")});
+  INFO(ran.errors);
+  REQUIRE(ran.exit_code == 0);
+  CHECK_THAT(ran.output, holds_text("SIMULATED"));
+  CHECK_THAT(ran.output, holds_text("noise (weber)"));
+  CHECK_THAT(ran.output, holds_text("corduroy"));
+  const json fitted = json::parse(content(study.path() / "fitted.json"));
+  CHECK(fitted.at("explore_s") == 1.5);
+  CHECK(fitted.at("weber").get<double>() > 0.0);
+  CHECK(study
+            .run({"simulate", study.in("cloths.json"), "--participants", "1", "--db",
+                  study.in("again.db"), "--subject", study.in("fitted.json")})
+            .exit_code == 0);
+  const ProgramResult as_json = fit(study, {"--json", "--fix", "lapse,classes,swaps"});
+  REQUIRE(as_json.exit_code == 0);
+  const json object = json::parse(as_json.output);
+  CHECK(object.at("stamp") == "SIMULATED");
+  CHECK(object.at("participants") == 4);
+  CHECK(object.at("trials") == 24);
+  REQUIRE(object.at("estimates").size() == 2);
+  CHECK(object.at("estimates")[0].at("name") == "weber");
+  CHECK(object.at("estimates")[1].at("name") == "position");
+  CHECK(object.at("label_swaps").at("tried").empty());
+  // The same, whatever the number of threads.
+  CHECK(fit(study, {"--json", "--fix", "lapse,classes,swaps", "--jobs", "1"}).output ==
+        as_json.output);
+}
+
+TEST_CASE("fit takes two methods, and the sessions that the report takes") {
+  const StudyFolder study("comparison");
+  REQUIRE(study.simulate("s.db").exit_code == 0);
+  REQUIRE(study
+              .run({"exclude", study.in("s.db"), "--participant", "P002", "--reason", "ill",
+                    "--after-outcomes"})
+              .exit_code == 0);
+  const ProgramResult ran = fit(study, {"--json"});
+  INFO(ran.errors);
+  REQUIRE(ran.exit_code == 0);
+  const json object = json::parse(ran.output);
+  CHECK(object.at("participants") == 3);
+  CHECK(object.at("confusions").size() == 2);
+  for (const char* id : {"P001", "P003", "P004"}) {
+    REQUIRE(study
+                .run({"exclude", study.in("s.db"), "--participant", id, "--reason", "ill",
+                      "--after-outcomes"})
+                .exit_code == 0);
+  }
+  require_refused(fit(study, {}), 2, "nothing to fit");
+}
+
+TEST_CASE("fit refuses blind studies, strange labels, and absurd numbers, in one line each") {
+  const StudyFolder study;
+  REQUIRE(study.simulate("s.db", {"--keep-blind"}).exit_code == 0);
+  require_refused(fit(study, {}), 2, "not unblinded");
+  REQUIRE(study.run({"close", study.in("s.db")}).exit_code == 0);
+  REQUIRE(study.run({"unblind", study.in("s.db"), "--reason", "test"}).exit_code == 0);
+  replace_file(study.path() / "strange.json",
+               std::string(R"({"label_swap": [["linen", "velvet"]]})"));
+  require_refused(study.run({"fit", study.in("s.db"), "--subject", study.in("strange.json")}), 2,
+                  "velvet");
+  require_refused(fit(study, {"--fix", "everything"}), 2, "everything");
+  for (const char* number : {"0", "-5", "1e9", "99999999999999999999"}) {
+    require_refused(study.run({"fit", study.in("s.db"), "--explorations", number}), 2,
+                    "--explorations");
+  }
+  require_refused(study.run({"fit", study.in("nowhere.db")}), 1, "nowhere.db");
+  fs::rename(study.path() / "s.db.key", study.path() / "moved.key");
+  require_refused(fit(study, {}), 1, "key");
+  CHECK(fit(study, {"--key", study.in("moved.key")}).exit_code == 0);
+}
+
+TEST_CASE("fit --accuracies makes a subject for published accuracies, and refuses others") {
+  const StudyFolder study;
+  const auto published = [&](const std::string& text) {
+    return study.run({"fit", study.in("cloths.json"), "--accuracies", text, "--subject",
+                      study.in("quick.json"), "--explorations", "40", "--participants", "4",
+                      "--fix", "lapse,position", "--json"});
+  };
+  const ProgramResult ran = published("granite=0.9,linen=0.7,corduroy=0.8");
+  INFO(ran.errors);
+  REQUIRE(ran.exit_code == 0);
+  const json object = json::parse(ran.output);
+  CHECK(object.at("parameters") == 3);
+  for (const json& one : object.at("accuracies")) {
+    CHECK(one.at("reached").get<double>() == Approx(one.at("wanted").get<double>()).margin(0.03));
+  }
+  require_refused(published("granite=0.9,linen=0.7"), 2, "corduroy");
+  require_refused(published("granite=0.9,linen=0.7,corduroy=1.8"), 2, "corduroy=1.8");
+  require_refused(published("granite=0.9,linen=0.7,corduroy=0.8,velvet=0.5"), 2, "velvet");
+  require_refused(published("granite=0.9,granite=0.8,linen=0.7,corduroy=0.8"), 2, "twice");
+  require_refused(published("granite"), 2, "granite");
+}
