@@ -36,6 +36,7 @@ void add_run_command(CLI::App& program, Action& action);
 void add_consent_command(CLI::App& program, Action& action);
 void add_close_command(CLI::App& program, Action& action);
 void add_unblind_command(CLI::App& program, Action& action);
+void add_sync_command(CLI::App& program, Action& action);
 void add_verify_command(CLI::App& program, Action& action);
 void add_report_command(CLI::App& program, Action& action);
 void add_export_command(CLI::App& program, Action& action);

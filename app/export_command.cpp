@@ -9,6 +9,7 @@
 #include "app/key_of_database.hpp"
 #include "core/errors.hpp"
 #include "protocols/collect/open_study.hpp"
+#include "protocols/collect/server_address.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <filesystem>
@@ -39,6 +40,12 @@ void require_fitting(const ExportArguments& arguments) {
   if (for_bids && arguments.format != "bids") {
     throw UsageError(
         "--traces, --with-stimuli, --with-database and --institution belong to --format bids");
+  }
+  if (arguments.with_database && is_address(arguments.database.string())) {
+    throw UsageError(
+        "--with-database: the study is kept on a server; make a file of it with `touchtrial "
+        "merge`, "
+        "and export that");
   }
   const bool for_datasets = !dataset.authors.empty() || !dataset.license.empty();
   if (for_datasets && arguments.format != "bids" && arguments.format != "psych-ds") {
@@ -105,7 +112,9 @@ void add_dataset_options(CLI::App& command, ExportArguments& arguments) {
 void add_export_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command = program.add_subcommand("export", "Write a study's data for other programs");
-  command->add_option("DB", arguments->database, "Database of the study")->required();
+  command
+      ->add_option("DB", arguments->database, "Database of the study, or its postgresql:// address")
+      ->required();
   command->add_option("--format", arguments->format, "What to write")
       ->check(CLI::IsMember({"csv", "json", "bids", "psych-ds", "r"}))
       ->capture_default_str();

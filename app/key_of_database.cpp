@@ -3,6 +3,8 @@
 #include "analysis/sealed_sessions.hpp"
 #include "app/console.hpp"
 #include "core/errors.hpp"
+#include "protocols/collect/open_study.hpp"
+#include "protocols/collect/server_address.hpp"
 
 #include <system_error>
 
@@ -10,6 +12,9 @@ namespace touchtrial {
 
 StudyKey key_of_database(const StudyStore& store, const std::filesystem::path& database,
                          const std::filesystem::path& given) {
+  if (given.empty() && is_address(database.string())) {
+    throw FileError("a study on a server has no key beside it; name the study's key with --key");
+  }
   const std::filesystem::path path = key_path_for(database, given);
   std::error_code error;
   if (given.empty() && !std::filesystem::exists(path, error)) {
@@ -19,8 +24,8 @@ StudyKey key_of_database(const StudyStore& store, const std::filesystem::path& d
   try {
     require_key_of(store, key);
   } catch (const VerificationError& wrong) {
-    throw VerificationError(path.string() + ": is not the key of " + database.string() + ": " +
-                            wrong.what());
+    throw VerificationError(path.string() + ": is not the key of " +
+                            one_line(study_name(database.string())) + ": " + wrong.what());
   }
   return key;
 }

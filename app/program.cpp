@@ -36,6 +36,7 @@ void add_commands(CLI::App& program, Action& action) {
   add_consent_command(program, action);
   add_close_command(program, action);
   add_unblind_command(program, action);
+  add_sync_command(program, action);
   add_verify_command(program, action);
   add_report_command(program, action);
   add_export_command(program, action);

@@ -42,13 +42,13 @@ void write_report(const ReportArguments& arguments, const ReportFiles& files) {
 }
 
 Provenance provenance_for(const StudyStore& store, const ReportArguments& arguments) {
-  return provenance_of(store, arguments.database.filename().string());
+  return provenance_of(store, study_name(arguments.database.string()));
 }
 
 /// Both show what was presented.
 void refuse_while_blind(const ReportArguments& arguments) {
   if (arguments.trial.empty() && arguments.cues != "yes") return;
-  throw UsageError(one_line(arguments.database.string()) +
+  throw UsageError(one_line(study_name(arguments.database.string())) +
                    ": not unblinded, and --trial and --cues yes are of outcomes; run `touchtrial "
                    "close` and `touchtrial unblind`, or leave them out");
 }
@@ -127,7 +127,9 @@ void add_report_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<ReportArguments>();
   CLI::App* command = program.add_subcommand(
       "report", "Accuracy tables; before unblinding, the quality of the data alone");
-  command->add_option("DB", arguments->database, "Database of the study")->required();
+  command
+      ->add_option("DB", arguments->database, "Database of the study, or its postgresql:// address")
+      ->required();
   command->add_option("--key", arguments->key, "Key of the study (default: DB.key)");
   auto* json = command->add_flag("--json", arguments->json, "One JSON object in place of tables");
   auto* folder = command->add_option(

@@ -4,6 +4,7 @@
 #include "core/errors.hpp"
 #include "core/hash.hpp"
 #include "protocols/collect/open_study.hpp"
+#include "protocols/collect/server_address.hpp"
 
 #include <filesystem>
 #include <memory>
@@ -33,10 +34,16 @@ std::optional<Digest> head_of(const VerifyArguments& arguments) {
   return head;
 }
 
+/// On a server there is no key beside a study.
+fs::path key_for(const VerifyArguments& arguments) {
+  if (arguments.key.empty() && is_address(arguments.database.string())) return {};
+  return key_path_for(arguments.database, arguments.key);
+}
+
 int verify(const VerifyArguments& arguments) {
   const std::optional<Digest> head = head_of(arguments);
   const StudyFiles files{.database = arguments.database,
-                         .key = key_path_for(arguments.database, arguments.key),
+                         .key = key_for(arguments),
                          .key_named = !arguments.key.empty(),
                          .pack = arguments.pack};
   const Verification verification = verify_files(files, head, [](const fs::path& database) {
@@ -52,7 +59,9 @@ void add_verify_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<VerifyArguments>();
   CLI::App* command = program.add_subcommand(
       "verify", "Hold chain, seal, schedule, payloads and pack against each other");
-  command->add_option("DB", arguments->database, "Database of the study")->required();
+  command
+      ->add_option("DB", arguments->database, "Database of the study, or its postgresql:// address")
+      ->required();
   command->add_option("--key", arguments->key, "Key of the study (default: DB.key, if there)");
   command->add_option("--pack", arguments->pack, "Pack of the study (default: where the key says)");
   command->add_option("--head", arguments->head,

@@ -36,6 +36,9 @@ Opened<File> opened(Open open) {
 }
 
 Opened<StudyKey> open_key(const StudyFiles& files) {
+  if (!files.key_named && files.key.empty()) {
+    return {std::nullopt, CheckState::not_checked, "needs the key; name it with --key"};
+  }
   if (!files.key_named && is_absent(files.key)) {
     return {std::nullopt, CheckState::not_checked,
             "there is no " + one_line(files.key.string()) + "; name the key with --key"};

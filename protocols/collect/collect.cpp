@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "protocols/store/collected_draft.hpp"
+#include "protocols/store/damaged_store.hpp"
 #include "protocols/store/event_fault.hpp"
 #include "protocols/store/payload_json.hpp"
 
@@ -30,7 +31,8 @@ void named(const std::string& station, Work&& work) {
   try {
     work();
   } catch (const EventFault& fault) {
-    refuse(fmt::format("{}: {}; restore it from a backup, or leave it out", station, fault.what()));
+    throw DamagedStore(one_line(
+        fmt::format("{}: {}; restore it from a backup, or leave it out", station, fault.what())));
   }
 }
 

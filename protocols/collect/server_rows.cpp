@@ -233,28 +233,35 @@ std::optional<Bytes> read_trace(pqxx::work& work, int session, int trial) {
   return bytes_of(rows[0][0]);
 }
 
-void for_each_trace(pqxx::work& work, int session,
-                    const std::function<void(int, const Bytes&)>& visit) {
-  const pqxx::result sizes = work.exec_params(
-      "SELECT trial, octet_length(box)::bigint FROM traces WHERE session = $1 ORDER BY trial",
-      session);
-  for (std::size_t first = 0; first < sizes.size();) {
-    std::int64_t bytes = 0;
-    std::size_t end = first;
-    for (; end < sizes.size(); ++end) {
-      const auto size = sizes[static_cast<int>(end)][1].as<std::int64_t>();
-      if (size > kLargestTrace) throw EventFault(session, kNoEvent, "a trace is absurdly large");
-      if (end > first && bytes + size > static_cast<std::int64_t>(kBatch)) break;
-      bytes += size;
+std::vector<TrialRange> trace_batches(pqxx::work& work, int session) {
+  std::vector<TrialRange> batches;
+  std::int64_t bytes = 0;
+  for (const pqxx::row& row : work.exec_params(
+           "SELECT trial, octet_length(box)::bigint FROM traces WHERE session = $1 ORDER BY trial",
+           session)) {
+    const auto trial = row[0].as<std::int64_t>();
+    const auto size = row[1].as<std::int64_t>();
+    if (size > kLargestTrace) throw EventFault(session, kNoEvent, "a trace is absurdly large");
+    if (batches.empty() || bytes + size > static_cast<std::int64_t>(kBatch)) {
+      batches.push_back({trial, trial});
+      bytes = 0;
     }
-    const pqxx::result boxes = work.exec_params(
-        "SELECT trial, box FROM traces WHERE session = $1 AND trial BETWEEN $2 AND $3 "
-        "ORDER BY trial",
-        session, sizes[static_cast<int>(first)][0].as<std::int64_t>(),
-        sizes[static_cast<int>(end - 1)][0].as<std::int64_t>());
-    for (const pqxx::row& row : boxes) visit(row[0].as<int>(), bytes_of(row[1]));
-    first = end;
+    batches.back().last = trial;
+    bytes += size;
   }
+  return batches;
+}
+
+std::vector<std::pair<int, Bytes>> read_traces(pqxx::work& work, int session,
+                                               const TrialRange& trials) {
+  std::vector<std::pair<int, Bytes>> traces;
+  for (const pqxx::row& row : work.exec_params(
+           "SELECT trial, box FROM traces WHERE session = $1 AND trial BETWEEN $2 AND $3 "
+           "ORDER BY trial",
+           session, trials.first, trials.last)) {
+    traces.emplace_back(row[0].as<int>(), bytes_of(row[1]));
+  }
+  return traces;
 }
 
 std::map<std::int64_t, Bytes> trace_digests(pqxx::work& work, int session) {

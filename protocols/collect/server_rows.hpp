@@ -9,10 +9,10 @@
 #include "protocols/store/fold.hpp"
 
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace touchtrial {
@@ -33,9 +33,17 @@ void insert_trials(pqxx::work& work, int session, const DerivedRows& rows);
 [[nodiscard]] std::vector<Event> read_events(pqxx::work& work, int session, std::int64_t first = 0);
 [[nodiscard]] std::optional<Bytes> read_key(pqxx::work& work, int session);
 [[nodiscard]] std::optional<Bytes> read_trace(pqxx::work& work, int session, int trial);
-/// By trial, a few megabytes at a time. \throws EventFault if a trace is absurdly large
-void for_each_trace(pqxx::work& work, int session,
-                    const std::function<void(int, const Bytes&)>& visit);
+/// Trials from the first to the last.
+struct TrialRange {
+  std::int64_t first = 0;
+  std::int64_t last = 0;
+};
+/// Traces of a session as they are fetched together: a few megabytes at a time.
+/// \throws EventFault if a trace is absurdly large
+[[nodiscard]] std::vector<TrialRange> trace_batches(pqxx::work& work, int session);
+/// Trial and trace, by trial.
+[[nodiscard]] std::vector<std::pair<int, Bytes>> read_traces(pqxx::work& work, int session,
+                                                             const TrialRange& trials);
 /// SHA-256 of every trace of a session, by trial, as the server has it.
 [[nodiscard]] std::map<std::int64_t, Bytes> trace_digests(pqxx::work& work, int session);
 

@@ -1,6 +1,7 @@
 #include "protocols/collect/server_stations.hpp"
 
 #include "protocols/collect/server_connection.hpp"
+#include "protocols/collect/server_derived.hpp"
 #include "protocols/collect/server_rows.hpp"
 #include "protocols/collect/server_schema.hpp"
 #include "protocols/collect/server_study.hpp"
@@ -71,7 +72,14 @@ class ServerStation final : public StationFile {
                       const std::function<void(int, const Bytes&)>& visit) override {
     const std::optional<int> session = number_of(own_session);
     if (!session) return;
-    snapshot_->ask([&](pqxx::work& work) { touchtrial::for_each_trace(work, *session, visit); });
+    const std::vector<TrialRange> batches =
+        snapshot_->ask([&](pqxx::work& work) { return trace_batches(work, *session); });
+    for (const TrialRange& batch : batches) {
+      const auto traces =
+          snapshot_->ask([&](pqxx::work& work) { return read_traces(work, *session, batch); });
+      // Its complaints are not the server's.
+      for (const auto& [trial, box] : traces) visit(trial, box);
+    }
   }
 
  private:
@@ -119,8 +127,13 @@ std::map<int, std::unique_ptr<ServerStation>> named_stations(
 
 }  // namespace
 
-Stations stations_of_server(const ServerAddress& address) {
+Stations stations_of_server(const ServerAddress& address, DerivedTables* derived) {
   const auto snapshot = std::make_shared<Snapshot>(address);
+  if (derived != nullptr) {
+    *derived = [snapshot](const StudyStore& collected) {
+      snapshot->ask([&](pqxx::work& work) { check_derived(work, snapshot->server(), collected); });
+    };
+  }
   return snapshot->ask([&](pqxx::work& work) {
     refuse_strays(work, snapshot->server());
     Stations stations;

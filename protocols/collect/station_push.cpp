@@ -9,6 +9,7 @@
 #include "protocols/store/state_names.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <thread>
@@ -224,7 +225,9 @@ void StationPush::push(const ChainSegment& segment) {
 
 int StationPush::station_number(pqxx::work& work) {
   if (const std::optional<int> known = find_station(work, identity())) return *known;
-  return register_station(work, *server_, identity(), station_.name(), chain_.front());
+  return register_station(work, *server_, identity(),
+                          std::filesystem::path(station_.name()).filename().string(),
+                          chain_.front());
 }
 
 void StationPush::push_session(pqxx::work& work, int station, int session, std::int64_t end) {

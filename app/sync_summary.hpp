@@ -1,0 +1,28 @@
+/// \file What `sync` says when it is done.
+#pragma once
+
+#include "protocols/collect/enrolment_balance.hpp"
+#include "protocols/collect/station_push.hpp"
+
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+
+struct StationSummary {
+  std::string file;
+  PushReport report;
+};
+
+struct SyncSummary {
+  std::string server;  ///< without user
+  bool dry_run = false;
+  std::vector<StationSummary> stations{};
+  EnrolmentBalance balance{};  ///< of everything on the server
+};
+
+[[nodiscard]] std::string sync_text(const SyncSummary& summary);
+/// One JSON object.
+[[nodiscard]] std::string sync_json(const SyncSummary& summary);
+
+}  // namespace touchtrial

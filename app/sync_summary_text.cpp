@@ -1,0 +1,57 @@
+#include "app/sync_summary.hpp"
+#include "core/errors.hpp"
+
+#include <fmt/format.h>
+
+namespace touchtrial {
+namespace {
+
+std::string participants(const std::vector<PushedSession>& sessions) {
+  std::string names;
+  for (const PushedSession& session : sessions) {
+    names += (names.empty() ? "" : ", ") + session.participant;
+  }
+  return names;
+}
+
+std::string counted(std::size_t count) {
+  return count == 1 ? "1 session" : fmt::format("{} sessions", count);
+}
+
+std::string station_text(const StationSummary& summary, bool dry_run) {
+  const PushReport& report = summary.report;
+  std::string text =
+      fmt::format("{}: {} {}, {} there before", summary.file, counted(report.pushed.size()),
+                  dry_run ? "to push" : "pushed", report.already_there);
+  if (report.station > 0) text += fmt::format(" (station {})", report.station);
+  text += "\n";
+  if (!report.left_open.empty()) {
+    text += fmt::format("{}: {} not finished, left for later: {}\n", summary.file,
+                        counted(report.left_open.size()), participants(report.left_open));
+  }
+  if (report.ahead > 0) {
+    text += fmt::format(
+        "{}: is an older copy: the server has {} more of its file chain's events; do not go on "
+        "recording in it\n",
+        summary.file, report.ahead);
+  }
+  if (report.reconnections > 0) {
+    text += fmt::format("{}: connected anew {} time{}\n", summary.file, report.reconnections,
+                        report.reconnections == 1 ? "" : "s");
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string sync_text(const SyncSummary& summary) {
+  std::string text =
+      summary.server + (summary.dry_run ? " (dry run: nothing was changed)\n" : "\n");
+  for (const StationSummary& station : summary.stations) {
+    text += station_text(station, summary.dry_run);
+  }
+  for (const std::string& line : imbalances(summary.balance)) text += "imbalance: " + line + "\n";
+  return text;
+}
+
+}  // namespace touchtrial
