@@ -144,6 +144,7 @@ void add_prescription(DataTable& study, const Prescription& prescription) {
   add("on_timeout", prescription.on_timeout);
   add("order", prescription.order);
   add("repeats", std::int64_t{prescription.repeats});
+  add("method_orders", std::int64_t{prescription.method_orders});
   add("sight", prescription.sight);
   add("masking_wanted", flag(prescription.masking_wanted));
   add("masking_dbfs", prescription.masking_dbfs);

@@ -57,6 +57,7 @@ Prescription prescription_of(const std::filesystem::path& study) {
           single.at("on_timeout"),
           single.at("order"),
           number_of<int>(single.at("repeats")),
+          number_of<int>(single.at("method_orders")),
           single.at("sight"),
           is_set(single.at("masking_wanted")),
           number_of<double>(single.at("masking_dbfs"))};
@@ -99,6 +100,7 @@ StudyCommitment commitment_of(const std::filesystem::path& study) {
 SessionRow session_row_of(const CsvRow& row) {
   SessionRow session;
   session.session = number_of<int>(row.at("session"));
+  session.own_session = session.session;  // exports do not tell where it was collected
   session.participant = row.at("participant");
   session.enrolment = number_of<int>(row.at("enrolment"));
   session.state = session_state_of(row.at("state"));

@@ -107,7 +107,7 @@ CueReport cues_of(const std::vector<std::string>& classes) {
 
 Collection collection_of() {
   Collection collection;
-  collection.prescription = {60.0, "fade", "shuffled", 5, "curtain", true, -20.0};
+  collection.prescription = {60.0, "fade", "shuffled", 5, 1, "curtain", true, -20.0};
   for (int i = 1; i <= 8; ++i) {
     SessionRecord record;
     record.row.session = record.row.enrolment = i;
