@@ -1,11 +1,11 @@
 // merge: several stations' databases made one.
 #include "app/commands.hpp"
 #include "app/console.hpp"
-#include "app/simulated_study.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "protocols/collect/collect.hpp"
 #include "protocols/design/study_key.hpp"
+#include "protocols/store/payload_json.hpp"
 
 #include <filesystem>
 #include <memory>
@@ -54,18 +54,22 @@ std::optional<StudyKey> simulated_key_beside(const std::vector<fs::path>& databa
   return std::nullopt;
 }
 
-/// Lays the key beside a database of simulated participants, as `simulate` does: it follows from
-/// the study file, and blinds nobody. That of a study with people stays where it is.
-/// \return whether a key lies there now
-bool lay_simulated_key(const MergeArguments& arguments) {
-  const StudyStore store = StudyStore::open(arguments.target, StudyStore::Access::read_only);
-  if (!store.commitment().simulated) return false;
-  const auto key = simulated_key_beside(arguments.databases, store.commitment().seal);
-  if (!key) return false;
+/// The key that is laid beside a database of simulated participants, as `simulate` does: it follows
+/// from the study file, and blinds nobody. That of a study with people stays where it is.
+/// \throws StoreError if another key lies in its place
+std::optional<StudyKey> key_to_lay(const MergeArguments& arguments, const Stations& stations) {
+  if (stations.empty()) return std::nullopt;
+  const std::vector<Event> chain = stations.front()->file_chain();
+  if (chain.empty()) return std::nullopt;
+  const StudyCommitment commitment = commitment_from_json(chain.front().body);
+  if (!commitment.simulated) return std::nullopt;
+  std::optional<StudyKey> key = simulated_key_beside(arguments.databases, commitment.seal);
   const fs::path path = key_path_for(arguments.target, {});
-  refuse_other_key(path, *key);
-  save_study_key(path, *key);
-  return true;
+  if (key && is_there(path) && study_seal(load_study_key(path)) != commitment.seal) {
+    throw StoreError(one_line(path.string()) +
+                     ": is another study's key; give another name with -o, or move it away");
+  }
+  return key;
 }
 
 void warn_of(const CollectReport& report) {
@@ -104,11 +108,13 @@ std::string summary_of(const MergeArguments& arguments, const CollectReport& rep
 int merge(const MergeArguments& arguments) {
   if (arguments.target.empty()) throw UsageError("merge: -o is empty; give it a file name");
   refuse_existing(arguments.target);
-  const CollectReport report = collect_into_file(stations_of(arguments.databases), arguments.target,
-                                                 progress_bar("merging"));
+  Stations stations = stations_of(arguments.databases);
+  const std::optional<StudyKey> key = key_to_lay(arguments, stations);
+  const CollectReport report =
+      collect_into_file(std::move(stations), arguments.target, progress_bar("merging"));
   warn_of(report);
-  const bool key = lay_simulated_key(arguments);
-  print(summary_of(arguments, report, key));
+  if (key) save_study_key(key_path_for(arguments.target, {}), *key);
+  print(summary_of(arguments, report, key.has_value()));
   return 0;
 }
 

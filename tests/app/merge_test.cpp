@@ -1,0 +1,161 @@
+// Several stations' databases made one, by the program: what a lab sees of it.
+#include "app/study_folder.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+
+using namespace touchtrial;
+
+namespace {
+
+/// Four participants simulated as two stations with two each, and as one.
+struct SimulatedStations : StudyFolder {
+  SimulatedStations() {
+    REQUIRE(simulate("one.db").exit_code == 0);
+    for (const std::string first : {"1", "3"}) {
+      const ProgramResult ran = StudyFolder::run(
+          {"simulate", in("cloths.json"), "--participants", "2", "--first-participant", first,
+           "--seed", "3", "--db", in("s" + first + ".db"), "--subject", in("quick.json")});
+      INFO(ran.errors);
+      REQUIRE(ran.exit_code == 0);
+    }
+  }
+  [[nodiscard]] ProgramResult merge(const std::vector<std::string>& names,
+                                    const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {"merge"};
+    for (const std::string& name : names) arguments.push_back(in(name));
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return StudyFolder::run(arguments);
+  }
+};
+
+/// Every file of an export by name.
+std::map<std::string, std::string> files_of(const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (!entry.is_regular_file()) continue;
+    files[fs::relative(entry.path(), folder).generic_string()] = content(entry.path());
+  }
+  return files;
+}
+
+}  // namespace
+
+TEST_CASE("merged stations report and export what one station with all participants does") {
+  const SimulatedStations study;
+  REQUIRE(study.merge({"s3.db", "s1.db"}, {"-o", study.in("C.db")}).exit_code == 0);
+  const ProgramResult one = study.run({"report", study.in("one.db"), "--json"});
+  const ProgramResult merged = study.run({"report", study.in("C.db"), "--json"});
+  INFO(merged.errors);
+  REQUIRE(merged.exit_code == 0);
+  CHECK(json::parse(merged.output).at("participants") == 4);
+  CHECK(merged.output == one.output);
+  for (const std::string format : {"csv", "json", "r", "psych-ds"}) {
+    for (const std::string name : {"one", "C"}) {
+      const ProgramResult ran = study.run({"export", study.in(name + ".db"), "--format", format,
+                                           "-o", study.in(name + "-" + format)});
+      INFO(format << ": " << ran.errors);
+      REQUIRE(ran.exit_code == 0);
+    }
+    CHECK(files_of(study.in("C-" + format)) == files_of(study.in("one-" + format)));
+  }
+}
+
+TEST_CASE("a merged study verifies with its key, its pack and its traces, and exports those") {
+  const SimulatedStations study;
+  REQUIRE(study.merge({"s1.db", "s3.db"}, {"-o", study.in("C.db")}).exit_code == 0);
+  const ProgramResult verified = study.run({"verify", study.in("C.db"), "--json"});
+  INFO(verified.output << verified.errors);
+  CHECK(verified.exit_code == 0);
+  for (const json& check : json::parse(verified.output).at("checks")) {
+    CHECK(check.at("state") == "passed");
+  }
+  const ProgramResult bids = study.run({"export", study.in("C.db"), "--format", "bids", "--traces",
+                                        "--with-database", "-o", study.in("bids")});
+  INFO(bids.errors);
+  CHECK(bids.exit_code == 0);
+  int recordings = 0;
+  for (const auto& [name, text] : files_of(study.in("bids"))) {
+    if (name.find("sub-") == 0 && name.ends_with(".tsv.gz")) ++recordings;
+    if (name.ends_with(".db")) {
+      CHECK(text == content(study.in("C.db")));
+    }
+  }
+  CHECK(recordings == 4 * 6);
+}
+
+TEST_CASE("the summary of a merge says what was collected, and where the key is") {
+  const SimulatedStations study;
+  const ProgramResult ran =
+      study.merge({"s1.db", "s3.db", "s1.db"}, {"-o", study.in("C.db"), "--json"});
+  REQUIRE(ran.exit_code == 0);
+  const json summary = json::parse(ran.output);
+  CHECK(summary.at("stations") == 2);
+  CHECK(summary.at("sessions") == 4);
+  CHECK(summary.at("left_out") == json::array());
+  CHECK(summary.at("superfluous") == json::array({study.in("s1.db")}));
+  CHECK(summary.at("key") == study.in("C.db.key"));
+  CHECK(content(study.in("C.db.key")) == content(study.in("s1.db.key")));
+  CHECK(ran.errors.find("s1.db: holds no session that the others do not hold") !=
+        std::string::npos);
+}
+
+TEST_CASE("the key of a study with people is not copied") {
+  const StudyFolder study;
+  REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
+  int number = 0;
+  for (const std::string participant : {"P01", "P02"}) {
+    const ProgramResult ran =
+        study.run({"run", study.in("cloths.json"), "--participant", participant, "--enrolment",
+                   std::to_string(++number), "--db", study.in(participant + ".db"), "--subject",
+                   study.in("quick.json"), "--headless"});
+    INFO(ran.errors);
+    REQUIRE(ran.exit_code == 0);
+    fs::copy_file(study.in("cloths.key"), study.in(participant + ".db.key"));
+  }
+  const ProgramResult ran =
+      study.run({"merge", study.in("P01.db"), study.in("P02.db"), "-o", study.in("C.db")});
+  INFO(ran.errors);
+  REQUIRE(ran.exit_code == 0);
+  CHECK(ran.output.find("name it with --key") != std::string::npos);
+  CHECK_FALSE(fs::exists(study.in("C.db.key")));
+  const ProgramResult verified =
+      study.run({"verify", study.in("C.db"), "--key", study.in("cloths.key")});
+  INFO(verified.output);
+  CHECK(verified.exit_code == 0);
+  const ProgramResult more =
+      study.run({"run", study.in("cloths.json"), "--participant", "P03", "--db", study.in("C.db"),
+                 "--subject", study.in("quick.json"), "--headless"});
+  CHECK(more.exit_code == 1);
+  CHECK(more.errors.find("takes no sessions of its own; run them in this station's database") !=
+        std::string::npos);
+}
+
+TEST_CASE("a merge that is refused says which file, and makes none") {
+  const SimulatedStations study;
+  json other = study_of("classification");
+  other["seed"] = 12;
+  replace_file(study.in("other.json"), other.dump());
+  REQUIRE(study
+              .run({"simulate", study.in("other.json"), "--participants", "1", "--subject",
+                    study.in("quick.json"), "--db", study.in("other.db")})
+              .exit_code == 0);
+  const ProgramResult mixed = study.merge({"s1.db", "other.db"}, {"-o", study.in("C.db")});
+  CHECK(mixed.exit_code == 1);
+  CHECK(mixed.errors.find("they are of different studies") != std::string::npos);
+  const ProgramResult twice = study.merge({"s1.db", "one.db"}, {"-o", study.in("C.db")});
+  CHECK(twice.exit_code == 1);
+  CHECK(line_count(twice.errors) == 1);
+  CHECK(twice.errors.find("copies of one station's file") != std::string::npos);
+  CHECK_FALSE(fs::exists(study.in("C.db")));
+  const ProgramResult taken = study.merge({"s1.db", "s3.db"}, {"-o", study.in("one.db")});
+  CHECK(taken.exit_code == 1);
+  CHECK(taken.errors.find("one.db: exists already") != std::string::npos);
+  replace_file(study.in("D.db.key"), content(study.in("other.db.key")));
+  const ProgramResult keyed = study.merge({"s1.db", "s3.db"}, {"-o", study.in("D.db")});
+  CHECK(keyed.exit_code == 1);
+  CHECK(keyed.errors.find("D.db.key: is another study's key") != std::string::npos);
+  CHECK_FALSE(fs::exists(study.in("D.db")));
+  CHECK(study.merge({"s1.db"}).exit_code == 2);
+  CHECK(study.merge({}, {"-o", study.in("C.db")}).exit_code == 2);
+}
