@@ -50,12 +50,46 @@ std::vector<LayoutBias> biases(const SubjectModel& subject, const std::vector<st
   return all;
 }
 
+/// By layout and prototype, of the picture that the prototype is matched to.
+std::vector<std::vector<double>> by_prototype(const std::vector<LayoutBias>& layouts,
+                                              const std::vector<int>& pictures) {
+  std::vector<std::vector<double>> biases;
+  for (const LayoutBias& layout : layouts) {
+    std::vector<double>& own = biases.emplace_back();
+    for (const int picture : pictures) own.push_back(layout.of_class[picture]);
+  }
+  return biases;
+}
+
+/// Of length 1. \param normals  independent standard normals
+void set_direction(std::span<const double> normals, std::vector<double>& direction) {
+  double square = 0.0;
+  for (std::size_t n = 0; n < direction.size(); ++n) square += normals[n] * normals[n];
+  for (std::size_t n = 0; n < direction.size(); ++n) {
+    direction[n] = normals[n] / std::sqrt(square);
+  }
+}
+
 std::size_t place_in(const std::vector<std::string>& classes, const std::string& label) {
   const auto found = std::ranges::find(classes, label);
   if (found == classes.end()) {
     throw std::invalid_argument("AnswerModel: a class of the subject is none of the study");
   }
   return static_cast<std::size_t>(found - classes.begin());
+}
+
+/// The pieces' sums as probabilities, lapses included.
+void settle(std::span<const AnswerTable> pieces, int row, double lapse, std::span<double> answers,
+            std::span<double> slopes) {
+  for (const AnswerTable& piece : pieces) {
+    for (std::size_t c = 0; c < answers.size(); ++c) answers[c] += piece.answers(row, 0)[c];
+    for (std::size_t c = 0; c < slopes.size(); ++c) slopes[c] += piece.slopes(row, 0)[c];
+  }
+  double lines = 0.0;
+  for (const double value : answers) lines += value;
+  const double chance = 1.0 / static_cast<double>(answers.size());
+  for (double& value : answers) value = lapse * chance + (1.0 - lapse) * value / lines;
+  for (double& value : slopes) value *= (1.0 - lapse) / lines;
 }
 
 }  // namespace
@@ -80,23 +114,23 @@ AnswerTable::AnswerTable(int layouts, int stimuli, int classes, bool slopes)
 }
 
 std::span<double> AnswerTable::answers(int layout, int stimulus) noexcept {
-  const auto row = static_cast<std::size_t>(layout) * stimuli_ + stimulus;
-  return {answers_.data() + row * classes_, static_cast<std::size_t>(classes_)};
+  return {answers_.data() + row(layout, stimulus) * classes_, static_cast<std::size_t>(classes_)};
 }
 
 std::span<const double> AnswerTable::answers(int layout, int stimulus) const noexcept {
-  return const_cast<AnswerTable*>(this)->answers(layout, stimulus);
+  return {answers_.data() + row(layout, stimulus) * classes_, static_cast<std::size_t>(classes_)};
 }
 
 std::span<double> AnswerTable::slopes(int layout, int stimulus) noexcept {
   if (slopes_.empty()) return {};
   const auto square = static_cast<std::size_t>(classes_) * classes_;
-  const auto row = static_cast<std::size_t>(layout) * stimuli_ + stimulus;
-  return {slopes_.data() + row * square, square};
+  return {slopes_.data() + row(layout, stimulus) * square, square};
 }
 
 std::span<const double> AnswerTable::slopes(int layout, int stimulus) const noexcept {
-  return const_cast<AnswerTable*>(this)->slopes(layout, stimulus);
+  if (slopes_.empty()) return {};
+  const auto square = static_cast<std::size_t>(classes_) * classes_;
+  return {slopes_.data() + row(layout, stimulus) * square, square};
 }
 
 struct AnswerModel::State {
@@ -107,6 +141,9 @@ struct AnswerModel::State {
   void add_piece(int place, int piece, const SubjectModel& subject,
                  const std::vector<LinearSupports>& groups, const std::vector<LayoutBias>& layouts,
                  BankPart part, AnswerTable& sums) const;
+  void add_likings(const SubjectModel& subject, std::span<const double> numbers,
+                   const LayoutBias& layout, const std::vector<int>& pictures,
+                   std::vector<double>& at) const;
   [[nodiscard]] std::vector<int> pictures_of(const SubjectModel& subject) const;
   [[nodiscard]] std::vector<LinearSupports> acuities(const SubjectModel& subject) const;
 
@@ -170,6 +207,18 @@ std::vector<LinearSupports> AnswerModel::State::acuities(const SubjectModel& sub
   return groups;
 }
 
+/// What this line's person prefers beside what everybody does.
+void AnswerModel::State::add_likings(const SubjectModel& subject, std::span<const double> numbers,
+                                     const LayoutBias& layout, const std::vector<int>& pictures,
+                                     std::vector<double>& at) const {
+  const auto of_person = numbers.subspan(static_cast<std::size_t>(dimensions));
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    const auto picture = static_cast<std::size_t>(pictures[k]);
+    at[k] += subject.position_bias_spread * of_person[0] * layout.nearness[picture] +
+             subject.class_bias_spread * of_person[1 + picture];
+  }
+}
+
 void AnswerModel::State::add_piece(int place, int piece, const SubjectModel& subject,
                                    const std::vector<LinearSupports>& groups,
                                    const std::vector<LayoutBias>& layouts, BankPart part,
@@ -182,13 +231,7 @@ void AnswerModel::State::add_piece(int place, int piece, const SubjectModel& sub
       direction(noise_numbers);
   const bool people_differ =
       subject.position_bias_spread != 0.0 || subject.class_bias_spread != 0.0;
-  std::vector<std::vector<double>> bias_of_prototype;
-  for (const LayoutBias& layout : layouts) {
-    bias_of_prototype.emplace_back();
-    for (const int picture : pictures) {
-      bias_of_prototype.back().push_back(layout.of_class[picture]);
-    }
-  }
+  const std::vector<std::vector<double>> bias = by_prototype(layouts, pictures);
   // Runs of Sobol's points are spread as evenly as the whole.
   const std::size_t pieces = static_cast<std::size_t>(part.of) * kPieces;
   const std::size_t own = static_cast<std::size_t>(part.part) * kPieces + piece;
@@ -198,23 +241,12 @@ void AnswerModel::State::add_piece(int place, int piece, const SubjectModel& sub
       const std::size_t line = i * directions + j;
       const std::span<const double> numbers = points[place].point(line);
       const LinearSupports& person = groups[groups.size() > 1 ? acuity[place][line] : 0];
-      double length = 0.0;
-      for (std::size_t n = 0; n < noise_numbers; ++n) length += numbers[n] * numbers[n];
-      length = std::sqrt(length);
-      for (std::size_t n = 0; n < noise_numbers; ++n) direction[n] = numbers[n] / length;
+      set_direction(numbers, direction);
       person.at(felt[place][i], felt_at);
       person.noise(direction, slope);
       for (std::size_t l = 0; l < layouts.size(); ++l) {
-        const std::vector<double>& bias = bias_of_prototype[l];
-        for (std::size_t k = 0; k < prototypes; ++k) at[k] = felt_at[k] + bias[k];
-        if (people_differ) {
-          for (std::size_t k = 0; k < prototypes; ++k) {
-            const auto picture = static_cast<std::size_t>(pictures[k]);
-            at[k] += subject.position_bias_spread * numbers[noise_numbers] *
-                         layouts[l].nearness[picture] +
-                     subject.class_bias_spread * numbers[noise_numbers + 1 + picture];
-          }
-        }
+        for (std::size_t k = 0; k < prototypes; ++k) at[k] = felt_at[k] + bias[l][k];
+        if (people_differ) add_likings(subject, numbers, layouts[l], pictures, at);
         add_winners(at, slope, pictures, radial, 1.0, sums.answers(static_cast<int>(l), 0),
                     sums.slopes(static_cast<int>(l), 0));
       }
@@ -257,19 +289,10 @@ AnswerTable AnswerModel::answers(const SubjectModel& subject,
   AnswerTable table(static_cast<int>(layouts.size()), stimuli, classes, slopes);
   const double lapse = mean_lapse(subject);
   for (int place = 0; place < stimuli; ++place) {
-    for (int l = 0; l < static_cast<int>(layouts.size()); ++l) {
-      const int row = alike ? 0 : l;
-      const std::span<double> answers = table.answers(l, place);
-      const std::span<double> own_slopes = table.slopes(l, place);
-      double lines = 0.0;
-      for (int piece = 0; piece < kPieces; ++piece) {
-        const AnswerTable& sum = sums[static_cast<std::size_t>(place) * kPieces + piece];
-        for (int c = 0; c < classes; ++c) answers[c] += sum.answers(row, 0)[c];
-        for (std::size_t c = 0; c < own_slopes.size(); ++c) own_slopes[c] += sum.slopes(row, 0)[c];
-      }
-      for (const double value : answers) lines += value;
-      for (double& value : answers) value = lapse / classes + (1.0 - lapse) * value / lines;
-      for (double& value : own_slopes) value *= (1.0 - lapse) / lines;
+    const std::span pieces(sums.data() + static_cast<std::size_t>(place) * kPieces, kPieces);
+    for (int layout = 0; layout < static_cast<int>(layouts.size()); ++layout) {
+      settle(pieces, alike ? 0 : layout, lapse, table.answers(layout, place),
+             table.slopes(layout, place));
     }
   }
   return table;

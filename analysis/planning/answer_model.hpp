@@ -31,6 +31,10 @@ class AnswerTable {
   [[nodiscard]] std::span<const double> slopes(int layout, int stimulus) const noexcept;
 
  private:
+  [[nodiscard]] std::size_t row(int layout, int stimulus) const noexcept {
+    return static_cast<std::size_t>(layout) * stimuli_ + stimulus;
+  }
+
   int stimuli_;
   int classes_;
   std::vector<double> answers_;
