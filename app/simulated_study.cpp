@@ -18,9 +18,9 @@ StudyKey simulated_key(const Study& study, const std::filesystem::path& study_fi
   return key;
 }
 
-void prepare_simulated_pack(const StudyKey& key) {
-  const PrepareReport prepared =
-      prepare_pack(key, key.pack_folder, progress_bar("preparing"), {.statistics = false});
+void prepare_simulated_pack(const StudyKey& key, bool wait) {
+  const PrepareReport prepared = prepare_pack(key, key.pack_folder, progress_bar("preparing"),
+                                              {.statistics = false, .wait = wait});
   for (const std::string& warning : prepared.warnings) spdlog::warn("{}", warning);
 }
 

@@ -13,8 +13,8 @@ namespace touchtrial {
 [[nodiscard]] StudyKey simulated_key(const Study& study, const std::filesystem::path& study_file);
 
 /// Makes the key's pack as far as it is not there, with a progress bar, and warns where preparing
-/// does. \throws as prepare_pack
-void prepare_simulated_pack(const StudyKey& key);
+/// does. \param wait  while another process prepares it \throws as prepare_pack
+void prepare_simulated_pack(const StudyKey& key, bool wait = false);
 
 /// A key that stayed when its database was removed may serve again; any other may be somebody's
 /// only one. \throws StoreError if another key lies there

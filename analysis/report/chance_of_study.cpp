@@ -15,7 +15,6 @@ namespace {
 /// stands for all its renamings.
 constexpr int kOrders = 300;
 constexpr int kRenamings = 120;
-constexpr int kMostDeals = 9999;
 constexpr int kFewestDeals = 999;
 constexpr int kMostBlockDeals = 1'000'000;  ///< one second's worth at most
 
@@ -99,9 +98,9 @@ class OrderDraws {
 };
 
 /// Large studies need fewer deals: the sum over many blocks varies little.
-int deals_for(std::size_t blocks) {
+int deals_for(std::size_t blocks, int most_deals) {
   const auto affordable = kMostBlockDeals / static_cast<int>(std::max<std::size_t>(1, blocks));
-  return std::clamp(affordable, kFewestDeals, kMostDeals);
+  return std::clamp(affordable, std::min(kFewestDeals, most_deals), most_deals);
 }
 
 }  // namespace
@@ -114,14 +113,14 @@ DealtOrder dealt_order(const Study& study) {
   return DealtOrder::redrawn;
 }
 
-std::optional<ChanceTest> chance_of(const Outcomes& outcomes, int method) {
+std::optional<ChanceTest> chance_of(const Outcomes& outcomes, int method, int most_deals) {
   const auto classes = static_cast<int>(outcomes.classes.size());
   const std::vector<PlacedBlock> placed = blocks_of(outcomes, method);
   std::vector<AnsweredBlock> blocks;
   for (const PlacedBlock& block : placed) blocks.push_back(block.answers);
   const DealtOrder order = dealt_order(outcomes.design);
   if (order != DealtOrder::redrawn || blocks.empty()) return chance_test(classes, blocks, order);
-  const int deals = deals_for(blocks.size());
+  const int deals = deals_for(blocks.size(), most_deals);
   const OrderDraws draws(outcomes.design, method, blocks.size(), deals);
   const auto fits = [&](const PlacedBlock& block) {
     return static_cast<std::size_t>(block.places.back()) < draws.length();

@@ -9,11 +9,15 @@
 
 namespace touchtrial {
 
+inline constexpr int kMostChanceDeals = 9999;
+
 /// How the study's rule deals the classes of a block.
 [[nodiscard]] DealtOrder dealt_order(const Study& study);
 
 /// Of one method's counted trials. Orders with a rule of their own are drawn from the study's own
 /// maker of schedules; of a block only the places whose trials count are compared.
-[[nodiscard]] std::optional<ChanceTest> chance_of(const Outcomes& outcomes, int method);
+/// \param most_deals  of such a drawing
+[[nodiscard]] std::optional<ChanceTest> chance_of(const Outcomes& outcomes, int method,
+                                                  int most_deals = kMostChanceDeals);
 
 }  // namespace touchtrial

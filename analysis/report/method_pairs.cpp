@@ -137,6 +137,11 @@ std::vector<std::vector<std::vector<bool>>> occasions_by_participant(int classes
 
 }  // namespace
 
+std::vector<std::pair<Proportion, Proportion>> paired_proportions(const CountedTrials& counted,
+                                                                  int first, int second) {
+  return proportions_of(paired_trials(counted, first, second));
+}
+
 std::vector<MethodPair> method_pairs(int classes, const CountedTrials& counted) {
   const auto methods = static_cast<int>(counted.trials.size());
   std::vector<MethodPair> pairs;

@@ -79,6 +79,16 @@ struct Distribution {
     // The smallest first, so that none is lost.
     return std::min(1.0, std::accumulate(probability.rbegin(), probability.rend() - from, 0.0));
   }
+
+  /// The largest upper tail that does not pass the level.
+  [[nodiscard]] double largest_tail(double level) const {
+    double tail = 0.0;
+    for (auto one = probability.rbegin(); one != probability.rend(); ++one) {
+      if (tail + *one > level) break;
+      tail += *one;
+    }
+    return tail;
+  }
 };
 
 void count_orders(int classes, std::span<const AnsweredBlock> blocks, ChanceTest& test) {
@@ -95,6 +105,19 @@ void count_orders(int classes, std::span<const AnsweredBlock> blocks, ChanceTest
     }
   }
   test.p = right.at_least(test.correct);
+  test.attainable = right.largest_tail(kSignificanceLevel);
+}
+
+/// The largest of above(0), above(1), .., above(most) that does not pass the level; they fall.
+template <typename Tail>
+double largest_tail_of(const Tail& above, int most) {
+  int low = -1;  // its tail passes the level
+  int high = most;
+  while (high - low > 1) {
+    const int middle = low + (high - low) / 2;
+    (above(middle) <= kSignificanceLevel ? high : low) = middle;
+  }
+  return above(high);
 }
 
 void take_binomial(int classes, std::span<const AnsweredBlock> blocks, ChanceTest& test) {
@@ -104,9 +127,25 @@ void take_binomial(int classes, std::span<const AnsweredBlock> blocks, ChanceTes
                                                [](const auto& a) { return a.has_value(); }));
   }
   test.expected = static_cast<double>(answered) / classes;
-  if (test.correct == 0) return;
   const boost::math::binomial_distribution<> chance(answered, 1.0 / classes);
-  test.p = boost::math::cdf(boost::math::complement(chance, test.correct - 1));
+  const auto above = [&](int count) {
+    return boost::math::cdf(boost::math::complement(chance, count));
+  };
+  test.attainable = largest_tail_of(above, answered);
+  if (test.correct > 0) test.p = above(test.correct - 1);
+}
+
+/// Of the p values (b + 1) / (deals + 1), the largest that does not pass the level.
+double largest_share_below_level(const std::map<int, int>& counts, int deals) {
+  int tail = 0;
+  double share = 0.0;
+  for (auto one = counts.rbegin(); one != counts.rend(); ++one) {
+    tail += one->second;
+    const double next = (tail + 1.0) / (deals + 1.0);
+    if (next > kSignificanceLevel) break;
+    share = next;
+  }
+  return share;
 }
 
 void deal_anew(int classes, std::span<const AnsweredBlock> blocks, const RedrawnBlock& redraw,
@@ -114,6 +153,7 @@ void deal_anew(int classes, std::span<const AnsweredBlock> blocks, const Redrawn
   if (deals < 1) throw std::invalid_argument("a chance test needs at least one deal");
   int as_many = 0;
   double sum = 0.0;
+  std::map<int, int> counts;
   for (int deal = 0; deal < deals; ++deal) {
     int right = 0;
     for (std::size_t block = 0; block < blocks.size(); ++block) {
@@ -125,8 +165,10 @@ void deal_anew(int classes, std::span<const AnsweredBlock> blocks, const Redrawn
       right += matches(presented, blocks[block].answered);
     }
     sum += right;
+    ++counts[right];
     if (right >= test.correct) ++as_many;
   }
+  test.attainable = largest_share_below_level(counts, deals);
   test.expected = sum / deals;
   test.p = (as_many + 1.0) / (deals + 1.0);
   test.exact = false;

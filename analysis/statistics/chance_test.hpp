@@ -30,6 +30,9 @@ enum class DealtOrder {
 /// number of the deal, from 0; a function of these alone.
 using RedrawnBlock = std::function<std::vector<int>(std::size_t block, int deal)>;
 
+/// The level of `ChanceTest::attainable`.
+inline constexpr double kSignificanceLevel = 0.05;
+
 struct ChanceTest {
   int correct = 0;
   int trials = 0;
@@ -37,6 +40,10 @@ struct ChanceTest {
   double p = 1.0;         ///< one-sided: as many right answers or more; 1e-280 stands for less
   bool exact = true;      ///< else (b + 1) / (deals + 1)
   int deals = 0;          ///< of a Monte Carlo
+  /// The largest p that these answers could have had without passing kSignificanceLevel: right
+  /// answers are whole numbers, so that under the null p is below the level this often, and not as
+  /// often as the level says.
+  double attainable = 0.0;
 };
 
 /// Upper-tail probability of the number of right answers, all blocks together.

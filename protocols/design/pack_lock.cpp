@@ -11,9 +11,9 @@
 
 namespace touchtrial {
 
-PackLock::PackLock(const std::filesystem::path& folder)
+PackLock::PackLock(const std::filesystem::path& folder, bool wait)
     : descriptor_(::open((folder / "prepare.lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)) {
-  if (descriptor_ >= 0 && ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0) return;
+  if (descriptor_ >= 0 && ::flock(descriptor_, wait ? LOCK_EX : LOCK_EX | LOCK_NB) == 0) return;
   const int reason = errno;
   if (descriptor_ >= 0) ::close(descriptor_);
   const std::string place = one_line(folder.string());

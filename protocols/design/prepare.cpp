@@ -376,7 +376,7 @@ void check_images_exist(const Study& study) {
 PrepareReport prepare_pack(const StudyKey& key, const std::filesystem::path& pack_folder,
                            const Progress& progress, const PrepareOptions& options) {
   make_folder(pack_folder);
-  const PackLock lock(pack_folder);
+  const PackLock lock(pack_folder, options.wait);
   return Preparation(key, pack_folder, progress, options).run();
 }
 

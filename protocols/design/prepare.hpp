@@ -61,6 +61,7 @@ inline constexpr std::int64_t kLargeImagePixels = std::int64_t{1} << 22;
 struct PrepareOptions {
   bool statistics = true;  ///< PreparedStimulus::statistics: two Fourier transforms a stimulus
   bool explain = false;    ///< the stages, with their times and bytes
+  bool wait = false;       ///< while another process prepares the pack, in place of an error
   std::int64_t large_image_px = kLargeImagePixels;  ///< from one more pixel on, one at a time
 };
 

@@ -85,6 +85,23 @@ AnsweredBlock with_right(int right) {
   return block;
 }
 
+TEST_CASE(
+    "what chance_test can reach is the largest p within its level that the answers can have") {
+  for (const DealtOrder order : {DealtOrder::permuted, DealtOrder::independent}) {
+    // Every order of the presentations under the same answers: every number of right answers.
+    AnsweredBlock block{{0, 0, 0, 1, 1, 1, 2, 2}, {0, 0, 1, 1, 2, 2, 0, 1}};
+    const double said = chance_test(3, std::vector{block}, order)->attainable;
+    double largest = 0.0;
+    do {
+      const ChanceTest test = *chance_test(3, std::vector{block}, order);
+      if (test.p <= kSignificanceLevel) largest = std::max(largest, test.p);
+      CHECK(test.attainable == said);
+    } while (std::next_permutation(block.presented.begin(), block.presented.end()));
+    CHECK(largest > 0.0);
+    CHECK(said == Approx(largest).epsilon(1e-12));
+  }
+}
+
 }  // namespace
 
 TEST_CASE("Independent presentations need 9 right of 25 at chance 1/5") {

@@ -3,6 +3,7 @@
 #include "core/random.hpp"
 #include "support/catch.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -91,6 +92,47 @@ TEST_CASE("Beyond the exact range sign_flip_p samples, the same way every time")
 TEST_CASE("sign_flip_p refuses values that are no numbers") {
   const std::vector<double> bad{0.1, std::numeric_limits<double>::infinity()};
   CHECK_THROWS_AS(sign_flip_p(bad), std::invalid_argument);
+}
+
+TEST_CASE("what sign flips can reach is the largest p of any pattern of signs within the level") {
+  RandomStream random(11, "sign_flip_attainable");
+  for (int repetition = 0; repetition < 40; ++repetition) {
+    std::vector<double> differences(6 + random.below(4));
+    for (double& one : differences) one = 0.05 * static_cast<double>(random.below(7));
+    double largest = 0.0;
+    for (std::uint64_t pattern = 0; pattern < (1U << differences.size()); ++pattern) {
+      std::vector<double> flipped = differences;
+      for (std::size_t i = 0; i < flipped.size(); ++i) {
+        if ((pattern >> i & 1U) != 0) flipped[i] = -flipped[i];
+      }
+      const double p = *sign_flip_p(flipped);
+      if (p <= 0.05) largest = std::max(largest, p);
+    }
+    CHECK(sign_flip_attainable(differences, 0.05) == largest);
+  }
+}
+
+TEST_CASE("beyond the exact range what sign flips can reach is just below the level") {
+  // Differences of two kinds alone: sums are coarse, and many tie.
+  std::vector<double> differences(40, 0.5);
+  for (std::size_t i = 0; i < 20; ++i) differences[i] = 0.25;
+  const double reached = sign_flip_attainable(differences, 0.05);
+  CHECK(reached <= 0.05);
+  CHECK(reached > 0.03);
+  double largest = 0.0;
+  for (int flipped = 0; flipped <= 40; ++flipped) {
+    std::vector<double> some = differences;
+    for (int i = 0; i < flipped; ++i) some[i] = -some[i];
+    const double p = *sign_flip_p(some);
+    if (p <= 0.05) largest = std::max(largest, p);
+  }
+  CHECK(largest <= reached);
+}
+
+TEST_CASE("five participants, or any number that do not differ, can reach nothing at 5 %") {
+  CHECK(sign_flip_attainable(std::vector<double>(5, 0.2), 0.05) == 0.0);
+  CHECK(sign_flip_attainable(std::vector<double>(12, 0.0), 0.05) == 0.0);
+  CHECK(sign_flip_attainable(std::vector<double>(6, 0.2), 0.05) == 2.0 / 64.0);
 }
 
 }  // namespace touchtrial

@@ -9,7 +9,10 @@
 #include "support/catch.hpp"
 
 #include <algorithm>
+#include <atomic>
+#include <future>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -278,6 +281,21 @@ TEST_CASE("two prepares of one pack do not run at once") {
     CHECK(refuses<FileError>([&] { return laboratory.prepare(); }, "is being prepared by another"));
   }
   CHECK(reused(laboratory.prepare()) == 3);
+}
+
+TEST_CASE("who prepares a pack may wait while another does") {
+  const Laboratory laboratory;
+  static_cast<void>(laboratory.prepare());
+  std::atomic<bool> is_free{false};
+  std::optional<PackLock> other(std::in_place, laboratory.pack());
+  auto waiting = std::async(std::launch::async, [&] {
+    const PrepareReport report =
+        prepare_pack(laboratory.key(), laboratory.pack(), {}, {.wait = true});
+    return is_free.load() ? reused(report) : -1;
+  });
+  is_free = true;
+  other.reset();
+  CHECK(waiting.get() == 3);
 }
 
 TEST_CASE("a file in the place of the pack is refused") {
