@@ -44,6 +44,7 @@ void add_fit_command(CLI::App& program, Action& action);
 /// exclude, replace, withdraw, note, migrate.
 void add_people_commands(CLI::App& program, Action& action);
 void add_merge_command(CLI::App& program, Action& action);
+void add_power_command(CLI::App& program, Action& action);
 void add_device_command(CLI::App& program, Action& action);
 /// These add themselves to the command "device".
 void add_device_list_command(CLI::App& device, Action& action);

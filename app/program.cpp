@@ -43,6 +43,7 @@ void add_commands(CLI::App& program, Action& action) {
   add_fit_command(program, action);
   add_people_commands(program, action);
   add_merge_command(program, action);
+  add_power_command(program, action);
   add_device_command(program, action);
 }
 

@@ -38,8 +38,13 @@ FeltKnowledge learn_by_feeling(const LabelledFields& fields, const SubjectModel&
                          RandomStream(seed, "subject: training pass", i % passes));
     knowledge.examples[i] = {static_cast<int>(prototype), {felt.begin(), felt.end()}};
   };
-  JobArena(jobs).run(
-      [&] { tbb::parallel_for(std::size_t{0}, knowledge.examples.size(), feel_example); });
+  const std::size_t count = knowledge.examples.size();
+  if (jobs == 1) {
+    // On the caller's thread, which may be one of many that learn beside each other.
+    for (std::size_t i = 0; i < count; ++i) feel_example(i);
+    return knowledge;
+  }
+  JobArena(jobs).run([&] { tbb::parallel_for(std::size_t{0}, count, feel_example); });
   return knowledge;
 }
 

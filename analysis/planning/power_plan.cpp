@@ -1,0 +1,108 @@
+#include "analysis/planning/power_plan.hpp"
+
+#include "core/errors.hpp"
+#include "core/random.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace touchtrial {
+namespace {
+
+constexpr int kFirstLook = 100;
+constexpr int kMostExplorations = 100'000;
+constexpr int kMostTrainings = 1'000;
+
+void require_range(const char* option, int value, int low, int high) {
+  if (value >= low && value <= high) return;
+  throw UsageError(fmt::format("{}: {} is out of range; give {} to {}", option, value, low, high));
+}
+
+void settle_sizes(PowerPlan& plan) {
+  if (plan.participants.empty()) {
+    throw UsageError("--participants: no size is given; give one or more, for instance 8,12,16");
+  }
+  if (plan.participants.size() > kMostPowerSizes) {
+    throw UsageError(fmt::format("--participants: {} sizes are given; give {} at most",
+                                 plan.participants.size(), kMostPowerSizes));
+  }
+  for (const int size : plan.participants) {
+    // Of one participant there is no interval over participants.
+    require_range("--participants", size, 2, kMostPowerParticipants);
+  }
+  std::ranges::sort(plan.participants);
+  const auto twice = std::ranges::adjacent_find(plan.participants);
+  if (twice != plan.participants.end()) {
+    throw UsageError(fmt::format("--participants: {} is given twice; give each size once", *twice));
+  }
+}
+
+/// Bonferroni over the looks: together they are wrong no more often than one would be.
+double level_of_a_look(const PowerPlan& plan) {
+  return 1.0 - (1.0 - kConfidenceLevel) / static_cast<double>(looks_of(plan).size());
+}
+
+bool is_certain(const PowerPlan& plan, Proportion significant) {
+  const Interval interval = power_interval(plan, significant);
+  return std::ranges::all_of(kPowerTargets, [&](double target) {
+    return interval.low > target || interval.high < target;
+  });
+}
+
+}  // namespace
+
+void settle(PowerPlan& plan) {
+  settle_sizes(plan);
+  require_range("--runs", plan.runs, 1, kMostPowerRuns);
+  require_range("--explorations", plan.explorations, 1, kMostExplorations);
+  require_range("--trainings", plan.trainings, 1, kMostTrainings);
+  const std::int64_t all =
+      static_cast<std::int64_t>(plan.participants.size()) * std::int64_t{plan.runs};
+  if (all > kMostPowerRunsInAll) {
+    throw UsageError(fmt::format(
+        "--runs: {} runs of {} sizes are {} in all; give fewer runs or sizes, {} in all at most",
+        plan.runs, plan.participants.size(), all, kMostPowerRunsInAll));
+  }
+}
+
+std::uint64_t study_seed(std::uint64_t seed, int participants, Hypothesis hypothesis, int run) {
+  const std::string purpose =
+      fmt::format("power: {}, {} participants", name_of(hypothesis), participants);
+  return RandomStream(seed, purpose, static_cast<std::uint64_t>(run)).bits();
+}
+
+std::vector<int> looks_of(const PowerPlan& plan) {
+  std::vector<int> looks;
+  if (plan.stop_early) {
+    for (int look = kFirstLook; look < plan.runs; look *= 2) looks.push_back(look);
+  }
+  looks.push_back(plan.runs);
+  return looks;
+}
+
+double power_level(const PowerPlan& plan) {
+  return plan.stop_early ? level_of_a_look(plan) : kConfidenceLevel;
+}
+
+const char* power_interval_name(const PowerPlan& plan) {
+  return plan.stop_early ? "Clopper-Pearson" : "Wilson";
+}
+
+Interval power_interval(const PowerPlan& plan, Proportion significant) {
+  return plan.stop_early ? clopper_pearson_interval(significant, power_level(plan))
+                         : wilson_interval(significant, power_level(plan));
+}
+
+std::optional<int> certain_after(const PowerPlan& plan, std::span<const PowerRun> runs) {
+  if (!plan.stop_early) return std::nullopt;
+  for (const int look : looks_of(plan)) {
+    if (static_cast<std::size_t>(look) > runs.size()) return std::nullopt;
+    const auto significant = std::ranges::count_if(runs.first(look), is_significant);
+    if (is_certain(plan, {look, static_cast<int>(significant)})) return look;
+  }
+  return std::nullopt;
+}
+
+}  // namespace touchtrial

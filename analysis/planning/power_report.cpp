@@ -1,0 +1,143 @@
+#include "analysis/planning/power_report.hpp"
+
+#include "analysis/statistics/chance_test.hpp"
+#include "analysis/statistics/quantiles.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace touchtrial {
+namespace {
+
+struct Moments {
+  double mean = 0.0;
+  double sd = 0.0;
+};
+
+Moments moments_of(const std::vector<double>& values) {
+  Moments moments;
+  const auto n = static_cast<double>(values.size());
+  for (const double value : values) moments.mean += value / n;
+  if (values.size() < 2) return moments;
+  double squares = 0.0;
+  for (const double value : values) squares += (value - moments.mean) * (value - moments.mean);
+  moments.sd = std::sqrt(squares / (n - 1.0));
+  return moments;
+}
+
+Proportion significant_of(const PowerCell& cell) {
+  const auto significant = std::ranges::count_if(cell.runs, is_significant);
+  return {static_cast<int>(cell.runs.size()), static_cast<int>(significant)};
+}
+
+WidthFigures widths_of(const PowerCell& cell) {
+  std::vector<double> widths;
+  for (const PowerRun& run : cell.runs) widths.push_back(run.width());
+  std::ranges::sort(widths);
+  const Moments moments = moments_of(widths);
+  return {moments.mean, moments.sd / std::sqrt(static_cast<double>(widths.size())),
+          *quantile(widths, 0.1), *quantile(widths, 0.5), *quantile(widths, 0.9)};
+}
+
+PowerRow row_of(const PowerPlan& plan, const PowerCell& population, const PowerCell& null) {
+  PowerRow row;
+  row.participants = population.participants;
+  row.significant = significant_of(population);
+  row.power = power_interval(plan, row.significant);
+  row.stopped_early = row.significant.n < plan.runs;
+  std::vector<double> estimates;
+  for (const PowerRun& run : population.runs) estimates.push_back(run.estimate);
+  const Moments moments = moments_of(estimates);
+  row.estimate = moments.mean;
+  row.estimate_sd = moments.sd;
+  row.width = widths_of(population);
+  row.false_alarms = significant_of(null);
+  row.type_one = wilson_interval(row.false_alarms);
+  for (const PowerRun& run : null.runs) {
+    row.attainable += run.attainable / static_cast<double>(null.runs.size());
+  }
+  return row;
+}
+
+/// The smallest size from which on every one holds.
+template <typename Holds>
+std::optional<int> from_which_on(const std::vector<PowerRow>& rows, const Holds& holds) {
+  std::optional<int> smallest;
+  for (auto row = rows.rbegin(); row != rows.rend() && holds(*row); ++row) {
+    smallest = row->participants;
+  }
+  return smallest;
+}
+
+TargetSize target_size(const std::vector<PowerRow>& rows, double target) {
+  return {target,
+          from_which_on(
+              rows,
+              [&](const PowerRow& row) { return row.significant.share().value_or(0.0) >= target; }),
+          from_which_on(rows, [&](const PowerRow& row) { return row.power.low >= target; })};
+}
+
+std::vector<std::string> warnings_of(const PowerReport& report) {
+  std::vector<std::string> warnings;
+  for (const PowerRow& row : report.rows) {
+    if (verdict_of(row) == ErrorVerdict::excessive) {
+      warnings.push_back(fmt::format(
+          "With {} participants the type-I error lies above the level of the test: the test does "
+          "not hold what it promises in this study.",
+          row.participants));
+    }
+    if (row.attainable == 0.0) {
+      warnings.push_back(fmt::format(
+          "With {} participants the test can never be significant, whatever they answer.",
+          row.participants));
+    }
+  }
+  const auto all = [&](const auto& holds) { return std::ranges::all_of(report.rows, holds); };
+  if (all([](const PowerRow& row) { return row.significant.correct == row.significant.n; })) {
+    warnings.emplace_back(
+        "Every simulated study was significant, with every size: for this test the smallest size "
+        "is enough if people are as sensitive as assumed; choose the size by the interval's "
+        "width.");
+  }
+  return warnings;
+}
+
+}  // namespace
+
+ErrorVerdict verdict_of(const PowerRow& row) noexcept {
+  if (row.type_one.low > kSignificanceLevel) return ErrorVerdict::excessive;
+  if (row.type_one.high < row.attainable) return ErrorVerdict::conservative;
+  return ErrorVerdict::holds;
+}
+
+std::string_view name_of(ErrorVerdict verdict) {
+  switch (verdict) {
+    case ErrorVerdict::conservative:
+      return "conservative";
+    case ErrorVerdict::excessive:
+      return "excessive";
+    case ErrorVerdict::holds:
+      break;
+  }
+  return "holds";
+}
+
+PowerReport make_power_report(const PowerProgress& progress) {
+  if (!progress.shard.is_all() || !is_complete(progress)) {
+    throw std::invalid_argument("make_power_report: the run is not complete");
+  }
+  PowerReport report{progress.setting, progress.plan, {}, {}, {}};
+  for (std::size_t i = 0; i + 1 < progress.cells.size(); i += 2) {
+    report.rows.push_back(row_of(progress.plan, progress.cells[i], progress.cells[i + 1]));
+  }
+  for (const double target : kPowerTargets) {
+    report.targets.push_back(target_size(report.rows, target));
+  }
+  report.warnings = warnings_of(report);
+  return report;
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,230 @@
+#include "analysis/planning/feelings.hpp"
+#include "analysis/planning/power_report.hpp"
+#include "analysis/planning/power_study.hpp"
+#include "app/commands.hpp"
+#include "app/console.hpp"
+#include "app/power_files.hpp"
+#include "app/simulated_study.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/hash.hpp"
+#include "core/version.hpp"
+#include "engine/pack/pack.hpp"
+#include "protocols/session/labelled_fields.hpp"
+#include "protocols/session/stimulus_source.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+namespace touchtrial {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct PowerArguments {
+  fs::path study;
+  fs::path subject;
+  fs::path folder;
+  std::vector<fs::path> combine;
+  std::vector<std::string> methods;
+  std::string sizes = "8,12,16,20,30";
+  std::string shard;
+  PowerPlan plan;
+  int jobs = 1;
+  bool no_early_stop = false;
+  bool resume = false;
+  bool json = false;
+};
+
+/// What a study's stimuli are: every field that may be felt, whatever else the pack holds.
+std::string fields_digest(const StudyKey& key, const Pack& pack) {
+  FieldHasher hasher;
+  for (const KeyedStimulus& keyed : key.stimuli) {
+    const PackEntry& entry = pack.entry(keyed.code);
+    const std::string gains = fmt::format("{} {} {}", entry.gains.tangential_n,
+                                          entry.gains.normal_n, entry.gains.height_mm);
+    hasher.add(entry.code).add(ByteView(entry.checksum)).add(gains);
+  }
+  return to_hex(hasher.finish());
+}
+
+/// Everything that runs are made of.
+struct PowerPreparation {
+  PowerPreparation(const PowerArguments& arguments, Study loaded)
+      : study(std::move(loaded)),
+        test(primary_test_of(study, labels(arguments))),
+        subject(subject_for(arguments.subject, study)),
+        key(simulated_key(study, arguments.study)) {
+    // Shards begin at the same time, and share the pack.
+    prepare_simulated_pack(key, true);
+    pack.emplace(key.pack_folder);
+  }
+
+  static std::optional<MethodLabels> labels(const PowerArguments& arguments) {
+    if (arguments.methods.empty()) return std::nullopt;
+    if (arguments.methods.size() == 2)
+      return MethodLabels{arguments.methods[0], arguments.methods[1]};
+    throw UsageError("--methods: give two methods, as --methods adaptive,tv-gabor");
+  }
+
+  [[nodiscard]] PowerSetting setting() const {
+    return {study.name,
+            std::string(name_of(study.protocol)),
+            words_of(test, study),
+            estimate_words(test),
+            to_hex(study_seal(key)),
+            fields_digest(key, *pack),
+            words_of(subject),
+            std::string(program_version())};
+  }
+
+  Study study;
+  PrimaryTest test;
+  SubjectModel subject;
+  StudyKey key;
+  std::optional<Pack> pack;
+};
+
+std::unique_ptr<const Feelings> feelings_for(const PowerPreparation& prepared,
+                                             const PowerPlan& plan, int jobs,
+                                             const LabelledFields& fields) {
+  if (plan.servo) {
+    return std::make_unique<ServoFeelings>(fields, prepared.study, prepared.subject);
+  }
+  const BankedFeelingsOptions options{plan.explorations, plan.trainings, plan.seed, jobs};
+  return std::make_unique<BankedFeelings>(fields, prepared.study, prepared.subject, options,
+                                          progress_bar("feeling"));
+}
+
+void make_missing_runs(const PowerPreparation& prepared, const PowerArguments& arguments,
+                       PowerProgress& progress) {
+  if (is_complete(progress)) return;
+  std::optional<ProgressKeeper> keeper;
+  if (!arguments.folder.empty()) {
+    keeper.emplace(progress_file(arguments.folder, progress.shard));
+    keeper->keep(progress);  // a folder that cannot be written is told of now
+  }
+  const StimulusSource source(*prepared.pack, prepared.key.study.rendering);
+  const LabelledFields fields(prepared.key, source);
+  const auto feelings = feelings_for(prepared, progress.plan, arguments.jobs, fields);
+  const RehearsedStudy study(prepared.study, prepared.subject, prepared.test, *feelings,
+                             progress.plan.participants.back());
+  PowerWork work{.jobs = arguments.jobs, .progress = progress_bar("simulating")};
+  if (keeper) work.keep = [&](const PowerProgress& so_far) { keeper->keep(so_far); };
+  make_runs(study, prepared.test, work, progress);
+}
+
+void print_shard(const PowerArguments& arguments, const PowerProgress& progress) {
+  const fs::path file = progress_file(arguments.folder, progress.shard);
+  const int runs = progress.shard.own_runs(progress.plan.runs);
+  print(fmt::format("SIMULATED: shard {}/{}: {} of {} runs of each of {} sizes\nfile     {}\n",
+                    progress.shard.number, progress.shard.count, runs, progress.plan.runs,
+                    progress.plan.participants.size(), file.string()));
+}
+
+int print_report(const PowerArguments& arguments, const PowerProgress& progress) {
+  const PowerReport report = make_power_report(progress);
+  if (!arguments.folder.empty()) write_power_results(arguments.folder, report);
+  print(arguments.json ? power_json(report) : power_text(report));
+  return 0;
+}
+
+int combine(const PowerArguments& arguments) {
+  const CombinedPower all = combined(load_shards(arguments.combine));
+  for (const std::string& remark : all.remarks) spdlog::warn("{}", remark);
+  if (!arguments.folder.empty()) make_folder(arguments.folder);
+  return print_report(arguments, all.progress);
+}
+
+int power(PowerArguments arguments) {
+  if (!arguments.combine.empty()) return combine(arguments);
+  if (arguments.study.empty()) {
+    throw UsageError("power: STUDY is missing; give a study file, or --combine with shards");
+  }
+  PowerPlan plan = arguments.plan;
+  plan.participants = sizes_named(arguments.sizes);
+  plan.stop_early = !arguments.no_early_stop;
+  settle(plan);
+  const Shard shard = arguments.shard.empty() ? Shard{} : shard_named(arguments.shard);
+  const PowerPreparation prepared(arguments, load_study(arguments.study));
+  PowerProgress progress = new_progress(prepared.setting(), plan, shard);
+  if (!arguments.folder.empty()) {
+    make_folder(arguments.folder);
+    progress =
+        taken_up(progress_file(arguments.folder, shard), std::move(progress), arguments.resume);
+  }
+  make_missing_runs(prepared, arguments, progress);
+  if (shard.is_all()) return print_report(arguments, progress);
+  print_shard(arguments, progress);
+  return 0;
+}
+
+void add_plan_options(CLI::App& command, PowerArguments& arguments) {
+  PowerPlan& plan = arguments.plan;
+  command.add_option("--participants", arguments.sizes, "Sizes of the study, 2 to 10000 each")
+      ->type_name("N,N..")
+      ->capture_default_str();
+  command
+      .add_option("--runs", plan.runs, "Simulated studies of each size, and as many under the null")
+      ->capture_default_str();
+  command.add_option("--seed", plan.seed, "Seed of everything random")
+      ->check(seed_validator())
+      ->capture_default_str();
+  command.add_option("--subject", arguments.subject,
+                     "Subject model of the population (default: built in)");
+  command
+      .add_option("--methods", arguments.methods,
+                  "Of a comparison of three methods or more: the two that are tested, as A,B")
+      ->delimiter(',');
+  command.add_flag("--no-early-stop", arguments.no_early_stop,
+                   "Make all runs, also where the answer is certain");
+  command
+      .add_option("--explorations", plan.explorations,
+                  "Explorations of each stimulus that trials draw from")
+      ->capture_default_str();
+  command.add_option("--trainings", plan.trainings, "Trainings that studies draw from")
+      ->capture_default_str();
+  command.add_flag("--servo", plan.servo,
+                   "Every exploration through the servo, to compare; some hundred times slower");
+}
+
+}  // namespace
+
+void add_power_command(CLI::App& program, Action& action) {
+  auto arguments = std::make_shared<PowerArguments>();
+  arguments->jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  CLI::App* command = program.add_subcommand(
+      "power", "Power, type-I error and interval width of a study, given an assumed sensitivity");
+  auto* study = command->add_option("STUDY", arguments->study, "Study file");
+  add_plan_options(*command, *arguments);
+  command->add_option("--jobs", arguments->jobs, "Threads; results do not depend on them")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  auto* folder = command->add_option(
+      "-o,--out", arguments->folder,
+      "Folder for progress, and for the results as JSON, CSV, Markdown, SVG and PDF");
+  command->add_flag("--resume", arguments->resume, "Go on with what --out holds of this run")
+      ->needs(folder);
+  auto* shard = command
+                    ->add_option("--shard", arguments->shard,
+                                 "Make one part of the runs, for --combine; never stops early")
+                    ->type_name("I/N")
+                    ->needs(folder);
+  command
+      ->add_option("--combine", arguments->combine,
+                   "In place of a study: folders or files of all shards of a run")
+      ->excludes(study)
+      ->excludes(shard);
+  command->add_flag("--json", arguments->json, "One JSON object in place of tables");
+  command->callback([=, &action] { action = [=] { return power(*arguments); }; });
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,138 @@
+#include "app/power_files.hpp"
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+namespace touchtrial {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kMostShards = 10'000;
+
+std::optional<int> whole_number(std::string_view text) {
+  int number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  const bool is_whole = error == std::errc{} && end == text.data() + text.size();
+  return is_whole && text.front() != '-' ? std::optional(number) : std::nullopt;
+}
+
+std::vector<fs::path> shards_in(const fs::path& folder) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("shard-") && name.ends_with(".json")) files.push_back(entry.path());
+  }
+  if (files.empty()) {
+    throw FileError(one_line(folder.string()) +
+                    ": has no shard of a power run (shard-*.json); give the --out of the shards");
+  }
+  std::ranges::sort(files);
+  return files;
+}
+
+void draw(const fs::path& folder, const Figure& figure, FigureFormat format, const char* name) {
+  replace_file(folder / name, drawn(figure, format));
+}
+
+}  // namespace
+
+Shard shard_named(std::string_view text) {
+  const std::size_t slash = text.find('/');
+  if (slash != std::string_view::npos && slash > 0 && slash + 1 < text.size()) {
+    const auto number = whole_number(text.substr(0, slash));
+    const auto count = whole_number(text.substr(slash + 1));
+    if (number && count && *number >= 1 && *number <= *count && *count <= kMostShards) {
+      return {*number, *count};
+    }
+  }
+  throw UsageError(
+      one_line(fmt::format("--shard: '{}' is none; give which of how many, from 1/2 to {}/{}",
+                           text.substr(0, 60), kMostShards, kMostShards)));
+}
+
+std::vector<int> sizes_named(std::string_view text) {
+  std::vector<int> sizes;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    const std::string_view part = text.substr(begin, end - begin);
+    const auto size = part.empty() ? std::nullopt : whole_number(part);
+    if (!size) {
+      throw UsageError(one_line(
+          fmt::format("--participants: '{}' is no number of participants; give some, as 8,12,16",
+                      part.substr(0, 60))));
+    }
+    sizes.push_back(*size);
+    begin = end + 1;
+  }
+  return sizes;
+}
+
+fs::path progress_file(const fs::path& folder, const Shard& shard) {
+  if (shard.is_all()) return folder / "power-progress.json";
+  return folder / fmt::format("shard-{:04}-of-{:04}.json", shard.number, shard.count);
+}
+
+PowerProgress taken_up(const fs::path& file, PowerProgress fresh, bool resume) {
+  if (!is_there(file)) return fresh;
+  if (!resume) {
+    throw FileError(one_line(file.string()) +
+                    ": exists already; go on with it by --resume, or give another --out");
+  }
+  PowerProgress kept = load_progress(file);
+  const std::string difference =
+      kept.shard == fresh.shard ? first_difference(kept, fresh) : "--shard";
+  if (!difference.empty()) {
+    throw FileError(one_line(file.string()) + ": is of another run (" + difference +
+                    " differs); resume it with its own arguments, or give another --out");
+  }
+  return kept;
+}
+
+void ProgressKeeper::keep(const PowerProgress& progress) {
+  constexpr std::chrono::seconds kAtLeast{2};
+  constexpr int kShare = 20;  // of the time at most goes into writing
+  const Clock::time_point begun = Clock::now();
+  if (begun < next_ && !is_complete(progress)) return;
+  replace_file(file_, progress_json(progress));
+  const Clock::time_point written = Clock::now();
+  next_ = written + std::max<Clock::duration>(kAtLeast, kShare * (written - begun));
+}
+
+std::vector<std::pair<fs::path, PowerProgress>> load_shards(const std::vector<fs::path>& places) {
+  std::vector<std::pair<fs::path, PowerProgress>> shards;
+  for (const fs::path& place : places) {
+    std::error_code error;
+    const bool is_folder = fs::is_directory(place, error);
+    for (const fs::path& file : is_folder ? shards_in(place) : std::vector{place}) {
+      shards.emplace_back(file, load_progress(file));
+    }
+  }
+  return shards;
+}
+
+void write_power_results(const fs::path& folder, const PowerReport& report) {
+  replace_file(folder / "power.json", power_json(report));
+  replace_file(folder / "power.csv", power_csv(report));
+  replace_file(folder / "power.md", power_markdown(report));
+  const Figure figure = power_figure(report);
+  try {
+    draw(folder, figure, FigureFormat::svg, "power.svg");
+    draw(folder, figure, FigureFormat::pdf, "power.pdf");
+  } catch (const FileError&) {
+    throw;
+  } catch (const Error& error) {
+    spdlog::warn("without figures: {}", error.what());
+  }
+}
+
+}  // namespace touchtrial

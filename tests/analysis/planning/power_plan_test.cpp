@@ -1,0 +1,131 @@
+#include "analysis/planning/power_plan.hpp"
+
+#include "core/errors.hpp"
+#include "core/random.hpp"
+#include "support/catch.hpp"
+
+#include <set>
+
+namespace touchtrial {
+namespace {
+
+PowerPlan plan_of(const std::vector<int>& sizes, int runs = 1000) {
+  PowerPlan plan;
+  plan.participants = sizes;
+  plan.runs = runs;
+  return plan;
+}
+
+std::string refusal(PowerPlan plan) {
+  try {
+    settle(plan);
+  } catch (const UsageError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+std::vector<PowerRun> runs_with(int significant, int of) {
+  std::vector<PowerRun> runs(static_cast<std::size_t>(of), PowerRun{1.0, 0.0, 0.0, 0.0, 0.0});
+  for (int i = 0; i < significant; ++i) runs[static_cast<std::size_t>(i)].p = 0.01;
+  return runs;
+}
+
+TEST_CASE("sizes may come in any order, but each once") {
+  PowerPlan plan = plan_of({20, 8, 12});
+  settle(plan);
+  CHECK(plan.participants == std::vector<int>{8, 12, 20});
+  CHECK_THAT(refusal(plan_of({8, 12, 8})), Catch::Contains("8 is given twice"));
+}
+
+TEST_CASE("a plan that cannot be is refused with the option and what it may be") {
+  CHECK_THAT(refusal(plan_of({})), Catch::Contains("--participants"));
+  CHECK_THAT(refusal(plan_of({1, 8})), Catch::Contains("1 is out of range"));
+  CHECK_THAT(refusal(plan_of({8, 1000000000})), Catch::Contains("1000000000"));
+  CHECK_THAT(refusal(plan_of({8}, 0)), Catch::Contains("--runs"));
+  CHECK_THAT(refusal(plan_of({8}, -5)), Catch::Contains("--runs"));
+  CHECK_THAT(refusal(plan_of({8}, 2000000000)), Catch::Contains("--runs"));
+  CHECK_THAT(refusal(plan_of(std::vector<int>(65, 8))), Catch::Contains("65 sizes"));
+  std::vector<int> many;
+  for (int i = 2; i < 40; ++i) many.push_back(i);
+  CHECK_THAT(refusal(plan_of(many, 100000)), Catch::Contains("in all"));
+}
+
+TEST_CASE("shards share out the runs: each run is in one of them") {
+  for (const int count : {1, 3, 7, 16}) {
+    for (const int runs : {1, 5, 16, 100}) {
+      std::multiset<int> made;
+      for (int number = 1; number <= count; ++number) {
+        const Shard shard{number, count};
+        for (int i = 0; i < shard.own_runs(runs); ++i) made.insert(shard.run(i));
+      }
+      CHECK(static_cast<int>(made.size()) == runs);
+      for (int run = 0; run < runs; ++run) CHECK(made.count(run) == 1);
+    }
+  }
+}
+
+TEST_CASE("every simulated study has a seed of its own") {
+  std::set<std::uint64_t> seeds;
+  for (const int size : {8, 12}) {
+    for (const Hypothesis hypothesis : {Hypothesis::population, Hypothesis::null}) {
+      for (int run = 0; run < 100; ++run) {
+        seeds.insert(study_seed(1, size, hypothesis, run));
+        seeds.insert(study_seed(2, size, hypothesis, run));
+      }
+    }
+  }
+  CHECK(seeds.size() == 800);
+}
+
+TEST_CASE("looks double, and the last is at the plan's end") {
+  CHECK(looks_of(plan_of({8}, 1000)) == std::vector<int>{100, 200, 400, 800, 1000});
+  CHECK(looks_of(plan_of({8}, 100)) == std::vector<int>{100});
+  CHECK(looks_of(plan_of({8}, 7)) == std::vector<int>{7});
+  PowerPlan patient = plan_of({8}, 1000);
+  patient.stop_early = false;
+  CHECK(looks_of(patient) == std::vector<int>{1000});
+}
+
+TEST_CASE("a size stops where its power is beyond all targets, or below, and not in between") {
+  const PowerPlan plan = plan_of({8}, 1000);
+  CHECK(certain_after(plan, runs_with(100, 100)) == 100);
+  CHECK(certain_after(plan, runs_with(10, 150)) == 100);
+  CHECK_FALSE(certain_after(plan, runs_with(99, 99)).has_value());
+  CHECK_FALSE(certain_after(plan, runs_with(85, 100)).has_value());
+  PowerPlan patient = plan;
+  patient.stop_early = false;
+  CHECK_FALSE(certain_after(patient, runs_with(100, 100)).has_value());
+}
+
+TEST_CASE("an answer that was certain stays: more runs do not move the place where it was") {
+  const PowerPlan plan = plan_of({8}, 1000);
+  auto runs = runs_with(100, 100);
+  const auto more = runs_with(0, 300);
+  runs.insert(runs.end(), more.begin(), more.end());
+  CHECK(certain_after(plan, runs) == 100);
+}
+
+TEST_CASE("stopping early is seldom wrong about its targets, also where they are nearest") {
+  // True powers a little beside each target: where a stop tells the wrong side.
+  PowerPlan plan = plan_of({8}, 1000);
+  RandomStream random(4, "stopping early");
+  constexpr int kStudies = 600;
+  for (const double power : {0.79, 0.81, 0.89, 0.91}) {
+    int wrong = 0;
+    for (int study = 0; study < kStudies; ++study) {
+      std::vector<PowerRun> runs(1000);
+      for (PowerRun& run : runs) run.p = random.uniform() < power ? 0.01 : 1.0;
+      const int made = certain_after(plan, runs).value_or(plan.runs);
+      int significant = 0;
+      for (int i = 0; i < made; ++i) significant += is_significant(runs[i]) ? 1 : 0;
+      const Interval interval = power_interval(plan, {made, significant});
+      if (power < interval.low || power > interval.high) ++wrong;
+    }
+    // 5 % of 600 is 30, and four standard errors are 21 more.
+    CHECK(wrong <= 51);
+  }
+}
+
+}  // namespace
+}  // namespace touchtrial

@@ -1,0 +1,72 @@
+#include "analysis/planning/power_report.hpp"
+#include "analysis/planning/rehearsed_tiny_study.hpp"
+#include "support/catch.hpp"
+
+#include <cmath>
+
+namespace touchtrial {
+namespace {
+
+PowerReport report_of(const RehearsedTinyStudy& study, std::vector<int> sizes, int runs) {
+  const BankedFeelings bank = study.bank(30, 4);
+  PowerPlan plan;
+  plan.participants = std::move(sizes);
+  plan.runs = runs;
+  plan.stop_early = false;
+  PowerProgress progress = new_progress({}, plan, {});
+  make_runs(study.planned(bank, plan.participants.back()), study.test, {.jobs = 2}, progress);
+  return make_power_report(progress);
+}
+
+/// Within four Monte-Carlo standard errors of what the test can reach, which is at most its level.
+void check_type_one(const PowerReport& report) {
+  for (const PowerRow& row : report.rows) {
+    const double error = *row.false_alarms.share();
+    const double n = row.false_alarms.n;
+    CHECK(row.attainable > 0.0);
+    CHECK(row.attainable <= 0.05);
+    const double standard_error = std::sqrt(row.attainable * (1.0 - row.attainable) / n);
+    CHECK(std::abs(error - row.attainable) < 4.0 * standard_error);
+  }
+}
+
+TinyStudyOptions briefly(const char* trials) {
+  TinyStudyOptions options;
+  options.side_px = 60;
+  options.trials = trials;
+  return options;
+}
+
+/// Who feels hardly anything: power that grows with the number of participants.
+SubjectModel dull_subject() {
+  SubjectModel subject = hasty_subject();
+  subject.weber = 6.0;
+  return subject;
+}
+
+TEST_CASE("the test against chance has its type-I error, and more power with more participants") {
+  const RehearsedTinyStudy study(briefly(R"({"repeats":3})"), dull_subject());
+  const PowerReport report = report_of(study, {3, 24}, 500);
+  check_type_one(report);
+  const PowerRow& few = report.rows[0];
+  const PowerRow& many = report.rows[1];
+  INFO(power_text(report));
+  CHECK(few.power.low < many.power.low);
+  CHECK(*many.significant.share() > *few.significant.share() + 0.1);
+  // Eight times the participants: the interval is a third as wide, and less for Student's t.
+  CHECK(many.width.mean < 0.5 * few.width.mean);
+}
+
+TEST_CASE("two methods that feel alike differ as often as the test says, with bias and lapses") {
+  TinyStudyOptions options = briefly(R"({"repeats":2})");
+  options.comparison = true;
+  check_type_one(report_of(RehearsedTinyStudy(options), {8, 14}, 500));
+}
+
+TEST_CASE("orders that are drawn by the study's rule hold their type-I error too") {
+  const RehearsedTinyStudy study(briefly(R"({"repeats":2,"max_run":1,"catch":1})"));
+  check_type_one(report_of(study, {4}, 200));
+}
+
+}  // namespace
+}  // namespace touchtrial

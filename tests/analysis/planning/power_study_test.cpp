@@ -1,0 +1,244 @@
+#include "analysis/planning/power_study.hpp"
+
+#include "analysis/planning/power_report.hpp"
+#include "analysis/planning/rehearsed_tiny_study.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "support/catch.hpp"
+#include "support/temp_folder.hpp"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+namespace {
+
+PowerPlan small_plan(int runs = 130) {
+  PowerPlan plan;
+  plan.participants = {3, 5};
+  plan.runs = runs;
+  return plan;
+}
+
+PowerSetting setting(const std::string& subject = "somebody") {
+  return {"tiny", "classification", "a test", "accuracy", "5ea1", "f1e1d5", subject, "0"};
+}
+
+/// Felt once for all cases of this file.
+const RehearsedTinyStudy& tiny() {
+  static const RehearsedTinyStudy study([] {
+    TinyStudyOptions options;
+    options.side_px = 60;
+    options.trials = R"({"repeats":2})";
+    return options;
+  }());
+  return study;
+}
+
+const BankedFeelings& bank() {
+  static const BankedFeelings feelings = tiny().bank();
+  return feelings;
+}
+
+PowerProgress made(const PowerPlan& plan, const Shard& shard = {}, int jobs = 2) {
+  PowerProgress progress = new_progress(setting(), plan, shard);
+  make_runs(tiny().planned(bank()), tiny().test, {.jobs = jobs}, progress);
+  return progress;
+}
+
+using Files = std::vector<std::pair<std::filesystem::path, PowerProgress>>;
+
+Files shards(const PowerPlan& plan, int count) {
+  Files files;
+  for (int number = 1; number <= count; ++number) {
+    files.emplace_back("shard-" + std::to_string(number), made(plan, {number, count}));
+  }
+  return files;
+}
+
+TEST_CASE("a power run is the same with any number of threads") {
+  const PowerProgress one = made(small_plan(), {}, 1);
+  CHECK(is_complete(one));
+  CHECK(one == made(small_plan(), {}, 3));
+  CHECK(power_json(make_power_report(one)) == power_json(make_power_report(made(small_plan()))));
+}
+
+TEST_CASE("a bank of feelings is the same with any number of threads") {
+  const BankedFeelings one = tiny().bank(3, 2, 1, 1);
+  const BankedFeelings other = tiny().bank(3, 2, 1, 3);
+  for (std::uint64_t draw = 0; draw < 3; ++draw) {
+    CHECK(one.felt({1, 0, 0}, {5, 1, 1, draw}) == other.felt({1, 0, 0}, {5, 1, 1, draw}));
+  }
+  CHECK(one.felt({1, 0, 0}, {5, 1, 1, 0}) != one.felt({1, 0, 0}, {5, 1, 1, 1}));
+  CHECK(one.knowledge(7)->examples.front().features ==
+        other.knowledge(7)->examples.front().features);
+}
+
+TEST_CASE("a power run's shards make the whole, to the last digit, in any number and order") {
+  const PowerProgress whole = made(small_plan());
+  for (const int count : {2, 5}) {
+    Files files = shards(small_plan(), count);
+    std::reverse(files.begin(), files.end());
+    const CombinedPower all = combined(files);
+    CHECK(all.remarks.empty());
+    CHECK(all.progress == whole);
+    CHECK(power_json(make_power_report(all.progress)) == power_json(make_power_report(whole)));
+  }
+}
+
+TEST_CASE("shards make all their runs, and the whole stops where one machine would have") {
+  PowerPlan plan = small_plan(150);
+  const PowerProgress whole = made(plan);
+  // The tiny study is easy: both sizes are certain at the first look.
+  REQUIRE(whole.cells.front().runs.size() == 100);
+  const Files files = shards(plan, 3);
+  for (const auto& [path, shard] : files) CHECK(shard.cells.front().runs.size() == 50);
+  CHECK(combined(files).progress == whole);
+  plan.stop_early = false;
+  CHECK(made(plan).cells.front().runs.size() == 150);
+}
+
+TEST_CASE("lost shards are named") {
+  Files files = shards(small_plan(10), 5);
+  files.erase(files.begin() + 3);
+  files.erase(files.begin() + 1);
+  CHECK_THROWS_WITH(combined(files), Catch::Contains("missing: 2, 4"));
+  CHECK_THROWS_AS(combined({}), FileError);
+}
+
+TEST_CASE("a repeated shard is taken once and told of, a differing one is refused") {
+  Files files = shards(small_plan(10), 3);
+  files.emplace_back("again", files[1].second);
+  const CombinedPower all = combined(files);
+  REQUIRE(all.remarks.size() == 1);
+  CHECK_THAT(all.remarks.front(), Catch::Contains("2/3") && Catch::Contains("again"));
+  CHECK(all.progress == made(small_plan(10)));
+  files.back().second.cells[0].runs[0].p *= 0.5;
+  CHECK_THROWS_AS(combined(files), VerificationError);
+  CHECK_THROWS_WITH(combined(files), Catch::Contains("again"));
+}
+
+TEST_CASE("a shard of another study, plan or number of shards is refused by name") {
+  Files files = shards(small_plan(10), 3);
+  const auto with = [&](const auto& change) {
+    Files changed = files;
+    change(changed[2].second);
+    return changed;
+  };
+  CHECK_THROWS_WITH(combined(with([](PowerProgress& p) { p.setting.seal = "other"; })),
+                    Catch::Contains("shard-3") && Catch::Contains("the study file"));
+  CHECK_THROWS_WITH(combined(with([](PowerProgress& p) { p.setting.subject = "other"; })),
+                    Catch::Contains("the subject model"));
+  CHECK_THROWS_WITH(combined(with([](PowerProgress& p) { p.plan.seed = 9; })),
+                    Catch::Contains("--seed"));
+  CHECK_THROWS_WITH(combined(with([](PowerProgress& p) { p.plan.runs = 9; })),
+                    Catch::Contains("--runs"));
+  CHECK_THROWS_WITH(combined(with([](PowerProgress& p) { p.shard.count = 4; })),
+                    Catch::Contains("shard 3/4"));
+  CHECK_THROWS_WITH(combined(with([](PowerProgress& p) { p.cells[1].runs.pop_back(); })),
+                    Catch::Contains("not complete"));
+}
+
+TEST_CASE("progress is the same after it was written and read") {
+  const TempFolder folder;
+  const auto file = folder.path() / "progress.json";
+  PowerProgress progress = made(small_plan(20), {2, 3});
+  progress.cells[0].runs[0] = {1e-280, 0.05, 0.1 + 0.2, -1.0 / 3.0, 5e-324};
+  progress.plan.seed = ~std::uint64_t{0};
+  replace_file(file, progress_json(progress));
+  CHECK(load_progress(file) == progress);
+}
+
+/// A program that is killed: whatever was kept last is all that is left.
+struct Killed {};
+
+TEST_CASE("a power run that was killed at any time goes on to the same result") {
+  const PowerProgress whole = made(small_plan());
+  const TempFolder folder;
+  const auto file = folder.path() / "progress.json";
+  for (int blocks = 0; blocks < 7; ++blocks) {
+    PowerProgress progress = new_progress(setting(), small_plan(), {});
+    int kept = 0;
+    PowerWork work{.jobs = 2};
+    work.keep = [&](const PowerProgress& so_far) {
+      replace_file(file, progress_json(so_far));
+      if (++kept > blocks) throw Killed();
+    };
+    CHECK_THROWS_AS(make_runs(tiny().planned(bank()), tiny().test, work, progress), Killed);
+    PowerProgress taken_up = load_progress(file);
+    REQUIRE_FALSE(taken_up.cells == whole.cells);
+    make_runs(tiny().planned(bank()), tiny().test, {.jobs = 1}, taken_up);
+    CHECK(taken_up == whole);
+  }
+}
+
+TEST_CASE("a file of progress that is truncated, altered or hostile is refused in one line") {
+  const TempFolder folder;
+  const auto file = folder.path() / "progress.json";
+  const std::string text = progress_json(made(small_plan(10)));
+  const auto refused = [&](const std::string& content) {
+    replace_file(file, content);
+    try {
+      static_cast<void>(load_progress(file));
+    } catch (const FileError& error) {
+      const std::string what = error.what();
+      return what.find('\n') == std::string::npos &&
+             what.find("progress.json") != std::string::npos;
+    }
+    return false;
+  };
+  REQUIRE_FALSE(refused(text));
+  for (std::size_t length = 0; length + 2 < text.size(); length += 37) {
+    CHECK(refused(text.substr(0, length)));
+  }
+  std::string altered = text;
+  altered[altered.find("\"runs\":10") + 8] = '2';
+  CHECK(refused(altered));
+  CHECK(refused(""));
+  CHECK(refused("[]"));
+  CHECK(refused("null"));
+  CHECK(refused(std::string(100'000, '[')));
+  CHECK(refused("{\"power\":1,\"sha256\":\"\"}"));
+  CHECK(refused("{\"power\":{},\"sha256\":5}"));
+  CHECK(refused("\xff\xfe{}"));
+}
+
+TEST_CASE("the report of a power run says what its runs were") {
+  PowerProgress progress = new_progress(setting(), small_plan(4), {});
+  for (PowerCell& cell : progress.cells) {
+    const double width = cell.participants == 3 ? 0.4 : 0.2;
+    const bool null = cell.hypothesis == Hypothesis::null;
+    for (int run = 0; run < 4; ++run) {
+      const double p = null ? 0.5 : run == 0 && cell.participants == 3 ? 0.06 : 0.01;
+      cell.runs.push_back({p, null ? 0.04 : 0.0, 0.5, 0.5 - width / 2, 0.5 + width / 2});
+    }
+  }
+  const PowerReport report = make_power_report(progress);
+  REQUIRE(report.rows.size() == 2);
+  CHECK(report.rows[0].significant == (Proportion{4, 3}));
+  CHECK(report.rows[1].significant == (Proportion{4, 4}));
+  CHECK(report.rows[0].width.mean == Approx(0.4));
+  CHECK(report.rows[1].width.median == Approx(0.2));
+  CHECK(report.rows[0].false_alarms == (Proportion{4, 0}));
+  CHECK(report.rows[0].attainable == Approx(0.04));
+  CHECK(report.targets[0].smallest == 5);
+  CHECK_FALSE(report.targets[0].surely.has_value());
+  const auto json = nlohmann::json::parse(power_json(report));
+  CHECK(json.at("simulated") == true);
+  CHECK(json.at("sizes").at(1).at("power").at("p") == 1.0);
+  CHECK(json.at("targets").at(1).at("smallest") == 5);
+  for (const std::string& text :
+       {power_text(report), power_markdown(report), power_csv(report), power_json(report)}) {
+    CHECK_THAT(text, Catch::Contains("SIMULATED"));
+  }
+  CHECK_THAT(power_text(report), Catch::Contains("power given the assumed sensitivity"));
+}
+
+TEST_CASE("a run that is not complete has no report") {
+  CHECK_THROWS_AS(make_power_report(new_progress(setting(), small_plan(), {})),
+                  std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace touchtrial

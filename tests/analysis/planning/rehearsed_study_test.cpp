@@ -1,0 +1,239 @@
+#include "analysis/planning/rehearsed_study.hpp"
+
+#include "analysis/planning/rehearsed_tiny_study.hpp"
+#include "analysis/report/report.hpp"
+#include "core/errors.hpp"
+#include "protocols/session/commitment.hpp"
+#include "protocols/session/simulation.hpp"
+#include "protocols/store/study_store.hpp"
+#include "support/catch.hpp"
+
+#include <cmath>
+#include <map>
+
+namespace touchtrial {
+namespace {
+
+using namespace std::chrono_literals;
+
+/// What `simulate` and `report` make of the same participants: sessions, events, database and all.
+Outcomes simulated_and_loaded(TinyStudy& tiny, const SubjectModel& subject, int participants,
+                              std::uint64_t seed) {
+  StudyStore store = StudyStore::create(tiny.next_database(),
+                                        commitment_of(tiny.key(), tiny.pack(), true, false), 0ns);
+  simulate_study(tiny.key(), tiny.pack(), subject, {participants, seed, 2}, store);
+  store.close_study(0ns);
+  store.unblind(0ns, "test", false);
+  return load_outcomes(store, tiny.key());
+}
+
+std::vector<TrialOutcome> scored(const Outcomes& outcomes) {
+  std::vector<TrialOutcome> trials;
+  for (const TrialOutcome& trial : outcomes.trials) {
+    if (trial.scored) trials.push_back(trial);
+  }
+  return trials;
+}
+
+/// Presentations and answers, in the same order.
+void check_same_answers(const Outcomes& one, const Outcomes& other) {
+  const auto a = scored(one);
+  const auto b = scored(other);
+  REQUIRE(a.size() == b.size());
+  int same = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const bool alike = a[i].participant == b[i].participant && a[i].stimulus == b[i].stimulus &&
+                       a[i].response == b[i].response && a[i].row.trial == b[i].row.trial &&
+                       a[i].row.block == b[i].row.block && a[i].counted == b[i].counted;
+    same += alike ? 1 : 0;
+  }
+  CHECK(same == static_cast<int>(a.size()));
+}
+
+void check_same_figures(const PowerRun& run, const StudyReport& report) {
+  const MethodReport& method = report.methods.front();
+  CHECK(run.p == method.chance->p);
+  CHECK(run.estimate == method.mean.mean);
+  CHECK(run.low == method.mean.interval.low);
+  CHECK(run.high == method.mean.interval.high);
+}
+
+TEST_CASE("a power run on the servo path gives the answers and figures of simulate and report") {
+  RehearsedTinyStudy study;
+  const RehearsedStudy planned = study.planned(study.servo);
+  const std::uint64_t seed = study_seed(1, 3, Hypothesis::population, 0);
+  const Outcomes fast = planned.outcomes(3, Hypothesis::population, seed);
+  const Outcomes whole = simulated_and_loaded(study.tiny, study.subject, 3, seed);
+  check_same_answers(fast, whole);
+  check_same_figures(judged(study.test, fast, false), make_report(whole));
+}
+
+TEST_CASE("so it does with several exemplars, catch trials, lead-ins and breaks") {
+  TinyStudyOptions options;
+  options.images = 2;
+  options.side_px = 60;
+  options.trials = R"({"repeats":2,"catch":3,"lead_in":2,"break_every":4,"max_run":2})";
+  RehearsedTinyStudy study(options);
+  const RehearsedStudy planned = study.planned(study.servo);
+  const Outcomes fast = planned.outcomes(2, Hypothesis::population, 5);
+  const Outcomes whole = simulated_and_loaded(study.tiny, study.subject, 2, 5);
+  check_same_answers(fast, whole);
+  const PowerRun run = judged(study.test, fast, false);
+  const StudyReport report = make_report(whole);
+  CHECK(run.estimate == report.methods.front().mean.mean);
+  // Orders without long runs are drawn: 999 in place of 9,999 times.
+  CHECK(std::abs(run.p - report.methods.front().chance->p) < 0.06);
+}
+
+TEST_CASE("so it does when two methods are compared") {
+  TinyStudyOptions options;
+  options.comparison = true;
+  options.side_px = 60;
+  options.trials = R"({"repeats":1})";
+  RehearsedTinyStudy study(options);
+  const RehearsedStudy planned = study.planned(study.servo);
+  const Outcomes fast = planned.outcomes(3, Hypothesis::population, 8);
+  const Outcomes whole = simulated_and_loaded(study.tiny, study.subject, 3, 8);
+  check_same_answers(fast, whole);
+  const PowerRun run = judged(study.test, fast, true);
+  const MethodComparison overall = *make_report(whole).comparison;
+  CHECK(run.p == overall.p);
+  CHECK(run.estimate == overall.difference);
+  CHECK(run.low == overall.interval.low);
+  CHECK(run.high == overall.interval.high);
+}
+
+/// Remembers what the servo path felt, and gives it back without a servo.
+class RememberedFeelings final : public Feelings {
+ public:
+  RememberedFeelings(const RehearsedTinyStudy& study, int participants, std::uint64_t seed)
+      : knowledge_(study.servo.knowledge(seed)) {
+    for (int number = 1; number <= participants; ++number) {
+      const Schedule schedule = make_schedule(study.tiny.key().study, number);
+      for (std::size_t i = 0; i < schedule.presentations.size(); ++i) {
+        const FeltTrial trial{seed, number, i + 1, 0};
+        felt_[{number, i + 1}] = study.servo.felt(schedule.presentations[i].stimulus, trial);
+      }
+    }
+  }
+  [[nodiscard]] std::shared_ptr<const FeltKnowledge> knowledge(std::uint64_t) const override {
+    return knowledge_;
+  }
+  [[nodiscard]] FeltFeatures felt(const StimulusIndex&, const FeltTrial& trial) const override {
+    return felt_.at({trial.participant, trial.nth});
+  }
+
+ private:
+  std::shared_ptr<const FeltKnowledge> knowledge_;
+  std::map<std::pair<int, std::uint64_t>, FeltFeatures> felt_;
+};
+
+TEST_CASE(
+    "the fast path answers as the servo path does when the bank holds its very explorations") {
+  const RehearsedTinyStudy study;
+  const RememberedFeelings remembered(study, 2, 9);
+  const Outcomes fast = study.planned(remembered).outcomes(2, Hypothesis::population, 9);
+  const Outcomes slow = study.planned(study.servo).outcomes(2, Hypothesis::population, 9);
+  check_same_answers(fast, slow);
+}
+
+/// Accuracies and confusions of many small studies.
+struct Answers {
+  double trials = 0.0;
+  double correct = 0.0;
+  std::map<std::pair<int, int>, double> confusion;
+};
+
+Answers answers_of(const RehearsedStudy& planned, int studies, std::uint64_t seed) {
+  Answers answers;
+  for (int i = 0; i < studies; ++i) {
+    const Outcomes outcomes =
+        planned.outcomes(4, Hypothesis::population, study_seed(seed, 4, Hypothesis::population, i));
+    for (const TrialOutcome& trial : outcomes.trials) {
+      ++answers.trials;
+      if (trial.correct()) ++answers.correct;
+      ++answers.confusion[{trial.stimulus.class_index, *trial.response}];
+    }
+  }
+  return answers;
+}
+
+TEST_CASE("a bank of independent explorations gives the accuracies and confusions of the servo") {
+  TinyStudyOptions options;
+  options.side_px = 60;
+  const RehearsedTinyStudy study(options);
+  const BankedFeelings bank = study.bank(60, 12);
+  constexpr int kStudies = 12;
+  const Answers fast = answers_of(study.planned(bank), kStudies, 1);
+  const Answers slow = answers_of(study.planned(study.servo), kStudies, 2);
+  REQUIRE(fast.trials == slow.trials);
+  // People and trainings differ between the two, so that the error is more than binomial: four
+  // standard errors at twice the binomial variance.
+  const double n = fast.trials;
+  const double p = (fast.correct + slow.correct) / (2.0 * n);
+  CHECK(p > 0.3);
+  CHECK(p < 0.98);
+  CHECK(std::abs(fast.correct - slow.correct) / n < 4.0 * std::sqrt(4.0 * p * (1.0 - p) / n));
+  for (int presented = 0; presented < 5; ++presented) {
+    const double shown = n / 5.0;
+    for (int answered = 0; answered < 5; ++answered) {
+      const std::pair cell(presented, answered);
+      const double a = fast.confusion.contains(cell) ? fast.confusion.at(cell) : 0.0;
+      const double b = slow.confusion.contains(cell) ? slow.confusion.at(cell) : 0.0;
+      const double share = (a + b + 1.0) / (2.0 * shown + 2.0);
+      CHECK(std::abs(a - b) / shown < 4.0 * std::sqrt(4.0 * share * (1.0 - share) / shown) + 0.01);
+    }
+  }
+}
+
+TEST_CASE("under the null nobody feels what is presented, and methods feel alike") {
+  const RehearsedTinyStudy study({}, [] {
+    SubjectModel sure = hasty_subject();
+    sure.weber = 0.05;
+    sure.lapse = 0.0;
+    return sure;
+  }());
+  const BankedFeelings bank = study.bank();
+  const RehearsedStudy planned = study.planned(bank);
+  int correct = 0;
+  int trials = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    for (const TrialOutcome& trial : planned.outcomes(5, Hypothesis::null, seed).trials) {
+      correct += trial.correct() ? 1 : 0;
+      ++trials;
+    }
+  }
+  REQUIRE(trials == 20 * 5 * 25);
+  // 1 in 5 of 2,500: 500, standard error 20 at most.
+  CHECK(std::abs(correct - 500) < 90);
+}
+
+TEST_CASE("a study whose participants could never answer is refused") {
+  TinyStudyOptions options;
+  options.side_px = 60;
+  options.trials = R"({"explore_limit_s":1,"on_timeout":"no-response"})";
+  const RehearsedTinyStudy study(options);
+  CHECK_THROWS_WITH(study.planned(study.servo),
+                    Catch::Contains("/explore_s") && Catch::Contains("explore_limit_s"));
+}
+
+TEST_CASE("the two methods of a primary test are named where there are three") {
+  Study study;
+  study.protocol = Protocol::comparison;
+  for (const char* label : {"adaptive", "edge", "luminance"}) {
+    study.methods.emplace_back();
+    study.methods.back().label = label;
+  }
+  CHECK_THROWS_WITH(primary_test_of(study, {}), Catch::Contains("--methods"));
+  CHECK_THROWS_WITH(primary_test_of(study, MethodLabels{"edge", "edge"}), Catch::Contains("twice"));
+  CHECK_THROWS_WITH(primary_test_of(study, MethodLabels{"edge", "adaptiv"}),
+                    Catch::Contains("adaptiv") && Catch::Contains("luminance"));
+  const PrimaryTest test = primary_test_of(study, MethodLabels{"luminance", "adaptive"});
+  CHECK(test.first == 2);
+  CHECK(test.second == 0);
+  study.protocol = Protocol::classification;
+  CHECK_THROWS_AS(primary_test_of(study, MethodLabels{"edge", "adaptive"}), UsageError);
+}
+
+}  // namespace
+}  // namespace touchtrial

@@ -1,0 +1,55 @@
+/// \file A tiny study that is simulated by the dozen.
+#pragma once
+
+#include "analysis/planning/power_study.hpp"
+#include "analysis/planning/rehearsed_study.hpp"
+#include "protocols/session/stimulus_source.hpp"
+#include "protocols/session/tiny_study.hpp"
+
+#include <memory>
+
+namespace touchtrial {
+
+/// Explores briefly: the tests need many explorations, and not good ones.
+[[nodiscard]] inline SubjectModel hasty_subject() {
+  SubjectModel subject;
+  subject.weber = 0.5;
+  subject.weber_spread = 0.3;
+  subject.lapse = 0.05;
+  subject.lapse_spread = 0.5;
+  subject.position_bias = 0.3;
+  subject.position_bias_spread = 0.3;
+  subject.class_bias_spread = 0.3;
+  subject.explore_s = 1.5;
+  subject.training_passes = 4;
+  return subject;
+}
+
+/// A tiny study and all that its simulated studies refer to.
+struct RehearsedTinyStudy {
+  explicit RehearsedTinyStudy(const TinyStudyOptions& options = {},
+                              const SubjectModel& model = hasty_subject())
+      : tiny(options),
+        subject(model),
+        test(primary_test_of(tiny.key().study, {})),
+        source(tiny.pack(), tiny.key().study.rendering),
+        fields(tiny.key(), source),
+        servo(fields, tiny.key().study, subject) {}
+
+  [[nodiscard]] BankedFeelings bank(int explorations = 20, int trainings = 3,
+                                    std::uint64_t seed = 1, int jobs = 2) const {
+    return {fields, tiny.key().study, subject, {explorations, trainings, seed, jobs}};
+  }
+  [[nodiscard]] RehearsedStudy planned(const Feelings& feelings, int most = 12) const {
+    return {tiny.key().study, subject, test, feelings, most};
+  }
+
+  TinyStudy tiny;
+  SubjectModel subject;
+  PrimaryTest test;
+  StimulusSource source;
+  LabelledFields fields;
+  ServoFeelings servo;
+};
+
+}  // namespace touchtrial

@@ -1,0 +1,144 @@
+// Power of a study, run as a user runs it: threads, shards, kills, and what cannot be meant.
+#include "app/study_folder.hpp"
+#include "support/catch.hpp"
+
+#include <string>
+#include <vector>
+
+using namespace touchtrial;
+
+namespace {
+
+using Words = std::vector<std::string>;
+
+/// A power run of the little study, quick enough for a test.
+Words power_of(const StudyFolder& study, const Words& more) {
+  Words words = {"power",          study.in("cloths.json"),
+                 "--subject",      study.in("quick.json"),
+                 "--runs",         "120",
+                 "--seed",         "5",
+                 "--explorations", "10",
+                 "--trainings",    "2"};
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+ProgramResult run_power(const StudyFolder& study, const Words& more) {
+  return study.run(power_of(study, more));
+}
+
+/// That a command is refused in one line with this exit code, and says all of that.
+void check_refused(const ProgramResult& result, int code, const Words& says) {
+  INFO(result.errors);
+  CHECK(result.exit_code == code);
+  CHECK(result.output.empty());
+  CHECK(line_count(result.errors) == 1);
+  for (const std::string& word : says) CHECK_THAT(result.errors, Catch::Contains(word));
+}
+
+const Words kSizes = {"--participants", "3,5"};
+
+Words with_sizes(const Words& more) {
+  Words words = kSizes;
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+}  // namespace
+
+TEST_CASE("power prints the same figures with any number of threads, and writes them") {
+  const StudyFolder study;
+  const ProgramResult one = run_power(study, with_sizes({"--jobs", "1", "--json"}));
+  INFO(one.errors);
+  REQUIRE(one.exit_code == 0);
+  const ProgramResult two =
+      run_power(study, with_sizes({"--jobs", "3", "--json", "--out", study.in("power")}));
+  INFO(two.errors);
+  CHECK(one.output == two.output);
+  const json report = json::parse(one.output);
+  CHECK(report.at("simulated") == true);
+  CHECK(report.at("sizes").size() == 2);
+  CHECK(report.at("sizes").at(0).at("type_one_error").at("runs") == 120);
+  CHECK(content(study.path() / "power" / "power.json") == one.output);
+  for (const char* name : {"power.csv", "power.md", "power.svg", "power.pdf"}) {
+    CHECK(fs::exists(study.path() / "power" / name));
+  }
+  const ProgramResult text = run_power(study, kSizes);
+  CHECK_THAT(text.output, Catch::Contains("SIMULATED: power given the assumed sensitivity"));
+}
+
+TEST_CASE("shards of a power run, combined, print what one run prints") {
+  const StudyFolder study;
+  const ProgramResult whole = run_power(study, with_sizes({"--json"}));
+  REQUIRE(whole.exit_code == 0);
+  for (const char* shard : {"1/3", "3/3"}) {
+    const ProgramResult made =
+        run_power(study, with_sizes({"--shard", shard, "--out", study.in("shards")}));
+    INFO(made.errors);
+    REQUIRE(made.exit_code == 0);
+  }
+  check_refused(study.run({"power", "--combine", study.in("shards")}), 1, {"missing: 2"});
+  REQUIRE(
+      run_power(study, with_sizes({"--shard", "2/3", "--out", study.in("elsewhere")})).exit_code ==
+      0);
+  const Words combine = {"power", "--combine", study.in("shards"), study.in("elsewhere"), "--json"};
+  CHECK(study.run(combine).output == whole.output);
+
+  fs::copy(study.path() / "elsewhere" / "shard-0002-of-0003.json",
+           study.path() / "shards" / "shard-copy.json");
+  const ProgramResult twice = study.run(combine);
+  CHECK(twice.output == whole.output);
+  CHECK_THAT(twice.errors, Catch::Contains("2/3") && Catch::Contains("taken once"));
+
+  REQUIRE(run_power(study, {"--participants", "3,5", "--shard", "2/3", "--out", study.in("other"),
+                            "--servo", "--no-early-stop"})
+              .exit_code == 0);
+  check_refused(study.run({"power", "--combine", study.in("shards"), study.in("other")}), 3,
+                {"other", "--no-early-stop"});
+}
+
+TEST_CASE("a power run is resumed with its own arguments alone") {
+  const StudyFolder study;
+  const Words out = {"--out", study.in("power")};
+  const ProgramResult first = run_power(study, with_sizes({"--json", out[0], out[1]}));
+  REQUIRE(first.exit_code == 0);
+  check_refused(run_power(study, with_sizes(out)), 1, {"power-progress.json", "--resume"});
+  CHECK(run_power(study, with_sizes({"--json", "--resume", out[0], out[1]})).output ==
+        first.output);
+  check_refused(run_power(study, {"--participants", "3,6", "--resume", out[0], out[1]}), 1,
+                {"--participants"});
+  Words other = power_of(study, with_sizes({"--resume", out[0], out[1]}));
+  other[7] = "6";
+  check_refused(study.run(other), 1, {"--seed"});
+  const std::string progress = content(study.path() / "power" / "power-progress.json");
+  replace_file(study.path() / "power" / "power-progress.json",
+               progress.substr(0, progress.size() / 2));
+  check_refused(run_power(study, with_sizes({"--resume", out[0], out[1]})), 1,
+                {"power-progress.json", "truncated"});
+}
+
+TEST_CASE("power refuses what cannot be meant, in one line") {
+  const StudyFolder study;
+  check_refused(run_power(study, {"--participants", "1"}), 2, {"--participants", "1"});
+  check_refused(run_power(study, {"--participants", "8,8"}), 2, {"8 is given twice"});
+  check_refused(run_power(study, {"--participants", "1000000000"}), 2, {"1000000000"});
+  check_refused(run_power(study, {"--participants", "99999999999999999999"}), 2,
+                {"--participants"});
+  check_refused(run_power(study, {"--participants", "eight"}), 2, {"--participants"});
+  check_refused(run_power(study, {"--participants", "8,,12"}), 2, {"--participants"});
+  check_refused(run_power(study, {"--participants", "-8"}), 2, {});
+  for (const char* runs : {"0", "-1", "1.5", "1000000000", "many"}) {
+    Words words = power_of(study, kSizes);
+    words[5] = runs;
+    check_refused(study.run(words), 2, {"--runs"});
+  }
+  for (const char* shard : {"0/3", "4/3", "3", "a/b", "1/", "/2", "1/2/3", "1/99999999", "-1/2"}) {
+    check_refused(run_power(study, {"--shard", shard, "--out", study.in("x")}), 2, {"--shard"});
+  }
+  check_refused(run_power(study, {"--methods", "adaptive,edge"}), 2, {"--methods"});
+  check_refused(study.run({"power"}), 2, {"STUDY"});
+  check_refused(study.run({"power", study.in("none.json")}), 2, {"none.json"});
+  check_refused(study.run({"power", "--combine", study.in("nowhere")}), 1, {"nowhere"});
+  check_refused(study.run({"power", "--combine", study.in("cloths.json")}), 1, {"cloths.json"});
+  check_refused(study.run({"power", study.in("cloths.json"), "--resume"}), 2, {"--out"});
+}
