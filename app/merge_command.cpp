@@ -4,6 +4,8 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "protocols/collect/collect.hpp"
+#include "protocols/collect/server_address.hpp"
+#include "protocols/collect/server_stations.hpp"
 #include "protocols/design/study_key.hpp"
 #include "protocols/store/payload_json.hpp"
 
@@ -37,7 +39,10 @@ void refuse_existing(const fs::path& path) {
 Stations stations_of(const std::vector<fs::path>& databases) {
   Stations stations;
   for (const fs::path& database : databases) {
-    for (auto& station : stations_of_file(database)) stations.push_back(std::move(station));
+    const std::string where = database.string();
+    Stations those =
+        is_address(where) ? stations_of_server(ServerAddress(where)) : stations_of_file(database);
+    for (auto& station : those) stations.push_back(std::move(station));
   }
   return stations;
 }
@@ -124,7 +129,10 @@ void add_merge_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<MergeArguments>();
   CLI::App* command = program.add_subcommand(
       "merge", "Make one database of several stations' databases of one study");
-  command->add_option("DB", arguments->databases, "Databases of the stations")->required();
+  command
+      ->add_option("DB", arguments->databases,
+                   "Databases of the stations, or the postgresql:// address of a study")
+      ->required();
   command
       ->add_option("-o,--out", arguments->target,
                    "Database to make; the same for any order of the stations")

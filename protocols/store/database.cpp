@@ -134,9 +134,18 @@ void make_empty_file(const std::filesystem::path& path) {
   std::fclose(file);
 }
 
+/// Nothing of it is repeated: there may be a password in it.
+void refuse_address(const std::filesystem::path& path) {
+  if (path.string().find("://") == std::string::npos) return;
+  throw StoreError(
+      "an address is no file: a study on a server is written by sync, and read by report, export, "
+      "verify and merge");
+}
+
 }  // namespace
 
 Database Database::create(const std::filesystem::path& path) {
+  refuse_address(path);
   make_empty_file(path);
   try {
     Database database(path, connected(path, Mode::read_write));
@@ -166,6 +175,7 @@ Database Database::temporary(const std::string& name) {
 }
 
 Database Database::open(const std::filesystem::path& path, Mode mode, int newest_version) {
+  refuse_address(path);
   check_header(path, newest_version);
   try {
     Database database(path, connected(path, mode));
