@@ -270,3 +270,16 @@ TEST_CASE("a database whose encoding would change texts is refused") {
              }),
              holds_text("createdb --encoding=UTF8"));
 }
+
+TEST_CASE("a database without an encoding keeps texts as they are") {
+  const ServerFixture there;
+  there.server.make_database("plain", "SQL_ASCII");
+  StoredFixture study(1);
+  study.store->note(1, kUtc, "", "sch\xc3\xb6n \xe2\x9c\x93");
+  OpenStation station(*study.store);
+  PushReport report;
+  push_station(station, ServerAddress(there.server.url("plain")), {}, report);
+  CHECK(report.pushed.size() == 1);
+  CHECK(there.server.ask("plain", "SELECT count(*) FROM events WHERE body LIKE '%sch\xc3\xb6n%'") ==
+        std::vector<std::string>{"1"});
+}
