@@ -72,11 +72,10 @@ FitOrigin origin_of(const FitArguments& arguments, const Study& study,
   return origin;
 }
 
+/// What took a minute to work out is printed before a file may fail.
 void finish(const FitArguments& arguments, const SubjectModel& fitted, const std::string& report) {
-  if (!arguments.out.empty()) {
-    replace_file(arguments.out, subject_model_json(fitted));
-  }
   print(report);
+  if (!arguments.out.empty()) replace_file(arguments.out, subject_model_json(fitted));
 }
 
 /// Coarse stages of one bar.
