@@ -61,6 +61,14 @@ std::int64_t needed_end(const SessionCourse& session, bool has_key) {
 
 }  // namespace
 
+bool is_decided_between(const SessionCourse& course, std::int64_t first,
+                        std::int64_t end) noexcept {
+  const auto lies = [&](const std::optional<std::int64_t>& at) {
+    return at && *at >= first && *at < end;
+  };
+  return lies(course.excluded_at) || lies(course.withdrawn_at) || lies(course.replaced_at);
+}
+
 std::map<int, SessionCourse> courses_of(std::span<const Event> file_chain) {
   std::map<int, SessionCourse> courses;
   for (const Event& event : file_chain) add(courses, event);

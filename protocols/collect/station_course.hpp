@@ -26,6 +26,11 @@ struct SessionCourse {
   std::string replaced_by;
 };
 
+/// Whether something is decided about a session, after its end, among these events of the chain.
+/// \param first,end  sequences, the end not among them
+[[nodiscard]] bool is_decided_between(const SessionCourse& course, std::int64_t first,
+                                      std::int64_t end) noexcept;
+
 /// By own number. \throws EventFault if a body is no such, or names a session that was not opened
 [[nodiscard]] std::map<int, SessionCourse> courses_of(std::span<const Event> file_chain);
 

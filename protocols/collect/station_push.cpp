@@ -210,7 +210,8 @@ void StationPush::push(const ChainSegment& segment) {
       throw Overtaken(address_.shown() + ": another program pushes this station");
     }
     for (const auto& [session, course] : courses_) {
-      if (course.closed_at && *course.closed_at < segment.first) {
+      const bool is_there = course.closed_at && *course.closed_at < segment.first;
+      if (is_there && is_decided_between(course, segment.first, segment.end)) {
         update_session(work, station, session, course, segment.end);
       }
     }

@@ -97,6 +97,18 @@ TEST_CASE("a session that is still open is in no segment") {
   CHECK(courses_of(chain.events).at(2).closed_at == 3);
 }
 
+TEST_CASE("what is decided about a session is found among the events that tell it") {
+  Chain chain;
+  chain.opened(1).closed(1).opened(2).closed(2).withdrawn(1).replaced(2, "P9");
+  const std::map<int, SessionCourse> courses = courses_of(chain.events);
+  CHECK(is_decided_between(courses.at(1), 5, 6));
+  CHECK(is_decided_between(courses.at(1), 0, 7));
+  CHECK_FALSE(is_decided_between(courses.at(1), 0, 5));
+  CHECK_FALSE(is_decided_between(courses.at(1), 6, 7));
+  CHECK(is_decided_between(courses.at(2), 6, 7));
+  CHECK_FALSE(is_decided_between(courses.at(2), 0, 6));
+}
+
 TEST_CASE("a chain that speaks of sessions that were not opened is refused") {
   Chain chain;
   chain.opened(1).closed(2);
