@@ -47,6 +47,8 @@ std::vector<SessionRow> sessions_of(const StudyStore& store, const PeopleArgumen
 
 /// The session that counts, or the last one if all were replaced.
 int session_of(const StudyStore& store, const PeopleArguments& arguments) {
+  // Not simply the last: two stations of a collected study may have used one id.
+  if (const auto counts = store.session_of(arguments.participant)) return counts->session;
   return sessions_of(store, arguments).back().session;
 }
 

@@ -34,6 +34,7 @@ class Inspection {
   void run(TraceCheck traces) {
     if (traces == TraceCheck::full) inspect_structure();
     const std::vector<Event> collected = inspect_stations();
+    if (is_collected_) file_ = FileChain(UniquePlaces::in_the_end);
     walk(0, [&](const Event& event) {
       if (!collected.empty()) inspect_collected(event, collected);
       file_.add(event);

@@ -141,6 +141,7 @@ class Collection {
     const Event& first = stations_.front().events.front();
     append(EventKind::study_committed, first.at, first.body);
     while (Feed* const next = next_feed()) take(*next);
+    refuse_taken_twice();
     end_collection();
     unblind();
     for (const Feed& feed : feeds_) {
@@ -165,14 +166,11 @@ class Collection {
     chain_.events.push_back(std::move(event));
   }
 
-  /// Who has the participant id or enrolment number of the session that a feed opens next.
-  [[nodiscard]] std::optional<SessionPlace> taken_by(const Feed& feed) const {
-    if (feed.head().kind != EventKind::session_opened) return std::nullopt;
-    const auto participant = participants_.find(feed.session().participant);
-    if (participant != participants_.end()) return participant->second;
-    const auto enrolment = enrolments_.find(feed.session().enrolment);
-    if (enrolment != enrolments_.end()) return enrolment->second;
-    return std::nullopt;
+  /// Whether a feed opens a session whose place somebody has, as far as the chain has come.
+  [[nodiscard]] bool is_taken(const Feed& feed) const {
+    return feed.head().kind == EventKind::session_opened &&
+           (participants_.contains(feed.session().participant) ||
+            enrolments_.contains(feed.session().enrolment));
   }
 
   /// Whether a feed opens a session that stays, in a place that another had before, who is still
@@ -185,41 +183,62 @@ class Collection {
            former_enrolments_.contains(session.enrolment);
   }
 
-  /// The feed whose head comes next; none when all are done.
+  /// The feed whose head comes next; none when all are done. What is in somebody's place waits for
+  /// that one's replacement while anything else is left. Two that wait for each other's are no
+  /// clash, if both places are free in the end: then time decides.
   Feed* next_feed() {
     Feed* best = nullptr;
     Feed* later = nullptr;
-    const Feed* waits = nullptr;
+    Feed* waits = nullptr;
     const auto prefer = [](Feed*& known, Feed& feed) {
       if (known == nullptr || feed.rank() < known->rank()) known = &feed;
     };
     for (Feed& feed : feeds_) {
       if (feed.is_done()) continue;
-      if (taken_by(feed)) {
-        if (waits == nullptr) waits = &feed;
+      if (is_taken(feed)) {
+        prefer(waits, feed);
       } else {
         prefer(comes_later(feed) ? later : best, feed);
       }
     }
-    if (best == nullptr) best = later;
-    if (best == nullptr && waits != nullptr) refuse_taken(*waits);
-    return best;
+    if (best != nullptr) return best;
+    return later != nullptr ? later : waits;
   }
 
-  [[noreturn]] void refuse_taken(const Feed& feed) const {
-    const SessionPlace other = taken_by(feed).value();
-    const StationChain& station = stations_[static_cast<std::size_t>(other.station) - 1];
-    const SessionOpenedBody& taken =
-        feeds_[static_cast<std::size_t>(other.station) - 1].opened().at(other.own_session);
-    const SessionOpenedBody& opened = feed.session();
+  [[nodiscard]] const Feed& feed_of(const SessionPlace& place) const {
+    return feeds_[static_cast<std::size_t>(place.station) - 1];
+  }
+  [[nodiscard]] const SessionOpenedBody& opening_at(const SessionPlace& place) const {
+    return feed_of(place).opened().at(place.own_session);
+  }
+
+  /// A participant id and an enrolment number belong to one session that nobody replaced. Whoever
+  /// was replaced stands in nobody's way, at whatever moment that was.
+  void refuse_taken_twice() const {
+    std::map<std::string, SessionPlace> participants;
+    std::map<int, SessionPlace> enrolments;
+    for (const SessionPlace& place : chain_.sessions) {
+      if (feed_of(place).is_replaced(place.own_session)) continue;
+      const SessionOpenedBody& opened = opening_at(place);
+      const auto [participant, is_new] = participants.emplace(opened.participant, place);
+      if (!is_new) refuse_taken(participant->second, place);
+      const auto [enrolment, is_free] = enrolments.emplace(opened.enrolment, place);
+      if (!is_free) refuse_taken(enrolment->second, place);
+    }
+  }
+
+  [[noreturn]] void refuse_taken(const SessionPlace& first, const SessionPlace& second) const {
+    const SessionOpenedBody& taken = opening_at(first);
+    const SessionOpenedBody& opened = opening_at(second);
     const bool participant = taken.participant == opened.participant;
     throw StoreError(one_line(
         (participant ? "participant " + opened.participant
                      : "enrolment " + std::to_string(opened.enrolment) + " (participants " +
                            taken.participant + " and " + opened.participant + ")") +
-        " is taken twice, by " + named(station, other.own_session) + " and by " +
-        named(feed.station(), opened.session) +
-        "; exclude and replace one of them at its station, or leave that station's file out"));
+        " is taken twice, by " + named(feed_of(first).station(), first.own_session) + " and by " +
+        named(feed_of(second).station(), second.own_session) +
+        "; exclude and replace one of them at its station, and run nobody under the successor's "
+        "id, who would inherit the number; or leave that station's file out"));
   }
 
   void take(Feed& feed) {
@@ -229,15 +248,15 @@ class Collection {
     if (event.kind == EventKind::session_opened) {
       chain_.sessions.push_back(place);
       numbers_[place] = static_cast<int>(chain_.sessions.size());
-      participants_[session.participant] = place;
-      enrolments_[session.enrolment] = place;
+      participants_.insert(session.participant);
+      enrolments_.insert(session.enrolment);
       append(event.kind, event.at, body_of(event, [&](const std::string& body) {
                return renumbered_opening(body, numbers_.at(place), place.station);
              }));
     } else {
       if (event.kind == EventKind::participant_replaced) {
-        participants_.erase(session.participant);
-        enrolments_.erase(session.enrolment);
+        participants_.extract(session.participant);
+        enrolments_.extract(session.enrolment);
         former_participants_.extract(session.participant);
         former_enrolments_.extract(session.enrolment);
       }
@@ -301,9 +320,9 @@ class Collection {
   std::vector<Feed> feeds_;
   CollectedChain chain_;
   std::map<SessionPlace, int> numbers_;
-  /// Of sessions that nobody replaced.
-  std::map<std::string, SessionPlace> participants_;
-  std::map<int, SessionPlace> enrolments_;
+  /// Of sessions that nobody has replaced so far.
+  std::multiset<std::string> participants_;
+  std::multiset<int> enrolments_;
   /// Of sessions that somebody replaced, until that has come.
   std::multiset<std::string> former_participants_;
   std::multiset<int> former_enrolments_;

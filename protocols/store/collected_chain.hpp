@@ -48,11 +48,12 @@ struct CollectedChain {
 /// the stations about sessions that have ended, each station's in their order: of those that are
 /// next, the one at the earliest time, and in simulated studies, whose times mean nothing, the one
 /// about the smallest enrolment number; a session waits for the replacement of whoever had its
-/// participant id or enrolment number before. Sessions are numbered as they are opened here. At
-/// last, if it is so at all stations, that the study is closed, and that it is unblinded. \param
-/// stations  in the order of comes_before, each chain valid by itself (FileChain) \throws
-/// StoreError if they are not of one study, or a participant id or enrolment number is
-///   taken in two of them by sessions that nobody replaced
+/// participant id or enrolment number before, as long as anything else can come. Sessions are
+/// numbered as they are opened here. At last, if it is so at all stations, that the study is
+/// closed, and that it is unblinded. \param stations  in the order of comes_before, each chain
+/// valid by itself (FileChain) \throws StoreError if they are not of one study, or a participant id
+/// or enrolment number is
+///   taken in two of them by sessions that nobody replaced, at whatever moment
 /// \throws EventFault if an event's body is no such
 [[nodiscard]] CollectedChain collected_chain(std::span<const StationChain> stations);
 

@@ -92,7 +92,7 @@ struct CollectedDraft::Impl {
   Database database;
   std::filesystem::path target;
   CollectedChain chain;
-  FileChain on_file;
+  FileChain on_file{UniquePlaces::in_the_end};
   std::multimap<int, std::size_t> about;  ///< places in `chain` of what changes a session's row
   std::optional<bool> visual;
   int session = 0;  ///< that was added last

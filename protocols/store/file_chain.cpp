@@ -57,17 +57,21 @@ void FileChain::open_session(const Event& event) {
   if (body.session != static_cast<int>(sessions_.size()) + 1) {
     refuse(event, "session " + std::to_string(body.session) + " is not opened in its turn");
   }
+  if (unique_ == UniquePlaces::always) take_place(event, body);
+  sessions_[body.session] = {.opened = body,
+                             .opened_at = event.sequence,
+                             .closed = {},
+                             .withdrawn = false,
+                             .replaced_by = {}};
+}
+
+void FileChain::take_place(const Event& event, const SessionOpenedBody& body) {
   if (!participants_.insert(body.participant).second) {
     refuse(event, "participant " + body.participant + " has a session already");
   }
   if (!enrolments_.insert(body.enrolment).second) {
     refuse(event, "enrolment " + std::to_string(body.enrolment) + " is taken already");
   }
-  sessions_[body.session] = {.opened = body,
-                             .opened_at = event.sequence,
-                             .closed = {},
-                             .withdrawn = false,
-                             .replaced_by = {}};
 }
 
 void FileChain::close_session(const Event& event) {

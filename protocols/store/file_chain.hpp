@@ -21,9 +21,17 @@ struct SessionOnFile {
   std::string replaced_by;  ///< empty: nobody
 };
 
+/// Where a session's participant id and enrolment number must be nobody else's.
+enum class UniquePlaces {
+  always,     ///< at every moment, among sessions that nobody has replaced: a station's own file
+  in_the_end  ///< among sessions that nobody replaced in the end, which collected_chain sees to
+};
+
 /// The events of the file's chain in order, held against each other.
 class FileChain {
  public:
+  explicit FileChain(UniquePlaces unique = UniquePlaces::always) : unique_(unique) {}
+
   /// \throws EventFault if the event cannot come after those before
   void add(const Event& event);
 
@@ -38,7 +46,9 @@ class FileChain {
   void withdraw(const Event& event);
   void replace(const Event& event);
   [[nodiscard]] SessionOnFile& known(const Event& event, int session);
+  void take_place(const Event& event, const SessionOpenedBody& body);
 
+  UniquePlaces unique_;
   std::optional<StudyCommitment> commitment_;
   std::map<int, SessionOnFile> sessions_;
   /// Of sessions that nobody replaced.

@@ -189,6 +189,71 @@ TEST_CASE("a place that was taken again at another station is no clash, whatever
   CHECK_FALSE(store.first_fault());
 }
 
+TEST_CASE("two stations that each replaced one of a pair come together, whoever came first") {
+  Lab lab;
+  const auto replace = [](StudyStore& store, int session, const char* by) {
+    store.exclude(session, kUtc + minutes(50), "fell asleep");
+    store.replace(session, by, kUtc + minutes(50), "excluded");
+  };
+  SECTION("by enrolment number") {
+    const fs::path a = lab.station("A.db", {{"A01", 1, minutes(10)}, {"A02", 2, minutes(30)}});
+    const fs::path b = lab.station("B.db", {{"B01", 1, minutes(20)}, {"B02", 2, minutes(40)}});
+    Lab::at(a, [&](StudyStore& store) { replace(store, 1, "A03"); });
+    Lab::at(b, [&](StudyStore& store) { replace(store, 2, "B03"); });
+    const StudyStore store = merged(lab, {a, b});
+    CHECK(participants_in(store) == Names{"A01", "A02", "B01", "B02"});
+    CHECK(store.sessions().at(0).replaced_by == "A03");
+    CHECK(store.sessions().at(3).replaced_by == "B03");
+    CHECK_FALSE(store.first_fault());
+    CHECK(merge({b, lab.file("C.db")}, lab.file("again.db")).sessions == 4);
+    CHECK(read_file(lab.file("again.db")) == read_file(lab.file("C.db")));
+    Lab::at(lab.file("C.db"), [](StudyStore& whole) { whole.rebuild_derived(); });
+    CHECK_FALSE(StudyStore::open(lab.file("C.db"), Access::read_only).first_fault());
+  }
+  SECTION("by participant id") {
+    const fs::path a = lab.station("A.db", {{"P1", 1, minutes(10)}, {"P2", 2, minutes(30)}});
+    const fs::path b = lab.station("B.db", {{"P1", 5, minutes(20)}, {"P2", 6, minutes(40)}});
+    Lab::at(a, [&](StudyStore& store) { replace(store, 1, "A03"); });
+    Lab::at(b, [&](StudyStore& store) { replace(store, 2, "B03"); });
+    const StudyStore store = merged(lab, {a, b});
+    CHECK(participants_in(store) == Names{"P1", "P2", "P1", "P2"});
+    CHECK(store.session_of("P1").value().enrolment == 5);
+    CHECK(store.session_of("P2").value().enrolment == 2);
+    CHECK_FALSE(store.first_fault());
+  }
+  SECTION("in simulated studies, where times mean nothing") {
+    StudyCommitment simulated = lab_commitment();
+    simulated.simulated = true;
+    const fs::path a = lab.station("A.db", {{"A01", 1, {}}, {"A02", 2, {}}}, simulated);
+    const fs::path b = lab.station("B.db", {{"B01", 1, {}}, {"B02", 2, {}}}, simulated);
+    Lab::at(a, [&](StudyStore& store) { replace(store, 1, "A03"); });
+    Lab::at(b, [&](StudyStore& store) { replace(store, 2, "B03"); });
+    const StudyStore store = merged(lab, {a, b});
+    CHECK(store.sessions().size() == 4);
+    CHECK_FALSE(store.first_fault());
+    merge({b, a}, lab.file("again.db"));
+    CHECK(read_file(lab.file("again.db")) == read_file(lab.file("C.db")));
+  }
+}
+
+TEST_CASE("who runs in the place of one of a pair collides with the other again") {
+  Lab lab;
+  const fs::path a = lab.station("A.db", {{"A01", 1, minutes(10)}, {"A02", 2, minutes(30)}});
+  const fs::path b = lab.station("B.db", {{"B01", 1, minutes(20)}});
+  const std::string line = merge_refusal(lab, {a, b});
+  CHECK(contains(line, "enrolment 1 (participants A01 and B01) is taken twice"));
+  CHECK(contains(line, "run nobody under the successor's id"));
+  Lab::at(a, [](StudyStore& store) {
+    store.exclude(1, kUtc + minutes(50), "wrong number");
+    store.replace(1, "A03", kUtc + minutes(50), "wrong number");
+  });
+  CHECK(merge({a, b}, lab.file("C.db")).sessions == 3);
+  Lab::at(a, [](StudyStore& store) { visit(store, {{"A03", 1, minutes(60)}}); });
+  CHECK(contains(merge_refusal(lab, {a, b}),
+                 "enrolment 1 (participants B01 and A03) is taken twice, by session 1 of " +
+                     b.string() + " and by session 3 of " + a.string()));
+}
+
 TEST_CASE("the collected study is closed when every station's is") {
   Lab lab;
   const auto [a, b] = lab.two_stations();

@@ -76,6 +76,27 @@ TEST_CASE("a study read from a server is the one that the stations' files make")
   CHECK_FALSE(study.from_server(TraceUse::copied).first_fault());
 }
 
+TEST_CASE("stations that each replaced one of a pair are read as they were pushed") {
+  const ServerFixture there;
+  StoredFixture first;
+  StoredFixture second;
+  add_visit(*first.store, {1, "A01", 1});
+  add_visit(*first.store, {2, "A02", 2});
+  first.store->exclude(1, kUtc, "slept");
+  first.store->replace(1, "A03", kUtc, "slept");
+  add_visit(*second.store, {1, "B01", 1});
+  add_visit(*second.store, {2, "B02", 2});
+  second.store->exclude(2, kUtc, "slept");
+  second.store->replace(2, "B03", kUtc, "slept");
+  there.push(*first.store);
+  there.push(*second.store);
+  const StudyStore study = open_study(there.url(), TraceUse::copied);
+  CHECK(study.sessions().size() == 4);
+  CHECK(study.session_of("A02").value().replaced_by.empty());
+  CHECK(study.session_of("B01").value().replaced_by.empty());
+  CHECK_FALSE(study.first_fault());
+}
+
 TEST_CASE("what is withdrawn at a station cannot be read from the server after the next push") {
   CollectedStudy study;
   study.second.store->withdraw(1, kUtc, "asked");
