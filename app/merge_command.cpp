@@ -1,4 +1,5 @@
 // merge: several stations' databases made one.
+#include "analysis/text_figures.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "core/errors.hpp"
@@ -79,13 +80,16 @@ std::optional<StudyKey> key_to_lay(const MergeArguments& arguments, const Statio
 
 void warn_of(const CollectReport& report) {
   for (const SessionLeftOut& session : report.left_out) {
-    spdlog::warn("{}",
-                 one_line(fmt::format("{}: session {} (participant {}) has not ended and is "
-                                      "left out; merge again when it has",
-                                      session.station, session.session, session.participant)));
+    spdlog::warn("{}", one_line(fmt::format(
+                           "{}: session {} (participant {}) {}", session.station, session.session,
+                           session.participant,
+                           session.cut_short
+                               ? "was replaced or withdrawn before it ended: it cannot go on, and "
+                                 "is not in the merged study"
+                               : "has not ended and is left out; merge again when it has")));
   }
   for (const std::string& name : report.superfluous) {
-    spdlog::warn("{}", one_line(name + ": holds no session that the others do not hold"));
+    spdlog::warn("{}", one_line(name + ": holds no finished session that the others do not hold"));
   }
 }
 
@@ -93,15 +97,16 @@ std::string summary_of(const MergeArguments& arguments, const CollectReport& rep
   const std::string key_path = key_path_for(arguments.target, {}).string();
   if (!arguments.json) {
     return fmt::format(
-        "{}: {} sessions of {} {}\n{}", arguments.target.string(), report.sessions, report.stations,
-        report.stations == 1 ? "station" : "stations",
+        "{}: {} of {}\n{}", arguments.target.string(), counted(report.sessions, "session"),
+        counted(report.stations, "station"),
         key ? "key " + key_path + "\n" : "the study's key is where it was: name it with --key\n");
   }
   nlohmann::json left_out = nlohmann::json::array();
   for (const SessionLeftOut& session : report.left_out) {
     left_out.push_back({{"station", session.station},
                         {"session", session.session},
-                        {"participant", session.participant}});
+                        {"participant", session.participant},
+                        {"cut_short", session.cut_short}});
   }
   const nlohmann::json summary = {
       {"database", arguments.target.string()}, {"stations", report.stations},

@@ -24,6 +24,7 @@ json station_json(const StationSummary& summary) {
           {"pushed", sessions_json(report.pushed)},
           {"already_there", report.already_there},
           {"left_open", sessions_json(report.left_open)},
+          {"cut_short", sessions_json(report.cut_short)},
           {"chain_events", report.chain_events},
           {"ahead", report.ahead},
           {"reconnections", report.reconnections}};

@@ -29,6 +29,12 @@ std::string station_text(const StationSummary& summary, bool dry_run) {
     text += fmt::format("{}: {} not finished, left for later: {}\n", summary.file,
                         counted(report.left_open.size()), participants(report.left_open));
   }
+  if (!report.cut_short.empty()) {
+    text += fmt::format(
+        "{}: {} replaced or withdrawn before the end, which cannot go on and {} not pushed: {}\n",
+        summary.file, counted(report.cut_short.size()), report.cut_short.size() == 1 ? "is" : "are",
+        participants(report.cut_short));
+  }
   if (report.ahead > 0) {
     text += fmt::format(
         "{}: is an older copy: the server has {} more of its file chain's events; do not go on "

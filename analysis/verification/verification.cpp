@@ -2,6 +2,7 @@
 
 #include "analysis/outcomes.hpp"
 #include "analysis/sealed_sessions.hpp"
+#include "analysis/text_figures.hpp"
 #include "analysis/verification/session_course.hpp"
 #include "core/errors.hpp"
 #include "protocols/store/payload_json.hpp"
@@ -19,8 +20,8 @@ namespace {
 
 std::string check_chain(const StudyStore& store) {
   if (const auto fault = store.first_fault()) throw VerificationError(shown(*fault));
-  return fmt::format("the file's chain and those of {} sessions, their traces and tables",
-                     store.sessions().size());
+  return fmt::format("the file's chain and those of {}, their traces and tables",
+                     counted(static_cast<std::int64_t>(store.sessions().size()), "session"));
 }
 
 std::string check_key(const StudyStore& store, const StudyKey& key) {

@@ -1,6 +1,7 @@
 #include "protocols/collect/collect.hpp"
 
 #include "core/errors.hpp"
+#include "protocols/collect/station_course.hpp"
 #include "protocols/store/collected_draft.hpp"
 #include "protocols/store/damaged_store.hpp"
 #include "protocols/store/event_fault.hpp"
@@ -146,13 +147,11 @@ class Collecting {
   static SessionLeftOut left_out(const std::vector<StationChain>& chains,
                                  const SessionPlace& place) {
     const StationChain& chain = chains[static_cast<std::size_t>(place.station) - 1];
-    SessionLeftOut session{.station = chain.name, .session = place.own_session, .participant = {}};
-    for (const Event& event : chain.events) {
-      if (event.kind != EventKind::session_opened) continue;
-      const SessionOpenedBody body = session_opened_from_json(event.body);
-      if (body.session == place.own_session) session.participant = body.participant;
-    }
-    return session;
+    const SessionCourse course = courses_of(chain.events).at(place.own_session);
+    return {.station = chain.name,
+            .session = place.own_session,
+            .participant = course.opened.participant,
+            .cut_short = is_cut_short(course)};
   }
 
   CollectedDraft draft_;

@@ -27,6 +27,8 @@ struct SessionLeftOut {
   std::string station;  ///< StationFile::name
   int session = 0;      ///< its number there
   std::string participant;
+  /// Replaced or withdrawn before it ended: it cannot go on, and is in no collected study.
+  bool cut_short = false;
 };
 
 struct CollectReport {
@@ -41,9 +43,10 @@ struct CollectReport {
 /// their order and names. One station may be given several times: the furthest copy counts. All or
 /// nothing: the file gets its name when it is whole and on the disk.
 /// Time: each session is read, checked and written once; one trace is in memory at a time.
+/// \throws DamagedStore, naming station and session, if anything in the stations does not hold
 /// \throws StoreError, naming station and session, if the target exists or cannot be written, the
 ///   stations are not of one study and kind, a participant or an enrolment number is taken in two
-///   of them, two copies of one went on differently, or anything in them does not hold
+///   of them, or two copies of one went on differently
 CollectReport collect_into_file(Stations stations, const std::filesystem::path& target,
                                 const CollectProgress& progress = {});
 
@@ -55,8 +58,9 @@ CollectReport collect_into_file(Stations stations, const std::filesystem::path& 
                                                const CollectProgress& progress = {});
 
 /// The station that an SQLite file is, or the stations that were collected into it.
-/// \throws StoreError, naming file and session, if it is missing, damaged, of an older schema (and
-///   how to bring it forward), was tampered with, or is a collected file that went on by itself
+/// \throws DamagedStore, naming file and session, if it is damaged or was tampered with
+/// \throws StoreError if it is missing, of an older schema (and how to bring it forward), or a
+///   collected file that went on by itself
 [[nodiscard]] Stations stations_of_file(const std::filesystem::path& database);
 
 }  // namespace touchtrial

@@ -141,8 +141,11 @@ void refuse_if_taken(pqxx::work& work, const ServerConnection& server, const Ses
                 std::to_string(holder->station) + " (" + one_line(holder->station_name) +
                 "), participant " + one_line(holder->participant) + ", enrolment " +
                 std::to_string(holder->enrolment) + ", " + opening_of(work, holder->session) +
-                "; replace one of the two at its station (`touchtrial replace`) and sync that "
-                "first, and hand out numbers beforehand (`touchtrial plan --stations`)");
+                "; replace one of the two at its station (`touchtrial replace`)" +
+                (holder->enrolment == row.enrolment
+                     ? ", run nobody under the successor's id, who would inherit the number,"
+                     : "") +
+                " and sync that first; hand out numbers beforehand (`touchtrial plan --stations`)");
 }
 
 void update_session(pqxx::work& work, int station, int own_session, const SessionCourse& course,

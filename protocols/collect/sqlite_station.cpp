@@ -2,6 +2,7 @@
 #include "core/errors.hpp"
 #include "protocols/collect/collect.hpp"
 #include "protocols/store/collected_chain.hpp"
+#include "protocols/store/damaged_store.hpp"
 #include "protocols/store/event_fault.hpp"
 #include "protocols/store/payload_json.hpp"
 
@@ -92,8 +93,9 @@ Stations stations_of_file(const std::filesystem::path& database) {
   const auto store =
       std::make_shared<const StudyStore>(StudyStore::open(database, StudyStore::Access::read_only));
   if (const auto fault = store->first_fault(TraceCheck::skip)) {
-    refuse(database, fmt::format("{}, event {}: {}; restore it from a backup, or leave it out",
-                                 chain_named(fault->session), fault->sequence, fault->what));
+    throw DamagedStore(one_line(
+        fmt::format("{}: {}, event {}: {}; restore it from a backup, or leave it out",
+                    database.string(), chain_named(fault->session), fault->sequence, fault->what)));
   }
   Stations stations;
   const int count = store->stations();

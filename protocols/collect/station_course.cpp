@@ -69,6 +69,10 @@ bool is_decided_between(const SessionCourse& course, std::int64_t first,
   return lies(course.excluded_at) || lies(course.withdrawn_at) || lies(course.replaced_at);
 }
 
+bool is_cut_short(const SessionCourse& course) noexcept {
+  return !course.closed_at && (course.replaced_at || course.withdrawn_at);
+}
+
 std::map<int, SessionCourse> courses_of(std::span<const Event> file_chain) {
   std::map<int, SessionCourse> courses;
   for (const Event& event : file_chain) add(courses, event);

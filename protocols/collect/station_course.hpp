@@ -31,6 +31,9 @@ struct SessionCourse {
 [[nodiscard]] bool is_decided_between(const SessionCourse& course, std::int64_t first,
                                       std::int64_t end) noexcept;
 
+/// Whether it was replaced or withdrawn and has not ended: it cannot go on any more.
+[[nodiscard]] bool is_cut_short(const SessionCourse& course) noexcept;
+
 /// By own number. \throws EventFault if a body is no such, or names a session that was not opened
 [[nodiscard]] std::map<int, SessionCourse> courses_of(std::span<const Event> file_chain);
 

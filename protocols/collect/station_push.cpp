@@ -41,7 +41,8 @@ class StationPush {
     courses_ = courses_of(chain_);
     commitment_ = body_of(chain_.front(), commitment_from_json);
     for (const auto& [session, course] : courses_) {
-      if (!course.closed_at) report_.left_open.push_back(named(session));
+      if (course.closed_at) continue;
+      (is_cut_short(course) ? report_.cut_short : report_.left_open).push_back(named(session));
     }
   }
 

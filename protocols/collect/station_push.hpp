@@ -29,8 +29,10 @@ struct PushReport {
   int station = 0;                       ///< its number on the server; 0: it has none yet
   std::vector<PushedSession> pushed;     ///< by this push, in the order of their ends
   std::vector<PushedSession> left_open;  ///< not finished, and left for later
-  int already_there = 0;                 ///< finished sessions that had come before
-  std::int64_t chain_events = 0;         ///< of the file chain, by this push
+  /// Replaced or withdrawn before they ended: they cannot go on, and stay at the station.
+  std::vector<PushedSession> cut_short;
+  int already_there = 0;          ///< finished sessions that had come before
+  std::int64_t chain_events = 0;  ///< of the file chain, by this push
   std::int64_t ahead = 0;  ///< events that the server has beyond this file: it is an older copy
   int reconnections = 0;   ///< after the connection was lost
 };

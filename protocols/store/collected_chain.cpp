@@ -237,8 +237,11 @@ class Collection {
                            taken.participant + " and " + opened.participant + ")") +
         " is taken twice, by " + named(feed_of(first).station(), first.own_session) + " and by " +
         named(feed_of(second).station(), second.own_session) +
-        "; exclude and replace one of them at its station, and run nobody under the successor's "
-        "id, who would inherit the number; or leave that station's file out"));
+        "; exclude and replace one of them at its station" +
+        (taken.enrolment == opened.enrolment
+             ? ", and run nobody under the successor's id, who would inherit the number"
+             : "") +
+        ", or leave that station's file out"));
   }
 
   void take(Feed& feed) {

@@ -98,7 +98,7 @@ enum class TraceCheck { full, skip };
 
 /// A broken link, named: chain, sequence, what does not hold.
 struct ChainFault {
-  int session = 0;  ///< 0: the file's chain
+  int session = 0;  ///< 0: the file's chain; -1, -2, ...: that of station 1, 2, ...
   std::int64_t sequence = 0;
   std::string what;
 };

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include <SQLiteCpp/Database.h>
+
 using namespace touchtrial;
 
 namespace {
@@ -101,7 +103,7 @@ TEST_CASE("the summary of a merge says what was collected, and where the key is"
   CHECK(summary.at("superfluous") == json::array({study.in("s1.db")}));
   CHECK(summary.at("key") == study.in("C.db.key"));
   CHECK(content(study.in("C.db.key")) == content(study.in("s1.db.key")));
-  CHECK(ran.errors.find("s1.db: holds no session that the others do not hold") !=
+  CHECK(ran.errors.find("s1.db: holds no finished session that the others do not hold") !=
         std::string::npos);
 }
 
@@ -134,6 +136,19 @@ TEST_CASE("the key of a study with people is not copied") {
   CHECK(more.exit_code == 1);
   CHECK(more.errors.find("takes no sessions of its own; run them in this station's database") !=
         std::string::npos);
+}
+
+TEST_CASE("a merge of a station's file that was altered ends as verifying it does") {
+  const SimulatedStations study;
+  {
+    SQLite::Database raw(study.in("s3.db"), SQLite::OPEN_READWRITE);
+    raw.exec("UPDATE responses SET position = 3 - position WHERE session = 1 AND trial = 1");
+  }
+  const ProgramResult ran = study.merge({"s1.db", "s3.db"}, {"-o", study.in("C.db")});
+  CHECK(ran.exit_code == 3);
+  CHECK(ran.errors.find("derived table responses disagrees") != std::string::npos);
+  CHECK(study.run({"verify", study.in("s3.db")}).exit_code == 3);
+  CHECK_FALSE(fs::exists(study.in("C.db")));
 }
 
 TEST_CASE("a merge that is refused says which file, and makes none") {

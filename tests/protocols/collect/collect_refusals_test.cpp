@@ -1,5 +1,6 @@
 // What is not collected, and in which words.
 #include "protocols/collect/lab_fixture.hpp"
+#include "protocols/store/damaged_store.hpp"
 #include "support/catch.hpp"
 #include "support/fault_vfs.hpp"
 
@@ -38,6 +39,14 @@ TEST_CASE("a station whose sessions were tampered with is refused by file and se
                  "the file's chain, event 2"));
   CHECK(contains(refused_after("UPDATE events SET own_session = 7 WHERE session = 2"),
                  "session 2, event 0: the event belongs to another chain"));
+}
+
+TEST_CASE("a station that was tampered with is told from one that cannot be merged") {
+  Lab lab;
+  const auto [a, b] = lab.two_stations();
+  tamper_file(b, "UPDATE responses SET position = 0 WHERE session = 1 AND trial = 1");
+  CHECK_THROWS_AS(stations_in({a, b}), DamagedStore);
+  CHECK_THROWS_AS(stations_in({a, lab.file("none.db")}), StoreError);
 }
 
 TEST_CASE("a station whose traces were tampered with is refused by file and session") {

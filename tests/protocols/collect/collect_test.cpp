@@ -159,10 +159,31 @@ TEST_CASE("sessions that have not ended are left out and told of") {
   CHECK(report.left_out[0].station == b.string());
   CHECK(report.left_out[0].session == 3);
   CHECK(report.left_out[0].participant == "P5");
+  CHECK_FALSE(report.left_out[0].cut_short);
   const StudyStore store = StudyStore::open(lab.file("C.db"), Access::read_only);
   CHECK(participants_in(store) == Names{"P1", "P2", "P3", "P4", "P6"});
   CHECK(store.sessions().back().own_session == 4);
   CHECK_FALSE(store.first_fault());
+}
+
+TEST_CASE("sessions that were replaced or withdrawn before they ended are told apart") {
+  Lab lab;
+  const auto [a, b] = lab.two_stations();
+  Lab::at(b, [](StudyStore& store) {
+    begin(store, {"P5", 5, minutes(15)});
+    begin(store, {"P6", 6, minutes(16)});
+    begin(store, {"P7", 7, minutes(17)});
+    store.exclude(3, kUtc, "the program crashed");
+    store.replace(3, "P8", kUtc, "excluded");
+    store.withdraw(4, kUtc, "asked to");
+  });
+  const CollectReport report = merge({a, b}, lab.file("C.db"));
+  REQUIRE(report.left_out.size() == 3);
+  CHECK(report.left_out[0].participant == "P5");
+  CHECK(report.left_out[0].cut_short);
+  CHECK(report.left_out[1].cut_short);
+  CHECK_FALSE(report.left_out[2].cut_short);
+  CHECK(report.sessions == 4);
 }
 
 TEST_CASE("files without sessions are told of, and if there are no others nothing is made") {

@@ -44,7 +44,7 @@ TEST_CASE("a participant whom another station has is refused, by whom") {
                holds_text("session 1: participant P1 is taken already by session 1 of station "
                           "1 (room-b.db)"));
     CHECK_THAT(line, holds_text("opened 2026-01-05T10:00:00Z on falcon F42"));
-    CHECK_THAT(line, holds_text("touchtrial replace"));
+    CHECK_THAT(line, holds_text("`touchtrial replace`) and sync that first"));
   }
   check_untouched(there, counts);
 }
@@ -68,7 +68,9 @@ TEST_CASE("replacing one of two who have the same number lets the other in") {
   StoredFixture second;
   add_visit(*second.store, {1, "Q1", 1});
   there.push(*second.store);
-  CHECK_THAT(push_refusal(there, *first.store), holds_text("enrolment number 1 is taken"));
+  const std::string line = push_refusal(there, *first.store);
+  CHECK_THAT(line, holds_text("enrolment number 1 is taken"));
+  CHECK_THAT(line, holds_text("run nobody under the successor's id, who would inherit the number"));
   second.store->exclude(1, kUtc, "wrong number");
   second.store->replace(1, "Q2", kUtc, "wrong number");
   there.push(*second.store);

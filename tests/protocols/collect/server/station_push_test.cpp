@@ -84,6 +84,20 @@ TEST_CASE("an open session is left for later and named") {
   CHECK(there.first("SELECT state FROM sessions WHERE own_session = 2") == "stopped");
 }
 
+TEST_CASE("a session that was replaced before it ended is not said to come later") {
+  const ServerFixture there;
+  StoredFixture study(1);
+  const auto sink = study.store->begin_session(2, wrapped_key_of(2));
+  SessionRecorder recorder(2, participant_key(2), *sink);
+  recorder.opened(nanoseconds(0), opening(2), "{}");
+  study.store->exclude(2, kUtc, "the program crashed");
+  study.store->replace(2, "P9", kUtc, "excluded");
+  const PushReport report = there.push(*study.store);
+  CHECK(report.left_open.empty());
+  CHECK(report.cut_short == std::vector<PushedSession>{{2, "P2", 2}});
+  CHECK(there.first("SELECT count(*) FROM sessions") == "1");
+}
+
 TEST_CASE("what is decided at the station afterwards follows") {
   const ServerFixture there;
   StoredFixture study(3);
