@@ -21,6 +21,13 @@ inline constexpr int kNotVerified = 3;
 /// - 1.
 [[nodiscard]] CLI::Validator seed_validator();
 
+/// A file or folder of this machine: an address is none, and is not repeated, as there may be a
+/// password in it.
+[[nodiscard]] CLI::Validator place_validator();
+/// A database, or the address of one, as postgresql://HOST/NAME; not libpq's own notation, which may
+/// hold a password.
+[[nodiscard]] CLI::Validator study_place_validator();
+
 void add_extract_command(CLI::App& program, Action& action);
 void add_evaluate_command(CLI::App& program, Action& action);
 void add_stimuli_command(CLI::App& program, Action& action);

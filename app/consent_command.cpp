@@ -54,6 +54,7 @@ void add_consent_command(CLI::App& program, Action& action) {
       "consent",
       "Record a participant's consent and demographics, in DB.personal and nowhere else");
   command->add_option("DB", arguments->database, "Database of the study; need not be there yet")
+      ->check(place_validator())
       ->required();
   command->add_option("--participant", arguments->record.participant, "Id, for instance P07")
       ->required();

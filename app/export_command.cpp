@@ -114,11 +114,14 @@ void add_export_command(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("export", "Write a study's data for other programs");
   command
       ->add_option("DB", arguments->database, "Database of the study, or its postgresql:// address")
+      ->check(study_place_validator())
       ->required();
   command->add_option("--format", arguments->format, "What to write")
       ->check(CLI::IsMember({"csv", "json", "bids", "psych-ds", "r"}))
       ->capture_default_str();
-  command->add_option("-o,--out", arguments->folder, "Folder to write into")->required();
+  command->add_option("-o,--out", arguments->folder, "Folder to write into")
+      ->check(place_validator())
+      ->required();
   command->add_option("--key", arguments->key, "Key of the study (default: DB.key)");
   add_dataset_options(*command, *arguments);
   command->callback([=, &action] { action = [=] { return export_study(*arguments); }; });

@@ -141,6 +141,7 @@ void add_merge_command(CLI::App& program, Action& action) {
   command
       ->add_option("-o,--out", arguments->target,
                    "Database to make; the same for any order of the stations")
+      ->check(place_validator())
       ->required();
   command->add_flag("--json", arguments->json, "Summary as one JSON object");
   command->callback([=, &action] { action = [=] { return merge(*arguments); }; });

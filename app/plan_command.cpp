@@ -1,3 +1,4 @@
+#include "analysis/text_figures.hpp"
 #include "analysis/text_table.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
@@ -50,18 +51,21 @@ std::string orders_text(const std::vector<int>& counts) {
 }
 
 std::string plan_text(const Study& study, const EnrolmentPlan& plan, const fs::path& path) {
-  TextTable table({"station", "enrolment numbers", "participants", "of each order of methods"});
+  TextTable table({"station", "participants", "of each order of methods"});
+  std::string numbers;
   for (const StationShare& share : plan.stations) {
-    table.add({share.station, ranges_text(share), std::to_string(share.size()),
-               orders_text(orders_of(study, share.ranges))});
+    table.add(
+        {share.station, std::to_string(share.size()), orders_text(orders_of(study, share.ranges))});
+    numbers += wrapped("  " + share.station + ": ", ranges_text(share));
   }
   const std::vector<EnrolmentRange> all = {{1, plan.participants()}};
-  table.add({"all", fmt::format("1 to {}", plan.participants()),
-             std::to_string(plan.participants()), orders_text(orders_of(study, all))});
+  table.add({"all", std::to_string(plan.participants()), orders_text(orders_of(study, all))});
   return fmt::format(
-      "{}: {} participants at {} stations\n{}plan  {}\nGive every station this file beside its "
-      "study file; there, `touchtrial run ... --station NAME` takes its next number.\n",
-      plan.study, plan.participants(), plan.stations.size(), table.text(), path.string());
+      "{}: {} at {}\n{}enrolment numbers of each station\n{}plan  {}\nGive every station this file "
+      "beside its study file; there, `touchtrial run ... --station NAME` takes its next number.\n",
+      plan.study, counted(plan.participants(), "participant"),
+      counted(static_cast<int>(plan.stations.size()), "station"), table.text(), numbers,
+      path.string());
 }
 
 std::string plan_json(const Study& study, const EnrolmentPlan& plan, const fs::path& path) {
@@ -92,6 +96,10 @@ EnrolmentPlan plan_to_fill(const PlanArguments& arguments, const Study& study,
     }
     return empty_plan(study, station_names(arguments));
   }
+  if (!is_there(path)) {
+    throw UsageError(path.string() +
+                     ": is not there to be extended; make it with --stations or --names");
+  }
   EnrolmentPlan plan = load_plan(path, study);
   if (arguments.participants < plan.participants()) {
     throw UsageError(fmt::format(
@@ -110,7 +118,7 @@ int plan_enrolment(const PlanArguments& arguments) {
   const fs::path path =
       arguments.output.empty() ? plan_path_for(arguments.study) : arguments.output;
   EnrolmentPlan plan = plan_to_fill(arguments, study, path);
-  extend_plan(plan, arguments.participants);
+  extend_plan(plan, study, arguments.participants);
   save_plan(path, plan);
   print(arguments.json ? plan_json(study, plan, path) : plan_text(study, plan, path));
   return 0;

@@ -129,6 +129,7 @@ void add_report_command(CLI::App& program, Action& action) {
       "report", "Accuracy tables; before unblinding, the quality of the data alone");
   command
       ->add_option("DB", arguments->database, "Database of the study, or its postgresql:// address")
+      ->check(study_place_validator())
       ->required();
   command->add_option("--key", arguments->key, "Key of the study (default: DB.key)");
   auto* json = command->add_flag("--json", arguments->json, "One JSON object in place of tables");
@@ -136,7 +137,7 @@ void add_report_command(CLI::App& program, Action& action) {
       "-o,--out", arguments->folder,
       "Folder for a page with all tables and figures, the tables as Markdown and "
       "LaTeX, the figures as SVG and PDF, and results.json");
-  folder->excludes(json);
+  folder->check(place_validator())->excludes(json);
   command
       ->add_option("--cues", arguments->cues,
                    "Read all traces for ideal observers; auto: with --out, up to 2,500 traces")

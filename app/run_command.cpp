@@ -44,7 +44,9 @@ void add_session_options(CLI::App& command, RunOptions& options) {
   command.add_option("STUDY", options.study, "Study file")->required();
   command.add_option("--participant", options.participant, "Id, for instance P07; no name")
       ->required();
-  command.add_option("--db", options.database, "Database; made if it is not there")->required();
+  command.add_option("--db", options.database, "Database; made if it is not there")
+      ->check(place_validator())
+      ->required();
   command.add_option("--pack", options.pack, "Pack (default: STUDY.pack beside the study file)");
   command.add_option("--key", options.key, "Key (default: that beside the database or the pack)");
   command.add_flag("--pilot", options.pilot, "A trial run, never pooled; has its own database");

@@ -95,6 +95,7 @@ void add_simulate_command(CLI::App& program, Action& action) {
       "simulate", "Run a whole study with simulated participants, in virtual time");
   command->add_option("STUDY", arguments->study, "Study file")->required();
   command->add_option("--db", arguments->database, "Database to make; the key is laid at DB.key")
+      ->check(place_validator())
       ->required();
   command->add_option("--participants", options.participants, "How many")
       ->check(CLI::Range(1, 100000))

@@ -19,4 +19,22 @@ CLI::Validator seed_validator() {
       "UINT64");
 }
 
+CLI::Validator place_validator() {
+  return {[](const std::string& text) -> std::string {
+            if (text.find("://") == std::string::npos) return "";
+            return "an address is no file; a study on a server is written by sync, and read by "
+                   "report, export, verify and merge";
+          },
+          ""};
+}
+
+CLI::Validator study_place_validator() {
+  return {[](const std::string& text) -> std::string {
+            if (text.find("password=") == std::string::npos) return "";
+            return "a password does not belong on the command line; write "
+                   "postgresql://USER@HOST/DATABASE, and lay it in ~/.pgpass";
+          },
+          ""};
+}
+
 }  // namespace touchtrial

@@ -61,6 +61,7 @@ void add_verify_command(CLI::App& program, Action& action) {
       "verify", "Hold chain, seal, schedule, payloads and pack against each other");
   command
       ->add_option("DB", arguments->database, "Database of the study, or its postgresql:// address")
+      ->check(study_place_validator())
       ->required();
   command->add_option("--key", arguments->key, "Key of the study (default: DB.key, if there)");
   command->add_option("--pack", arguments->pack, "Pack of the study (default: where the key says)");

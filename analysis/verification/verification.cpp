@@ -171,16 +171,27 @@ std::string check_pack(const StudyStore& store, const StudyKey* key, const Pack&
                      pack.manifest().entries.size());
 }
 
-std::string check_head(const StudyStore& store, const Digest& head) {
-  const std::vector<Event> events = store.events(0);
-  const auto found = std::find_if(events.begin(), events.end(),
+/// Where a hash stands on a chain, in words; empty: nowhere.
+std::string place_on(const std::vector<Event>& chain, const Digest& head, const std::string& name) {
+  const auto found = std::find_if(chain.begin(), chain.end(),
                                   [&](const Event& event) { return event.hash == head; });
-  if (found == events.end()) {
-    throw VerificationError(
-        "no event of the file's chain has the hash that was given: its end was cut off, or it was "
-        "made anew");
+  if (found == chain.end()) return "";
+  return fmt::format("event {} of {}, which has {}", found->sequence, name, chain.size());
+}
+
+/// In what was collected, heads of the stations' own files count as well.
+std::string check_head(const StudyStore& store, const Digest& head) {
+  std::string place = place_on(store.events(0), head, "the file's chain");
+  for (int station = 1; place.empty() && station <= store.stations(); ++station) {
+    place =
+        place_on(store.station_chain(station), head, fmt::format("station {}'s chain", station));
   }
-  return fmt::format("event {} of the file's chain, which has {}", found->sequence, events.size());
+  if (!place.empty()) return place;
+  throw VerificationError(
+      std::string("no event of the file's chain has the hash that was given: its end was cut off, "
+                  "or it was made anew") +
+      (store.stations() > 0 ? ", as collecting does when sessions are added; give a station's head"
+                            : ""));
 }
 
 template <typename Work>

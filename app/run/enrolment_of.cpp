@@ -29,6 +29,19 @@ void require_station(const RunOptions& options, const std::filesystem::path& pla
                    ": hands out enrolment numbers to stations; say with --station which this is");
 }
 
+/// A file with another station's numbers is that station's, or somebody gave the wrong name.
+void require_own_file(const RunOptions& options, const EnrolmentPlan& plan,
+                      const std::set<int>& taken) {
+  for (const int number : taken) {
+    const std::string* const owner = station_of(plan, number);
+    if (owner == nullptr || *owner == options.station) continue;
+    throw UsageError(one_line(options.database.string()) + ": has number " +
+                     std::to_string(number) + ", which is station " + *owner +
+                     "'s; every station has a file of its own: give another --db, or the station's "
+                     "right name");
+  }
+}
+
 }  // namespace
 
 int enrolment_of(const RunOptions& options, const Study& study, const StudyStore& store) {
@@ -40,7 +53,10 @@ int enrolment_of(const RunOptions& options, const Study& study, const StudyStore
       options.plan.empty() ? plan_path_for(options.study) : options.plan;
   require_station(options, plan);
   if (options.station.empty()) return free_or_inherited;
-  return next_of_station(load_plan(plan, study), options.station, taken, plan.string());
+  const EnrolmentPlan dealt = load_plan(plan, study);
+  const int next = next_of_station(dealt, options.station, taken, plan.string());
+  require_own_file(options, dealt, taken);
+  return next;
 }
 
 }  // namespace touchtrial

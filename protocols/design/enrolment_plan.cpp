@@ -45,13 +45,39 @@ std::vector<int> numbers_to_hand_out(const EnrolmentPlan& plan, int number) {
   return more;
 }
 
-void add_numbers(StationShare& share, int first, int number) {
-  const int last = first + number - 1;
-  if (!share.ranges.empty() && share.ranges.back().last == first - 1) {
-    share.ranges.back().last = last;
+void add_number(StationShare& share, int number) {
+  if (!share.ranges.empty() && share.ranges.back().last == number - 1) {
+    share.ranges.back().last = number;
   } else {
-    share.ranges.push_back({first, last});
+    share.ranges.push_back({number, number});
   }
+}
+
+/// What a station still gets, and how often each order of methods has come there.
+struct Recipient {
+  int wanted = 0;
+  std::vector<int> orders;
+
+  /// How much oftener this order has come than the one that came least.
+  [[nodiscard]] int excess(std::size_t order) const {
+    return orders[order] - *std::ranges::min_element(orders);
+  }
+};
+
+/// The one whose orders a number makes evenest: `current` if none is better.
+std::size_t best_recipient(const std::vector<Recipient>& recipients, std::size_t order,
+                           std::size_t current) {
+  std::size_t best = recipients.size();
+  const auto consider = [&](std::size_t i) {
+    if (recipients[i].wanted == 0) return;
+    if (best == recipients.size() || recipients[i].excess(order) < recipients[best].excess(order)) {
+      best = i;
+    }
+  };
+  consider(current);
+  if (best == current && recipients[current].excess(order) == 0) return current;
+  for (std::size_t i = 0; i < recipients.size(); ++i) consider(i);
+  return best;
 }
 
 }  // namespace
@@ -84,17 +110,23 @@ EnrolmentPlan empty_plan(const Study& study, std::span<const std::string> statio
   return plan;
 }
 
-void extend_plan(EnrolmentPlan& plan, int participants) {
+void extend_plan(EnrolmentPlan& plan, const Study& study, int participants) {
   const int had = plan.participants();
   if (plan.stations.empty() || participants < had || participants > kMostPlanned) {
     throw std::invalid_argument("extend_plan: no stations, or an impossible number");
   }
   const std::vector<int> more = numbers_to_hand_out(plan, participants - had);
-  int next = had + 1;
+  std::vector<Recipient> recipients;
   for (std::size_t i = 0; i < more.size(); ++i) {
-    if (more[i] == 0) continue;
-    add_numbers(plan.stations[i], next, more[i]);
-    next += more[i];
+    recipients.push_back({more[i], orders_of(study, plan.stations[i].ranges)});
+  }
+  std::size_t current = 0;
+  for (int number = had + 1; number <= participants; ++number) {
+    const std::size_t order = static_cast<std::size_t>(number) % recipients[current].orders.size();
+    current = best_recipient(recipients, order, current);
+    add_number(plan.stations[current], number);
+    --recipients[current].wanted;
+    ++recipients[current].orders[order];
   }
 }
 
@@ -109,6 +141,15 @@ std::vector<int> orders_of(const Study& study, std::span<const EnrolmentRange> r
     }
   }
   return counts;
+}
+
+const std::string* station_of(const EnrolmentPlan& plan, int number) noexcept {
+  for (const StationShare& share : plan.stations) {
+    for (const EnrolmentRange& range : share.ranges) {
+      if (number >= range.first && number <= range.last) return &share.station;
+    }
+  }
+  return nullptr;
 }
 
 int next_of_station(const EnrolmentPlan& plan, const std::string& station,

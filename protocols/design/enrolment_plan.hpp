@@ -44,13 +44,12 @@ struct EnrolmentPlan {
 inline constexpr int kMostPlanned = 1'000'000;
 inline constexpr std::size_t kMostStations = 1000;
 
-/// Hands numbers to stations until there are so many: every station gets numbers that follow each
-/// other, so that its orders of methods differ in number by one at most, and stations differ by one
-/// participant at most, as far as what they have already allows. Numbers of `plan` stay where they
-/// are.
+/// Hands numbers to stations until there are so many: stations differ by one participant at most,
+/// as far as what they have already allows. A station gets numbers that follow each other, as long
+/// as these keep its orders of methods as even as can be. Numbers of `plan` stay where they are.
 /// \param participants  in all, from those that `plan` has to kMostPlanned
 /// \throws std::invalid_argument if it has no stations or `participants` is out of range
-void extend_plan(EnrolmentPlan& plan, int participants);
+void extend_plan(EnrolmentPlan& plan, const Study& study, int participants);
 
 /// A plan without numbers. \param stations  1 to kMostStations names
 /// \throws UsageError if a name is not 1 to 32 of [0-9A-Za-z+-_], or there twice
@@ -66,6 +65,9 @@ void extend_plan(EnrolmentPlan& plan, int participants);
 /// \throws StudyError with the remedy if the plan has no such station, or all its numbers are taken
 [[nodiscard]] int next_of_station(const EnrolmentPlan& plan, const std::string& station,
                                   const std::set<int>& taken, const std::string& source);
+
+/// The name of the station that has a number; null: none has.
+[[nodiscard]] const std::string* station_of(const EnrolmentPlan& plan, int number) noexcept;
 
 /// `<study>.plan.json` beside the study file.
 [[nodiscard]] std::filesystem::path plan_path_for(const std::filesystem::path& study_file);

@@ -43,7 +43,7 @@ void require_partition(const JsonValue& stations, const EnrolmentPlan& plan) {
     if (range.first != next) {
       stations.refuse("number " + std::to_string(std::min(range.first, next)) +
                       (range.first < next ? " is two stations'" : " is no station's") +
-                      "; make the plan anew with `touchtrial plan`");
+                      "; restore the plan that `touchtrial plan` wrote");
     }
     next = range.last + 1;
   }

@@ -111,6 +111,9 @@ TEST_CASE("stations take their own numbers of a plan, and a replacement its pred
   CHECK_THAT(unknown.errors, Catch::Contains("it has attic, cellar"));
 
   REQUIRE(run(study, "P01", {"--station", "cellar"}).exit_code == 0);
+  const ProgramResult elsewhere = run(study, "P02", {"--station", "attic"});
+  CHECK(elsewhere.exit_code == 2);
+  CHECK_THAT(elsewhere.errors, Catch::Contains("number 3, which is station cellar's"));
   REQUIRE(run(study, "P02", {"--station", "cellar"}).exit_code == 0);
   const ProgramResult full = run(study, "P03", {"--station", "cellar"});
   CHECK(full.exit_code == 2);

@@ -37,7 +37,7 @@ std::vector<std::string> names(int count) {
 
 EnrolmentPlan plan_of(const Study& study, int participants, int stations) {
   EnrolmentPlan plan = empty_plan(study, names(stations));
-  extend_plan(plan, participants);
+  extend_plan(plan, study, participants);
   return plan;
 }
 
@@ -103,21 +103,31 @@ TEST_CASE("a plan that is extended leaves every number where it was") {
   const Study study = study_with_methods(2);
   EnrolmentPlan plan = plan_of(study, 10, 4);
   const std::vector<std::string> before = owners(plan);
-  extend_plan(plan, 31);
+  extend_plan(plan, study, 31);
   const std::vector<std::string> after = owners(plan);
   REQUIRE(after.size() == 31);
   CHECK(std::equal(before.begin(), before.end(), after.begin()));
   std::vector<int> sizes;
   for (const StationShare& share : plan.stations) sizes.push_back(share.size());
   check_even(sizes);
-  CHECK_THROWS_AS(extend_plan(plan, 30), std::invalid_argument);
+  CHECK_THROWS_AS(extend_plan(plan, study, 30), std::invalid_argument);
+}
+
+TEST_CASE("a plan that is extended makes orders even again that an odd number left uneven") {
+  const Study study = study_with_methods(2);
+  EnrolmentPlan plan = plan_of(study, 6, 2);
+  extend_plan(plan, study, 7);
+  extend_plan(plan, study, 12);
+  for (const StationShare& share : plan.stations) {
+    CHECK(orders_of(study, share.ranges) == std::vector<int>{3, 3});
+  }
 }
 
 TEST_CASE("a plan is read as it was written") {
   const TempFolder folder;
   const Study study = study_with_methods(2);
   EnrolmentPlan plan = plan_of(study, 10, 4);
-  extend_plan(plan, 17);
+  extend_plan(plan, study, 17);
   const std::filesystem::path path = folder.path() / "cloths.plan.json";
   save_plan(path, plan);
   CHECK(load_plan(path, study) == plan);
@@ -167,8 +177,9 @@ TEST_CASE("a station takes its smallest number that nobody has") {
              Catch::Contains("p.json: all numbers of station s1 are taken"));
   CHECK_THAT(message_of<StudyError>([&] { return next_of_station(plan, "s3", {}, "p.json"); }),
              Catch::Contains("has no station \"s3\"; it has s1, s2"));
-  extend_plan(plan, 8);
-  CHECK(next_of_station(plan, "s1", {1, 2, 3}, "p.json") == 7);
+  extend_plan(plan, study, 8);
+  // 7 would be the third of one order at s1, and makes s2 even.
+  CHECK(next_of_station(plan, "s1", {1, 2, 3}, "p.json") == 8);
 }
 
 TEST_CASE("names of stations are simple, and each is one station's") {
