@@ -18,8 +18,11 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
+#include <fstream>
 #include <map>
 #include <memory>
+#include <string_view>
+#include <system_error>
 #include <thread>
 
 namespace touchtrial {
@@ -72,6 +75,44 @@ FitOrigin origin_of(const FitArguments& arguments, const Study& study,
   return origin;
 }
 
+bool is_subject_file(const fs::path& path) {
+  try {
+    static_cast<void>(load_subject_model(path));
+    return true;
+  } catch (const std::exception&) {
+    return false;
+  }
+}
+
+/// Also by another name, and where nothing is there yet.
+bool same_file(const fs::path& one, const fs::path& other) {
+  std::error_code error;
+  if (fs::equivalent(one, other, error)) return true;
+  const fs::path whole = fs::weakly_canonical(one, error);
+  return !error && whole == fs::weakly_canonical(other, error);
+}
+
+/// The subject file replaces what is there, so that may only be another subject file.
+void refuse_to_replace(const FitArguments& arguments) {
+  if (arguments.out.empty()) return;
+  const std::string place = "fit: -o " + one_line(arguments.out.string());
+  std::vector<fs::path> inputs{arguments.key};
+  for (const char* ending : {"", "-wal", "-shm", "-journal", ".key"}) {
+    inputs.emplace_back(arguments.source.string() + ending);
+  }
+  const auto is_out = [&](const fs::path& input) {
+    return !input.empty() && same_file(arguments.out, input);
+  };
+  if (std::ranges::any_of(inputs, is_out)) {
+    throw UsageError(place + ": belongs to what is fitted; name another file");
+  }
+  std::error_code error;
+  const fs::file_status status = fs::symlink_status(arguments.out, error);
+  if (status.type() != fs::file_type::not_found && !is_subject_file(arguments.out)) {
+    throw UsageError(place + ": is there, and is no subject file; name another file");
+  }
+}
+
 /// What took a minute to work out is printed before a file may fail.
 void finish(const FitArguments& arguments, const SubjectModel& fitted, const std::string& report) {
   print(report);
@@ -94,12 +135,21 @@ StudyStore unblinded(const fs::path& database) {
   return store;
 }
 
+FitCounts counts_of(const FitArguments& arguments, const StudyKey& key, const Outcomes& outcomes,
+                    const std::map<int, Schedule>& schedules) {
+  try {
+    return count_answers(outcomes, schedules, stimuli_of(key));
+  } catch (const StudyError& error) {
+    throw StudyError(one_line(arguments.source.string()) + ": " + error.what());
+  }
+}
+
 int fit_study(const FitArguments& arguments) {
   const StudyStore store = unblinded(arguments.source);
   const StudyKey key = key_of_database(store, arguments.source, arguments.key);
   const SubjectModel subject = subject_for(arguments.subject, key.study);
   const Outcomes outcomes = load_outcomes(store, key);
-  const FitCounts counts = count_answers(outcomes, open_schedules(store, key), stimuli_of(key));
+  const FitCounts counts = counts_of(arguments, key, outcomes, open_schedules(store, key));
   const Pack pack = pack_for(store, key, arguments);
   const AnswerModel model =
       answer_model_of(key, pack, subject, arguments.felt, progress_bar("feeling"));
@@ -152,7 +202,18 @@ std::vector<double> accuracies_of(const FitArguments& arguments, const Study& st
   throw UsageError("fit: --accuracies: the study has no class " + in_quotes(given.begin()->first));
 }
 
+void refuse_database(const fs::path& path) {
+  constexpr std::string_view kStart = "SQLite format 3";
+  std::string start(kStart.size(), ' ');
+  std::ifstream file(path, std::ios::binary);
+  if (file.read(start.data(), static_cast<std::streamsize>(start.size())) && start == kStart) {
+    throw UsageError(one_line(path.string()) +
+                     ": is a database; fit --accuracies wants the study file");
+  }
+}
+
 int fit_published(const FitArguments& arguments) {
+  refuse_database(arguments.source);
   const Study study = load_study(arguments.source);
   const SubjectModel subject = subject_for(arguments.subject, study);
   const std::vector<double> wanted = accuracies_of(arguments, study);
@@ -225,6 +286,7 @@ void add_fit_command(CLI::App& program, Action& action) {
   command->add_flag("--json", arguments->json, "One JSON object in place of tables");
   command->callback([=, &action] {
     action = [=] {
+      refuse_to_replace(*arguments);
       return arguments->accuracies.empty() ? fit_study(*arguments) : fit_published(*arguments);
     };
   });

@@ -58,7 +58,9 @@ FitCounts count_answers(const Outcomes& outcomes, const std::map<int, Schedule>&
     ++counts.trials;
   }
   if (counts.trials == 0) {
-    throw StudyError("no counted trial has an answer: there is nothing to fit");
+    throw StudyError(
+        "no counted trial has an answer: there is nothing to fit; collect sessions "
+        "that count, and look at the exclusions");
   }
   return counts;
 }

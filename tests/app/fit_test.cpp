@@ -75,6 +75,7 @@ TEST_CASE("fit takes two methods, and the sessions that the report takes") {
                 .exit_code == 0);
   }
   require_refused(fit(study, {}), 2, "nothing to fit");
+  require_refused(fit(study, {}), 2, study.in("s.db"));
 }
 
 TEST_CASE("fit refuses blind studies, strange labels, and absurd numbers, in one line each") {
@@ -118,4 +119,38 @@ TEST_CASE("fit --accuracies makes a subject for published accuracies, and refuse
   require_refused(published("granite=0.9,linen=0.7,corduroy=0.8,velvet=0.5"), 2, "velvet");
   require_refused(published("granite=0.9,granite=0.8,linen=0.7,corduroy=0.8"), 2, "twice");
   require_refused(published("granite"), 2, "granite");
+}
+
+TEST_CASE("fit replaces subject files only, and nothing that it reads") {
+  const StudyFolder study;
+  REQUIRE(study.simulate("s.db").exit_code == 0);
+  const auto unharmed = [&](const std::string& name, const std::vector<std::string>& arguments,
+                            const std::string& words) {
+    const std::string before = content(study.path() / name);
+    require_refused(study.run(arguments), 2, words);
+    CHECK(content(study.path() / name) == before);
+  };
+  for (const char* name : {"s.db", "s.db.key"}) {
+    unharmed(name, {"fit", study.in("s.db"), "-o", study.in(name)}, "belongs to what is fitted");
+  }
+  for (const char* ending : {"-wal", "-shm"}) {
+    const std::string name = study.in("s.db") + ending;
+    const bool was_there = fs::exists(name);
+    require_refused(fit(study, {"-o", name}), 2, "belongs to what is fitted");
+    CHECK(fs::exists(name) == was_there);
+  }
+  fs::create_hard_link(study.path() / "s.db", study.path() / "linked.db");
+  unharmed("linked.db", {"fit", study.in("s.db"), "-o", study.in("linked.db")},
+           "belongs to what is fitted");
+  unharmed("cloths.json", {"fit", study.in("s.db"), "-o", study.in("cloths.json")},
+           "is no subject file");
+  const std::string accuracies = "granite=0.9,linen=0.7,corduroy=0.8";
+  unharmed(
+      "cloths.json",
+      {"fit", study.in("cloths.json"), "--accuracies", accuracies, "-o", study.in("cloths.json")},
+      "belongs to what is fitted");
+  unharmed("s.db", {"fit", study.in("s.db"), "--accuracies", accuracies}, "study file");
+  fs::copy_file(study.path() / "quick.json", study.path() / "old.json");
+  CHECK(fit(study, {"-o", study.in("old.json")}).exit_code == 0);
+  CHECK(content(study.path() / "old.json") != content(study.path() / "quick.json"));
 }
