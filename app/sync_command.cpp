@@ -8,6 +8,7 @@
 #include "protocols/collect/collect.hpp"
 #include "protocols/collect/server_address.hpp"
 #include "protocols/collect/station_push.hpp"
+#include "protocols/store/damaged_store.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <filesystem>
@@ -48,6 +49,22 @@ std::optional<StudyKey> key_for(const StudyStore& store, const SyncArguments& ar
   return key_of_database(store, arguments.database, arguments.key);
 }
 
+/// All is pushed when this is asked: a connection that is lost now must not hide that.
+/// \throws DamagedStore if what is there cannot be believed
+void ask_balance(const ServerAddress& server, int method_orders, SyncSummary& summary) {
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    try {
+      summary.balance = enrolment_balance(sessions_on_server(server), method_orders);
+      summary.balance_unknown.clear();
+      return;
+    } catch (const DamagedStore&) {
+      throw;
+    } catch (const StoreError& error) {
+      summary.balance_unknown = error.what();
+    }
+  }
+}
+
 int sync(const SyncArguments& arguments) {
   const ServerAddress server(arguments.to);
   PushOptions options{.dry_run = arguments.dry_run, .progress = progress_bar("push")};
@@ -64,8 +81,17 @@ int sync(const SyncArguments& arguments) {
     push_station(*station, server, options, report);
     summary.stations.push_back({station->name(), report});
   }
-  summary.balance = enrolment_balance(sessions_on_server(server), method_orders);
-  print(arguments.json ? sync_json(summary) : sync_text(summary));
+  const auto print_summary = [&] {
+    print(arguments.json ? sync_json(summary) : sync_text(summary));
+  };
+  try {
+    ask_balance(server, method_orders, summary);
+  } catch (const DamagedStore& error) {
+    summary.balance_unknown = error.what();
+    print_summary();  // what was pushed is there
+    throw;
+  }
+  print_summary();
   return 0;
 }
 

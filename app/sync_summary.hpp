@@ -18,7 +18,8 @@ struct SyncSummary {
   std::string server;  ///< without user
   bool dry_run = false;
   std::vector<StationSummary> stations{};
-  EnrolmentBalance balance{};  ///< of everything on the server
+  EnrolmentBalance balance{};     ///< of everything on the server
+  std::string balance_unknown{};  ///< why it could not be asked; empty: it could
 };
 
 [[nodiscard]] std::string sync_text(const SyncSummary& summary);

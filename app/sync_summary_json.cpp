@@ -27,6 +27,7 @@ json station_json(const StationSummary& summary) {
           {"cut_short", sessions_json(report.cut_short)},
           {"chain_events", report.chain_events},
           {"ahead", report.ahead},
+          {"keys_restored", report.keys_restored},
           {"reconnections", report.reconnections}};
 }
 
@@ -43,10 +44,12 @@ json balance_json(const EnrolmentBalance& balance) {
 std::string sync_json(const SyncSummary& summary) {
   json stations = json::array();
   for (const StationSummary& station : summary.stations) stations.push_back(station_json(station));
-  const json object = {{"server", summary.server},
-                       {"dry_run", summary.dry_run},
-                       {"stations", stations},
-                       {"balance", balance_json(summary.balance)}};
+  const json object = {
+      {"server", summary.server},
+      {"dry_run", summary.dry_run},
+      {"stations", stations},
+      {"balance", summary.balance_unknown.empty() ? balance_json(summary.balance)
+                                                  : json{{"unknown", summary.balance_unknown}}}};
   return object.dump(2) + "\n";
 }
 

@@ -41,9 +41,13 @@ std::string station_text(const StationSummary& summary, bool dry_run) {
         "recording in it\n",
         summary.file, report.ahead);
   }
+  if (report.keys_restored > 0) {
+    text += fmt::format("{}: brought back {} key{} that somebody had deleted or changed there\n",
+                        summary.file, report.keys_restored, report.keys_restored == 1 ? "" : "s");
+  }
   if (report.reconnections > 0) {
-    text += fmt::format("{}: connected anew {} time{}\n", summary.file, report.reconnections,
-                        report.reconnections == 1 ? "" : "s");
+    text += fmt::format("{}: lost the connection, {} attempt{} to connect anew\n", summary.file,
+                        report.reconnections, report.reconnections == 1 ? "" : "s");
   }
   return text;
 }
@@ -55,6 +59,9 @@ std::string sync_text(const SyncSummary& summary) {
       summary.server + (summary.dry_run ? " (dry run: nothing was changed)\n" : "\n");
   for (const StationSummary& station : summary.stations) {
     text += station_text(station, summary.dry_run);
+  }
+  if (!summary.balance_unknown.empty()) {
+    return text + "balance: could not be asked (" + summary.balance_unknown + ")\n";
   }
   for (const std::string& line : imbalances(summary.balance)) text += "imbalance: " + line + "\n";
   return text;

@@ -1,6 +1,9 @@
 #include "protocols/collect/enrolment_balance.hpp"
 
+#include "core/errors.hpp"
+
 #include <algorithm>
+#include <iterator>
 #include <set>
 #include <stdexcept>
 
@@ -15,17 +18,20 @@ bool uneven(const Counts& counts, CountOf count_of) {
 }
 
 void add_gaps(EnrolmentBalance& balance, const std::set<int>& taken) {
-  for (int number = 1; number < balance.highest; ++number) {
-    if (taken.contains(number)) continue;
-    ++balance.gap_count;
-    if (balance.gaps.size() < kMostGaps) balance.gaps.push_back(number);
+  // A number may be absurdly high: only what is listed is counted through.
+  const auto below = std::distance(taken.begin(), taken.lower_bound(balance.highest));
+  balance.gap_count = std::max(balance.highest - 1, 0) - static_cast<int>(below);
+  for (int number = 1; number < balance.highest && balance.gaps.size() < kMostGaps; ++number) {
+    if (!taken.contains(number)) balance.gaps.push_back(number);
   }
 }
 
 std::string listed_stations(const EnrolmentBalance& balance) {
   std::string text;
   for (const auto& [station, count] : balance.stations) {
-    text += (text.empty() ? "station " : ", station ") + std::to_string(station) + " has " +
+    const auto name = balance.names.find(station);
+    text += (text.empty() ? "station " : ", station ") + std::to_string(station) +
+            (name == balance.names.end() ? "" : " (" + one_line(name->second) + ")") + " has " +
             std::to_string(count);
   }
   return text;
@@ -54,6 +60,7 @@ EnrolmentBalance enrolment_balance(std::span<const EnrolledSession> sessions, in
   for (const EnrolledSession& session : sessions) {
     if (session.enrolment < 1) throw std::invalid_argument("enrolment_balance: numbers start at 1");
     balance.highest = std::max(balance.highest, session.enrolment);
+    if (!session.station_name.empty()) balance.names[session.station] = session.station_name;
     int& at_station = balance.stations[session.station];
     if (!session.counts || session.state != SessionState::completed) continue;
     ++at_station;

@@ -16,12 +16,14 @@ struct EnrolledSession {
   int station = 0;  ///< from 1
   int enrolment = 0;
   SessionState state{};
-  bool counts = true;  ///< neither excluded nor withdrawn nor replaced
+  bool counts = true;          ///< neither excluded nor withdrawn nor replaced
+  std::string station_name{};  ///< of its file; may be empty
 };
 
 struct EnrolmentBalance {
   /// Of sessions that are complete and count, by station; a station may have 0.
   std::map<int, int> stations;
+  std::map<int, std::string> names;  ///< of stations' files, where they are known
   /// The same by row of the methods' orders (enrolment mod rows); each row is there.
   std::vector<int> rows;
   /// Numbers below the highest that no session that counts has, ascending; at most kMostGaps.

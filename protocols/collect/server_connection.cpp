@@ -1,12 +1,11 @@
 #include "protocols/collect/server_connection.hpp"
 
+#include "protocols/collect/connection_refusal.hpp"
 #include "protocols/store/damaged_store.hpp"
 
 #include <algorithm>
 #include <initializer_list>
 #include <string>
-
-#include <libpq-fe.h>
 
 namespace touchtrial {
 namespace {
@@ -17,20 +16,37 @@ constexpr int kOldestServer = 110000;
 /// A station that dies must not keep its locks: the server notices within a minute.
 constexpr const char* kSettings =
     "SET synchronous_commit = on; SET bytea_output = 'hex'; SET lock_timeout = '60s'; "
+    "SET statement_timeout = 0; "
     "SET tcp_keepalives_idle = 30; "
     "SET tcp_keepalives_interval = 10; SET tcp_keepalives_count = 3; "
     "SET extra_float_digits = 1; SET client_min_messages = error";
 
 std::string without_ending(std::string text) {
   while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
-  return one_line(text);
+  text = one_line(text);
+  const auto both_spaces = [](char a, char b) { return a == ' ' && b == ' '; };
+  text.erase(std::unique(text.begin(), text.end(), both_spaces), text.end());
+  return text;
 }
 
-/// A server that answers pings and yet refuses will refuse again.
+/// What the server says, without the statement that it then quotes and points into with a caret.
+std::string complaint(const std::exception& error) {
+  const std::string text = error.what();
+  return without_ending(text.substr(0, text.find('\n')));
+}
+
+/// Only what will be refused again is final.
 [[noreturn]] void refuse_connection(const ServerAddress& address, const std::string& why) {
-  if (PQping(address.connection_string().c_str()) == PQPING_OK) {
-    throw StoreError(address.shown() + ": the server refuses: " + without_ending(why) +
-                     "; check user, database and password (~/.pgpass, PGPASSWORD)");
+  switch (refusal_by(address)) {
+    case ConnectionRefusal::credentials:
+      throw StoreError(address.shown() + ": the server refuses: " + without_ending(why) +
+                       "; check user, database and password (~/.pgpass, PGPASSWORD)");
+    case ConnectionRefusal::too_many:
+      throw LostConnection(address.shown() + ": the server is busy: " + without_ending(why) +
+                           "; try again later, or have its max_connections or the role's "
+                           "CONNECTION LIMIT raised");
+    case ConnectionRefusal::unreached:
+      break;
   }
   throw LostConnection(address.shown() + ": cannot be reached: " + without_ending(why) +
                        "; check the address, and that the server runs");
@@ -86,9 +102,22 @@ std::unique_ptr<pqxx::work> ServerConnection::begin_look() {
   return transaction;
 }
 
+// A plain VACUUM leaves the bytes of a page's last row where they were.
+void ServerConnection::wipe_deleted_keys() noexcept {
+  try {
+    pqxx::nontransaction session(connection_);
+    session.exec("SET lock_timeout = '2s'");
+    session.exec("VACUUM FULL participant_keys");
+  } catch (const std::exception&) {
+    // Everything is committed; docs/several-stations.md tells the owner to do it.
+  }
+}
+
 void ServerConnection::refuse_damage(const EventFault& fault) const {
   // A station's file chain stands under its negative number.
-  const std::string place = fault.session() < 0
+  const auto known = places_.find(static_cast<int>(fault.session()));
+  const std::string place = known != places_.end() ? known->second
+                            : fault.session() < 0
                                 ? "station " + std::to_string(-fault.session()) + ", file chain"
                                 : "session " + std::to_string(fault.session()) + " of the server";
   throw DamagedStore(address_.shown() + ": " + place +
@@ -116,17 +145,32 @@ void ServerConnection::translate(const pqxx::failure& error) const {
   }
   if (is_a<pqxx::transaction_rollback>(error) || is_a<pqxx::unique_violation>(error) ||
       state_is({"55P03"})) {
-    throw Contention(address_.shown() +
-                     ": others are writing the same: " + without_ending(error.what()));
+    throw Contention(address_.shown() + ": others are writing the same: " + complaint(error));
   }
   if (is_a<pqxx::insufficient_privilege>(error)) {
-    refuse(without_ending(error.what()) +
+    refuse(complaint(error) +
            "; ask whoever keeps the server for the rights that docs/several-stations.md lists");
+  }
+  if (is_a<pqxx::undefined_table>(error) || is_a<pqxx::undefined_column>(error) ||
+      is_a<pqxx::undefined_function>(error) || state_is({"42P01", "42703", "42883"})) {
+    throw DamagedStore(address_.shown() + ": lacks what Touchtrial made there (" +
+                       complaint(error) +
+                       "); restore the database from a backup, or make a new one and sync all "
+                       "stations again");
+  }
+  if (state_is({"25006"})) {
+    refuse("the database is read-only (" + complaint(error) +
+           "); give the address of the server that takes writes, or have "
+           "default_transaction_read_only switched off");
+  }
+  if (state_is({"57014"})) {
+    refuse("the server broke off a statement (" + complaint(error) +
+           "); run the same command again, or ask whoever keeps the server for more time");
   }
   if (is_a<pqxx::disk_full>(error)) {
     refuse("the server's disk is full; make room there and try again");
   }
-  refuse(without_ending(error.what()));
+  refuse(complaint(error) + "; run the same command again, or ask whoever keeps the server");
 }
 
 }  // namespace touchtrial

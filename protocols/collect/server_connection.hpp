@@ -7,6 +7,7 @@
 #include "protocols/collect/server_address.hpp"
 #include "protocols/store/event_fault.hpp"
 
+#include <map>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -44,6 +45,10 @@ class ServerConnection {
 
   [[nodiscard]] const ServerAddress& address() const noexcept { return address_; }
 
+  /// From now on damage in a session is said to be there.
+  /// \param session  the number on the server; of a station's file chain the negative
+  void call(int session, const std::string& place) { places_[session] = place; }
+
   /// Calls `work` with a transaction, which is committed unless `work` throws.
   template <typename Work>
   auto change(Work&& work) {
@@ -75,6 +80,10 @@ class ServerConnection {
   /// inside `translated`; it must not outlive the connection.
   [[nodiscard]] std::unique_ptr<pqxx::work> begin_look();
 
+  /// Rewrites the table of keys, so that what was deleted from it is no longer in its file. Only
+  /// its owner may; whatever stands against it is left to the owner.
+  void wipe_deleted_keys() noexcept;
+
   /// \throws StoreError "<address>: <text>"
   [[noreturn]] void refuse(const std::string& text) const;
 
@@ -102,6 +111,7 @@ class ServerConnection {
   void check_server();
 
   ServerAddress address_;
+  std::map<int, std::string> places_;
   pqxx::connection connection_;
 };
 

@@ -26,6 +26,7 @@ class Snapshot {
   decltype(auto) ask(Work&& work) {
     return server_.translated([&] { return work(*look_); });
   }
+  void call(int session, const std::string& place) { server_.call(session, place); }
   [[nodiscard]] const ServerConnection& server() const noexcept { return server_; }
 
  private:
@@ -112,15 +113,27 @@ void refuse_strays(pqxx::work& work, const ServerConnection& server) {
 std::map<int, std::unique_ptr<ServerStation>> named_stations(
     pqxx::work& work, const std::shared_ptr<Snapshot>& snapshot) {
   std::map<int, std::unique_ptr<ServerStation>> stations;
-  for (const pqxx::row& row : work.exec("SELECT station, name FROM stations ORDER BY station")) {
+  std::map<int, std::string> places;
+  // A row without a chain and without sessions is nobody's: any station's role can write one.
+  for (const pqxx::row& row :
+       work.exec("SELECT station, name FROM stations t WHERE EXISTS (SELECT FROM events WHERE "
+                 "session = -t.station) OR EXISTS (SELECT FROM sessions s WHERE s.station = "
+                 "t.station) ORDER BY station")) {
     const int station = row[0].as<int>();
+    const std::string name =
+        "station " + row[0].as<std::string>() + " (" + one_line(row[1].as<std::string>()) + ")";
+    places[station] = name;
+    snapshot->call(chain_number(station), name + ", file chain");
     stations[station] =
         std::make_unique<ServerStation>(snapshot, station, row[1].as<std::string>());
   }
   for (const pqxx::row& row :
        work.exec("SELECT station, coalesce(own_session, session), session FROM sessions")) {
     const auto found = stations.find(row[0].as<int>());
-    if (found != stations.end()) found->second->add_session(row[1].as<int>(), row[2].as<int>());
+    if (found == stations.end()) continue;
+    found->second->add_session(row[1].as<int>(), row[2].as<int>());
+    snapshot->call(row[2].as<int>(),
+                   places[found->first] + ", session " + row[1].as<std::string>());
   }
   return stations;
 }

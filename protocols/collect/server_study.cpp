@@ -1,6 +1,7 @@
 #include "protocols/collect/server_study.hpp"
 
 #include "protocols/collect/server_rows.hpp"
+#include "protocols/store/damaged_store.hpp"
 #include "protocols/store/event_fault.hpp"
 
 #include <algorithm>
@@ -35,13 +36,24 @@ std::optional<Holder> holder_of(pqxx::work& work, const SessionRow& row) {
                 .enrolment = first[5].as<int>()};
 }
 
+/// Of a chain's first event, as it is on the server.
+template <typename Parse>
+auto parsed_from(int session, const std::string& body, Parse parse) {
+  try {
+    return parse(body);
+  } catch (const StoreError& error) {
+    throw EventFault(session, 0, error.what());
+  }
+}
+
 /// "opened 2026-01-05T10:00:00Z on falcon 1234"; what its first event says, as it is there.
 std::string opening_of(pqxx::work& work, int session) {
   const pqxx::result found = work.exec_params(
       "SELECT body FROM events WHERE session = $1 AND sequence = 0 AND octet_length(body) < 65536",
       session);
   if (found.empty()) return "of which no opening is there";
-  const SessionOpening opening = opening_from_json(found[0][0].as<std::string>());
+  const SessionOpening opening =
+      parsed_from(session, found[0][0].as<std::string>(), opening_from_json);
   std::string text = opening.opened_utc.empty() ? "" : "opened " + opening.opened_utc + " ";
   text += "on " + opening.device;
   if (!opening.device_serial.empty()) text += " " + opening.device_serial;
@@ -92,9 +104,11 @@ int register_station(pqxx::work& work, const ServerConnection& server, const Dig
 
 void refuse_other_study(pqxx::work& work, const ServerConnection& server, const Event& commitment) {
   const pqxx::result found = work.exec(
-      "SELECT body FROM events WHERE session < 0 AND sequence = 0 ORDER BY session DESC LIMIT 1");
+      "SELECT body, session FROM events WHERE session < 0 AND sequence = 0 ORDER BY session DESC "
+      "LIMIT 1");
   if (found.empty()) return;
-  const StudyCommitment there = commitment_from_json(found[0][0].as<std::string>());
+  const StudyCommitment there =
+      parsed_from(found[0][1].as<int>(), found[0][0].as<std::string>(), commitment_from_json);
   const auto other = difference(there, body_of(commitment, commitment_from_json));
   if (!other) return;
   server.refuse("holds " + *other + " (" + one_line(there.study) +
@@ -129,6 +143,18 @@ std::optional<std::int64_t> parting(pqxx::work& work, int station,
   return std::nullopt;
 }
 
+void refuse_if_cut_off(pqxx::work& work, const ServerConnection& server, const SessionRow& row) {
+  const pqxx::result found =
+      work.exec_params("SELECT 1 FROM sessions WHERE station = $1 AND own_session = $2",
+                       row.station, row.own_session);
+  if (found.empty()) return;
+  throw DamagedStore(
+      server.address().shown() + ": the server lost the end of the chain of station " +
+      std::to_string(row.station) + ", but has its session " + std::to_string(row.own_session) +
+      " still; restore the database from a backup, or make a new one and sync all "
+      "stations again");
+}
+
 void refuse_if_taken(pqxx::work& work, const ServerConnection& server, const SessionRow& row) {
   if (!row.replaced_by.empty()) return;
   const std::optional<Holder> holder = holder_of(work, row);
@@ -148,7 +174,7 @@ void refuse_if_taken(pqxx::work& work, const ServerConnection& server, const Ses
                 " and sync that first; hand out numbers beforehand (`touchtrial plan --stations`)");
 }
 
-void update_session(pqxx::work& work, int station, int own_session, const SessionCourse& course,
+bool update_session(pqxx::work& work, int station, int own_session, const SessionCourse& course,
                     std::int64_t end) {
   const auto holds = [&](const std::optional<std::int64_t>& at) { return at && *at < end; };
   work.exec_params0(
@@ -156,11 +182,25 @@ void update_session(pqxx::work& work, int station, int own_session, const Sessio
       "WHERE station = $1 AND own_session = $2",
       station, own_session, int{holds(course.excluded_at)}, int{holds(course.withdrawn_at)},
       holds(course.replaced_at) ? course.replaced_by : std::string());
-  if (!holds(course.withdrawn_at)) return;
-  work.exec_params0(
+  if (!holds(course.withdrawn_at)) return false;
+  const pqxx::result removed = work.exec_params(
       "DELETE FROM participant_keys WHERE session IN "
       "(SELECT session FROM sessions WHERE station = $1 AND own_session = $2)",
       station, own_session);
+  return removed.affected_rows() > 0;
+}
+
+std::vector<KeyThere> keys_of_station(pqxx::work& work, int station) {
+  std::vector<KeyThere> keys;
+  for (const pqxx::row& row :
+       work.exec_params("SELECT s.session, s.own_session, coalesce(sha256(k.wrapped), '') FROM "
+                        "sessions s LEFT JOIN participant_keys k USING(session) WHERE s.station = "
+                        "$1 AND s.withdrawn = 0 AND s.own_session IS NOT NULL ORDER BY s.session",
+                        station)) {
+    keys.push_back(
+        {.session = row[0].as<int>(), .own_session = row[1].as<int>(), .digest = bytes_of(row[2])});
+  }
+  return keys;
 }
 
 }  // namespace touchtrial

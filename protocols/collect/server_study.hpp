@@ -35,13 +35,26 @@ void refuse_other_study(pqxx::work& work, const ServerConnection& server, const 
 [[nodiscard]] std::optional<std::int64_t> parting(pqxx::work& work, int station,
                                                   std::span<const Event> file_chain);
 
+/// \pre the station's file chain on the server ends before this session does
+/// \throws DamagedStore if this very session is there: the server's end of the chain is gone
+void refuse_if_cut_off(pqxx::work& work, const ServerConnection& server, const SessionRow& row);
+
 /// \throws StoreError, naming the session that is there, if its participant or enrolment number is
 ///   taken by one that nobody replaced
 void refuse_if_taken(pqxx::work& work, const ServerConnection& server, const SessionRow& row);
 
 /// Brings a session that is there up to date with the chain up to `end`: exclusion, replacement,
 /// withdrawal, which destroys its key.
-void update_session(pqxx::work& work, int station, int own_session, const SessionCourse& course,
+/// \return whether a key was destroyed
+bool update_session(pqxx::work& work, int station, int own_session, const SessionCourse& course,
                     std::int64_t end);
+
+/// The key of a session that is there and was not withdrawn there.
+struct KeyThere {
+  int session = 0;  ///< on the server
+  int own_session = 0;
+  Bytes digest;  ///< SHA-256 of the wrapped key; empty: it is gone
+};
+[[nodiscard]] std::vector<KeyThere> keys_of_station(pqxx::work& work, int station);
 
 }  // namespace touchtrial

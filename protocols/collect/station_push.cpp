@@ -70,6 +70,7 @@ class StationPush {
   void note_plan(std::int64_t stored);
   [[nodiscard]] std::vector<ChainSegment> segments(std::int64_t stored);
   void push(const ChainSegment& segment);
+  void restore_keys();
   [[nodiscard]] int station_number(pqxx::work& work);
   void push_session(pqxx::work& work, int station, int session, std::int64_t end);
   [[nodiscard]] SessionRow row_of(const DerivedRows& rows, int session, std::int64_t end) const;
@@ -85,6 +86,7 @@ class StationPush {
   std::unique_ptr<ServerConnection> server_;
   bool was_connected_ = false;
   bool planned_ = false;
+  bool key_destroyed_ = false;
   int to_push_ = 0;
   std::optional<ChainSegment> sent_;  ///< of which no answer has come
   int done_ = 0;                      ///< transactions, so that failures after progress count anew
@@ -140,6 +142,33 @@ void StationPush::attempt() {
     note_pushed(segment);
     sent_.reset();
   }
+  restore_keys();
+  if (key_destroyed_) server_->wipe_deleted_keys();
+}
+
+// Any station's role can delete any key: whoever has the session's file brings it back.
+void StationPush::restore_keys() {
+  // An older copy does not know who withdrew since.
+  if (report_.station == 0 || report_.ahead > 0) return;
+  const int restored = server_->change([&](pqxx::work& work) {
+    int count = 0;
+    lock_station(work, identity());
+    for (const KeyThere& there : keys_of_station(work, report_.station)) {
+      const auto course = courses_.find(there.own_session);
+      if (course == courses_.end() || course->second.withdrawn_at) continue;
+      const Digest& right = course->second.opened.key;
+      if (std::equal(right.begin(), right.end(), there.digest.begin(), there.digest.end())) {
+        continue;
+      }
+      const std::optional<Bytes> key = station_.wrapped_key(there.own_session);
+      if (!key) continue;
+      work.exec_params0("DELETE FROM participant_keys WHERE session = $1", there.session);
+      insert_key(work, there.session, *key);
+      ++count;
+    }
+    return count;
+  });
+  report_.keys_restored += restored;
 }
 
 void StationPush::look_only() {
@@ -156,7 +185,10 @@ void StationPush::look_only() {
       for (const int session : segment.sessions) {
         DerivedRows rows;
         for (const Event& event : station_.events(session)) fold(rows, event);
-        refuse_if_taken(work, *server_, row_of(rows, session, segment.end));
+        SessionRow row = row_of(rows, session, segment.end);
+        row.station = report_.station;
+        refuse_if_cut_off(work, *server_, row);
+        refuse_if_taken(work, *server_, row);
       }
     });
   }
@@ -213,7 +245,7 @@ void StationPush::push(const ChainSegment& segment) {
     for (const auto& [session, course] : courses_) {
       const bool is_there = course.closed_at && *course.closed_at < segment.first;
       if (is_there && is_decided_between(course, segment.first, segment.end)) {
-        update_session(work, station, session, course, segment.end);
+        key_destroyed_ |= update_session(work, station, session, course, segment.end);
       }
     }
     for (const int session : segment.sessions) push_session(work, station, session, segment.end);
@@ -228,7 +260,7 @@ void StationPush::push(const ChainSegment& segment) {
 int StationPush::station_number(pqxx::work& work) {
   if (const std::optional<int> known = find_station(work, identity())) return *known;
   return register_station(work, *server_, identity(),
-                          std::filesystem::path(station_.name()).filename().string(),
+                          one_line(std::filesystem::path(station_.name()).filename().string()),
                           chain_.front());
 }
 
@@ -238,6 +270,7 @@ void StationPush::push_session(pqxx::work& work, int station, int session, std::
   for (const Event& event : events) fold(rows, event);
   SessionRow row = row_of(rows, session, end);
   row.station = station;
+  refuse_if_cut_off(work, *server_, row);
   refuse_if_taken(work, *server_, row);
   row.session = work.exec1("SELECT nextval('session_numbers')")[0].as<int>();
   insert_session(work, row);
@@ -273,9 +306,11 @@ void StationPush::note_pushed(const ChainSegment& segment) {
   if (options_.progress) options_.progress(static_cast<int>(report_.pushed.size()), to_push_);
 }
 
-SessionState state_named(const std::string& name) {
+SessionState state_named(int session, const std::string& name) {
   const auto* const found = std::find(kSessionStates.begin(), kSessionStates.end(), name);
-  if (found == kSessionStates.end()) throw StoreError("no state of a session: " + one_line(name));
+  if (found == kSessionStates.end()) {
+    throw EventFault(session, kNoEvent, "no state of a session: " + one_line(name));
+  }
   return static_cast<SessionState>(found - kSessionStates.begin());
 }
 
@@ -300,12 +335,17 @@ std::vector<EnrolledSession> sessions_on_server(const ServerAddress& address) {
   return server.look([&](pqxx::work& work) {
     std::vector<EnrolledSession> sessions;
     for (const pqxx::row& row : work.exec(
-             "SELECT station, enrolment, state, excluded = 0 AND withdrawn = 0 AND replaced_by IS "
-             "NULL FROM sessions ORDER BY session")) {
+             "SELECT s.station, s.enrolment, s.state, s.excluded = 0 AND s.withdrawn = 0 AND "
+             "s.replaced_by IS NULL, s.session, coalesce(t.name, '') FROM sessions s LEFT JOIN "
+             "stations t USING(station) ORDER BY s.session")) {
+      if (row[1].as<std::int64_t>() < 1) {
+        throw EventFault(row[4].as<int>(), kNoEvent, "its enrolment number is below 1");
+      }
       sessions.push_back({.station = row[0].as<int>(),
                           .enrolment = row[1].as<int>(),
-                          .state = state_named(row[2].as<std::string>()),
-                          .counts = row[3].as<bool>()});
+                          .state = state_named(row[4].as<int>(), row[2].as<std::string>()),
+                          .counts = row[3].as<bool>(),
+                          .station_name = row[5].as<std::string>()});
     }
     return sessions;
   });

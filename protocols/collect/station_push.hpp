@@ -34,7 +34,8 @@ struct PushReport {
   int already_there = 0;          ///< finished sessions that had come before
   std::int64_t chain_events = 0;  ///< of the file chain, by this push
   std::int64_t ahead = 0;  ///< events that the server has beyond this file: it is an older copy
-  int reconnections = 0;   ///< after the connection was lost
+  int reconnections = 0;   ///< attempts, after the connection was lost
+  int keys_restored = 0;   ///< of earlier sessions, which somebody had deleted or changed there
 };
 
 struct PushOptions {

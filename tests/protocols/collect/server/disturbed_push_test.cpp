@@ -242,6 +242,41 @@ TEST_CASE("where nothing answers, that is said in one line, at once") {
   CHECK(waits == 0);
 }
 
+TEST_CASE("a reconnection that is refused for want of room, or dies in its handshake, is retried") {
+  const ServerFixture there;
+  there.ask("CREATE ROLE narrow LOGIN SUPERUSER; CREATE ROLE narrower LOGIN CONNECTION LIMIT 0");
+  StoredFixture study(2);
+  OpenStation station(*study.store);
+  int waits = 0;
+  bool cut = false;
+  // Connections are cut, and for two attempts none is taken.
+  station.before = [&](int session) {
+    if (session != 2 || std::exchange(cut, true)) return;
+    there.ask("ALTER ROLE narrow NOSUPERUSER CONNECTION LIMIT 0");
+    there.ask("SELECT pg_terminate_backend(pid) FROM pg_stat_activity WHERE usename = 'narrow'");
+  };
+  const PushOptions options{.wait = [&](std::chrono::milliseconds) {
+    if (++waits == 3) there.ask("ALTER ROLE narrow SUPERUSER CONNECTION LIMIT -1");
+  }};
+  PushReport report;
+  push_station(station, there.address("narrow"), options, report);
+  CHECK(waits == 3);
+  CHECK(report.pushed.size() == 2);
+  const std::string line = push_refusal(*study.store, there.url("narrower"), options);
+  CHECK_THAT(line, holds_text("the server is busy"));
+  CHECK_THAT(line, holds_text("try again later"));
+  CHECK(line.find("password") == std::string::npos);
+  CHECK(waits == 3);
+}
+
+TEST_CASE("a server that hangs up in the handshake is not said to refuse a password") {
+  StoredFixture study(1);
+  const FalseServer dying("E");
+  const std::string line = push_refusal(*study.store, dying.url(), without_waiting());
+  CHECK_THAT(line, holds_text("cannot be reached"));
+  CHECK(line.find("password") == std::string::npos);
+}
+
 TEST_CASE("a database or a role that does not exist is said in one line, at once") {
   const ServerFixture there;
   StoredFixture study(1);

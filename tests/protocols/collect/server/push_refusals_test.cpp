@@ -2,6 +2,7 @@
 // chain that went on by itself, no rights.
 #include "protocols/collect/server/server_fixture.hpp"
 #include "protocols/collect/server_schema.hpp"
+#include "protocols/store/damaged_store.hpp"
 #include "support/catch.hpp"
 
 using namespace touchtrial;
@@ -247,7 +248,8 @@ TEST_CASE("a role with the rights that the documentation lists can push") {
       "CREATE ROLE station LOGIN;"
       "GRANT SELECT, INSERT ON events, traces, participant_keys, sessions, trials, responses, "
       "stations TO station; GRANT SELECT ON touchtrial_schema TO station;"
-      "GRANT UPDATE ON sessions TO station; GRANT DELETE ON participant_keys TO station;"
+      "GRANT UPDATE(excluded, withdrawn, replaced_by) ON sessions TO station; GRANT DELETE ON "
+      "participant_keys TO station;"
       "GRANT USAGE ON SEQUENCE session_numbers TO station");
   add(*study.store, 1);
   add(*study.store, 2);
@@ -259,6 +261,144 @@ TEST_CASE("a role with the rights that the documentation lists can push") {
   study.store->exclude(2, kUtc, "slept");
   push_station(station, there.address("station"), {}, report);
   CHECK(there.ask("SELECT session FROM participant_keys").size() == 1);
+  add(*study.store, 3);
+  study.store->replace(2, "P9", kUtc, "slept");
+  push_station(station, there.address("station"), {}, report);
+  CHECK(there.first("SELECT replaced_by FROM sessions WHERE own_session = 2") == "P9");
+}
+
+TEST_CASE("a key that somebody deleted or changed comes back with the next push") {
+  const ServerFixture there;
+  StoredFixture study(3);
+  there.push(*study.store);
+  const std::string keys = "SELECT encode(wrapped, 'hex') FROM participant_keys ORDER BY session";
+  const std::vector<std::string> before = there.ask(keys);
+  there.ask("DELETE FROM participant_keys WHERE session = 1");
+  there.ask(
+      "UPDATE participant_keys SET wrapped = set_byte(wrapped, 3, 1 + get_byte(wrapped, 3) "
+      "% 255) WHERE session = 2");
+  CHECK(there.push(*study.store).keys_restored == 2);
+  CHECK(there.ask(keys) == before);
+  CHECK(there.push(*study.store).keys_restored == 0);
+  study.store->withdraw(1, kUtc, "asked");
+  CHECK(there.push(*study.store).keys_restored == 0);
+  CHECK(there.ask(keys).size() == 2);
+}
+
+TEST_CASE("an older copy brings no key of a person back who withdrew since") {
+  const ServerFixture there;
+  StoredFixture study(2);
+  TempFolder folder;
+  const auto copy = folder.path() / "copy.db";
+  study.store.reset();
+  std::filesystem::copy_file(study.path, copy);
+  {
+    StudyStore store = StudyStore::open(study.path, StudyStore::Access::read_write);
+    store.withdraw(1, kUtc, "asked");
+    there.push(store);
+  }
+  // Not even where the mark in the derived table was taken back.
+  there.ask("UPDATE sessions SET withdrawn = 0");
+  const StudyStore older = StudyStore::open(copy, StudyStore::Access::read_only);
+  const PushReport report = there.push(older);
+  CHECK(report.ahead > 0);
+  CHECK(report.keys_restored == 0);
+  CHECK(there.first("SELECT count(*) FROM participant_keys") == "1");
+}
+
+TEST_CASE("the key of a person who withdrew is no longer in the table's file") {
+  const ServerFixture there;
+  StoredFixture study(2);
+  there.push(*study.store);
+  const std::string key =
+      there.first("SELECT encode(wrapped, 'hex') FROM participant_keys ORDER BY session DESC");
+  const auto is_in_file = [&] {
+    there.ask("CHECKPOINT");
+    return there.first("SELECT position(decode('" + key +
+                       "', 'hex') IN pg_read_binary_file(pg_relation_filepath("
+                       "'participant_keys'))) > 0") == "t";
+  };
+  CHECK(is_in_file());
+  study.store->withdraw(2, kUtc, "asked");
+  there.push(*study.store);
+  CHECK_FALSE(is_in_file());
+}
+
+TEST_CASE("a server that lost the end of a station's chain is told from a place that is taken") {
+  const ServerFixture there;
+  StoredFixture study(2);
+  there.push(*study.store);
+  there.tamper("DELETE FROM events WHERE session = -1 AND sequence >= 3");
+  const std::string counts = there.counts();
+  for (const bool dry_run : {true, false}) {
+    try {
+      there.push(*study.store, {.dry_run = dry_run});
+      FAIL("was not refused");
+    } catch (const DamagedStore& error) {
+      CHECK_THAT(error.what(), holds_text("lost the end of the chain of station 1"));
+      CHECK_THAT(error.what(), holds_text("sync all stations again"));
+    }
+  }
+  check_untouched(there, counts);
+}
+
+TEST_CASE("what is damaged on the server is said in one clean line, with a remedy") {
+  const auto refusal_after = [](const std::string& sql) {
+    const ServerFixture there;
+    StoredFixture study(1);
+    there.push(*study.store);
+    add(*study.store, 2);
+    there.tamper(sql);
+    std::string line;
+    bool is_damage = false;
+    try {
+      there.push(*study.store);
+      static_cast<void>(sessions_on_server(there.address()));
+    } catch (const DamagedStore& error) {
+      line = error.what();
+      is_damage = true;
+    } catch (const StoreError& error) {
+      line = error.what();
+    }
+    INFO(sql << ": " << line);
+    CHECK(is_damage);
+    CHECK(line.find("  ") == std::string::npos);
+    CHECK(line.find("LINE 1") == std::string::npos);
+    CHECK(line.find('^') == std::string::npos);
+    return line;
+  };
+  CHECK_THAT(refusal_after("UPDATE events SET body = '{}' WHERE session = -1 AND sequence = 0"),
+             holds_text("station 1, file chain, event 0"));
+  CHECK_THAT(refusal_after("UPDATE sessions SET state = 'bogus'"),
+             holds_text("session 1 of the server: no state of a session: bogus"));
+  CHECK_THAT(refusal_after("UPDATE sessions SET enrolment = 0"), holds_text("below 1"));
+  CHECK_THAT(refusal_after("DROP TABLE traces"), holds_text("sync all stations again"));
+  CHECK_THAT(refusal_after("ALTER TABLE trials DROP COLUMN block"),
+             holds_text("sync all stations again"));
+}
+
+TEST_CASE("a database that takes no writes is said to be so") {
+  const ServerFixture there;
+  StoredFixture study(1);
+  there.push(*study.store);
+  add(*study.store, 2);
+  there.ask("ALTER DATABASE " + there.database + " SET default_transaction_read_only = on");
+  CHECK_THAT(push_refusal(there, *study.store), holds_text("the database is read-only"));
+}
+
+TEST_CASE("an impatient server lets a push take its time") {
+  const ServerFixture there;
+  there.ask("ALTER DATABASE " + there.database + " SET statement_timeout = 1");
+  StoredFixture study(2);
+  CHECK(there.push(*study.store).pushed.size() == 2);
+}
+
+TEST_CASE("a file whose name is not UTF-8 is pushed under a cleaned one") {
+  const ServerFixture there;
+  StoredFixture study(1);
+  OpenStation station(*study.store, "/data/lab\xff.db");
+  CHECK(there.push(station).pushed.size() == 1);
+  CHECK(there.first("SELECT name FROM stations") == "lab\\xff.db");
 }
 
 TEST_CASE("a database whose encoding would change texts is refused") {

@@ -112,6 +112,12 @@ TEST_CASE("a database without a study is said to be so") {
   CHECK_THAT(refusal(), holds_text("holds no study yet"));
 }
 
+TEST_CASE("a station that only has a name is nobody's") {
+  TwoStations both;
+  both.there.ask("INSERT INTO stations VALUES(7, '\\x07', 'ghost.db')");
+  CHECK(stations_of_server(both.there.address()).size() == 2);
+}
+
 TEST_CASE("rows that nobody pushed are damage") {
   const auto refusal_after = [](const std::string& sql) {
     TwoStations both;
@@ -137,13 +143,14 @@ TEST_CASE("rows that nobody pushed are damage") {
              holds_text("holds rows of session 0"));
   CHECK_THAT(
       refusal_after("UPDATE events SET kind = 'nonsense' WHERE session = 2 AND sequence = 3"),
-      holds_text("session 2 of the server, event 3: unknown kind of event 'nonsense'"));
+      holds_text("station 1 (study.db), session 2, event 3: unknown kind of event 'nonsense'"));
   CHECK_THAT(
       refusal_after("UPDATE events SET hash = 'short' WHERE session = -1 AND sequence = 1"),
-      holds_text("station 1, file chain, event 1: a hash of the event is not 32 bytes long"));
+      holds_text(
+          "station 1 (study.db), file chain, event 1: a hash of the event is not 32 bytes long"));
   CHECK_THAT(refusal_after("UPDATE events SET own_session = 5000000000 WHERE session = 1"),
              holds_text("no session of a station has this number"));
   CHECK_THAT(refusal_after("UPDATE events SET body = repeat('x', 70000000) WHERE session = 1 AND "
                            "sequence = 4"),
-             holds_text("session 1 of the server, event 4: the event is absurdly large"));
+             holds_text("station 1 (study.db), session 1, event 4: the event is absurdly large"));
 }
