@@ -21,6 +21,36 @@ double saturated(const std::vector<double>& wanted) {
   return sum;
 }
 
+void warn_of_misses(AccuracyFit& fit) {
+  constexpr double kPoint = 0.01;
+  std::string missed;
+  for (std::size_t c = 0; c < fit.classes.size(); ++c) {
+    if (std::abs(fit.reached[c] - fit.wanted[c]) <= kPoint) continue;
+    missed += (missed.empty() ? "" : ", ") + fit.classes[c];
+  }
+  if (missed.empty()) return;
+  fit.warnings.push_back("no subject found has these accuracies: missed by more than a point: " +
+                         missed);
+}
+
+void warn_of_bounds(const FitProblem& problem, const std::vector<double>& at, AccuracyFit& fit) {
+  constexpr double kHair = 1e-4;
+  const Bounds& bounds = problem.bounds();
+  for (std::size_t i = 0; i < at.size(); ++i) {
+    const Parameter& parameter = problem.parameters()[i];
+    const bool is_lapse = parameter.kind == ParameterKind::lapse;
+    const bool at_lower = at[i] - bounds.lower[i] < kHair && !is_lapse;
+    if (!at_lower && bounds.upper[i] - at[i] >= kHair) continue;
+    std::string name = "the bias for the first position";
+    if (parameter.kind == ParameterKind::weber) name = "weber";
+    if (is_lapse) name = "lapse";
+    if (parameter.kind == ParameterKind::class_bias) {
+      name = "the bias of \"" + fit.classes[parameter.class_index] + "\"";
+    }
+    fit.warnings.push_back(name + " lies at the end of what is searched");
+  }
+}
+
 }  // namespace
 
 AccuracyFit fit_accuracies(const AnswerModel& model, std::vector<double> wanted,
@@ -41,6 +71,8 @@ AccuracyFit fit_accuracies(const AnswerModel& model, std::vector<double> wanted,
   fit.log_likelihood = best.value;
   fit.best_log_likelihood = saturated(wanted);
   fit.wanted = std::move(wanted);
+  warn_of_misses(fit);
+  warn_of_bounds(problem, best.at, fit);
   return fit;
 }
 

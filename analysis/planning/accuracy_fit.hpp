@@ -18,6 +18,7 @@ struct AccuracyFit {
   int parameters = 0;           ///< that were estimated
   double log_likelihood = 0.0;
   double best_log_likelihood = 0.0;  ///< of anything that reaches the accuracies
+  std::vector<std::string> warnings;
 };
 
 /// The subject whose accuracies are the most likely, by binomial likelihood of equally many trials

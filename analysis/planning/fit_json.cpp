@@ -31,13 +31,16 @@ Json estimate_json(const ParameterEstimate& estimate) {
   Json object = {{"name", estimate.name}};
   if (!estimate.label.empty()) object["label"] = estimate.label;
   object["value"] = estimate.value;
-  object["standard_error"] = number(estimate.standard_error);
+  // Of weber, its logarithm's errors are known.
+  const double unit = estimate.name == "weber" ? estimate.value : 1.0;
+  object["standard_error"] = nullptr;
+  if (estimate.standard_error) object["standard_error"] = number(*estimate.standard_error * unit);
   object["profile"] = {number(estimate.profile.lower), number(estimate.profile.upper)};
   object["bootstrap"] = nullptr;
   if (estimate.bootstrap) {
     object["bootstrap"] = {estimate.bootstrap->low, estimate.bootstrap->high};
   }
-  object["monte_carlo_error"] = number(estimate.monte_carlo_error);
+  object["monte_carlo_error"] = number(estimate.monte_carlo_error * unit);
   object["at_bound"] = estimate.at_bound;
   return object;
 }
@@ -104,6 +107,7 @@ std::string fit_json(const AccuracyFit& fit, const FitOrigin& origin) {
   object["parameters"] = fit.parameters;
   object["log_likelihood"] = number(fit.log_likelihood);
   object["best_log_likelihood"] = number(fit.best_log_likelihood);
+  object["warnings"] = fit.warnings;
   object["fitted"] = Json::parse(subject_model_json(fit.subject));
   return shown(object);
 }

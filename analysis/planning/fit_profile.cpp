@@ -9,7 +9,11 @@ namespace {
 /// Square root of 3.84, the 95 % point of chi-square with one degree of freedom.
 constexpr double kRoot = 1.959964;
 constexpr double kCloseEnough = 0.02;
-constexpr int kMostFits = 8;
+constexpr int kMostFits = 12;
+/// Nearer to a bound, an end is the bound's and not the data's.
+constexpr double kHair = 1e-6;
+/// Standard errors; so near to the best point only failed fits end.
+constexpr double kCollapsed = 1e-3;
 
 /// The best with one number held, and how far below the overall best that is, as a root.
 struct Held {
@@ -46,7 +50,19 @@ std::vector<double> moved(const std::vector<double>& at, std::size_t number, dou
   return start;
 }
 
-/// The roots are nearly straight lines of the value: secants from the best point.
+/// A search that begins badly ends below what the best point's own numbers have.
+Held best_with(const FitProblem& problem, const Optimum& best, std::size_t number, double value,
+               const std::vector<double>& start, const std::vector<double>& covariance) {
+  const Held held = fitted_with(problem, best, number, value, start, covariance);
+  if (held.root < 2.0 * kRoot) return held;
+  std::vector<double> plain = best.at;
+  plain[number] = value;
+  const Held again = fitted_with(problem, best, number, value, plain, covariance);
+  return again.root < held.root ? again : held;
+}
+
+/// The roots are nearly straight lines of the value: secants from the best point. Nothing, too,
+/// where that finds no end between the best point and the bound.
 std::optional<double> end_of(const FitProblem& problem, const Optimum& best, std::size_t number,
                              const std::vector<double>& covariance, double bound, double sign) {
   const double middle = best.at[number];
@@ -54,13 +70,18 @@ std::optional<double> end_of(const FitProblem& problem, const Optimum& best, std
   const auto inside = [&](double value) {
     return sign > 0.0 ? std::min(value, bound) : std::max(value, bound);
   };
+  const auto is_end = [&](double value) {
+    return std::abs(value - bound) > kHair && std::abs(value - middle) > kCollapsed * deviation;
+  };
   double near = middle;
   double near_root = 0.0;
   double value = inside(middle + sign * kRoot * deviation);
   std::vector<double> start = moved(best.at, number, value, covariance);
   for (int fit = 0; fit < kMostFits; ++fit) {
-    const Held held = fitted_with(problem, best, number, value, start, covariance);
-    if (std::abs(held.root - kRoot) < kCloseEnough) return value;
+    const Held held = best_with(problem, best, number, value, start, covariance);
+    if (std::abs(held.root - kRoot) < kCloseEnough) {
+      return is_end(value) ? std::optional(value) : std::nullopt;
+    }
     if (held.root < kRoot && value == bound) return std::nullopt;
     const double rise = (held.root - near_root) / (value - near);
     const double farthest = middle + 3.0 * (value - middle) + sign * 0.1 * deviation;
@@ -73,7 +94,7 @@ std::optional<double> end_of(const FitProblem& problem, const Optimum& best, std
     value = inside(next);
     start[number] = value;
   }
-  return value;
+  return std::nullopt;
 }
 
 }  // namespace

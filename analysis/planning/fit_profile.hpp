@@ -10,12 +10,13 @@ namespace touchtrial {
 
 /// Ends of an interval of one number of a problem.
 struct NumberInterval {
-  std::optional<double> lower;  ///< nothing: the likelihood does not fall enough as far as searched
-  std::optional<double> upper;
+  /// Nothing: the likelihood does not fall enough before the bound, or no end was found.
+  std::optional<double> lower;
+  std::optional<double> upper;  ///< likewise
 };
 
 /// Where twice the log likelihood, all other numbers fitted anew, has fallen by 3.84 (95 %). Cost:
-/// some 5 fits a side. \param best  of the problem
+/// some 5 fits a side, 24 at most. \param best  of the problem
 /// \param covariance  of the numbers, row-major, to begin with
 [[nodiscard]] NumberInterval profile_interval(const FitProblem& problem, const Optimum& best,
                                               std::size_t number,

@@ -107,9 +107,12 @@ std::string fit_text(const AccuracyFit& fit, const FitOrigin& origin) {
                fmt::format("{:+.2f}", 100.0 * (fit.reached[c] - fit.wanted[c]))});
   }
   text += table.text() + wrapped("  ", biases_text(fit.subject));
+  const bool others_fit = fit.warnings.empty();
   text += wrapped(
-      "  ", fmt::format("{} parameters for {} numbers: {}", fit.parameters, fit.classes.size(),
-                        "other subjects fit as well, see docs/fitting.md"));
+      "  ", fmt::format("{} parameters for {} numbers{}", fit.parameters, fit.classes.size(),
+                        others_fit ? ": other subjects fit as well, see docs/fitting.md" : ""));
+  if (!fit.warnings.empty()) text += heading("to bear in mind", origin.simulated);
+  for (const std::string& warning : fit.warnings) text += wrapped("  - ", warning);
   return text;
 }
 

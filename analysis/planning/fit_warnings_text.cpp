@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string_view>
 
+#include <boost/math/distributions/chi_squared.hpp>
 #include <fmt/format.h>
 
 namespace touchtrial {
@@ -11,6 +12,7 @@ namespace {
 
 constexpr double kHardlyApart = 0.9;
 constexpr double kMisfit = 0.05;
+constexpr double kGuessing = 0.05;
 constexpr double kLargeMonteCarloShare = 0.3;
 
 double total(const Confusions& table, bool only_correct) {
@@ -35,9 +37,9 @@ void warn_of_extremes(const SubjectFit& fit, std::vector<std::string>& warnings)
   const double correct = total(fit.observed, true);
   if (correct == all) {
     warnings.push_back(
-        "every answer is right: the data set no lower limit to noise and lapses, and bias cannot "
-        "be "
-        "told");
+        "every answer is right: the data set no lower limit to noise and lapses, and the biases "
+        "are "
+        "arbitrary");
   }
   if (correct == 0.0) {
     warnings.push_back(
@@ -45,6 +47,43 @@ void warn_of_extremes(const SubjectFit& fit, std::vector<std::string>& warnings)
         "label "
         "swaps");
   }
+}
+
+/// Answers that would be the same whatever is presented, by method (Pearson's chi-square).
+void warn_of_guessing(const SubjectFit& fit, std::vector<std::string>& warnings) {
+  double chi_square = 0.0;
+  int freedom = 0;
+  for (const auto& method : fit.observed) {
+    const std::size_t classes = method.size();
+    std::vector<double> presented(classes, 0.0);
+    std::vector<double> answered(classes, 0.0);
+    double all = 0.0;
+    for (std::size_t c = 0; c < classes; ++c) {
+      for (std::size_t a = 0; a < classes; ++a) {
+        presented[c] += method[c][a];
+        answered[a] += method[c][a];
+        all += method[c][a];
+      }
+    }
+    for (std::size_t c = 0; c < classes; ++c) {
+      for (std::size_t a = 0; a < classes; ++a) {
+        const double expected = all > 0.0 ? presented[c] * answered[a] / all : 0.0;
+        if (expected > 0.0) chi_square += std::pow(method[c][a] - expected, 2) / expected;
+      }
+    }
+    const auto some = [](double count) { return count > 0.0; };
+    const auto rows = static_cast<int>(std::ranges::count_if(presented, some));
+    const auto columns = static_cast<int>(std::ranges::count_if(answered, some));
+    freedom += std::max(0, rows - 1) * std::max(0, columns - 1);
+  }
+  if (freedom > 0) {
+    const boost::math::chi_squared_distribution<> distribution(freedom);
+    const double p = boost::math::cdf(boost::math::complement(distribution, chi_square));
+    if (p <= kGuessing) return;
+  }
+  warnings.push_back(
+      "the answers are not told from guessing: they do not depend on what was presented by more "
+      "than chance; noise and lapses have no upper limit");
 }
 
 void warn_of_classes(const SubjectFit& fit, std::vector<std::string>& warnings) {
@@ -68,6 +107,22 @@ void warn_of_classes(const SubjectFit& fit, std::vector<std::string>& warnings) 
   }
 }
 
+std::string name_of(const ParameterEstimate& one) {
+  return one.label.empty() ? one.name : "the bias of \"" + one.label + "\"";
+}
+
+/// One line for all of them.
+void warn_of_open_ends(const SubjectFit& fit, std::vector<std::string>& warnings) {
+  std::string names;
+  for (const ParameterEstimate& one : fit.estimates) {
+    if (one.profile.lower && one.profile.upper) continue;
+    names += (names.empty() ? "" : ", ") + name_of(one);
+  }
+  if (names.empty()) return;
+  warnings.push_back("an end of the profile's interval was not found within what is searched: " +
+                     names + "; take it as without limit there");
+}
+
 void warn_of_flatness(const SubjectFit& fit, std::vector<std::string>& warnings) {
   const auto r = fit.weber_lapse_correlation;
   if (r && std::abs(*r) > kHardlyApart) {
@@ -78,14 +133,14 @@ void warn_of_flatness(const SubjectFit& fit, std::vector<std::string>& warnings)
                     *r));
   }
   for (const ParameterEstimate& one : fit.estimates) {
-    const std::string name = one.label.empty() ? one.name : "the bias of \"" + one.label + "\"";
+    const std::string name = name_of(one);
     if (!one.standard_error) {
       warnings.push_back(name +
                          " cannot be told from the others by these answers: fix it with --fix");
       continue;
     }
-    const bool is_lapse = one.name == "lapse";
-    if (one.at_bound && !is_lapse) {
+    const bool no_lapses = one.name == "lapse" && one.value == 0.0;
+    if (one.at_bound && !no_lapses) {
       warnings.push_back(name +
                          " lies at the end of what is searched: the answers set no limit to it");
     }
@@ -113,8 +168,10 @@ std::vector<std::string> fit_warnings(const FitCounts& counts, const SubjectFit&
         "from one for classes, and stays as the subject model has it");
   }
   warn_of_extremes(fit, warnings);
+  warn_of_guessing(fit, warnings);
   warn_of_classes(fit, warnings);
   warn_of_flatness(fit, warnings);
+  warn_of_open_ends(fit, warnings);
   if (const ParameterEstimate* lapse = estimate_of(fit, "lapse"); lapse && lapse->value == 0.0) {
     warnings.push_back(
         "the answers need no lapses: 0 is the most likely value, and the interval's end");
