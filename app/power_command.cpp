@@ -37,6 +37,7 @@ struct PowerArguments {
   std::vector<std::string> methods;
   std::string sizes = "8,12,16,20,30";
   std::string shard;
+  bool has_shard = false;
   PowerPlan plan;
   int jobs = 1;
   bool no_early_stop = false;
@@ -83,7 +84,8 @@ struct PowerPreparation {
             to_hex(study_seal(key)),
             fields_digest(key, *pack),
             words_of(subject),
-            std::string(program_version())};
+            std::string(program_version()),
+            study.trials.order != TrialOrder::uniform};
   }
 
   Study study;
@@ -104,14 +106,20 @@ std::unique_ptr<const Feelings> feelings_for(const PowerPreparation& prepared,
                                           progress_bar("feeling"));
 }
 
+fs::path file_of(const PowerArguments& arguments, const Shard& shard) {
+  return arguments.has_shard ? shard_file(arguments.folder, shard)
+                             : progress_file(arguments.folder);
+}
+
 void make_missing_runs(const PowerPreparation& prepared, const PowerArguments& arguments,
                        PowerProgress& progress) {
-  if (is_complete(progress)) return;
   std::optional<ProgressKeeper> keeper;
   if (!arguments.folder.empty()) {
-    keeper.emplace(progress_file(arguments.folder, progress.shard));
-    keeper->keep(progress);  // a folder that cannot be written is told of now
+    keeper.emplace(file_of(arguments, progress.shard));
+    // A folder that cannot be written is told of now; a shard without runs is a file as well.
+    keeper->keep(progress);
   }
+  if (is_complete(progress)) return;
   const StimulusSource source(*prepared.pack, prepared.key.study.rendering);
   const LabelledFields fields(prepared.key, source);
   const auto feelings = feelings_for(prepared, progress.plan, arguments.jobs, fields);
@@ -123,7 +131,7 @@ void make_missing_runs(const PowerPreparation& prepared, const PowerArguments& a
 }
 
 void print_shard(const PowerArguments& arguments, const PowerProgress& progress) {
-  const fs::path file = progress_file(arguments.folder, progress.shard);
+  const fs::path file = file_of(arguments, progress.shard);
   const int runs = progress.shard.own_runs(progress.plan.runs);
   print(fmt::format("SIMULATED: shard {}/{}: {} of {} runs of each of {} sizes\nfile     {}\n",
                     progress.shard.number, progress.shard.count, runs, progress.plan.runs,
@@ -153,16 +161,15 @@ int power(PowerArguments arguments) {
   plan.participants = sizes_named(arguments.sizes);
   plan.stop_early = !arguments.no_early_stop;
   settle(plan);
-  const Shard shard = arguments.shard.empty() ? Shard{} : shard_named(arguments.shard);
+  const Shard shard = arguments.has_shard ? shard_named(arguments.shard) : Shard{};
   const PowerPreparation prepared(arguments, load_study(arguments.study));
   PowerProgress progress = new_progress(prepared.setting(), plan, shard);
   if (!arguments.folder.empty()) {
     make_folder(arguments.folder);
-    progress =
-        taken_up(progress_file(arguments.folder, shard), std::move(progress), arguments.resume);
+    progress = taken_up(file_of(arguments, shard), std::move(progress), arguments.resume);
   }
   make_missing_runs(prepared, arguments, progress);
-  if (shard.is_all()) return print_report(arguments, progress);
+  if (!arguments.has_shard) return print_report(arguments, progress);
   print_shard(arguments, progress);
   return 0;
 }
@@ -203,28 +210,36 @@ void add_power_command(CLI::App& program, Action& action) {
   arguments->jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   CLI::App* command = program.add_subcommand(
       "power", "Power, type-I error and interval width of a study, given an assumed sensitivity");
-  auto* study = command->add_option("STUDY", arguments->study, "Study file");
+  command->add_option("STUDY", arguments->study, "Study file");
   add_plan_options(*command, *arguments);
+  const std::vector<CLI::Option*> of_a_run = command->get_options(
+      [&](const CLI::Option* option) { return option != command->get_help_ptr(); });
   command->add_option("--jobs", arguments->jobs, "Threads; results do not depend on them")
       ->check(CLI::Range(1, 1024))
       ->capture_default_str();
   auto* folder = command->add_option(
       "-o,--out", arguments->folder,
       "Folder for progress, and for the results as JSON, CSV, Markdown, SVG and PDF");
-  command->add_flag("--resume", arguments->resume, "Go on with what --out holds of this run")
-      ->needs(folder);
+  auto* resume =
+      command->add_flag("--resume", arguments->resume, "Go on with what --out holds of this run")
+          ->needs(folder);
   auto* shard = command
                     ->add_option("--shard", arguments->shard,
                                  "Make one part of the runs, for --combine; never stops early")
                     ->type_name("I/N")
                     ->needs(folder);
-  command
-      ->add_option("--combine", arguments->combine,
-                   "In place of a study: folders or files of all shards of a run")
-      ->excludes(study)
-      ->excludes(shard);
+  auto* combine = command
+                      ->add_option("--combine", arguments->combine,
+                                   "In place of a study: folders or files of all shards of a run")
+                      ->excludes(shard)
+                      ->excludes(resume);
+  // Shards bring their plan along.
+  for (CLI::Option* option : of_a_run) combine->excludes(option);
   command->add_flag("--json", arguments->json, "One JSON object in place of tables");
-  command->callback([=, &action] { action = [=] { return power(*arguments); }; });
+  command->callback([=, &action] {
+    arguments->has_shard = shard->count() > 0;
+    action = [=] { return power(*arguments); };
+  });
 }
 
 }  // namespace touchtrial

@@ -77,8 +77,11 @@ std::vector<int> sizes_named(std::string_view text) {
   return sizes;
 }
 
-fs::path progress_file(const fs::path& folder, const Shard& shard) {
-  if (shard.is_all()) return folder / "power-progress.json";
+fs::path progress_file(const fs::path& folder) {
+  return folder / "power-progress.json";
+}
+
+fs::path shard_file(const fs::path& folder, const Shard& shard) {
   return folder / fmt::format("shard-{:04}-of-{:04}.json", shard.number, shard.count);
 }
 

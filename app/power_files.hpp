@@ -19,10 +19,11 @@ namespace touchtrial {
 /// "8,12,16" \throws UsageError if a part of it is no whole number
 [[nodiscard]] std::vector<int> sizes_named(std::string_view text);
 
-/// The file of a run's progress in its folder: "power-progress.json", or of a shard
-/// "shard-0003-of-0016.json".
-[[nodiscard]] std::filesystem::path progress_file(const std::filesystem::path& folder,
-                                                  const Shard& shard);
+/// The file of a run's progress in its folder: "power-progress.json".
+[[nodiscard]] std::filesystem::path progress_file(const std::filesystem::path& folder);
+/// Of a shard, also of the only one: "shard-0003-of-0016.json".
+[[nodiscard]] std::filesystem::path shard_file(const std::filesystem::path& folder,
+                                               const Shard& shard);
 
 /// What a file already has of a run.
 /// \param resume  whether there may be one

@@ -40,10 +40,10 @@ class Feelings {
 };
 
 struct BankedFeelingsOptions {
-  int explorations = 200;  ///< of each stimulus, for trials
-  int trainings = 16;      ///< of which every study has one
-  std::uint64_t seed = 1;  ///< of their paths
-  int jobs = 1;            ///< threads; what is felt does not depend on them
+  int explorations = 1000;  ///< of each stimulus, for trials
+  int trainings = 16;       ///< of which every study has one
+  std::uint64_t seed = 1;   ///< of their paths
+  int jobs = 1;             ///< threads; what is felt does not depend on them
 };
 
 /// Explorations felt once, of which every trial has any, and trainings, of which every study has

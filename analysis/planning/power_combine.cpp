@@ -97,7 +97,9 @@ CombinedPower combined(const std::vector<File>& shards) {
   result.progress = new_progress(first.setting, first.plan, {});
   for (std::size_t c = 0; c < result.progress.cells.size(); ++c) {
     PowerCell& cell = result.progress.cells[c];
-    for (int run = 0; run < first.plan.runs; ++run) {
+    // An only one is a whole run, which may have stopped early.
+    if (first.shard.is_all()) cell.runs = first.cells[c].runs;
+    for (int run = static_cast<int>(cell.runs.size()); count > 1 && run < first.plan.runs; ++run) {
       const PowerProgress& shard = by_number.at(run % count + 1)->second;
       cell.runs.push_back(shard.cells[c].runs[run / count]);
     }

@@ -26,8 +26,8 @@ struct PowerPlan {
   int runs = 1000;                ///< simulated studies of each size and hypothesis
   std::uint64_t seed = 1;
   bool stop_early = true;
-  bool servo = false;      ///< ServoFeelings
-  int explorations = 200;  ///< BankedFeelingsOptions
+  bool servo = false;       ///< ServoFeelings
+  int explorations = 1000;  ///< BankedFeelingsOptions
   int trainings = 16;
 
   friend bool operator==(const PowerPlan&, const PowerPlan&) = default;

@@ -22,6 +22,9 @@ struct PowerSetting {
   std::string fields;    ///< SHA-256 over the force fields that are felt, hexadecimal
   std::string subject;   ///< the subject model's figures, in words
   std::string program;   ///< version
+  /// Whether every participant's order presents every class as often. If not, right answers that a
+  /// bias gives depend on the orders that the study's seed draws, and so do all figures.
+  bool has_fixed_counts = true;
 
   friend bool operator==(const PowerSetting&, const PowerSetting&) = default;
 };

@@ -18,10 +18,15 @@ constexpr std::uintmax_t kLargestFile = std::uintmax_t{1} << 29U;
 constexpr int kMostShards = 10'000;
 
 ordered_json setting_object(const PowerSetting& setting) {
-  return {{"study", setting.study},     {"protocol", setting.protocol},
-          {"test", setting.test},       {"estimate", setting.estimate},
-          {"seal", setting.seal},       {"fields", setting.fields},
-          {"subject", setting.subject}, {"program", setting.program}};
+  return {{"study", setting.study},
+          {"protocol", setting.protocol},
+          {"test", setting.test},
+          {"estimate", setting.estimate},
+          {"seal", setting.seal},
+          {"fields", setting.fields},
+          {"subject", setting.subject},
+          {"program", setting.program},
+          {"has_fixed_counts", setting.has_fixed_counts}};
 }
 
 ordered_json plan_object(const PowerPlan& plan) {
@@ -70,8 +75,9 @@ void require(bool holds, const char* what) {
 }
 
 PowerSetting setting_of(const ordered_json& object) {
-  return {object.at("study"), object.at("protocol"), object.at("test"),    object.at("estimate"),
-          object.at("seal"),  object.at("fields"),   object.at("subject"), object.at("program")};
+  return {object.at("study"),    object.at("protocol"), object.at("test"),
+          object.at("estimate"), object.at("seal"),     object.at("fields"),
+          object.at("subject"),  object.at("program"),  object.at("has_fixed_counts")};
 }
 
 PowerPlan plan_of(const ordered_json& object) {
@@ -131,7 +137,7 @@ PowerProgress progress_of(const ordered_json& object) {
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& what) {
   throw FileError(one_line(path.string() + ": is no progress of a power run (" + what +
-                           "); remove it and run power again"));
+                           "); give the folder or files that power wrote"));
 }
 
 }  // namespace

@@ -42,8 +42,10 @@ WidthFigures widths_of(const PowerCell& cell) {
           *quantile(widths, 0.1), *quantile(widths, 0.5), *quantile(widths, 0.9)};
 }
 
-PowerRow row_of(const PowerPlan& plan, const PowerCell& population, const PowerCell& null) {
+PowerRow row_of(const PowerProgress& progress, const PowerCell& population, const PowerCell& null) {
+  const PowerPlan& plan = progress.plan;
   PowerRow row;
+  row.has_fixed_counts = progress.setting.has_fixed_counts;
   row.participants = population.participants;
   row.significant = significant_of(population);
   row.power = power_interval(plan, row.significant);
@@ -91,7 +93,7 @@ std::vector<std::string> warnings_of(const PowerReport& report) {
     }
     if (row.attainable == 0.0) {
       warnings.push_back(fmt::format(
-          "With {} participants the test can never be significant, whatever they answer.",
+          "With {} participants in none of the runs under the null could the test be significant.",
           row.participants));
     }
   }
@@ -108,6 +110,7 @@ std::vector<std::string> warnings_of(const PowerReport& report) {
 }  // namespace
 
 ErrorVerdict verdict_of(const PowerRow& row) noexcept {
+  if (!row.has_fixed_counts) return ErrorVerdict::conditional;
   if (row.type_one.low > kSignificanceLevel) return ErrorVerdict::excessive;
   if (row.type_one.high < row.attainable) return ErrorVerdict::conservative;
   return ErrorVerdict::holds;
@@ -119,6 +122,8 @@ std::string_view name_of(ErrorVerdict verdict) {
       return "conservative";
     case ErrorVerdict::excessive:
       return "excessive";
+    case ErrorVerdict::conditional:
+      return "these orders alone";
     case ErrorVerdict::holds:
       break;
   }
@@ -131,7 +136,7 @@ PowerReport make_power_report(const PowerProgress& progress) {
   }
   PowerReport report{progress.setting, progress.plan, {}, {}, {}};
   for (std::size_t i = 0; i + 1 < progress.cells.size(); i += 2) {
-    report.rows.push_back(row_of(progress.plan, progress.cells[i], progress.cells[i + 1]));
+    report.rows.push_back(row_of(progress, progress.cells[i], progress.cells[i + 1]));
   }
   for (const double target : kPowerTargets) {
     report.targets.push_back(target_size(report.rows, target));

@@ -27,12 +27,13 @@ struct PowerRow {
   Proportion significant;  ///< of the runs with the population
   Interval power{};        ///< power_interval
   bool stopped_early = false;
-  double estimate = 0.0;     ///< mean over runs
-  double estimate_sd = 0.0;  ///< from run to run
-  WidthFigures width;        ///< of the 95 % t interval
-  Proportion false_alarms;   ///< of the runs under the null
-  Interval type_one{};       ///< Wilson, 95 %
-  double attainable = 0.0;   ///< what the test's error is exactly, as data are whole numbers
+  double estimate = 0.0;         ///< mean over runs
+  double estimate_sd = 0.0;      ///< from run to run
+  WidthFigures width;            ///< of the 95 % t interval
+  Proportion false_alarms;       ///< of the runs under the null
+  Interval type_one{};           ///< Wilson, 95 %
+  double attainable = 0.0;       ///< what the test's error is exactly, as data are whole numbers
+  bool has_fixed_counts = true;  ///< PowerSetting
 };
 
 /// The type-I error against its level.
@@ -40,6 +41,7 @@ enum class ErrorVerdict {
   holds,         ///< the interval reaches from what is attainable to the level, or into it
   conservative,  ///< the interval lies below what is attainable
   excessive,     ///< the interval lies above the level
+  conditional,   ///< none is given: the error is that of the orders of this study's seed
 };
 [[nodiscard]] ErrorVerdict verdict_of(const PowerRow& row) noexcept;
 [[nodiscard]] std::string_view name_of(ErrorVerdict verdict);

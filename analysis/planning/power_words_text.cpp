@@ -29,6 +29,17 @@ std::string null_sentence(const PowerReport& report) {
                "with the same biases and lapses.";
 }
 
+std::string bank_sentence() {
+  return "Monte-Carlo intervals do not hold the error of these explorations and trainings, which "
+         "all "
+         "studies share: other seeds show it, and more runs do not make it smaller.";
+}
+
+std::string orders_sentence() {
+  return "Orders of this study do not present every class equally often: all figures, and type-I "
+         "errors above all, are of the orders that this study's seed draws; another seed's differ.";
+}
+
 }  // namespace
 
 std::string power_per_cent(double share) {
@@ -68,8 +79,10 @@ std::vector<std::string> method_sentences(const PowerReport& report) {
                  : fmt::format("feelings drawn from {} explorations of each stimulus and {} "
                                "trainings through the servo.",
                                plan.explorations, plan.trainings)));
+  if (!plan.servo) sentences.push_back(bank_sentence());
   sentences.push_back(looks_sentence(plan));
   sentences.push_back(null_sentence(report));
+  if (!report.setting.has_fixed_counts) sentences.push_back(orders_sentence());
   sentences.push_back(fmt::format(
       "Attainable: what the type-I error is exactly, as counts are whole numbers and no p lies at "
       "{} itself; its Monte-Carlo interval is Wilson's at 95 %.",

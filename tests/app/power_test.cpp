@@ -97,6 +97,34 @@ TEST_CASE("shards of a power run, combined, print what one run prints") {
                 {"other", "--no-early-stop"});
 }
 
+TEST_CASE("an only shard and more shards than runs are combined like others") {
+  const StudyFolder study;
+  const auto few = [&](const Words& more) {
+    Words words = power_of(study, with_sizes(more));
+    words[5] = "3";
+    return study.run(words);
+  };
+  const ProgramResult whole = few({"--json"});
+  REQUIRE(whole.exit_code == 0);
+  REQUIRE(few({"--shard", "1/1", "--out", study.in("one")}).exit_code == 0);
+  CHECK(study.run({"power", "--combine", study.in("one"), "--json"}).output == whole.output);
+  for (const char* shard : {"1/4", "2/4", "3/4", "4/4"}) {
+    REQUIRE(few({"--shard", shard, "--out", study.in("four")}).exit_code == 0);
+  }
+  CHECK(study.run({"power", "--combine", study.in("four"), "--json"}).output == whole.output);
+}
+
+TEST_CASE("combining takes no option of a plan: shards have theirs") {
+  const StudyFolder study;
+  for (const Words& more :
+       {Words{"--runs", "10"}, Words{"--seed", "2"}, Words{"--participants", "3"},
+        Words{"--subject", "quick.json"}, Words{"--no-early-stop"}, Words{"--servo"}}) {
+    Words words = {"power", "--combine", study.in("shards")};
+    words.insert(words.end(), more.begin(), more.end());
+    check_refused(study.run(words), 2, {"--combine", more.front()});
+  }
+}
+
 TEST_CASE("a power run is resumed with its own arguments alone") {
   const StudyFolder study;
   const Words out = {"--out", study.in("power")};
@@ -132,7 +160,8 @@ TEST_CASE("power refuses what cannot be meant, in one line") {
     words[5] = runs;
     check_refused(study.run(words), 2, {"--runs"});
   }
-  for (const char* shard : {"0/3", "4/3", "3", "a/b", "1/", "/2", "1/2/3", "1/99999999", "-1/2"}) {
+  for (const char* shard :
+       {"", "0/3", "4/3", "3", "a/b", "1/", "/2", "1/2/3", "1/99999999", "-1/2"}) {
     check_refused(run_power(study, {"--shard", shard, "--out", study.in("x")}), 2, {"--shard"});
   }
   check_refused(run_power(study, {"--methods", "adaptive,edge"}), 2, {"--methods"});

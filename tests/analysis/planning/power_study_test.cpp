@@ -99,6 +99,22 @@ TEST_CASE("shards make all their runs, and the whole stops where one machine wou
   CHECK(made(plan).cells.front().runs.size() == 150);
 }
 
+TEST_CASE("an only shard is the whole run, also where it stopped early") {
+  const PowerPlan plan = small_plan(150);
+  const PowerProgress whole = made(plan);
+  REQUIRE(whole.cells.front().runs.size() == 100);
+  CHECK(combined({{"shard", whole}}).progress == whole);
+}
+
+TEST_CASE("shards without runs of their own are needed as the others are") {
+  const PowerPlan plan = small_plan(3);
+  Files files = shards(plan, 5);
+  CHECK(files.back().second.cells.front().runs.empty());
+  CHECK(combined(files).progress == made(plan));
+  files.pop_back();
+  CHECK_THROWS_WITH(combined(files), Catch::Contains("missing: 5"));
+}
+
 TEST_CASE("lost shards are named") {
   Files files = shards(small_plan(10), 5);
   files.erase(files.begin() + 3);
@@ -233,6 +249,19 @@ TEST_CASE("the report of a power run says what its runs were") {
     CHECK_THAT(text, Catch::Contains("SIMULATED"));
   }
   CHECK_THAT(power_text(report), Catch::Contains("power given the assumed sensitivity"));
+}
+
+TEST_CASE("orders that do not present classes equally often have no verdict on the test's error") {
+  PowerProgress progress = new_progress(setting(), small_plan(100), {});
+  for (PowerCell& cell : progress.cells) cell.runs.assign(100, {0.01, 0.04, 0.5, 0.4, 0.6});
+  CHECK(verdict_of(make_power_report(progress).rows[0]) == ErrorVerdict::excessive);
+  CHECK_THAT(power_text(make_power_report(progress)), Catch::Contains("does not hold"));
+  progress.setting.has_fixed_counts = false;
+  const PowerReport report = make_power_report(progress);
+  CHECK(verdict_of(report.rows[0]) == ErrorVerdict::conditional);
+  CHECK_THAT(power_json(report), !Catch::Contains("not hold what it promises") &&
+                                     !Catch::Contains("excessive") &&
+                                     Catch::Contains("orders that this study's seed draws"));
 }
 
 TEST_CASE("a run that is not complete has no report") {
