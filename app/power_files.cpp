@@ -56,7 +56,7 @@ Shard shard_named(std::string_view text) {
     }
   }
   throw UsageError(
-      one_line(fmt::format("--shard: '{}' is none; give which of how many, from 1/2 to {}/{}",
+      one_line(fmt::format("--shard: '{}' is none; give which of how many, from 1/1 to {}/{}",
                            text.substr(0, 60), kMostShards, kMostShards)));
 }
 
