@@ -24,8 +24,8 @@ inline constexpr int kNotVerified = 3;
 /// A file or folder of this machine: an address is none, and is not repeated, as there may be a
 /// password in it.
 [[nodiscard]] CLI::Validator place_validator();
-/// A database, or the address of one, as postgresql://HOST/NAME; not libpq's own notation, which may
-/// hold a password.
+/// A database, or the address of one, as postgresql://HOST/NAME; not libpq's own notation, which
+/// may hold a password.
 [[nodiscard]] CLI::Validator study_place_validator();
 
 void add_extract_command(CLI::App& program, Action& action);

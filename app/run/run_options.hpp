@@ -23,7 +23,7 @@ struct RunOptions {
   std::filesystem::path certificate;  ///< empty: NAME-certificate.json, if it is there
   bool pilot = false;
   OnExisting on_existing = OnExisting::refuse;
-  int enrolment = 0;  ///< 0: the smallest that is free, or the station's next
+  int enrolment = 0;             ///< 0: the smallest that is free, or the station's next
   std::string station{};         ///< whose numbers of the plan are taken; empty: none's
   std::filesystem::path plan{};  ///< empty: as `plan` lays it
   /// A simulated participant instead of a person: a model file, or "default".
