@@ -6,35 +6,35 @@
 #include <algorithm>
 #include <map>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// Of who has withdrawn nothing is told but that.
-SessionRow without_participant(const SessionRow& row) {
-  SessionRow bare;
+store::SessionRow without_participant(const store::SessionRow& row) {
+  store::SessionRow bare;
   bare.session = row.session;
   bare.state = row.state;
   bare.withdrawn = true;
   return bare;
 }
 
-std::map<int, SessionRecord> empty_records(const std::vector<SessionRow>& rows) {
+std::map<int, SessionRecord> empty_records(const std::vector<store::SessionRow>& rows) {
   std::map<int, SessionRecord> records;
-  for (const SessionRow& row : rows) {
+  for (const store::SessionRow& row : rows) {
     records[row.session].row = row.withdrawn ? without_participant(row) : row;
   }
   return records;
 }
 
 /// The session that an event is about, wherever it stands.
-int session_named_by(const Event& event) {
+int session_named_by(const store::Event& event) {
   switch (event.kind) {
-    case EventKind::participant_excluded:
-      return participant_from_json(event.body).session;
-    case EventKind::participant_replaced:
-      return replacement_from_json(event.body).session;
-    case EventKind::participant_noted:
-      return note_from_json(event.body).session;
+    case store::EventKind::participant_excluded:
+      return store::participant_from_json(event.body).session;
+    case store::EventKind::participant_replaced:
+      return store::replacement_from_json(event.body).session;
+    case store::EventKind::participant_noted:
+      return store::note_from_json(event.body).session;
     default:
       return event.session;
   }
@@ -50,25 +50,25 @@ void finish(SessionRecord& record) {
     record.practice->passed = std::ranges::none_of(record.deviations, is_practice_failure);
   }
   // A stop from which the session was taken up again is none.
-  if (record.row.state != SessionState::stopped) record.stop_reason.clear();
+  if (record.row.state != store::SessionState::stopped) record.stop_reason.clear();
 }
 
 }  // namespace
 
-Collection load_collection(const StudyStore& store) {
-  const std::vector<SessionRow> rows = store.sessions();
+Collection load_collection(const store::StudyStore& store) {
+  const std::vector<store::SessionRow> rows = store.sessions();
   std::map<int, SessionRecord> records = empty_records(rows);
   Collection collection;
   collection.prescription = prescription_from_json(store.commitment().configuration);
-  const auto add = [&](const Event& event) {
+  const auto add = [&](const store::Event& event) {
     const auto record = records.find(session_named_by(event));
     if (record == records.end() || record->second.row.withdrawn) return;
     add_to_record(event, record->second);
-    if (event.kind != EventKind::trace_stored) return;
+    if (event.kind != store::EventKind::trace_stored) return;
     if (const auto servo = servo_trial_of(event)) collection.servo_trials.push_back(*servo);
   };
   store.for_each_of(kinds_in_sessions(), add);
-  for (const Event& event : store.events(0)) add(event);  // what was noted later comes after
+  for (const store::Event& event : store.events(0)) add(event);  // what was noted later comes after
   for (auto& [session, record] : records) {
     finish(record);
     collection.visual = collection.visual || (record.station && record.station->visual);
@@ -78,4 +78,4 @@ Collection load_collection(const StudyStore& store) {
   return collection;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

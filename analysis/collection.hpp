@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// A deviation from the protocol, by its code (docs/data-dictionary.md) and in words.
 struct Deviation {
@@ -26,10 +26,10 @@ struct PracticeRecord {
 
 /// One session, withdrawn ones with nothing but their number and state.
 struct SessionRecord {
-  SessionRow row;
-  std::string device_serial;             ///< empty if none
-  std::optional<StationRecord> station;  ///< real time only
-  std::string opened_utc;                ///< ISO 8601; empty for simulated sessions
+  store::SessionRow row;
+  std::string device_serial;                    ///< empty if none
+  std::optional<store::StationRecord> station;  ///< real time only
+  std::string opened_utc;                       ///< ISO 8601; empty for simulated sessions
   std::optional<PracticeRecord> practice;
   std::vector<Deviation> deviations;  ///< each code and text once, those noted later too
   std::string exclusion_reason;
@@ -42,7 +42,7 @@ struct SessionRecord {
 struct ServoTrial {
   int session = 0;
   int trial = 0;
-  ServoHealth health;
+  store::ServoHealth health;
   std::int64_t overruns = 0;
 };
 
@@ -86,6 +86,6 @@ struct Collection {
 [[nodiscard]] Prescription prescription_from_json(const std::string& configuration);
 
 /// Reads the clear part of every session's events; traces and sealed parts are not looked at.
-[[nodiscard]] Collection load_collection(const StudyStore& store);
+[[nodiscard]] Collection load_collection(const store::StudyStore& store);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

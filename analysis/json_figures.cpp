@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 nlohmann::ordered_json figure_json(std::optional<double> figure) {
   if (!figure || !std::isfinite(*figure)) return nullptr;
@@ -33,13 +33,13 @@ void put_stamp(nlohmann::ordered_json& object, bool simulated) {
   if (simulated) object["stamp"] = "SIMULATED";
 }
 
-void put_state(nlohmann::ordered_json& object, const StudyState& state, bool pilot) {
+void put_state(nlohmann::ordered_json& object, const store::StudyState& state, bool pilot) {
   object["state"] = name_of(state);
   object["interim"] = state.unblinded && !state.closed;
   object["pilot"] = pilot;
 }
 
-nlohmann::ordered_json statistics_json(const GlcmStatistics& statistics) {
+nlohmann::ordered_json statistics_json(const engine::GlcmStatistics& statistics) {
   return {{"asm", statistics.angular_second_moment},
           {"energy", statistics.energy},
           {"entropy", statistics.entropy},
@@ -52,4 +52,4 @@ std::string json_text(const nlohmann::ordered_json& object) {
   return object.dump(2, ' ', false, ErrorHandler::replace) + '\n';
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

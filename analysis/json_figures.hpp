@@ -11,7 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// The number, or null where it does not exist or is not finite.
 [[nodiscard]] nlohmann::ordered_json figure_json(std::optional<double> figure);
@@ -27,13 +27,13 @@ namespace touchtrial {
 /// Adds n, correct and p to an object that may have begun with a name.
 void put_proportion(nlohmann::ordered_json& object, const Proportion& proportion);
 
-[[nodiscard]] nlohmann::ordered_json statistics_json(const GlcmStatistics& statistics);
+[[nodiscard]] nlohmann::ordered_json statistics_json(const engine::GlcmStatistics& statistics);
 
 /// Says whether the figures come from simulated participants; if so, twice.
 void put_stamp(nlohmann::ordered_json& object, bool simulated);
 
 /// Adds state ("collecting", "closed", "unblinded"), interim (unblinded, but not closed) and pilot.
-void put_state(nlohmann::ordered_json& object, const StudyState& state, bool pilot);
+void put_state(nlohmann::ordered_json& object, const store::StudyState& state, bool pilot);
 
 /// Indented, ending with a line feed; bytes that are no UTF-8 become replacement characters.
 [[nodiscard]] std::string json_text(const nlohmann::ordered_json& object);
@@ -43,4 +43,4 @@ void put_state(nlohmann::ordered_json& object, const StudyState& state, bool pil
 [[nodiscard]] nlohmann::ordered_json report_object(const StudyReport& report);
 [[nodiscard]] nlohmann::ordered_json quality_object(const QualityReport& report);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

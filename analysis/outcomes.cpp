@@ -11,15 +11,15 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
-std::string shown(const TrialRow& row) {
+std::string shown(const store::TrialRow& row) {
   return fmt::format("session {}, trial {}", row.session, row.trial);
 }
 
 /// File names without folders, unless two images of one class share theirs.
-std::vector<std::string> exemplar_names(const StudyClass& of) {
+std::vector<std::string> exemplar_names(const design::StudyClass& of) {
   std::set<std::string> distinct;
   for (const auto& image : of.images) distinct.insert(image.filename().string());
   const bool unambiguous = distinct.size() == of.images.size();
@@ -30,9 +30,9 @@ std::vector<std::string> exemplar_names(const StudyClass& of) {
   return names;
 }
 
-Outcomes labelled(const StudyStore& store, const Study& study) {
+Outcomes labelled(const store::StudyStore& store, const design::Study& study) {
   Outcomes outcomes;
-  const StudyCommitment& commitment = store.commitment();
+  const store::StudyCommitment& commitment = store.commitment();
   outcomes.study = commitment.study;
   outcomes.design = study;
   outcomes.protocol = study.protocol;
@@ -41,7 +41,7 @@ Outcomes labelled(const StudyStore& store, const Study& study) {
   outcomes.collection = load_collection(store);
   outcomes.visual = outcomes.collection.visual;
   outcomes.state = store.state();
-  for (const StudyClass& one : study.classes) {
+  for (const design::StudyClass& one : study.classes) {
     outcomes.classes.push_back(one.label);
     outcomes.exemplars.push_back(exemplar_names(one));
   }
@@ -51,9 +51,11 @@ Outcomes labelled(const StudyStore& store, const Study& study) {
   return outcomes;
 }
 
-const Presentation& presentation_of(const TrialRow& row, const Schedule& schedule) {
-  const auto found = std::find_if(schedule.presentations.begin(), schedule.presentations.end(),
-                                  [&](const Presentation& one) { return one.trial == row.trial; });
+const design::Presentation& presentation_of(const store::TrialRow& row,
+                                            const design::Schedule& schedule) {
+  const auto found =
+      std::find_if(schedule.presentations.begin(), schedule.presentations.end(),
+                   [&](const design::Presentation& one) { return one.trial == row.trial; });
   if (found == schedule.presentations.end()) {
     throw VerificationError(shown(row) +
                             ": is not in the session's schedule; run `touchtrial verify`");
@@ -61,7 +63,7 @@ const Presentation& presentation_of(const TrialRow& row, const Schedule& schedul
   return *found;
 }
 
-std::optional<int> response_of(const TrialRow& row, const Schedule& schedule) {
+std::optional<int> response_of(const store::TrialRow& row, const design::Schedule& schedule) {
   if (!row.position) return std::nullopt;
   if (*row.position < 0 || *row.position >= static_cast<int>(schedule.layout.size())) {
     throw VerificationError(fmt::format("{}: answers position {} of {}; run `touchtrial verify`",
@@ -70,25 +72,26 @@ std::optional<int> response_of(const TrialRow& row, const Schedule& schedule) {
   return schedule.layout[*row.position];
 }
 
-TrialOutcome outcome_of(const TrialRow& row, const SessionOutcome& session,
-                        const Schedule& schedule) {
-  const Presentation& presentation = presentation_of(row, schedule);
-  const bool ended = row.state == TrialState::answered || row.state == TrialState::timed_out;
+TrialOutcome outcome_of(const store::TrialRow& row, const SessionOutcome& session,
+                        const design::Schedule& schedule) {
+  const design::Presentation& presentation = presentation_of(row, schedule);
+  const bool ended =
+      row.state == store::TrialState::answered || row.state == store::TrialState::timed_out;
   TrialOutcome trial;
   trial.participant = session.row.participant;
   trial.row = row;
   trial.stimulus = presentation.stimulus;
   trial.kind = presentation.kind;
-  trial.scored = presentation.kind == PresentationKind::scored;
+  trial.scored = presentation.kind == design::PresentationKind::scored;
   trial.counted = session.counted && trial.scored && ended;
   trial.response = response_of(row, schedule);
   return trial;
 }
 
 /// What is derived is only believed if it follows from the events, and they from each other.
-void require_whole(const StudyStore& store) {
-  if (const auto fault = store.first_fault(TraceCheck::skip)) {
-    throw VerificationError(shown(*fault) +
+void require_whole(const store::StudyStore& store) {
+  if (const auto fault = store.first_fault(store::TraceCheck::skip)) {
+    throw VerificationError(analysis::shown(*fault) +
                             "; no outcomes are shown, see `touchtrial verify` and restore the "
                             "database from a backup");
   }
@@ -96,12 +99,12 @@ void require_whole(const StudyStore& store) {
 
 }  // namespace
 
-std::string shown(const ChainFault& fault) {
-  return fmt::format("{}, event {}: {}", chain_named(fault.session), fault.sequence,
+std::string shown(const store::ChainFault& fault) {
+  return fmt::format("{}, event {}: {}", store::chain_named(fault.session), fault.sequence,
                      one_line(fault.what));
 }
 
-Outcomes load_outcomes(const StudyStore& store, const StudyKey& key) {
+Outcomes load_outcomes(const store::StudyStore& store, const design::StudyKey& key) {
   require_key_of(store, key);
   Outcomes outcomes = labelled(store, key.study);
   if (!outcomes.state.unblinded) {
@@ -112,7 +115,7 @@ Outcomes load_outcomes(const StudyStore& store, const StudyKey& key) {
   require_whole(store);
   require_sealed_ends(store, key);
   std::map<int, SessionOutcome> sessions;
-  for (const SessionRow& row : store.sessions()) {
+  for (const store::SessionRow& row : store.sessions()) {
     if (!outcomes.state.shows(row.session)) {
       ++outcomes.sessions_unseen;
       continue;
@@ -122,7 +125,7 @@ Outcomes load_outcomes(const StudyStore& store, const StudyKey& key) {
   }
   const auto schedules = open_schedules(store, key);
   const auto measures = open_measures(store, key);
-  for (const TrialRow& row : store.trials()) {
+  for (const store::TrialRow& row : store.trials()) {
     const auto schedule = schedules.find(row.session);
     if (schedule == schedules.end()) continue;  // withdrawn
     if (!outcomes.state.shows(row.session)) continue;
@@ -134,4 +137,4 @@ Outcomes load_outcomes(const StudyStore& store, const StudyKey& key) {
   return outcomes;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

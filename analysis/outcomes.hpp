@@ -9,24 +9,24 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// A session, and whether its trials enter accuracy.
 struct SessionOutcome {
-  SessionRow row;
+  store::SessionRow row;
   bool counted = false;
 };
 
 /// One trial with its meaning.
 struct TrialOutcome {
   std::string participant;
-  TrialRow row;
-  StimulusIndex stimulus;  ///< of a catch trial it means nothing
-  PresentationKind kind = PresentationKind::scored;
+  store::TrialRow row;
+  design::StimulusIndex stimulus;  ///< of a catch trial it means nothing
+  design::PresentationKind kind = design::PresentationKind::scored;
   bool scored = false;          ///< by the schedule: no practice, no lead-in
   bool counted = false;         ///< enters accuracy
   std::optional<int> response;  ///< class index of the answer; empty: no response
-  std::optional<TrialMeasures> measures;
+  std::optional<store::TrialMeasures> measures;
 
   /// A trial without a response is wrong.
   [[nodiscard]] bool correct() const noexcept { return response == stimulus.class_index; }
@@ -39,11 +39,11 @@ struct TrialOutcome {
 /// A study's trials with the labels to read them by.
 struct Outcomes {
   std::string study;
-  Protocol protocol = Protocol::classification;
+  design::Protocol protocol = design::Protocol::classification;
   bool simulated = false;
   bool pilot = false;
   bool visual = false;  ///< seen on a screen, not felt
-  StudyState state;
+  store::StudyState state;
   std::vector<std::string> classes;                 ///< labels
   std::vector<std::vector<std::string>> exemplars;  ///< of each class: image file names
   std::vector<std::string> methods;                 ///< those that the study presents
@@ -51,12 +51,12 @@ struct Outcomes {
   int sessions_unseen =
       0;  ///< had not ended at an interim look: neither in `sessions` nor `trials`
   std::vector<TrialOutcome> trials;  ///< by session and trial; of withdrawn ones none
-  Study design;                      ///< the study file: by which rule orders were drawn
+  design::Study design;              ///< the study file: by which rule orders were drawn
   Collection collection;
 };
 
 /// "session 2, event 7: <what>"
-[[nodiscard]] std::string shown(const ChainFault& fault);
+[[nodiscard]] std::string shown(const store::ChainFault& fault);
 
 /// Opens every sealed schedule and measure and holds answers against them.
 ///
@@ -73,6 +73,6 @@ struct Outcomes {
 /// \throws VerificationError if the key does not belong, the database does not hold, or a session
 /// does not hold against its
 ///   schedule; the message names the session
-[[nodiscard]] Outcomes load_outcomes(const StudyStore& store, const StudyKey& key);
+[[nodiscard]] Outcomes load_outcomes(const store::StudyStore& store, const design::StudyKey& key);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -3,31 +3,32 @@
 
 #include <map>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// The session by which each participant is counted, in the order of those sessions: all before it
 /// were replaced by the participant's own next one.
-std::map<int, const SessionRow*> sessions_that_stand(const std::vector<SessionRow>& rows) {
-  std::map<std::string, const SessionRow*> last;
-  for (const SessionRow& row : rows) last[row.participant] = &row;
-  std::map<int, const SessionRow*> standing;
+std::map<int, const store::SessionRow*> sessions_that_stand(
+    const std::vector<store::SessionRow>& rows) {
+  std::map<std::string, const store::SessionRow*> last;
+  for (const store::SessionRow& row : rows) last[row.participant] = &row;
+  std::map<int, const store::SessionRow*> standing;
   for (const auto& [participant, row] : last) standing[row->session] = row;
   return standing;
 }
 
-bool unseen_after_interim_look(const SessionRow& row, const StudyState& state) {
+bool unseen_after_interim_look(const store::SessionRow& row, const store::StudyState& state) {
   return state.unblinded && !state.shows(row.session);
 }
 
 /// Exactly one of the flow's ends.
-int& end_of(const SessionRow& row, const StudyCommitment& commitment, const StudyState& state,
-            ParticipantFlow& flow) {
+int& end_of(const store::SessionRow& row, const store::StudyCommitment& commitment,
+            const store::StudyState& state, ParticipantFlow& flow) {
   if (row.withdrawn) return flow.withdrawn;
   if (!row.replaced_by.empty() && row.replaced_by != row.participant) return flow.replaced;
   if (row.excluded) return flow.excluded;
-  if (row.state == SessionState::stopped) return flow.stopped;
-  if (row.state == SessionState::open) return flow.open;
+  if (row.state == store::SessionState::stopped) return flow.stopped;
+  if (row.state == store::SessionState::open) return flow.open;
   if (!session_counts(row, commitment)) return flow.other_kind;
   if (unseen_after_interim_look(row, state)) return flow.unseen;
   return flow.analysed;
@@ -35,9 +36,10 @@ int& end_of(const SessionRow& row, const StudyCommitment& commitment, const Stud
 
 }  // namespace
 
-ParticipantFlow participant_flow(const std::vector<SessionRow>& rows,
+ParticipantFlow participant_flow(const std::vector<store::SessionRow>& rows,
                                  const std::vector<SessionRecord>& records,
-                                 const StudyCommitment& commitment, const StudyState& state) {
+                                 const store::StudyCommitment& commitment,
+                                 const store::StudyState& state) {
   std::map<int, std::string> reasons;
   for (const SessionRecord& record : records) {
     reasons[record.row.session] = record.exclusion_reason;
@@ -52,4 +54,4 @@ ParticipantFlow participant_flow(const std::vector<SessionRow>& rows,
   return flow;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

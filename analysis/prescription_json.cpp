@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 using nlohmann::json;
@@ -24,11 +24,11 @@ int method_orders_of(const json& configuration) {
   const bool compares = configuration.value("protocol", "") == "comparison";
   const json trials = configuration.at("trials");
   if (!compares || trials.value("blocks", "by-method") != "by-method") return 1;
-  return williams_rows(static_cast<int>(configuration.at("methods").size()));
+  return design::williams_rows(static_cast<int>(configuration.at("methods").size()));
 }
 
 Prescription prescription_of(const json& configuration) {
-  const MaskingPlan usual;
+  const design::MaskingPlan usual;
   Prescription prescription;
   prescription.sight = "curtain";
   prescription.masking_wanted = usual.wanted;
@@ -55,4 +55,4 @@ Prescription prescription_from_json(const std::string& configuration) {
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -7,18 +7,19 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
-std::string place_of(const Event& event) {
+std::string place_of(const store::Event& event) {
   return fmt::format("session {}, event {}", event.session, event.sequence);
 }
 
 /// Calls `visit` with the secret text of each event of a kind whose session has a key.
 template <typename Visit>
-void for_each_secret(const StudyStore& store, const StudyKey& key, EventKind kind, Visit visit) {
+void for_each_secret(const store::StudyStore& store, const design::StudyKey& key,
+                     store::EventKind kind, Visit visit) {
   const std::map<int, SecretKey> keys = participant_keys(store, key);
-  store.for_each(kind, [&](const Event& event) {
+  store.for_each(kind, [&](const store::Event& event) {
     const auto own = keys.find(event.session);
     if (own == keys.end()) return;
     const std::string secret = opened_part(event, own->second);
@@ -32,15 +33,15 @@ void for_each_secret(const StudyStore& store, const StudyKey& key, EventKind kin
 
 }  // namespace
 
-void require_key_of(const StudyStore& store, const StudyKey& key) {
-  const StudyCommitment& commitment = store.commitment();
+void require_key_of(const store::StudyStore& store, const design::StudyKey& key) {
+  const store::StudyCommitment& commitment = store.commitment();
   if (key.study_id != commitment.study_id) {
     throw VerificationError(
         fmt::format("the key is of study {} and the database of study {}; give the key that was "
                     "made with this database's pack",
                     key.study_id, commitment.study_id));
   }
-  if (study_seal(key) != commitment.seal) {
+  if (design::study_seal(key) != commitment.seal) {
     throw VerificationError(
         fmt::format("the key does not match the seal of study {} ({}): key or study changed after "
                     "the first session; give the key as it was then",
@@ -48,8 +49,9 @@ void require_key_of(const StudyStore& store, const StudyKey& key) {
   }
 }
 
-std::optional<SecretKey> participant_key(const StudyStore& store, const StudyKey& key,
-                                         const SessionRow& session) {
+std::optional<SecretKey> participant_key(const store::StudyStore& store,
+                                         const design::StudyKey& key,
+                                         const store::SessionRow& session) {
   if (session.withdrawn) return std::nullopt;
   const std::optional<Bytes> wrapped = store.wrapped_key(session.session);
   if (!wrapped) {
@@ -58,7 +60,7 @@ std::optional<SecretKey> participant_key(const StudyStore& store, const StudyKey
                     "restore a backup of the database",
                     session.session));
   }
-  const auto own = unwrap_participant_key(key.master, session.own_session, *wrapped);
+  const auto own = store::unwrap_participant_key(key.master, session.own_session, *wrapped);
   if (!own) {
     throw VerificationError(
         fmt::format("session {}: the participant's key does not open with this study key; "
@@ -68,16 +70,17 @@ std::optional<SecretKey> participant_key(const StudyStore& store, const StudyKey
   return own;
 }
 
-std::map<int, SecretKey> participant_keys(const StudyStore& store, const StudyKey& key) {
+std::map<int, SecretKey> participant_keys(const store::StudyStore& store,
+                                          const design::StudyKey& key) {
   std::map<int, SecretKey> keys;
-  for (const SessionRow& session : store.sessions()) {
+  for (const store::SessionRow& session : store.sessions()) {
     if (const auto own = participant_key(store, key, session)) keys.emplace(session.session, *own);
   }
   return keys;
 }
 
-std::string opened_part(const Event& event, const SecretKey& own) {
-  std::optional<std::string> text = unsealed(event, own);
+std::string opened_part(const store::Event& event, const SecretKey& own) {
+  std::optional<std::string> text = store::unsealed(event, own);
   if (!text) {
     throw VerificationError(place_of(event) +
                             ": the sealed part does not open; restore a backup of the database");
@@ -85,39 +88,44 @@ std::string opened_part(const Event& event, const SecretKey& own) {
   return *std::move(text);
 }
 
-void require_sealed_ends(const StudyStore& store, const StudyKey& key) {
-  for_each_secret(store, key, EventKind::closed, [&](const Event& event, const std::string& text) {
-    const ChainEnd before{.length = event.sequence, .head = event.previous};
-    if (chain_end_from_json(text) == before) return;
-    throw VerificationError(
-        place_of(event) +
-        ": the chain is not the one whose end was sealed here: it was made anew without the key; "
-        "restore a backup of the database");
-  });
+void require_sealed_ends(const store::StudyStore& store, const design::StudyKey& key) {
+  for_each_secret(store, key, store::EventKind::closed,
+                  [&](const store::Event& event, const std::string& text) {
+                    const store::ChainEnd before{.length = event.sequence, .head = event.previous};
+                    if (store::chain_end_from_json(text) == before) return;
+                    throw VerificationError(place_of(event) +
+                                            ": the chain is not the one whose end was sealed here: "
+                                            "it was made anew without the key; "
+                                            "restore a backup of the database");
+                  });
 }
 
-std::map<int, Schedule> open_schedules(const StudyStore& store, const StudyKey& key) {
-  std::map<int, Schedule> schedules;
-  for_each_secret(store, key, EventKind::opened, [&](const Event& event, const std::string& text) {
-    schedules.insert_or_assign(event.session, schedule_from_json(text, key));
-  });
-  const auto add_block = [&](const Event& event, const std::string& text) {
-    std::vector<Presentation>& all = schedules[event.session].presentations;
-    const std::vector<Presentation> block = block_from_json(text, key);
+std::map<int, design::Schedule> open_schedules(const store::StudyStore& store,
+                                               const design::StudyKey& key) {
+  std::map<int, design::Schedule> schedules;
+  for_each_secret(store, key, store::EventKind::opened,
+                  [&](const store::Event& event, const std::string& text) {
+                    schedules.insert_or_assign(event.session,
+                                               design::schedule_from_json(text, key));
+                  });
+  const auto add_block = [&](const store::Event& event, const std::string& text) {
+    std::vector<design::Presentation>& all = schedules[event.session].presentations;
+    const std::vector<design::Presentation> block = block_from_json(text, key);
     all.insert(all.end(), block.begin(), block.end());
   };
-  for_each_secret(store, key, EventKind::block_restarted, add_block);
+  for_each_secret(store, key, store::EventKind::block_restarted, add_block);
   return schedules;
 }
 
-std::map<TrialPlace, TrialMeasures> open_measures(const StudyStore& store, const StudyKey& key) {
-  std::map<TrialPlace, TrialMeasures> measures;
-  const auto keep = [&](const Event& event, const std::string& text) {
-    const TraceBody body = trace_body_from_json(event.body);
-    measures.insert_or_assign({event.session, body.trial}, measures_from_json(text));
+std::map<TrialPlace, store::TrialMeasures> open_measures(const store::StudyStore& store,
+                                                         const design::StudyKey& key) {
+  std::map<TrialPlace, store::TrialMeasures> measures;
+  const auto keep = [&](const store::Event& event, const std::string& text) {
+    const store::TraceBody body = store::trace_body_from_json(event.body);
+    measures.insert_or_assign({event.session, body.trial}, store::measures_from_json(text));
   };
-  for_each_secret(store, key, EventKind::trace_stored, keep);
+  for_each_secret(store, key, store::EventKind::trace_stored, keep);
   return measures;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 std::string percent(std::optional<double> percentage, int decimals) {
   if (!percentage) return "-";
@@ -59,4 +59,4 @@ std::string simulated_line(bool simulated) {
   return simulated ? "SIMULATED: these figures come from simulated participants.\n" : "";
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

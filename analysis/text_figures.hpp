@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// "87.5%" of 87.5
 [[nodiscard]] std::string percent(std::optional<double> percentage, int decimals);
@@ -37,4 +37,4 @@ namespace touchtrial {
 /// The line that begins and ends whatever is simulated; nothing otherwise.
 [[nodiscard]] std::string simulated_line(bool simulated);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 constexpr std::size_t kMaxCell = 24;
@@ -114,4 +114,4 @@ std::string TextTable::text(std::size_t width) const {
   return all;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

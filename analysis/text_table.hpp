@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// How wide the program's tables and paragraphs get, in columns.
 inline constexpr std::size_t kTextWidth = 100;
@@ -39,4 +39,4 @@ class TextTable {
   std::vector<std::vector<std::string>> rows_;  ///< the header first
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

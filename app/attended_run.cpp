@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 using namespace std::chrono_literals;
@@ -21,34 +21,36 @@ using namespace std::chrono_literals;
 constexpr std::chrono::nanoseconds kOnTerminal = 250ms;
 constexpr std::chrono::nanoseconds kOnPipe = 1s;
 
-class NobodyKeeps final : public SampleSink {
+class NobodyKeeps final : public device::SampleSink {
  public:
-  void record(const ServoSample& /*sample*/) noexcept override {}
+  void record(const device::ServoSample& /*sample*/) noexcept override {}
 };
 
-class NoForce final : public ForceSource {
+class NoForce final : public device::ForceSource {
  public:
-  [[nodiscard]] Vec3 force_n(const DeviceSample& /*sample*/) noexcept override { return {}; }
+  [[nodiscard]] Vec3 force_n(const device::DeviceSample& /*sample*/) noexcept override {
+    return {};
+  }
 };
 
-ServoOptions options_for(const SafetyLimits& limits, double rate_hz) {
-  ServoOptions options;
+device::ServoOptions options_for(const device::SafetyLimits& limits, double rate_hz) {
+  device::ServoOptions options;
   options.limits = limits;
   options.rate_hz = rate_hz;
   options.fade_ticks = std::llround(0.1 * rate_hz);
   return options;
 }
 
-const char* advice_on(DeviceReadiness readiness) {
+const char* advice_on(device::DeviceReadiness readiness) {
   switch (readiness) {
-    case DeviceReadiness::needs_homing:
+    case device::DeviceReadiness::needs_homing:
       return "move the handle slowly through its whole range: to every side, all the way in, all "
              "the way out";
-    case DeviceReadiness::needs_inkwell:
+    case device::DeviceReadiness::needs_inkwell:
       return "put the stylus into its inkwell, wait, and take it out again";
-    case DeviceReadiness::needs_calibration:
+    case device::DeviceReadiness::needs_calibration:
       return "run the vendor's own calibration, then this again";
-    case DeviceReadiness::ready:
+    case device::DeviceReadiness::ready:
       break;
   }
   return "";
@@ -56,55 +58,57 @@ const char* advice_on(DeviceReadiness readiness) {
 
 }  // namespace
 
-std::string fault_text(const ServoReport& report) {
-  std::string text(name_of(report.fault));
-  if (report.device_fault != DeviceFault::none) {
-    text += " (" + std::string(name_of(report.device_fault)) + ")";
+std::string fault_text(const device::ServoReport& report) {
+  std::string text(device::name_of(report.fault));
+  if (report.device_fault != device::DeviceFault::none) {
+    text += " (" + std::string(device::name_of(report.device_fault)) + ")";
   }
   return text;
 }
 
-AttendedRun::AttendedRun(OpenedDevice& opened, HapticDevice& device, const SafetyLimits& limits,
-                         double rate_hz, bool keys)
+AttendedRun::AttendedRun(OpenedDevice& opened, device::HapticDevice& device,
+                         const device::SafetyLimits& limits, double rate_hz, bool keys)
     : opened_(opened),
       device_(device),
       options_(options_for(limits, rate_hz)),
       recorder_(kRecordedS, rate_hz),
-      watchdog_(device, control_, heartbeat_, Watchdog::silence_for(device.info())),
+      watchdog_(device, control_, heartbeat_, device::Watchdog::silence_for(device.info())),
       signals_(device, control_),
       on_terminal_(::isatty(STDERR_FILENO) != 0) {
   if (!keys) return;
-  StopOnSignals::before_dying(TerminalKeys::restore);
+  device::StopOnSignals::before_dying(TerminalKeys::restore);
   keys_.emplace();
 }
 
 AttendedRun::~AttendedRun() {
   keys_.reset();
-  StopOnSignals::before_dying(nullptr);
+  device::StopOnSignals::before_dying(nullptr);
 }
 
-std::optional<ServoReport> AttendedRun::run(const PhaseName& phase, ForceSource& force,
-                                            double seconds, const std::function<bool()>& is_done,
-                                            SampleSink* sink) {
-  if (StopOnSignals::asked()) stop_ = AttendedStop::signal;
+std::optional<device::ServoReport> AttendedRun::run(const PhaseName& phase,
+                                                    device::ForceSource& force, double seconds,
+                                                    const std::function<bool()>& is_done,
+                                                    device::SampleSink* sink) {
+  if (device::StopOnSignals::asked()) stop_ = AttendedStop::signal;
   if (stop_ != AttendedStop::none) return std::nullopt;
   options_.limit_ticks = std::llround(seconds * options_.rate_hz);
   recorder_.clear();
   shown_tick_ = 0;
-  shown_at_ = monotonic_now();
-  ServoReport report;
-  const WatchdogGuard guard(watchdog_);
-  const ServoHooks hooks{.control = &control_,
-                         .state = &state_,
-                         .heartbeat = &heartbeat_,
-                         .recorder = &recorder_,
-                         .heat = &heat_,
-                         .parameters = &parameters_};
-  RunningServo running(thread_, control_, [&] {
+  shown_at_ = device::monotonic_now();
+  device::ServoReport report;
+  const device::WatchdogGuard guard(watchdog_);
+  const device::ServoHooks hooks{.control = &control_,
+                                 .state = &state_,
+                                 .heartbeat = &heartbeat_,
+                                 .recorder = &recorder_,
+                                 .heat = &heat_,
+                                 .parameters = &parameters_};
+  device::RunningServo running(thread_, control_, [&] {
     NobodyKeeps nobody;
-    PacedClock clock(PacedClock::usual_spin(thread_.scheduling().policy));
-    report = run_servo(device_, force, sink == nullptr ? static_cast<SampleSink&>(nobody) : *sink,
-                       options_, clock, hooks);
+    device::PacedClock clock(device::PacedClock::usual_spin(thread_.scheduling().policy));
+    report = device::run_servo(device_, force,
+                               sink == nullptr ? static_cast<device::SampleSink&>(nobody) : *sink,
+                               options_, clock, hooks);
   });
   while (running.runs()) {
     opened_.attend();
@@ -120,31 +124,31 @@ std::optional<ServoReport> AttendedRun::run(const PhaseName& phase, ForceSource&
 }
 
 void AttendedRun::wait_until_ready(double limit_s) {
-  const DeviceReadiness readiness = device_.readiness();
-  if (readiness == DeviceReadiness::ready) return;
+  const device::DeviceReadiness readiness = device_.readiness();
+  if (readiness == device::DeviceReadiness::ready) return;
   const std::string name = device_.info().name;
   const std::string advice = advice_on(readiness);
   std::fprintf(stderr, "%s: %s\n", name.c_str(), advice.c_str());
   NoForce nothing;
   const auto report = run([](std::int64_t) { return "homing"; }, nothing, limit_s,
-                          [&] { return device_.readiness() == DeviceReadiness::ready; });
+                          [&] { return device_.readiness() == device::DeviceReadiness::ready; });
   if (stop_ != AttendedStop::none) return;
-  if (report && report->end == ServoEnd::fault) {
+  if (report && report->end == device::ServoEnd::fault) {
     throw DeviceError(name + ": fault while homing: " + fault_text(*report) +
                       "; look at cable and power, then try again");
   }
-  if (device_.readiness() != DeviceReadiness::ready) {
+  if (device_.readiness() != device::DeviceReadiness::ready) {
     throw DeviceError(name + ": is not ready after " + fmt::format("{:.0f}", limit_s) + " s; " +
                       advice);
   }
 }
 
 std::string AttendedRun::flight_record() const {
-  return flight_csv(recorder_.ticks());
+  return device::flight_csv(recorder_.ticks());
 }
 
 void AttendedRun::take_keys() {
-  if (StopOnSignals::asked()) stop_ = AttendedStop::signal;
+  if (device::StopOnSignals::asked()) stop_ = AttendedStop::signal;
   if (opened_.stop_asked() && stop_ == AttendedStop::none) {
     stop_ = AttendedStop::comfort;
     control_.comfort_stop();
@@ -173,9 +177,9 @@ void AttendedRun::take_strength(char key) {
 }
 
 void AttendedRun::show(const PhaseName& phase) {
-  const std::chrono::nanoseconds now = monotonic_now();
+  const std::chrono::nanoseconds now = device::monotonic_now();
   if (now - shown_at_ < (on_terminal_ ? kOnTerminal : kOnPipe)) return;
-  const ServoState newest = state_.get();
+  const device::ServoState newest = state_.get();
   const double passed_s = 1e-9 * static_cast<double>((now - shown_at_).count());
   const double rate_hz = static_cast<double>(newest.tick - shown_tick_) / passed_s;
   const Vec3 p = newest.sample.position_mm;
@@ -196,4 +200,4 @@ void AttendedRun::end_line() {
   if (on_terminal_) std::fputs("\r\x1b[K", stderr);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

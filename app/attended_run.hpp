@@ -16,7 +16,7 @@
 #include <optional>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// What the person, or a signal, asked for.
 enum class AttendedStop {
@@ -41,8 +41,8 @@ class AttendedRun {
   ///   this
   /// \param limits,rate_hz  as ServoOptions
   /// \param keys  whether q and the space bar are taken from standard input meanwhile
-  AttendedRun(OpenedDevice& opened, HapticDevice& device, const SafetyLimits& limits,
-              double rate_hz, bool keys = true);
+  AttendedRun(OpenedDevice& opened, device::HapticDevice& device,
+              const device::SafetyLimits& limits, double rate_hz, bool keys = true);
   ~AttendedRun();
   AttendedRun(const AttendedRun&) = delete;
   AttendedRun& operator=(const AttendedRun&) = delete;
@@ -52,9 +52,9 @@ class AttendedRun {
   /// \param is_done  asked between; true: the force fades and the run ends
   /// \param sink  takes the samples; null: nobody does
   /// \return nothing if a stop had been asked for before
-  std::optional<ServoReport> run(const PhaseName& phase, ForceSource& force, double seconds,
-                                 const std::function<bool()>& is_done = {},
-                                 SampleSink* sink = nullptr);
+  std::optional<device::ServoReport> run(const PhaseName& phase, device::ForceSource& force,
+                                         double seconds, const std::function<bool()>& is_done = {},
+                                         device::SampleSink* sink = nullptr);
 
   /// Runs without force until the device is ready, and says what the person is to do. At once if
   /// it is. \throws DeviceError if it is not ready after `limit_s`, or a fault occurs
@@ -64,7 +64,7 @@ class AttendedRun {
   void let_choose_strength() noexcept { chooses_strength_ = true; }
 
   [[nodiscard]] AttendedStop stop() const noexcept { return stop_; }
-  [[nodiscard]] const SchedulingObtained& scheduling() const noexcept {
+  [[nodiscard]] const device::SchedulingObtained& scheduling() const noexcept {
     return thread_.scheduling();
   }
   /// The last seconds of the last run, as CSV.
@@ -77,17 +77,17 @@ class AttendedRun {
   void end_line();
 
   OpenedDevice& opened_;
-  HapticDevice& device_;
-  ServoOptions options_;
-  ServoControl control_;
-  LatestValue<ServoState> state_;
-  LatestValue<ServoParameters> parameters_;
-  MotorHeat heat_;
+  device::HapticDevice& device_;
+  device::ServoOptions options_;
+  device::ServoControl control_;
+  device::LatestValue<device::ServoState> state_;
+  device::LatestValue<device::ServoParameters> parameters_;
+  device::MotorHeat heat_;
   std::atomic<std::int64_t> heartbeat_{0};
-  FlightRecorder recorder_;
-  ServoThread thread_;
-  Watchdog watchdog_;
-  StopOnSignals signals_;
+  device::FlightRecorder recorder_;
+  device::ServoThread thread_;
+  device::Watchdog watchdog_;
+  device::StopOnSignals signals_;
   std::optional<TerminalKeys> keys_;
   AttendedStop stop_ = AttendedStop::none;
   bool on_terminal_;
@@ -98,6 +98,6 @@ class AttendedRun {
 };
 
 /// "device (link_lost)"; "none"
-[[nodiscard]] std::string fault_text(const ServoReport& report);
+[[nodiscard]] std::string fault_text(const device::ServoReport& report);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -11,7 +11,7 @@
 
 #include <spdlog/spdlog.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -24,17 +24,19 @@ struct UnblindArguments {
 };
 
 /// What can no longer be gone on with; empty if nothing. Whoever withdrew could not anyway.
-std::string left_open(const StudyStore& store) {
+std::string left_open(const store::StudyStore& store) {
   std::string participants;
-  for (const SessionRow& row : store.sessions()) {
-    if (row.state != SessionState::open || row.withdrawn || !row.replaced_by.empty()) continue;
+  for (const store::SessionRow& row : store.sessions()) {
+    if (row.state != store::SessionState::open || row.withdrawn || !row.replaced_by.empty())
+      continue;
     participants += (participants.empty() ? "" : ", ") + row.participant;
   }
   return participants;
 }
 
 int close(const fs::path& database) {
-  StudyStore store = StudyStore::open(database, StudyStore::Access::read_write);
+  store::StudyStore store =
+      store::StudyStore::open(database, store::StudyStore::Access::read_write);
   const std::string open = left_open(store);
   store.close_study(utc_now());
   if (!open.empty()) {
@@ -48,7 +50,8 @@ int close(const fs::path& database) {
 }
 
 int unblind(const UnblindArguments& arguments) {
-  StudyStore store = StudyStore::open(arguments.database, StudyStore::Access::read_write);
+  store::StudyStore store =
+      store::StudyStore::open(arguments.database, store::StudyStore::Access::read_write);
   // Without it nothing could be shown; better to know before the look is recorded.
   static_cast<void>(key_of_database(store, arguments.database, arguments.key));
   store.unblind(utc_now(), arguments.reason, arguments.interim);
@@ -78,4 +81,4 @@ void add_unblind_command(CLI::App& program, Action& action) {
   command->callback([=, &action] { action = [=] { return unblind(*arguments); }; });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

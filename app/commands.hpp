@@ -9,7 +9,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// What the chosen command does; returns the exit code. Throws touchtrial::Error.
 using Action = std::function<int()>;
@@ -63,4 +63,4 @@ void add_device_monitor_command(CLI::App& device, Action& action);
 /// The option --settings of commands that open devices; see device_settings_for.
 void add_settings_option(CLI::App& command, std::filesystem::path& settings);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

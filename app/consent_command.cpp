@@ -12,12 +12,12 @@
 
 #include <fmt/chrono.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 struct ConsentArguments {
   std::filesystem::path database;
-  PersonalRecord record;
+  store::PersonalRecord record;
   int age = -1;  ///< not given
   bool reads_contact = false;
 };
@@ -31,7 +31,7 @@ std::string contact_from_input() {
 }
 
 int record_consent(const ConsentArguments& arguments) {
-  PersonalRecord record = arguments.record;
+  store::PersonalRecord record = arguments.record;
   if (record.participant.empty() || record.consent_version.empty()) {
     throw UsageError("consent: --participant and --version must not be empty");
   }
@@ -39,8 +39,8 @@ int record_consent(const ConsentArguments& arguments) {
   if (arguments.reads_contact) record.contact = contact_from_input();
   const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
   record.consented_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
-  const std::filesystem::path path = personal_data_path(arguments.database);
-  PersonalData(path).put(record);
+  const std::filesystem::path path = store::personal_data_path(arguments.database);
+  store::PersonalData(path).put(record);
   print(fmt::format("{}: consent of participant {} to version {} recorded\n", path.string(),
                     record.participant, record.consent_version));
   return 0;
@@ -67,4 +67,4 @@ void add_consent_command(CLI::App& program, Action& action) {
   command->callback([=, &action] { action = [=] { return record_consent(*arguments); }; });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

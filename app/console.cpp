@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -53,4 +53,4 @@ std::filesystem::path key_path_for(const std::filesystem::path& database,
   return beside;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// Prints to standard output. \throws FileError if that fails (a full disk, a closed pipe)
 void print(const std::string& text);
@@ -22,4 +22,4 @@ void print(const std::string& text);
 [[nodiscard]] std::filesystem::path key_path_for(const std::filesystem::path& database,
                                                  const std::filesystem::path& given);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

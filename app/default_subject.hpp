@@ -5,8 +5,8 @@
 
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 [[nodiscard]] std::string_view default_subject_json() noexcept;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

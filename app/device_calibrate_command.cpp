@@ -14,7 +14,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -23,7 +23,7 @@ constexpr double kLightestG = 10.0;
 /// Of the largest force that may be sent: the rest holds the handle itself.
 constexpr double kWeightShare = 0.6;
 /// 2 s more than is measured, so that a run never ends before its last sample.
-constexpr double kRunS = HoldMeasurement::kRunS + 2.0;
+constexpr double kRunS = device::HoldMeasurement::kRunS + 2.0;
 constexpr int kNotPassed = 1;
 
 struct CalibrateArguments {
@@ -46,10 +46,11 @@ std::string answer_to(const std::string& question) {
   return line;
 }
 
-double mass_asked_for(CalibrationAxis axis, double heaviest_g) {
+double mass_asked_for(device::CalibrationAxis axis, double heaviest_g) {
   while (true) {
-    const std::string line = answer_to(fmt::format(
-        "mass for axis {} in g ({:.0f} to {:.0f}): ", name_of(axis), kLightestG, heaviest_g));
+    const std::string line =
+        answer_to(fmt::format("mass for axis {} in g ({:.0f} to {:.0f}): ", device::name_of(axis),
+                              kLightestG, heaviest_g));
     double mass_g = 0.0;
     const char* end = line.data() + line.size();
     const auto [stop, error] = std::from_chars(line.data(), end, mass_g);
@@ -60,14 +61,14 @@ double mass_asked_for(CalibrationAxis axis, double heaviest_g) {
   }
 }
 
-const char* hanging_on(CalibrationAxis axis) {
+const char* hanging_on(device::CalibrationAxis axis) {
   switch (axis) {
-    case CalibrationAxis::x:
+    case device::CalibrationAxis::x:
       return "Lead the string level to the right, over a pulley at the handle's height, and hang "
              "the weight on its end.";
-    case CalibrationAxis::y:
+    case device::CalibrationAxis::y:
       return "Hang the weight straight down from the handle.";
-    case CalibrationAxis::z:
+    case device::CalibrationAxis::z:
       break;
   }
   return "Lead the string level towards you, over a pulley at the handle's height, and hang the "
@@ -75,42 +76,44 @@ const char* hanging_on(CalibrationAxis axis) {
 }
 
 /// "passed", or why not.
-const char* verdict_on(const AxisResult& result) {
+const char* verdict_on(const device::AxisResult& result) {
   if (result.passed) return "passed";
-  return is_within_tolerance(result) ? "FAILED, the handle did not come to rest"
-                                     : "FAILED, more than 10 % off";
+  return device::is_within_tolerance(result) ? "FAILED, the handle did not come to rest"
+                                             : "FAILED, more than 10 % off";
 }
 
 class Calibration {
  public:
   explicit Calibration(const CalibrateArguments& arguments)
-      : settings_(device_settings_for(arguments.settings)),
+      : settings_(device::device_settings_for(arguments.settings)),
         opened_(arguments.driver, settings_, {100.0, 100.0}),
-        limits_(limits_on(opened_.device().info(),
-                          stricter_of({}, settings_.use_of(arguments.driver).limits))),
-        run_(opened_, checked(opened_.device()), limits_, kServoRateHz, false) {}
+        limits_(
+            device::limits_on(opened_.device().info(),
+                              device::stricter_of({}, settings_.use_of(arguments.driver).limits))),
+        run_(opened_, checked(opened_.device()), limits_, device::kServoRateHz, false) {}
 
-  Certificate measure() {
+  device::Certificate measure() {
     run_.wait_until_ready(kReadyLimitS);
-    const DeviceInfo info = opened_.device().info();
-    Certificate certificate{
+    const device::DeviceInfo info = opened_.device().info();
+    device::Certificate certificate{
         info.name, info.model, info.serial, info.firmware, std::string(program_version()),
         {},        {},         {}};
     answer_to("Let the handle lie or hang still, without a weight, hands off. Then press Enter.\n");
-    const HoldFigures rest = figures("rest", HoldMeasurement::Mode::rest);
+    const device::HoldFigures rest = figures("rest", device::HoldMeasurement::Mode::rest);
     answer_to("Hold the handle in the middle of its range. Press Enter, then let go slowly.\n");
-    const HoldFigures empty = figures("empty", HoldMeasurement::Mode::hold);
-    certificate.free_air = judge_free_air(rest, empty);
-    for (const CalibrationAxis axis : kCalibrationAxes) {
+    const device::HoldFigures empty = figures("empty", device::HoldMeasurement::Mode::hold);
+    certificate.free_air = device::judge_free_air(rest, empty);
+    for (const device::CalibrationAxis axis : device::kCalibrationAxes) {
       certificate.axes.push_back(measure_axis(axis, empty));
     }
-    certificate.made = std::chrono::floor<std::chrono::seconds>(std::chrono::sys_time(utc_now()));
+    certificate.made = std::chrono::floor<std::chrono::seconds>(
+        std::chrono::sys_time<std::chrono::nanoseconds>(utc_now()));
     return certificate;
   }
 
  private:
-  static HapticDevice& checked(HapticDevice& device) {
-    const DeviceInfo info = device.info();
+  static device::HapticDevice& checked(device::HapticDevice& device) {
+    const device::DeviceInfo info = device.info();
     if (info.simulated || info.visual || !info.workspace) {
       throw DeviceError(info.name +
                         ": has no motors whose force could be weighed; calibrate a "
@@ -119,47 +122,49 @@ class Calibration {
     return device;
   }
 
-  AxisResult measure_axis(CalibrationAxis axis, const HoldFigures& empty) {
-    const double heaviest_g = kWeightShare * limits_.max_force_n / kStandardGravityMS2 * 1000.0;
-    tell(fmt::format("\nAxis {}. {}\n", name_of(axis), hanging_on(axis)));
+  device::AxisResult measure_axis(device::CalibrationAxis axis, const device::HoldFigures& empty) {
+    const double heaviest_g =
+        kWeightShare * limits_.max_force_n / device::kStandardGravityMS2 * 1000.0;
+    tell(fmt::format("\nAxis {}. {}\n", device::name_of(axis), hanging_on(axis)));
     const double mass_g = mass_asked_for(axis, heaviest_g);
     answer_to(
         "Hold the handle in the middle of its range with the weight on it. Press Enter, "
         "then let go slowly.\n");
-    const HoldFigures loaded = figures(std::string(name_of(axis)), HoldMeasurement::Mode::hold);
-    const AxisResult result = judge_axis(axis, mass_g, empty, loaded);
-    tell(fmt::format("axis {}: {:.3f} N commanded for {:.3f} N: {}\n", name_of(axis),
+    const device::HoldFigures loaded =
+        figures(std::string(device::name_of(axis)), device::HoldMeasurement::Mode::hold);
+    const device::AxisResult result = device::judge_axis(axis, mass_g, empty, loaded);
+    tell(fmt::format("axis {}: {:.3f} N commanded for {:.3f} N: {}\n", device::name_of(axis),
                      result.measured_n, result.expected_n, verdict_on(result)));
     return result;
   }
 
-  HoldFigures figures(const std::string& phase, HoldMeasurement::Mode mode) {
-    HoldMeasurement hold(mode);
+  device::HoldFigures figures(const std::string& phase, device::HoldMeasurement::Mode mode) {
+    device::HoldMeasurement hold(mode);
     const auto report = run_.run([&](std::int64_t) { return phase; }, hold, kRunS, {}, &hold);
     if (!report || run_.stop() != AttendedStop::none) {
       throw DeviceError("calibration was stopped; nothing was written");
     }
-    if (report->end == ServoEnd::fault) {
+    if (report->end == device::ServoEnd::fault) {
       throw DeviceError("fault while calibrating: " + fault_text(*report) +
                         "; nothing was written; try again");
     }
     return hold.figures();
   }
 
-  DeviceSettings settings_;
+  device::DeviceSettings settings_;
   OpenedDevice opened_;
-  SafetyLimits limits_;
+  device::SafetyLimits limits_;
   AttendedRun run_;
 };
 
-std::string result_text(const Certificate& certificate, const fs::path& path) {
+std::string result_text(const device::Certificate& certificate, const fs::path& path) {
   std::string text;
-  for (const AxisResult& r : certificate.axes) {
+  for (const device::AxisResult& r : certificate.axes) {
     text += fmt::format("axis {}: {:.3f} N for {:.3f} N ({:+.1f} %), {:.3f} N across: {}\n",
-                        name_of(r.axis), r.measured_n, r.expected_n,
+                        device::name_of(r.axis), r.measured_n, r.expected_n,
                         100.0 * (r.measured_n / r.expected_n - 1.0), r.cross_n, verdict_on(r));
   }
-  const FreeAirResult& air = certificate.free_air;
+  const device::FreeAirResult& air = certificate.free_air;
   text += fmt::format("free air: noise {:.3f} mm, drift {:.3f} mm, holding takes {:.3f} N: {}\n",
                       air.noise_mm, air.drift_mm, air.residual_n, air.passed ? "passed" : "FAILED");
   return text + fmt::format("{}\n{}: SHA-256 {}\n", certificate.passed() ? "passed" : "FAILED",
@@ -167,11 +172,11 @@ std::string result_text(const Certificate& certificate, const fs::path& path) {
 }
 
 int calibrate(const CalibrateArguments& arguments) {
-  const Certificate certificate = Calibration(arguments).measure();
+  const device::Certificate certificate = Calibration(arguments).measure();
   const fs::path path = arguments.certificate.empty()
                             ? fs::path(arguments.driver + "-certificate.json")
                             : arguments.certificate;
-  replace_file(path, certificate_json(certificate));
+  replace_file(path, device::certificate_json(certificate));
   print(result_text(certificate, path));
   return certificate.passed() ? 0 : kNotPassed;
 }
@@ -190,4 +195,4 @@ void add_device_calibrate_command(CLI::App& device, Action& action) {
   command->callback([=, &action] { action = [=] { return calibrate(*arguments); }; });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -1,6 +1,6 @@
 #include "app/commands.hpp"
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 void add_settings_option(CLI::App& command, std::filesystem::path& settings) {
   command.add_option("--settings", settings,
@@ -19,4 +19,4 @@ void add_device_command(CLI::App& program, Action& action) {
   add_device_monitor_command(*device, action);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

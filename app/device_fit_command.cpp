@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -17,18 +17,18 @@ namespace fs = std::filesystem;
 struct FitArguments {
   fs::path study;
   std::string driver;
-  std::optional<PlaneOrientation> orientation;
+  std::optional<device::PlaneOrientation> orientation;
   fs::path settings;
   bool json = false;
 };
 
 int fit(const FitArguments& arguments) {
-  const DeviceSettings settings = device_settings_for(arguments.settings);
-  const Study study = load_study(arguments.study);
+  const device::DeviceSettings settings = device::device_settings_for(arguments.settings);
+  const design::Study study = design::load_study(arguments.study);
   const StudyFit fit = fit_study(study, arguments.driver, settings, arguments.orientation);
   print(arguments.json ? fit_json(fit) : fit_text(fit));
   if (!fit.fit.fits) {
-    throw DeviceError(misfit_text(arguments.driver, fit.plane, *fit.workspace, fit.fit));
+    throw DeviceError(device::misfit_text(arguments.driver, fit.plane, *fit.workspace, fit.fit));
   }
   return 0;
 }
@@ -36,8 +36,9 @@ int fit(const FitArguments& arguments) {
 }  // namespace
 
 void add_device_fit_command(CLI::App& device, Action& action) {
-  const std::map<std::string, PlaneOrientation> orientations = {
-      {"horizontal", PlaneOrientation::horizontal}, {"vertical", PlaneOrientation::vertical}};
+  const std::map<std::string, device::PlaneOrientation> orientations = {
+      {"horizontal", device::PlaneOrientation::horizontal},
+      {"vertical", device::PlaneOrientation::vertical}};
   auto arguments = std::make_shared<FitArguments>();
   CLI::App* command = device.add_subcommand(
       "fit", "Whether a study's plane fits a device's workspace; if not, the crop that would");
@@ -56,4 +57,4 @@ void add_device_fit_command(CLI::App& device, Action& action) {
   command->callback([=, &action] { action = [=] { return fit(*arguments); }; });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

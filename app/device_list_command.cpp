@@ -12,7 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 struct ListArguments {
@@ -23,50 +23,50 @@ struct ListArguments {
 constexpr std::size_t kColumns = 5;
 using Row = std::array<std::string, kColumns>;
 
-bool is_ready(const DeviceListing& listing) {
+bool is_ready(const device::DeviceListing& listing) {
   return listing.present && listing.missing.empty();
 }
 
-std::string state_of(const DeviceListing& listing) {
+std::string state_of(const device::DeviceListing& listing) {
   if (is_ready(listing)) return "ready";
   return listing.present ? "needs help" : "not found";
 }
 
-Row row_of(const DeviceListing& listing) {
+Row row_of(const device::DeviceListing& listing) {
   return {listing.driver, state_of(listing), listing.model, listing.serial, listing.where};
 }
 
 std::string line_of(const Row& row, const std::array<std::size_t, kColumns>& widths) {
   std::string line;
   for (std::size_t i = 0; i < kColumns; ++i) {
-    line += row[i] + std::string(widths[i] - display_width(row[i]) + 2, ' ');
+    line += row[i] + std::string(widths[i] - analysis::display_width(row[i]) + 2, ' ');
   }
   return line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
 }
 
 /// A row for each device, what it misses in lines below it.
-std::string listing_text(const std::vector<DeviceListing>& listings) {
+std::string listing_text(const std::vector<device::DeviceListing>& listings) {
   const Row header = {"driver", "state", "model", "serial", "where"};
   std::array<std::size_t, kColumns> widths{};
   const auto widen = [&](const Row& row) {
     for (std::size_t i = 0; i < kColumns; ++i) {
-      widths[i] = std::max(widths[i], display_width(row[i]));
+      widths[i] = std::max(widths[i], analysis::display_width(row[i]));
     }
   };
   widen(header);
-  for (const DeviceListing& listing : listings) widen(row_of(listing));
+  for (const device::DeviceListing& listing : listings) widen(row_of(listing));
   std::string text = line_of(header, widths);
-  for (const DeviceListing& listing : listings) {
+  for (const device::DeviceListing& listing : listings) {
     text += line_of(row_of(listing), widths);
-    for (const std::string& missing : listing.missing) text += wrapped("  - ", missing);
+    for (const std::string& missing : listing.missing) text += analysis::wrapped("  - ", missing);
   }
   return text;
 }
 
-std::string listing_json(const std::vector<DeviceListing>& listings) {
+std::string listing_json(const std::vector<device::DeviceListing>& listings) {
   using nlohmann::ordered_json;
   ordered_json devices = ordered_json::array();
-  for (const DeviceListing& listing : listings) {
+  for (const device::DeviceListing& listing : listings) {
     devices.push_back({{"driver", listing.driver},
                        {"model", listing.model},
                        {"serial", listing.serial},
@@ -80,7 +80,7 @@ std::string listing_json(const std::vector<DeviceListing>& listings) {
 }
 
 int list(const ListArguments& arguments) {
-  const auto listings = list_devices(device_settings_for(arguments.settings));
+  const auto listings = device::list_devices(device::device_settings_for(arguments.settings));
   print(arguments.json ? listing_json(listings) : listing_text(listings));
   return 0;
 }
@@ -96,4 +96,4 @@ void add_device_list_command(CLI::App& device, Action& action) {
   command->callback([=, &action] { action = [=] { return list(*arguments); }; });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

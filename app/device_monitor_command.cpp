@@ -21,7 +21,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -31,7 +31,7 @@ struct MonitorArguments {
   fs::path settings;
   double seconds = 0.0;  ///< 0: until the window is closed
   fs::path screenshot;
-  double rate_hz = kServoRateHz;
+  double rate_hz = device::kServoRateHz;
   bool wall = false;
   std::vector<int> size_px = {1200, 800};
 };
@@ -41,11 +41,12 @@ class Monitor {
  public:
   explicit Monitor(const MonitorArguments& arguments)
       : arguments_(arguments),
-        settings_(device_settings_for(arguments.settings)),
+        settings_(device::device_settings_for(arguments.settings)),
         device_(open()),
         history_(arguments.rate_hz),
-        run_(*device_, arguments.rate_hz,
-             stricter_of(SafetyLimits{}, settings_.use_of(arguments.driver).limits)),
+        run_(
+            *device_, arguments.rate_hz,
+            device::stricter_of(device::SafetyLimits{}, settings_.use_of(arguments.driver).limits)),
         window_({"Touchtrial: device monitor, " + arguments.driver, arguments.size_px[0],
                  arguments.size_px[1], false}) {
     if (!arguments_.screenshot.empty()) window_.keep_pictures();
@@ -63,26 +64,27 @@ class Monitor {
       const MonitorRequests requests = draw_monitor(window_, picture());
       window_.end_frame();
       obey(requests);
-    } while (!StopOnSignals::asked() && !window_.close_asked() &&
+    } while (!device::StopOnSignals::asked() && !window_.close_asked() &&
              (arguments_.seconds <= 0.0 || Clock::now() < end));
     if (!arguments_.screenshot.empty()) {
-      replace_file(arguments_.screenshot, png_bytes(window_.picture()));
+      replace_file(arguments_.screenshot, engine::png_bytes(window_.picture()));
     }
-    if (!StopOnSignals::asked()) {
+    if (!device::StopOnSignals::asked()) {
       refuse_fault();
       return 0;
     }
-    std::fprintf(stderr, "touchtrial: %s\n", StopOnSignals::message().c_str());
-    return StopOnSignals::exit_code();
+    std::fprintf(stderr, "touchtrial: %s\n", device::StopOnSignals::message().c_str());
+    return device::StopOnSignals::exit_code();
   }
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  std::unique_ptr<HapticDevice> open() {
+  std::unique_ptr<device::HapticDevice> open() {
     // The monitor's own window is where the mouse is.
-    if (arguments_.driver == kMouseDriver) return std::make_unique<MouseDevice>(pointer_, clock_);
-    return open_device(arguments_.driver, settings_);
+    if (arguments_.driver == device::kMouseDriver)
+      return std::make_unique<device::MouseDevice>(pointer_, clock_);
+    return device::open_device(arguments_.driver, settings_);
   }
 
   void obey(const MonitorRequests& requests) {
@@ -108,9 +110,9 @@ class Monitor {
   }
 
   std::vector<std::string> notes() {
-    const SchedulingObtained& had = run_.scheduling();
+    const device::SchedulingObtained& had = run_.scheduling();
     std::vector<std::string> notes = {
-        had.policy == SchedulingPolicy::fifo
+        had.policy == device::SchedulingPolicy::fifo
             ? fmt::format("servo in real time, priority {}", had.priority)
             : std::string("servo as an ordinary thread")};
     if (!had.reason.empty()) notes.push_back(had.reason);
@@ -123,16 +125,16 @@ class Monitor {
 
   void refuse_fault() {
     const auto ended = run_.ended();
-    if (ended && ended->end == ServoEnd::fault) {
+    if (ended && ended->end == device::ServoEnd::fault) {
       throw DeviceError(arguments_.driver + ": " + fault_in_words(*ended));
     }
   }
 
   MonitorArguments arguments_;
-  DeviceSettings settings_;
-  PointerExchange pointer_;
-  PacedClock clock_{PacedClock::Time{}};
-  std::unique_ptr<HapticDevice> device_;
+  device::DeviceSettings settings_;
+  device::PointerExchange pointer_;
+  device::PacedClock clock_{device::PacedClock::Time{}};
+  std::unique_ptr<device::HapticDevice> device_;
   MonitorHistory history_;
   MonitorRun run_;     ///< its servo ends before the device goes
   GlfwWindow window_;  ///< who sees it can already stop the program by a signal
@@ -166,4 +168,4 @@ void add_device_monitor_command(CLI::App& device, Action& action) {
   command->callback([=, &action] { action = [=] { return monitor(*arguments); }; });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

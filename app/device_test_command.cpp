@@ -16,7 +16,7 @@
 #include <optional>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -32,7 +32,7 @@ struct TestArguments {
   std::string driver;
   fs::path settings;
   double seconds = 30.0;
-  double rate_hz = kServoRateHz;
+  double rate_hz = device::kServoRateHz;
   bool wall_only = false;
   bool json = false;
   fs::path fault_record;
@@ -41,28 +41,31 @@ struct TestArguments {
 /// The device as the servo wants it: placed, if it has a frame of its own.
 class DeviceForTest {
  public:
-  DeviceForTest(const TestArguments& arguments, const DeviceSettings& settings)
+  DeviceForTest(const TestArguments& arguments, const device::DeviceSettings& settings)
       : use_(settings.use_of(arguments.driver)),
         opened_(arguments.driver, settings, {kFreeSideMm, kFreeSideMm}),
         texture_(opened_.device().info().workspace ? kPlacedSidePx : kFreeSidePx) {
-    const WorkspaceFit fit = fit_plane(texture_.plane(), opened_.device().info().workspace, use_);
+    const device::WorkspaceFit fit =
+        device::fit_plane(texture_.plane(), opened_.device().info().workspace, use_);
     if (fit.placement) placed_.emplace(opened_.device(), *fit.placement);
   }
 
   [[nodiscard]] OpenedDevice& opened() noexcept { return opened_; }
-  [[nodiscard]] HapticDevice& device() noexcept {
-    return placed_ ? static_cast<HapticDevice&>(*placed_) : opened_.device();
+  [[nodiscard]] device::HapticDevice& device() noexcept {
+    return placed_ ? static_cast<device::HapticDevice&>(*placed_) : opened_.device();
   }
   [[nodiscard]] const TestTexture& texture() const noexcept { return texture_; }
-  [[nodiscard]] SafetyLimits limits() const noexcept { return stricter_of({}, use_.limits); }
+  [[nodiscard]] device::SafetyLimits limits() const noexcept {
+    return device::stricter_of({}, use_.limits);
+  }
 
  private:
   static constexpr double kFreeSideMm = kFreeSidePx * PlaneGeometry{}.pitch_mm;
 
-  DeviceUse use_;
+  device::DeviceUse use_;
   OpenedDevice opened_;
   TestTexture texture_;
-  std::optional<PlacedDevice> placed_;
+  std::optional<device::PlacedDevice> placed_;
 };
 
 fs::path record_path(const TestArguments& arguments) {
@@ -73,13 +76,13 @@ fs::path record_path(const TestArguments& arguments) {
 /// One run: the wall, and then, unless it is to be the wall alone, the texture.
 void feel(const TestArguments& arguments, const TestTexture& shown, AttendedRun& run,
           DeviceTest& test) {
-  const RenderingModel wall = shown.wall();
-  const RenderingModel texture = shown.texture();
-  ModelForce first(wall);
-  ModelForce second(texture);
+  const engine::RenderingModel wall = shown.wall();
+  const engine::RenderingModel texture = shown.texture();
+  session::ModelForce first(wall);
+  session::ModelForce second(texture);
   const double change_s = arguments.seconds * (arguments.wall_only ? 2.0 : 0.5);
-  ForceSequence sequence(first, second, std::llround(change_s * arguments.rate_hz),
-                         std::llround(kBlendS * arguments.rate_hz));
+  device::ForceSequence sequence(first, second, std::llround(change_s * arguments.rate_hz),
+                                 std::llround(kBlendS * arguments.rate_hz));
   const auto phase = [&](std::int64_t tick) {
     return sequence.is_second(tick) ? "texture" : "wall";
   };
@@ -96,17 +99,17 @@ void feel(const TestArguments& arguments, const TestTexture& shown, AttendedRun&
 /// What the summary does not say by itself: how the program ends.
 int outcome_of(const DeviceTest& test, const AttendedRun& run) {
   if (run.stop() == AttendedStop::signal) {
-    std::fprintf(stderr, "touchtrial: %s\n", StopOnSignals::message().c_str());
-    return StopOnSignals::exit_code();
+    std::fprintf(stderr, "touchtrial: %s\n", device::StopOnSignals::message().c_str());
+    return device::StopOnSignals::exit_code();
   }
-  if (!test.run || test.run->end != ServoEnd::fault) return 0;
+  if (!test.run || test.run->end != device::ServoEnd::fault) return 0;
   throw DeviceError(one_line(test.device.name + ": fault while the " + test.phases.back().name +
                              " was felt: " + fault_text(*test.run) + "; the last seconds are in " +
                              test.fault_record.string()));
 }
 
 int test_device(const TestArguments& arguments) {
-  const DeviceSettings settings = device_settings_for(arguments.settings);
+  const device::DeviceSettings settings = device::device_settings_for(arguments.settings);
   DeviceForTest tested(arguments, settings);
   AttendedRun run(tested.opened(), tested.device(), tested.limits(), arguments.rate_hz);
   run.wait_until_ready(kReadyLimitS);
@@ -116,7 +119,7 @@ int test_device(const TestArguments& arguments) {
   feel(arguments, tested.texture(), run, test);
   test.scheduling = run.scheduling();
   test.quit = run.stop() == AttendedStop::quit;
-  if (test.run && test.run->end == ServoEnd::fault && run.stop() != AttendedStop::signal) {
+  if (test.run && test.run->end == device::ServoEnd::fault && run.stop() != AttendedStop::signal) {
     test.fault_record = record_path(arguments);
     replace_file(test.fault_record, run.flight_record());
   }
@@ -147,4 +150,4 @@ void add_device_test_command(CLI::App& device, Action& action) {
   command->callback([=, &action] { action = [=] { return test_device(*arguments); }; });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -24,23 +24,23 @@ struct EvaluateArguments {
   fs::path picture;
 };
 
-EvaluatedImage evaluated(const fs::path& path, bool sweep,
-                         const std::function<void()>& order_done) {
-  const GreyImage image = read_grey_image(path);
+analysis::EvaluatedImage evaluated(const fs::path& path, bool sweep,
+                                   const std::function<void()>& order_done) {
+  const GreyImage image = engine::read_grey_image(path);
   try {
-    return {path.string(), evaluate_image(image, sweep, order_done)};
+    return {path.string(), engine::evaluate_image(image, sweep, order_done)};
   } catch (const std::invalid_argument& error) {
     throw FileError(one_line(path.string()) + ": " + error.what() + "; give a larger image" +
                     (sweep ? " or leave --sweep away" : ""));
   }
 }
 
-std::vector<EvaluatedImage> evaluated(const EvaluateArguments& arguments) {
+std::vector<analysis::EvaluatedImage> evaluated(const EvaluateArguments& arguments) {
   const auto bar = progress_bar("evaluating");
-  const int steps_of_image = arguments.sweep ? kSweptOrders : 1;
+  const int steps_of_image = arguments.sweep ? engine::kSweptOrders : 1;
   const int steps = static_cast<int>(arguments.images.size()) * steps_of_image;
   int done = 0;
-  std::vector<EvaluatedImage> images;
+  std::vector<analysis::EvaluatedImage> images;
   for (const fs::path& path : arguments.images) {
     images.push_back(evaluated(path, arguments.sweep, [&] { bar(++done, steps); }));
     if (!arguments.sweep) bar(++done, steps);
@@ -49,12 +49,12 @@ std::vector<EvaluatedImage> evaluated(const EvaluateArguments& arguments) {
 }
 
 int evaluate(const EvaluateArguments& arguments) {
-  if (!arguments.picture.empty()) require_gnuplot();
-  const std::vector<EvaluatedImage> images = evaluated(arguments);
+  if (!arguments.picture.empty()) analysis::require_gnuplot();
+  const std::vector<analysis::EvaluatedImage> images = evaluated(arguments);
   if (!arguments.picture.empty()) {
-    draw_with_gnuplot(order_sweep_script(images), arguments.picture);
+    analysis::draw_with_gnuplot(analysis::order_sweep_script(images), arguments.picture);
   }
-  print(arguments.json ? evaluation_json(images) : evaluation_text(images));
+  print(arguments.json ? analysis::evaluation_json(images) : analysis::evaluation_text(images));
   return 0;
 }
 
@@ -74,4 +74,4 @@ void add_evaluate_command(CLI::App& program, Action& action) {
   command->callback([=, &action] { action = [=] { return evaluate(*arguments); }; });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

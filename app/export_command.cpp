@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -29,19 +29,19 @@ struct ExportArguments {
   fs::path folder;
   std::string format = "csv";
   bool with_database = false;
-  DatasetOptions dataset;
+  analysis::DatasetOptions dataset;
 };
 
 /// An option that a format has no use for would otherwise be passed over in silence.
 void require_fitting(const ExportArguments& arguments) {
-  const DatasetOptions& dataset = arguments.dataset;
+  const analysis::DatasetOptions& dataset = arguments.dataset;
   const bool for_bids =
       dataset.traces || dataset.stimuli || arguments.with_database || !dataset.institution.empty();
   if (for_bids && arguments.format != "bids") {
     throw UsageError(
         "--traces, --with-stimuli, --with-database and --institution belong to --format bids");
   }
-  if (arguments.with_database && is_address(arguments.database.string())) {
+  if (arguments.with_database && collect::is_address(arguments.database.string())) {
     throw UsageError(
         "--with-database: the study is kept on a server; make a file of it with `touchtrial "
         "merge`, "
@@ -53,39 +53,41 @@ void require_fitting(const ExportArguments& arguments) {
   }
 }
 
-std::vector<fs::path> export_model(const StudyStore& store, const std::optional<Outcomes>& outcomes,
+std::vector<fs::path> export_model(const store::StudyStore& store,
+                                   const std::optional<analysis::Outcomes>& outcomes,
                                    const fs::path& folder) {
   if (!outcomes) {
     throw StoreError(
         "the study has not been unblinded, and a model is all outcomes; run `touchtrial close` and "
         "`touchtrial unblind`");
   }
-  return export_mixed_model(store, *outcomes, folder);
+  return analysis::export_mixed_model(store, *outcomes, folder);
 }
 
-std::vector<fs::path> write_files(const ExportArguments& arguments, const StudyStore& store,
-                                  const std::optional<StudyKey>& key,
-                                  const std::optional<Outcomes>& outcomes) {
+std::vector<fs::path> write_files(const ExportArguments& arguments, const store::StudyStore& store,
+                                  const std::optional<design::StudyKey>& key,
+                                  const std::optional<analysis::Outcomes>& outcomes) {
   const std::string& format = arguments.format;
-  if (format == "csv") return export_csv(store, outcomes, arguments.folder);
-  if (format == "json") return {export_json(store, outcomes, arguments.folder)};
+  if (format == "csv") return analysis::export_csv(store, outcomes, arguments.folder);
+  if (format == "json") return {analysis::export_json(store, outcomes, arguments.folder)};
   if (format == "r") return export_model(store, outcomes, arguments.folder);
-  const DatasetSource study{store, outcomes ? &*outcomes : nullptr, key ? &*key : nullptr};
-  DatasetOptions options = arguments.dataset;
-  if (format == "psych-ds") return export_psych_ds(study, options, arguments.folder);
+  const analysis::DatasetSource study{store, outcomes ? &*outcomes : nullptr,
+                                      key ? &*key : nullptr};
+  analysis::DatasetOptions options = arguments.dataset;
+  if (format == "psych-ds") return analysis::export_psych_ds(study, options, arguments.folder);
   if (arguments.with_database) options.database = arguments.database;
   if (options.traces) options.progress = progress_bar("export");
-  return export_bids(study, options, arguments.folder);
+  return analysis::export_bids(study, options, arguments.folder);
 }
 
 int export_study(const ExportArguments& arguments) {
   require_fitting(arguments);
-  const StudyStore store = open_study(arguments.database.string());
-  std::optional<StudyKey> key;
-  std::optional<Outcomes> outcomes;
+  const store::StudyStore store = collect::open_study(arguments.database.string());
+  std::optional<design::StudyKey> key;
+  std::optional<analysis::Outcomes> outcomes;
   if (store.state().unblinded) {
     key = key_of_database(store, arguments.database, arguments.key);
-    outcomes = load_outcomes(store, *key);
+    outcomes = analysis::load_outcomes(store, *key);
   }
   std::string written;
   for (const fs::path& file : write_files(arguments, store, key, outcomes)) {
@@ -96,7 +98,7 @@ int export_study(const ExportArguments& arguments) {
 }
 
 void add_dataset_options(CLI::App& command, ExportArguments& arguments) {
-  DatasetOptions& dataset = arguments.dataset;
+  analysis::DatasetOptions& dataset = arguments.dataset;
   command.add_flag("--traces", dataset.traces,
                    "bids: positions and forces of every trial (25 trials of 10 s: about 3 MB)");
   command.add_flag("--with-stimuli", dataset.stimuli, "bids: the study's images");
@@ -127,4 +129,4 @@ void add_export_command(CLI::App& program, Action& action) {
   command->callback([=, &action] { action = [=] { return export_study(*arguments); }; });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

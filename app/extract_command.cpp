@@ -19,7 +19,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -47,7 +47,7 @@ void dump_if_made(const fs::path& folder, const std::string& name, Plane<Real>& 
 
 /// (H, W, 2): the force's x, then y, at each pixel.
 template <typename Real>
-void dump_force(const fs::path& folder, const ForceField<Real>& force) {
+void dump_force(const fs::path& folder, const engine::ForceField<Real>& force) {
   std::vector<Real> interleaved;
   interleaved.reserve(2 * force.x.size());
   for (std::size_t i = 0; i < force.x.size(); ++i) {
@@ -60,7 +60,7 @@ void dump_force(const fs::path& folder, const ForceField<Real>& force) {
 
 /// All but texture, picture and force, which others need after it, is gone then.
 template <typename Real>
-void dump_all(const fs::path& folder, GreyImage& image, Extraction<Real>& extraction) {
+void dump_all(const fs::path& folder, GreyImage& image, engine::Extraction<Real>& extraction) {
   make_folder(folder);
   dump_if_made(folder, "image", image);
   dump_if_made(folder, "subband_LL", extraction.sub_band_ll);
@@ -78,8 +78,8 @@ void dump_all(const fs::path& folder, GreyImage& image, Extraction<Real>& extrac
 
 /// \return what the picture shows
 template <typename Real>
-std::string draw_arrows(const fs::path& path, const Extraction<Real>& extraction) {
-  const ArrowPatch patch = write_force_arrows(
+std::string draw_arrows(const fs::path& path, const engine::Extraction<Real>& extraction) {
+  const engine::ArrowPatch patch = engine::write_force_arrows(
       path, extraction.picture,
       {converted<double>(extraction.force.x), converted<double>(extraction.force.y)});
   return fmt::format(
@@ -88,16 +88,16 @@ std::string draw_arrows(const fs::path& path, const Extraction<Real>& extraction
 }
 
 template <typename Real>
-std::string summary(const ExtractArguments& arguments, const Extraction<Real>& extraction) {
+std::string summary(const ExtractArguments& arguments, const engine::Extraction<Real>& extraction) {
   const GreyImage& picture = extraction.picture;
   const auto samples = extraction.texture.samples();
   const auto [low, high] = std::minmax_element(samples.begin(), samples.end());
   std::string text = fmt::format(
       "{}: {} x {} px, {}, texture {:.3f} to {:.3f} grey levels, entropy {:.4f} nats\n",
       arguments.image.string(), picture.width(), picture.height(), arguments.method.method,
-      static_cast<double>(*low), static_cast<double>(*high), entropy(picture));
+      static_cast<double>(*low), static_cast<double>(*high), engine::entropy(picture));
   if (arguments.method.components == "auto" && !extraction.components.empty()) {
-    const GaborComponent& strongest = extraction.components.front();
+    const engine::GaborComponent& strongest = extraction.components.front();
     text += fmt::format("component: {:.4f} cycles per pixel at {:.1f} degrees\n",
                         strongest.frequency_cycles_per_px, strongest.direction_deg);
   }
@@ -106,19 +106,21 @@ std::string summary(const ExtractArguments& arguments, const Extraction<Real>& e
 
 /// An image may be too small for an option ("auto"): the message then needs its name.
 template <typename Real>
-Extraction<Real> extracted(const fs::path& path, const GreyImage& image,
-                           const ExtractionOptions& options, const WantedPlanes& wanted) {
+engine::Extraction<Real> extracted(const fs::path& path, const GreyImage& image,
+                                   const engine::ExtractionOptions& options,
+                                   const engine::WantedPlanes& wanted) {
   try {
-    return extract_texture<Real>(image, options, wanted);
+    return engine::extract_texture<Real>(image, options, wanted);
   } catch (const std::invalid_argument& error) {
     throw FileError(one_line(path.string()) + ": " + error.what() +
                     "; list them or give a larger image");
   }
 }
 
-WantedPlanes wanted_planes(const ExtractArguments& arguments) {
-  WantedPlanes wanted = arguments.dump.empty() ? WantedPlanes{} : WantedPlanes::all();
-  wanted.picture = arguments.mapping == kMappingNames.front();
+engine::WantedPlanes wanted_planes(const ExtractArguments& arguments) {
+  engine::WantedPlanes wanted =
+      arguments.dump.empty() ? engine::WantedPlanes{} : engine::WantedPlanes::all();
+  wanted.picture = arguments.mapping == engine::kMappingNames.front();
   wanted.force = arguments.neighbourhood == kForceNeighbourhood &&
                  (!arguments.dump.empty() || !arguments.arrows.empty());
   return wanted;
@@ -126,28 +128,29 @@ WantedPlanes wanted_planes(const ExtractArguments& arguments) {
 
 /// What the engine does not make along with a texture: another mapping or neighbourhood.
 template <typename Real>
-void complete(const ExtractArguments& arguments, Extraction<Real>& extraction) {
+void complete(const ExtractArguments& arguments, engine::Extraction<Real>& extraction) {
   if (extraction.picture.empty()) {
-    extraction.picture = texture_picture(extraction.texture,
-                                         *choice_named<Mapping>(kMappingNames, arguments.mapping));
+    extraction.picture = engine::texture_picture(
+        extraction.texture,
+        *engine::choice_named<engine::Mapping>(engine::kMappingNames, arguments.mapping));
   }
   const bool needs_force = !arguments.dump.empty() || !arguments.arrows.empty();
   if (needs_force && extraction.force.x.empty()) {
-    extraction.force = tangential_force(extraction.texture, arguments.neighbourhood);
+    extraction.force = engine::tangential_force(extraction.texture, arguments.neighbourhood);
   }
 }
 
 template <typename Real>
-int extract_with(const ExtractArguments& arguments, const ExtractionOptions& options) {
-  GreyImage image = read_grey_image(arguments.image);
-  Extraction<Real> extraction =
+int extract_with(const ExtractArguments& arguments, const engine::ExtractionOptions& options) {
+  GreyImage image = engine::read_grey_image(arguments.image);
+  engine::Extraction<Real> extraction =
       extracted<Real>(arguments.image, image, options, wanted_planes(arguments));
   if (!extraction.converged) {
     spdlog::warn("{}: tv-gabor stopped after {} steps with a relative gap of {:.2g}",
                  arguments.image.string(), extraction.steps, extraction.gap);
   }
   complete(arguments, extraction);
-  if (!arguments.output.empty()) write_png(arguments.output, extraction.picture);
+  if (!arguments.output.empty()) engine::write_png(arguments.output, extraction.picture);
   if (!arguments.dump.empty()) dump_all(arguments.dump, image, extraction);
   std::string text = summary(arguments, extraction);
   if (!arguments.arrows.empty()) text += draw_arrows(arguments.arrows, extraction);
@@ -175,7 +178,7 @@ void check_output(const fs::path& image, const fs::path& output, const std::stri
 int extract(const CLI::App& command, const ExtractArguments& arguments) {
   check_output(arguments.image, arguments.output, "-o");
   check_output(arguments.image, arguments.arrows, "--arrows");
-  const ExtractionOptions options = extraction_options(command, arguments.method);
+  const engine::ExtractionOptions options = extraction_options(command, arguments.method);
   if (arguments.neighbourhood % 2 == 0) {
     throw UsageError("extract: --neighbourhood is a side length and must be odd, 3 or more");
   }
@@ -191,7 +194,7 @@ void add_extract_command(CLI::App& program, Action& action) {
   command->add_option("IMAGE", arguments->image, "PNG, JPEG, TIFF, BMP or PGM")->required();
   add_method_options(*command, arguments->method);
   command->add_option("--mapping", arguments->mapping, "How the texture becomes a picture")
-      ->check(CLI::IsMember(words_of(kMappingNames)))
+      ->check(CLI::IsMember(words_of(engine::kMappingNames)))
       ->capture_default_str();
   command
       ->add_option("--neighbourhood", arguments->neighbourhood,
@@ -209,4 +212,4 @@ void add_extract_command(CLI::App& program, Action& action) {
   command->callback([=, &action] { action = [=] { return extract(*command, *arguments); }; });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -25,7 +25,7 @@
 #include <system_error>
 #include <thread>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -38,13 +38,13 @@ struct FitArguments {
   fs::path out;
   std::vector<std::string> accuracies;
   std::vector<std::string> fixed;
-  FeltStudyOptions felt;
+  planning::FeltStudyOptions felt;
   int participants = 20;
   int bootstraps = 499;
   bool json = false;
 };
 
-FreeParameters free_of(const FitArguments& arguments) {
+planning::FreeParameters free_of(const FitArguments& arguments) {
   const auto is_free = [&](const char* name) {
     return std::ranges::find(arguments.fixed, name) == arguments.fixed.end();
   };
@@ -52,11 +52,12 @@ FreeParameters free_of(const FitArguments& arguments) {
           is_free("swaps")};
 }
 
-Pack pack_for(const StudyStore& store, const StudyKey& key, const FitArguments& arguments) {
-  std::optional<Pack> pack = pack_of(store, key, arguments.pack);
+engine::Pack pack_for(const store::StudyStore& store, const design::StudyKey& key,
+                      const FitArguments& arguments) {
+  std::optional<engine::Pack> pack = analysis::pack_of(store, key, arguments.pack);
   if (!pack && key.simulated && arguments.pack.empty()) {
     prepare_simulated_pack(key);
-    pack = pack_of(store, key, {});
+    pack = analysis::pack_of(store, key, {});
   }
   if (pack) return std::move(*pack);
   const fs::path place = arguments.pack.empty() ? key.pack_folder : arguments.pack;
@@ -64,9 +65,9 @@ Pack pack_for(const StudyStore& store, const StudyKey& key, const FitArguments& 
                   ": the pack that the study was felt with is not there; name it with --pack");
 }
 
-FitOrigin origin_of(const FitArguments& arguments, const Study& study,
-                    const SubjectModel& subject) {
-  FitOrigin origin;
+planning::FitOrigin origin_of(const FitArguments& arguments, const design::Study& study,
+                              const session::SubjectModel& subject) {
+  planning::FitOrigin origin;
   origin.study = study.name;
   origin.subject = subject.source;
   origin.explorations = arguments.felt.explorations;
@@ -77,7 +78,7 @@ FitOrigin origin_of(const FitArguments& arguments, const Study& study,
 
 bool is_subject_file(const fs::path& path) {
   try {
-    static_cast<void>(load_subject_model(path));
+    static_cast<void>(session::load_subject_model(path));
     return true;
   } catch (const std::exception&) {
     return false;
@@ -114,19 +115,20 @@ void refuse_to_replace(const FitArguments& arguments) {
 }
 
 /// What took a minute to work out is printed before a file may fail.
-void finish(const FitArguments& arguments, const SubjectModel& fitted, const std::string& report) {
+void finish(const FitArguments& arguments, const session::SubjectModel& fitted,
+            const std::string& report) {
   print(report);
-  if (!arguments.out.empty()) replace_file(arguments.out, subject_model_json(fitted));
+  if (!arguments.out.empty()) replace_file(arguments.out, session::subject_model_json(fitted));
 }
 
 /// Coarse stages of one bar.
-FitProgress shares(const std::function<void(int, int)>& bar) {
+planning::FitProgress shares(const std::function<void(int, int)>& bar) {
   constexpr int kWhole = 100;
   return [bar](double share) { bar(static_cast<int>(share * kWhole), kWhole); };
 }
 
-StudyStore unblinded(const fs::path& database) {
-  StudyStore store = StudyStore::open(database, StudyStore::Access::read_only);
+store::StudyStore unblinded(const fs::path& database) {
+  store::StudyStore store = store::StudyStore::open(database, store::StudyStore::Access::read_only);
   if (!store.state().unblinded) {
     throw UsageError(one_line(database.string()) +
                      ": not unblinded, and a fit is of outcomes; run `touchtrial close` and "
@@ -135,33 +137,36 @@ StudyStore unblinded(const fs::path& database) {
   return store;
 }
 
-FitCounts counts_of(const FitArguments& arguments, const StudyKey& key, const Outcomes& outcomes,
-                    const std::map<int, Schedule>& schedules) {
+planning::FitCounts counts_of(const FitArguments& arguments, const design::StudyKey& key,
+                              const analysis::Outcomes& outcomes,
+                              const std::map<int, design::Schedule>& schedules) {
   try {
-    return count_answers(outcomes, schedules, stimuli_of(key));
+    return planning::count_answers(outcomes, schedules, planning::stimuli_of(key));
   } catch (const StudyError& error) {
     throw StudyError(one_line(arguments.source.string()) + ": " + error.what());
   }
 }
 
 int fit_study(const FitArguments& arguments) {
-  const StudyStore store = unblinded(arguments.source);
-  const StudyKey key = key_of_database(store, arguments.source, arguments.key);
-  const SubjectModel subject = subject_for(arguments.subject, key.study);
-  const Outcomes outcomes = load_outcomes(store, key);
-  const FitCounts counts = counts_of(arguments, key, outcomes, open_schedules(store, key));
-  const Pack pack = pack_for(store, key, arguments);
-  const AnswerModel model =
-      answer_model_of(key, pack, subject, arguments.felt, progress_bar("feeling"));
-  const FitOptions options{free_of(arguments), arguments.bootstraps, arguments.felt.seed,
-                           arguments.felt.jobs};
-  const SubjectFit fit =
-      fit_subject(model, counts, subject, options, shares(progress_bar("fitting")));
-  FitOrigin origin = origin_of(arguments, key.study, subject);
+  const store::StudyStore store = unblinded(arguments.source);
+  const design::StudyKey key = key_of_database(store, arguments.source, arguments.key);
+  const session::SubjectModel subject = subject_for(arguments.subject, key.study);
+  const analysis::Outcomes outcomes = analysis::load_outcomes(store, key);
+  const planning::FitCounts counts =
+      counts_of(arguments, key, outcomes, analysis::open_schedules(store, key));
+  const engine::Pack pack = pack_for(store, key, arguments);
+  const planning::AnswerModel model =
+      planning::answer_model_of(key, pack, subject, arguments.felt, progress_bar("feeling"));
+  const planning::FitOptions options{free_of(arguments), arguments.bootstraps, arguments.felt.seed,
+                                     arguments.felt.jobs};
+  const planning::SubjectFit fit =
+      planning::fit_subject(model, counts, subject, options, shares(progress_bar("fitting")));
+  planning::FitOrigin origin = origin_of(arguments, key.study, subject);
   origin.simulated = outcomes.simulated;
   origin.pilot = outcomes.pilot;
   origin.interim = !outcomes.state.closed;
-  finish(arguments, fit.subject, arguments.json ? fit_json(fit, origin) : fit_text(fit, origin));
+  finish(arguments, fit.subject,
+         arguments.json ? planning::fit_json(fit, origin) : planning::fit_text(fit, origin));
   return 0;
 }
 
@@ -181,7 +186,7 @@ std::pair<std::string, double> accuracy_of(const std::string& text) {
   return {text.substr(0, equals), share};
 }
 
-std::vector<double> accuracies_of(const FitArguments& arguments, const Study& study) {
+std::vector<double> accuracies_of(const FitArguments& arguments, const design::Study& study) {
   std::map<std::string, double> given;
   for (const std::string& text : arguments.accuracies) {
     if (!given.insert(accuracy_of(text)).second) {
@@ -189,7 +194,7 @@ std::vector<double> accuracies_of(const FitArguments& arguments, const Study& st
     }
   }
   std::vector<double> accuracies;
-  for (const StudyClass& one : study.classes) {
+  for (const design::StudyClass& one : study.classes) {
     const auto found = given.find(one.label);
     if (found == given.end()) {
       throw UsageError("fit: --accuracies: the study's class " + in_quotes(one.label) +
@@ -214,17 +219,19 @@ void refuse_database(const fs::path& path) {
 
 int fit_published(const FitArguments& arguments) {
   refuse_database(arguments.source);
-  const Study study = load_study(arguments.source);
-  const SubjectModel subject = subject_for(arguments.subject, study);
+  const design::Study study = design::load_study(arguments.source);
+  const session::SubjectModel subject = subject_for(arguments.subject, study);
   const std::vector<double> wanted = accuracies_of(arguments, study);
-  const StudyKey key = simulated_key(study, arguments.source);
+  const design::StudyKey key = simulated_key(study, arguments.source);
   prepare_simulated_pack(key);
-  const AnswerModel model =
-      answer_model_of(key, Pack(key.pack_folder), subject, arguments.felt, progress_bar("feeling"));
-  const AccuracyFit fit = fit_accuracies(model, wanted, layouts_of(study, arguments.participants),
-                                         subject, free_of(arguments));
-  const FitOrigin origin = origin_of(arguments, study, subject);
-  finish(arguments, fit.subject, arguments.json ? fit_json(fit, origin) : fit_text(fit, origin));
+  const planning::AnswerModel model = planning::answer_model_of(
+      key, engine::Pack(key.pack_folder), subject, arguments.felt, progress_bar("feeling"));
+  const planning::AccuracyFit fit =
+      planning::fit_accuracies(model, wanted, planning::layouts_of(study, arguments.participants),
+                               subject, free_of(arguments));
+  const planning::FitOrigin origin = origin_of(arguments, study, subject);
+  finish(arguments, fit.subject,
+         arguments.json ? planning::fit_json(fit, origin) : planning::fit_text(fit, origin));
   return 0;
 }
 
@@ -292,4 +299,4 @@ void add_fit_command(CLI::App& program, Action& action) {
   });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

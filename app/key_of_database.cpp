@@ -8,11 +8,12 @@
 
 #include <system_error>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
-StudyKey key_of_database(const StudyStore& store, const std::filesystem::path& database,
-                         const std::filesystem::path& given) {
-  if (given.empty() && is_address(database.string())) {
+design::StudyKey key_of_database(const store::StudyStore& store,
+                                 const std::filesystem::path& database,
+                                 const std::filesystem::path& given) {
+  if (given.empty() && collect::is_address(database.string())) {
     throw FileError("a study on a server has no key beside it; name the study's key with --key");
   }
   const std::filesystem::path path = key_path_for(database, given);
@@ -20,14 +21,14 @@ StudyKey key_of_database(const StudyStore& store, const std::filesystem::path& d
   if (given.empty() && !std::filesystem::exists(path, error)) {
     throw FileError(path.string() + ": there is no key beside the database; name it with --key");
   }
-  StudyKey key = load_study_key(path);
+  design::StudyKey key = design::load_study_key(path);
   try {
-    require_key_of(store, key);
+    analysis::require_key_of(store, key);
   } catch (const VerificationError& wrong) {
     throw VerificationError(path.string() + ": is not the key of " +
-                            one_line(study_name(database.string())) + ": " + wrong.what());
+                            one_line(collect::study_name(database.string())) + ": " + wrong.what());
   }
   return key;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

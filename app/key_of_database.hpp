@@ -6,13 +6,13 @@
 
 #include <filesystem>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// Loads `given`, or the key beside the database if that is empty.
 /// \throws FileError if it is missing (and how to name another), or damaged
 /// \throws VerificationError, naming both files, if it is not the database's
-[[nodiscard]] StudyKey key_of_database(const StudyStore& store,
-                                       const std::filesystem::path& database,
-                                       const std::filesystem::path& given);
+[[nodiscard]] design::StudyKey key_of_database(const store::StudyStore& store,
+                                               const std::filesystem::path& database,
+                                               const std::filesystem::path& given);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

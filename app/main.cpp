@@ -1,5 +1,5 @@
 #include "app/program.hpp"
 
 int main(int argc, char** argv) {
-  return touchtrial::run_program(argc, argv);
+  return touchtrial::app::run_program(argc, argv);
 }

@@ -21,7 +21,7 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -37,25 +37,26 @@ void refuse_existing(const fs::path& path) {
   throw StoreError(one_line(path.string()) + ": exists already; give another name with -o");
 }
 
-Stations stations_of(const std::vector<fs::path>& databases) {
-  Stations stations;
+collect::Stations stations_of(const std::vector<fs::path>& databases) {
+  collect::Stations stations;
   for (const fs::path& database : databases) {
     const std::string where = database.string();
-    Stations those =
-        is_address(where) ? stations_of_server(ServerAddress(where)) : stations_of_file(database);
+    collect::Stations those = collect::is_address(where)
+                                  ? collect::stations_of_server(collect::ServerAddress(where))
+                                  : collect::stations_of_file(database);
     for (auto& station : those) stations.push_back(std::move(station));
   }
   return stations;
 }
 
 /// The key beside one of the databases, if it is that of a simulated study with this seal.
-std::optional<StudyKey> simulated_key_beside(const std::vector<fs::path>& databases,
-                                             const Digest& seal) {
+std::optional<design::StudyKey> simulated_key_beside(const std::vector<fs::path>& databases,
+                                                     const Digest& seal) {
   for (const fs::path& database : databases) {
     const fs::path path = key_path_for(database, {});
     if (!is_there(path)) continue;
-    StudyKey key = load_study_key(path);
-    if (key.simulated && study_seal(key) == seal) return key;
+    design::StudyKey key = design::load_study_key(path);
+    if (key.simulated && design::study_seal(key) == seal) return key;
   }
   return std::nullopt;
 }
@@ -63,23 +64,25 @@ std::optional<StudyKey> simulated_key_beside(const std::vector<fs::path>& databa
 /// The key that is laid beside a database of simulated participants, as `simulate` does: it follows
 /// from the study file, and blinds nobody. That of a study with people stays where it is.
 /// \throws StoreError if another key lies in its place
-std::optional<StudyKey> key_to_lay(const MergeArguments& arguments, const Stations& stations) {
+std::optional<design::StudyKey> key_to_lay(const MergeArguments& arguments,
+                                           const collect::Stations& stations) {
   if (stations.empty()) return std::nullopt;
-  const std::vector<Event> chain = stations.front()->file_chain();
+  const std::vector<store::Event> chain = stations.front()->file_chain();
   if (chain.empty()) return std::nullopt;
-  const StudyCommitment commitment = commitment_from_json(chain.front().body);
+  const store::StudyCommitment commitment = store::commitment_from_json(chain.front().body);
   if (!commitment.simulated) return std::nullopt;
-  std::optional<StudyKey> key = simulated_key_beside(arguments.databases, commitment.seal);
+  std::optional<design::StudyKey> key = simulated_key_beside(arguments.databases, commitment.seal);
   const fs::path path = key_path_for(arguments.target, {});
-  if (key && is_there(path) && study_seal(load_study_key(path)) != commitment.seal) {
+  if (key && is_there(path) &&
+      design::study_seal(design::load_study_key(path)) != commitment.seal) {
     throw StoreError(one_line(path.string()) +
                      ": is another study's key; give another name with -o, or move it away");
   }
   return key;
 }
 
-void warn_of(const CollectReport& report) {
-  for (const SessionLeftOut& session : report.left_out) {
+void warn_of(const collect::CollectReport& report) {
+  for (const collect::SessionLeftOut& session : report.left_out) {
     spdlog::warn("{}", one_line(fmt::format(
                            "{}: session {} (participant {}) {}", session.station, session.session,
                            session.participant,
@@ -93,16 +96,18 @@ void warn_of(const CollectReport& report) {
   }
 }
 
-std::string summary_of(const MergeArguments& arguments, const CollectReport& report, bool key) {
+std::string summary_of(const MergeArguments& arguments, const collect::CollectReport& report,
+                       bool key) {
   const std::string key_path = key_path_for(arguments.target, {}).string();
   if (!arguments.json) {
     return fmt::format(
-        "{}: {} of {}\n{}", arguments.target.string(), counted(report.sessions, "session"),
-        counted(report.stations, "station"),
+        "{}: {} of {}\n{}", arguments.target.string(),
+        analysis::counted(report.sessions, "session"),
+        analysis::counted(report.stations, "station"),
         key ? "key " + key_path + "\n" : "the study's key is where it was: name it with --key\n");
   }
   nlohmann::json left_out = nlohmann::json::array();
-  for (const SessionLeftOut& session : report.left_out) {
+  for (const collect::SessionLeftOut& session : report.left_out) {
     left_out.push_back({{"station", session.station},
                         {"session", session.session},
                         {"participant", session.participant},
@@ -118,12 +123,12 @@ std::string summary_of(const MergeArguments& arguments, const CollectReport& rep
 int merge(const MergeArguments& arguments) {
   if (arguments.target.empty()) throw UsageError("merge: -o is empty; give it a file name");
   refuse_existing(arguments.target);
-  Stations stations = stations_of(arguments.databases);
-  const std::optional<StudyKey> key = key_to_lay(arguments, stations);
-  const CollectReport report =
-      collect_into_file(std::move(stations), arguments.target, progress_bar("merging"));
+  collect::Stations stations = stations_of(arguments.databases);
+  const std::optional<design::StudyKey> key = key_to_lay(arguments, stations);
+  const collect::CollectReport report =
+      collect::collect_into_file(std::move(stations), arguments.target, progress_bar("merging"));
   warn_of(report);
-  if (key) save_study_key(key_path_for(arguments.target, {}), *key);
+  if (key) design::save_study_key(key_path_for(arguments.target, {}), *key);
   print(summary_of(arguments, report, key.has_value()));
   return 0;
 }
@@ -147,4 +152,4 @@ void add_merge_command(CLI::App& program, Action& action) {
   command->callback([=, &action] { action = [=] { return merge(*arguments); }; });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

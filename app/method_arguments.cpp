@@ -8,17 +8,17 @@
 #include <stdexcept>
 #include <system_error>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 /// An option and the methods that it means something to.
 struct MethodOption {
   const char* name;
-  std::vector<Method> methods;
+  std::vector<engine::Method> methods;
 };
 
 const std::vector<MethodOption>& method_options() {
-  using enum Method;
+  using enum engine::Method;
   static const std::vector<MethodOption> options = {
       {"--order", {fixed}},          {"--radius", {adaptive, fixed, median}},
       {"--norm", {adaptive, fixed}}, {"--gradient", {adaptive}},
@@ -33,17 +33,17 @@ std::string owners_of(const MethodOption& option) {
   std::string owners;
   for (std::size_t i = 0; i < option.methods.size(); ++i) {
     if (i > 0) owners += i + 1 == option.methods.size() ? " or " : ", ";
-    owners += name_of(option.methods[i]);
+    owners += engine::name_of(option.methods[i]);
   }
   return owners;
 }
 
-void refuse_unused_seed(const CLI::App& command, Control control) {
-  if (control != Control::none || command.count("--seed") == 0) return;
+void refuse_unused_seed(const CLI::App& command, engine::Control control) {
+  if (control != engine::Control::none || command.count("--seed") == 0) return;
   throw UsageError("extract: --seed means nothing here; it goes with --control phase-scrambled");
 }
 
-void refuse_unused(const CLI::App& command, Method method) {
+void refuse_unused(const CLI::App& command, engine::Method method) {
   for (const MethodOption& option : method_options()) {
     const bool used =
         std::find(option.methods.begin(), option.methods.end(), method) != option.methods.end();
@@ -69,11 +69,11 @@ double take_number(const std::string& text, std::size_t& from) {
 }
 
 /// "f,theta;f,theta"
-std::vector<GaborComponent> components_from(const std::string& text) {
-  std::vector<GaborComponent> components;
+std::vector<engine::GaborComponent> components_from(const std::string& text) {
+  std::vector<engine::GaborComponent> components;
   std::size_t i = 0;
   while (true) {
-    GaborComponent component;
+    engine::GaborComponent component;
     component.frequency_cycles_per_px = take_number(text, i);
     if (i >= text.size() || text[i++] != ',') refuse_components(text);
     component.direction_deg = take_number(text, i);
@@ -83,14 +83,14 @@ std::vector<GaborComponent> components_from(const std::string& text) {
   }
 }
 
-void read_components(const std::string& text, TvGaborOptions& options) {
+void read_components(const std::string& text, engine::TvGaborOptions& options) {
   options.automatic = text == "auto";
   if (!options.automatic) options.components = components_from(text);
 }
 
-void check(const ExtractionOptions& options) {
+void check(const engine::ExtractionOptions& options) {
   try {
-    check_options(options);
+    engine::check_options(options);
   } catch (const std::invalid_argument& error) {
     const std::string what = error.what();
     const bool of_component = what.starts_with("frequency") || what.starts_with("direction");
@@ -100,17 +100,17 @@ void check(const ExtractionOptions& options) {
 
 void add_words(CLI::App& command, MethodArguments& arguments) {
   command.add_option("--method", arguments.method, "How the texture is taken")
-      ->check(CLI::IsMember(method_names()))
+      ->check(CLI::IsMember(engine::method_names()))
       ->capture_default_str();
   command.add_option("--norm", arguments.norm, "Normalisation of the mask (adaptive, fixed)")
-      ->check(CLI::IsMember(words_of(kNormNames)))
+      ->check(CLI::IsMember(words_of(engine::kNormNames)))
       ->capture_default_str();
   command.add_option("--gradient", arguments.gradient, "Slope of the sub-bands (adaptive)")
-      ->check(CLI::IsMember(words_of(kGradientNames)))
+      ->check(CLI::IsMember(words_of(engine::kGradientNames)))
       ->capture_default_str();
   command
       .add_option("--combine", arguments.combine, "One number of all sub-bands' slopes (adaptive)")
-      ->check(CLI::IsMember(words_of(kCombineNames)))
+      ->check(CLI::IsMember(words_of(engine::kCombineNames)))
       ->capture_default_str();
   command.add_option("--components", arguments.components,
                      "Oscillations that are texture, \"cycles per px,degrees;..\", or auto "
@@ -118,7 +118,7 @@ void add_words(CLI::App& command, MethodArguments& arguments) {
   command
       .add_option("--control", arguments.control,
                   "Make of the texture its own control: the same spectrum without structure")
-      ->check(CLI::IsMember(words_of(kControlNames)))
+      ->check(CLI::IsMember(words_of(engine::kControlNames)))
       ->capture_default_str();
 }
 
@@ -127,8 +127,8 @@ void add_number(CLI::App& command, const char* option, double& number, const cha
   command.add_option(option, number, meaning)->check(CLI::Range(low, high))->capture_default_str();
 }
 
-void add_numbers(CLI::App& command, ExtractionOptions& numbers) {
-  using Options = ExtractionOptions;
+void add_numbers(CLI::App& command, engine::ExtractionOptions& numbers) {
+  using Options = engine::ExtractionOptions;
   // Of a half-open range the parser would say that its end is not in it; check_options says why.
   command.add_option("--order", numbers.order, "Fractional order, 0 <= V < 1 (fixed)");
   command
@@ -148,7 +148,7 @@ void add_numbers(CLI::App& command, ExtractionOptions& numbers) {
   add_number(command, "--divisor", numbers.divisor, "Of the norm of the gradient (edge)",
              Options::kMinDivisor, Options::kMaxDivisor);
   add_number(command, "--lambda", numbers.tv_gabor.lambda, "Weight of the texture norm (tv-gabor)",
-             TvGaborOptions::kMinLambda, TvGaborOptions::kMaxLambda);
+             engine::TvGaborOptions::kMinLambda, engine::TvGaborOptions::kMaxLambda);
   command.add_option("--seed", numbers.control_seed, "Of the control's random phases")
       ->check(seed_validator())
       ->capture_default_str();
@@ -161,21 +161,25 @@ void add_method_options(CLI::App& command, MethodArguments& arguments) {
   add_numbers(command, arguments.numbers);
 }
 
-ExtractionOptions extraction_options(const CLI::App& command, const MethodArguments& arguments) {
-  ExtractionOptions options = arguments.numbers;
-  options.method = *method_from_name(arguments.method);
+engine::ExtractionOptions extraction_options(const CLI::App& command,
+                                             const MethodArguments& arguments) {
+  engine::ExtractionOptions options = arguments.numbers;
+  options.method = *engine::method_from_name(arguments.method);
   refuse_unused(command, options.method);
-  if (options.method == Method::fixed && command.count("--order") == 0) {
+  if (options.method == engine::Method::fixed && command.count("--order") == 0) {
     throw UsageError("extract: --method fixed needs --order V, 0 <= V < 1");
   }
-  options.norm = *choice_named<Norm>(kNormNames, arguments.norm);
-  options.gradient = *choice_named<Gradient>(kGradientNames, arguments.gradient);
-  options.combine = *choice_named<Combine>(kCombineNames, arguments.combine);
-  options.control = *choice_named<Control>(kControlNames, arguments.control);
+  options.norm = *engine::choice_named<engine::Norm>(engine::kNormNames, arguments.norm);
+  options.gradient =
+      *engine::choice_named<engine::Gradient>(engine::kGradientNames, arguments.gradient);
+  options.combine =
+      *engine::choice_named<engine::Combine>(engine::kCombineNames, arguments.combine);
+  options.control =
+      *engine::choice_named<engine::Control>(engine::kControlNames, arguments.control);
   refuse_unused_seed(command, options.control);
   if (command.count("--components") > 0) read_components(arguments.components, options.tv_gabor);
   check(options);
   return options;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -11,7 +11,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// The words as they are typed.
 struct MethodArguments {
@@ -21,7 +21,7 @@ struct MethodArguments {
   std::string combine = "sum";
   std::string components;  ///< "auto", "f,theta;f,theta", or nothing for the default
   std::string control = "none";
-  ExtractionOptions numbers;
+  engine::ExtractionOptions numbers;
 };
 
 /// Adds --method and one option for each of the methods' parameters.
@@ -30,12 +30,12 @@ void add_method_options(CLI::App& command, MethodArguments& arguments);
 
 /// The options that the parsed words mean.
 /// \throws UsageError for an option that the method does not have, and for values out of range
-[[nodiscard]] ExtractionOptions extraction_options(const CLI::App& command,
-                                                   const MethodArguments& arguments);
+[[nodiscard]] engine::ExtractionOptions extraction_options(const CLI::App& command,
+                                                           const MethodArguments& arguments);
 
 template <std::size_t size>
 [[nodiscard]] std::vector<std::string> words_of(const std::array<std::string_view, size>& names) {
   return {names.begin(), names.end()};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -13,7 +13,7 @@
 #include <system_error>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,8 +28,8 @@ struct PeopleArguments {
   bool after_outcomes = false;
 };
 
-StudyStore opened(const PeopleArguments& arguments) {
-  return StudyStore::open(arguments.database, StudyStore::Access::read_write);
+store::StudyStore opened(const PeopleArguments& arguments) {
+  return store::StudyStore::open(arguments.database, store::StudyStore::Access::read_write);
 }
 
 std::string place_of(const PeopleArguments& arguments) {
@@ -37,8 +37,9 @@ std::string place_of(const PeopleArguments& arguments) {
 }
 
 /// \throws StoreError if there is none
-std::vector<SessionRow> sessions_of(const StudyStore& store, const PeopleArguments& arguments) {
-  std::vector<SessionRow> rows = store.sessions_of(arguments.participant);
+std::vector<store::SessionRow> sessions_of(const store::StudyStore& store,
+                                           const PeopleArguments& arguments) {
+  std::vector<store::SessionRow> rows = store.sessions_of(arguments.participant);
   if (rows.empty()) {
     throw StoreError(one_line(place_of(arguments) + " has no session; check the participant id"));
   }
@@ -46,14 +47,14 @@ std::vector<SessionRow> sessions_of(const StudyStore& store, const PeopleArgumen
 }
 
 /// The session that counts, or the last one if all were replaced.
-int session_of(const StudyStore& store, const PeopleArguments& arguments) {
+int session_of(const store::StudyStore& store, const PeopleArguments& arguments) {
   // Not simply the last: two stations of a collected study may have used one id.
   if (const auto counts = store.session_of(arguments.participant)) return counts->session;
   return sessions_of(store, arguments).back().session;
 }
 
 int exclude(const PeopleArguments& arguments) {
-  StudyStore store = opened(arguments);
+  store::StudyStore store = opened(arguments);
   const int session = session_of(store, arguments);
   const bool seen = store.state().shows(session);
   if (seen && !arguments.after_outcomes) {
@@ -70,8 +71,8 @@ int exclude(const PeopleArguments& arguments) {
 }
 
 int replace(const PeopleArguments& arguments) {
-  StudyStore store = opened(arguments);
-  const SessionRow row = sessions_of(store, arguments).back();
+  store::StudyStore store = opened(arguments);
+  const store::SessionRow row = sessions_of(store, arguments).back();
   store.replace(row.session, arguments.with, utc_now(), arguments.reason);
   print(place_of(arguments) + ": replaced; " + arguments.with + " inherits enrolment " +
         std::to_string(row.enrolment) + "\n");
@@ -79,7 +80,7 @@ int replace(const PeopleArguments& arguments) {
 }
 
 int note(const PeopleArguments& arguments) {
-  StudyStore store = opened(arguments);
+  store::StudyStore store = opened(arguments);
   store.note(session_of(store, arguments), utc_now(), arguments.deviation, arguments.text);
   print(place_of(arguments) + ": noted\n");
   return 0;
@@ -114,16 +115,16 @@ std::string remaining_text(const fs::path& database) {
 
 /// Personal data go even if the key went before, in a withdrawal that was broken off.
 bool remove_person(const PeopleArguments& arguments) {
-  const fs::path path = personal_data_path(arguments.database);
+  const fs::path path = store::personal_data_path(arguments.database);
   std::error_code error;
-  return fs::exists(path, error) && PersonalData(path).remove(arguments.participant);
+  return fs::exists(path, error) && store::PersonalData(path).remove(arguments.participant);
 }
 
 int withdraw(const PeopleArguments& arguments) {
-  StudyStore store = opened(arguments);
+  store::StudyStore store = opened(arguments);
   std::vector<int> sessions;
-  const std::vector<SessionRow> rows = store.sessions_of(arguments.participant);
-  for (const SessionRow& row : rows) {
+  const std::vector<store::SessionRow> rows = store.sessions_of(arguments.participant);
+  for (const store::SessionRow& row : rows) {
     if (!row.withdrawn) sessions.push_back(row.session);
   }
   // The key first: whatever is wrong with the other file must not keep anybody from withdrawing.
@@ -145,7 +146,10 @@ int withdraw(const PeopleArguments& arguments) {
 }
 
 int migrate_database(const fs::path& database) {
-  { const StudyStore store = StudyStore::open(database, StudyStore::Access::read_write); }
+  {
+    const store::StudyStore store =
+        store::StudyStore::open(database, store::StudyStore::Access::read_write);
+  }
   print(database.string() + ": is up to date\n");
   return 0;
 }
@@ -203,4 +207,4 @@ void add_people_commands(CLI::App& program, Action& action) {
   command->callback([=, &action] { action = [=] { return migrate_database(*database); }; });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -14,7 +14,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -36,9 +36,9 @@ std::vector<std::string> station_names(const PlanArguments& arguments) {
   return names;
 }
 
-std::string ranges_text(const StationShare& share) {
+std::string ranges_text(const design::StationShare& share) {
   std::string text;
-  for (const EnrolmentRange& range : share.ranges) {
+  for (const design::EnrolmentRange& range : share.ranges) {
     text += (text.empty() ? "" : ", ") + (range.size() == 1
                                               ? std::to_string(range.first)
                                               : fmt::format("{} to {}", range.first, range.last));
@@ -50,33 +50,37 @@ std::string orders_text(const std::vector<int>& counts) {
   return fmt::format("{}", fmt::join(counts, " "));
 }
 
-std::string plan_text(const Study& study, const EnrolmentPlan& plan, const fs::path& path) {
-  TextTable table({"station", "participants", "of each order of methods"});
+std::string plan_text(const design::Study& study, const design::EnrolmentPlan& plan,
+                      const fs::path& path) {
+  analysis::TextTable table({"station", "participants", "of each order of methods"});
   std::string numbers;
-  for (const StationShare& share : plan.stations) {
-    table.add(
-        {share.station, std::to_string(share.size()), orders_text(orders_of(study, share.ranges))});
-    numbers += wrapped("  " + share.station + ": ", ranges_text(share));
+  for (const design::StationShare& share : plan.stations) {
+    table.add({share.station, std::to_string(share.size()),
+               orders_text(design::orders_of(study, share.ranges))});
+    numbers += analysis::wrapped("  " + share.station + ": ", ranges_text(share));
   }
-  const std::vector<EnrolmentRange> all = {{1, plan.participants()}};
-  table.add({"all", std::to_string(plan.participants()), orders_text(orders_of(study, all))});
+  const std::vector<design::EnrolmentRange> all = {{1, plan.participants()}};
+  table.add(
+      {"all", std::to_string(plan.participants()), orders_text(design::orders_of(study, all))});
   return fmt::format(
       "{}: {} at {}\n{}enrolment numbers of each station\n{}plan  {}\nGive every station this file "
       "beside its study file; there, `touchtrial run ... --station NAME` takes its next number.\n",
-      plan.study, counted(plan.participants(), "participant"),
-      counted(static_cast<int>(plan.stations.size()), "station"), table.text(), numbers,
+      plan.study, analysis::counted(plan.participants(), "participant"),
+      analysis::counted(static_cast<int>(plan.stations.size()), "station"), table.text(), numbers,
       path.string());
 }
 
-std::string plan_json(const Study& study, const EnrolmentPlan& plan, const fs::path& path) {
+std::string plan_json(const design::Study& study, const design::EnrolmentPlan& plan,
+                      const fs::path& path) {
   nlohmann::ordered_json stations = nlohmann::ordered_json::array();
-  for (const StationShare& share : plan.stations) {
+  for (const design::StationShare& share : plan.stations) {
     nlohmann::ordered_json ranges = nlohmann::ordered_json::array();
-    for (const EnrolmentRange& range : share.ranges) ranges.push_back({range.first, range.last});
+    for (const design::EnrolmentRange& range : share.ranges)
+      ranges.push_back({range.first, range.last});
     stations.push_back({{"station", share.station},
                         {"participants", share.size()},
                         {"enrolments", ranges},
-                        {"method_orders", orders_of(study, share.ranges)}});
+                        {"method_orders", design::orders_of(study, share.ranges)}});
   }
   const nlohmann::ordered_json document = {{"study", plan.study},
                                            {"participants", plan.participants()},
@@ -86,21 +90,21 @@ std::string plan_json(const Study& study, const EnrolmentPlan& plan, const fs::p
 }
 
 /// The plan that is there, to be extended; or an empty one.
-EnrolmentPlan plan_to_fill(const PlanArguments& arguments, const Study& study,
-                           const fs::path& path) {
+design::EnrolmentPlan plan_to_fill(const PlanArguments& arguments, const design::Study& study,
+                                   const fs::path& path) {
   if (!arguments.extend) {
     if (is_there(path)) {
       throw UsageError(path.string() +
                        ": is there already and stations may go by it; hand out further numbers "
                        "with --extend, or give another --output");
     }
-    return empty_plan(study, station_names(arguments));
+    return design::empty_plan(study, station_names(arguments));
   }
   if (!is_there(path)) {
     throw UsageError(path.string() +
                      ": is not there to be extended; make it with --stations or --names");
   }
-  EnrolmentPlan plan = load_plan(path, study);
+  design::EnrolmentPlan plan = design::load_plan(path, study);
   if (arguments.participants < plan.participants()) {
     throw UsageError(fmt::format(
         "{}: has numbers for {} participants, which cannot be taken back; give --participants {} "
@@ -114,12 +118,12 @@ int plan_enrolment(const PlanArguments& arguments) {
   if (!arguments.extend && arguments.stations == 0 && arguments.names.empty()) {
     throw UsageError("plan: for how many stations? Give --stations N, or their --names");
   }
-  const Study study = load_study(arguments.study);
+  const design::Study study = design::load_study(arguments.study);
   const fs::path path =
-      arguments.output.empty() ? plan_path_for(arguments.study) : arguments.output;
-  EnrolmentPlan plan = plan_to_fill(arguments, study, path);
-  extend_plan(plan, study, arguments.participants);
-  save_plan(path, plan);
+      arguments.output.empty() ? design::plan_path_for(arguments.study) : arguments.output;
+  design::EnrolmentPlan plan = plan_to_fill(arguments, study, path);
+  design::extend_plan(plan, study, arguments.participants);
+  design::save_plan(path, plan);
   print(arguments.json ? plan_json(study, plan, path) : plan_text(study, plan, path));
   return 0;
 }
@@ -132,12 +136,12 @@ void add_plan_command(CLI::App& program, Action& action) {
       "plan", "Hand out enrolment numbers to several stations, before anybody comes");
   command->add_option("STUDY", arguments->study, "Study file")->required();
   command->add_option("--participants", arguments->participants, "How many in all")
-      ->check(CLI::Range(1, kMostPlanned))
+      ->check(CLI::Range(1, design::kMostPlanned))
       ->required();
   auto* stations = command
                        ->add_option("--stations", arguments->stations,
                                     "How many stations, named 1, 2, and so on")
-                       ->check(CLI::Range(1, static_cast<int>(kMostStations)));
+                       ->check(CLI::Range(1, static_cast<int>(design::kMostStations)));
   auto* names = command->add_option("--names", arguments->names, "Their names instead")
                     ->delimiter(',')
                     ->excludes(stations);
@@ -152,4 +156,4 @@ void add_plan_command(CLI::App& program, Action& action) {
   command->callback([=, &action] { action = [=] { return plan_enrolment(*arguments); }; });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

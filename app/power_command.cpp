@@ -24,7 +24,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -38,7 +38,7 @@ struct PowerArguments {
   std::string sizes = "8,12,16,20,30";
   std::string shard;
   bool has_shard = false;
-  PowerPlan plan;
+  planning::PowerPlan plan;
   int jobs = 1;
   bool no_early_stop = false;
   bool resume = false;
@@ -46,10 +46,10 @@ struct PowerArguments {
 };
 
 /// What a study's stimuli are: every field that may be felt, whatever else the pack holds.
-std::string fields_digest(const StudyKey& key, const Pack& pack) {
+std::string fields_digest(const design::StudyKey& key, const engine::Pack& pack) {
   FieldHasher hasher;
-  for (const KeyedStimulus& keyed : key.stimuli) {
-    const PackEntry& entry = pack.entry(keyed.code);
+  for (const design::KeyedStimulus& keyed : key.stimuli) {
+    const engine::PackEntry& entry = pack.entry(keyed.code);
     const std::string gains = fmt::format("{} {} {}", entry.gains.tangential_n,
                                           entry.gains.normal_n, entry.gains.height_mm);
     hasher.add(entry.code).add(ByteView(entry.checksum)).add(gains);
@@ -59,9 +59,9 @@ std::string fields_digest(const StudyKey& key, const Pack& pack) {
 
 /// Everything that runs are made of.
 struct PowerPreparation {
-  PowerPreparation(const PowerArguments& arguments, Study loaded)
+  PowerPreparation(const PowerArguments& arguments, design::Study loaded)
       : study(std::move(loaded)),
-        test(primary_test_of(study, labels(arguments))),
+        test(planning::primary_test_of(study, labels(arguments))),
         subject(subject_for(arguments.subject, study)),
         key(simulated_key(study, arguments.study)) {
     // Shards begin at the same time, and share the pack.
@@ -69,68 +69,68 @@ struct PowerPreparation {
     pack.emplace(key.pack_folder);
   }
 
-  static std::optional<MethodLabels> labels(const PowerArguments& arguments) {
+  static std::optional<planning::MethodLabels> labels(const PowerArguments& arguments) {
     if (arguments.methods.empty()) return std::nullopt;
     if (arguments.methods.size() == 2)
-      return MethodLabels{arguments.methods[0], arguments.methods[1]};
+      return planning::MethodLabels{arguments.methods[0], arguments.methods[1]};
     throw UsageError("--methods: give two methods, as --methods adaptive,tv-gabor");
   }
 
-  [[nodiscard]] PowerSetting setting() const {
+  [[nodiscard]] planning::PowerSetting setting() const {
     return {study.name,
             std::string(name_of(study.protocol)),
-            words_of(test, study),
-            estimate_words(test),
-            to_hex(study_seal(key)),
+            planning::words_of(test, study),
+            planning::estimate_words(test),
+            to_hex(design::study_seal(key)),
             fields_digest(key, *pack),
-            words_of(subject),
+            planning::words_of(subject),
             std::string(program_version()),
-            study.trials.order != TrialOrder::uniform};
+            study.trials.order != design::TrialOrder::uniform};
   }
 
-  Study study;
-  PrimaryTest test;
-  SubjectModel subject;
-  StudyKey key;
-  std::optional<Pack> pack;
+  design::Study study;
+  planning::PrimaryTest test;
+  session::SubjectModel subject;
+  design::StudyKey key;
+  std::optional<engine::Pack> pack;
 };
 
-std::unique_ptr<const Feelings> feelings_for(const PowerPreparation& prepared,
-                                             const PowerPlan& plan, int jobs,
-                                             const LabelledFields& fields) {
+std::unique_ptr<const planning::Feelings> feelings_for(const PowerPreparation& prepared,
+                                                       const planning::PowerPlan& plan, int jobs,
+                                                       const session::LabelledFields& fields) {
   if (plan.servo) {
-    return std::make_unique<ServoFeelings>(fields, prepared.study, prepared.subject);
+    return std::make_unique<planning::ServoFeelings>(fields, prepared.study, prepared.subject);
   }
-  const BankedFeelingsOptions options{plan.explorations, plan.trainings, plan.seed, jobs};
-  return std::make_unique<BankedFeelings>(fields, prepared.study, prepared.subject, options,
-                                          progress_bar("feeling"));
+  const planning::BankedFeelingsOptions options{plan.explorations, plan.trainings, plan.seed, jobs};
+  return std::make_unique<planning::BankedFeelings>(fields, prepared.study, prepared.subject,
+                                                    options, progress_bar("feeling"));
 }
 
-fs::path file_of(const PowerArguments& arguments, const Shard& shard) {
+fs::path file_of(const PowerArguments& arguments, const planning::Shard& shard) {
   return arguments.has_shard ? shard_file(arguments.folder, shard)
                              : progress_file(arguments.folder);
 }
 
 void make_missing_runs(const PowerPreparation& prepared, const PowerArguments& arguments,
-                       PowerProgress& progress) {
+                       planning::PowerProgress& progress) {
   std::optional<ProgressKeeper> keeper;
   if (!arguments.folder.empty()) {
     keeper.emplace(file_of(arguments, progress.shard));
     // A folder that cannot be written is told of now; a shard without runs is a file as well.
     keeper->keep(progress);
   }
-  if (is_complete(progress)) return;
-  const StimulusSource source(*prepared.pack, prepared.key.study.rendering);
-  const LabelledFields fields(prepared.key, source);
+  if (planning::is_complete(progress)) return;
+  const session::StimulusSource source(*prepared.pack, prepared.key.study.rendering);
+  const session::LabelledFields fields(prepared.key, source);
   const auto feelings = feelings_for(prepared, progress.plan, arguments.jobs, fields);
-  const RehearsedStudy study(prepared.study, prepared.subject, prepared.test, *feelings,
-                             progress.plan.participants.back());
-  PowerWork work{.jobs = arguments.jobs, .progress = progress_bar("simulating")};
-  if (keeper) work.keep = [&](const PowerProgress& so_far) { keeper->keep(so_far); };
-  make_runs(study, prepared.test, work, progress);
+  const planning::RehearsedStudy study(prepared.study, prepared.subject, prepared.test, *feelings,
+                                       progress.plan.participants.back());
+  planning::PowerWork work{.jobs = arguments.jobs, .progress = progress_bar("simulating")};
+  if (keeper) work.keep = [&](const planning::PowerProgress& so_far) { keeper->keep(so_far); };
+  planning::make_runs(study, prepared.test, work, progress);
 }
 
-void print_shard(const PowerArguments& arguments, const PowerProgress& progress) {
+void print_shard(const PowerArguments& arguments, const planning::PowerProgress& progress) {
   const fs::path file = file_of(arguments, progress.shard);
   const int runs = progress.shard.own_runs(progress.plan.runs);
   print(fmt::format("SIMULATED: shard {}/{}: {} of {} runs of each of {} sizes\nfile     {}\n",
@@ -138,15 +138,15 @@ void print_shard(const PowerArguments& arguments, const PowerProgress& progress)
                     progress.plan.participants.size(), file.string()));
 }
 
-int print_report(const PowerArguments& arguments, const PowerProgress& progress) {
-  const PowerReport report = make_power_report(progress);
+int print_report(const PowerArguments& arguments, const planning::PowerProgress& progress) {
+  const planning::PowerReport report = planning::make_power_report(progress);
   if (!arguments.folder.empty()) write_power_results(arguments.folder, report);
-  print(arguments.json ? power_json(report) : power_text(report));
+  print(arguments.json ? planning::power_json(report) : planning::power_text(report));
   return 0;
 }
 
 int combine(const PowerArguments& arguments) {
-  const CombinedPower all = combined(load_shards(arguments.combine));
+  const planning::CombinedPower all = planning::combined(load_shards(arguments.combine));
   for (const std::string& remark : all.remarks) spdlog::warn("{}", remark);
   if (!arguments.folder.empty()) make_folder(arguments.folder);
   return print_report(arguments, all.progress);
@@ -157,13 +157,14 @@ int power(PowerArguments arguments) {
   if (arguments.study.empty()) {
     throw UsageError("power: STUDY is missing; give a study file, or --combine with shards");
   }
-  PowerPlan plan = arguments.plan;
+  planning::PowerPlan plan = arguments.plan;
   plan.participants = sizes_named(arguments.sizes);
   plan.stop_early = !arguments.no_early_stop;
-  settle(plan);
-  const Shard shard = arguments.has_shard ? shard_named(arguments.shard) : Shard{};
-  const PowerPreparation prepared(arguments, load_study(arguments.study));
-  PowerProgress progress = new_progress(prepared.setting(), plan, shard);
+  planning::settle(plan);
+  const planning::Shard shard =
+      arguments.has_shard ? shard_named(arguments.shard) : planning::Shard{};
+  const PowerPreparation prepared(arguments, design::load_study(arguments.study));
+  planning::PowerProgress progress = planning::new_progress(prepared.setting(), plan, shard);
   if (!arguments.folder.empty()) {
     make_folder(arguments.folder);
     progress = taken_up(file_of(arguments, shard), std::move(progress), arguments.resume);
@@ -175,7 +176,7 @@ int power(PowerArguments arguments) {
 }
 
 void add_plan_options(CLI::App& command, PowerArguments& arguments) {
-  PowerPlan& plan = arguments.plan;
+  planning::PowerPlan& plan = arguments.plan;
   command.add_option("--participants", arguments.sizes, "Sizes of the study, 2 to 10000 each")
       ->type_name("N,N..")
       ->capture_default_str();
@@ -242,4 +243,4 @@ void add_power_command(CLI::App& program, Action& action) {
   });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

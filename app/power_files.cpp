@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -40,13 +40,14 @@ std::vector<fs::path> shards_in(const fs::path& folder) {
   return files;
 }
 
-void draw(const fs::path& folder, const Figure& figure, FigureFormat format, const char* name) {
-  replace_file(folder / name, drawn(figure, format));
+void draw(const fs::path& folder, const analysis::Figure& figure, analysis::FigureFormat format,
+          const char* name) {
+  replace_file(folder / name, analysis::drawn(figure, format));
 }
 
 }  // namespace
 
-Shard shard_named(std::string_view text) {
+planning::Shard shard_named(std::string_view text) {
   const std::size_t slash = text.find('/');
   if (slash != std::string_view::npos && slash > 0 && slash + 1 < text.size()) {
     const auto number = whole_number(text.substr(0, slash));
@@ -81,19 +82,19 @@ fs::path progress_file(const fs::path& folder) {
   return folder / "power-progress.json";
 }
 
-fs::path shard_file(const fs::path& folder, const Shard& shard) {
+fs::path shard_file(const fs::path& folder, const planning::Shard& shard) {
   return folder / fmt::format("shard-{:04}-of-{:04}.json", shard.number, shard.count);
 }
 
-PowerProgress taken_up(const fs::path& file, PowerProgress fresh, bool resume) {
+planning::PowerProgress taken_up(const fs::path& file, planning::PowerProgress fresh, bool resume) {
   if (!is_there(file)) return fresh;
   if (!resume) {
     throw FileError(one_line(file.string()) +
                     ": exists already; go on with it by --resume, or give another --out");
   }
-  PowerProgress kept = load_progress(file);
+  planning::PowerProgress kept = planning::load_progress(file);
   const std::string difference =
-      kept.shard == fresh.shard ? first_difference(kept, fresh) : "--shard";
+      kept.shard == fresh.shard ? planning::first_difference(kept, fresh) : "--shard";
   if (!difference.empty()) {
     throw FileError(one_line(file.string()) + ": is of another run (" + difference +
                     " differs); resume it with its own arguments, or give another --out");
@@ -101,36 +102,37 @@ PowerProgress taken_up(const fs::path& file, PowerProgress fresh, bool resume) {
   return kept;
 }
 
-void ProgressKeeper::keep(const PowerProgress& progress) {
+void ProgressKeeper::keep(const planning::PowerProgress& progress) {
   constexpr std::chrono::seconds kAtLeast{2};
   constexpr int kShare = 20;  // of the time at most goes into writing
   const Clock::time_point begun = Clock::now();
-  if (begun < next_ && !is_complete(progress)) return;
-  replace_file(file_, progress_json(progress));
+  if (begun < next_ && !planning::is_complete(progress)) return;
+  replace_file(file_, planning::progress_json(progress));
   const Clock::time_point written = Clock::now();
   next_ = written + std::max<Clock::duration>(kAtLeast, kShare * (written - begun));
 }
 
-std::vector<std::pair<fs::path, PowerProgress>> load_shards(const std::vector<fs::path>& places) {
-  std::vector<std::pair<fs::path, PowerProgress>> shards;
+std::vector<std::pair<fs::path, planning::PowerProgress>> load_shards(
+    const std::vector<fs::path>& places) {
+  std::vector<std::pair<fs::path, planning::PowerProgress>> shards;
   for (const fs::path& place : places) {
     std::error_code error;
     const bool is_folder = fs::is_directory(place, error);
     for (const fs::path& file : is_folder ? shards_in(place) : std::vector{place}) {
-      shards.emplace_back(file, load_progress(file));
+      shards.emplace_back(file, planning::load_progress(file));
     }
   }
   return shards;
 }
 
-void write_power_results(const fs::path& folder, const PowerReport& report) {
-  replace_file(folder / "power.json", power_json(report));
-  replace_file(folder / "power.csv", power_csv(report));
-  replace_file(folder / "power.md", power_markdown(report));
-  const Figure figure = power_figure(report);
+void write_power_results(const fs::path& folder, const planning::PowerReport& report) {
+  replace_file(folder / "power.json", planning::power_json(report));
+  replace_file(folder / "power.csv", planning::power_csv(report));
+  replace_file(folder / "power.md", planning::power_markdown(report));
+  const analysis::Figure figure = planning::power_figure(report);
   try {
-    draw(folder, figure, FigureFormat::svg, "power.svg");
-    draw(folder, figure, FigureFormat::pdf, "power.pdf");
+    draw(folder, figure, analysis::FigureFormat::svg, "power.svg");
+    draw(folder, figure, analysis::FigureFormat::pdf, "power.pdf");
   } catch (const FileError&) {
     throw;
   } catch (const Error& error) {
@@ -138,4 +140,4 @@ void write_power_results(const fs::path& folder, const PowerReport& report) {
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

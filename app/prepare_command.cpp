@@ -15,7 +15,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -29,11 +29,11 @@ struct PrepareArguments {
 };
 
 /// A database that was sealed with the study as it was needs the key as it was.
-void keep_earlier_key(const StudyKey& earlier, const fs::path& path) {
+void keep_earlier_key(const design::StudyKey& earlier, const fs::path& path) {
   constexpr std::size_t kSealDigits = 8;
   fs::path kept = path;
-  kept += "." + to_hex(study_seal(earlier)).substr(0, kSealDigits);
-  save_study_key(kept, earlier);
+  kept += "." + to_hex(design::study_seal(earlier)).substr(0, kSealDigits);
+  design::save_study_key(kept, earlier);
   spdlog::warn(
       "{}: the study has changed since; the earlier key, which databases sealed with it "
       "need, is kept as {}",
@@ -41,12 +41,12 @@ void keep_earlier_key(const StudyKey& earlier, const fs::path& path) {
 }
 
 /// A study that was prepared before keeps its secrets, so that its codes and fields stay valid.
-StudyKey key_for(const Study& study, const fs::path& path) {
+design::StudyKey key_for(const design::Study& study, const fs::path& path) {
   if (!is_there(path)) {
     SystemEntropy entropy;
-    return make_study_key(study, entropy, false);
+    return design::make_study_key(study, entropy, false);
   }
-  const StudyKey earlier = load_study_key(path);
+  const design::StudyKey earlier = design::load_study_key(path);
   if (earlier.simulated) {
     throw UsageError(path.string() +
                      ": is the key of a simulated study; give another folder with --pack");
@@ -55,13 +55,13 @@ StudyKey key_for(const Study& study, const fs::path& path) {
     throw UsageError(path.string() + ": is the key of study \"" + earlier.study.name +
                      "\"; give another folder with --pack");
   }
-  StudyKey key = rekeyed(earlier, study);
-  if (study_seal(key) != study_seal(earlier)) keep_earlier_key(earlier, path);
+  design::StudyKey key = design::rekeyed(earlier, study);
+  if (design::study_seal(key) != design::study_seal(earlier)) keep_earlier_key(earlier, path);
   return key;
 }
 
-std::string stimulus_row(const PreparedStimulus& stimulus, std::size_t method_width) {
-  const FieldStatistics& figures = stimulus.statistics;
+std::string stimulus_row(const design::PreparedStimulus& stimulus, std::size_t method_width) {
+  const engine::FieldStatistics& figures = stimulus.statistics;
   return fmt::format(
       "{:<16} {:>8} {:<{}} {:<7} {:>9.4f} {:>9.4f} {:>9.3f} {:>7.1f} % {:>6.1f} {:>6.1f} "
       "{:>6.1f}\n",
@@ -72,9 +72,9 @@ std::string stimulus_row(const PreparedStimulus& stimulus, std::size_t method_wi
       100 * figures.share_above_250_hz[2]);
 }
 
-std::string table_of(const PrepareReport& report) {
+std::string table_of(const design::PrepareReport& report) {
   std::size_t width = 10;
-  for (const PreparedStimulus& stimulus : report.stimuli) {
+  for (const design::PreparedStimulus& stimulus : report.stimuli) {
     width = std::max(width, stimulus.method.size());
   }
   std::string text = fmt::format(
@@ -83,44 +83,46 @@ std::string table_of(const PrepareReport& report) {
       "", "", "", width, "", "rms", "99.9th", "stiffness", "under", "% over 250 Hz at", "class",
       "exemplar", "method", width, "", "force N", "force N", "N/mm", "1 mm", "50", "100",
       "200 mm/s");
-  for (const PreparedStimulus& stimulus : report.stimuli) text += stimulus_row(stimulus, width);
+  for (const design::PreparedStimulus& stimulus : report.stimuli)
+    text += stimulus_row(stimulus, width);
   return text;
 }
 
 /// One line where all stimuli share their gains, as they do unless they are equalised.
-std::string gains_of(const PrepareReport& report, ModelKind model) {
+std::string gains_of(const design::PrepareReport& report, engine::ModelKind model) {
   if (report.stimuli.empty()) return "";
-  const Gains first = report.stimuli.front().gains;
-  const bool shared = std::all_of(report.stimuli.begin(), report.stimuli.end(),
-                                  [&](const PreparedStimulus& s) { return s.gains == first; });
+  const engine::Gains first = report.stimuli.front().gains;
+  const bool shared =
+      std::all_of(report.stimuli.begin(), report.stimuli.end(),
+                  [&](const design::PreparedStimulus& s) { return s.gains == first; });
   if (!shared) return "gains: each stimulus has its own, so that all are equally strong\n";
-  if (model == ModelKind::surface) {
+  if (model == engine::ModelKind::surface) {
     return fmt::format("gain: height {:.6g} mm per grey level; forces at a load of {} N\n",
-                       first.height_mm, kStatedLoadN);
+                       first.height_mm, engine::kStatedLoadN);
   }
   return fmt::format(
       "gains: tangential {:.6g} N per grey level and pixel, normal {:.6g} N per grey level\n",
       first.tangential_n, first.normal_n);
 }
 
-std::string totals_of(const PrepareReport& report) {
+std::string totals_of(const design::PrepareReport& report) {
   const auto reused = std::count_if(report.stimuli.begin(), report.stimuli.end(),
-                                    [](const PreparedStimulus& s) { return s.reused; });
+                                    [](const design::PreparedStimulus& s) { return s.reused; });
   const auto total = static_cast<std::ptrdiff_t>(report.stimuli.size());
   std::string text = fmt::format("built {}, reused {}", total - reused, reused);
-  for (const SkippedWork& skipped : report.skipped) {
+  for (const design::SkippedWork& skipped : report.skipped) {
     text += fmt::format("\nskipped {}: {}", skipped.what, skipped.why);
   }
   return text + "\n";
 }
 
 /// What a hand could gain by going in circles, under the study's model and the other.
-std::string loop_work_table(const Study& study) {
+std::string loop_work_table(const design::Study& study) {
   std::string text = fmt::format("\n{:<8} {:>6} {:>12} {:>12} {:>14} {:>14}\n", "model", "loops",
                                  "plane median", "plane worst", "press median", "press worst");
-  for (const ModelLoopWork& work : loop_work_of(study)) {
+  for (const design::ModelLoopWork& work : design::loop_work_of(study)) {
     text += fmt::format("{:<8} {:>6} {:>9.2g} mJ {:>9.2g} mJ {:>11.2g} mJ {:>11.2g} mJ\n",
-                        work.model == ModelKind::paper ? "paper" : "surface",
+                        work.model == engine::ModelKind::paper ? "paper" : "surface",
                         work.loops_of_each_kind, work.planar.median_mj, work.planar.worst_mj,
                         work.press_slide_lift.median_mj, work.press_slide_lift.worst_mj);
   }
@@ -128,19 +130,20 @@ std::string loop_work_table(const Study& study) {
 }
 
 int prepare(const PrepareArguments& arguments) {
-  const Study study = load_study(arguments.study);
-  check_images_exist(study);
+  const design::Study study = design::load_study(arguments.study);
+  design::check_images_exist(study);
   if (study.seed == 0) {
     spdlog::warn("{}: /seed is 0 or missing; give the study a seed of its own",
                  arguments.study.string());
   }
-  const PackPlace place =
-      arguments.pack.empty() ? default_pack_place(arguments.study) : pack_place_at(arguments.pack);
-  StudyKey key = key_for(study, place.key);
+  const design::PackPlace place = arguments.pack.empty()
+                                      ? design::default_pack_place(arguments.study)
+                                      : design::pack_place_at(arguments.pack);
+  design::StudyKey key = key_for(study, place.key);
   key.pack_folder = place.pack;
-  save_study_key(place.key, key);
-  const PrepareReport report =
-      prepare_pack(key, place.pack, progress_bar("preparing"), {.explain = arguments.explain});
+  design::save_study_key(place.key, key);
+  const design::PrepareReport report = design::prepare_pack(
+      key, place.pack, progress_bar("preparing"), {.explain = arguments.explain});
   for (const std::string& warning : report.warnings) spdlog::warn("{}", warning);
   if (arguments.json) {
     print(prepare_json(report, place));
@@ -175,4 +178,4 @@ void add_prepare_command(CLI::App& program, Action& action) {
   command->callback([=, &action] { action = [=] { return prepare(*arguments); }; });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

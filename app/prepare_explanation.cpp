@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -20,26 +20,28 @@ struct Totals {
   std::uint64_t written = 0;  ///< to the pack's folder
 };
 
-bool is_file(const Stage& stage) {
+bool is_file(const engine::Stage& stage) {
   return stage.name == "write field" || stage.name == "pack.json";
 }
 
-void add_stages(const std::vector<Stage>& stages, Totals& totals) {
-  for (const Stage& stage : stages) {
+void add_stages(const std::vector<engine::Stage>& stages, Totals& totals) {
+  for (const engine::Stage& stage : stages) {
     const auto state = static_cast<std::size_t>(stage.state);
     ++totals.stages[state];
     totals.bytes[state] += stage.bytes;
     totals.seconds += stage.seconds;
-    if (is_file(stage) && stage.state == StageState::computed) totals.written += stage.bytes;
+    if (is_file(stage) && stage.state == engine::StageState::computed)
+      totals.written += stage.bytes;
   }
 }
 
-Totals totals_of(const PrepareReport& report) {
+Totals totals_of(const design::PrepareReport& report) {
   Totals totals;
-  for (const PreparedStimulus& stimulus : report.stimuli) add_stages(stimulus.stages, totals);
+  for (const design::PreparedStimulus& stimulus : report.stimuli)
+    add_stages(stimulus.stages, totals);
   add_stages(report.study_stages, totals);
-  const auto skipped = static_cast<std::size_t>(StageState::skipped);
-  for (const SkippedWork& work : report.skipped) {
+  const auto skipped = static_cast<std::size_t>(engine::StageState::skipped);
+  for (const design::SkippedWork& work : report.skipped) {
     ++totals.stages[skipped];
     totals.bytes[skipped] += work.bytes;
   }
@@ -59,34 +61,37 @@ std::string row(std::string_view name, std::string_view state, const std::string
   return fmt::format("  {:<15} {:<9} {:>9} {:>9}  {}\n", name, state, time, bytes_text(bytes), why);
 }
 
-std::string rows_of(const std::vector<Stage>& stages) {
+std::string rows_of(const std::vector<engine::Stage>& stages) {
   std::string text;
-  for (const Stage& stage : stages) {
-    const std::string time =
-        stage.state == StageState::skipped ? "" : fmt::format("{:.1f} ms", 1e3 * stage.seconds);
+  for (const engine::Stage& stage : stages) {
+    const std::string time = stage.state == engine::StageState::skipped
+                                 ? ""
+                                 : fmt::format("{:.1f} ms", 1e3 * stage.seconds);
     text += row(stage.name, name_of(stage.state), time, stage.bytes, stage.why);
   }
   return text;
 }
 
-std::string stimulus_text(const PreparedStimulus& stimulus) {
+std::string stimulus_text(const design::PreparedStimulus& stimulus) {
   return fmt::format("{}, exemplar {}, {}: {}\n", stimulus.class_label, stimulus.exemplar + 1,
                      stimulus.method, stimulus.reused ? "reused" : "built") +
          rows_of(stimulus.stages);
 }
 
 std::string totals_text(const Totals& totals) {
-  const auto of = [](StageState state) { return static_cast<std::size_t>(state); };
+  const auto of = [](engine::StageState state) { return static_cast<std::size_t>(state); };
   return fmt::format(
       "computed {} stages in {:.0f} ms, {} written; reused {}, {}; skipped {}, {} not made\n",
-      totals.stages[of(StageState::computed)], 1e3 * totals.seconds, bytes_text(totals.written),
-      totals.stages[of(StageState::reused)], bytes_text(totals.bytes[of(StageState::reused)]),
-      totals.stages[of(StageState::skipped)], bytes_text(totals.bytes[of(StageState::skipped)]));
+      totals.stages[of(engine::StageState::computed)], 1e3 * totals.seconds,
+      bytes_text(totals.written), totals.stages[of(engine::StageState::reused)],
+      bytes_text(totals.bytes[of(engine::StageState::reused)]),
+      totals.stages[of(engine::StageState::skipped)],
+      bytes_text(totals.bytes[of(engine::StageState::skipped)]));
 }
 
-Json stages_json(const std::vector<Stage>& stages) {
+Json stages_json(const std::vector<engine::Stage>& stages) {
   Json list = Json::array();
-  for (const Stage& stage : stages) {
+  for (const engine::Stage& stage : stages) {
     list.push_back({{"stage", stage.name},
                     {"state", name_of(stage.state)},
                     {"why", stage.why},
@@ -96,7 +101,7 @@ Json stages_json(const std::vector<Stage>& stages) {
   return list;
 }
 
-Json statistics_json(const FieldStatistics& figures) {
+Json statistics_json(const engine::FieldStatistics& figures) {
   return {{"tangential_rms_n", figures.tangential_rms_n},
           {"tangential_p999_n", figures.tangential_p999_n},
           {"normal_rms_n", figures.normal_rms_n},
@@ -105,7 +110,7 @@ Json statistics_json(const FieldStatistics& figures) {
           {"share_above_250_hz", figures.share_above_250_hz}};
 }
 
-Json stimulus_json(const PreparedStimulus& stimulus) {
+Json stimulus_json(const design::PreparedStimulus& stimulus) {
   Json object = {{"class", stimulus.class_label},
                  {"exemplar", stimulus.exemplar + 1},
                  {"method", stimulus.method},
@@ -123,7 +128,8 @@ Json stimulus_json(const PreparedStimulus& stimulus) {
 
 Json totals_json(const Totals& totals) {
   Json object = {{"seconds", totals.seconds}, {"bytes_written", totals.written}};
-  for (const StageState state : {StageState::computed, StageState::reused, StageState::skipped}) {
+  for (const engine::StageState state :
+       {engine::StageState::computed, engine::StageState::reused, engine::StageState::skipped}) {
     const auto i = static_cast<std::size_t>(state);
     object[std::string(name_of(state))] = {{"stages", totals.stages[i]},
                                            {"bytes", totals.bytes[i]}};
@@ -133,22 +139,22 @@ Json totals_json(const Totals& totals) {
 
 }  // namespace
 
-std::string explanation_text(const PrepareReport& report) {
+std::string explanation_text(const design::PrepareReport& report) {
   std::string text;
-  for (const PreparedStimulus& stimulus : report.stimuli) text += stimulus_text(stimulus);
+  for (const design::PreparedStimulus& stimulus : report.stimuli) text += stimulus_text(stimulus);
   text += "all stimuli\n" + rows_of(report.study_stages);
-  for (const SkippedWork& work : report.skipped) {
+  for (const design::SkippedWork& work : report.skipped) {
     text += row("fields", "skipped", "", work.bytes, work.what + ": " + work.why);
   }
   return text + totals_text(totals_of(report));
 }
 
-std::string prepare_json(const PrepareReport& report, const PackPlace& place) {
+std::string prepare_json(const design::PrepareReport& report, const design::PackPlace& place) {
   Json stimuli = Json::array();
-  for (const PreparedStimulus& stimulus : report.stimuli)
+  for (const design::PreparedStimulus& stimulus : report.stimuli)
     stimuli.push_back(stimulus_json(stimulus));
   Json skipped = Json::array();
-  for (const SkippedWork& work : report.skipped) {
+  for (const design::SkippedWork& work : report.skipped) {
     skipped.push_back({{"what", work.what}, {"why", work.why}, {"bytes", work.bytes}});
   }
   Json object = {{"pack", place.pack.string()},
@@ -163,4 +169,4 @@ std::string prepare_json(const PrepareReport& report, const PackPlace& place) {
   return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -6,14 +6,15 @@
 
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// A block of stages for each stimulus and one for the study, with a line of totals.
 /// \pre the report was made with PrepareOptions::explain
-[[nodiscard]] std::string explanation_text(const PrepareReport& report);
+[[nodiscard]] std::string explanation_text(const design::PrepareReport& report);
 
 /// The whole report for programs; stages if there are any. Fields: docs/data-dictionary.md,
 /// "prepare --json".
-[[nodiscard]] std::string prepare_json(const PrepareReport& report, const PackPlace& place);
+[[nodiscard]] std::string prepare_json(const design::PrepareReport& report,
+                                       const design::PackPlace& place);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

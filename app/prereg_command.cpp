@@ -11,7 +11,7 @@
 
 #include <spdlog/spdlog.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -24,9 +24,9 @@ struct PreregArguments {
 };
 
 int preregister(const PreregArguments& arguments) {
-  const Study study = load_study(arguments.study);
-  PackPlace place =
-      arguments.pack.empty() ? default_pack_place(arguments.study) : pack_place_at(arguments.pack);
+  const design::Study study = design::load_study(arguments.study);
+  design::PackPlace place = arguments.pack.empty() ? design::default_pack_place(arguments.study)
+                                                   : design::pack_place_at(arguments.pack);
   if (!arguments.key.empty()) place.key = arguments.key;
   if (!is_there(place.key) || !is_there(place.pack)) {
     throw UsageError(arguments.study.string() +
@@ -37,14 +37,14 @@ int preregister(const PreregArguments& arguments) {
     throw UsageError(arguments.output.string() +
                      ": is there already and may have been deposited; choose another name");
   }
-  const StudyKey key = load_study_key(place.key);
-  const Pack pack(place.pack);
-  require_prepared(study, key, pack);
-  for (const std::string& unsaid : unstated(study.registration)) {
+  const design::StudyKey key = design::load_study_key(place.key);
+  const engine::Pack pack(place.pack);
+  session::require_prepared(study, key, pack);
+  for (const std::string& unsaid : session::unstated(study.registration)) {
     spdlog::warn("{}: {} is not stated; add it before depositing the page",
                  arguments.study.string(), unsaid);
   }
-  const std::string page = registration_page(key, pack);
+  const std::string page = session::registration_page(key, pack);
   if (arguments.output.empty()) {
     print(page);
   } else {
@@ -67,4 +67,4 @@ void add_prereg_command(CLI::App& program, Action& action) {
   command->callback([=, &action] { action = [=] { return preregister(*arguments); }; });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

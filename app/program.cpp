@@ -18,7 +18,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 constexpr int kFailed = 1;
@@ -83,7 +83,7 @@ std::string command_so_far(const CLI::App& program) {
 
 int parse_and_run(int argc, char** argv) {
   set_up_log();
-  use_measured_plans(user_cache_folder());
+  engine::use_measured_plans(engine::user_cache_folder());
   CLI::App program("A psychophysics runner for textures that are felt.", "touchtrial");
   program.set_version_flag("--version", std::string(program_version()));
   program.require_subcommand(1);
@@ -112,7 +112,7 @@ int run_program(int argc, char** argv) noexcept {
     return complain(kBadInput, error.what());
   } catch (const StudyError& error) {
     return complain(kBadInput, error.what());
-  } catch (const DamagedStore& error) {
+  } catch (const store::DamagedStore& error) {
     return complain(kNotVerified, error.what());
   } catch (const VerificationError& error) {
     return complain(kNotVerified, error.what());
@@ -124,4 +124,4 @@ int run_program(int argc, char** argv) noexcept {
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -18,7 +18,7 @@
 #include <filesystem>
 #include <memory>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -36,88 +36,96 @@ struct ReportArguments {
   bool json = false;
 };
 
-void write_report(const ReportArguments& arguments, const ReportFiles& files) {
-  write_report_folder(arguments.folder, files);
+void write_report(const ReportArguments& arguments, const analysis::ReportFiles& files) {
+  analysis::write_report_folder(arguments.folder, files);
   print((arguments.folder / "report.html").string() + "\n");
 }
 
-Provenance provenance_for(const StudyStore& store, const ReportArguments& arguments) {
-  return provenance_of(store, study_name(arguments.database.string()));
+analysis::Provenance provenance_for(const store::StudyStore& store,
+                                    const ReportArguments& arguments) {
+  return analysis::provenance_of(store, collect::study_name(arguments.database.string()));
 }
 
 /// Both show what was presented.
 void refuse_while_blind(const ReportArguments& arguments) {
   if (arguments.trial.empty() && arguments.cues != "yes") return;
-  throw UsageError(one_line(study_name(arguments.database.string())) +
+  throw UsageError(one_line(collect::study_name(arguments.database.string())) +
                    ": not unblinded, and --trial and --cues yes are of outcomes; run `touchtrial "
                    "close` and `touchtrial unblind`, or leave them out");
 }
 
-int report_quality(const StudyStore& store, const ReportArguments& arguments) {
-  const QualityReport quality = make_quality(store);
+int report_quality(const store::StudyStore& store, const ReportArguments& arguments) {
+  const analysis::QualityReport quality = analysis::make_quality(store);
   if (arguments.folder.empty()) {
-    print(arguments.json ? quality_json(quality) : quality_text(quality));
+    print(arguments.json ? analysis::quality_json(quality) : analysis::quality_text(quality));
     return 0;
   }
-  const Document document =
-      quality_document(quality, load_collection(store), provenance_for(store, arguments));
-  write_report(arguments, report_files(document, quality_json(quality)));
+  const analysis::Document document = analysis::quality_document(
+      quality, analysis::load_collection(store), provenance_for(store, arguments));
+  write_report(arguments, analysis::report_files(document, analysis::quality_json(quality)));
   return 0;
 }
 
-bool reads_traces(const ReportArguments& arguments, const Outcomes& outcomes) {
+bool reads_traces(const ReportArguments& arguments, const analysis::Outcomes& outcomes) {
   if (arguments.cues != "auto") return arguments.cues == "yes";
-  return !arguments.folder.empty() && traces_to_read(outcomes) <= kTracesUnasked;
+  return !arguments.folder.empty() && analysis::traces_to_read(outcomes) <= kTracesUnasked;
 }
 
-std::vector<ExplorationPath> explorations(const StudyStore& store, const StudyKey& key,
-                                          const Outcomes& outcomes,
-                                          const ReportArguments& arguments) {
+std::vector<analysis::ExplorationPath> explorations(const store::StudyStore& store,
+                                                    const design::StudyKey& key,
+                                                    const analysis::Outcomes& outcomes,
+                                                    const ReportArguments& arguments) {
   if (!arguments.trial.empty()) {
-    return {exploration_named(store, key, outcomes, trial_name(arguments.trial))};
+    return {
+        analysis::exploration_named(store, key, outcomes, analysis::trial_name(arguments.trial))};
   }
   if (arguments.folder.empty() || !reads_traces(arguments, outcomes)) return {};
-  return first_explorations(store, key, outcomes);
+  return analysis::first_explorations(store, key, outcomes);
 }
 
-int write_outcomes(const StudyStore& store, const StudyReport& report,
-                   const std::vector<ExplorationPath>& paths, const ReportArguments& arguments) {
-  const FigureOptions options{.paper_values = arguments.paper_values,
-                              .cues = report.cues ? &*report.cues : nullptr,
-                              .explorations = paths,
-                              .stamp = further_stamp(report, provenance_for(store, arguments))};
-  const DrawnFigures figures = draw_report_figures(report_figures(report, options));
+int write_outcomes(const store::StudyStore& store, const analysis::StudyReport& report,
+                   const std::vector<analysis::ExplorationPath>& paths,
+                   const ReportArguments& arguments) {
+  const analysis::FigureOptions options{
+      .paper_values = arguments.paper_values,
+      .cues = report.cues ? &*report.cues : nullptr,
+      .explorations = paths,
+      .stamp = analysis::further_stamp(report, provenance_for(store, arguments))};
+  const analysis::DrawnFigures figures =
+      analysis::draw_report_figures(analysis::report_figures(report, options));
   if (!figures.missing.empty()) {
     std::fputs(("touchtrial: warning: without figures: " + figures.missing + "\n").c_str(), stderr);
   }
-  const Document document =
-      study_document(report, provenance_for(store, arguments), figures.pictures);
-  ReportFiles files = report_files(document, report_json(report));
+  const analysis::Document document =
+      analysis::study_document(report, provenance_for(store, arguments), figures.pictures);
+  analysis::ReportFiles files = analysis::report_files(document, analysis::report_json(report));
   files.insert(figures.files.begin(), figures.files.end());
   write_report(arguments, files);
   return 0;
 }
 
 int report(const ReportArguments& arguments) {
-  const StudyStore store = open_study(arguments.database.string());
+  const store::StudyStore store = collect::open_study(arguments.database.string());
   if (!arguments.folder.empty()) {
-    refuse_other_study(arguments.folder, store.commitment().study);
-    refuse_strangers(arguments.folder);
+    analysis::refuse_other_study(arguments.folder, store.commitment().study);
+    analysis::refuse_strangers(arguments.folder);
   }
   if (!store.state().unblinded) {
     refuse_while_blind(arguments);
     return report_quality(store, arguments);
   }
-  const StudyKey key = key_of_database(store, arguments.database, arguments.key);
-  const Outcomes outcomes = load_outcomes(store, key);
+  const design::StudyKey key = key_of_database(store, arguments.database, arguments.key);
+  const analysis::Outcomes outcomes = analysis::load_outcomes(store, key);
   // First what may be refused.
-  const std::vector<ExplorationPath> paths = explorations(store, key, outcomes, arguments);
-  StudyReport study = make_report(outcomes);
+  const std::vector<analysis::ExplorationPath> paths =
+      explorations(store, key, outcomes, arguments);
+  analysis::StudyReport study = analysis::make_report(outcomes);
   if (reads_traces(arguments, outcomes)) {
-    study.cues = make_cues(store, key, outcomes, {.progress = progress_bar("reading traces")});
+    study.cues =
+        analysis::make_cues(store, key, outcomes, {.progress = progress_bar("reading traces")});
   }
   if (!arguments.folder.empty()) return write_outcomes(store, study, paths, arguments);
-  print(arguments.json ? report_json(study) : report_text(study));
+  print(arguments.json ? analysis::report_json(study) : analysis::report_text(study));
   return 0;
 }
 
@@ -157,4 +165,4 @@ void add_report_command(CLI::App& program, Action& action) {
   command->callback([=, &action] { action = [=] { return report(*arguments); }; });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

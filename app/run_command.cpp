@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 /// "1280x720"
@@ -58,7 +58,7 @@ void add_session_options(CLI::App& command, RunOptions& options) {
       .add_option("--enrolment", options.enrolment,
                   "Place in the order of participants, which decides the schedule (default: the "
                   "smallest that is free)")
-      ->check(CLI::Range(1, kMostPlanned));
+      ->check(CLI::Range(1, design::kMostPlanned));
   command
       .add_option("--station", options.station,
                   "This station's name in the plan: its next enrolment number is taken")
@@ -110,4 +110,4 @@ void add_run_command(CLI::App& program, Action& action) {
   });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

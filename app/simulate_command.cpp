@@ -19,7 +19,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -29,7 +29,7 @@ struct SimulateArguments {
   fs::path study;
   fs::path database;
   fs::path subject;
-  SimulationOptions options;
+  session::SimulationOptions options;
   bool keep_blind = false;
   bool json = false;
 };
@@ -41,7 +41,8 @@ void refuse_existing(const fs::path& path) {
   }
 }
 
-std::string summary_of(const SimulateArguments& arguments, const SimulationReport& report) {
+std::string summary_of(const SimulateArguments& arguments,
+                       const session::SimulationReport& report) {
   const fs::path key = key_path_for(arguments.database, {});
   if (arguments.json) {
     const nlohmann::json summary = {{"simulated", true},
@@ -61,7 +62,7 @@ std::string summary_of(const SimulateArguments& arguments, const SimulationRepor
 }
 
 /// Nobody waits blind for a simulated study's end, unless that is what is being rehearsed.
-void end_collection(StudyStore& store) {
+void end_collection(store::StudyStore& store) {
   store.close_study(0ns);
   store.unblind(0ns, "simulated study", false);
 }
@@ -69,17 +70,17 @@ void end_collection(StudyStore& store) {
 int simulate(const SimulateArguments& arguments) {
   if (arguments.database.empty()) throw UsageError("simulate: --db is empty; give it a file name");
   refuse_existing(arguments.database);
-  const Study study = load_study(arguments.study);
-  const SubjectModel subject = subject_for(arguments.subject, study);
-  const StudyKey key = simulated_key(study, arguments.study);
+  const design::Study study = design::load_study(arguments.study);
+  const session::SubjectModel subject = subject_for(arguments.subject, study);
+  const design::StudyKey key = simulated_key(study, arguments.study);
   refuse_other_key(key_path_for(arguments.database, {}), key);
   prepare_simulated_pack(key);
-  const Pack pack(key.pack_folder);
-  StudyStore store =
-      StudyStore::create(arguments.database, commitment_of(key, pack, true, false), 0ns);
-  save_study_key(key_path_for(arguments.database, {}), key);
-  const SimulationReport report =
-      simulate_study(key, pack, subject, arguments.options, store, progress_bar("simulating"));
+  const engine::Pack pack(key.pack_folder);
+  store::StudyStore store = store::StudyStore::create(
+      arguments.database, session::commitment_of(key, pack, true, false), 0ns);
+  design::save_study_key(key_path_for(arguments.database, {}), key);
+  const session::SimulationReport report = session::simulate_study(
+      key, pack, subject, arguments.options, store, progress_bar("simulating"));
   if (!arguments.keep_blind) end_collection(store);
   print(summary_of(arguments, report));
   return 0;
@@ -90,7 +91,7 @@ int simulate(const SimulateArguments& arguments) {
 void add_simulate_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<SimulateArguments>();
   arguments->options.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  SimulationOptions& options = arguments->options;
+  session::SimulationOptions& options = arguments->options;
   CLI::App* command = program.add_subcommand(
       "simulate", "Run a whole study with simulated participants, in virtual time");
   command->add_option("STUDY", arguments->study, "Study file")->required();
@@ -117,4 +118,4 @@ void add_simulate_command(CLI::App& program, Action& action) {
   command->callback([=, &action] { action = [=] { return simulate(*arguments); }; });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

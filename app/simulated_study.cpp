@@ -9,34 +9,37 @@
 
 #include <spdlog/spdlog.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
-StudyKey simulated_key(const Study& study, const std::filesystem::path& study_file) {
+design::StudyKey simulated_key(const design::Study& study,
+                               const std::filesystem::path& study_file) {
   SeededEntropy entropy(study.seed);
-  StudyKey key = make_study_key(study, entropy, true);
-  key.pack_folder = simulated_pack_place(study_file).pack;
+  design::StudyKey key = design::make_study_key(study, entropy, true);
+  key.pack_folder = design::simulated_pack_place(study_file).pack;
   return key;
 }
 
-void prepare_simulated_pack(const StudyKey& key, bool wait) {
-  const PrepareReport prepared = prepare_pack(key, key.pack_folder, progress_bar("preparing"),
-                                              {.statistics = false, .wait = wait});
+void prepare_simulated_pack(const design::StudyKey& key, bool wait) {
+  const design::PrepareReport prepared = design::prepare_pack(
+      key, key.pack_folder, progress_bar("preparing"), {.statistics = false, .wait = wait});
   for (const std::string& warning : prepared.warnings) spdlog::warn("{}", warning);
 }
 
-void refuse_other_key(const std::filesystem::path& path, const StudyKey& key) {
-  if (is_there(path) && study_seal(load_study_key(path)) != study_seal(key)) {
+void refuse_other_key(const std::filesystem::path& path, const design::StudyKey& key) {
+  if (is_there(path) &&
+      design::study_seal(design::load_study_key(path)) != design::study_seal(key)) {
     throw StoreError(path.string() +
                      ": exists already; give another --db, or move the old file away");
   }
 }
 
-SubjectModel subject_for(const std::filesystem::path& path, const Study& study) {
-  SubjectModel subject =
-      path.empty() ? parse_subject_model(default_subject_json(), "the default subject model")
-                   : load_subject_model(path);
+session::SubjectModel subject_for(const std::filesystem::path& path, const design::Study& study) {
+  session::SubjectModel subject =
+      path.empty()
+          ? session::parse_subject_model(default_subject_json(), "the default subject model")
+          : session::load_subject_model(path);
   subject.check_labels(study);
   return subject;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -7,24 +7,24 @@
 #include <memory>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
 
 struct GenerateArguments {
   fs::path folder = "stimuli";
-  StimuliChoice choice;
+  stimuli::StimuliChoice choice;
 };
 
 int generate(const GenerateArguments& arguments) {
-  const StimulusManifest manifest =
-      generate_default_stimuli(arguments.folder, arguments.choice, progress_bar("generating"));
+  const stimuli::StimulusManifest manifest = stimuli::generate_default_stimuli(
+      arguments.folder, arguments.choice, progress_bar("generating"));
   std::string written;
-  for (const StimulusEntry& entry : manifest.entries) {
+  for (const stimuli::StimulusEntry& entry : manifest.entries) {
     written += (arguments.folder / entry.file).string() + "\n";
   }
-  print(written + (arguments.folder / kStimulusManifestFile).string() + "\n");
+  print(written + (arguments.folder / stimuli::kStimulusManifestFile).string() + "\n");
   return 0;
 }
 
@@ -44,14 +44,14 @@ void add_stimuli_command(CLI::App& program, Action& action) {
       ->check(seed_validator())
       ->capture_default_str();
   command->add_option("--size", arguments->choice.size_px, "Side of a picture, pixels")
-      ->check(CLI::Range(kMinStimulusSizePx, kMaxStimulusSizePx))
+      ->check(CLI::Range(stimuli::kMinStimulusSizePx, stimuli::kMaxStimulusSizePx))
       ->capture_default_str();
   command
       ->add_option("--exemplars", arguments->choice.exemplars,
                    "Different pictures of each label (default: five of the textures, one of the "
                    "others)")
-      ->check(CLI::Range(1, kMaxStimulusExemplars));
+      ->check(CLI::Range(1, stimuli::kMaxStimulusExemplars));
   command->callback([=, &action] { action = [=] { return generate(*arguments); }; });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

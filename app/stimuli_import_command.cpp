@@ -13,18 +13,20 @@
 #include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
-const std::map<std::string, LevelEqualising> kEqualisings = {{"none", LevelEqualising::none},
-                                                             {"mean", LevelEqualising::mean},
-                                                             {"rms", LevelEqualising::rms},
-                                                             {"both", LevelEqualising::both}};
-const std::map<std::string, ImportProtocol> kProtocols = {
-    {"classification", ImportProtocol::classification}, {"comparison", ImportProtocol::comparison}};
+const std::map<std::string, stimuli::LevelEqualising> kEqualisings = {
+    {"none", stimuli::LevelEqualising::none},
+    {"mean", stimuli::LevelEqualising::mean},
+    {"rms", stimuli::LevelEqualising::rms},
+    {"both", stimuli::LevelEqualising::both}};
+const std::map<std::string, stimuli::ImportProtocol> kProtocols = {
+    {"classification", stimuli::ImportProtocol::classification},
+    {"comparison", stimuli::ImportProtocol::comparison}};
 
 struct ImportArguments {
-  ImportOptions options;
+  stimuli::ImportOptions options;
   std::string pixels_per_mm;
   std::string equalise = "none";
   std::string protocol = "classification";
@@ -32,7 +34,7 @@ struct ImportArguments {
 };
 
 /// A number, or the word that leaves it to the photographs.
-void take_resolution(const std::string& text, ImportOptions& options) {
+void take_resolution(const std::string& text, stimuli::ImportOptions& options) {
   if (text.empty()) return;
   if (text == "file") {
     options.pixels_per_mm_of_files = true;
@@ -46,13 +48,13 @@ void take_resolution(const std::string& text, ImportOptions& options) {
   options.pixels_per_mm = number;
 }
 
-std::string summary_json(const ImportReport& report) {
+std::string summary_json(const stimuli::ImportReport& report) {
   nlohmann::ordered_json summary = {{"study", report.study.string()},
                                     {"pictures", report.pictures.string()},
                                     {"classes", nlohmann::ordered_json::array()},
                                     {"ignored", report.ignored},
                                     {"warnings", report.warnings}};
-  for (const ImportedClass& one : report.classes) {
+  for (const stimuli::ImportedClass& one : report.classes) {
     summary["classes"].push_back({{"label", one.label},
                                   {"photographs", one.photographs},
                                   {"crops", one.crops},
@@ -64,14 +66,15 @@ std::string summary_json(const ImportReport& report) {
   return summary.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
 }
 
-std::string summary_text(const ImportReport& report, const ImportOptions& options) {
+std::string summary_text(const stimuli::ImportReport& report,
+                         const stimuli::ImportOptions& options) {
   std::string text = fmt::format("{:<20} {:>11} {:>6} {:>11} {:>10} {:>9}\n", "class",
                                  "photographs", "crops", "features mm", "mean grey", "rms grey");
-  for (const ImportedClass& one : report.classes) {
+  for (const stimuli::ImportedClass& one : report.classes) {
     text += fmt::format("{:<20} {:>11} {:>6} {:>11.2f} {:>10.1f} {:>9.1f}\n", one.label,
                         one.photographs, one.crops, one.feature_mm, one.mean_grey, one.rms_grey);
   }
-  if (options.equalise != LevelEqualising::none)
+  if (options.equalise != stimuli::LevelEqualising::none)
     text += "levels   as they were before equalising\n";
   if (!report.ignored.empty()) {
     text += fmt::format(
@@ -93,7 +96,8 @@ int import_with(ImportArguments arguments) {
   take_resolution(arguments.pixels_per_mm, arguments.options);
   arguments.options.equalise = kEqualisings.at(arguments.equalise);
   arguments.options.protocol = kProtocols.at(arguments.protocol);
-  const ImportReport report = import_photographs(arguments.options, progress_bar("importing"));
+  const stimuli::ImportReport report =
+      stimuli::import_photographs(arguments.options, progress_bar("importing"));
   if (!arguments.json) {
     for (const std::string& warning : report.warnings) spdlog::warn("{}", warning);
   }
@@ -101,7 +105,7 @@ int import_with(ImportArguments arguments) {
   return 0;
 }
 
-void add_picture_options(CLI::App& command, ImportOptions& options) {
+void add_picture_options(CLI::App& command, stimuli::ImportOptions& options) {
   command
       .add_option("FOLDER", options.photographs,
                   "Photographs: a folder of class folders, or a folder of files, each a class")
@@ -110,10 +114,10 @@ void add_picture_options(CLI::App& command, ImportOptions& options) {
   command.add_option("--out", options.pictures,
                      "Folder of the pictures to write (default: <study>.pictures)");
   command.add_option("--size", options.size_px, "Side of a crop, pixels")
-      ->check(CLI::Range(kMinCropSizePx, kMaxCropSizePx))
+      ->check(CLI::Range(stimuli::kMinCropSizePx, stimuli::kMaxCropSizePx))
       ->capture_default_str();
   command.add_option("--crops", options.crops, "Crops of each class, its exemplars")
-      ->check(CLI::Range(1, kMaxCropsOfClass))
+      ->check(CLI::Range(1, stimuli::kMaxCropsOfClass))
       ->capture_default_str();
   command.add_option("--pitch-mm", options.pitch_mm, "Size of a crop's pixel on the plane, mm")
       ->capture_default_str();
@@ -147,4 +151,4 @@ void add_stimuli_import_command(CLI::App& stimuli, Action& action) {
   command->callback([=, &action] { action = [=] { return import_with(*arguments); }; });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -16,7 +16,7 @@
 #include <system_error>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -29,8 +29,8 @@ struct MeasureArguments {
 
 /// Pictures, and by whose rules forces are made of them.
 struct MeasureJob {
-  std::vector<LabelledPicture> pictures;
-  std::optional<Study> rules;  ///< the first study that was given
+  std::vector<analysis::LabelledPicture> pictures;
+  std::optional<design::Study> rules;  ///< the first study that was given
 };
 
 bool is_folder(const fs::path& path) {
@@ -56,12 +56,12 @@ bool is_picture(const fs::path& path) {
 void add_picture(MeasureJob& job, const std::string& set, const std::string& label,
                  const fs::path& path) {
   job.pictures.push_back(
-      {set, label, one_line(path.lexically_normal().string()), read_grey_image(path)});
+      {set, label, one_line(path.lexically_normal().string()), engine::read_grey_image(path)});
 }
 
 void add_study(MeasureJob& job, const fs::path& path) {
-  const Study study = load_study(path);
-  for (const StudyClass& study_class : study.classes) {
+  const design::Study study = design::load_study(path);
+  for (const design::StudyClass& study_class : study.classes) {
     for (const fs::path& image : study_class.images) {
       add_picture(job, study.name, study_class.label, study.folder / image);
     }
@@ -116,25 +116,25 @@ MeasureJob job_of(const MeasureArguments& arguments) {
   return job;
 }
 
-void refuse_too_small(const LabelledPicture& picture) {
-  if (std::min(picture.image.height(), picture.image.width()) >= kSlopeSmallestSide) return;
+void refuse_too_small(const analysis::LabelledPicture& picture) {
+  if (std::min(picture.image.height(), picture.image.width()) >= engine::kSlopeSmallestSide) return;
   throw FileError(picture.name + ": has " + std::to_string(picture.image.width()) + " x " +
                   std::to_string(picture.image.height()) + " px; give pictures of at least " +
-                  std::to_string(kSlopeSmallestSide) + " px on each side");
+                  std::to_string(engine::kSlopeSmallestSide) + " px on each side");
 }
 
 int measure(const MeasureArguments& arguments) {
   const MeasureJob job = job_of(arguments);
-  for (const LabelledPicture& picture : job.pictures) refuse_too_small(picture);
-  ExtractionOptions method;
-  RenderingOptions rendering;
+  for (const analysis::LabelledPicture& picture : job.pictures) refuse_too_small(picture);
+  engine::ExtractionOptions method;
+  engine::RenderingOptions rendering;
   if (job.rules) {
     method = job.rules->methods.front();
     rendering = job.rules->rendering;
   }
-  const MeasuredPictures measured =
-      measure_pictures(job.pictures, method, rendering, progress_bar("measuring"));
-  print(arguments.json ? measures_json(measured) : measures_text(measured));
+  const analysis::MeasuredPictures measured =
+      analysis::measure_pictures(job.pictures, method, rendering, progress_bar("measuring"));
+  print(arguments.json ? analysis::measures_json(measured) : analysis::measures_text(measured));
   return 0;
 }
 
@@ -160,4 +160,4 @@ void add_stimuli_measure_command(CLI::App& stimuli, Action& action) {
   command->callback([=, &action] { action = [=] { return measure(*arguments); }; });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -12,7 +12,7 @@
 #include <string>
 #include <system_error>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -45,16 +45,16 @@ void refuse_input(const fs::path& output, const fs::path& input) {
                    " is a file that the sheet is made of; give another -o");
 }
 
-StudyKey key_of(const Study& study, const fs::path& path) {
+design::StudyKey key_of(const design::Study& study, const fs::path& path) {
   if (!is_there(path)) {
     throw FileError(one_line(path.string()) +
                     ": there is no key, and a sheet is made with the study's key only; run "
                     "touchtrial prepare, or name it with --key");
   }
-  const StudyKey stored = load_study_key(path);
+  const design::StudyKey stored = design::load_study_key(path);
   // The key may lie elsewhere by now, on a stick in a drawer: pictures are found from the study.
-  StudyKey key = rekeyed(stored, study);
-  if (study_seal(key) != study_seal(stored)) {
+  design::StudyKey key = design::rekeyed(stored, study);
+  if (design::study_seal(key) != design::study_seal(stored)) {
     throw VerificationError(one_line(path.string()) + ": is not the key of " + study.source +
                             " as it is now; run touchtrial prepare, or name another with --key");
   }
@@ -62,31 +62,34 @@ StudyKey key_of(const Study& study, const fs::path& path) {
 }
 
 /// Whatever is missing is said before hours are spent on pictures.
-void check_output(const SheetArguments& arguments, const Study& study, const fs::path& key) {
+void check_output(const SheetArguments& arguments, const design::Study& study,
+                  const fs::path& key) {
   const std::string kind = kind_of(arguments.output);
   refuse_input(arguments.output, arguments.study);
   refuse_input(arguments.output, key);
-  for (const StudyClass& one : study.classes) {
+  for (const design::StudyClass& one : study.classes) {
     for (const fs::path& image : one.images) refuse_input(arguments.output, study.folder / image);
   }
-  if (kind != ".html") require_gnuplot();
+  if (kind != ".html") analysis::require_gnuplot();
 }
 
 int draw_sheet(const SheetArguments& arguments) {
-  const Study study = load_study(arguments.study);
-  const PackPlace place =
-      arguments.pack.empty() ? default_pack_place(arguments.study) : pack_place_at(arguments.pack);
+  const design::Study study = design::load_study(arguments.study);
+  const design::PackPlace place = arguments.pack.empty()
+                                      ? design::default_pack_place(arguments.study)
+                                      : design::pack_place_at(arguments.pack);
   const fs::path key_path = arguments.key.empty() ? place.key : arguments.key;
   check_output(arguments, study, key_path);
-  const StudyKey key = key_of(study, key_path);
-  check_images_exist(key.study);
+  const design::StudyKey key = key_of(study, key_path);
+  design::check_images_exist(key.study);
   const std::string kind = kind_of(arguments.output);
   const int side_px = key.stimuli.size() > kMany ? kSideOfManyPx : kSidePx;
-  const StimulusSheet sheet =
-      make_stimulus_sheet(key, Pack(place.pack), side_px, progress_bar("drawing"));
-  if (kind == ".png") draw_sheet_png(sheet, arguments.output);
-  if (kind == ".pdf") draw_sheet_pdf(sheet, arguments.output);
-  if (kind == ".html") replace_file(arguments.output, sheet_html(sheet), FileMode::owner_only);
+  const analysis::StimulusSheet sheet = analysis::make_stimulus_sheet(
+      key, engine::Pack(place.pack), side_px, progress_bar("drawing"));
+  if (kind == ".png") analysis::draw_sheet_png(sheet, arguments.output);
+  if (kind == ".pdf") analysis::draw_sheet_pdf(sheet, arguments.output);
+  if (kind == ".html")
+    replace_file(arguments.output, analysis::sheet_html(sheet), FileMode::owner_only);
   print("sheet " + arguments.output.string() +
         " (unblinds whoever reads it; keep it with the key)\n");
   return 0;
@@ -106,4 +109,4 @@ void add_stimuli_sheet_command(CLI::App& stimuli, Action& action) {
   command->callback([=, &action] { action = [=] { return draw_sheet(*arguments); }; });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

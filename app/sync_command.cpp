@@ -17,7 +17,7 @@
 #include <string>
 #include <system_error>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -31,8 +31,8 @@ struct SyncArguments {
 };
 
 /// What does not hold here must not be passed on.
-void verify(const StudyStore& store, const fs::path& database) {
-  const std::optional<ChainFault> fault = store.first_fault();
+void verify(const store::StudyStore& store, const fs::path& database) {
+  const std::optional<store::ChainFault> fault = store.first_fault();
   if (!fault) return;
   const std::string place = fault->session == 0 ? std::string("the file's chain")
                                                 : "session " + std::to_string(fault->session);
@@ -42,7 +42,8 @@ void verify(const StudyStore& store, const fs::path& database) {
 }
 
 /// The key that is named, or the one beside the database if it is there.
-std::optional<StudyKey> key_for(const StudyStore& store, const SyncArguments& arguments) {
+std::optional<design::StudyKey> key_for(const store::StudyStore& store,
+                                        const SyncArguments& arguments) {
   std::error_code error;
   const bool is_there = fs::exists(key_path_for(arguments.database, arguments.key), error);
   if (arguments.key.empty() && !is_there) return std::nullopt;
@@ -51,13 +52,14 @@ std::optional<StudyKey> key_for(const StudyStore& store, const SyncArguments& ar
 
 /// All is pushed when this is asked: a connection that is lost now must not hide that.
 /// \throws DamagedStore if what is there cannot be believed
-void ask_balance(const ServerAddress& server, int method_orders, SyncSummary& summary) {
+void ask_balance(const collect::ServerAddress& server, int method_orders, SyncSummary& summary) {
   for (int attempt = 0; attempt < 2; ++attempt) {
     try {
-      summary.balance = enrolment_balance(sessions_on_server(server), method_orders);
+      summary.balance =
+          collect::enrolment_balance(collect::sessions_on_server(server), method_orders);
       summary.balance_unknown.clear();
       return;
-    } catch (const DamagedStore&) {
+    } catch (const store::DamagedStore&) {
       throw;
     } catch (const StoreError& error) {
       summary.balance_unknown = error.what();
@@ -66,19 +68,22 @@ void ask_balance(const ServerAddress& server, int method_orders, SyncSummary& su
 }
 
 int sync(const SyncArguments& arguments) {
-  const ServerAddress server(arguments.to);
-  PushOptions options{.dry_run = arguments.dry_run, .progress = progress_bar("push")};
+  const collect::ServerAddress server(arguments.to);
+  collect::PushOptions options{.dry_run = arguments.dry_run, .progress = progress_bar("push")};
   int method_orders = 1;
   {
-    const StudyStore store = StudyStore::open(arguments.database, StudyStore::Access::read_only);
+    const store::StudyStore store =
+        store::StudyStore::open(arguments.database, store::StudyStore::Access::read_only);
     verify(store, arguments.database);
-    if (const std::optional<StudyKey> key = key_for(store, arguments)) options.master = key->master;
-    method_orders = prescription_from_json(store.commitment().configuration).method_orders;
+    if (const std::optional<design::StudyKey> key = key_for(store, arguments))
+      options.master = key->master;
+    method_orders =
+        analysis::prescription_from_json(store.commitment().configuration).method_orders;
   }
   SyncSummary summary{.server = server.shown(), .dry_run = arguments.dry_run};
-  for (const auto& station : stations_of_file(arguments.database)) {
-    PushReport report;
-    push_station(*station, server, options, report);
+  for (const auto& station : collect::stations_of_file(arguments.database)) {
+    collect::PushReport report;
+    collect::push_station(*station, server, options, report);
     summary.stations.push_back({station->name(), report});
   }
   const auto print_summary = [&] {
@@ -86,7 +91,7 @@ int sync(const SyncArguments& arguments) {
   };
   try {
     ask_balance(server, method_orders, summary);
-  } catch (const DamagedStore& error) {
+  } catch (const store::DamagedStore& error) {
     summary.balance_unknown = error.what();
     print_summary();  // what was pushed is there
     throw;
@@ -115,4 +120,4 @@ void add_sync_command(CLI::App& program, Action& action) {
   command->callback([=, &action] { action = [=] { return sync(*arguments); }; });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

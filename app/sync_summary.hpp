@@ -7,23 +7,23 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 struct StationSummary {
   std::string file;
-  PushReport report;
+  collect::PushReport report;
 };
 
 struct SyncSummary {
   std::string server;  ///< without user
   bool dry_run = false;
   std::vector<StationSummary> stations{};
-  EnrolmentBalance balance{};     ///< of everything on the server
-  std::string balance_unknown{};  ///< why it could not be asked; empty: it could
+  collect::EnrolmentBalance balance{};  ///< of everything on the server
+  std::string balance_unknown{};        ///< why it could not be asked; empty: it could
 };
 
 [[nodiscard]] std::string sync_text(const SyncSummary& summary);
 /// One JSON object.
 [[nodiscard]] std::string sync_json(const SyncSummary& summary);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

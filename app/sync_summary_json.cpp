@@ -2,14 +2,14 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 using nlohmann::json;
 
-json sessions_json(const std::vector<PushedSession>& sessions) {
+json sessions_json(const std::vector<collect::PushedSession>& sessions) {
   json list = json::array();
-  for (const PushedSession& session : sessions) {
+  for (const collect::PushedSession& session : sessions) {
     list.push_back({{"session", session.session},
                     {"participant", session.participant},
                     {"enrolment", session.enrolment}});
@@ -18,7 +18,7 @@ json sessions_json(const std::vector<PushedSession>& sessions) {
 }
 
 json station_json(const StationSummary& summary) {
-  const PushReport& report = summary.report;
+  const collect::PushReport& report = summary.report;
   return {{"file", summary.file},
           {"station", report.station},
           {"pushed", sessions_json(report.pushed)},
@@ -31,12 +31,12 @@ json station_json(const StationSummary& summary) {
           {"reconnections", report.reconnections}};
 }
 
-json balance_json(const EnrolmentBalance& balance) {
+json balance_json(const collect::EnrolmentBalance& balance) {
   json stations = json::object();
   for (const auto& [station, count] : balance.stations) stations[std::to_string(station)] = count;
   return {{"stations", stations},       {"method_rows", balance.rows},
           {"gaps", balance.gaps},       {"gap_count", balance.gap_count},
-          {"highest", balance.highest}, {"imbalances", imbalances(balance)}};
+          {"highest", balance.highest}, {"imbalances", collect::imbalances(balance)}};
 }
 
 }  // namespace
@@ -53,4 +53,4 @@ std::string sync_json(const SyncSummary& summary) {
   return object.dump(2) + "\n";
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

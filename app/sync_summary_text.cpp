@@ -3,12 +3,12 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
-std::string participants(const std::vector<PushedSession>& sessions) {
+std::string participants(const std::vector<collect::PushedSession>& sessions) {
   std::string names;
-  for (const PushedSession& session : sessions) {
+  for (const collect::PushedSession& session : sessions) {
     names += (names.empty() ? "" : ", ") + session.participant;
   }
   return names;
@@ -19,7 +19,7 @@ std::string counted(std::size_t count) {
 }
 
 std::string station_text(const StationSummary& summary, bool dry_run) {
-  const PushReport& report = summary.report;
+  const collect::PushReport& report = summary.report;
   std::string text =
       fmt::format("{}: {} {}, {} there before", summary.file, counted(report.pushed.size()),
                   dry_run ? "to push" : "pushed", report.already_there);
@@ -63,8 +63,9 @@ std::string sync_text(const SyncSummary& summary) {
   if (!summary.balance_unknown.empty()) {
     return text + "balance: could not be asked (" + summary.balance_unknown + ")\n";
   }
-  for (const std::string& line : imbalances(summary.balance)) text += "imbalance: " + line + "\n";
+  for (const std::string& line : collect::imbalances(summary.balance))
+    text += "imbalance: " + line + "\n";
   return text;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// Reads standard input without ever waiting. On a terminal that the program has to itself, keys
 /// come one by one and are not shown, until this is destroyed; Ctrl-C stays a signal, Ctrl-Z is
@@ -27,4 +27,4 @@ class TerminalKeys {
   bool ended_ = false;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

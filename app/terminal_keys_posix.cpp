@@ -6,7 +6,7 @@
 #include <termios.h>
 #include <unistd.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 namespace {
 
@@ -49,4 +49,4 @@ std::optional<char> TerminalKeys::next() {
   return std::nullopt;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -5,7 +5,7 @@
 #include <string>
 #include <system_error>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 CLI::Validator seed_validator() {
   return CLI::Validator(
@@ -37,4 +37,4 @@ CLI::Validator study_place_validator() {
           ""};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

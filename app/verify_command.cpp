@@ -11,7 +11,7 @@
 #include <optional>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
@@ -36,20 +36,22 @@ std::optional<Digest> head_of(const VerifyArguments& arguments) {
 
 /// On a server there is no key beside a study.
 fs::path key_for(const VerifyArguments& arguments) {
-  if (arguments.key.empty() && is_address(arguments.database.string())) return {};
+  if (arguments.key.empty() && collect::is_address(arguments.database.string())) return {};
   return key_path_for(arguments.database, arguments.key);
 }
 
 int verify(const VerifyArguments& arguments) {
   const std::optional<Digest> head = head_of(arguments);
-  const StudyFiles files{.database = arguments.database,
-                         .key = key_for(arguments),
-                         .key_named = !arguments.key.empty(),
-                         .pack = arguments.pack};
-  const Verification verification = verify_files(files, head, [](const fs::path& database) {
-    return open_study(database.string(), TraceUse::copied);
-  });
-  print(arguments.json ? verification_json(verification) : verification_text(verification));
+  const analysis::StudyFiles files{.database = arguments.database,
+                                   .key = key_for(arguments),
+                                   .key_named = !arguments.key.empty(),
+                                   .pack = arguments.pack};
+  const analysis::Verification verification =
+      analysis::verify_files(files, head, [](const fs::path& database) {
+        return collect::open_study(database.string(), collect::TraceUse::copied);
+      });
+  print(arguments.json ? analysis::verification_json(verification)
+                       : analysis::verification_text(verification));
   return verification.holds() ? 0 : kNotVerified;
 }
 
@@ -71,4 +73,4 @@ void add_verify_command(CLI::App& program, Action& action) {
   command->callback([=, &action] { action = [=] { return verify(*arguments); }; });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

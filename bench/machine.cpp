@@ -13,7 +13,8 @@
 namespace touchtrial::bench {
 
 Machine this_machine() {
-  return {fmt::format("{}, {}", this_processor(), instruction_set_of(simd_targets().front())),
+  return {fmt::format("{}, {}", app::this_processor(),
+                      instruction_set_of(engine::simd_targets().front())),
           TOUCHTRIAL_COMPILER, CV_VERSION,
           fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)))};
 }

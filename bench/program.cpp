@@ -58,7 +58,7 @@ std::vector<GoalResult> take_goals(const std::vector<std::string>& targets, cons
   for (Goal& goal : error_goals(targets)) goals.push_back(std::move(goal));
   for (Goal& goal : study_goals()) goals.push_back(std::move(goal));
   std::vector<GoalResult> results;
-  const auto progress = progress_bar("goals");
+  const auto progress = app::progress_bar("goals");
   for (std::size_t i = 0; i < goals.size(); ++i) {
     for (GoalResult& result : goals[i](effort)) results.push_back(std::move(result));
     progress(static_cast<int>(i + 1), static_cast<int>(goals.size()));
@@ -82,18 +82,18 @@ void run_only(const Arguments& arguments, const Scope& scope) {
 
 void run(const Arguments& arguments) {
   cv::setNumThreads(1);
-  use_measured_plans(user_cache_folder());  // as the program does
+  engine::use_measured_plans(engine::user_cache_folder());  // as the program does
   if (!arguments.image.empty()) choose_timed_picture(arguments.image);
   choose_usual_target(arguments.target);
   const std::vector<std::string> targets =
-      arguments.target.empty() ? simd_targets() : std::vector{arguments.target};
+      arguments.target.empty() ? engine::simd_targets() : std::vector{arguments.target};
   const Scope scope = scope_for(arguments, targets);
   if (!arguments.only.empty()) return run_only(arguments, scope);
   const Effort effort = arguments.quick ? quick_effort() : Effort{};
   const std::vector<GoalResult> goals = take_goals(targets, effort);
-  print(goals_table(goals));
+  app::print(goals_table(goals));
   if (arguments.json.empty() && !arguments.docs) return;
-  const std::vector<Row> rows = measure_rows(all_cases(scope), effort, progress_bar("rows"));
+  const std::vector<Row> rows = measure_rows(all_cases(scope), effort, app::progress_bar("rows"));
   if (!arguments.json.empty()) {
     replace_file(arguments.json, results_json(this_machine(), goals, rows));
   }
@@ -108,7 +108,7 @@ void set_up(CLI::App& program, Arguments& arguments) {
   program.add_option("--json", arguments.json, "Measure every kernel at every size, write FILE");
   program.add_option("--image", arguments.image, "Take times on this picture, not on bark.png");
   program.add_option("--target", arguments.target, "Use this SIMD target only, for instance AVX2")
-      ->check(CLI::IsMember(simd_targets()));
+      ->check(CLI::IsMember(engine::simd_targets()));
   CLI::Option* const only =
       program.add_option("--only", arguments.only, "Run this case alone and measure nothing");
   program.add_option("--runs", arguments.runs, "How often")

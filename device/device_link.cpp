@@ -1,6 +1,6 @@
 #include "device/device_link.hpp"
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 static_assert(std::atomic<DeviceFault>::is_always_lock_free, "signal handlers read it");
 
@@ -31,4 +31,4 @@ std::optional<Vec3> DeviceLink::live_force(Time now) noexcept {
   return usable ? std::optional(newest.force_n) : std::nullopt;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -8,7 +8,7 @@
 #include <chrono>
 #include <optional>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// Lock-free exchange for drivers whose link (USB transfers, a vendor's scheduler) lives on a
 /// thread of its own. The driver forwards HapticDevice's functions of the same names to it.
@@ -62,4 +62,4 @@ class DeviceLink {
   std::atomic<DeviceFault> fault_{DeviceFault::none};
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 namespace fs = std::filesystem;
@@ -238,4 +238,4 @@ DeviceSettings device_settings_for(const fs::path& named) {
   return !usual.empty() && is_there(usual) ? read_device_settings(usual) : DeviceSettings{};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -12,7 +12,7 @@
 #include <string>
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 struct FalconSettings {
   std::filesystem::path firmware;  ///< the vendor's image; needed unless it is already loaded
@@ -95,4 +95,4 @@ struct DeviceSettings {
 /// defaults. \param named  empty if the user named none \throws as read_device_settings
 [[nodiscard]] DeviceSettings device_settings_for(const std::filesystem::path& named);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

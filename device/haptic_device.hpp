@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// One reading. A driver gives it in the device frame: right-handed, x to the right, y up, z
 /// towards the person, origin in the middle of the workspace. A PlacedDevice turns it into the
@@ -103,4 +103,4 @@ class HapticDevice {
   }
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

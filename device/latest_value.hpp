@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <type_traits>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// A triple buffer: one writer, one reader, each on a thread of its own, neither ever waiting for
 /// the other. The reader sees whole values only, the newest one, and may miss those between.
@@ -42,4 +42,4 @@ class LatestValue {
   std::uint8_t front_ = 2;               ///< the reader's slot
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -1,6 +1,6 @@
 #include "device/placed_device.hpp"
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 Vec3 to_plane_direction(Vec3 device, PlaneOrientation orientation) noexcept {
   if (orientation == PlaneOrientation::horizontal) return {device.x, device.z, device.y};
@@ -27,4 +27,4 @@ DeviceStatus PlacedDevice::write(Vec3 force_n) noexcept {
   return device_.write(to_device_direction(force_n, placement_.orientation));
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

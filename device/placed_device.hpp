@@ -3,7 +3,7 @@
 
 #include "device/haptic_device.hpp"
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// How the plane stands before the person.
 enum class PlaneOrientation {
@@ -43,4 +43,4 @@ class PlacedDevice final : public HapticDevice {
   PlanePlacement placement_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

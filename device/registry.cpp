@@ -11,7 +11,7 @@
 
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 std::vector<std::string_view> driver_names() {
@@ -61,4 +61,4 @@ std::unique_ptr<HapticDevice> open_device(const std::string& driver,
   return device_driver(driver).open(settings);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// One device that is there, or a driver that has none.
 struct DeviceListing {
@@ -51,4 +51,4 @@ struct DeviceDriver {
 [[nodiscard]] std::unique_ptr<HapticDevice> open_device(const std::string& driver,
                                                         const DeviceSettings& settings);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

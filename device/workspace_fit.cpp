@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 /// Rounding must not refuse a plane that fits exactly.
@@ -123,4 +123,4 @@ std::optional<PlanePlacement> placement_of(const PlaneGeometry& plane, const Dev
   return fit.placement;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// Room that is kept on every side of the plane, above it and below it, mm: a hand overshoots the
 /// edge, lifts off, and presses into the wall.
@@ -47,4 +47,4 @@ struct WorkspaceFit {
 [[nodiscard]] std::string misfit_text(const std::string& device, const PlaneGeometry& plane,
                                       const Workspace& workspace, const WorkspaceFit& fit);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <span>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr int kMidGrey = 128;
@@ -56,4 +56,4 @@ template Plane<double> edge_texture<double>(const GreyImage&, double);
 template Plane<float> luminance_texture<float>(const GreyImage&);
 template Plane<double> luminance_texture<double>(const GreyImage&);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

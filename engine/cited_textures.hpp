@@ -7,7 +7,7 @@
 
 #include "core/plane.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// T = I - Gaussian(I). \param image  not empty  \param sigma_px  > 0
 template <typename Real>
@@ -27,4 +27,4 @@ template <typename Real>
 template <typename Real>
 [[nodiscard]] Plane<Real> luminance_texture(const GreyImage& image);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -8,7 +8,7 @@
 #include <span>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 /// Takes the slopes of one row of a band into a row of the result, each sample standing for
@@ -92,4 +92,4 @@ Plane<Real> doubled(const Plane<double>& half, int height, int width) {
 template Plane<float> doubled<float>(const Plane<double>&, int, int);
 template Plane<double> doubled<double>(const Plane<double>&, int, int);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

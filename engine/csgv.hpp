@@ -9,7 +9,7 @@
 
 #include <span>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// The norms of the gradients of the last level's ll and of the details of every level, combined,
 /// at the first level's resolution: sample (y, x) stands for the image's samples (2y, 2x) to
@@ -28,4 +28,4 @@ namespace touchtrial {
 template <typename Real>
 [[nodiscard]] Plane<Real> doubled(const Plane<double>& half, int height, int width);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr int kTaps = 4;
@@ -81,4 +81,4 @@ SubBands daub4_sub_bands(const Plane<double>& ll) {
   return sub_bands_of(ll);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

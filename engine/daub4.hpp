@@ -4,7 +4,7 @@
 
 #include "core/plane.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// The four sub-bands of an H x W image, each ceil(H/2) x ceil(W/2), in grey levels times 2 at
 /// most: a constant c gives ll = 2c. The first letter is the filter along x, the second along y.
@@ -22,4 +22,4 @@ struct SubBands {
 /// The next level, of the ll of the one before.
 [[nodiscard]] SubBands daub4_sub_bands(const Plane<double>& ll);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

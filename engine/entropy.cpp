@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <stdexcept>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 double entropy(const GreyImage& image) {
   if (image.empty()) throw std::invalid_argument("entropy: the image is empty");
@@ -21,4 +21,4 @@ double entropy(const GreyImage& image) {
   return sum;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -4,11 +4,11 @@
 
 #include "core/plane.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Entropy of the histogram with 256 bins, in nats: 0 for a constant image, at most ln 256.
 /// \throws std::invalid_argument if the image is empty
 /// Thread-safe.
 [[nodiscard]] double entropy(const GreyImage& image);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

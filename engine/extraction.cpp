@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr int kForceNeighbourhood = 3;
@@ -230,4 +230,4 @@ template Extraction<float> extract_texture<float>(const GreyImage&, const Extrac
 template Extraction<double> extract_texture<double>(const GreyImage&, const ExtractionOptions&,
                                                     const WantedPlanes&, StageLog*);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// How a texture is taken from an image (docs/method.md, "Extraction", "TV-Gabor" and "Other
 /// extractors").
@@ -152,4 +152,4 @@ template <typename Real>
 template <typename Real>
 [[nodiscard]] Plane<Real> texture_surface(const Plane<Real>& texture);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// What the fractional mask sums to, and so how strong a texture is.
 enum class Norm {
@@ -68,4 +68,4 @@ template <typename Choice, std::size_t size>
   return names.at(static_cast<std::size_t>(choice));
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr std::array<std::string_view, 7> kNames = {"adaptive", "fixed", "tv-gabor", "gaussian",
@@ -22,4 +22,4 @@ std::vector<std::string> method_names() {
   return {kNames.begin(), kNames.end()};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 /// \throws std::invalid_argument unless `holds`: "<option>: must be <range>, not <value>"
@@ -92,4 +92,4 @@ void check_options(const ExtractionOptions& options) {
   throw std::invalid_argument("method: not one of the enumeration");
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Whether every sample is finite. Reads all of them, several at a time.
 template <typename Real>
@@ -29,4 +29,4 @@ void require_finite(const Plane<Real>& plane, const std::string& caller,
   throw std::invalid_argument(caller + ": the " + plane_name + " has samples that are not finite");
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

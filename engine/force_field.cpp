@@ -8,7 +8,7 @@
 #include <span>
 #include <stdexcept>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 /// Adds to one row of forces what the neighbours at (dy, dx) exert, where they
@@ -75,4 +75,4 @@ ForceField<Real> tangential_force(const Plane<Real>& surface, int neighbourhood)
 template ForceField<float> tangential_force<float>(const Plane<float>&, int);
 template ForceField<double> tangential_force<double>(const Plane<double>&, int);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

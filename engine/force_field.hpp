@@ -4,7 +4,7 @@
 
 #include "core/plane.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Force planes in grey levels per pixel, same shape as the surface they come from.
 template <typename Real>
@@ -21,4 +21,4 @@ struct ForceField {
 template <typename Real>
 [[nodiscard]] ForceField<Real> tangential_force(const Plane<Real>& surface, int neighbourhood);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <stdexcept>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr double kSmallestWeight = 1e-12;  // relative to the middle one
@@ -109,4 +109,4 @@ Plane<double> gaussian_filtered(const Plane<double>& plane, double sigma_px) {
   return out;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// A filtered plane row by row, for those who need no plane of it: memory is that of two rows and
 /// of the weights. Sample is double or std::uint8_t; results are those of gaussian_filtered() to
@@ -41,4 +41,4 @@ class GaussianRows {
 /// \throws std::invalid_argument if the plane is empty or not finite, or sigma_px negative or NaN
 [[nodiscard]] Plane<double> gaussian_filtered(const Plane<double>& plane, double sigma_px);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <numeric>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 double mean_of(const GreyImage& image) {
@@ -46,4 +46,4 @@ void apply_norm(Norm norm, const GreyImage& image, int radius, const Plane<doubl
   apply(norm, image, texture, [&sums](int y, int x) { return sums.at(y / 2, x / 2); });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

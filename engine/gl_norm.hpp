@@ -5,7 +5,7 @@
 #include "core/plane.hpp"
 #include "engine/extraction_choices.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Turns the additive texture T into T / S_K (sum) or T + S_K (I - mean) (none), with
 /// S_K = gl_weight_sum(v, radius); additive leaves it as it is. In double alone: near v = 1 the sum
@@ -21,4 +21,4 @@ void apply_norm(Norm norm, const GreyImage& image, int radius, double order,
 void apply_norm(Norm norm, const GreyImage& image, int radius, const Plane<double>& orders,
                 Plane<double>& texture);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

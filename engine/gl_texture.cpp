@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 /// One row of T = v (D_1 + a_2 (D_2 + a_3 (D_3 + ..))), a_k = (k - 1 - v) / k. The differences are
@@ -85,4 +85,4 @@ Plane<Real> gl_texture(const GreyImage& image, int radius, const Plane<double>& 
 template Plane<float> gl_texture<float>(const GreyImage&, int, const Plane<double>&);
 template Plane<double> gl_texture<double>(const GreyImage&, int, const Plane<double>&);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -4,7 +4,7 @@
 
 #include "core/plane.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// T = sum over k = 1 .. radius of |c_k(v)| (I - R_k), in grey levels, where R_k is the mean of the
 /// eight samples at distance k. Exactly 0 where the neighbourhood is flat; |T| <= 255 (1 - S_K).
@@ -21,4 +21,4 @@ template <typename Real>
 [[nodiscard]] Plane<Real> gl_texture(const GreyImage& image, int radius,
                                      const Plane<double>& orders);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <stdexcept>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 void check(double order, int radius) {
@@ -33,4 +33,4 @@ double gl_weight_sum(double order, int radius) {
   return product;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// c_0 = 1, c_k = c_{k-1} (k - 1 - v) / k. Negative from c_1 on if v > 0, and zero if v = 0.
 /// \param order  v, dimensionless, in [0, 1)
@@ -18,4 +18,4 @@ namespace touchtrial {
 /// \throws std::invalid_argument as gl_weights
 [[nodiscard]] double gl_weight_sum(double order, int radius);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

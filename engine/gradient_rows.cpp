@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 void mirror_ends(std::vector<double>& framed) {
@@ -56,4 +56,4 @@ std::span<const double> GradientRows<Sample>::row(int y) {
 template class GradientRows<std::uint8_t>;
 template class GradientRows<double>;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

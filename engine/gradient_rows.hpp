@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Gives the norm of a plane's gradient row by row, with symmetric extension. Differences come
 /// before sums, so that equal neighbours give exactly zero. Sample is double or std::uint8_t. Keeps
@@ -34,4 +34,4 @@ class GradientRows {
   std::vector<double> norms_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -16,7 +16,7 @@
 
 #include <opencv2/core.hpp>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 /// Up to here a file is read as a whole, which turns a failing disk into an error. A larger one is
@@ -82,4 +82,4 @@ void write_png(const std::filesystem::path& path, const GreyImage& image) {
   replace_file(path, bytes);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Larger images are refused from their header, before memory is spent.
 inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 28;
@@ -37,4 +37,4 @@ inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 28;
 /// \throws std::invalid_argument if the image is empty
 void write_png(const std::filesystem::path& path, const GreyImage& image);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

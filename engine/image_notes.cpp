@@ -9,7 +9,7 @@
 #include <cmath>
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr double kMmPerInch = 25.4;
@@ -144,4 +144,4 @@ GreyImage upright(const GreyImage& image, int orientation) {
   return turned;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -7,7 +7,7 @@
 
 #include <optional>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 struct ImageNotes {
   /// As in Exif and TIFF, 1 to 8: 1 upright, 3 upside down, 6 to be turned clockwise, 8
@@ -27,4 +27,4 @@ struct ImageNotes {
 /// \param orientation  see ImageNotes; anything but 2 to 8 leaves it as it is
 [[nodiscard]] GreyImage upright(const GreyImage& image, int orientation);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -10,7 +10,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr int kStripRows = 256;
@@ -76,4 +76,4 @@ Plane<Real> median_texture(const GreyImage& image, int radius, double threshold_
 template Plane<float> median_texture<float>(const GreyImage&, int, double);
 template Plane<double> median_texture<double>(const GreyImage&, int, double);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

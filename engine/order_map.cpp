@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 double order_at(double csgv, double largest) {
@@ -21,4 +21,4 @@ Plane<double> order_map(const Plane<double>& csgv) {
   return orders;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -4,7 +4,7 @@
 
 #include "core/plane.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Where the order's three branches meet; both values belong to the middle branch.
 inline constexpr double kFlatBelowCsgv = 2.0;
@@ -16,4 +16,4 @@ inline constexpr double kSteepAboveCsgv = 128.0;
 /// Thread-safe.
 [[nodiscard]] Plane<double> order_map(const Plane<double>& csgv);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// 8 D_k = 8 I - (sum of the samples at (+-k, 0), (0, +-k) and (+-k, +-k)), a whole number of at
 /// most 2040 in magnitude, for the present row of some rows.
@@ -31,4 +31,4 @@ class RingDifferences {
   std::ptrdiff_t k_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

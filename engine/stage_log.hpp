@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 enum class StageState { computed, reused, skipped };
 
@@ -65,4 +65,4 @@ class StageTimer {
   Clock::time_point start_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

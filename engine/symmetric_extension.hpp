@@ -2,7 +2,7 @@
 /// Source: docs/method.md, "Symmetric extension".
 #pragma once
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// The sample that stands at index i of the endlessly mirrored sequence 0 .. n-1:
 /// .. 1 0 | 0 1 .. n-1 | n-1 n-2 ..
@@ -16,4 +16,4 @@ namespace touchtrial {
   return folded < n ? folded : period - 1 - folded;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

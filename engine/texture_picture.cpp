@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr int kMidGrey = 128;
@@ -83,4 +83,4 @@ template GreyImage texture_picture<double>(const Plane<double>&, Mapping);
 template Plane<float> texture_surface<float>(const Plane<float>&);
 template Plane<double> texture_surface<double>(const Plane<double>&);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

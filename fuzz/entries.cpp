@@ -38,7 +38,7 @@ void accept_or_refuse(Read read) {
   }
 }
 
-bool equal(const Trace& a, const Trace& b) {
+bool equal(const store::Trace& a, const store::Trace& b) {
   if (a.rate_hz != b.rate_hz || a.samples.size() != b.samples.size()) return false;
   for (std::size_t i = 0; i < a.samples.size(); ++i) {
     if (!(a.samples[i].position_mm == b.samples[i].position_mm)) return false;
@@ -62,18 +62,20 @@ bool claims_a_long_trace(ByteView bytes) {
 /// Counts replies by looking at every place, not only where the stream would look.
 std::uint64_t replies_in(ByteView payload) {
   std::uint64_t found = 0;
-  for (std::size_t at = 0; at + falcon::kPacketSize <= payload.size(); ++at) {
-    if (falcon::decode_reply(payload.subspan(at).first<falcon::kPacketSize>())) ++found;
+  for (std::size_t at = 0; at + device::falcon::kPacketSize <= payload.size(); ++at) {
+    if (device::falcon::decode_reply(payload.subspan(at).first<device::falcon::kPacketSize>()))
+      ++found;
   }
   return found;
 }
 
 /// Whatever the counts are, a pose and what it would send to the motors are sensible.
-void check_pose(const falcon::Reply& reply) {
-  const falcon::Pose pose = falcon::forward_kinematics(falcon::theta1_of_counts(reply.counts));
+void check_pose(const device::falcon::Reply& reply) {
+  const device::falcon::Pose pose =
+      device::falcon::forward_kinematics(device::falcon::theta1_of_counts(reply.counts));
   require(is_finite(pose.native_m), "a pose is finite");
-  const auto torques = falcon::torques_nm(pose.jacobian, {8.0, -8.0, 8.0});
-  const bool holds = pose.status == falcon::PoseStatus::ok;
+  const auto torques = device::falcon::torques_nm(pose.jacobian, {8.0, -8.0, 8.0});
+  const bool holds = pose.status == device::falcon::PoseStatus::ok;
   require(torques.has_value() == holds, "torques belong to poses that can be held");
 }
 
@@ -81,9 +83,10 @@ void check_pose(const falcon::Reply& reply) {
 
 void read_as_image(ByteView bytes) {
   accept_or_refuse([&] {
-    const GreyImage image = decode_grey_image(bytes, "picture");
+    const GreyImage image = engine::decode_grey_image(bytes, "picture");
     require(!image.empty(), "a picture has pixels");
-    require(static_cast<std::int64_t>(image.size()) <= kMaxImagePixels, "a picture is not huge");
+    require(static_cast<std::int64_t>(image.size()) <= engine::kMaxImagePixels,
+            "a picture is not huge");
   });
 }
 
@@ -98,7 +101,7 @@ void read_as_npy(ByteView bytes) {
 
 void read_as_study(ByteView bytes) {
   accept_or_refuse([&] {
-    const Study study = parse_study(text_of(bytes), "folder", "study.json");
+    const design::Study study = design::parse_study(text_of(bytes), "folder", "study.json");
     require(!study.classes.empty() && !study.methods.empty(), "a study has classes and methods");
     require(study.scored_trials() > 0, "a study has trials");
   });
@@ -106,7 +109,8 @@ void read_as_study(ByteView bytes) {
 
 void read_as_subject(ByteView bytes) {
   accept_or_refuse([&] {
-    const SubjectModel model = parse_subject_model(text_of(bytes), "subject.json");
+    const session::SubjectModel model =
+        session::parse_subject_model(text_of(bytes), "subject.json");
     require(model.weber >= 0.0 && model.explore_s > 0.0, "a subject's numbers are in range");
   });
 }
@@ -114,26 +118,28 @@ void read_as_subject(ByteView bytes) {
 void read_as_trace(ByteView bytes) {
   if (claims_a_long_trace(bytes)) return;
   accept_or_refuse([&] {
-    const Trace trace = decode_trace(bytes);
-    require(equal(decode_trace(encode_trace(trace)), trace), "a trace survives being stored");
+    const store::Trace trace = store::decode_trace(bytes);
+    require(equal(store::decode_trace(store::encode_trace(trace)), trace),
+            "a trace survives being stored");
   });
 }
 
 void read_as_falcon(ByteView bytes) {
-  falcon::FalconStream stream;
+  device::falcon::FalconStream stream;
   std::vector<std::uint8_t> payload;
   while (!bytes.empty()) {
     const std::size_t size = std::min<std::size_t>(bytes[0], bytes.size() - 1);
     const ByteView transfer = bytes.subspan(1, size);
     std::vector<std::uint8_t> part(size);
-    part.resize(falcon::ftdi_payload(transfer, part));
+    part.resize(device::falcon::ftdi_payload(transfer, part));
     payload.insert(payload.end(), part.begin(), part.end());
     if (stream.push_transfer(transfer) > 0) check_pose(stream.newest());
     bytes = bytes.subspan(1 + size);
   }
   require(stream.replies() == replies_in(payload), "a stream finds every reply and no other");
-  require(stream.discarded_bytes() + stream.replies() * falcon::kPacketSize <= payload.size(),
-          "no byte belongs to two things");
+  require(
+      stream.discarded_bytes() + stream.replies() * device::falcon::kPacketSize <= payload.size(),
+      "no byte belongs to two things");
 }
 
 }  // namespace touchtrial::fuzz

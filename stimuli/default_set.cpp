@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 std::string file_of(std::string_view label, int exemplar) {
@@ -42,7 +42,7 @@ void write_stimulus(const std::filesystem::path& folder, StimulusEntry& entry) {
   const GreyImage picture =
       generate_stimulus(entry.label, entry.seed, entry.size_px, entry.exemplar);
   make_folder((folder / entry.file).parent_path());
-  write_png(folder / entry.file, picture);
+  engine::write_png(folder / entry.file, picture);
   entry.sha256 = sha256_of_file(folder / entry.file);
   entry.pixels_sha256 = sha256(picture.samples());
 }
@@ -107,4 +107,4 @@ StimulusManifest generate_default_stimuli(const std::filesystem::path& folder,
   return manifest;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

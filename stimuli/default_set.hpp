@@ -9,7 +9,7 @@
 #include <functional>
 #include <optional>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 
 /// Told after each picture, for a progress bar: how many are done, of how many.
 using StimuliProgress = std::function<void(int done, int total)>;
@@ -37,4 +37,4 @@ StimulusManifest generate_default_stimuli(const std::filesystem::path& folder,
                                           const StimuliChoice& choice = {},
                                           const StimuliProgress& progress = {});
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 using Maker = GreyImage (*)(const Specimen& specimen, int size_px);
@@ -91,4 +91,4 @@ GreyImage generate_stimulus(std::string_view label, std::uint64_t seed, int size
   return make(Specimen(seed, exemplar), size_px);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

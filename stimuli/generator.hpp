@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 
 /// The seed of the set that comes with the program.
 inline constexpr std::uint64_t kDefaultStimuliSeed = 31875542;
@@ -64,4 +64,4 @@ struct StimulusRecipe {
 [[nodiscard]] GreyImage generate_stimulus(std::string_view label, std::uint64_t seed,
                                           int size_px = kDefaultStimulusSizePx, int exemplar = 1);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -90,4 +90,4 @@ StimulusManifest read_stimulus_manifest(const std::filesystem::path& path) {
   return manifest;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

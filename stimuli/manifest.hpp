@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 
 inline constexpr std::string_view kStimulusManifestFile = "manifest.json";
 /// Generated pictures belong to nobody.
@@ -45,4 +45,4 @@ void write_stimulus_manifest(const std::filesystem::path& path, const StimulusMa
 ///   holds the JSON pointer
 [[nodiscard]] StimulusManifest read_stimulus_manifest(const std::filesystem::path& path);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 /// A direction without sine and cosine, whose last digit differs between mathematical libraries.
@@ -106,4 +106,4 @@ CellPlace Cells::at(double x, double y) const noexcept {
   return place;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 
 /// A lattice of random numbers that is hashed, so that it repeats only after a thousand cells.
 class Lattice {
@@ -86,4 +86,4 @@ class Cells {
   return from + (to - from) * t;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

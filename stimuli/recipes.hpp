@@ -4,7 +4,7 @@
 #include "core/plane.hpp"
 #include "stimuli/specimen.hpp"
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 
 /// Each makes a square picture of `size_px` pixels a side. Textures keep the size of their features
 /// whatever the size of the picture; objects grow with it.
@@ -27,4 +27,4 @@ namespace touchtrial {
 /// One grey everywhere, whatever the specimen.
 [[nodiscard]] GreyImage make_flat(const Specimen& specimen, int size_px);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 constexpr double kBlack = 4.0;
@@ -210,4 +210,4 @@ GreyImage photographed(const Specimen& specimen, const Relief& relief, const Lam
   return developed(averaged(lit(relief, lamp_for(specimen, lamp))), print_for(specimen, print));
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 
 /// Reliefs are computed on a grid this many times finer than the picture, then averaged, as the
 /// sensor of a camera does.
@@ -100,4 +100,4 @@ struct Print {
 [[nodiscard]] GreyImage photographed(const Specimen& specimen, const Relief& relief,
                                      const Lamp& lamp, const Print& print);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

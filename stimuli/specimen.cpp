@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 /// Successive multiples of the golden ratio's fraction fill a range evenly.
@@ -42,4 +42,4 @@ View view_of(const Specimen& specimen, const ViewSpread& spread) {
           specimen.factor("view/relief", spread.relief)};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 
 /// The pieces of one seed: exemplar 1 is as its recipe describes it; each further one has noise of
 /// its own and departs from the recipe as photographs of one material depart from each other.
@@ -58,4 +58,4 @@ struct ViewSpread {
 
 [[nodiscard]] View view_of(const Specimen& specimen, const ViewSpread& spread = {});
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <numeric>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 double total(std::span<const double> counts) noexcept {
@@ -49,4 +49,4 @@ std::optional<double> answer_divergence(std::span<const double> a, std::span<con
   return sum / presented;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

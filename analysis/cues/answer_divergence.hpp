@@ -5,7 +5,7 @@
 #include <optional>
 #include <span>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Jensen and Shannon's divergence of two distributions, given as counts: half the sum of what each
 /// tells beyond their middle.
@@ -21,4 +21,4 @@ namespace touchtrial {
                                                       std::span<const double> b,
                                                       int classes) noexcept;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 const TrialOutcome* trial_named(const Outcomes& outcomes, const TrialName& name) {
@@ -34,7 +34,7 @@ TrialName trial_name(const std::string& text) {
                    ": is no trial's name; write PARTICIPANT:N, as P01:3 for P01's third trial");
 }
 
-ExplorationPath exploration_named(const StudyStore& store, const StudyKey& key,
+ExplorationPath exploration_named(const store::StudyStore& store, const design::StudyKey& key,
                                   const Outcomes& outcomes, const TrialName& name) {
   const TrialOutcome* trial = trial_named(outcomes, name);
   if (trial == nullptr) {
@@ -45,7 +45,8 @@ ExplorationPath exploration_named(const StudyStore& store, const StudyKey& key,
   return exploration_path(store, key, outcomes, trial->row.session, trial->row.trial);
 }
 
-std::vector<ExplorationPath> first_explorations(const StudyStore& store, const StudyKey& key,
+std::vector<ExplorationPath> first_explorations(const store::StudyStore& store,
+                                                const design::StudyKey& key,
                                                 const Outcomes& outcomes) {
   std::vector<ExplorationPath> paths;
   for (int method = 0; method < static_cast<int>(outcomes.methods.size()); ++method) {
@@ -59,4 +60,4 @@ std::vector<ExplorationPath> first_explorations(const StudyStore& store, const S
   return paths;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// A trial as its user names it.
 struct TrialName {
@@ -22,14 +22,15 @@ struct TrialName {
 /// \throws UsageError if there is none
 /// \throws StoreError if it has no trace
 /// \throws VerificationError if the trace does not open
-[[nodiscard]] ExplorationPath exploration_named(const StudyStore& store, const StudyKey& key,
+[[nodiscard]] ExplorationPath exploration_named(const store::StudyStore& store,
+                                                const design::StudyKey& key,
                                                 const Outcomes& outcomes, const TrialName& name);
 
 /// Of each method the first counted trial that has a trace, in the order of sessions and trials:
 /// nobody chose it by what it shows.
 /// \throws VerificationError if a trace does not open
-[[nodiscard]] std::vector<ExplorationPath> first_explorations(const StudyStore& store,
-                                                              const StudyKey& key,
+[[nodiscard]] std::vector<ExplorationPath> first_explorations(const store::StudyStore& store,
+                                                              const design::StudyKey& key,
                                                               const Outcomes& outcomes);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -1,6 +1,6 @@
 #include "analysis/cues/cue_report.hpp"
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 std::string_view name_of(Cue cue) noexcept {
   switch (cue) {
@@ -26,4 +26,4 @@ std::string_view title_of(Cue cue) noexcept {
   return "everything felt";
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <map>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// The counted trials of a study, felt.
@@ -22,7 +22,7 @@ struct FeltStudy {
   int jobs = 0;
 };
 
-StudyPlane plane_to_feel(const StudyStore& store, const StudyKey& key,
+StudyPlane plane_to_feel(const store::StudyStore& store, const design::StudyKey& key,
                          std::span<const TrialOutcome* const> trials, const CueOptions& options) {
   if (auto plane = study_plane(key, pack_of(store, key, options.pack))) return *plane;
   return {touched_plane(store, key, trials, key.study.rendering.pitch_mm, options.jobs),
@@ -167,8 +167,8 @@ int traces_to_read(const Outcomes& outcomes) {
       outcomes.trials, [](const TrialOutcome& trial) { return trial.counted; }));
 }
 
-CueReport make_cues(const StudyStore& store, const StudyKey& key, const Outcomes& outcomes,
-                    const CueOptions& options) {
+CueReport make_cues(const store::StudyStore& store, const design::StudyKey& key,
+                    const Outcomes& outcomes, const CueOptions& options) {
   CueReport report;
   report.simulated = outcomes.simulated;
   report.classes = outcomes.classes;
@@ -186,4 +186,4 @@ CueReport make_cues(const StudyStore& store, const StudyKey& key, const Outcomes
   return report;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

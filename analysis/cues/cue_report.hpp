@@ -14,11 +14,17 @@
 #include <string_view>
 #include <vector>
 
-namespace touchtrial {
-
-class StudyStore;
-struct Outcomes;
+namespace touchtrial::design {
 struct StudyKey;
+}
+
+namespace touchtrial::store {
+class StudyStore;
+}
+
+namespace touchtrial::analysis {
+
+struct Outcomes;
 
 /// What an ideal observer may use of a trial: the strength of the force alone, the shape of its
 /// spectrum alone, or all felt features.
@@ -113,7 +119,7 @@ struct CueOptions {
 /// one uses the store. Memory: features of all trials, 200 bytes each, and 64 traces.
 /// \throws VerificationError if a participant's key or a trace's seal does not open
 /// \throws StoreError if the database cannot be read
-[[nodiscard]] CueReport make_cues(const StudyStore& store, const StudyKey& key,
+[[nodiscard]] CueReport make_cues(const store::StudyStore& store, const design::StudyKey& key,
                                   const Outcomes& outcomes, const CueOptions& options = {});
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

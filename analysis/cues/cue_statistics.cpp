@@ -10,7 +10,7 @@
 #include <limits>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 constexpr std::size_t kObservers = kCues.size();
@@ -200,4 +200,4 @@ CueStatistics cue_statistics(std::span<const ParticipantAnswers> participants, s
   return statistics;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -10,7 +10,7 @@
 #include <optional>
 #include <span>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Figures of the observers, in the order of kCues.
 struct CueStatistics {
@@ -30,4 +30,4 @@ struct CueStatistics {
 [[nodiscard]] CueStatistics cue_statistics(std::span<const ParticipantAnswers> participants,
                                            std::uint64_t index, int jobs = 0);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

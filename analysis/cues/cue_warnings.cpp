@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 using Warnings = std::vector<std::string>;
@@ -93,4 +93,4 @@ std::vector<std::string> cue_warnings(const Outcomes& outcomes, const CueReport&
   return warnings;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

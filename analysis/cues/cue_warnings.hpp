@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// CueReport::plane_source if nothing else tells the plane's size.
 inline constexpr const char* kPlaneFromTraces = "the farthest that hands had contact";
@@ -15,4 +15,4 @@ inline constexpr const char* kPlaneFromTraces = "the farthest that hands had con
 [[nodiscard]] std::vector<std::string> cue_warnings(const Outcomes& outcomes,
                                                     const CueReport& report);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -2,7 +2,7 @@
 
 #include "analysis/json_figures.hpp"
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -110,4 +110,4 @@ nlohmann::ordered_json cues_object(const CueReport& report) {
   return object;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -6,10 +6,10 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// What stands under "cues" in the report; stamped if simulated. Each kind of figure is named once,
 /// under "by". Figures that do not exist are null.
 [[nodiscard]] nlohmann::ordered_json cues_object(const CueReport& report);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -13,7 +13,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 const TrialOutcome& trial_of(const Outcomes& outcomes, int session, int trial) {
@@ -29,30 +29,31 @@ const TrialOutcome& trial_of(const Outcomes& outcomes, int session, int trial) {
   return *found;
 }
 
-Trace trace_of(const StudyStore& store, const StudyKey& key, const TrialOutcome& trial) {
+store::Trace trace_of(const store::StudyStore& store, const design::StudyKey& key,
+                      const TrialOutcome& trial) {
   const std::array<const TrialOutcome*, 1> wanted{&trial};
-  Trace trace;
-  const auto missing = visit_traces(store, key, wanted, 1,
-                                    [&](std::size_t, const Trace& opened) { trace = opened; });
+  store::Trace trace;
+  const auto missing = visit_traces(
+      store, key, wanted, 1, [&](std::size_t, const store::Trace& opened) { trace = opened; });
   if (missing.empty()) return trace;
   throw StoreError(fmt::format("session {}, trial {}: has no trace; choose another trial",
                                trial.row.session, trial.row.trial));
 }
 
-PathTexture texture_in_pack(const Pack& pack, const std::string& code) {
-  const MappedField field = pack.map(code);
+PathTexture texture_in_pack(const engine::Pack& pack, const std::string& code) {
+  const engine::MappedField field = pack.map(code);
   return {field.view().geometry, field_picture(field.view()), "the field in the study's pack"};
 }
 
-PathTexture texture_in_image(const Study& study, const StimulusIndex& stimulus) {
+PathTexture texture_in_image(const design::Study& study, const design::StimulusIndex& stimulus) {
   const auto& image = study.classes[stimulus.class_index].images[stimulus.exemplar];
-  GreyImage grey = read_grey_image(study.folder / image);
+  GreyImage grey = engine::read_grey_image(study.folder / image);
   const PlaneGeometry geometry{study.rendering.pitch_mm, grey.height(), grey.width()};
   return {geometry, std::move(grey), "the study's image"};
 }
 
-PathTexture texture_of(const StudyKey& key, const StimulusIndex& stimulus,
-                       const std::optional<Pack>& pack) {
+PathTexture texture_of(const design::StudyKey& key, const design::StimulusIndex& stimulus,
+                       const std::optional<engine::Pack>& pack) {
   try {
     if (pack) return texture_in_pack(*pack, key.code_of(stimulus));
   } catch (const FileError&) {
@@ -65,9 +66,9 @@ PathTexture texture_of(const StudyKey& key, const StimulusIndex& stimulus,
   }
 }
 
-double tangential_rms_n(std::span<const TraceSample> samples) {
+double tangential_rms_n(std::span<const store::TraceSample> samples) {
   double squares = 0.0;
-  for (const TraceSample& sample : samples) {
+  for (const store::TraceSample& sample : samples) {
     squares += sample.force_n.x * sample.force_n.x + sample.force_n.y * sample.force_n.y;
   }
   return std::sqrt(squares / static_cast<double>(samples.size()));
@@ -75,14 +76,14 @@ double tangential_rms_n(std::span<const TraceSample> samples) {
 
 }  // namespace
 
-std::vector<PathPoint> thinned_path(const Trace& trace, int count) {
+std::vector<PathPoint> thinned_path(const store::Trace& trace, int count) {
   if (count < 1) throw std::invalid_argument("thinned_path: there must be a point");
-  const std::span<const TraceSample> samples(trace.samples);
+  const std::span<const store::TraceSample> samples(trace.samples);
   const auto most = static_cast<std::size_t>(count);
   const std::size_t step = std::max<std::size_t>(1, (samples.size() + most - 1) / most);
   std::vector<PathPoint> points;
   for (std::size_t i = 0; i < samples.size(); i += step) {
-    const TraceSample& at = samples[i];
+    const store::TraceSample& at = samples[i];
     points.push_back({static_cast<double>(i) / trace.rate_hz,
                       {at.position_mm.x, at.position_mm.y},
                       {at.force_n.x, at.force_n.y},
@@ -93,11 +94,11 @@ std::vector<PathPoint> thinned_path(const Trace& trace, int count) {
   return points;
 }
 
-ExplorationPath exploration_path(const StudyStore& store, const StudyKey& key,
+ExplorationPath exploration_path(const store::StudyStore& store, const design::StudyKey& key,
                                  const Outcomes& outcomes, int session, int trial,
                                  const std::filesystem::path& pack) {
   const TrialOutcome& felt = trial_of(outcomes, session, trial);
-  const Trace trace = trace_of(store, key, felt);
+  const store::Trace trace = trace_of(store, key, felt);
   ExplorationPath path;
   path.simulated = outcomes.simulated;
   path.session = session;
@@ -113,4 +114,4 @@ ExplorationPath exploration_path(const StudyStore& store, const StudyKey& key,
   return path;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 inline constexpr int kMostPathPoints = 2000;
 
@@ -53,12 +53,14 @@ struct ExplorationPath {
 /// \param pack  folder; empty: where the key says
 /// \throws StoreError if the outcomes hold no such scored trial, or it has no trace
 /// \throws VerificationError if the trace does not open
-[[nodiscard]] ExplorationPath exploration_path(const StudyStore& store, const StudyKey& key,
+[[nodiscard]] ExplorationPath exploration_path(const store::StudyStore& store,
+                                               const design::StudyKey& key,
                                                const Outcomes& outcomes, int session, int trial,
                                                const std::filesystem::path& pack = {});
 
 /// `count` points at most: every n-th sample, n the least that will do.
 /// \throws std::invalid_argument if `count` is below 1
-[[nodiscard]] std::vector<PathPoint> thinned_path(const Trace& trace, int count = kMostPathPoints);
+[[nodiscard]] std::vector<PathPoint> thinned_path(const store::Trace& trace,
+                                                  int count = kMostPathPoints);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -6,18 +6,19 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
-FeltFeatures felt_in(const Trace& trace, const PlaneGeometry& plane) {
-  TextureSense sense({.rate_hz = trace.rate_hz, .plane = plane});
-  for (const TraceSample& sample : trace.samples) sense.feel(sample.position_mm, sample.force_n);
+engine::FeltFeatures felt_in(const store::Trace& trace, const PlaneGeometry& plane) {
+  engine::TextureSense sense({.rate_hz = trace.rate_hz, .plane = plane});
+  for (const store::TraceSample& sample : trace.samples)
+    sense.feel(sample.position_mm, sample.force_n);
   return sense.features();
 }
 
-Vec2 farthest_contact_mm(const Trace& trace) {
+Vec2 farthest_contact_mm(const store::Trace& trace) {
   Vec2 farthest_mm;
-  for (const TraceSample& sample : trace.samples) {
+  for (const store::TraceSample& sample : trace.samples) {
     if (sample.force_n.z <= 0.0) continue;
     farthest_mm.x = std::max(farthest_mm.x, sample.position_mm.x);
     farthest_mm.y = std::max(farthest_mm.y, sample.position_mm.y);
@@ -35,13 +36,13 @@ std::vector<const TrialOutcome*> counted_trials(const Outcomes& outcomes) {
   return trials;
 }
 
-FeltTrials feel_traces(const StudyStore& store, const StudyKey& key,
+FeltTrials feel_traces(const store::StudyStore& store, const design::StudyKey& key,
                        std::span<const TrialOutcome* const> trials, const PlaneGeometry& plane,
                        int jobs, const TraceProgress& progress) {
   FeltTrials all;
   all.felt.resize(trials.size());
   all.has_trace.resize(trials.size(), true);
-  const auto feel = [&](std::size_t place, const Trace& trace) {
+  const auto feel = [&](std::size_t place, const store::Trace& trace) {
     all.felt[place] = felt_in(trace, plane);
   };
   for (const std::size_t place : visit_traces(store, key, trials, jobs, feel, progress)) {
@@ -50,12 +51,12 @@ FeltTrials feel_traces(const StudyStore& store, const StudyKey& key,
   return all;
 }
 
-PlaneGeometry touched_plane(const StudyStore& store, const StudyKey& key,
+PlaneGeometry touched_plane(const store::StudyStore& store, const design::StudyKey& key,
                             std::span<const TrialOutcome* const> trials, double pitch_mm,
                             int jobs) {
   std::vector<Vec2> farthest_mm(trials.size());
   static_cast<void>(
-      visit_traces(store, key, trials, jobs, [&](std::size_t place, const Trace& trace) {
+      visit_traces(store, key, trials, jobs, [&](std::size_t place, const store::Trace& trace) {
         farthest_mm[place] = farthest_contact_mm(trace);
       }));
   PlaneGeometry plane{pitch_mm, 1, 1};
@@ -67,4 +68,4 @@ PlaneGeometry touched_plane(const StudyStore& store, const StudyKey& key,
   return plane;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

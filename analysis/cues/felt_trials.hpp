@@ -12,11 +12,11 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Of each trial in a list the features; nothing where the trial has no trace.
 struct FeltTrials {
-  std::vector<FeltFeatures> felt;
+  std::vector<engine::FeltFeatures> felt;
   std::vector<bool> has_trace;
 };
 
@@ -28,15 +28,16 @@ struct FeltTrials {
 /// \param plane  for telling its parts; traces are in its coordinates
 /// \param jobs  threads; 0: as many as there are
 /// \throws VerificationError, naming the first trial, if a trace does not open
-[[nodiscard]] FeltTrials feel_traces(const StudyStore& store, const StudyKey& key,
+[[nodiscard]] FeltTrials feel_traces(const store::StudyStore& store, const design::StudyKey& key,
                                      std::span<const TrialOutcome* const> trials,
                                      const PlaneGeometry& plane, int jobs = 0,
                                      const TraceProgress& progress = {});
 
 /// A plane from its corner to the farthest that any hand had contact, for when its size is not
 /// known. Reads all traces; never empty.
-[[nodiscard]] PlaneGeometry touched_plane(const StudyStore& store, const StudyKey& key,
+[[nodiscard]] PlaneGeometry touched_plane(const store::StudyStore& store,
+                                          const design::StudyKey& key,
                                           std::span<const TrialOutcome* const> trials,
                                           double pitch_mm, int jobs = 0);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -6,20 +6,21 @@
 #include <cmath>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 constexpr double kMidGrey = 127.5;
 constexpr double kDeviations = 2.5;
 
-std::vector<double> surface_of(FieldView field) {
+std::vector<double> surface_of(engine::FieldView field) {
   std::vector<double> surface;
-  for (const FieldSample& sample : field.samples) surface.push_back(sample.surface);
+  for (const engine::FieldSample& sample : field.samples) surface.push_back(sample.surface);
   if (field.coefficients.empty()) return surface;
   const PlaneGeometry& plane = field.geometry;
   for (int y = 0; y < plane.height_px; ++y) {
     for (int x = 0; x < plane.width_px; ++x) {
-      surface.push_back(spline_at(field.coefficients, plane.height_px, plane.width_px, x, y).value);
+      surface.push_back(
+          engine::spline_at(field.coefficients, plane.height_px, plane.width_px, x, y).value);
     }
   }
   return surface;
@@ -43,7 +44,7 @@ Moments moments_of(const std::vector<double>& values) {
 
 }  // namespace
 
-GreyImage field_picture(FieldView field) {
+GreyImage field_picture(engine::FieldView field) {
   if (field.empty()) return {};
   const std::vector<double> surface = surface_of(field);
   const Moments moments = moments_of(surface);
@@ -58,4 +59,4 @@ GreyImage field_picture(FieldView field) {
   return picture;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -11,22 +11,23 @@
 #include <stdexcept>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// Log likelihoods nearer than this are equal: no compiler's rounding decides an answer.
 constexpr double kTie = 1e-9;
 
 /// Logarithm of the intensity of five bands together.
-double whole(const FeltFeatures& felt, int first_band) {
+double whole(const engine::FeltFeatures& felt, int first_band) {
   double power = 0.0;
-  for (int band = 0; band < kFeltBands; ++band) power += std::exp(2.0 * felt[first_band + band]);
+  for (int band = 0; band < engine::kFeltBands; ++band)
+    power += std::exp(2.0 * felt[first_band + band]);
   return 0.5 * std::log(power);
 }
 
-void append_shape(std::vector<double>& features, const FeltFeatures& felt, int first_band) {
+void append_shape(std::vector<double>& features, const engine::FeltFeatures& felt, int first_band) {
   const double level = whole(felt, first_band);
-  for (int band = 0; band < kFeltBands; ++band) {
+  for (int band = 0; band < engine::kFeltBands; ++band) {
     features.push_back(felt[first_band + band] - level);
   }
 }
@@ -60,16 +61,16 @@ struct Observer::Lessons {
   [[nodiscard]] bool can_judge(std::size_t trial) const {
     return trials_of_class[class_of_label[label[trial]]] >= 2;
   }
-  [[nodiscard]] FeltClassifier without(std::size_t trial, double noise) const;
+  [[nodiscard]] engine::FeltClassifier without(std::size_t trial, double noise) const;
   /// The class of the stimulus that a percept is likeliest of.
-  [[nodiscard]] AnswerShares answer(const FeltClassifier& classifier,
+  [[nodiscard]] AnswerShares answer(const engine::FeltClassifier& classifier,
                                     std::span<const double> percept) const;
 
   std::vector<int> label;                     ///< by trial
   std::vector<std::vector<double>> features;  ///< by trial
   std::vector<int> class_of_label;
   std::vector<int> trials_of_class;
-  std::optional<FeltStatistics> statistics;  ///< of all trials; nothing without any
+  std::optional<engine::FeltStatistics> statistics;  ///< of all trials; nothing without any
 };
 
 Observer::Lessons::Lessons(Cue cue, std::span<const ObservedTrial> trials, int classes)
@@ -88,13 +89,13 @@ Observer::Lessons::Lessons(Cue cue, std::span<const ObservedTrial> trials, int c
   for (std::size_t i = 0; i < label.size(); ++i) statistics->learn(label[i], features[i]);
 }
 
-FeltClassifier Observer::Lessons::without(std::size_t trial, double noise) const {
-  FeltStatistics others = *statistics;
+engine::FeltClassifier Observer::Lessons::without(std::size_t trial, double noise) const {
+  engine::FeltStatistics others = *statistics;
   others.forget(label[trial], features[trial]);
   return {others, noise};
 }
 
-AnswerShares Observer::Lessons::answer(const FeltClassifier& classifier,
+AnswerShares Observer::Lessons::answer(const engine::FeltClassifier& classifier,
                                        std::span<const double> percept) const {
   const std::vector<double> logs = classifier.log_likelihoods(percept);
   std::vector<double> support(trials_of_class.size(), -std::numeric_limits<double>::infinity());
@@ -125,7 +126,7 @@ AnswerShares Observer::ideal_answer(std::size_t trial) const {
 
 AnswerShares Observer::noisy_answer(std::size_t trial, double noise) const {
   if (!lessons_->can_judge(trial)) return {};
-  const FeltClassifier classifier = lessons_->without(trial, noise);
+  const engine::FeltClassifier classifier = lessons_->without(trial, noise);
   RandomStream random(0, "cues: noise of the sense", trial);
   AnswerShares mean(lessons_->trials_of_class.size(), 0.0);
   for (int draw = 0; draw < kNoisyPercepts; ++draw) {
@@ -137,13 +138,13 @@ AnswerShares Observer::noisy_answer(std::size_t trial, double noise) const {
   return mean;
 }
 
-std::vector<double> cue_features(Cue cue, const FeltFeatures& felt) {
+std::vector<double> cue_features(Cue cue, const engine::FeltFeatures& felt) {
   if (cue == Cue::everything) return {felt.begin(), felt.end()};
-  if (cue == Cue::rms) return {whole(felt, kLateralBandsAt)};
+  if (cue == Cue::rms) return {whole(felt, engine::kLateralBandsAt)};
   std::vector<double> shape;
-  append_shape(shape, felt, kLateralBandsAt);
-  append_shape(shape, felt, kNormalBandsAt);
+  append_shape(shape, felt, engine::kLateralBandsAt);
+  append_shape(shape, felt, engine::kNormalBandsAt);
   return shape;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -10,20 +10,20 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// A trial as an observer meets it.
 struct ObservedTrial {
   int class_index = 0;
   int exemplar = 0;
-  FeltFeatures felt{};
+  engine::FeltFeatures felt{};
 };
 
 /// What an observer may use. `rms`: the logarithm of the lateral force's intensity in all five
 /// bands together. `spectrum`: the five lateral and the five normal bands, each relative to all
 /// five of its kind; adding a constant to all features, which is what a stronger force does,
 /// changes nothing. `everything`: the features as they are.
-[[nodiscard]] std::vector<double> cue_features(Cue cue, const FeltFeatures& felt);
+[[nodiscard]] std::vector<double> cue_features(Cue cue, const engine::FeltFeatures& felt);
 
 /// How far each class is the answer, summing to 1; empty if the trial cannot be
 /// judged.
@@ -60,4 +60,4 @@ class Observer {
 
 inline constexpr int kNoisyPercepts = 32;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -8,7 +8,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Calls work(i) for i = 0 .. count - 1, in no order.
 /// \param jobs  threads, no more than there are cores; 0: as many as there are
@@ -21,4 +21,4 @@ void in_parallel(int jobs, std::size_t count, const Work& work) {
   arena.execute(all);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

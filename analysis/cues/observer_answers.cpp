@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 constexpr std::size_t kMostForNoise = 2000;
@@ -91,4 +91,4 @@ ObserverAnswers observer_answers(Cue cue, std::span<const ObservedTrial> trials,
   return answers;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// One observer's answers by trial; empty shares where a trial cannot be judged.
 struct ObserverAnswers {
@@ -27,4 +27,4 @@ struct ObserverAnswers {
                                                std::span<const std::optional<int>> responses,
                                                int classes, int jobs = 0);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

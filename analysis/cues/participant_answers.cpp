@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 ParticipantAnswers::ParticipantAnswers(std::string participant, int classes)
     : participant_(std::move(participant)), classes_(classes) {
@@ -38,4 +38,4 @@ void ParticipantAnswers::add(const JudgedTrial& trial) {
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Counts of answers, classes x classes, row-major, rows are the presented class.
 using FlatCounts = std::vector<double>;
@@ -77,4 +77,4 @@ class ParticipantAnswers {
   std::array<FlatCounts, kCues.size()> matched_of_answered_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// Keeps the part that both planes have; an empty one has not begun.
@@ -16,19 +16,19 @@ void keep_common(PlaneGeometry& common, const PlaneGeometry& other) {
   common.width_px = first ? other.width_px : std::min(common.width_px, other.width_px);
 }
 
-PlaneGeometry plane_of_pack(const Pack& pack) {
+PlaneGeometry plane_of_pack(const engine::Pack& pack) {
   PlaneGeometry common;
-  for (const PackEntry& entry : pack.manifest().entries) {
+  for (const engine::PackEntry& entry : pack.manifest().entries) {
     keep_common(common, pack.map(entry.code).view().geometry);
   }
   return common;
 }
 
-PlaneGeometry plane_of_images(const Study& study) {
+PlaneGeometry plane_of_images(const design::Study& study) {
   PlaneGeometry common;
-  for (const StudyClass& one : study.classes) {
+  for (const design::StudyClass& one : study.classes) {
     for (const auto& image : one.images) {
-      const GreyImage picture = read_grey_image(study.folder / image);
+      const GreyImage picture = engine::read_grey_image(study.folder / image);
       keep_common(common, {study.rendering.pitch_mm, picture.height(), picture.width()});
     }
   }
@@ -48,10 +48,10 @@ std::optional<StudyPlane> if_readable(const char* source, Make make) {
 
 }  // namespace
 
-std::optional<Pack> pack_of(const StudyStore& store, const StudyKey& key,
-                            const std::filesystem::path& folder) {
+std::optional<engine::Pack> pack_of(const store::StudyStore& store, const design::StudyKey& key,
+                                    const std::filesystem::path& folder) {
   try {
-    Pack pack(folder.empty() ? key.pack_folder : folder);
+    engine::Pack pack(folder.empty() ? key.pack_folder : folder);
     if (pack.digest() == store.commitment().pack) return pack;
   } catch (const FileError&) {
     // As good as none.
@@ -59,7 +59,8 @@ std::optional<Pack> pack_of(const StudyStore& store, const StudyKey& key,
   return std::nullopt;
 }
 
-std::optional<StudyPlane> study_plane(const StudyKey& key, const std::optional<Pack>& pack) {
+std::optional<StudyPlane> study_plane(const design::StudyKey& key,
+                                      const std::optional<engine::Pack>& pack) {
   if (pack) {
     if (auto plane = if_readable("the study's pack", [&] { return plane_of_pack(*pack); })) {
       return plane;
@@ -68,4 +69,4 @@ std::optional<StudyPlane> study_plane(const StudyKey& key, const std::optional<P
   return if_readable("the study's images", [&] { return plane_of_images(key.study); });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 struct StudyPlane {
   PlaneGeometry geometry;
@@ -19,12 +19,13 @@ struct StudyPlane {
 
 /// The pack that the database was recorded with, at `folder` or, if that is empty, where the key
 /// says; nothing if none is there, or it is another.
-[[nodiscard]] std::optional<Pack> pack_of(const StudyStore& store, const StudyKey& key,
-                                          const std::filesystem::path& folder = {});
+[[nodiscard]] std::optional<engine::Pack> pack_of(const store::StudyStore& store,
+                                                  const design::StudyKey& key,
+                                                  const std::filesystem::path& folder = {});
 
 /// The part of the plane that all stimuli have, which is what a session tells its participant to
 /// explore: from the pack's headers, else from the study's images; nothing if neither can be read.
-[[nodiscard]] std::optional<StudyPlane> study_plane(const StudyKey& key,
-                                                    const std::optional<Pack>& pack);
+[[nodiscard]] std::optional<StudyPlane> study_plane(const design::StudyKey& key,
+                                                    const std::optional<engine::Pack>& pack);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -11,20 +11,20 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 constexpr std::size_t kBatch = 64;
 
 struct WaitingTrace {
   std::size_t place = 0;
-  const TrialRow* row = nullptr;
+  const store::TrialRow* row = nullptr;
   const SecretKey* own = nullptr;
-  SealedTrace box;
+  store::SealedTrace box;
   std::string fault;  ///< why it did not open; empty: it did
 };
 
-std::string refusal(const TrialRow& row, const std::string& why) {
+std::string refusal(const store::TrialRow& row, const std::string& why) {
   return fmt::format(
       "session {}, trial {}: the trace {}; run `touchtrial verify` and restore the "
       "database from a backup",
@@ -35,8 +35,8 @@ std::string refusal(const TrialRow& row, const std::string& why) {
 /// first.
 void open_and_visit(WaitingTrace& sealed, const TraceVisitor& visit) {
   try {
-    const std::optional<Trace> trace =
-        unsealed_trace(sealed.box, *sealed.own, static_cast<std::size_t>(sealed.row->samples));
+    const std::optional<store::Trace> trace = store::unsealed_trace(
+        sealed.box, *sealed.own, static_cast<std::size_t>(sealed.row->samples));
     if (trace) {
       visit(sealed.place, *trace);
     } else {
@@ -57,15 +57,15 @@ void visit_batch(std::vector<WaitingTrace>& batch, int jobs, const TraceVisitor&
 
 }  // namespace
 
-std::vector<std::size_t> visit_traces(const StudyStore& store, const StudyKey& key,
+std::vector<std::size_t> visit_traces(const store::StudyStore& store, const design::StudyKey& key,
                                       std::span<const TrialOutcome* const> trials, int jobs,
                                       const TraceVisitor& visit, const TraceProgress& progress) {
   const std::map<int, SecretKey> keys = participant_keys(store, key);
   std::vector<std::size_t> missing;
   std::vector<WaitingTrace> batch;
   for (std::size_t place = 0; place < trials.size(); ++place) {
-    const TrialRow& row = trials[place]->row;
-    std::optional<SealedTrace> box = store.sealed_trace(row.session, row.trial);
+    const store::TrialRow& row = trials[place]->row;
+    std::optional<store::SealedTrace> box = store.sealed_trace(row.session, row.trial);
     const auto own = keys.find(row.session);
     if (!box || own == keys.end()) {
       missing.push_back(place);
@@ -81,4 +81,4 @@ std::vector<std::size_t> visit_traces(const StudyStore& store, const StudyKey& k
   return missing;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -3,22 +3,22 @@
 
 #include <cstddef>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json picture_json(const PictureFigures& picture) {
+Json picture_json(const engine::PictureFigures& picture) {
   Json glcm = Json::object();
-  for (std::size_t i = 0; i < kGlcmOffsets.size(); ++i) {
-    glcm[std::to_string(kGlcmOffsets[i].degrees)] = statistics_json(picture.glcm[i]);
+  for (std::size_t i = 0; i < engine::kGlcmOffsets.size(); ++i) {
+    glcm[std::to_string(engine::kGlcmOffsets[i].degrees)] = statistics_json(picture.glcm[i]);
   }
   return {{"entropy", picture.entropy}, {"glcm", glcm}};
 }
 
-Json orders_json(const std::vector<OrderFigures>& orders) {
+Json orders_json(const std::vector<engine::OrderFigures>& orders) {
   Json list = Json::array();
-  for (const OrderFigures& figures : orders) {
+  for (const engine::OrderFigures& figures : orders) {
     list.push_back({{"order", figures.order},
                     {"entropy", figures.entropy},
                     {"ms_ssim", figures.ms_ssim},
@@ -43,4 +43,4 @@ std::string evaluation_json(std::span<const EvaluatedImage> images) {
   return json_text({{"images", list}});
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

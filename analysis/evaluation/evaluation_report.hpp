@@ -7,11 +7,11 @@
 #include <span>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 struct EvaluatedImage {
   std::string image;  ///< the name to report it by
-  Evaluation evaluation;
+  engine::Evaluation evaluation;
 };
 
 /// Tables for a terminal, with what the paper's row "Entropy" is, and how close
@@ -26,4 +26,4 @@ struct EvaluatedImage {
 /// order, in a colour for each image. \pre every image was swept
 [[nodiscard]] std::string order_sweep_script(std::span<const EvaluatedImage> images);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

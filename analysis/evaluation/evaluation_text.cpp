@@ -5,22 +5,22 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// A row of the co-occurrence table.
 struct Statistic {
   const char* name;
-  double GlcmStatistics::*figure;
+  double engine::GlcmStatistics::*figure;
   int decimals;
 };
 
 constexpr std::array<Statistic, 5> kStatistics = {
-    {{"ASM", &GlcmStatistics::angular_second_moment, 6},
-     {"energy", &GlcmStatistics::energy, 4},
-     {"entropy", &GlcmStatistics::entropy, 3},
-     {"contrast", &GlcmStatistics::contrast, 2},
-     {"correlation", &GlcmStatistics::correlation, 3}}};
+    {{"ASM", &engine::GlcmStatistics::angular_second_moment, 6},
+     {"energy", &engine::GlcmStatistics::energy, 4},
+     {"entropy", &engine::GlcmStatistics::entropy, 3},
+     {"contrast", &engine::GlcmStatistics::contrast, 2},
+     {"correlation", &engine::GlcmStatistics::correlation, 3}}};
 
 constexpr const char* kWhatEntropyIs =
     "The paper's Table 1 prints, as \"Entropy\", what is called energy here: the square root of "
@@ -28,17 +28,17 @@ constexpr const char* kWhatEntropyIs =
     "rows below it.";
 
 void add_statistic(TextTable& table, const Statistic& statistic, const char* picture,
-                   const GlcmTable& glcm) {
+                   const engine::GlcmTable& glcm) {
   std::vector<std::string> row = {fmt::format("{}, {}", statistic.name, picture)};
-  for (const GlcmStatistics& direction : glcm) {
+  for (const engine::GlcmStatistics& direction : glcm) {
     row.push_back(fmt::format("{:.{}f}", direction.*statistic.figure, statistic.decimals));
   }
   table.add(row);
 }
 
-std::string glcm_text(const Evaluation& evaluation) {
+std::string glcm_text(const engine::Evaluation& evaluation) {
   std::vector<std::string> header = {"co-occurrence"};
-  for (const GlcmOffset& offset : kGlcmOffsets) {
+  for (const engine::GlcmOffset& offset : engine::kGlcmOffsets) {
     header.push_back(fmt::format("{} deg", offset.degrees));
   }
   TextTable table(header);
@@ -49,14 +49,14 @@ std::string glcm_text(const Evaluation& evaluation) {
   return table.text();
 }
 
-std::string orders_text(const Evaluation& evaluation) {
+std::string orders_text(const engine::Evaluation& evaluation) {
   TextTable table({"fixed order", "entropy, nats", "MS-SSIM", "MS-SSIM (Wang)"});
-  for (const OrderFigures& figures : evaluation.orders) {
+  for (const engine::OrderFigures& figures : evaluation.orders) {
     table.add({fmt::format("{:.2f}", figures.order), fmt::format("{:.4f}", figures.entropy),
                fmt::format("{:.5f}", figures.ms_ssim),
                fmt::format("{:.5f}", figures.ms_ssim_wang)});
   }
-  const OrderFigures& closest = closest_order(evaluation);
+  const engine::OrderFigures& closest = engine::closest_order(evaluation);
   return "\n" + table.text() + "\n" +
          wrapped("  ", fmt::format("Closest to the adaptive texture is the fixed order {:.2f}: "
                                    "MS-SSIM {:.5f} (Wang {:.5f}) where 1 is identity, entropy "
@@ -66,7 +66,7 @@ std::string orders_text(const Evaluation& evaluation) {
 }
 
 std::string image_text(const EvaluatedImage& image) {
-  const Evaluation& evaluation = image.evaluation;
+  const engine::Evaluation& evaluation = image.evaluation;
   std::string text = fmt::format(
       "{}: {} x {} px, entropy of the grey levels {:.4f} nats, of the "
       "adaptive texture {:.4f}\n\n",
@@ -85,4 +85,4 @@ std::string evaluation_text(std::span<const EvaluatedImage> images) {
   return text + wrapped("", kWhatEntropyIs);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// Distinct for readers with any colour vision (Okabe and Ito).
@@ -30,9 +30,9 @@ set xlabel 'fixed order v' noenhanced
 unset key
 )";
 
-std::string data_of(const Evaluation& evaluation, std::size_t number) {
+std::string data_of(const engine::Evaluation& evaluation, std::size_t number) {
   std::string data = fmt::format("$sweep{} << EOD\n", number);
-  for (const OrderFigures& figures : evaluation.orders) {
+  for (const engine::OrderFigures& figures : evaluation.orders) {
     data += fmt::format("{} {} {} {}\n", figures.order, figures.entropy, figures.ms_ssim,
                         figures.ms_ssim_wang);
   }
@@ -103,4 +103,4 @@ std::string order_sweep_script(std::span<const EvaluatedImage> images) {
   return script + legend_panel(images) + "unset multiplot\n";
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -6,7 +6,7 @@
 
 #include <map>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 struct RecordColumn {
@@ -21,13 +21,13 @@ DataCell practised(const SessionRecord& record) {
   return std::int64_t{(*record.practice).*kNumber};
 }
 
-template <std::string StationRecord::*kText>
+template <std::string store::StationRecord::*kText>
 DataCell station_text(const SessionRecord& record) {
   if (!record.station) return std::monostate{};
   return (*record.station).*kText;
 }
 
-template <double StationRecord::*kNumber>
+template <double store::StationRecord::*kNumber>
 DataCell station_number(const SessionRecord& record) {
   if (!record.station) return std::monostate{};
   return (*record.station).*kNumber;
@@ -51,12 +51,12 @@ constexpr RecordColumn kRecordColumns[] = {
     {"replacement_reason",
      [](const SessionRecord& record) -> DataCell { return record.replacement_reason; }},
     {"device_serial", [](const SessionRecord& record) -> DataCell { return record.device_serial; }},
-    {"device_model", station_text<&StationRecord::model>},
-    {"device_firmware", station_text<&StationRecord::firmware>},
-    {"device_max_force_n", station_number<&StationRecord::max_force_n>},
-    {"certificate", station_text<&StationRecord::calibration>},
-    {"servo_hz", station_number<&StationRecord::rate_hz>},
-    {"scheduling", station_text<&StationRecord::scheduling>},
+    {"device_model", station_text<&store::StationRecord::model>},
+    {"device_firmware", station_text<&store::StationRecord::firmware>},
+    {"device_max_force_n", station_number<&store::StationRecord::max_force_n>},
+    {"certificate", station_text<&store::StationRecord::calibration>},
+    {"servo_hz", station_number<&store::StationRecord::rate_hz>},
+    {"scheduling", station_text<&store::StationRecord::scheduling>},
     {"visual",
      [](const SessionRecord& record) -> DataCell {
        if (!record.station) return std::monostate{};
@@ -75,8 +75,8 @@ void add_record(std::vector<DataCell>& row, const SessionRecord& record, bool un
   }
 }
 
-std::vector<DataCell> session_cells(const SessionRow& row, const StudyStore& store,
-                                    const StudyState& state) {
+std::vector<DataCell> session_cells(const store::SessionRow& row, const store::StudyStore& store,
+                                    const store::StudyState& state) {
   const bool shown = !state.unblinded || state.shows(row.session);
   return {row.participant,
           std::int64_t{row.session},
@@ -94,17 +94,17 @@ std::vector<DataCell> session_cells(const SessionRow& row, const StudyStore& sto
 
 }  // namespace
 
-DataTable participants_table(const StudyStore& store, const Collection& collection) {
+DataTable participants_table(const store::StudyStore& store, const Collection& collection) {
   DataTable table{{"participant", "session", "enrolment", "state", "excluded", "withdrawn", "pilot",
                    "simulated", "counted", "device", "replaced_by", "shown"},
                   {}};
   std::map<int, const SessionRecord*> records;
   for (const SessionRecord& record : collection.sessions) records[record.row.session] = &record;
-  const StudyState state = store.state();
+  const store::StudyState state = store.state();
   for (const RecordColumn& column : kRecordColumns) {
     if (state.unblinded || !column.after_unblinding) table.columns.emplace_back(column.name);
   }
-  for (const SessionRow& row : store.sessions()) {
+  for (const store::SessionRow& row : store.sessions()) {
     table.rows.push_back(session_cells(row, store, state));
     add_record(table.rows.back(), *records.at(row.session), state.unblinded);
   }
@@ -150,4 +150,4 @@ void add_prescription(DataTable& study, const Prescription& prescription) {
   add("masking_dbfs", prescription.masking_dbfs);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -2,7 +2,7 @@
 
 #include <map>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 using Levels = std::vector<std::pair<std::string, std::string>>;
@@ -144,4 +144,4 @@ const ColumnMeaning& meaning_of(const std::string& column) {
   return kMeanings.at(column);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 struct ColumnMeaning {
   std::string description;
@@ -19,4 +19,4 @@ struct ColumnMeaning {
 /// \throws std::out_of_range if no export has such a column
 [[nodiscard]] const ColumnMeaning& meaning_of(const std::string& column);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

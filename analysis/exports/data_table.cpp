@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 std::string quoted(std::string_view text) {
@@ -59,4 +59,4 @@ std::string csv_text(const DataTable& table) {
   return text;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// One value: nothing, a text, a whole number, a number, or a time (written in seconds).
 using DataCell =
@@ -27,4 +27,4 @@ struct DataTable {
 /// \throws std::invalid_argument if a row's length is not the header's
 [[nodiscard]] std::string csv_text(const DataTable& table);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

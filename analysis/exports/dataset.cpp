@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// Whatever the locale.
@@ -31,4 +31,4 @@ std::string plain_label(const std::string& name) {
   return label.empty() ? "study" : label;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

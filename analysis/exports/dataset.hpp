@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// A study, and, once it is unblinded, what it means; both or neither.
 struct DatasetSource {
-  const StudyStore& store;
+  const store::StudyStore& store;
   const Outcomes* outcomes = nullptr;
-  const StudyKey* key = nullptr;
+  const design::StudyKey* key = nullptr;
 };
 
 struct DatasetOptions {
@@ -34,4 +34,4 @@ struct DatasetOptions {
 /// The letters and digits of a name; "study" if it has none.
 [[nodiscard]] std::string plain_label(const std::string& name);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -7,16 +7,16 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// What holds whatever the format: what was done, by whom, and how much may be seen.
 std::string about(const DatasetSource& study) {
-  const StudyCommitment& commitment = study.store.commitment();
-  const std::vector<SessionRow> sessions = study.store.sessions();
-  const auto counts = std::count_if(sessions.begin(), sessions.end(), [&](const SessionRow& row) {
-    return session_counts(row, commitment);
-  });
+  const store::StudyCommitment& commitment = study.store.commitment();
+  const std::vector<store::SessionRow> sessions = study.store.sessions();
+  const auto counts =
+      std::count_if(sessions.begin(), sessions.end(),
+                    [&](const store::SessionRow& row) { return session_counts(row, commitment); });
   std::string text;
   if (commitment.simulated) {
     text +=
@@ -66,4 +66,4 @@ std::string psych_ds_readme(const DatasetSource& study) {
          "`session`. `dataset_description.json` says what each column means.\n";
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -5,7 +5,7 @@
 
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Plain text.
 [[nodiscard]] std::string bids_readme(const DatasetSource& study, const DatasetOptions& options);
@@ -13,4 +13,4 @@ namespace touchtrial {
 /// Markdown.
 [[nodiscard]] std::string psych_ds_readme(const DatasetSource& study);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

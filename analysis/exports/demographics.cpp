@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// ASCII alone, whatever the locale.
@@ -22,13 +22,13 @@ std::string lower_case(std::string text) {
 }
 
 /// The option's words, in English if the study has them.
-std::optional<std::string> option_text(const Study& study, const std::string& question,
+std::optional<std::string> option_text(const design::Study& study, const std::string& question,
                                        int option) {
-  for (const Question& one : study.session.closing_questions) {
+  for (const design::Question& one : study.session.closing_questions) {
     if (one.id != question || option < 0 || option >= static_cast<int>(one.options.size())) {
       continue;
     }
-    const Translated& words = one.options[option];
+    const design::Translated& words = one.options[option];
     if (words.empty()) return std::nullopt;
     const auto english = words.find("en");
     return lower_case(english == words.end() ? words.begin()->second : english->second);
@@ -37,7 +37,7 @@ std::optional<std::string> option_text(const Study& study, const std::string& qu
 }
 
 void take_answers(const std::string& questionnaire, const QuestionnaireAnswers& answers,
-                  const Study& study, Demographics& of) {
+                  const design::Study& study, Demographics& of) {
   if (questionnaire == "handedness") {
     if (const auto score = handedness_score(answers.choices)) of.handedness_score = score;
   }
@@ -56,11 +56,12 @@ std::map<int, Demographics> demographics(const DatasetSource& source) {
   std::map<int, Demographics> all;
   if (source.key == nullptr) return all;
   const std::map<int, SecretKey> keys = participant_keys(source.store, *source.key);
-  source.store.for_each(EventKind::questioned, [&](const Event& event) {
+  source.store.for_each(store::EventKind::questioned, [&](const store::Event& event) {
     const auto own = keys.find(event.session);
     if (own == keys.end()) return;
-    take_answers(remark_from_json(event.body), answers_from_json(opened_part(event, own->second)),
-                 source.key->study, all[event.session]);
+    take_answers(store::remark_from_json(event.body),
+                 answers_from_json(opened_part(event, own->second)), source.key->study,
+                 all[event.session]);
   });
   return all;
 }
@@ -89,4 +90,4 @@ std::string handedness_of(double score) {
   return score < -60.0 ? "left" : "ambidextrous";
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 struct Demographics {
   std::optional<std::string> age_band;     ///< "20-29"; "under 18", "70 or more"
@@ -29,4 +29,4 @@ struct Demographics {
 /// "right", "left" or "ambidextrous", by Veale's bounds of 60 and -60.
 [[nodiscard]] std::string handedness_of(double score);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

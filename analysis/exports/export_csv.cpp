@@ -7,11 +7,11 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// What the folder holds, for whoever finds it without us.
-std::string contents_json(const StudyCommitment& commitment, bool blinded,
+std::string contents_json(const store::StudyCommitment& commitment, bool blinded,
                           const std::vector<ExportFile>& files) {
   nlohmann::ordered_json contents{{"study", commitment.study}, {"protocol", commitment.protocol}};
   put_stamp(contents, commitment.simulated);
@@ -26,10 +26,10 @@ std::string contents_json(const StudyCommitment& commitment, bool blinded,
 
 }  // namespace
 
-std::vector<std::filesystem::path> export_csv(const StudyStore& store,
+std::vector<std::filesystem::path> export_csv(const store::StudyStore& store,
                                               const std::optional<Outcomes>& outcomes,
                                               const std::filesystem::path& folder) {
-  const StudyCommitment& commitment = store.commitment();
+  const store::StudyCommitment& commitment = store.commitment();
   const Collection collection = collection_of(store, outcomes);
   std::vector<ExportFile> files;
   const auto add = [&](const std::string& name, const DataTable& table) {
@@ -50,4 +50,4 @@ std::vector<std::filesystem::path> export_csv(const StudyStore& store,
   return write_export(folder, {commitment.study, commitment.study_id, "csv"}, files);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

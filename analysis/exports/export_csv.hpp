@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Writes trials.csv, participants.csv, with outcomes one confusion_<method>.csv a presented
 /// method, and last export.json, which says what the others are and whether they are simulated.
@@ -16,8 +16,8 @@ namespace touchtrial {
 /// \param outcomes  of this store; nothing before unblinding
 /// \return the files, in the order written
 /// \throws FileError if the folder or a file cannot be written
-std::vector<std::filesystem::path> export_csv(const StudyStore& store,
+std::vector<std::filesystem::path> export_csv(const store::StudyStore& store,
                                               const std::optional<Outcomes>& outcomes,
                                               const std::filesystem::path& folder);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

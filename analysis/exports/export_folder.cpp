@@ -10,7 +10,7 @@
 
 #include <tbb/parallel_for.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 namespace fs = std::filesystem;
@@ -143,4 +143,4 @@ std::vector<fs::path> write_export(const fs::path& folder, const ExportMark& mar
   return written;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// One file of an export.
 struct ExportFile {
@@ -46,4 +46,4 @@ std::vector<std::filesystem::path> write_export(const std::filesystem::path& fol
                                                 const ExportMark& mark,
                                                 const std::vector<ExportFile>& files);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -37,9 +37,10 @@ Json rows_json(const DataTable& table) {
 
 }  // namespace
 
-std::filesystem::path export_json(const StudyStore& store, const std::optional<Outcomes>& outcomes,
+std::filesystem::path export_json(const store::StudyStore& store,
+                                  const std::optional<Outcomes>& outcomes,
                                   const std::filesystem::path& folder) {
-  const StudyCommitment& commitment = store.commitment();
+  const store::StudyCommitment& commitment = store.commitment();
   Json document{{"study", commitment.study}, {"protocol", commitment.protocol}};
   put_stamp(document, commitment.simulated);
   document["study_id"] = commitment.study_id;
@@ -59,4 +60,4 @@ std::filesystem::path export_json(const StudyStore& store, const std::optional<O
       .front();
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -7,13 +7,14 @@
 #include <filesystem>
 #include <optional>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Writes study.json: the report (before unblinding the quality report), participants and trials
 /// with the columns of the CSV files as keys; a missing value is null, times are in seconds.
 /// Arguments and errors as export_csv.
 /// \return the file
-std::filesystem::path export_json(const StudyStore& store, const std::optional<Outcomes>& outcomes,
+std::filesystem::path export_json(const store::StudyStore& store,
+                                  const std::optional<Outcomes>& outcomes,
                                   const std::filesystem::path& folder);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

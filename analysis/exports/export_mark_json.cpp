@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 std::string folder_mark_json(const FolderMark& mark) {
   const nlohmann::json object{
@@ -27,4 +27,4 @@ FolderMark read_folder_mark(const std::filesystem::path& path) {
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 struct FolderMark {
   std::string study;
@@ -18,4 +18,4 @@ struct FolderMark {
 /// \throws FileError if the file is no such mark
 [[nodiscard]] FolderMark read_folder_mark(const std::filesystem::path& path);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -10,12 +10,12 @@
 
 #include <algorithm>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// participants.csv without those who withdrew, and without names that mean something else of
 /// trials: a variable of a dataset has one meaning.
-DataTable people_table(const StudyStore& store, const Collection& collection) {
+DataTable people_table(const store::StudyStore& store, const Collection& collection) {
   DataTable table = participants_table(store, collection);
   std::replace(table.columns.begin(), table.columns.end(), std::string("state"),
                std::string("session_state"));
@@ -35,7 +35,7 @@ void add_columns(std::vector<std::string>& all, const DataTable& table) {
   }
 }
 
-std::string changes_text(const StudyCommitment& commitment) {
+std::string changes_text(const store::StudyCommitment& commitment) {
   return "# Changes\n\n- Exported by Touchtrial " + commitment.program_version + ".\n";
 }
 
@@ -44,7 +44,7 @@ std::string changes_text(const StudyCommitment& commitment) {
 std::vector<std::filesystem::path> export_psych_ds(const DatasetSource& study,
                                                    const DatasetOptions& options,
                                                    const std::filesystem::path& folder) {
-  const StudyCommitment& commitment = study.store.commitment();
+  const store::StudyCommitment& commitment = study.store.commitment();
   const std::optional<Outcomes> outcomes =
       study.outcomes != nullptr ? std::optional(*study.outcomes) : std::nullopt;
   std::vector<ExportFile> files;
@@ -69,4 +69,4 @@ std::vector<std::filesystem::path> export_psych_ds(const DatasetSource& study,
   return write_export(folder, {commitment.study, commitment.study_id, "psych-ds"}, files);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

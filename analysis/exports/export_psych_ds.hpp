@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Of `options` authors and license alone count. Before unblinding the trials say no more than the
 /// CSV export does then.
@@ -17,4 +17,4 @@ std::vector<std::filesystem::path> export_psych_ds(const DatasetSource& study,
                                                    const DatasetOptions& options,
                                                    const std::filesystem::path& folder);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -6,7 +6,7 @@
 
 #include <map>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 void add_trial(DataTable& table, const TrialView& trial) {
@@ -25,13 +25,13 @@ DataTable trials_header(bool unblinded) {
   return table;
 }
 
-DataTable blinded_trials(const StudyStore& store) {
+DataTable blinded_trials(const store::StudyStore& store) {
   DataTable table = trials_header(false);
-  std::map<int, SessionRow> shown;
-  for (const SessionRow& session : store.sessions()) {
+  std::map<int, store::SessionRow> shown;
+  for (const store::SessionRow& session : store.sessions()) {
     if (!session.withdrawn) shown[session.session] = session;
   }
-  for (const TrialRow& row : store.trials()) {
+  for (const store::TrialRow& row : store.trials()) {
     const auto session = shown.find(row.session);
     if (session == shown.end()) continue;
     add_trial(table, {session->second.participant, row, session->second.simulated});
@@ -62,7 +62,7 @@ void add_labels(DataTable& table, const Outcomes& outcomes) {
 
 }  // namespace
 
-DataTable trials_table(const StudyStore& store, const std::optional<Outcomes>& outcomes) {
+DataTable trials_table(const store::StudyStore& store, const std::optional<Outcomes>& outcomes) {
   return outcomes ? trials_that_are(true, *outcomes) : blinded_trials(store);
 }
 
@@ -91,10 +91,10 @@ DataTable confusion_table(const Outcomes& outcomes, int method) {
   return table;
 }
 
-DataTable study_table(const StudyStore& store, const std::optional<Outcomes>& outcomes,
+DataTable study_table(const store::StudyStore& store, const std::optional<Outcomes>& outcomes,
                       const Collection& collection) {
-  const StudyCommitment& commitment = store.commitment();
-  const StudyState state = store.state();
+  const store::StudyCommitment& commitment = store.commitment();
+  const store::StudyState state = store.state();
   DataTable table{{"key", "of", "value"}, {}};
   const auto add = [&](const char* key, DataCell value) {
     table.rows.push_back({std::string(key), std::monostate{}, std::move(value)});
@@ -116,8 +116,8 @@ DataTable study_table(const StudyStore& store, const std::optional<Outcomes>& ou
   return table;
 }
 
-Collection collection_of(const StudyStore& store, const std::optional<Outcomes>& outcomes) {
+Collection collection_of(const store::StudyStore& store, const std::optional<Outcomes>& outcomes) {
   return outcomes ? outcomes->collection : load_collection(store);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -25,7 +25,7 @@ Json variable_json(const std::string& column) {
   return variable;
 }
 
-std::string description_of(const StudyCommitment& commitment) {
+std::string description_of(const store::StudyCommitment& commitment) {
   return fmt::format(
       "{}{}Textures felt through a force-feedback device, one of {} named in each trial. "
       "Protocol: {}.",
@@ -38,7 +38,7 @@ std::string description_of(const StudyCommitment& commitment) {
 
 std::string psych_ds_description_json(const DatasetSource& study, const DatasetOptions& options,
                                       const std::vector<std::string>& columns) {
-  const StudyCommitment& commitment = study.store.commitment();
+  const store::StudyCommitment& commitment = study.store.commitment();
   const std::string stamp = commitment.simulated ? " (SIMULATED)" : "";
   Json object{
       {"@context", "https://schema.org/"}, {"@type", "Dataset"},
@@ -56,4 +56,4 @@ std::string psych_ds_description_json(const DatasetSource& study, const DatasetO
   return json_text(object);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// \param columns  of all data files; each is described once
 [[nodiscard]] std::string psych_ds_description_json(const DatasetSource& study,
                                                     const DatasetOptions& options,
                                                     const std::vector<std::string>& columns);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 bool fits_int(const nlohmann::json& value) {
@@ -28,4 +28,4 @@ QuestionnaireAnswers answers_from_json(const std::string& text) {
   return answers;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// By the question's id; texts are left out, as they may name people.
 struct QuestionnaireAnswers {
@@ -16,4 +16,4 @@ struct QuestionnaireAnswers {
 /// \throws StoreError if the text is no JSON object
 [[nodiscard]] QuestionnaireAnswers answers_from_json(const std::string& text);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -1,17 +1,17 @@
 #include "analysis/exports/session_words.hpp"
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
-const char* text_of(SessionState state) {
+const char* text_of(store::SessionState state) {
   switch (state) {
-    case SessionState::completed:
+    case store::SessionState::completed:
       return "completed";
-    case SessionState::stopped:
+    case store::SessionState::stopped:
       return "stopped";
-    case SessionState::open:
+    case store::SessionState::open:
       break;
   }
   return "open";
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

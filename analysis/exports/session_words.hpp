@@ -3,9 +3,9 @@
 
 #include "protocols/store/study_store.hpp"
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// "completed", "stopped" or "open"
-[[nodiscard]] const char* text_of(SessionState state);
+[[nodiscard]] const char* text_of(store::SessionState state);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -3,11 +3,11 @@
 #include <array>
 #include <optional>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 bool has_stimulus(const TrialView& trial) {
-  return trial.outcome->kind != PresentationKind::catch_trial;
+  return trial.outcome->kind != design::PresentationKind::catch_trial;
 }
 
 /// From one moment of a trial to another, if both came.
@@ -25,8 +25,9 @@ DataCell response_of(const TrialView& trial) {
 /// Empty for a trial that never ended, so that a mean over the column is an accuracy.
 DataCell correctness_of(const TrialView& trial) {
   if (!has_stimulus(trial)) return std::monostate{};
-  const TrialState state = trial.row.state;
-  if (state != TrialState::answered && state != TrialState::timed_out) return std::monostate{};
+  const store::TrialState state = trial.row.state;
+  if (state != store::TrialState::answered && state != store::TrialState::timed_out)
+    return std::monostate{};
   return flag(trial.outcome->correct());
 }
 
@@ -47,11 +48,11 @@ DataCell exemplar_of(const TrialView& trial) {
 
 DataCell kind_of(const TrialView& trial) {
   switch (trial.outcome->kind) {
-    case PresentationKind::lead_in:
+    case design::PresentationKind::lead_in:
       return std::string("lead-in");
-    case PresentationKind::catch_trial:
+    case design::PresentationKind::catch_trial:
       return std::string("catch");
-    case PresentationKind::scored:
+    case design::PresentationKind::scored:
       break;
   }
   return std::string("scored");
@@ -59,27 +60,27 @@ DataCell kind_of(const TrialView& trial) {
 
 DataCell state_of(const TrialView& trial) {
   switch (trial.row.state) {
-    case TrialState::answered:
+    case store::TrialState::answered:
       return std::string("answered");
-    case TrialState::timed_out:
+    case store::TrialState::timed_out:
       return std::string("timed-out");
-    case TrialState::interrupted:
+    case store::TrialState::interrupted:
       return std::string("interrupted");
-    case TrialState::voided:
+    case store::TrialState::voided:
       return std::string("voided");
-    case TrialState::presented:
+    case store::TrialState::presented:
       break;
   }
   return std::string("presented");
 }
 
-template <std::optional<int> TrialRow::*kNumber>
+template <std::optional<int> store::TrialRow::*kNumber>
 DataCell number_of(const TrialView& trial) {
   if (!(trial.row.*kNumber)) return std::monostate{};
   return std::int64_t{*(trial.row.*kNumber)};
 }
 
-template <double TrialMeasures::*kMeasure>
+template <double store::TrialMeasures::*kMeasure>
 DataCell measured(const TrialView& trial) {
   if (trial.outcome == nullptr || !trial.outcome->measures) return std::monostate{};
   return (*trial.outcome->measures).*kMeasure;
@@ -112,15 +113,15 @@ constexpr std::array<TrialColumn, 32> kTrialColumns{{
     {"exemplar", true, exemplar_of},
     {"response", true, response_of},
     {"correct", true, correctness_of},
-    {"confidence", false, number_of<&TrialRow::confidence>},
+    {"confidence", false, number_of<&store::TrialRow::confidence>},
     {"reaction_time_s", false,
      [](const TrialView& t) { return time_between(t.row.presented_at, t.row.answered_at); }},
     {"from_contact_s", false,
      [](const TrialView& t) { return time_between(t.row.contact_at, t.row.answered_at); }},
-    {"contact_s", false, measured<&TrialMeasures::contact_s>},
-    {"path_mm", false, measured<&TrialMeasures::path_mm>},
-    {"force_rms_n", false, measured<&TrialMeasures::force_rms_n>},
-    {"saturated_share", false, measured<&TrialMeasures::saturated_share>},
+    {"contact_s", false, measured<&store::TrialMeasures::contact_s>},
+    {"path_mm", false, measured<&store::TrialMeasures::path_mm>},
+    {"force_rms_n", false, measured<&store::TrialMeasures::force_rms_n>},
+    {"saturated_share", false, measured<&store::TrialMeasures::saturated_share>},
     {"valid", false, validity_of},
     {"presented_at_s", false, [](const TrialView& t) -> DataCell { return t.row.presented_at; }},
     {"simulated", false, [](const TrialView& t) { return flag(t.simulated); }},
@@ -131,8 +132,8 @@ constexpr std::array<TrialColumn, 32> kTrialColumns{{
      [](const TrialView& t) -> DataCell { return std::int64_t{t.row.explorations}; }},
     {"first_contact_s", false,
      [](const TrialView& t) { return time_between(t.row.presented_at, t.row.contact_at); }},
-    {"position", true, number_of<&TrialRow::position>},
-    {"first_position", true, number_of<&TrialRow::first_position>},
+    {"position", true, number_of<&store::TrialRow::position>},
+    {"first_position", true, number_of<&store::TrialRow::first_position>},
     {"valid_in_clear", false, [](const TrialView& t) { return flag(t.row.valid); }},
     {"within_limits", true, limits_of},
     {"limited_ticks", true, limited_ticks_of},
@@ -155,4 +156,4 @@ DataCell flag(bool value) {
   return std::int64_t{value ? 1 : 0};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

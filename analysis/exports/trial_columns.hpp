@@ -8,12 +8,12 @@
 #include <span>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// What a cell is made from; before unblinding the last two are missing.
 struct TrialView {
   const std::string& participant;
-  const TrialRow& row;
+  const store::TrialRow& row;
   bool simulated = false;
   const Outcomes* study = nullptr;
   const TrialOutcome* outcome = nullptr;
@@ -33,4 +33,4 @@ struct TrialColumn {
 
 [[nodiscard]] DataCell flag(bool value);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

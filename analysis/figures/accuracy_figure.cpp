@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// Fig. 6 of the source paper, per cent; its images have no names but these.
@@ -141,4 +141,4 @@ std::optional<Figure> accuracy_figure(const StudyReport& report, bool paper_valu
   return figure;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

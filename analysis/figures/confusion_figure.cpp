@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// Cells are no narrower than their numbers; the sheet grows beyond its usual width for that.
@@ -169,4 +169,4 @@ std::vector<Figure> confusion_figures(const StudyReport& report) {
   return figures;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

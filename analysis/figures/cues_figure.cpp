@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 constexpr std::size_t kMostDots = 100;  ///< participants drawn a column
@@ -118,4 +118,4 @@ std::optional<Figure> cues_figure(const CueReport& cues) {
   return figure;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 constexpr double kPixelsOfCm = 96.0 / 2.54;  ///< as style sheets have them
@@ -73,4 +73,4 @@ std::vector<std::string> all_drawn(std::span<const Figure> figures, FigureFormat
   return files;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

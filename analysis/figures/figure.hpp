@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 struct Figure {
   std::string id;       ///< file name without extension: "accuracy-by-class"
@@ -24,4 +24,4 @@ enum class FigureFormat { svg, pdf };
 /// Thread-safe.
 [[nodiscard]] std::string drawn(const Figure& figure, FigureFormat format);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Accuracy by class of one method (Fig. 6); with several, methods_figure has it.
 [[nodiscard]] std::optional<Figure> accuracy_figure(const StudyReport& report, bool paper_values);
@@ -30,4 +30,4 @@ namespace touchtrial {
 /// Participants from enrolment to analysis.
 [[nodiscard]] std::optional<Figure> flow_figure(const StudyReport& report);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

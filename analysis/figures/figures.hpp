@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 struct FigureOptions {
   /// The source paper's accuracies as open marks, in a column of their own unless a class bears the
@@ -33,4 +33,4 @@ struct FigureOptions {
 [[nodiscard]] std::vector<std::string> all_drawn(std::span<const Figure> figures,
                                                  FigureFormat format);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 constexpr double kLine_cm = 0.42;
@@ -133,4 +133,4 @@ std::optional<Figure> flow_figure(const StudyReport& report) {
   return figure;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

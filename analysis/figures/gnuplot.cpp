@@ -5,7 +5,7 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 void require_gnuplot() {
   static_cast<void>(GnuplotProcess("--version", "").result());
@@ -24,4 +24,4 @@ std::string gnuplot_string(const std::string& text) {
   return quoted + "'";
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// For before long work whose figure would come last.
 /// \throws Error if gnuplot is not there or does not start, with the remedy
@@ -26,4 +26,4 @@ void draw_with_gnuplot(const std::string& script, const std::filesystem::path& p
 /// mark-up is up to the script ("noenhanced").
 [[nodiscard]] std::string gnuplot_string(const std::string& text);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

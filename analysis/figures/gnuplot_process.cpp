@@ -14,7 +14,7 @@
 
 extern char** environ;
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// A nameless temporary file, gone when it is closed: unlike a pipe it never
@@ -131,4 +131,4 @@ std::string GnuplotProcess::result() {
   return run_->out.content();
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

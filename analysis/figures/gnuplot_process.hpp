@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Starts when it is made; several may run at the same time.
 class GnuplotProcess {
@@ -27,4 +27,4 @@ class GnuplotProcess {
   std::unique_ptr<Run> run_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

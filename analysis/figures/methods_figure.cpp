@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// Share of the sheet for participants' differences.
@@ -210,4 +210,4 @@ std::optional<Figure> methods_figure(const StudyReport& report) {
   return figure;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 Panels::Panels(std::size_t count, std::size_t across, double height_cm, const Margins& around,
                bool simulated)
@@ -38,4 +38,4 @@ std::string Panels::begin(std::size_t panel, const std::string& title) const {
   return script;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

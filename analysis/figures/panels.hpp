@@ -1,11 +1,11 @@
-/// \file Panels of equal size in rows, one a method. Private to figures.
+/// \file Panels of equal size in rows, one a method.
 #pragma once
 
 #include "analysis/figures/style.hpp"
 
 #include <cstddef>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Where panels lie on their sheet, which is as high as they need.
 class Panels {
@@ -32,4 +32,4 @@ class Panels {
 /// Room above all panels for the legend.
 inline constexpr double kLegend_cm = 0.7;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// Taller heaps are drawn as bars: dots would be smaller than a printed line.
@@ -140,4 +140,4 @@ std::optional<Figure> participants_figure(const StudyReport& report) {
   return figure;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// Grey values of the texture that are drawn along its longer side: finer ones are below what print
@@ -135,4 +135,4 @@ Figure path_figure(const ExplorationPath& path) {
   return figure;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

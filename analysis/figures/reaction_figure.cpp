@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// Trials shown a class; of more, evenly spaced ones in order of their times.
@@ -120,4 +120,4 @@ std::optional<Figure> reaction_figure(const StudyReport& report) {
   return figure;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// Upright on the right edge, below the place of SIMULATED: every figure leaves that room.
@@ -39,4 +39,4 @@ std::vector<Figure> report_figures(const StudyReport& report, const FigureOption
   return figures;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 constexpr std::size_t kMostPoints = 300;
@@ -130,4 +130,4 @@ std::optional<Figure> servo_figure(const StudyReport& report) {
   return figure;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 constexpr std::array<std::string_view, 6> kColours = {"#0072b2", "#d55e00", "#009e73",
@@ -197,4 +197,4 @@ std::string with_interval(double share, const std::optional<Interval>& interval)
                      100.0 * interval->high);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 inline constexpr std::string_view kInk = "#1a1a1a";
 inline constexpr std::string_view kFaint = "#8c8c8c";
@@ -108,4 +108,4 @@ class Legend {
 /// "87.0 % (60.9 to 91.1 %)", or "87.0 %" without an interval
 [[nodiscard]] std::string with_interval(double share, const std::optional<Interval>& interval);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

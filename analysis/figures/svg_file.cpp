@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 std::string escaped(const std::string& text) {
@@ -121,4 +121,4 @@ std::string accessible_svg(std::string_view drawn, const Figure& figure) {
          without_empty_groups(body_of(drawn.substr(described + kDescribed.size()), figure.id));
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

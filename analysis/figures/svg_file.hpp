@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// A title and a description for screen readers in place of gnuplot's own, the size as printed,
 /// tool tips (which quote the script) and empty groups left out, and every id with the figure's
@@ -14,4 +14,4 @@ namespace touchtrial {
 /// \throws Error if it is no SVG of gnuplot's
 [[nodiscard]] std::string accessible_svg(std::string_view drawn, const Figure& figure);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// Fewer trials than this at a place, and places are put together: an interval over a handful is as
@@ -128,4 +128,4 @@ std::optional<Figure> trials_figure(const StudyReport& report) {
   return figure;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -1,7 +1,7 @@
 #include "analysis/json_figures.hpp"
 #include "analysis/measures/picture_set.hpp"
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -62,4 +62,4 @@ std::string measures_json(const MeasuredPictures& measured) {
       {{"tangential_gain_n", measured.tangential_gain_n}, {"pictures", pictures}, {"sets", sets}});
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

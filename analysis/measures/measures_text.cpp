@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// The file's name; its folders would take the place of figures.
@@ -75,4 +75,4 @@ std::string measures_text(const MeasuredPictures& measured) {
                      measured.tangential_gain_n));
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -11,7 +11,7 @@
 #include <map>
 #include <stdexcept>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 constexpr int kLargestSet = 5;
@@ -20,14 +20,14 @@ constexpr int kLargestSet = 5;
 struct Worked {
   const LabelledPicture* picture;
   GreyImage texture;
-  TextureField field;
+  engine::TextureField field;
 };
 
-GlcmStatistics mean_over_directions(const GreyImage& image) {
-  GlcmStatistics mean{};
-  const GlcmTable table = glcm_statistics(image);
+engine::GlcmStatistics mean_over_directions(const GreyImage& image) {
+  engine::GlcmStatistics mean{};
+  const engine::GlcmTable table = engine::glcm_statistics(image);
   const double share = 1.0 / static_cast<double>(table.size());
-  for (const GlcmStatistics& statistics : table) {
+  for (const engine::GlcmStatistics& statistics : table) {
     mean.angular_second_moment += share * statistics.angular_second_moment;
     mean.energy += share * statistics.energy;
     mean.entropy += share * statistics.entropy;
@@ -37,14 +37,15 @@ GlcmStatistics mean_over_directions(const GreyImage& image) {
   return mean;
 }
 
-Worked worked(const LabelledPicture& picture, const ExtractionOptions& method,
-              const RenderingOptions& rendering) {
-  const Extraction<double> extraction = extract_texture<double>(picture.image, method);
-  return {&picture, texture_picture(extraction.texture),
-          make_texture_field(extraction.texture, rendering)};
+Worked worked(const LabelledPicture& picture, const engine::ExtractionOptions& method,
+              const engine::RenderingOptions& rendering) {
+  const engine::Extraction<double> extraction =
+      engine::extract_texture<double>(picture.image, method);
+  return {&picture, engine::texture_picture(extraction.texture),
+          engine::make_texture_field(extraction.texture, rendering)};
 }
 
-PictureMeasures measures_of(const Worked& work, Gains gains) {
+PictureMeasures measures_of(const Worked& work, engine::Gains gains) {
   PictureMeasures measures;
   measures.set = work.picture->set;
   measures.label = work.picture->label;
@@ -57,10 +58,10 @@ PictureMeasures measures_of(const Worked& work, Gains gains) {
     squares += (grey - measures.mean) * (grey - measures.mean);
   }
   measures.deviation = std::sqrt(squares / count);
-  measures.slope = spectrum_slope(work.picture->image);
+  measures.slope = engine::spectrum_slope(work.picture->image);
   measures.original = mean_over_directions(work.picture->image);
   measures.texture = mean_over_directions(work.texture);
-  const FieldStatistics statistics = field_statistics(work.field.view(), gains);
+  const engine::FieldStatistics statistics = engine::field_statistics(work.field.view(), gains);
   measures.force_rms_n = statistics.tangential_rms_n;
   measures.renderable_share = 1.0 - statistics.share_below_1_mm;
   return measures;
@@ -78,7 +79,7 @@ GreyImage corner_of(const GreyImage& image, int height, int width) {
 double likeness_of(const GreyImage& a, const GreyImage& b) {
   const int height = std::min(a.height(), b.height());
   const int width = std::min(a.width(), b.width());
-  return ms_ssim<float>(corner_of(a, height, width), corner_of(b, height, width)).unit;
+  return engine::ms_ssim<float>(corner_of(a, height, width), corner_of(b, height, width)).unit;
 }
 
 void add_pair(PairMean& mean, double value) {
@@ -91,7 +92,7 @@ using WorkedSet = std::vector<const Worked*>;
 bool large_enough(const WorkedSet& set) {
   return std::ranges::all_of(set, [](const Worked* work) {
     const GreyImage& image = work->picture->image;
-    return std::min(image.height(), image.width()) >= kMsSsimSmallestSide;
+    return std::min(image.height(), image.width()) >= engine::kMsSsimSmallestSide;
   });
 }
 
@@ -118,7 +119,7 @@ std::vector<PatchStrengths> strengths_in(const WorkedSet& set, double tangential
     const auto next = static_cast<int>(numbers.size());
     strengths.push_back(
         {numbers.try_emplace(work->picture->label, next).first->second,
-         patch_strengths(work->field.view(), tangential_n, SenseOptions{}.threshold_n)});
+         patch_strengths(work->field.view(), tangential_n, engine::SenseOptions{}.threshold_n)});
   }
   return strengths;
 }
@@ -134,10 +135,10 @@ std::vector<std::pair<std::string, WorkedSet>> sets_of(const std::vector<Worked>
   return sets;
 }
 
-Gains gains_of(const WorkedSet& set, const RenderingOptions& rendering) {
-  std::vector<FieldView> fields;
+engine::Gains gains_of(const WorkedSet& set, const engine::RenderingOptions& rendering) {
+  std::vector<engine::FieldView> fields;
   for (const Worked* work : set) fields.push_back(work->field.view());
-  return choose_gains(fields, rendering).of_field.front();
+  return engine::choose_gains(fields, rendering).of_field.front();
 }
 
 template <typename PairDone>
@@ -169,10 +170,11 @@ int pairs_in(const std::vector<std::pair<std::string, WorkedSet>>& sets) {
 }  // namespace
 
 MeasuredPictures measure_pictures(std::span<const LabelledPicture> pictures,
-                                  const ExtractionOptions& method, RenderingOptions rendering,
+                                  const engine::ExtractionOptions& method,
+                                  engine::RenderingOptions rendering,
                                   const std::function<void(int done, int of)>& progress) {
   if (pictures.empty()) throw std::invalid_argument("measure_pictures: there is no picture");
-  rendering.equalise = Equalise::none;
+  rendering.equalise = engine::Equalise::none;
   std::vector<Worked> all;
   for (const LabelledPicture& picture : pictures) all.push_back(worked(picture, method, rendering));
   const auto sets = sets_of(all);
@@ -181,7 +183,7 @@ MeasuredPictures measure_pictures(std::span<const LabelledPicture> pictures,
   const auto pair_done = [&] {
     if (progress) progress(++done, steps);
   };
-  const Gains gains = gains_of(sets.front().second, rendering);
+  const engine::Gains gains = gains_of(sets.front().second, rendering);
   MeasuredPictures measured;
   measured.tangential_gain_n = gains.tangential_n;
   for (const Worked& work : all) measured.pictures.push_back(measures_of(work, gains));
@@ -191,4 +193,4 @@ MeasuredPictures measure_pictures(std::span<const LabelledPicture> pictures,
   return measured;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

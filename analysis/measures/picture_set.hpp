@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// A picture to be measured.
 struct LabelledPicture {
@@ -27,13 +27,13 @@ struct LabelledPicture {
 /// One picture in figures.
 struct PictureMeasures {
   std::string set, label, name;
-  double mean = 0.0;              ///< grey levels
-  double deviation = 0.0;         ///< standard deviation, grey levels
-  double slope = 0.0;             ///< spectrum_slope() of the picture
-  GlcmStatistics original{};      ///< mean over the four directions
-  GlcmStatistics texture{};       ///< the same of the texture picture
-  double force_rms_n = 0.0;       ///< of the tangential force, with the gain of the first set
-  double renderable_share = 0.0;  ///< of the tangential force's power, at wavelengths >= 1 mm
+  double mean = 0.0;                  ///< grey levels
+  double deviation = 0.0;             ///< standard deviation, grey levels
+  double slope = 0.0;                 ///< spectrum_slope() of the picture
+  engine::GlcmStatistics original{};  ///< mean over the four directions
+  engine::GlcmStatistics texture{};   ///< the same of the texture picture
+  double force_rms_n = 0.0;           ///< of the tangential force, with the gain of the first set
+  double renderable_share = 0.0;      ///< of the tangential force's power, at wavelengths >= 1 mm
 };
 
 /// Mean MS-SSIM (unit exponents) over pairs of pictures.
@@ -69,12 +69,12 @@ struct MeasuredPictures {
 /// corner. \throws std::invalid_argument if there is no picture or one is below kSlopeSmallestSide
 /// Thread-safe. A pair of 500 x 500 pictures takes some 20 ms.
 [[nodiscard]] MeasuredPictures measure_pictures(
-    std::span<const LabelledPicture> pictures, const ExtractionOptions& method,
-    RenderingOptions rendering, const std::function<void(int done, int of)>& progress = {});
+    std::span<const LabelledPicture> pictures, const engine::ExtractionOptions& method,
+    engine::RenderingOptions rendering, const std::function<void(int done, int of)>& progress = {});
 
 /// Tables for a terminal.
 [[nodiscard]] std::string measures_text(const MeasuredPictures& measured);
 /// docs/stimuli.md, "Figures", explains the keys.
 [[nodiscard]] std::string measures_json(const MeasuredPictures& measured);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

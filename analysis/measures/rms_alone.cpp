@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 struct Sum {
@@ -95,7 +95,8 @@ bool advance(std::vector<int>& set, int limit) {
 
 }  // namespace
 
-std::vector<double> patch_strengths(FieldView field, double tangential_n, double threshold_n) {
+std::vector<double> patch_strengths(engine::FieldView field, double tangential_n,
+                                    double threshold_n) {
   const int height = field.geometry.height_px;
   const int width = field.geometry.width_px;
   if (std::min(height, width) < kPatchesASide) {
@@ -104,7 +105,7 @@ std::vector<double> patch_strengths(FieldView field, double tangential_n, double
   std::vector<Sum> squares(static_cast<std::size_t>(kPatchesASide * kPatchesASide));
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
-      const FieldSample& sample =
+      const engine::FieldSample& sample =
           field.samples[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) + x];
       const int row = std::min(y / (height / kPatchesASide), kPatchesASide - 1);
       const int column = std::min(x / (width / kPatchesASide), kPatchesASide - 1);
@@ -143,4 +144,4 @@ RmsAlone rms_alone(std::span<const PatchStrengths> pictures, int classes_in_set)
   return result;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Patches along each side of a field, for rms_alone().
 inline constexpr int kPatchesASide = 5;
@@ -22,7 +22,7 @@ struct PatchStrengths {
 /// field (the last ones larger where the sides do not divide), row by row.
 /// \param tangential_n  gain \param threshold_n  what is felt as nothing, > 0
 /// \throws std::invalid_argument if a side is below kPatchesASide
-[[nodiscard]] std::vector<double> patch_strengths(FieldView field, double tangential_n,
+[[nodiscard]] std::vector<double> patch_strengths(engine::FieldView field, double tangential_n,
                                                   double threshold_n);
 
 /// Shares of right answers over all sets of so many classes; chance is 1 / classes.
@@ -42,4 +42,4 @@ struct RmsAlone {
 /// \throws std::invalid_argument if it is out of range, or a class has no patch
 [[nodiscard]] RmsAlone rms_alone(std::span<const PatchStrengths> pictures, int classes_in_set);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 constexpr const char* kBetweenWords = ", ";
@@ -75,4 +75,4 @@ std::vector<const Table*> tables_of(const Document& document) {
   return tables;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

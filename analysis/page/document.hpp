@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// A sentence or more, and what it rests on.
 struct Cited {
@@ -111,4 +111,4 @@ struct Document {
 /// Every table of a document, in order.
 [[nodiscard]] std::vector<const Table*> tables_of(const Document& document);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -4,10 +4,10 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
-std::string state_words(const StudyState& state) {
+std::string state_words(const store::StudyState& state) {
   if (!state.unblinded) return state.closed ? "closed, still blind" : "collecting, blind";
   const std::string reason =
       state.unblinding_reason.empty() ? "" : " (" + state.unblinding_reason + ")";
@@ -24,7 +24,7 @@ bool is_taken(const StudyReport& report, std::size_t method, const std::string& 
 
 }  // namespace
 
-Provenance provenance_of(const StudyStore& store, const std::string& database) {
+Provenance provenance_of(const store::StudyStore& store, const std::string& database) {
   return {database, std::string(program_version()), to_hex(store.commitment().seal),
           store.file_head(), store.state()};
 }
@@ -55,4 +55,4 @@ std::string method_prefix(const StudyReport& report, std::size_t method) {
   return report.methods.size() > 1 ? report.methods[method].method + ": " : "";
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

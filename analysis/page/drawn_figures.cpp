@@ -4,7 +4,7 @@
 #include "analysis/figures/gnuplot.hpp"
 #include "core/errors.hpp"
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// Why gnuplot cannot be used; empty if it can.
@@ -37,4 +37,4 @@ DrawnFigures draw_report_figures(const std::vector<Figure>& figures) {
   return drawn;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

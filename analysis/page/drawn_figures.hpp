@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 struct DrawnFigures {
   Pictures pictures;
@@ -20,4 +20,4 @@ struct DrawnFigures {
 /// \throws Error if gnuplot is there and refuses a figure
 [[nodiscard]] DrawnFigures draw_report_figures(const std::vector<Figure>& figures);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 using std::string_view;
@@ -64,4 +64,4 @@ std::string inline_svg(string_view file, const std::string& prefix) {
   return with_prefix(svg, prefix);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// Signs that LaTeX has by name.
@@ -122,4 +122,4 @@ std::string latex_escaped(const std::string& text) {
   return safe;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

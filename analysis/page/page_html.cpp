@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// Longer tables are folded away, and may break across printed pages.
@@ -241,4 +241,4 @@ std::string page_html(const Document& document) {
   return html + "</body>\n</html>\n";
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

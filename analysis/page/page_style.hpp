@@ -1,8 +1,8 @@
 /// \file The style sheet of report pages. Private to analysis/page.
 #pragma once
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 extern const char* const kPageStyle;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -1,6 +1,6 @@
 #include "analysis/page/page_style.hpp"
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 // Colours keep a contrast of 4.5 or more against what they stand on, in both schemes. Figures keep
 // a white ground: they are drawn for paper.
@@ -130,4 +130,4 @@ footer { border-top: 1px solid var(--line); margin-top: 3rem; padding-top: .8rem
 }
 )";
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

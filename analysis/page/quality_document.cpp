@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 Table sessions_table(const SessionCounts& counts) {
@@ -119,4 +119,4 @@ Document quality_document(const QualityReport& report, const Collection& collect
   return document;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

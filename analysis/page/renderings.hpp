@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// One page that needs nothing outside itself and no script.
 [[nodiscard]] std::string page_html(const Document& document);
@@ -22,4 +22,4 @@ namespace touchtrial {
 /// Every table of the document in sections, and the references at the end; for \input too.
 [[nodiscard]] std::string tables_latex(const Document& document);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

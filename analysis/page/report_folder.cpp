@@ -9,7 +9,7 @@
 #include <sstream>
 #include <system_error>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 namespace fs = std::filesystem;
@@ -100,4 +100,4 @@ void write_report_folder(const fs::path& folder, const ReportFiles& files) {
   replace_file(folder / kList, list_of(files));
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -8,7 +8,7 @@
 #include <map>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Whole files by their path within the folder, "/" between its parts.
 using ReportFiles = std::map<std::string, std::string>;
@@ -33,4 +33,4 @@ void refuse_strangers(const std::filesystem::path& folder);
 ///   a folder or file cannot be written
 void write_report_folder(const std::filesystem::path& folder, const ReportFiles& files);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 void refuse_other_study(const std::filesystem::path& folder, const std::string& study) {
   const std::filesystem::path file = folder / "results.json";
@@ -20,4 +20,4 @@ void refuse_other_study(const std::filesystem::path& folder, const std::string& 
   throw FileError(one_line(file.string()) + ": " + what + "; give another folder with --out");
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

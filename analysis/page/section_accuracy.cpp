@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 std::vector<Cell> accuracy_row(const std::string& name, const ClassAccuracy& one) {
@@ -93,4 +93,4 @@ Section accuracy_section(const StudyReport& report) {
   return section;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

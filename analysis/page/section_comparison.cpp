@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 constexpr double kUsualLevel = 0.05;
@@ -210,4 +210,4 @@ Section comparison_section(const StudyReport& report) {
   return section;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

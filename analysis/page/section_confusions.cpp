@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 constexpr double kUsualLevel = 0.05;
@@ -184,4 +184,4 @@ Section confusions_section(const StudyReport& report) {
   return section;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

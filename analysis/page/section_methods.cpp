@@ -1,6 +1,6 @@
 #include "analysis/page/sections.hpp"
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 Section methods_section(const StudyReport& /*report*/) {
   Section section{"methods", "How these figures were made", {}};
@@ -28,4 +28,4 @@ Section methods_section(const StudyReport& /*report*/) {
   return section;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

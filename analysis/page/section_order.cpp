@@ -1,7 +1,7 @@
 #include "analysis/page/sections.hpp"
 #include "analysis/page/wording.hpp"
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 struct KindWords {
@@ -57,4 +57,4 @@ Section order_section(const StudyReport& report) {
   return section;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

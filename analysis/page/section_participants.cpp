@@ -8,16 +8,16 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
-const char* words_of(SessionState state) {
+const char* words_of(store::SessionState state) {
   switch (state) {
-    case SessionState::open:
+    case store::SessionState::open:
       return "open";
-    case SessionState::completed:
+    case store::SessionState::completed:
       return "completed";
-    case SessionState::stopped:
+    case store::SessionState::stopped:
       return "stopped";
   }
   return "";
@@ -150,7 +150,7 @@ std::string practice_of(const SessionRecord& one) {
 
 /// Sessions of whom there is anything to tell but that they were completed.
 bool is_remarkable(const SessionRecord& one) {
-  return one.row.withdrawn || one.row.excluded || one.row.state != SessionState::completed ||
+  return one.row.withdrawn || one.row.excluded || one.row.state != store::SessionState::completed ||
          one.resumed > 0 || !one.row.replaced_by.empty() || one.practice.has_value();
 }
 
@@ -191,7 +191,7 @@ Section participants_section(const Collection& collection) {
   return section;
 }
 
-Section registration_section(const Registration& registration) {
+Section registration_section(const design::Registration& registration) {
   Section section{"registration", "What was registered beforehand", {}};
   const auto stated = [](const std::string& text) { return text.empty() ? "not stated" : text; };
   section.blocks.emplace_back(Definitions{
@@ -204,4 +204,4 @@ Section registration_section(const Registration& registration) {
   return section;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -1,7 +1,7 @@
 #include "analysis/page/sections.hpp"
 #include "analysis/page/wording.hpp"
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 std::vector<Cell> time_row(const std::string& name, const ReactionTimes& times) {
@@ -51,4 +51,4 @@ Section times_section(const StudyReport& report) {
   return section;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

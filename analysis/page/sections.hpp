@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 [[nodiscard]] Section headline_section(const StudyReport& report);
 [[nodiscard]] Section warnings_section(const StudyReport& report);
@@ -25,7 +25,7 @@ namespace touchtrial {
 /// How participants came, and what of the protocol was not kept: tells nothing of outcomes.
 [[nodiscard]] Section participants_section(const Collection& collection);
 /// What was deposited beforehand.
-[[nodiscard]] Section registration_section(const Registration& registration);
+[[nodiscard]] Section registration_section(const design::Registration& registration);
 /// How the servo kept its time, over trials in real time. \return without blocks if there is none
 [[nodiscard]] std::optional<Table> servo_table(const Collection& collection);
 
@@ -39,4 +39,4 @@ void add_method_heading(const StudyReport& report, std::size_t method, Section& 
 /// "adaptive: " where there are several methods, else nothing: before captions.
 [[nodiscard]] std::string method_prefix(const StudyReport& report, std::size_t method);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -1,6 +1,6 @@
 #include "analysis/page/sources.hpp"
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 std::string_view citation_of(Source source) noexcept {
   switch (source) {
@@ -81,4 +81,4 @@ std::string_view citation_of(Source source) noexcept {
   return "";
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

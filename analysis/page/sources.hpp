@@ -3,7 +3,7 @@
 
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// A publication that a report may cite.
 enum class Source {
@@ -34,4 +34,4 @@ enum class Source {
 /// Authors, year, title and where it appeared, in UTF-8, without an address.
 [[nodiscard]] std::string_view citation_of(Source source) noexcept;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 using std::string_view;
@@ -186,4 +186,4 @@ Document study_document(const StudyReport& report, const Provenance& provenance,
   return document;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -8,19 +8,19 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// By what a reader can tell that a report is of this database.
 struct Provenance {
   std::string database;         ///< file name, without its folder
   std::string program_version;  ///< that made the report
   std::string seal;             ///< commitment before trial 1, hexadecimal
-  ChainHead head;               ///< of the file's chain
-  StudyState state;
+  store::ChainHead head;        ///< of the file's chain
+  store::StudyState state;
 };
 
 /// \param database  file name to show
-[[nodiscard]] Provenance provenance_of(const StudyStore& store, const std::string& database);
+[[nodiscard]] Provenance provenance_of(const store::StudyStore& store, const std::string& database);
 
 /// What stands on every table and figure beside SIMULATED: PILOT, INTERIM LOOK, or nothing.
 [[nodiscard]] std::string further_stamp(const StudyReport& report, const Provenance& provenance);
@@ -36,4 +36,4 @@ using Pictures = std::vector<Picture>;
 [[nodiscard]] Document quality_document(const QualityReport& report, const Collection& collection,
                                         const Provenance& provenance);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

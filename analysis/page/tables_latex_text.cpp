@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 constexpr std::size_t kLongRows = 40;  ///< more do not fit on a page
@@ -173,4 +173,4 @@ std::string tables_latex(const Document& document) {
                             : text + "\\section*{References}\n" + references_latex(references);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

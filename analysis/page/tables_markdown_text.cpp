@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// Text that shows as it is; line breaks become spaces, as a row is one line.
@@ -97,4 +97,4 @@ std::string tables_markdown(const Document& document) {
   return text;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 inline constexpr const char* kNoFigure = "–";
 
@@ -33,4 +33,4 @@ inline constexpr const char* kNoFigure = "–";
 /// Lower-case letters, digits and single hyphens alone: for ids and file names; may be empty.
 [[nodiscard]] std::string slug_of(const std::string& name);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

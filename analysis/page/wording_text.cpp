@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 bool rounds_to_zero(const std::string& figure) {
@@ -83,4 +83,4 @@ std::string slug_of(const std::string& name) {
   return slug;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 /// What they are out of matters little: the accuracies alone decide.
@@ -54,7 +54,7 @@ void warn_of_bounds(const FitProblem& problem, const std::vector<double>& at, Ac
 }  // namespace
 
 AccuracyFit fit_accuracies(const AnswerModel& model, std::vector<double> wanted,
-                           std::vector<PictureLayout> layouts, const SubjectModel& subject,
+                           std::vector<PictureLayout> layouts, const session::SubjectModel& subject,
                            const FreeParameters& free) {
   const auto impossible = [](double p) { return !(p >= 0.0 && p <= 1.0); };
   if (wanted.size() != model.classes().size() || std::ranges::any_of(wanted, impossible)) {
@@ -76,4 +76,4 @@ AccuracyFit fit_accuracies(const AnswerModel& model, std::vector<double> wanted,
   return fit;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 struct AccuracyFit {
-  SubjectModel subject;
+  session::SubjectModel subject;
   std::vector<std::string> classes;
   std::vector<double> wanted;   ///< by class, 0 .. 1
   std::vector<double> reached;  ///< likewise, expected of the fitted subject
@@ -28,6 +28,7 @@ struct AccuracyFit {
 /// \throws std::invalid_argument if there are not as many as classes, or one is out of range
 [[nodiscard]] AccuracyFit fit_accuracies(const AnswerModel& model, std::vector<double> wanted,
                                          std::vector<PictureLayout> layouts,
-                                         const SubjectModel& subject, const FreeParameters& free);
+                                         const session::SubjectModel& subject,
+                                         const FreeParameters& free);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

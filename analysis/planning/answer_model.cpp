@@ -12,7 +12,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 constexpr int kAcuityGroups = 8;
@@ -34,14 +34,15 @@ std::vector<double> nearness_of(const PictureLayout& layout) {
   return nearness;
 }
 
-std::vector<LayoutBias> biases(const SubjectModel& subject, const std::vector<std::string>& classes,
+std::vector<LayoutBias> biases(const session::SubjectModel& subject,
+                               const std::vector<std::string>& classes,
                                std::span<const PictureLayout> layouts) {
   std::vector<LayoutBias> all;
   for (const PictureLayout& layout : layouts) {
     LayoutBias bias{std::vector<double>(classes.size()), nearness_of(layout)};
     for (std::size_t c = 0; c < classes.size(); ++c) {
       bias.of_class[c] = subject.position_bias * bias.nearness[c];
-      for (const ClassBias& preferred : subject.class_bias) {
+      for (const session::ClassBias& preferred : subject.class_bias) {
         if (preferred.label == classes[c]) bias.of_class[c] += preferred.log_odds;
       }
     }
@@ -94,7 +95,7 @@ void settle(std::span<const AnswerTable> pieces, int row, double lapse, std::spa
 
 }  // namespace
 
-double mean_lapse(const SubjectModel& subject) {
+double mean_lapse(const session::SubjectModel& subject) {
   if (subject.lapse_spread == 0.0 || subject.lapse <= 0.0 || subject.lapse >= 1.0) {
     return subject.lapse;
   }
@@ -134,31 +135,31 @@ std::span<const double> AnswerTable::slopes(int layout, int stimulus) const noex
 }
 
 struct AnswerModel::State {
-  State(const FeltKnowledge& learnt, const FeltBank& bank, std::vector<std::string> labels,
-        const AnswerModelOptions& chosen);
+  State(const session::FeltKnowledge& learnt, const session::FeltBank& bank,
+        std::vector<std::string> labels, const AnswerModelOptions& chosen);
 
   /// All lines of noise of one piece of a stimulus's explorations, each in every layout.
-  void add_piece(int place, int piece, const SubjectModel& subject,
+  void add_piece(int place, int piece, const session::SubjectModel& subject,
                  const std::vector<LinearSupports>& groups, const std::vector<LayoutBias>& layouts,
                  BankPart part, AnswerTable& sums) const;
-  void add_likings(const SubjectModel& subject, std::span<const double> numbers,
+  void add_likings(const session::SubjectModel& subject, std::span<const double> numbers,
                    const LayoutBias& layout, const std::vector<int>& pictures,
                    std::vector<double>& at) const;
-  [[nodiscard]] std::vector<int> pictures_of(const SubjectModel& subject) const;
-  [[nodiscard]] std::vector<LinearSupports> acuities(const SubjectModel& subject) const;
+  [[nodiscard]] std::vector<int> pictures_of(const session::SubjectModel& subject) const;
+  [[nodiscard]] std::vector<LinearSupports> acuities(const session::SubjectModel& subject) const;
 
-  FeltKnowledge knowledge;
+  session::FeltKnowledge knowledge;
   std::vector<std::string> classes;
   AnswerModelOptions options;
-  std::vector<StimulusIndex> stimuli;
-  std::vector<std::vector<FeltFeatures>> felt;    ///< by stimulus
-  std::vector<NoisePoints> points;                ///< by stimulus
+  std::vector<design::StimulusIndex> stimuli;
+  std::vector<std::vector<engine::FeltFeatures>> felt;  ///< by stimulus
+  std::vector<NoisePoints> points;                      ///< by stimulus
   std::vector<std::vector<std::uint8_t>> acuity;  ///< group of each line's person, by stimulus
   int dimensions;                                 ///< of noise
   RadialDistribution radial;
 };
 
-AnswerModel::State::State(const FeltKnowledge& learnt, const FeltBank& bank,
+AnswerModel::State::State(const session::FeltKnowledge& learnt, const session::FeltBank& bank,
                           std::vector<std::string> labels, const AnswerModelOptions& chosen)
     : knowledge(learnt),
       classes(std::move(labels)),
@@ -171,7 +172,7 @@ AnswerModel::State::State(const FeltKnowledge& learnt, const FeltBank& bank,
   // After the noise's own, a point has numbers for a person: position bias, class biases, acuity.
   const int numbers = dimensions + 2 + static_cast<int>(classes.size());
   for (int place = 0; place < bank.stimuli(); ++place) {
-    const std::span<const FeltFeatures> own = bank.felt(place);
+    const std::span<const engine::FeltFeatures> own = bank.felt(place);
     stimuli.push_back(bank.stimulus(place));
     felt.emplace_back(own.begin(), own.end());
     points.emplace_back(numbers, own.size() * static_cast<std::size_t>(options.directions),
@@ -186,7 +187,7 @@ AnswerModel::State::State(const FeltKnowledge& learnt, const FeltBank& bank,
   }
 }
 
-std::vector<int> AnswerModel::State::pictures_of(const SubjectModel& subject) const {
+std::vector<int> AnswerModel::State::pictures_of(const session::SubjectModel& subject) const {
   std::vector<int> matched(classes.size());
   for (std::size_t c = 0; c < classes.size(); ++c) matched[c] = static_cast<int>(c);
   for (const auto& [one, other] : subject.label_swap) {
@@ -199,7 +200,8 @@ std::vector<int> AnswerModel::State::pictures_of(const SubjectModel& subject) co
   return pictures;
 }
 
-std::vector<LinearSupports> AnswerModel::State::acuities(const SubjectModel& subject) const {
+std::vector<LinearSupports> AnswerModel::State::acuities(
+    const session::SubjectModel& subject) const {
   std::vector<LinearSupports> groups;
   for (const double z : normal_groups(subject.weber_spread > 0.0 ? kAcuityGroups : 1)) {
     groups.emplace_back(knowledge, subject.weber * std::exp(subject.weber_spread * z));
@@ -208,8 +210,9 @@ std::vector<LinearSupports> AnswerModel::State::acuities(const SubjectModel& sub
 }
 
 /// What this line's person prefers beside what everybody does.
-void AnswerModel::State::add_likings(const SubjectModel& subject, std::span<const double> numbers,
-                                     const LayoutBias& layout, const std::vector<int>& pictures,
+void AnswerModel::State::add_likings(const session::SubjectModel& subject,
+                                     std::span<const double> numbers, const LayoutBias& layout,
+                                     const std::vector<int>& pictures,
                                      std::vector<double>& at) const {
   const auto of_person = numbers.subspan(static_cast<std::size_t>(dimensions));
   for (std::size_t k = 0; k < at.size(); ++k) {
@@ -219,7 +222,7 @@ void AnswerModel::State::add_likings(const SubjectModel& subject, std::span<cons
   }
 }
 
-void AnswerModel::State::add_piece(int place, int piece, const SubjectModel& subject,
+void AnswerModel::State::add_piece(int place, int piece, const session::SubjectModel& subject,
                                    const std::vector<LinearSupports>& groups,
                                    const std::vector<LayoutBias>& layouts, BankPart part,
                                    AnswerTable& sums) const {
@@ -254,7 +257,7 @@ void AnswerModel::State::add_piece(int place, int piece, const SubjectModel& sub
   }
 }
 
-AnswerModel::AnswerModel(const FeltKnowledge& knowledge, const FeltBank& bank,
+AnswerModel::AnswerModel(const session::FeltKnowledge& knowledge, const session::FeltBank& bank,
                          std::vector<std::string> classes, const AnswerModelOptions& options)
     : state_(std::make_unique<State>(knowledge, bank, std::move(classes), options)) {}
 AnswerModel::~AnswerModel() = default;
@@ -264,11 +267,11 @@ const std::vector<std::string>& AnswerModel::classes() const noexcept {
   return state_->classes;
 }
 
-const std::vector<StimulusIndex>& AnswerModel::stimuli() const noexcept {
+const std::vector<design::StimulusIndex>& AnswerModel::stimuli() const noexcept {
   return state_->stimuli;
 }
 
-AnswerTable AnswerModel::answers(const SubjectModel& subject,
+AnswerTable AnswerModel::answers(const session::SubjectModel& subject,
                                  std::span<const PictureLayout> layouts, bool slopes,
                                  BankPart part) const {
   const State& state = *state_;
@@ -298,4 +301,4 @@ AnswerTable AnswerModel::answers(const SubjectModel& subject,
   return table;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 /// Class index of the picture at each position.
 using PictureLayout = std::vector<int>;
@@ -64,7 +64,7 @@ struct BankPart {
 class AnswerModel {
  public:
   /// \param classes  labels of the study, in its order
-  AnswerModel(const FeltKnowledge& knowledge, const FeltBank& bank,
+  AnswerModel(const session::FeltKnowledge& knowledge, const session::FeltBank& bank,
               std::vector<std::string> classes, const AnswerModelOptions& options);
   ~AnswerModel();
   AnswerModel(AnswerModel&&) noexcept;
@@ -73,12 +73,12 @@ class AnswerModel {
   /// only if positions are preferred.
   /// \param subject  weber > 0; labels are the study's
   /// \param slopes  whether to work out the derivatives by pictures' biases, without lapses
-  [[nodiscard]] AnswerTable answers(const SubjectModel& subject,
+  [[nodiscard]] AnswerTable answers(const session::SubjectModel& subject,
                                     std::span<const PictureLayout> layouts, bool slopes = false,
                                     BankPart part = {}) const;
 
   [[nodiscard]] const std::vector<std::string>& classes() const noexcept;
-  [[nodiscard]] const std::vector<StimulusIndex>& stimuli() const noexcept;
+  [[nodiscard]] const std::vector<design::StimulusIndex>& stimuli() const noexcept;
 
  private:
   struct State;
@@ -86,6 +86,6 @@ class AnswerModel {
 };
 
 /// The mean over the population of the probability of a lapse.
-[[nodiscard]] double mean_lapse(const SubjectModel& subject);
+[[nodiscard]] double mean_lapse(const session::SubjectModel& subject);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

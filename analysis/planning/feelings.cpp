@@ -4,10 +4,10 @@
 
 #include <algorithm>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
-FeltBankOptions bank_options(const BankedFeelingsOptions& options) {
+session::FeltBankOptions bank_options(const BankedFeelingsOptions& options) {
   return {options.explorations, options.seed, options.jobs};
 }
 
@@ -18,38 +18,43 @@ std::uint64_t training_seed(std::uint64_t seed, int training) {
 
 }  // namespace
 
-BankedFeelings::BankedFeelings(const LabelledFields& fields, const Study& study,
-                               const SubjectModel& subject, const BankedFeelingsOptions& options,
-                               const Progress& progress)
+BankedFeelings::BankedFeelings(const session::LabelledFields& fields, const design::Study& study,
+                               const session::SubjectModel& subject,
+                               const BankedFeelingsOptions& options,
+                               const design::Progress& progress)
     : bank_(fields, study, subject, bank_options(options), progress) {
   for (int i = 0; i < options.trainings; ++i) {
-    trainings_.push_back(std::make_shared<const FeltKnowledge>(
-        learn_by_feeling(fields, subject, study.rendering.max_force_n,
-                         training_seed(options.seed, i), options.jobs)));
+    trainings_.push_back(std::make_shared<const session::FeltKnowledge>(
+        session::learn_by_feeling(fields, subject, study.rendering.max_force_n,
+                                  training_seed(options.seed, i), options.jobs)));
   }
 }
 
-std::shared_ptr<const FeltKnowledge> BankedFeelings::knowledge(std::uint64_t study_seed) const {
+std::shared_ptr<const session::FeltKnowledge> BankedFeelings::knowledge(
+    std::uint64_t study_seed) const {
   RandomStream random(study_seed, "power: which training");
   return trainings_[random.below(trainings_.size())];
 }
 
-FeltFeatures BankedFeelings::felt(const StimulusIndex& stimulus, const FeltTrial& trial) const {
+engine::FeltFeatures BankedFeelings::felt(const design::StimulusIndex& stimulus,
+                                          const FeltTrial& trial) const {
   // Of 2^64 draws no exploration has more than any other but for one: no need to reject.
   const auto explorations = static_cast<std::uint64_t>(bank_.explorations());
   return bank_.felt(bank_.place_of(stimulus))[trial.draw % explorations];
 }
 
-std::shared_ptr<const FeltKnowledge> ServoFeelings::knowledge(std::uint64_t study_seed) const {
-  return std::make_shared<const FeltKnowledge>(
-      learn_by_feeling(fields_, subject_, study_.rendering.max_force_n, study_seed, 1));
+std::shared_ptr<const session::FeltKnowledge> ServoFeelings::knowledge(
+    std::uint64_t study_seed) const {
+  return std::make_shared<const session::FeltKnowledge>(
+      session::learn_by_feeling(fields_, subject_, study_.rendering.max_force_n, study_seed, 1));
 }
 
-FeltFeatures ServoFeelings::felt(const StimulusIndex& stimulus, const FeltTrial& trial) const {
+engine::FeltFeatures ServoFeelings::felt(const design::StimulusIndex& stimulus,
+                                         const FeltTrial& trial) const {
   const auto& all = fields_.all();
-  const auto field = std::ranges::find(all, stimulus, &LabelledField::stimulus);
-  return feel_trial(*field, fields_.plane(), study_, subject_, trial.study_seed, trial.participant,
-                    trial.nth);
+  const auto field = std::ranges::find(all, stimulus, &session::LabelledField::stimulus);
+  return session::feel_trial(*field, fields_.plane(), study_, subject_, trial.study_seed,
+                             trial.participant, trial.nth);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -13,7 +13,7 @@
 #include <memory>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 /// One presentation to one participant of one simulated study.
 struct FeltTrial {
@@ -32,11 +32,11 @@ class Feelings {
   Feelings& operator=(const Feelings&) = delete;
 
   /// What the participants of a study have learnt beforehand.
-  [[nodiscard]] virtual std::shared_ptr<const FeltKnowledge> knowledge(
+  [[nodiscard]] virtual std::shared_ptr<const session::FeltKnowledge> knowledge(
       std::uint64_t study_seed) const = 0;
   /// What a stimulus feels like in a presentation, before noise.
-  [[nodiscard]] virtual FeltFeatures felt(const StimulusIndex& stimulus,
-                                          const FeltTrial& trial) const = 0;
+  [[nodiscard]] virtual engine::FeltFeatures felt(const design::StimulusIndex& stimulus,
+                                                  const FeltTrial& trial) const = 0;
 };
 
 struct BankedFeelingsOptions {
@@ -52,35 +52,37 @@ class BankedFeelings final : public Feelings {
  public:
   /// \param study  that the fields are of
   /// \param progress  called from one thread at a time
-  BankedFeelings(const LabelledFields& fields, const Study& study, const SubjectModel& subject,
-                 const BankedFeelingsOptions& options, const Progress& progress = {});
+  BankedFeelings(const session::LabelledFields& fields, const design::Study& study,
+                 const session::SubjectModel& subject, const BankedFeelingsOptions& options,
+                 const design::Progress& progress = {});
 
-  [[nodiscard]] std::shared_ptr<const FeltKnowledge> knowledge(
+  [[nodiscard]] std::shared_ptr<const session::FeltKnowledge> knowledge(
       std::uint64_t study_seed) const override;
-  [[nodiscard]] FeltFeatures felt(const StimulusIndex& stimulus,
-                                  const FeltTrial& trial) const override;
+  [[nodiscard]] engine::FeltFeatures felt(const design::StimulusIndex& stimulus,
+                                          const FeltTrial& trial) const override;
 
  private:
-  FeltBank bank_;
-  std::vector<std::shared_ptr<const FeltKnowledge>> trainings_;
+  session::FeltBank bank_;
+  std::vector<std::shared_ptr<const session::FeltKnowledge>> trainings_;
 };
 
 /// Every exploration through hand, device and servo, as `simulate` has them, to the bit.
 /// Refers to its arguments, which must outlive it. Some hundred times slower.
 class ServoFeelings final : public Feelings {
  public:
-  ServoFeelings(const LabelledFields& fields, const Study& study, const SubjectModel& subject)
+  ServoFeelings(const session::LabelledFields& fields, const design::Study& study,
+                const session::SubjectModel& subject)
       : fields_(fields), study_(study), subject_(subject) {}
 
-  [[nodiscard]] std::shared_ptr<const FeltKnowledge> knowledge(
+  [[nodiscard]] std::shared_ptr<const session::FeltKnowledge> knowledge(
       std::uint64_t study_seed) const override;
-  [[nodiscard]] FeltFeatures felt(const StimulusIndex& stimulus,
-                                  const FeltTrial& trial) const override;
+  [[nodiscard]] engine::FeltFeatures felt(const design::StimulusIndex& stimulus,
+                                          const FeltTrial& trial) const override;
 
  private:
-  const LabelledFields& fields_;
-  const Study& study_;
-  const SubjectModel& subject_;
+  const session::LabelledFields& fields_;
+  const design::Study& study_;
+  const session::SubjectModel& subject_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -6,7 +6,7 @@
 #include "protocols/design/study_key.hpp"
 #include "protocols/session/subject_model.hpp"
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 struct FeltStudyOptions {
   int explorations = 1000;  ///< of each stimulus
@@ -19,15 +19,15 @@ struct FeltStudyOptions {
 /// Trains the subject, feels a bank, and makes the model of answers. Cost: as FeltBank.
 /// \throws StudyError if the subject names a class that the study does not have
 /// \throws FileError if the pack lacks a stimulus
-[[nodiscard]] AnswerModel answer_model_of(const StudyKey& key, const Pack& pack,
-                                          const SubjectModel& subject,
+[[nodiscard]] AnswerModel answer_model_of(const design::StudyKey& key, const engine::Pack& pack,
+                                          const session::SubjectModel& subject,
                                           const FeltStudyOptions& options,
-                                          const Progress& progress = {});
+                                          const design::Progress& progress = {});
 
 /// The study's stimuli in the order of banks.
-[[nodiscard]] std::vector<StimulusIndex> stimuli_of(const StudyKey& key);
+[[nodiscard]] std::vector<design::StimulusIndex> stimuli_of(const design::StudyKey& key);
 
 /// The layouts of the first participants, each once.
-[[nodiscard]] std::vector<PictureLayout> layouts_of(const Study& study, int participants);
+[[nodiscard]] std::vector<PictureLayout> layouts_of(const design::Study& study, int participants);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -8,12 +8,12 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 constexpr int kPool = 32;
 
-bool people_differ(const SubjectModel& subject) {
+bool people_differ(const session::SubjectModel& subject) {
   return subject.weber_spread > 0.0 || subject.lapse_spread > 0.0 ||
          subject.position_bias_spread > 0.0 || subject.class_bias_spread > 0.0;
 }
@@ -25,7 +25,7 @@ std::vector<double> deviates(RandomStream& random) {
   return groups;
 }
 
-SubjectModel without_spreads(SubjectModel subject) {
+session::SubjectModel without_spreads(session::SubjectModel subject) {
   subject.weber_spread = 0.0;
   subject.lapse_spread = 0.0;
   subject.position_bias_spread = 0.0;
@@ -34,11 +34,12 @@ SubjectModel without_spreads(SubjectModel subject) {
 }
 
 /// People who together are like the population.
-std::vector<SubjectModel> pool_of(const SubjectModel& population,
-                                  const std::vector<std::string>& classes, std::uint64_t seed) {
+std::vector<session::SubjectModel> pool_of(const session::SubjectModel& population,
+                                           const std::vector<std::string>& classes,
+                                           std::uint64_t seed) {
   if (!people_differ(population)) return {population};
   RandomStream random(seed, "fit: people of the bootstrap");
-  std::vector<SubjectModel> pool(kPool, without_spreads(population));
+  std::vector<session::SubjectModel> pool(kPool, without_spreads(population));
   const std::vector<double> acuity = deviates(random);
   const std::vector<double> lapse = deviates(random);
   const std::vector<double> position = deviates(random);
@@ -94,9 +95,9 @@ std::vector<CountedPerson> drawn_study(const FitCounts& counts,
 
 FitBootstrap bootstrap_fit(const FitProblem& problem, const FitCounts& counts,
                            const std::vector<double>& at, int draws, std::uint64_t seed, int jobs) {
-  const SubjectModel fitted = problem.subject_at(at);
+  const session::SubjectModel fitted = problem.subject_at(at);
   std::vector<AnswerTable> pool;
-  for (const SubjectModel& person : pool_of(fitted, counts.classes, seed)) {
+  for (const session::SubjectModel& person : pool_of(fitted, counts.classes, seed)) {
     pool.push_back(problem.model().answers(person, counts.layouts));
   }
   const LocalAnswers local(counts, problem.tangent(at), at, problem.bounds());
@@ -114,4 +115,4 @@ FitBootstrap bootstrap_fit(const FitProblem& problem, const FitCounts& counts,
   return bootstrap;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

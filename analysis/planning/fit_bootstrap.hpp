@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 struct FitBootstrap {
   std::vector<std::vector<double>> numbers;  ///< [draw][number]: refitted
@@ -23,4 +23,4 @@ struct FitBootstrap {
                                          const std::vector<double>& at, int draws,
                                          std::uint64_t seed, int jobs);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 int place_of_layout(std::vector<PictureLayout>& layouts, const PictureLayout& layout) {
@@ -16,8 +16,8 @@ int place_of_layout(std::vector<PictureLayout>& layouts, const PictureLayout& la
   return place;
 }
 
-std::size_t place_of_stimulus(const std::vector<StimulusIndex>& stimuli,
-                              const StimulusIndex& stimulus) {
+std::size_t place_of_stimulus(const std::vector<design::StimulusIndex>& stimuli,
+                              const design::StimulusIndex& stimulus) {
   const auto found = std::ranges::lower_bound(stimuli, stimulus);
   if (found == stimuli.end() || *found != stimulus) {
     throw StudyError("the database presents a stimulus that its study does not have");
@@ -33,16 +33,17 @@ Confusions empty_confusions(const FitCounts& counts) {
 
 }  // namespace
 
-FitCounts count_answers(const Outcomes& outcomes, const std::map<int, Schedule>& schedules,
-                        const std::vector<StimulusIndex>& stimuli) {
+FitCounts count_answers(const analysis::Outcomes& outcomes,
+                        const std::map<int, design::Schedule>& schedules,
+                        const std::vector<design::StimulusIndex>& stimuli) {
   FitCounts counts;
   counts.classes = outcomes.classes;
   counts.methods = outcomes.methods;
   counts.stimuli = stimuli;
   std::map<int, std::size_t> person_of_session;
   const std::size_t cells = stimuli.size() * counts.classes.size();
-  for (const TrialOutcome& trial : outcomes.trials) {
-    if (!trial.counted || trial.kind != PresentationKind::scored) continue;
+  for (const analysis::TrialOutcome& trial : outcomes.trials) {
+    if (!trial.counted || trial.kind != design::PresentationKind::scored) continue;
     if (!trial.response) {
       ++counts.no_response;
       continue;
@@ -80,7 +81,7 @@ Confusions observed_confusions(const FitCounts& counts, std::span<const CountedP
   const std::size_t classes = counts.classes.size();
   for (const CountedPerson& person : people) {
     for (std::size_t i = 0; i < person.counts.size(); ++i) {
-      const StimulusIndex& stimulus = counts.stimuli[i / classes];
+      const design::StimulusIndex& stimulus = counts.stimuli[i / classes];
       table[stimulus.method][stimulus.class_index][i % classes] += person.counts[i];
     }
   }
@@ -94,7 +95,7 @@ Confusions expected_confusions(const FitCounts& counts, const AnswerTable& table
     for (std::size_t place = 0; place < counts.stimuli.size(); ++place) {
       double presented = 0.0;
       for (std::size_t c = 0; c < classes; ++c) presented += person.counts[place * classes + c];
-      const StimulusIndex& stimulus = counts.stimuli[place];
+      const design::StimulusIndex& stimulus = counts.stimuli[place];
       const auto answers = table.answers(person.layout, static_cast<int>(place));
       for (std::size_t c = 0; c < classes; ++c) {
         expected[stimulus.method][stimulus.class_index][c] += presented * answers[c];
@@ -118,4 +119,4 @@ double g_squared(const Confusions& observed, const Confusions& expected) {
   return std::max(0.0, 2.0 * sum);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

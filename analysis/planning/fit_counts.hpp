@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 /// One participant's answers. Not whole numbers only where a population is what is fitted to.
 struct CountedPerson {
@@ -19,10 +19,10 @@ struct CountedPerson {
 };
 
 struct FitCounts {
-  std::vector<std::string> classes;    ///< labels
-  std::vector<std::string> methods;    ///< of the study
-  std::vector<StimulusIndex> stimuli;  ///< in the bank's order
-  std::vector<PictureLayout> layouts;  ///< each once
+  std::vector<std::string> classes;            ///< labels
+  std::vector<std::string> methods;            ///< of the study
+  std::vector<design::StimulusIndex> stimuli;  ///< in the bank's order
+  std::vector<PictureLayout> layouts;          ///< each once
   std::vector<CountedPerson> people;
   int trials = 0;       ///< with an answer
   int no_response = 0;  ///< counted trials without one, left out
@@ -35,9 +35,9 @@ struct FitCounts {
 /// \param schedules  of the sessions, for their layouts
 /// \param stimuli  of the study, sorted
 /// \throws StudyError if no trial is left
-[[nodiscard]] FitCounts count_answers(const Outcomes& outcomes,
-                                      const std::map<int, Schedule>& schedules,
-                                      const std::vector<StimulusIndex>& stimuli);
+[[nodiscard]] FitCounts count_answers(const analysis::Outcomes& outcomes,
+                                      const std::map<int, design::Schedule>& schedules,
+                                      const std::vector<design::StimulusIndex>& stimuli);
 
 /// Sums over people: [stimulus x classes + answer] by layout.
 [[nodiscard]] std::vector<std::vector<double>> by_layout(const FitCounts& counts,
@@ -56,4 +56,4 @@ using Confusions = std::vector<std::vector<std::vector<double>>>;
 /// one. Cells that nothing was answered in add nothing.
 [[nodiscard]] double g_squared(const Confusions& observed, const Confusions& expected);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 std::vector<std::vector<double>> zeros(std::size_t layouts, const AnswerTable& table) {
@@ -64,16 +64,16 @@ std::vector<double> CountsEvidence::information(const AnswerTable& table,
 
 AccuracyEvidence::AccuracyEvidence(std::vector<double> accuracies, double trials_a_class,
                                    std::vector<PictureLayout> layouts,
-                                   std::vector<StimulusIndex> stimuli)
+                                   std::vector<design::StimulusIndex> stimuli)
     : accuracies_(std::move(accuracies)),
       trials_(trials_a_class),
       layouts_(std::move(layouts)),
       stimuli_(std::move(stimuli)),
       stimuli_of_class_(accuracies_.size(), 0) {
-  for (const StimulusIndex& stimulus : stimuli_) ++stimuli_of_class_[stimulus.class_index];
+  for (const design::StimulusIndex& stimulus : stimuli_) ++stimuli_of_class_[stimulus.class_index];
 }
 
-double AccuracyEvidence::share_of(const StimulusIndex& stimulus) const noexcept {
+double AccuracyEvidence::share_of(const design::StimulusIndex& stimulus) const noexcept {
   return 1.0 / (static_cast<double>(layouts_.size()) * stimuli_of_class_[stimulus.class_index]);
 }
 
@@ -137,4 +137,4 @@ std::vector<double> AccuracyEvidence::information(const AnswerTable& table,
   return information;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

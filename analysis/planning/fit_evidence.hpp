@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 /// Derivatives of probabilities by parameters, [parameter][layout][stimulus x classes + answer].
 using CellSlopes = std::vector<std::vector<std::vector<double>>>;
@@ -57,7 +57,7 @@ class AccuracyEvidence final : public FitEvidence {
  public:
   /// \param accuracies  by class, 0 .. 1  \param trials_a_class  > 0
   AccuracyEvidence(std::vector<double> accuracies, double trials_a_class,
-                   std::vector<PictureLayout> layouts, std::vector<StimulusIndex> stimuli);
+                   std::vector<PictureLayout> layouts, std::vector<design::StimulusIndex> stimuli);
 
   [[nodiscard]] std::span<const PictureLayout> layouts() const noexcept override {
     return layouts_;
@@ -71,13 +71,13 @@ class AccuracyEvidence final : public FitEvidence {
   [[nodiscard]] std::vector<double> accuracies_of(const AnswerTable& table) const;
 
  private:
-  [[nodiscard]] double share_of(const StimulusIndex& stimulus) const noexcept;
+  [[nodiscard]] double share_of(const design::StimulusIndex& stimulus) const noexcept;
 
   std::vector<double> accuracies_;
   double trials_;
   std::vector<PictureLayout> layouts_;
-  std::vector<StimulusIndex> stimuli_;
+  std::vector<design::StimulusIndex> stimuli_;
   std::vector<int> stimuli_of_class_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -8,7 +8,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 /// Calls work(i) for i = 0 .. count - 1, in no order. \param jobs  threads, no more than cores
 template <typename Work>
@@ -18,4 +18,4 @@ void on_threads(int jobs, std::size_t count, const Work& work) {
   arena.execute([&] { tbb::parallel_for(std::size_t{0}, count, work); });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

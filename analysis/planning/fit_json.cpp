@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -82,7 +82,7 @@ std::string fit_json(const SubjectFit& fit, const FitOrigin& origin) {
   object["trials"] = fit.trials;
   object["no_response"] = fit.no_response;
   object["classes"] = fit.classes;
-  object["fitted"] = Json::parse(subject_model_json(fit.subject));
+  object["fitted"] = Json::parse(session::subject_model_json(fit.subject));
   object["estimates"] = estimates_json(fit);
   object["weber_lapse_correlation"] = number(fit.weber_lapse_correlation);
   object["label_swaps"] = swaps_json(fit);
@@ -108,8 +108,8 @@ std::string fit_json(const AccuracyFit& fit, const FitOrigin& origin) {
   object["log_likelihood"] = number(fit.log_likelihood);
   object["best_log_likelihood"] = number(fit.best_log_likelihood);
   object["warnings"] = fit.warnings;
-  object["fitted"] = Json::parse(subject_model_json(fit.subject));
+  object["fitted"] = Json::parse(session::subject_model_json(fit.subject));
   return shown(object);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 // Beyond these the answers are perfect, or at chance, or all the same.
@@ -14,16 +14,16 @@ constexpr double kMostLogOdds = 20.0;
 /// Of ln(weber), for its derivative.
 constexpr double kStep = 2e-4;
 
-double bias_of(const SubjectModel& subject, const std::string& label) {
+double bias_of(const session::SubjectModel& subject, const std::string& label) {
   double bias = 0.0;
-  for (const ClassBias& preferred : subject.class_bias) {
+  for (const session::ClassBias& preferred : subject.class_bias) {
     if (preferred.label == label) bias += preferred.log_odds;
   }
   return bias;
 }
 
 /// d mean lapse / d lapse.
-double lapse_slope(SubjectModel subject) {
+double lapse_slope(session::SubjectModel subject) {
   if (subject.lapse_spread == 0.0) return 1.0;
   constexpr double kLapseStep = 1e-5;
   const double here = mean_lapse(subject);
@@ -33,8 +33,8 @@ double lapse_slope(SubjectModel subject) {
 
 }  // namespace
 
-FitProblem::FitProblem(const AnswerModel& model, const FitEvidence& evidence, SubjectModel subject,
-                       const FreeParameters& free, int eliminated)
+FitProblem::FitProblem(const AnswerModel& model, const FitEvidence& evidence,
+                       session::SubjectModel subject, const FreeParameters& free, int eliminated)
     : model_(model),
       evidence_(evidence),
       subject_(std::move(subject)),
@@ -77,8 +77,8 @@ std::vector<double> FitProblem::scales() const {
   return scales;
 }
 
-SubjectModel FitProblem::subject_at(std::span<const double> at) const {
-  SubjectModel subject = subject_;
+session::SubjectModel FitProblem::subject_at(std::span<const double> at) const {
+  session::SubjectModel subject = subject_;
   std::vector<double> biases(model_.classes().size(), 0.0);
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     const Parameter& parameter = parameters_[i];
@@ -98,7 +98,7 @@ SubjectModel FitProblem::subject_at(std::span<const double> at) const {
   return subject;
 }
 
-std::vector<double> FitProblem::numbers_of(const SubjectModel& subject) const {
+std::vector<double> FitProblem::numbers_of(const session::SubjectModel& subject) const {
   double mean = 0.0;
   for (const std::string& label : model_.classes()) {
     mean += bias_of(subject, label) / static_cast<double>(model_.classes().size());
@@ -144,7 +144,7 @@ double FitProblem::slope_of(const Parameter& parameter, const AnswerTable& table
 }
 
 FitProblem::Tangent FitProblem::tangent(std::span<const double> at, BankPart part) const {
-  const SubjectModel subject = subject_at(at);
+  const session::SubjectModel subject = subject_at(at);
   const std::span<const PictureLayout> layouts = evidence_.layouts();
   Tangent tangent{model_.answers(subject, layouts, true, part), {}};
   const AnswerTable& table = tangent.table;
@@ -152,7 +152,7 @@ FitProblem::Tangent FitProblem::tangent(std::span<const double> at, BankPart par
   const auto cells = static_cast<std::size_t>(table.stimuli()) * classes;
   const double rate = lapse_slope(subject);
   const double lapse = mean_lapse(subject);
-  SubjectModel noisier = subject;
+  session::SubjectModel noisier = subject;
   noisier.weber *= std::exp(kStep);
   const bool by_weber = std::ranges::count(parameters_, Parameter{ParameterKind::weber}) > 0;
   const AnswerTable more = by_weber ? model_.answers(noisier, layouts, false, part) : table;
@@ -191,4 +191,4 @@ double FitProblem::value(std::span<const double> at, std::span<double> slopes) c
   return value;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 /// What is estimated; the rest stays as the subject model has it.
 struct FreeParameters {
@@ -35,16 +35,16 @@ class FitProblem {
  public:
   /// \param subject  what is not free, and the label swaps
   /// \param eliminated  the class whose bias follows from the others
-  FitProblem(const AnswerModel& model, const FitEvidence& evidence, SubjectModel subject,
+  FitProblem(const AnswerModel& model, const FitEvidence& evidence, session::SubjectModel subject,
              const FreeParameters& free, int eliminated = 0);
 
   [[nodiscard]] const std::vector<Parameter>& parameters() const noexcept { return parameters_; }
   [[nodiscard]] const Bounds& bounds() const noexcept { return bounds_; }
   /// By how much each number usually matters.
   [[nodiscard]] std::vector<double> scales() const;
-  [[nodiscard]] SubjectModel subject_at(std::span<const double> at) const;
+  [[nodiscard]] session::SubjectModel subject_at(std::span<const double> at) const;
   /// The numbers of a subject, between the bounds.
-  [[nodiscard]] std::vector<double> numbers_of(const SubjectModel& subject) const;
+  [[nodiscard]] std::vector<double> numbers_of(const session::SubjectModel& subject) const;
   /// The log likelihood, and its derivatives unless `slopes` is empty.
   [[nodiscard]] double value(std::span<const double> at, std::span<double> slopes) const;
 
@@ -66,7 +66,7 @@ class FitProblem {
 
   const AnswerModel& model_;
   const FitEvidence& evidence_;
-  SubjectModel subject_;
+  session::SubjectModel subject_;
   int eliminated_;
   bool classes_free_;
   std::vector<Parameter> parameters_;
@@ -74,4 +74,4 @@ class FitProblem {
   std::vector<std::vector<double>> nearness_;  ///< [layout][class] to the first position
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

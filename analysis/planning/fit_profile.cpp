@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 /// Square root of 3.84, the 95 % point of chi-square with one degree of freedom.
@@ -108,4 +108,4 @@ NumberInterval profile_interval(const FitProblem& problem, const Optimum& best, 
   return {end(problem.bounds().lower[number], -1.0), end(problem.bounds().upper[number], 1.0)};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 /// Ends of an interval of one number of a problem.
 struct NumberInterval {
@@ -22,4 +22,4 @@ struct NumberInterval {
                                               std::size_t number,
                                               const std::vector<double>& covariance);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 /// What a fit was made with.
 struct FitOrigin {
@@ -28,4 +28,4 @@ struct FitOrigin {
 [[nodiscard]] std::string fit_json(const SubjectFit& fit, const FitOrigin& origin);
 [[nodiscard]] std::string fit_json(const AccuracyFit& fit, const FitOrigin& origin);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

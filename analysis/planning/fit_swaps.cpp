@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 constexpr std::array<double, 4> kCoarseWeber{0.1, 0.3, 0.8, 2.0};
@@ -12,18 +12,18 @@ constexpr std::array<double, 2> kCoarseLapse{0.02, 0.2};
 constexpr std::size_t kFitted = 2;
 
 struct Start {
-  SubjectModel subject;
+  session::SubjectModel subject;
   double value = 0.0;
 };
 
 /// Without preferences, so that one layout stands for all: a coarse look costs little.
-Start coarse_look(const AnswerModel& model, const FitEvidence& evidence, SubjectModel subject,
-                  const FreeParameters& free) {
+Start coarse_look(const AnswerModel& model, const FitEvidence& evidence,
+                  session::SubjectModel subject, const FreeParameters& free) {
   const FitProblem problem(model, evidence, subject, free);
   Start best{subject, -1e300};
   for (const double weber : kCoarseWeber) {
     for (const double lapse : kCoarseLapse) {
-      SubjectModel tried = subject;
+      session::SubjectModel tried = subject;
       tried.weber = weber;
       tried.lapse = lapse;
       if (free.position) tried.position_bias = 0.0;
@@ -36,13 +36,13 @@ Start coarse_look(const AnswerModel& model, const FitEvidence& evidence, Subject
   return best;
 }
 
-bool is_swapped(const SubjectModel& subject, const std::string& label) {
+bool is_swapped(const session::SubjectModel& subject, const std::string& label) {
   return std::ranges::any_of(subject.label_swap, [&](const auto& pair) {
     return pair.first == label || pair.second == label;
   });
 }
 
-std::vector<std::pair<std::string, std::string>> pairs_left(const SubjectModel& subject,
+std::vector<std::pair<std::string, std::string>> pairs_left(const session::SubjectModel& subject,
                                                             const std::vector<std::string>& all) {
   std::vector<std::pair<std::string, std::string>> pairs;
   for (std::size_t i = 0; i < all.size(); ++i) {
@@ -55,8 +55,8 @@ std::vector<std::pair<std::string, std::string>> pairs_left(const SubjectModel& 
   return pairs;
 }
 
-Start fitted(const AnswerModel& model, const FitEvidence& evidence, const SubjectModel& start,
-             const FreeParameters& free) {
+Start fitted(const AnswerModel& model, const FitEvidence& evidence,
+             const session::SubjectModel& start, const FreeParameters& free) {
   const FitProblem problem(model, evidence, start, free);
   const Optimum best = best_of_starts(problem, start);
   return {problem.subject_at(best.at), best.value};
@@ -72,7 +72,7 @@ std::vector<Tried> best_pairs(const AnswerModel& model, const FitEvidence& evide
                               const Start& without, const FreeParameters& free) {
   std::vector<std::pair<Start, std::pair<std::string, std::string>>> looks;
   for (const auto& pair : pairs_left(without.subject, model.classes())) {
-    SubjectModel subject = without.subject;
+    session::SubjectModel subject = without.subject;
     subject.label_swap.push_back(pair);
     looks.emplace_back(coarse_look(model, evidence, subject, free), pair);
   }
@@ -96,8 +96,8 @@ double swap_threshold(int pairs) noexcept {
   return std::log(kTimesLikelier * std::max(1, pairs));
 }
 
-SwapSearch search_swaps(const AnswerModel& model, const FitEvidence& evidence, SubjectModel subject,
-                        const FreeParameters& free) {
+SwapSearch search_swaps(const AnswerModel& model, const FitEvidence& evidence,
+                        session::SubjectModel subject, const FreeParameters& free) {
   SwapSearch search;
   const auto classes = static_cast<int>(model.classes().size());
   search.threshold = swap_threshold(classes * (classes - 1) / 2);
@@ -118,4 +118,4 @@ SwapSearch search_swaps(const AnswerModel& model, const FitEvidence& evidence, S
   return search;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

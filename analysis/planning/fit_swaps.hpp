@@ -5,11 +5,11 @@
 
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 /// A subject with the label swaps that the answers call for, all else fitted.
 struct SwapSearch {
-  SubjectModel subject;
+  session::SubjectModel subject;
   double log_likelihood = 0.0;
   std::vector<SwapCandidate> candidates;
   double threshold = 0.0;
@@ -21,9 +21,9 @@ struct SwapSearch {
 /// swap even if, beforehand, one swap of any pair was no likelier than none at all.
 /// \param subject  where the search starts; its own swaps are left out of it
 [[nodiscard]] SwapSearch search_swaps(const AnswerModel& model, const FitEvidence& evidence,
-                                      SubjectModel subject, const FreeParameters& free);
+                                      session::SubjectModel subject, const FreeParameters& free);
 
 /// The gain of log likelihood that one of so many pairs needs.
 [[nodiscard]] double swap_threshold(int pairs) noexcept;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

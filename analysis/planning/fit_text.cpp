@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 std::string end_text(std::optional<double> end) {
@@ -20,7 +20,7 @@ std::string title_of(const ParameterEstimate& estimate) {
 }
 
 std::string estimates_text(const SubjectFit& fit, const FitOrigin& origin) {
-  TextTable table(
+  analysis::TextTable table(
       {"parameter", "estimate", "95 %, profile", "95 %, simulated studies", "error of the bank"});
   for (const ParameterEstimate& one : fit.estimates) {
     const std::string simulated =
@@ -32,16 +32,18 @@ std::string estimates_text(const SubjectFit& fit, const FitOrigin& origin) {
                fmt::format("[{}, {}]", end_text(one.profile.lower), end_text(one.profile.upper)),
                simulated, one.standard_error ? fmt::format("{:.3f}", error) : "-"});
   }
-  return heading("what the answers tell of who gave them", origin.simulated) + table.text();
+  return analysis::heading("what the answers tell of who gave them", origin.simulated) +
+         table.text();
 }
 
 std::string swap_text(const SubjectFit& fit) {
   std::string text;
   for (const SwapCandidate& one : fit.swaps) {
-    text += wrapped("  ", fmt::format("pictures of \"{}\" and \"{}\" exchanged: log likelihood "
-                                      "{:+.1f}, {:.1f} needed: {}",
-                                      one.labels.first, one.labels.second, one.gain,
-                                      fit.swap_threshold, one.taken ? "taken" : "not taken"));
+    text += analysis::wrapped(
+        "  ", fmt::format("pictures of \"{}\" and \"{}\" exchanged: log likelihood "
+                          "{:+.1f}, {:.1f} needed: {}",
+                          one.labels.first, one.labels.second, one.gain, fit.swap_threshold,
+                          one.taken ? "taken" : "not taken"));
   }
   return text;
 }
@@ -49,7 +51,7 @@ std::string swap_text(const SubjectFit& fit) {
 std::string confusion_text(const SubjectFit& fit, std::size_t method, const FitOrigin& origin) {
   std::vector<std::string> header{"presented"};
   for (const std::string& label : fit.classes) header.push_back(label);
-  TextTable table(std::move(header));
+  analysis::TextTable table(std::move(header));
   for (std::size_t c = 0; c < fit.classes.size(); ++c) {
     std::vector<std::string> row{fit.classes[c]};
     for (std::size_t a = 0; a < fit.classes.size(); ++a) {
@@ -58,8 +60,8 @@ std::string confusion_text(const SubjectFit& fit, std::size_t method, const FitO
     }
     table.add(std::move(row));
   }
-  return heading(fit.methods[method] + ": answers, and what the fit expects of them",
-                 origin.simulated) +
+  return analysis::heading(fit.methods[method] + ": answers, and what the fit expects of them",
+                           origin.simulated) +
          table.text();
 }
 
@@ -67,16 +69,16 @@ std::string goodness_text(const SubjectFit& fit) {
   std::string text =
       fmt::format("G^2 = {:.1f} with {} cells left", fit.g_squared, fit.degrees_of_freedom);
   if (fit.p) {
-    text += fmt::format(", p = {} (of {} studies simulated from the fit)", p_value(*fit.p),
-                        fit.bootstraps);
+    text += fmt::format(", p = {} (of {} studies simulated from the fit)",
+                        analysis::p_value(*fit.p), fit.bootstraps);
   }
-  return wrapped("  ", text);
+  return analysis::wrapped("  ", text);
 }
 
-std::string biases_text(const SubjectModel& subject) {
+std::string biases_text(const session::SubjectModel& subject) {
   std::string text = fmt::format("weber {:.4f}, lapse {:.4f}, bias for the first position {:+.3f}",
                                  subject.weber, subject.lapse, subject.position_bias);
-  for (const ClassBias& bias : subject.class_bias) {
+  for (const session::ClassBias& bias : subject.class_bias) {
     text += fmt::format(", for {} {:+.3f}", bias.label, bias.log_odds);
   }
   return text;
@@ -85,35 +87,36 @@ std::string biases_text(const SubjectModel& subject) {
 }  // namespace
 
 std::string fit_text(const SubjectFit& fit, const FitOrigin& origin) {
-  std::string text = simulated_line(origin.simulated);
-  text +=
-      fmt::format("{}: {}, {} with an answer{}{}{}\n", origin.study,
-                  counted(fit.participants, "participant"), counted(fit.trials, "trial"),
-                  fit.no_response > 0 ? fmt::format(", {} without left out", fit.no_response) : "",
-                  origin.pilot ? ", PILOT" : "", origin.interim ? ", INTERIM LOOK" : "");
+  std::string text = analysis::simulated_line(origin.simulated);
+  text += fmt::format(
+      "{}: {}, {} with an answer{}{}{}\n", origin.study,
+      analysis::counted(fit.participants, "participant"), analysis::counted(fit.trials, "trial"),
+      fit.no_response > 0 ? fmt::format(", {} without left out", fit.no_response) : "",
+      origin.pilot ? ", PILOT" : "", origin.interim ? ", INTERIM LOOK" : "");
   text += estimates_text(fit, origin) + swap_text(fit);
   for (std::size_t m = 0; m < fit.methods.size(); ++m) text += confusion_text(fit, m, origin);
   text += goodness_text(fit);
-  if (!fit.warnings.empty()) text += heading("to bear in mind", origin.simulated);
-  for (const std::string& warning : fit.warnings) text += wrapped("  - ", warning);
-  return text + simulated_line(origin.simulated);
+  if (!fit.warnings.empty()) text += analysis::heading("to bear in mind", origin.simulated);
+  for (const std::string& warning : fit.warnings) text += analysis::wrapped("  - ", warning);
+  return text + analysis::simulated_line(origin.simulated);
 }
 
 std::string fit_text(const AccuracyFit& fit, const FitOrigin& origin) {
   std::string text = origin.study + ": a subject for published accuracies\n";
-  TextTable table({"class", "published", "expected of the fit", "difference, points"});
+  analysis::TextTable table({"class", "published", "expected of the fit", "difference, points"});
   for (std::size_t c = 0; c < fit.classes.size(); ++c) {
-    table.add({fit.classes[c], percent_of_share(fit.wanted[c]), percent_of_share(fit.reached[c]),
+    table.add({fit.classes[c], analysis::percent_of_share(fit.wanted[c]),
+               analysis::percent_of_share(fit.reached[c]),
                fmt::format("{:+.2f}", 100.0 * (fit.reached[c] - fit.wanted[c]))});
   }
-  text += table.text() + wrapped("  ", biases_text(fit.subject));
+  text += table.text() + analysis::wrapped("  ", biases_text(fit.subject));
   const bool others_fit = fit.warnings.empty();
-  text += wrapped(
+  text += analysis::wrapped(
       "  ", fmt::format("{} parameters for {} numbers{}", fit.parameters, fit.classes.size(),
                         others_fit ? ": other subjects fit as well, see docs/fitting.md" : ""));
-  if (!fit.warnings.empty()) text += heading("to bear in mind", origin.simulated);
-  for (const std::string& warning : fit.warnings) text += wrapped("  - ", warning);
+  if (!fit.warnings.empty()) text += analysis::heading("to bear in mind", origin.simulated);
+  for (const std::string& warning : fit.warnings) text += analysis::wrapped("  - ", warning);
   return text;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 /// Warnings of a finished fit, one line each.
 /// \param free  as asked for  \param used  as could be estimated
@@ -14,4 +14,4 @@ namespace touchtrial {
                                                     const FreeParameters& free,
                                                     const FreeParameters& used);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

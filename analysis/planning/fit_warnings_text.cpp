@@ -7,7 +7,7 @@
 #include <boost/math/distributions/chi_squared.hpp>
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 constexpr double kHardlyApart = 0.9;
@@ -189,4 +189,4 @@ std::vector<std::string> fit_warnings(const FitCounts& counts, const SubjectFit&
   return warnings;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

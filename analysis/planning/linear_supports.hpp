@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 /// Log densities of prototypes for someone with a Weber fraction, less that of the first: linear in
 /// the features, since the classifier's covariance is shared. Immutable, thread-safe.
@@ -15,14 +15,14 @@ class LinearSupports {
  public:
   /// Asks a FeltClassifier at the examples' mean and one step along each feature. Cost: some 30 us.
   /// \param weber  > 0
-  LinearSupports(const FeltKnowledge& knowledge, double weber);
+  LinearSupports(const session::FeltKnowledge& knowledge, double weber);
 
   [[nodiscard]] int prototypes() const noexcept { return static_cast<int>(constant_.size()); }
   /// Dimensions of the noise that sets supports apart.
   [[nodiscard]] int dimensions() const noexcept { return dimensions_; }
 
   /// Supports before noise. \param supports  one a prototype
-  void at(const FeltFeatures& felt, std::span<double> supports) const noexcept;
+  void at(const engine::FeltFeatures& felt, std::span<double> supports) const noexcept;
 
   /// What a noise of the Weber fraction on every feature adds to supports: linear in as many
   /// independent standard normals as there are dimensions.
@@ -33,7 +33,7 @@ class LinearSupports {
   void factorise_noise(double weber);
 
   int dimensions_;
-  FeltFeatures middle_{};
+  engine::FeltFeatures middle_{};
   std::vector<double> constant_;  ///< by prototype, at the middle
   std::vector<double> gradient_;  ///< [prototype x kFeltFeatures]
   std::vector<double> factor_;    ///< [prototype x dimensions]: the noise's Cholesky factor
@@ -42,4 +42,4 @@ class LinearSupports {
 /// How many independent normals the noise amounts to with so many prototypes.
 [[nodiscard]] int noise_dimensions(int prototypes) noexcept;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

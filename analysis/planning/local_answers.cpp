@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 /// Rarer answers are left as rare as they are: their slopes tell nothing of their neighbourhood.
@@ -100,4 +100,4 @@ std::vector<double> LocalAnswers::fitted_to(const std::vector<std::vector<double
   return numbers;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 /// Log-linear in the parameters' changes, normalised: probabilities and their slopes at the fit are
 /// the fitted model's, and the likelihood has one maximum. Immutable, thread-safe.
@@ -41,4 +41,4 @@ class LocalAnswers {
   std::vector<std::vector<std::vector<double>>> log_slopes_;  ///< [layout][cell][number]
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <limits>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 /// The largest for much negative noise: the one that falls the least, or rises the most backwards.
@@ -94,4 +94,4 @@ void add_winners(std::span<const double> at, std::span<const double> slope,
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

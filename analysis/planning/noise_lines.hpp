@@ -5,7 +5,7 @@
 
 #include <span>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 /// Adds to `answers`, by picture, the probability that its support is the largest when the noise t
 /// along a line has the given distribution: prototype k's support is at[k] + t * slope[k], and
@@ -17,4 +17,4 @@ void add_winners(std::span<const double> at, std::span<const double> slope,
                  std::span<const int> picture, const RadialDistribution& noise, double weight,
                  std::span<double> answers, std::span<double> slopes) noexcept;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -7,7 +7,7 @@
 #include <boost/math/distributions/normal.hpp>
 #include <boost/random/sobol.hpp>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 /// The middle of the cell of 2^-53 that the bits name: never 0 or 1.
@@ -53,4 +53,4 @@ std::vector<double> normal_groups(int groups) {
   return means;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

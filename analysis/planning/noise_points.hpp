@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 /// Points of Sobol's sequence, shifted at random (digit by digit), as independent standard normals.
 class NoisePoints {
@@ -27,4 +27,4 @@ class NoisePoints {
 /// The means of so many equally likely groups of a standard normal, scaled to its variance.
 [[nodiscard]] std::vector<double> normal_groups(int groups);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

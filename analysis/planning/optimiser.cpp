@@ -9,7 +9,7 @@
 
 #include <nlopt.h>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 using Solver = std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)>;
@@ -82,4 +82,4 @@ Optimum maximise(const SmoothFunction& function, std::vector<double> start, cons
   return search.best;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

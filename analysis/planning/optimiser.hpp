@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 /// \param slopes  gets the derivatives unless empty
 using SmoothFunction = std::function<double(std::span<const double> at, std::span<double> slopes)>;
@@ -34,4 +34,4 @@ struct OptimiserOptions {
 [[nodiscard]] Optimum maximise(const SmoothFunction& function, std::vector<double> start,
                                const Bounds& bounds, const OptimiserOptions& options = {});
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 namespace fs = std::filesystem;
@@ -109,4 +109,4 @@ CombinedPower combined(const std::vector<File>& shards) {
   return result;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

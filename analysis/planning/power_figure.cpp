@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 constexpr double kHeight_cm = 6.2;
@@ -24,7 +24,7 @@ std::string line_at(double height) {
   return fmt::format(
       "set arrow from graph 0, first {0:.6g} to graph 1, first {0:.6g} nohead dt (6, 5) lw 1.2 lc "
       "rgb '{1}' back\n",
-      height, kInk);
+      height, analysis::kInk);
 }
 
 /// From 0 to a round figure above everything that is drawn.
@@ -50,7 +50,8 @@ Axis power_axis(const PowerReport& report) {
 }
 
 Axis error_axis(const PowerReport& report) {
-  Axis axis{"type-I error", "significant under the null, %", {}, {100.0 * kSignificanceLevel}};
+  Axis axis{
+      "type-I error", "significant under the null, %", {}, {100.0 * analysis::kSignificanceLevel}};
   for (const PowerRow& row : report.rows) {
     axis.rows.push_back({1.0 * row.participants, 100.0 * row.false_alarms.share().value_or(0.0),
                          100.0 * row.type_one.low, 100.0 * row.type_one.high});
@@ -69,12 +70,13 @@ Axis width_axis(const PowerReport& report) {
   return axis;
 }
 
-std::string panel_script(const Panels& panels, std::size_t number, const Axis& axis) {
+std::string panel_script(const analysis::Panels& panels, std::size_t number, const Axis& axis) {
   const double first = axis.rows.front()[0];
   const double last = axis.rows.back()[0];
   const double room = std::max(1.0, 0.08 * (last - first));
   std::string script =
-      data_block(fmt::format("power{}", number), axis.rows) + panels.begin(number, axis.title) +
+      analysis::data_block(fmt::format("power{}", number), axis.rows) +
+      panels.begin(number, axis.title) +
       fmt::format("set yrange [0:{}]\nset ytics 0, {} format '%g'\n", axis.top, axis.step) +
       fmt::format("set ylabel '{}' noenhanced\n", axis.label) +
       "set xlabel 'participants' offset 0, 0.4\n" +
@@ -84,7 +86,7 @@ std::string panel_script(const Panels& panels, std::size_t number, const Axis& a
          fmt::format(
              "plot $power{0} using 1:2 with lines lw 1.3 lc rgb '{1}' notitle, $power{0} using "
              "1:2:3:4 with yerrorbars pt {2} ps 0.6 lw 1.3 lc rgb '{1}' notitle\n",
-             number, series_colour(number), series_mark(number)) +
+             number, analysis::series_colour(number), analysis::series_mark(number)) +
          "unset label\nunset arrow\n";
 }
 
@@ -102,10 +104,10 @@ std::string alt_of(const PowerReport& report) {
 
 }  // namespace
 
-Figure power_figure(const PowerReport& report) {
+analysis::Figure power_figure(const PowerReport& report) {
   const std::vector<Axis> axes{power_axis(report), error_axis(report), width_axis(report)};
-  const Panels panels(axes.size(), 3, kHeight_cm, {1.55, 0.15, 0.6, 1.25}, true);
-  Figure figure{.id = "power", .caption = {}, .alt = alt_of(report), .script = {}};
+  const analysis::Panels panels(axes.size(), 3, kHeight_cm, {1.55, 0.15, 0.6, 1.25}, true);
+  analysis::Figure figure{.id = "power", .caption = {}, .alt = alt_of(report), .script = {}};
   figure.caption = fmt::format(
       "{}. {}, {}. Left: share of significant studies, with its Monte-Carlo interval ({}, {:.4g} "
       "%); dashed: 80 and 90 %. Middle: the same under the null (Wilson, 95 %); dashed: the test's "
@@ -115,10 +117,10 @@ Figure power_figure(const PowerReport& report) {
       100.0 * power_level(report.plan), report.setting.estimate);
   figure.width_cm = panels.sheet().width_cm;
   figure.height_cm = panels.sheet().height_cm;
-  figure.script = sheet_head(panels.sheet()) + "set multiplot\n";
+  figure.script = analysis::sheet_head(panels.sheet()) + "set multiplot\n";
   for (std::size_t i = 0; i < axes.size(); ++i) figure.script += panel_script(panels, i, axes[i]);
   figure.script += "unset multiplot\n";
   return figure;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 constexpr int kFirstLook = 100;
@@ -41,11 +41,11 @@ void settle_sizes(PowerPlan& plan) {
 
 /// Bonferroni over the looks: together they are wrong no more often than one would be.
 double level_of_a_look(const PowerPlan& plan) {
-  return 1.0 - (1.0 - kConfidenceLevel) / static_cast<double>(looks_of(plan).size());
+  return 1.0 - (1.0 - analysis::kConfidenceLevel) / static_cast<double>(looks_of(plan).size());
 }
 
-bool is_certain(const PowerPlan& plan, Proportion significant) {
-  const Interval interval = power_interval(plan, significant);
+bool is_certain(const PowerPlan& plan, analysis::Proportion significant) {
+  const analysis::Interval interval = power_interval(plan, significant);
   return std::ranges::all_of(kPowerTargets, [&](double target) {
     return interval.low > target || interval.high < target;
   });
@@ -83,16 +83,16 @@ std::vector<int> looks_of(const PowerPlan& plan) {
 }
 
 double power_level(const PowerPlan& plan) {
-  return plan.stop_early ? level_of_a_look(plan) : kConfidenceLevel;
+  return plan.stop_early ? level_of_a_look(plan) : analysis::kConfidenceLevel;
 }
 
 const char* power_interval_name(const PowerPlan& plan) {
   return plan.stop_early ? "Clopper-Pearson" : "Wilson";
 }
 
-Interval power_interval(const PowerPlan& plan, Proportion significant) {
-  return plan.stop_early ? clopper_pearson_interval(significant, power_level(plan))
-                         : wilson_interval(significant, power_level(plan));
+analysis::Interval power_interval(const PowerPlan& plan, analysis::Proportion significant) {
+  return plan.stop_early ? analysis::clopper_pearson_interval(significant, power_level(plan))
+                         : analysis::wilson_interval(significant, power_level(plan));
 }
 
 std::optional<int> certain_after(const PowerPlan& plan, std::span<const PowerRun> runs) {
@@ -105,4 +105,4 @@ std::optional<int> certain_after(const PowerPlan& plan, std::span<const PowerRun
   return std::nullopt;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

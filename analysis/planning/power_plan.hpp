@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 /// The powers that sizes are asked for.
 inline constexpr std::array<double, 2> kPowerTargets{0.8, 0.9};
@@ -64,7 +64,8 @@ struct Shard {
 /// The interval of a power from the first `runs.size()` runs. A plan that may stop early looks
 /// several times, and its intervals hold together: Clopper-Pearson at 1 - 0.05 / looks each
 /// (Bonferroni). A plan that may not: Wilson at 0.95.
-[[nodiscard]] Interval power_interval(const PowerPlan& plan, Proportion significant);
+[[nodiscard]] analysis::Interval power_interval(const PowerPlan& plan,
+                                                analysis::Proportion significant);
 /// The level of that interval, and its name in words.
 [[nodiscard]] double power_level(const PowerPlan& plan);
 [[nodiscard]] const char* power_interval_name(const PowerPlan& plan);
@@ -75,4 +76,4 @@ struct Shard {
 [[nodiscard]] std::optional<int> certain_after(const PowerPlan& plan,
                                                std::span<const PowerRun> runs);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

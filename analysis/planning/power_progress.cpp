@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 std::string with_spread(const char* name, double value, double spread) {
@@ -14,13 +14,13 @@ std::string with_spread(const char* name, double value, double spread) {
 
 }  // namespace
 
-std::string words_of(const SubjectModel& subject) {
+std::string words_of(const session::SubjectModel& subject) {
   std::string words =
       with_spread("weber", subject.weber, subject.weber_spread) + ", " +
       with_spread("lapse", subject.lapse, subject.lapse_spread) + ", " +
       with_spread("position bias", subject.position_bias, subject.position_bias_spread) +
       ", class bias spread " + number_text(subject.class_bias_spread);
-  for (const ClassBias& bias : subject.class_bias) {
+  for (const session::ClassBias& bias : subject.class_bias) {
     words += ", bias for " + in_quotes(bias.label) + " " + number_text(bias.log_odds);
   }
   for (const auto& [one, other] : subject.label_swap) {
@@ -78,4 +78,4 @@ std::string first_difference(const PowerProgress& a, const PowerProgress& b) {
   return differs == std::end(equal) ? "" : differs->first;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 /// What a power run is of. Two runs with equal figures here and an equal plan make equal studies.
 struct PowerSetting {
@@ -30,7 +30,7 @@ struct PowerSetting {
 };
 
 /// A subject model's figures on one line: "weber 0.28 (spread 0.2), lapse 0.02 (spread 0), ..".
-[[nodiscard]] std::string words_of(const SubjectModel& subject);
+[[nodiscard]] std::string words_of(const session::SubjectModel& subject);
 
 /// The studies of one size and hypothesis.
 struct PowerCell {
@@ -82,4 +82,4 @@ struct CombinedPower {
 [[nodiscard]] CombinedPower combined(
     const std::vector<std::pair<std::filesystem::path, PowerProgress>>& shards);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

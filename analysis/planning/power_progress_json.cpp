@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 using nlohmann::ordered_json;
@@ -163,4 +163,4 @@ PowerProgress load_progress(const std::filesystem::path& path) {
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 struct Moments {
@@ -28,7 +28,7 @@ Moments moments_of(const std::vector<double>& values) {
   return moments;
 }
 
-Proportion significant_of(const PowerCell& cell) {
+analysis::Proportion significant_of(const PowerCell& cell) {
   const auto significant = std::ranges::count_if(cell.runs, is_significant);
   return {static_cast<int>(cell.runs.size()), static_cast<int>(significant)};
 }
@@ -39,7 +39,8 @@ WidthFigures widths_of(const PowerCell& cell) {
   std::ranges::sort(widths);
   const Moments moments = moments_of(widths);
   return {moments.mean, moments.sd / std::sqrt(static_cast<double>(widths.size())),
-          *quantile(widths, 0.1), *quantile(widths, 0.5), *quantile(widths, 0.9)};
+          *analysis::quantile(widths, 0.1), *analysis::quantile(widths, 0.5),
+          *analysis::quantile(widths, 0.9)};
 }
 
 PowerRow row_of(const PowerProgress& progress, const PowerCell& population, const PowerCell& null) {
@@ -57,7 +58,7 @@ PowerRow row_of(const PowerProgress& progress, const PowerCell& population, cons
   row.estimate_sd = moments.sd;
   row.width = widths_of(population);
   row.false_alarms = significant_of(null);
-  row.type_one = wilson_interval(row.false_alarms);
+  row.type_one = analysis::wilson_interval(row.false_alarms);
   for (const PowerRun& run : null.runs) {
     row.attainable += run.attainable / static_cast<double>(null.runs.size());
   }
@@ -111,7 +112,7 @@ std::vector<std::string> warnings_of(const PowerReport& report) {
 
 ErrorVerdict verdict_of(const PowerRow& row) noexcept {
   if (!row.has_fixed_counts) return ErrorVerdict::conditional;
-  if (row.type_one.low > kSignificanceLevel) return ErrorVerdict::excessive;
+  if (row.type_one.low > analysis::kSignificanceLevel) return ErrorVerdict::excessive;
   if (row.type_one.high < row.attainable) return ErrorVerdict::conservative;
   return ErrorVerdict::holds;
 }
@@ -145,4 +146,4 @@ PowerReport make_power_report(const PowerProgress& progress) {
   return report;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 /// Over the runs of one size.
 struct WidthFigures {
@@ -24,14 +24,14 @@ struct WidthFigures {
 /// One size.
 struct PowerRow {
   int participants = 0;
-  Proportion significant;  ///< of the runs with the population
-  Interval power{};        ///< power_interval
+  analysis::Proportion significant;  ///< of the runs with the population
+  analysis::Interval power{};        ///< power_interval
   bool stopped_early = false;
-  double estimate = 0.0;         ///< mean over runs
-  double estimate_sd = 0.0;      ///< from run to run
-  WidthFigures width;            ///< of the 95 % t interval
-  Proportion false_alarms;       ///< of the runs under the null
-  Interval type_one{};           ///< Wilson, 95 %
+  double estimate = 0.0;              ///< mean over runs
+  double estimate_sd = 0.0;           ///< from run to run
+  WidthFigures width;                 ///< of the 95 % t interval
+  analysis::Proportion false_alarms;  ///< of the runs under the null
+  analysis::Interval type_one{};      ///< Wilson, 95 %
   double attainable = 0.0;       ///< what the test's error is exactly, as data are whole numbers
   bool has_fixed_counts = true;  ///< PowerSetting
 };
@@ -71,6 +71,6 @@ struct PowerReport {
 [[nodiscard]] std::string power_csv(const PowerReport& report);
 [[nodiscard]] std::string power_markdown(const PowerReport& report);
 /// Power, type-I error and interval width against the number of participants.
-[[nodiscard]] Figure power_figure(const PowerReport& report);
+[[nodiscard]] analysis::Figure power_figure(const PowerReport& report);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -3,12 +3,12 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 using nlohmann::ordered_json;
 
-ordered_json ends_of(const Interval& interval) {
+ordered_json ends_of(const analysis::Interval& interval) {
   return ordered_json::array({interval.low, interval.high});
 }
 
@@ -53,7 +53,7 @@ ordered_json methods_object(const PowerReport& report) {
   return {{"power_interval", power_interval_name(report.plan)},
           {"power_level", power_level(report.plan)},
           {"type_one_interval", "Wilson"},
-          {"type_one_level", kConfidenceLevel},
+          {"type_one_level", analysis::kConfidenceLevel},
           {"interval_width", "95 % t interval over participants"},
           {"sentences", method_sentences(report)}};
 }
@@ -68,8 +68,9 @@ std::string power_json(const PowerReport& report) {
   object["claim"] = kPowerStamp;
   object["study"] = setting.study;
   object["protocol"] = setting.protocol;
-  object["test"] = {
-      {"words", setting.test}, {"level", kSignificanceLevel}, {"estimate", setting.estimate}};
+  object["test"] = {{"words", setting.test},
+                    {"level", analysis::kSignificanceLevel},
+                    {"estimate", setting.estimate}};
   object["assumed"] = setting.subject;
   object["plan"] = plan_object(report.plan);
   object["sizes"] = ordered_json::array();
@@ -85,4 +86,4 @@ std::string power_json(const PowerReport& report) {
   return object.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -6,7 +6,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 /// Runs between two looks at what is done; every look of a plan is a multiple, or its end.
@@ -85,4 +85,4 @@ void make_runs(const RehearsedStudy& study, const PrimaryTest& test, const Power
   Runs(study, test, work, progress).make_all();
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

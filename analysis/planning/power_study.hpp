@@ -5,7 +5,7 @@
 
 #include <functional>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 struct PowerWork {
   int jobs = 1;  ///< threads, >= 1; results do not depend on them
@@ -21,4 +21,4 @@ struct PowerWork {
 void make_runs(const RehearsedStudy& study, const PrimaryTest& test, const PowerWork& work,
                PowerProgress& progress);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -6,10 +6,10 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
-std::vector<DataCell> csv_row(const PowerRow& row) {
+std::vector<analysis::DataCell> csv_row(const PowerRow& row) {
   return {std::int64_t{row.participants},
           std::int64_t{row.significant.n},
           std::int64_t{row.stopped_early ? 1 : 0},
@@ -31,10 +31,10 @@ std::vector<DataCell> csv_row(const PowerRow& row) {
           std::string("SIMULATED")};
 }
 
-std::vector<Cell> table_row(const PowerRow& row) {
+std::vector<analysis::Cell> table_row(const PowerRow& row) {
   return {std::to_string(row.participants),
           std::to_string(row.significant.n) + (row.stopped_early ? ", stopped" : ""),
-          Cell(power_per_cent(row.significant.share().value_or(0.0)), true),
+          analysis::Cell(power_per_cent(row.significant.share().value_or(0.0)), true),
           power_range(row.power),
           power_per_cent(row.false_alarms.share().value_or(0.0)),
           power_range(row.type_one),
@@ -44,20 +44,20 @@ std::vector<Cell> table_row(const PowerRow& row) {
           power_range({row.width.lower, row.width.upper})};
 }
 
-Table table_of(const PowerReport& report) {
-  Table table{"power",
-              "Power given the assumed sensitivity, type-I error and interval width: " +
-                  report.setting.study + ", " + report.setting.test,
-              {{"participants"},
-               {"runs"},
-               {"power (%)"},
-               {"Monte-Carlo interval"},
-               {"type-I error (%)"},
-               {"Monte-Carlo 95%"},
-               {"attainable (%)"},
-               {report.setting.estimate + " (%)"},
-               {"interval width (points)"},
-               {"10 to 90% of studies"}}};
+analysis::Table table_of(const PowerReport& report) {
+  analysis::Table table{"power",
+                        "Power given the assumed sensitivity, type-I error and interval width: " +
+                            report.setting.study + ", " + report.setting.test,
+                        {{"participants"},
+                         {"runs"},
+                         {"power (%)"},
+                         {"Monte-Carlo interval"},
+                         {"type-I error (%)"},
+                         {"Monte-Carlo 95%"},
+                         {"attainable (%)"},
+                         {report.setting.estimate + " (%)"},
+                         {"interval width (points)"},
+                         {"10 to 90% of studies"}}};
   for (const PowerRow& row : report.rows) table.rows.push_back(table_row(row));
   for (const std::string& sentence : target_sentences(report)) table.notes.push_back({sentence});
   for (const std::string& warning : report.warnings) table.notes.push_back({warning});
@@ -69,17 +69,17 @@ Table table_of(const PowerReport& report) {
 }  // namespace
 
 std::string power_csv(const PowerReport& report) {
-  DataTable table{
+  analysis::DataTable table{
       {"participants", "runs", "stopped_early", "power", "power_low", "power_high", "null_runs",
        "type_one_error", "type_one_low", "type_one_high", "attainable", "estimate", "estimate_sd",
        "width_mean", "width_mean_se", "width_q10", "width_median", "width_q90", "stamp"},
       {}};
   for (const PowerRow& row : report.rows) table.rows.push_back(csv_row(row));
-  return csv_text(table);
+  return analysis::csv_text(table);
 }
 
 std::string power_markdown(const PowerReport& report) {
-  return table_markdown(table_of(report), "SIMULATED");
+  return analysis::table_markdown(table_of(report), "SIMULATED");
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -4,12 +4,12 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 std::string power_table(const PowerReport& report) {
-  TextTable table({"participants", "runs", "power %", "MC interval", "type-I %", "MC 95%",
-                   "attainable %", "error"});
+  analysis::TextTable table({"participants", "runs", "power %", "MC interval", "type-I %", "MC 95%",
+                             "attainable %", "error"});
   for (const PowerRow& row : report.rows) {
     table.add({std::to_string(row.participants),
                std::to_string(row.significant.n) + (row.stopped_early ? " (stopped)" : ""),
@@ -22,8 +22,8 @@ std::string power_table(const PowerReport& report) {
 
 std::string width_table(const PowerReport& report) {
   const bool compares = report.setting.protocol == "comparison";
-  TextTable table({"participants", compares ? "difference" : "accuracy", "SD of studies", "width",
-                   "MC error", "10%", "median", "90%"});
+  analysis::TextTable table({"participants", compares ? "difference" : "accuracy", "SD of studies",
+                             "width", "MC error", "10%", "median", "90%"});
   for (const PowerRow& row : report.rows) {
     const WidthFigures& width = row.width;
     table.add({std::to_string(row.participants), power_per_cent(row.estimate),
@@ -38,19 +38,22 @@ std::string width_table(const PowerReport& report) {
 
 std::string power_text(const PowerReport& report) {
   std::string text = std::string(kPowerStamp) + "\n";
-  text += wrapped("study    ", report.setting.study + ", " + report.setting.protocol);
-  text += wrapped("test     ", report.setting.test);
-  text += wrapped("assumed  ", report.setting.subject);
-  text += heading("Power and type-I error of the primary test", true) + power_table(report);
+  text += analysis::wrapped("study    ", report.setting.study + ", " + report.setting.protocol);
+  text += analysis::wrapped("test     ", report.setting.test);
+  text += analysis::wrapped("assumed  ", report.setting.subject);
   text +=
-      heading("Estimate, and width of its 95 % interval: mean, and quantiles over studies (points)",
+      analysis::heading("Power and type-I error of the primary test", true) + power_table(report);
+  text += analysis::heading(
+              "Estimate, and width of its 95 % interval: mean, and quantiles over studies (points)",
               true) +
-      width_table(report) + "\n";
-  for (const std::string& sentence : target_sentences(report)) text += wrapped("", sentence);
-  for (const std::string& warning : report.warnings) text += wrapped("! ", warning);
+          width_table(report) + "\n";
+  for (const std::string& sentence : target_sentences(report))
+    text += analysis::wrapped("", sentence);
+  for (const std::string& warning : report.warnings) text += analysis::wrapped("! ", warning);
   text += "\n";
-  for (const std::string& sentence : method_sentences(report)) text += wrapped("", sentence);
+  for (const std::string& sentence : method_sentences(report))
+    text += analysis::wrapped("", sentence);
   return text + kPowerStamp + "\n";
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

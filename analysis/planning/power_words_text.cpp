@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 std::string looks_sentence(const PowerPlan& plan) {
@@ -46,7 +46,7 @@ std::string power_per_cent(double share) {
   return fmt::format("{:.1f}", 100.0 * share);
 }
 
-std::string power_range(const Interval& interval) {
+std::string power_range(const analysis::Interval& interval) {
   return "[" + power_per_cent(interval.low) + ", " + power_per_cent(interval.high) + "]";
 }
 
@@ -86,9 +86,9 @@ std::vector<std::string> method_sentences(const PowerReport& report) {
   sentences.push_back(fmt::format(
       "Attainable: what the type-I error is exactly, as counts are whole numbers and no p lies at "
       "{} itself; its Monte-Carlo interval is Wilson's at 95 %.",
-      kSignificanceLevel));
+      analysis::kSignificanceLevel));
   sentences.push_back("Interval width: of the 95 % t interval of the mean over participants.");
   return sentences;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -8,13 +8,13 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 /// 0.05 times the drawings and the study itself is a whole number: the level is reached exactly.
 constexpr int kMostDeals = 999;
 
-std::string labels_of(const Study& study) {
+std::string labels_of(const design::Study& study) {
   std::string labels;
   for (int i = 0; i < study.presented_methods(); ++i) {
     labels += (i > 0 ? ", " : "") + study.methods[i].label;
@@ -22,7 +22,7 @@ std::string labels_of(const Study& study) {
   return labels;
 }
 
-int method_of(const Study& study, const std::string& label) {
+int method_of(const design::Study& study, const std::string& label) {
   for (int i = 0; i < study.presented_methods(); ++i) {
     if (study.methods[i].label == label) return i;
   }
@@ -30,7 +30,7 @@ int method_of(const Study& study, const std::string& label) {
                    "; it presents: " + labels_of(study));
 }
 
-PrimaryTest pair_test(const Study& study, const std::optional<MethodLabels>& methods) {
+PrimaryTest pair_test(const design::Study& study, const std::optional<MethodLabels>& methods) {
   constexpr auto kKind = PrimaryTest::Kind::methods_differ;
   if (!methods) {
     if (study.presented_methods() == 2) return {kKind, 0, 1};
@@ -49,46 +49,49 @@ PrimaryTest pair_test(const Study& study, const std::optional<MethodLabels>& met
 
 }  // namespace
 
-PrimaryTest primary_test_of(const Study& study, const std::optional<MethodLabels>& methods) {
-  if (study.protocol == Protocol::comparison) return pair_test(study, methods);
+PrimaryTest primary_test_of(const design::Study& study,
+                            const std::optional<MethodLabels>& methods) {
+  if (study.protocol == design::Protocol::comparison) return pair_test(study, methods);
   if (methods) {
     throw UsageError("--methods: the study presents one method; leave the option out");
   }
   return {};
 }
 
-std::string words_of(const PrimaryTest& test, const Study& study) {
+std::string words_of(const PrimaryTest& test, const design::Study& study) {
   const std::string& first = study.methods[test.first].label;
   if (test.kind == PrimaryTest::Kind::above_chance) {
     return fmt::format(
         "accuracy above chance ({}): permutation over the orders of the design, one-sided, level "
         "{}",
-        first, kSignificanceLevel);
+        first, analysis::kSignificanceLevel);
   }
   return fmt::format(
       "accuracy with {} against {}: sign flips over participants, two-sided, level {}", first,
-      study.methods[test.second].label, kSignificanceLevel);
+      study.methods[test.second].label, analysis::kSignificanceLevel);
 }
 
 std::string estimate_words(const PrimaryTest& test) {
   return test.kind == PrimaryTest::Kind::above_chance ? "accuracy" : "difference of accuracies";
 }
 
-PowerRun judged(const PrimaryTest& test, const Outcomes& outcomes, bool with_attainable) {
+PowerRun judged(const PrimaryTest& test, const analysis::Outcomes& outcomes, bool with_attainable) {
   if (test.kind == PrimaryTest::Kind::above_chance) {
-    const ChanceFigures figures = chance_figures(outcomes, test.first, kMostDeals);
+    const analysis::ChanceFigures figures =
+        analysis::chance_figures(outcomes, test.first, kMostDeals);
     return {figures.chance ? figures.chance->p : 1.0,
             with_attainable && figures.chance ? figures.chance->attainable : 0.0,
             figures.mean.mean.value_or(0.0), figures.mean.interval.low, figures.mean.interval.high};
   }
-  const PairFigures figures = pair_figures(outcomes, test.first, test.second, with_attainable);
-  const MethodComparison& overall = figures.overall;
+  const analysis::PairFigures figures =
+      analysis::pair_figures(outcomes, test.first, test.second, with_attainable);
+  const analysis::MethodComparison& overall = figures.overall;
   return {overall.p.value_or(1.0), figures.attainable, overall.difference.value_or(0.0),
           overall.interval.low, overall.interval.high};
 }
 
 bool is_significant(const PowerRun& run) noexcept {
-  return run.p <= kSignificanceLevel;
+  return run.p <= analysis::kSignificanceLevel;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 /// Two methods by their labels in the study file.
 using MethodLabels = std::pair<std::string, std::string>;
@@ -27,11 +27,11 @@ struct PrimaryTest {
 /// That of the study's protocol.
 /// \param methods  of a comparison, first minus second; needed where there are three or more
 /// \throws UsageError if they are not two of the study's methods, or missing, or of no use
-[[nodiscard]] PrimaryTest primary_test_of(const Study& study,
+[[nodiscard]] PrimaryTest primary_test_of(const design::Study& study,
                                           const std::optional<MethodLabels>& methods);
 
 /// "accuracy above chance (adaptive): permutation over the design, one-sided, level 0.05"
-[[nodiscard]] std::string words_of(const PrimaryTest& test, const Study& study);
+[[nodiscard]] std::string words_of(const PrimaryTest& test, const design::Study& study);
 /// What `PowerRun::estimate` is: "accuracy", or "difference of accuracies".
 [[nodiscard]] std::string estimate_words(const PrimaryTest& test);
 
@@ -51,10 +51,10 @@ struct PowerRun {
 /// The same figures that the report gives of these outcomes; of orders that are drawn by the
 /// study's rule p comes from 999 drawings.
 /// \param with_attainable  of studies under the null hypothesis
-[[nodiscard]] PowerRun judged(const PrimaryTest& test, const Outcomes& outcomes,
+[[nodiscard]] PowerRun judged(const PrimaryTest& test, const analysis::Outcomes& outcomes,
                               bool with_attainable);
 
 /// Whether the test decides.
 [[nodiscard]] bool is_significant(const PowerRun& run) noexcept;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -5,7 +5,7 @@
 
 #include <boost/math/distributions/chi_squared.hpp>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 constexpr int kCells = 2048;
@@ -45,4 +45,4 @@ RadialDistribution::Value RadialDistribution::at(double t) const noexcept {
   return {t > 0.0 ? 1.0 - 0.5 * more : 0.5 * more, 0.5 * density};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

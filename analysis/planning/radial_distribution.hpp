@@ -3,7 +3,7 @@
 
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 /// Of a noise vector of independent standard normals in d dimensions, length and direction are
 /// independent. This is the distribution of the signed length along a line through the middle:
@@ -27,4 +27,4 @@ class RadialDistribution {
   std::vector<double> density_;  ///< its density, a step
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 /// Whom a study is simulated with.
 enum class Hypothesis {
@@ -30,35 +30,36 @@ class RehearsedStudy {
   /// \param most_participants  of any simulated study, >= 1: that many schedules are made
   /// \throws StudyError if the study's orders are impossible, or participants who explore as long
   ///   as the subject file says would never answer
-  RehearsedStudy(const Study& study, const SubjectModel& subject, const PrimaryTest& test,
-                 const Feelings& feelings, int most_participants);
+  RehearsedStudy(const design::Study& study, const session::SubjectModel& subject,
+                 const PrimaryTest& test, const Feelings& feelings, int most_participants);
 
   /// Participants with the numbers and enrolment numbers 1 .. `participants`. With `population` and
   /// ServoFeelings the scored trials are those of `simulate --seed study_seed`, to the bit; places
   /// in time, evidence and unscored trials are left out.
-  [[nodiscard]] Outcomes outcomes(int participants, Hypothesis hypothesis,
-                                  std::uint64_t study_seed) const;
+  [[nodiscard]] analysis::Outcomes outcomes(int participants, Hypothesis hypothesis,
+                                            std::uint64_t study_seed) const;
 
  private:
   /// What does not change from study to study.
   struct PlannedSchedule {
-    Schedule schedule;
+    design::Schedule schedule;
     std::vector<std::string> pictures;  ///< labels, by position
   };
   struct Answering;
 
-  void add_participant(int number, const Answering& answering, Outcomes& outcomes) const;
+  void add_participant(int number, const Answering& answering, analysis::Outcomes& outcomes) const;
   /// \param draw  random bits
-  [[nodiscard]] StimulusIndex felt_stimulus(const StimulusIndex& presented, Hypothesis hypothesis,
-                                            std::uint64_t draw) const;
+  [[nodiscard]] design::StimulusIndex felt_stimulus(const design::StimulusIndex& presented,
+                                                    Hypothesis hypothesis,
+                                                    std::uint64_t draw) const;
 
-  const Study& study_;
-  const SubjectModel& subject_;
+  const design::Study& study_;
+  const session::SubjectModel& subject_;
   PrimaryTest test_;
   const Feelings& feelings_;
   std::vector<PlannedSchedule> schedules_;
-  std::vector<StimulusIndex> of_method_;  ///< every stimulus of the test's first method
-  Outcomes empty_;
+  std::vector<design::StimulusIndex> of_method_;  ///< every stimulus of the test's first method
+  analysis::Outcomes empty_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

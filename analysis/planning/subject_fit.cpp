@@ -11,7 +11,7 @@
 #include <array>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 constexpr int kBankParts = 8;
@@ -57,7 +57,8 @@ Fitted fitted_at(const FitProblem& problem, const FitCounts& counts, Optimum bes
           covariance ? std::move(*covariance) : vague.value_or(std::vector<double>(n * n, 0.0))};
 }
 
-Fitted at_best(const FitProblem& problem, const FitCounts& counts, const SubjectModel& subject) {
+Fitted at_best(const FitProblem& problem, const FitCounts& counts,
+               const session::SubjectModel& subject) {
   const SmoothFunction function = [&](std::span<const double> at, std::span<double> slopes) {
     return problem.value(at, slopes);
   };
@@ -103,7 +104,7 @@ std::vector<double> monte_carlo_errors(const Fitted& fitted) {
   std::vector<double> squares(n, 0.0);
   if (!fitted.informed) return squares;
   const FitProblem& problem = fitted.problem;
-  const SubjectModel subject = problem.subject_at(fitted.best.at);
+  const session::SubjectModel subject = problem.subject_at(fitted.best.at);
   const std::vector<std::vector<double>> counts = by_layout(fitted.counts, fitted.counts.people);
   const int classes = fitted.counts.class_count();
   for (int part = 0; part < kBankParts; ++part) {
@@ -183,7 +184,8 @@ void add_bootstrap(const Fitted& fitted, const FitBootstrap& bootstrap, SubjectF
       values.push_back(number_of(fitted, estimate, numbers));
     }
     std::ranges::sort(values);
-    estimate.bootstrap = {quantile(values, kLowTail).value(), quantile(values, kHighTail).value()};
+    estimate.bootstrap = {analysis::quantile(values, kLowTail).value(),
+                          analysis::quantile(values, kHighTail).value()};
   }
 }
 
@@ -246,13 +248,13 @@ void estimate(const Fitted& fitted, const Fitted& otherwise, const FitProgress& 
 
 }  // namespace
 
-Optimum best_of_starts(const FitProblem& problem, const SubjectModel& subject) {
+Optimum best_of_starts(const FitProblem& problem, const session::SubjectModel& subject) {
   constexpr std::array<double, 4> kWeber{0.1, 0.3, 0.8, 2.0};
   constexpr std::array<double, 2> kLapse{0.02, 0.2};
   std::vector<Optimum> starts;
   for (const double weber : kWeber) {
     for (const double lapse : kLapse) {
-      SubjectModel start = subject;
+      session::SubjectModel start = subject;
       start.weber = weber;
       start.lapse = lapse;
       const std::vector<double> at = problem.numbers_of(start);
@@ -272,7 +274,7 @@ Optimum best_of_starts(const FitProblem& problem, const SubjectModel& subject) {
 }
 
 SubjectFit fit_subject(const AnswerModel& model, const FitCounts& counts,
-                       const SubjectModel& subject, const FitOptions& options,
+                       const session::SubjectModel& subject, const FitOptions& options,
                        const FitProgress& progress) {
   const CountsEvidence evidence(counts, counts.people);
   FreeParameters used = options.free;
@@ -303,4 +305,4 @@ SubjectFit fit_subject(const AnswerModel& model, const FitCounts& counts,
   return fit;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 struct FitOptions {
   FreeParameters free{};
@@ -32,11 +32,11 @@ struct ParameterEstimate {
   std::string name;   ///< "weber", "lapse", "position"; of a class bias "class"
   std::string label;  ///< of the class, else empty
   double value = 0.0;
-  std::optional<double> standard_error;  ///< by Fisher's information; of weber, of ln(weber)
-  OpenInterval profile{};                ///< 95 % by the profile of the likelihood
-  std::optional<Interval> bootstrap;     ///< 95 % of the studies simulated from the fit
-  double monte_carlo_error = 0.0;        ///< standard error that the bank's finite size leaves
-  bool at_bound = false;                 ///< the largest likelihood lies at a bound of the search
+  std::optional<double> standard_error;         ///< by Fisher's information; of weber, of ln(weber)
+  OpenInterval profile{};                       ///< 95 % by the profile of the likelihood
+  std::optional<analysis::Interval> bootstrap;  ///< 95 % of the studies simulated from the fit
+  double monte_carlo_error = 0.0;  ///< standard error that the bank's finite size leaves
+  bool at_bound = false;           ///< the largest likelihood lies at a bound of the search
 };
 
 /// A label swap that was considered.
@@ -47,7 +47,7 @@ struct SwapCandidate {
 };
 
 struct SubjectFit {
-  SubjectModel subject;  ///< fitted; what is fixed is the given one's
+  session::SubjectModel subject;  ///< fitted; what is fixed is the given one's
   std::vector<ParameterEstimate> estimates;
   std::vector<SwapCandidate> swaps;  ///< the most likely ones, best first
   double swap_threshold = 0.0;       ///< gain that a swap needs
@@ -77,10 +77,11 @@ using FitProgress = std::function<void(double share)>;
 /// \param model  made from the same study and from `subject`'s hand and training
 /// \param subject  where the search starts, and what is fixed
 [[nodiscard]] SubjectFit fit_subject(const AnswerModel& model, const FitCounts& counts,
-                                     const SubjectModel& subject, const FitOptions& options,
-                                     const FitProgress& progress = {});
+                                     const session::SubjectModel& subject,
+                                     const FitOptions& options, const FitProgress& progress = {});
 
 /// The best of several deterministic starts: the subject itself, and a grid of noise and lapse.
-[[nodiscard]] Optimum best_of_starts(const FitProblem& problem, const SubjectModel& subject);
+[[nodiscard]] Optimum best_of_starts(const FitProblem& problem,
+                                     const session::SubjectModel& subject);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

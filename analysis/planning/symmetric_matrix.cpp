@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 namespace {
 
 /// The lower triangle's Cholesky factor in place. \return false if there is none
@@ -41,4 +41,4 @@ std::optional<std::vector<double>> inverse_of(std::vector<double> matrix, std::s
   return inverse;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

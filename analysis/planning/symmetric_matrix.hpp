@@ -4,11 +4,11 @@
 #include <optional>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::planning {
 
 /// \param matrix  row-major, symmetric, n x n
 /// \return its inverse; nothing if it is not positive definite to about 10 digits
 [[nodiscard]] std::optional<std::vector<double>> inverse_of(std::vector<double> matrix,
                                                             std::size_t n);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::planning

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 constexpr const char* kFirst = "first of its block";
@@ -24,7 +24,7 @@ struct PlacedTrial {
 std::vector<const TrialOutcome*> as_felt(const Outcomes& outcomes) {
   std::vector<const TrialOutcome*> felt;
   for (const TrialOutcome& trial : outcomes.trials) {
-    if (trial.row.state != TrialState::voided) felt.push_back(&trial);
+    if (trial.row.state != store::TrialState::voided) felt.push_back(&trial);
   }
   std::ranges::stable_sort(felt, {}, [](const TrialOutcome* trial) {
     return std::tuple(trial->row.session, trial->row.presented_at, trial->row.trial);
@@ -64,7 +64,7 @@ Group group_of_exemplar(const Outcomes& outcomes, const TrialOutcome& trial) {
 Group group_of_order(const Outcomes& outcomes, int enrolment) {
   const auto methods = static_cast<int>(outcomes.methods.size());
   std::vector<std::string> labels;
-  for (const int method : williams_row(methods, enrolment)) {
+  for (const int method : design::williams_row(methods, enrolment)) {
     labels.push_back(outcomes.methods[method]);
   }
   const int rows = methods % 2 == 1 ? 2 * methods : methods;
@@ -74,7 +74,8 @@ Group group_of_order(const Outcomes& outcomes, int enrolment) {
 Group group_felt_before(const Outcomes& outcomes, const PlacedTrial& placed) {
   const auto classes = static_cast<int>(outcomes.classes.size());
   if (placed.previous == nullptr) return {classes + 1, kFirst};
-  if (placed.previous->kind == PresentationKind::catch_trial) return {classes, "no texture"};
+  if (placed.previous->kind == design::PresentationKind::catch_trial)
+    return {classes, "no texture"};
   const int before = placed.previous->stimulus.class_index;
   return {before, outcomes.classes[before]};
 }
@@ -149,7 +150,7 @@ std::vector<Breakdown> breakdowns(const Outcomes& outcomes, int method) {
   }
   add(BreakdownKind::trial,
       [](const PlacedTrial& placed) { return Group(placed.place, std::to_string(placed.place)); });
-  if (outcomes.methods.size() > 1 && outcomes.design.trials.blocks == Blocks::by_method) {
+  if (outcomes.methods.size() > 1 && outcomes.design.trials.blocks == design::Blocks::by_method) {
     const std::map<int, int> enrolment = enrolments(outcomes);
     add(BreakdownKind::order_group, [&](const PlacedTrial& placed) {
       return group_of_order(outcomes, enrolment.at(placed.trial->row.session));
@@ -162,4 +163,4 @@ std::vector<Breakdown> breakdowns(const Outcomes& outcomes, int method) {
   return all;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

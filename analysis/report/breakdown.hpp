@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 enum class BreakdownKind {
   exemplar,           ///< groups "class: image"
@@ -35,4 +35,4 @@ struct Breakdown {
 /// All kinds that tell anything (two groups or more) for one method's counted trials.
 [[nodiscard]] std::vector<Breakdown> breakdowns(const Outcomes& outcomes, int method);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

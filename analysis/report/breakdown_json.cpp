@@ -1,7 +1,7 @@
 #include "analysis/json_figures.hpp"
 #include "analysis/report/report_sections.hpp"
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -57,4 +57,4 @@ nlohmann::ordered_json robustness_array(const std::vector<SubsetAccuracy>& subse
   return all;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -8,7 +8,7 @@
 #include <span>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// Orders that the study's rule made. Names of classes are exchangeable in every rule, so that each
@@ -29,8 +29,8 @@ std::vector<PlacedBlock> blocks_of(const Outcomes& outcomes, int method) {
   std::map<std::pair<int, int>, PlacedBlock> blocks;
   std::map<std::pair<int, int>, int> next_place;
   for (const TrialOutcome& trial : outcomes.trials) {
-    const bool has_place =
-        trial.scored && trial.stimulus.method == method && trial.row.state != TrialState::voided;
+    const bool has_place = trial.scored && trial.stimulus.method == method &&
+                           trial.row.state != store::TrialState::voided;
     if (!has_place) continue;
     const std::pair id(trial.row.session, trial.row.block);
     const int place = next_place[id]++;
@@ -46,10 +46,10 @@ std::vector<PlacedBlock> blocks_of(const Outcomes& outcomes, int method) {
 }
 
 /// Classes of the scored presentations of a method in the first block that has it.
-std::vector<int> order_in(const Schedule& schedule, int method) {
+std::vector<int> order_in(const design::Schedule& schedule, int method) {
   std::vector<int> order;
-  for (const Presentation& shown : schedule.presentations) {
-    if (shown.kind == PresentationKind::scored && shown.stimulus.method == method) {
+  for (const design::Presentation& shown : schedule.presentations) {
+    if (shown.kind == design::PresentationKind::scored && shown.stimulus.method == method) {
       order.push_back(shown.stimulus.class_index);
     }
   }
@@ -60,11 +60,12 @@ std::vector<int> order_in(const Schedule& schedule, int method) {
 /// some renamings of the classes.
 class OrderDraws {
  public:
-  OrderDraws(Study study, int method, std::size_t blocks, int deals)
+  OrderDraws(design::Study study, int method, std::size_t blocks, int deals)
       : blocks_(blocks), random_(0, "chance test", static_cast<std::uint64_t>(method)) {
     // Another seed: the participants' own orders are not among those drawn.
     study.seed = RandomStream(study.seed, "chance test: schedules").below(~std::uint64_t{0});
-    for (int i = 1; i <= kOrders; ++i) orders_.push_back(order_in(make_schedule(study, i), method));
+    for (int i = 1; i <= kOrders; ++i)
+      orders_.push_back(order_in(design::make_schedule(study, i), method));
     std::vector<int> names(study.classes.size());
     std::iota(names.begin(), names.end(), 0);
     for (int i = 0; i < kRenamings; ++i) {
@@ -105,11 +106,11 @@ int deals_for(std::size_t blocks, int most_deals) {
 
 }  // namespace
 
-DealtOrder dealt_order(const Study& study) {
-  const TrialOptions& trials = study.trials;
+DealtOrder dealt_order(const design::Study& study) {
+  const design::TrialOptions& trials = study.trials;
   const bool limited = trials.max_run > 0;
-  if (!limited && trials.order == TrialOrder::shuffled) return DealtOrder::permuted;
-  if (!limited && trials.order == TrialOrder::uniform) return DealtOrder::independent;
+  if (!limited && trials.order == design::TrialOrder::shuffled) return DealtOrder::permuted;
+  if (!limited && trials.order == design::TrialOrder::uniform) return DealtOrder::independent;
   return DealtOrder::redrawn;
 }
 
@@ -135,4 +136,4 @@ std::optional<ChanceTest> chance_of(const Outcomes& outcomes, int method, int mo
   return chance_test(classes, blocks, order, redraw, deals);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

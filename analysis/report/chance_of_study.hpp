@@ -7,12 +7,12 @@
 
 #include <optional>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 inline constexpr int kMostChanceDeals = 9999;
 
 /// How the study's rule deals the classes of a block.
-[[nodiscard]] DealtOrder dealt_order(const Study& study);
+[[nodiscard]] DealtOrder dealt_order(const design::Study& study);
 
 /// Of one method's counted trials. Orders with a rule of their own are drawn from the study's own
 /// maker of schedules; of a block only the places whose trials count are compared.
@@ -20,4 +20,4 @@ inline constexpr int kMostChanceDeals = 9999;
 [[nodiscard]] std::optional<ChanceTest> chance_of(const Outcomes& outcomes, int method,
                                                   int most_deals = kMostChanceDeals);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -1,7 +1,7 @@
 #include "analysis/json_figures.hpp"
 #include "analysis/report/report_sections.hpp"
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -37,4 +37,4 @@ nlohmann::ordered_json choice_object(const ChoiceModel& model) {
   return object;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -2,7 +2,7 @@
 
 #include <map>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -31,13 +31,13 @@ Json flow_json(const ParticipantFlow& flow) {
           {"analysed", flow.analysed}};
 }
 
-std::string name_of(SessionState state) {
+std::string name_of(store::SessionState state) {
   switch (state) {
-    case SessionState::open:
+    case store::SessionState::open:
       return "open";
-    case SessionState::completed:
+    case store::SessionState::completed:
       return "completed";
-    case SessionState::stopped:
+    case store::SessionState::stopped:
       break;
   }
   return "stopped";
@@ -98,4 +98,4 @@ nlohmann::ordered_json collection_object(const Collection& collection) {
           {"sessions", std::move(sessions)}};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

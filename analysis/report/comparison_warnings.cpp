@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 using Warnings = std::vector<std::string>;
@@ -87,4 +87,4 @@ std::vector<std::string> comparison_warnings(const Outcomes& outcomes, const Stu
   return warnings;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

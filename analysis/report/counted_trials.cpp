@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <map>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 CountedTrials counted_by_method(const Outcomes& outcomes) {
   CountedTrials counted;
@@ -41,7 +41,8 @@ OwnTrials of_class(const OwnTrials& trials, int class_index) {
 }
 
 bool has_ended(const TrialOutcome& trial) noexcept {
-  return trial.row.state == TrialState::answered || trial.row.state == TrialState::timed_out;
+  return trial.row.state == store::TrialState::answered ||
+         trial.row.state == store::TrialState::timed_out;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

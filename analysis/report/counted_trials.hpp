@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// One participant's trials with one method, by number. They point into the outcomes.
 using OwnTrials = std::vector<const TrialOutcome*>;
@@ -28,4 +28,4 @@ struct CountedTrials {
 /// Whether a trial came to an end that counts: an answer, or the time's end without one.
 [[nodiscard]] bool has_ended(const TrialOutcome& trial) noexcept;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 std::string figure_text(const CueFigure& figure, int decimals) {
@@ -53,4 +53,4 @@ std::string cues_text(const CueReport& cues) {
   return text;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 using Warnings = std::vector<std::string>;
@@ -130,7 +130,7 @@ void warn_of_validity(const MethodReport& method, Warnings& warnings) {
 }
 
 void warn_of_order(const Outcomes& outcomes, Warnings& warnings) {
-  if (outcomes.design.trials.order != TrialOrder::uniform) return;
+  if (outcomes.design.trials.order != design::TrialOrder::uniform) return;
   warnings.emplace_back(
       "Classes were drawn independently, so that they came unequally often; pooled accuracy weighs "
       "them as they came.");
@@ -153,4 +153,4 @@ std::vector<std::string> figure_warnings(const Outcomes& outcomes, const StudyRe
   return warnings;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Of methods' own figures: chance, d', matching, choice model, validity, small cells.
 [[nodiscard]] std::vector<std::string> figure_warnings(const Outcomes& outcomes,
@@ -17,4 +17,4 @@ namespace touchtrial {
 [[nodiscard]] std::vector<std::string> comparison_warnings(const Outcomes& outcomes,
                                                            const StudyReport& report);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

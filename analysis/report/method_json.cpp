@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -151,4 +151,4 @@ nlohmann::ordered_json method_object(const MethodReport& method,
   return object;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

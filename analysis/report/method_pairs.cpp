@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// One participant's trials with two methods.
@@ -164,4 +164,4 @@ std::optional<MethodsTogether> methods_together(int classes, const CountedTrials
   return MethodsTogether{*cochran, cochran_q_permuted_p(by_participant)};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Every two methods, in the order of methods, p values adjusted if there are three or more.
 [[nodiscard]] std::vector<MethodPair> method_pairs(int classes, const CountedTrials& counted);
@@ -21,4 +21,4 @@ namespace touchtrial {
 [[nodiscard]] std::optional<MethodsTogether> methods_together(int classes,
                                                               const CountedTrials& counted);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

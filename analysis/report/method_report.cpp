@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 using Choices = std::vector<Choice>;
@@ -91,4 +91,4 @@ MethodReport method_report(const Outcomes& outcomes, int method, const CountedTr
   return report;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

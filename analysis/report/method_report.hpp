@@ -4,9 +4,9 @@
 #include "analysis/report/counted_trials.hpp"
 #include "analysis/report/report.hpp"
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 [[nodiscard]] MethodReport method_report(const Outcomes& outcomes, int method,
                                          const CountedTrials& counted);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

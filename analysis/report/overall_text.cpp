@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 std::string mean_line(const MethodReport& method) {
@@ -98,4 +98,4 @@ std::string flow_text(const ParticipantFlow& flow) {
   return wrapped("", text);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -1,7 +1,7 @@
 #include "analysis/json_figures.hpp"
 #include "analysis/report/report_sections.hpp"
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -85,4 +85,4 @@ nlohmann::ordered_json together_object(const MethodsTogether& together) {
   return object;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

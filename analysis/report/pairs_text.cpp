@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 std::string p_or_none(const std::optional<double>& p) {
@@ -41,4 +41,4 @@ std::string pairs_text(const StudyReport& report) {
   return text;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

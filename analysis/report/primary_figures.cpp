@@ -8,7 +8,7 @@
 
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 ChanceFigures chance_figures(const Outcomes& outcomes, int method, int most_deals) {
   const CountedTrials counted = counted_by_method(outcomes);
@@ -35,4 +35,4 @@ PairFigures pair_figures(const Outcomes& outcomes, int first, int second, bool w
   return figures;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -9,7 +9,7 @@
 
 #include <optional>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// One method against chance.
 struct ChanceFigures {
@@ -32,4 +32,4 @@ struct PairFigures {
 [[nodiscard]] PairFigures pair_figures(const Outcomes& outcomes, int first, int second,
                                        bool with_attainable);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

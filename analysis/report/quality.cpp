@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <set>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
-void count_session(const SessionRow& session, const StudyCommitment& commitment,
+void count_session(const store::SessionRow& session, const store::StudyCommitment& commitment,
                    SessionCounts& counts) {
   if (session.pilot && !commitment.pilot) ++counts.pilot;
   if (session.withdrawn) {
@@ -18,20 +18,20 @@ void count_session(const SessionRow& session, const StudyCommitment& commitment,
     ++counts.replaced;
   } else if (session.excluded) {
     ++counts.excluded;
-  } else if (session.state == SessionState::completed) {
+  } else if (session.state == store::SessionState::completed) {
     ++counts.completed;
-  } else if (session.state == SessionState::stopped) {
+  } else if (session.state == store::SessionState::stopped) {
     ++counts.stopped;
   } else {
     ++counts.open;
   }
 }
 
-void count_answer(const TrialRow& trial, TrialQuality& quality) {
+void count_answer(const store::TrialRow& trial, TrialQuality& quality) {
   ++quality.presented;
-  if (trial.state == TrialState::timed_out) ++quality.no_response;
-  if (trial.state == TrialState::interrupted) ++quality.interrupted;
-  if (trial.state != TrialState::answered || !trial.position) return;
+  if (trial.state == store::TrialState::timed_out) ++quality.no_response;
+  if (trial.state == store::TrialState::interrupted) ++quality.interrupted;
+  if (trial.state != store::TrialState::answered || !trial.position) return;
   ++quality.answered;
   if (trial.first_position && trial.first_position != trial.position) ++quality.changed;
   const int position = *trial.position;
@@ -40,7 +40,7 @@ void count_answer(const TrialRow& trial, TrialQuality& quality) {
   }
 }
 
-void count_trace(const TrialRow& trial, TrialQuality& quality) {
+void count_trace(const store::TrialRow& trial, TrialQuality& quality) {
   if (trial.samples == 0) return;
   ++quality.with_trace;
   if (trial.valid) ++quality.valid;
@@ -51,13 +51,13 @@ void count_trace(const TrialRow& trial, TrialQuality& quality) {
 
 }  // namespace
 
-std::string name_of(const StudyState& state) {
+std::string name_of(const store::StudyState& state) {
   if (state.unblinded) return "unblinded";
   return state.closed ? "closed" : "collecting";
 }
 
-QualityReport make_quality(const StudyStore& store) {
-  const StudyCommitment& commitment = store.commitment();
+QualityReport make_quality(const store::StudyStore& store) {
+  const store::StudyCommitment& commitment = store.commitment();
   QualityReport report;
   report.study = commitment.study;
   report.protocol = commitment.protocol;
@@ -66,13 +66,13 @@ QualityReport make_quality(const StudyStore& store) {
   report.pilot = commitment.pilot;
   report.quality.by_position.resize(static_cast<std::size_t>(std::max(0, commitment.positions)));
   std::set<int> withdrawn;
-  for (const SessionRow& session : store.sessions()) {
+  for (const store::SessionRow& session : store.sessions()) {
     count_session(session, commitment, report.sessions);
     if (session.withdrawn) withdrawn.insert(session.session);
     if (session_counts(session, commitment)) ++report.participants;
   }
   report.trials = report.participants * commitment.scored_trials;
-  for (const TrialRow& trial : store.trials()) {
+  for (const store::TrialRow& trial : store.trials()) {
     if (withdrawn.contains(trial.session)) continue;
     count_answer(trial, report.quality);
     count_trace(trial, report.quality);
@@ -83,4 +83,4 @@ QualityReport make_quality(const StudyStore& store) {
   return report;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Sessions by how they stand, each counted once: withdrawn, else replaced, else excluded, else by
 /// its state.
@@ -53,7 +53,7 @@ struct ServoQuality {
 struct QualityReport {
   std::string study;
   std::string protocol;
-  StudyState state;
+  store::StudyState state;
   bool simulated = false;
   bool pilot = false;
   int participants = 0;  ///< whose session is completed, not excluded, not withdrawn
@@ -66,9 +66,9 @@ struct QualityReport {
 };
 
 /// "collecting", "closed" or "unblinded"
-[[nodiscard]] std::string name_of(const StudyState& state);
+[[nodiscard]] std::string name_of(const store::StudyState& state);
 
-[[nodiscard]] QualityReport make_quality(const StudyStore& store);
+[[nodiscard]] QualityReport make_quality(const store::StudyStore& store);
 
 /// One JSON object, indented, ending with a line feed.
 [[nodiscard]] std::string quality_json(const QualityReport& report);
@@ -76,4 +76,4 @@ struct QualityReport {
 /// A page for a terminal, ending with a line feed.
 [[nodiscard]] std::string quality_text(const QualityReport& report);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 void put_real_time(nlohmann::ordered_json& object, const ServoQuality& servo) {
@@ -52,4 +52,4 @@ std::string quality_json(const QualityReport& report) {
   return json_text(quality_object(report));
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

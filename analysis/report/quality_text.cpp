@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 std::string sessions_text(const QualityReport& report) {
@@ -90,4 +90,4 @@ std::string quality_text(const QualityReport& report) {
   return text;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

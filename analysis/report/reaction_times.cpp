@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 double seconds_between(std::chrono::nanoseconds from, std::chrono::nanoseconds to) {
@@ -15,7 +15,7 @@ struct Times {
   std::vector<double> from_plane_on;
   std::vector<double> from_contact;
 
-  void add(const TrialRow& row) {
+  void add(const store::TrialRow& row) {
     from_plane_on.push_back(seconds_between(row.presented_at, *row.answered_at));
     if (row.contact_at) from_contact.push_back(seconds_between(*row.contact_at, *row.answered_at));
   }
@@ -42,4 +42,4 @@ std::vector<ReactionTimes> reaction_times(const Outcomes& outcomes, int method) 
   return all;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

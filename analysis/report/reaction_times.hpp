@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Of trials with a response, in seconds, on the servo's monotonic clock.
 struct ReactionTimes {
@@ -18,4 +18,4 @@ struct ReactionTimes {
 /// One method's, by class; the last entry is all classes together.
 [[nodiscard]] std::vector<ReactionTimes> reaction_times(const Outcomes& outcomes, int method);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -4,7 +4,7 @@
 #include <span>
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 struct Reference {
   std::string_view key;   ///< "brown2001": what sections cite
@@ -14,4 +14,4 @@ struct Reference {
 /// By key, rising.
 [[nodiscard]] std::span<const Reference> report_references() noexcept;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

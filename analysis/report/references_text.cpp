@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 constexpr std::array kReferences = {
@@ -78,4 +78,4 @@ std::span<const Reference> report_references() noexcept {
   return kReferences;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

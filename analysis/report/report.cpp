@@ -5,7 +5,7 @@
 #include "analysis/report/method_report.hpp"
 #include "analysis/report/report_warnings.hpp"
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 StudyReport titled(const Outcomes& outcomes) {
@@ -39,4 +39,4 @@ StudyReport make_report(const Outcomes& outcomes) {
   return report;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -24,7 +24,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Accuracy with a class, all participants' trials pooled.
 struct ClassAccuracy {
@@ -98,8 +98,8 @@ struct StudyReport {
   std::vector<MethodPair> pairs;               ///< of two methods or more: every pair
   std::optional<MethodsTogether> together;     ///< of three methods or more
   Collection collection;                       ///< how it was collected
-  StudyState state{};                          ///< unblinded; not closed: an interim look
-  Registration registration;                   ///< what was deposited beforehand
+  store::StudyState state{};                   ///< unblinded; not closed: an interim look
+  design::Registration registration;           ///< what was deposited beforehand
   std::optional<CueReport> cues{};             ///< if asked for: it takes reading every trace
   std::vector<std::string> warnings;           ///< what a reader could take a figure for, wrongly
 };
@@ -113,4 +113,4 @@ struct StudyReport {
 /// Tables for a terminal of 100 columns or more, ending with a line feed.
 [[nodiscard]] std::string report_text(const StudyReport& report);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -3,7 +3,7 @@
 #include "analysis/report/references.hpp"
 #include "analysis/report/report_sections.hpp"
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -45,7 +45,7 @@ nlohmann::ordered_json references_object() {
   return all;
 }
 
-nlohmann::ordered_json registration_object(const Registration& registration) {
+nlohmann::ordered_json registration_object(const design::Registration& registration) {
   return {{"hypothesis", registration.hypothesis},
           {"participants", registration.participants},
           {"stopping_rule", registration.stopping_rule},
@@ -81,4 +81,4 @@ std::string report_json(const StudyReport& report) {
   return json_text(report_object(report));
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

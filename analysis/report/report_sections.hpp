@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 [[nodiscard]] nlohmann::ordered_json method_object(const MethodReport& method,
                                                    const std::vector<std::string>& classes);
@@ -19,11 +19,11 @@ namespace touchtrial {
 [[nodiscard]] nlohmann::ordered_json robustness_array(const std::vector<SubsetAccuracy>& subsets);
 [[nodiscard]] nlohmann::ordered_json pairs_array(const StudyReport& report);
 [[nodiscard]] nlohmann::ordered_json together_object(const MethodsTogether& together);
-[[nodiscard]] nlohmann::ordered_json registration_object(const Registration& registration);
+[[nodiscard]] nlohmann::ordered_json registration_object(const design::Registration& registration);
 [[nodiscard]] nlohmann::ordered_json references_object();
 
 /// Adds how a section's figures were had, and by whose account: keys of references_object.
 void put_method(nlohmann::ordered_json& object, const std::string& method,
                 const std::vector<std::string>& references);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

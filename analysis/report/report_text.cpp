@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// A count and its share of the row, or a dot where nobody gave that answer.
@@ -144,4 +144,4 @@ std::string report_text(const StudyReport& report) {
   return text;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// One line: how many enrolled, and where those went who are not analysed.
 [[nodiscard]] std::string flow_text(const ParticipantFlow& flow);
@@ -20,4 +20,4 @@ namespace touchtrial {
 /// A table of observers for each method, and what a reader could take wrongly in it.
 [[nodiscard]] std::string cues_text(const CueReport& cues);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 using Warnings = std::vector<std::string>;
@@ -39,21 +39,21 @@ void warn_of_state(const Outcomes& outcomes, Warnings& warnings) {
                     counted(outcomes.sessions_unseen, "session")));
   }
   warn_of_sessions(
-      outcomes, "withdrawn by the participant", [](const SessionRow& row) { return row.withdrawn; },
-      warnings);
+      outcomes, "withdrawn by the participant",
+      [](const store::SessionRow& row) { return row.withdrawn; }, warnings);
   warn_of_sessions(
-      outcomes, "excluded", [](const SessionRow& row) { return row.excluded && !row.withdrawn; },
-      warnings);
+      outcomes, "excluded",
+      [](const store::SessionRow& row) { return row.excluded && !row.withdrawn; }, warnings);
   warn_of_sessions(
       outcomes, "not completed",
-      [](const SessionRow& row) {
-        return row.state != SessionState::completed && !row.excluded && !row.withdrawn;
+      [](const store::SessionRow& row) {
+        return row.state != store::SessionState::completed && !row.excluded && !row.withdrawn;
       },
       warnings);
   warn_of_sessions(
       outcomes, "a pilot or simulation among others",
-      [&](const SessionRow& row) {
-        return row.state == SessionState::completed && !row.excluded && !row.withdrawn &&
+      [&](const store::SessionRow& row) {
+        return row.state == store::SessionState::completed && !row.excluded && !row.withdrawn &&
                (row.pilot != outcomes.pilot || row.simulated != outcomes.simulated);
       },
       warnings);
@@ -142,4 +142,4 @@ std::vector<std::string> report_warnings(const Outcomes& outcomes, const StudyRe
   return warnings;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

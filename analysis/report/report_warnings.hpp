@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// One sentence or two each, the gravest first. \param report  complete but for its warnings
 [[nodiscard]] std::vector<std::string> report_warnings(const Outcomes& outcomes,
                                                        const StudyReport& report);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

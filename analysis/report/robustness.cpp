@@ -5,7 +5,7 @@
 #include <map>
 #include <set>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 constexpr TrialSubset kSubsets[] = {TrialSubset::counted, TrialSubset::answered, TrialSubset::valid,
@@ -18,7 +18,8 @@ std::set<int> excluded_sessions(const Outcomes& outcomes) {
   for (const auto& [row, counted] : outcomes.sessions) {
     const bool left_out = row.excluded && !row.withdrawn && row.replaced_by != row.participant;
     const bool of_study = row.pilot == outcomes.pilot && row.simulated == outcomes.simulated;
-    if (left_out && of_study && row.state == SessionState::completed) excluded.insert(row.session);
+    if (left_out && of_study && row.state == store::SessionState::completed)
+      excluded.insert(row.session);
   }
   return excluded;
 }
@@ -79,4 +80,4 @@ std::vector<SubsetAccuracy> robustness(const Outcomes& outcomes, int method) {
   return all;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

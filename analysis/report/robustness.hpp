@@ -7,7 +7,7 @@
 
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 enum class TrialSubset {
   counted,                ///< the headline: missing responses are wrong
@@ -28,4 +28,4 @@ struct SubsetAccuracy {
 /// One method's, the headline first; a subset that is the same trials as the headline is there too.
 [[nodiscard]] std::vector<SubsetAccuracy> robustness(const Outcomes& outcomes, int method);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

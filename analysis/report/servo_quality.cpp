@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 double median_of(std::vector<double> values) {
@@ -12,7 +12,7 @@ double median_of(std::vector<double> values) {
   return *middle;
 }
 
-void add_trial(const ServoHealth& trial, ServoQuality& all) {
+void add_trial(const store::ServoHealth& trial, ServoQuality& all) {
   all.lowest_rate_hz =
       all.trials == 0 ? trial.rate_hz : std::min(all.lowest_rate_hz, trial.rate_hz);
   all.highest_p99_us = std::max(all.highest_p99_us, trial.lateness_p99_us);
@@ -40,4 +40,4 @@ std::optional<ServoQuality> servo_quality(const Collection& collection) {
   return all;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -6,9 +6,9 @@
 
 #include <optional>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// \return nothing if no trial was in real time
 [[nodiscard]] std::optional<ServoQuality> servo_quality(const Collection& collection);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

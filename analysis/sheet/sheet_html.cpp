@@ -3,7 +3,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 constexpr const char* kHead = R"(<!doctype html>
@@ -100,19 +100,19 @@ std::string picture_rows(const std::vector<SheetCard>& line) {
   const auto named = [](const SheetCard& card) { return title_of(card) + ", " + card.method; };
   return picture_row(line, "picture", "as participants see it",
                      [&](const SheetCard& card) {
-                       return figure(png_bytes(card.picture), "picture of " + title_of(card),
-                                     size_of(card));
+                       return figure(engine::png_bytes(card.picture),
+                                     "picture of " + title_of(card), size_of(card));
                      }) +
-         picture_row(line, "texture",
-                     "mid-grey is none; contrast times 3; the frame is enlarged below",
-                     [&](const SheetCard& card) {
-                       return figure(png_bytes(card.texture), "texture of " + named(card), "");
-                     }) +
+         picture_row(
+             line, "texture", "mid-grey is none; contrast times 3; the frame is enlarged below",
+             [&](const SheetCard& card) {
+               return figure(engine::png_bytes(card.texture), "texture of " + named(card), "");
+             }) +
          picture_row(line, "lateral force",
                      "in the frame, as the pack holds it, from bright to dark",
                      [&](const SheetCard& card) {
-                       return figure(png_bytes(card.arrows), "force arrows of " + named(card),
-                                     patch_of(card));
+                       return figure(engine::png_bytes(card.arrows),
+                                     "force arrows of " + named(card), patch_of(card));
                      });
 }
 
@@ -146,4 +146,4 @@ std::string sheet_html(const StimulusSheet& sheet) {
   return html + "</body>\n</html>\n";
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -13,7 +13,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 namespace fs = std::filesystem;
@@ -56,10 +56,10 @@ class ScratchFolder {
   ScratchFolder& operator=(const ScratchFolder&) = delete;
 
   /// Writes three bytes a pixel. \return the file
-  fs::path add(const ColourImage& image) {
+  fs::path add(const engine::ColourImage& image) {
     Bytes bytes;
     bytes.reserve(3 * image.size());
-    for (const Rgb& pixel : image.samples()) {
+    for (const engine::Rgb& pixel : image.samples()) {
       bytes.insert(bytes.end(), {pixel.red, pixel.green, pixel.blue});
     }
     const fs::path file = path_ / std::to_string(count_++);
@@ -72,8 +72,8 @@ class ScratchFolder {
   int count_ = 0;
 };
 
-ColourImage in_colour(const GreyImage& image) {
-  ColourImage colours(image.height(), image.width());
+engine::ColourImage in_colour(const GreyImage& image) {
+  engine::ColourImage colours(image.height(), image.width());
   for (std::size_t i = 0; i < image.size(); ++i) {
     const std::uint8_t grey = image.samples()[i];
     colours.samples()[i] = {grey, grey, grey};
@@ -108,7 +108,7 @@ class Page {
   }
 
   /// In the middle of a square of kPanel units.
-  void picture(double x, double y, const ColourImage& image, int side_px) {
+  void picture(double x, double y, const engine::ColourImage& image, int side_px) {
     const double step = static_cast<double>(kPanel) / side_px;
     const double left = x + (kPanel - step * image.width()) / 2 + step / 2;
     const double first = top_ + y + (kPanel - step * image.height()) / 2 + step / 2;
@@ -257,4 +257,4 @@ void draw_sheet_pdf(const StimulusSheet& sheet, const fs::path& path) {
   draw_with_gnuplot(script, path, FileMode::owner_only);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

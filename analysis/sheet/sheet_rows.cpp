@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 struct Figure {
@@ -86,4 +86,4 @@ std::string heading_of(const StimulusSheet& sheet) {
   return "Stimuli of the study " + sheet.study + (sheet.simulated ? ", simulated" : "");
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// A figure's name and its value for every card of a line.
 struct SheetRow {
@@ -30,4 +30,4 @@ inline constexpr const char* kUnblinds =
     "This sheet unblinds: it says which code is which stimulus. Keep it with the key, away from "
     "participants and from whoever runs sessions.";
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -14,53 +14,54 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
-constexpr Rgb kFrameColour{230, 60, 0};
+constexpr engine::Rgb kFrameColour{230, 60, 0};
 
 /// With the option that people mean when they say which method it was.
-std::string options_in_words(const ExtractionOptions& method) {
+std::string options_in_words(const engine::ExtractionOptions& method) {
   const std::string name(name_of(method.method));
   switch (method.method) {
-    case Method::adaptive:
+    case engine::Method::adaptive:
       return fmt::format("{}, radius {}", name, method.radius);
-    case Method::fixed:
+    case engine::Method::fixed:
       return fmt::format("{}, order {:g}", name, method.order);
-    case Method::tv_gabor:
+    case engine::Method::tv_gabor:
       return fmt::format("{}, lambda {:g}", name, method.tv_gabor.lambda);
-    case Method::gaussian:
+    case engine::Method::gaussian:
       return fmt::format("{}, sigma {:g} px", name, method.sigma_px);
-    case Method::median:
+    case engine::Method::median:
       return fmt::format("{}, radius {}", name, method.radius);
-    case Method::edge:
+    case engine::Method::edge:
       return fmt::format("{}, divisor {:g}", name, method.divisor);
-    case Method::luminance:
+    case engine::Method::luminance:
       return name;
   }
   return name;
 }
 
-std::string in_words(const StudyMethod& method) {
-  const std::string words =
-      options_in_words(method) + (method.control == Control::none ? "" : ", phase-scrambled");
-  return method.label == default_label(method) ? words : one_line(method.label) + ": " + words;
+std::string in_words(const design::StudyMethod& method) {
+  const std::string words = options_in_words(method) +
+                            (method.control == engine::Control::none ? "" : ", phase-scrambled");
+  return method.label == design::default_label(method) ? words
+                                                       : one_line(method.label) + ": " + words;
 }
 
-std::string in_words(const RenderingOptions& rendering) {
-  const char* model = rendering.model == ModelKind::surface ? "surface" : "paper";
+std::string in_words(const engine::RenderingOptions& rendering) {
+  const char* model = rendering.model == engine::ModelKind::surface ? "surface" : "paper";
   return fmt::format("model {}, {:g} mm a pixel, filter {:g} mm, wall {:g} N/mm, gains {}{}", model,
                      rendering.pitch_mm, rendering.filter_mm, rendering.stiffness_n_per_mm,
                      rendering.gains ? "explicit"
                                      : fmt::format("from a budget of {:g} N/mm",
                                                    rendering.texture_stiffness_n_per_mm),
-                     rendering.equalise == Equalise::rms ? ", rms force equalised" : "");
+                     rendering.equalise == engine::Equalise::rms ? ", rms force equalised" : "");
 }
 
 /// The patch in which the force is strongest, but small enough for arrows to be seen.
-ArrowPatch shown_patch(const ForceField<double>& force) {
+engine::ArrowPatch shown_patch(const engine::ForceField<double>& force) {
   constexpr int kSide_px = 16;
-  ArrowPatch patch = strongest_patch(force);
+  engine::ArrowPatch patch = engine::strongest_patch(force);
   patch.y += std::max(0, patch.height - kSide_px) / 2;
   patch.x += std::max(0, patch.width - kSide_px) / 2;
   patch.height = std::min(patch.height, kSide_px);
@@ -72,7 +73,7 @@ ArrowPatch shown_patch(const ForceField<double>& force) {
 GreyImage enhanced_picture(Plane<float> texture) {
   constexpr float kContrast = 3.0F;
   for (float& grey : texture.samples()) grey *= kContrast;
-  return texture_picture(texture);
+  return engine::texture_picture(texture);
 }
 
 /// How many pixels of the sheet a pixel of an image is wide.
@@ -82,12 +83,13 @@ double fitting_scale(int height, int width, int side_px) {
 
 GreyImage fitted(const GreyImage& image, int side_px) {
   const double scale = fitting_scale(image.height(), image.width(), side_px);
-  return resized(image, std::max(1, static_cast<int>(std::lround(image.height() * scale))),
-                 std::max(1, static_cast<int>(std::lround(image.width() * scale))));
+  return engine::resized(image, std::max(1, static_cast<int>(std::lround(image.height() * scale))),
+                         std::max(1, static_cast<int>(std::lround(image.width() * scale))));
 }
 
 /// In colour, with a frame just outside the patch.
-ColourImage framed(const GreyImage& picture, const ArrowPatch& patch, double scale) {
+engine::ColourImage framed(const GreyImage& picture, const engine::ArrowPatch& patch,
+                           double scale) {
   constexpr int kLine_px = 3;
   const auto at = [scale](int place) { return static_cast<int>(std::lround(place * scale)); };
   const int left = at(patch.x);
@@ -97,18 +99,18 @@ ColourImage framed(const GreyImage& picture, const ArrowPatch& patch, double sca
   const auto within = [&](int y, int x, int margin) {
     return x >= left - margin && x < right + margin && y >= top - margin && y < bottom + margin;
   };
-  ColourImage image(picture.height(), picture.width());
+  engine::ColourImage image(picture.height(), picture.width());
   for (int y = 0; y < image.height(); ++y) {
     for (int x = 0; x < image.width(); ++x) {
       const std::uint8_t grey = picture.at(y, x);
       const bool on_frame = within(y, x, kLine_px) && !within(y, x, 0);
-      image.at(y, x) = on_frame ? kFrameColour : Rgb{grey, grey, grey};
+      image.at(y, x) = on_frame ? kFrameColour : engine::Rgb{grey, grey, grey};
     }
   }
   return image;
 }
 
-[[noreturn]] void refuse(const Pack& pack, const std::string& what) {
+[[noreturn]] void refuse(const engine::Pack& pack, const std::string& what) {
   throw VerificationError(one_line(pack.folder().string()) + ": " + what +
                           "; run touchtrial prepare, then make the sheet again");
 }
@@ -116,39 +118,39 @@ ColourImage framed(const GreyImage& picture, const ArrowPatch& patch, double sca
 /// Makes the cards of one pack.
 class Cards {
  public:
-  Cards(const StudyKey& key, const Pack& pack, int side_px)
+  Cards(const design::StudyKey& key, const engine::Pack& pack, int side_px)
       : key_(key), pack_(pack), side_px_(side_px) {}
 
-  [[nodiscard]] SheetCard card(const KeyedStimulus& stimulus) const {
-    const GreyImage image = read_grey_image(path_of(stimulus.stimulus));
-    const PackEntry& entry = checked_entry(stimulus, image);
-    const MappedField field = pack_.map(stimulus.code);
+  [[nodiscard]] SheetCard card(const design::KeyedStimulus& stimulus) const {
+    const GreyImage image = engine::read_grey_image(path_of(stimulus.stimulus));
+    const engine::PackEntry& entry = checked_entry(stimulus, image);
+    const engine::MappedField field = pack_.map(stimulus.code);
     SheetCard card = named(stimulus);
     card.geometry = field.view().geometry;
     card.gains = entry.gains;
-    card.statistics = field_statistics(field.view(), entry.gains, key_.study.rendering);
+    card.statistics = engine::field_statistics(field.view(), entry.gains, key_.study.rendering);
     draw(card, image, field.view(), stimulus.stimulus);
     return card;
   }
 
  private:
-  [[nodiscard]] const StudyClass& class_of(const StimulusIndex& stimulus) const {
+  [[nodiscard]] const design::StudyClass& class_of(const design::StimulusIndex& stimulus) const {
     return key_.study.classes[static_cast<std::size_t>(stimulus.class_index)];
   }
-  [[nodiscard]] const std::filesystem::path& image_of(const StimulusIndex& stimulus) const {
+  [[nodiscard]] const std::filesystem::path& image_of(const design::StimulusIndex& stimulus) const {
     return class_of(stimulus).images[static_cast<std::size_t>(stimulus.exemplar)];
   }
-  [[nodiscard]] std::filesystem::path path_of(const StimulusIndex& stimulus) const {
+  [[nodiscard]] std::filesystem::path path_of(const design::StimulusIndex& stimulus) const {
     return key_.study.folder / image_of(stimulus);
   }
-  [[nodiscard]] const StudyMethod& method_of(const StimulusIndex& stimulus) const {
+  [[nodiscard]] const design::StudyMethod& method_of(const design::StimulusIndex& stimulus) const {
     return key_.study.methods[static_cast<std::size_t>(stimulus.method)];
   }
 
-  [[nodiscard]] const PackEntry& checked_entry(const KeyedStimulus& stimulus,
-                                               const GreyImage& image) const {
-    const PackEntry& entry = pack_.entry(stimulus.code);
-    if (!is_made_from(entry, key_, image, stimulus.stimulus)) {
+  [[nodiscard]] const engine::PackEntry& checked_entry(const design::KeyedStimulus& stimulus,
+                                                       const GreyImage& image) const {
+    const engine::PackEntry& entry = pack_.entry(stimulus.code);
+    if (!design::is_made_from(entry, key_, image, stimulus.stimulus)) {
       refuse(pack_, "field " + stimulus.code + " was not made from " +
                         path_of(stimulus.stimulus).string() + " as it is now");
     }
@@ -156,8 +158,8 @@ class Cards {
     return entry;
   }
 
-  [[nodiscard]] SheetCard named(const KeyedStimulus& stimulus) const {
-    const StimulusIndex& index = stimulus.stimulus;
+  [[nodiscard]] SheetCard named(const design::KeyedStimulus& stimulus) const {
+    const design::StimulusIndex& index = stimulus.stimulus;
     const std::size_t exemplars = class_of(index).images.size();
     SheetCard card;
     card.label = one_line(class_of(index).label);
@@ -168,42 +170,43 @@ class Cards {
     return card;
   }
 
-  void draw(SheetCard& card, const GreyImage& image, FieldView field,
-            const StimulusIndex& stimulus) const {
+  void draw(SheetCard& card, const GreyImage& image, engine::FieldView field,
+            const design::StimulusIndex& stimulus) const {
     Plane<float> plane =
-        extract_texture<float>(image, presented_method(key_.study, stimulus)).texture;
-    const GreyImage texture = texture_picture(plane);
-    const auto [force, n_per_grey] = lateral_field(field, card.gains);
+        engine::extract_texture<float>(image, design::presented_method(key_.study, stimulus))
+            .texture;
+    const GreyImage texture = engine::texture_picture(plane);
+    const auto [force, n_per_grey] = engine::lateral_field(field, card.gains);
     const double scale = fitting_scale(image.height(), image.width(), side_px_);
     card.patch = shown_patch(force);
     card.arrow_n = card.patch.force_of_unit_arrow * n_per_grey;
     card.picture = fitted(image, side_px_);
     card.texture = framed(fitted(enhanced_picture(std::move(plane)), side_px_), card.patch, scale);
-    card.arrows = force_arrows(texture, force, card.patch, side_px_);
-    card.picture_entropy = entropy(image);
-    card.texture_entropy = entropy(texture);
+    card.arrows = engine::force_arrows(texture, force, card.patch, side_px_);
+    card.picture_entropy = engine::entropy(image);
+    card.texture_entropy = engine::entropy(texture);
   }
 
-  const StudyKey& key_;
-  const Pack& pack_;
+  const design::StudyKey& key_;
+  const engine::Pack& pack_;
   int side_px_;
 };
 
 /// Stimuli that belong beside one another: of one method, and of one class where classes have
 /// several images.
-std::vector<std::vector<KeyedStimulus>> groups_of(const StudyKey& key) {
+std::vector<std::vector<design::KeyedStimulus>> groups_of(const design::StudyKey& key) {
   const bool several = std::ranges::any_of(
-      key.study.classes, [](const StudyClass& one) { return one.images.size() > 1; });
-  std::vector<KeyedStimulus> stimuli = key.stimuli;
-  const auto group = [several](const KeyedStimulus& stimulus) {
+      key.study.classes, [](const design::StudyClass& one) { return one.images.size() > 1; });
+  std::vector<design::KeyedStimulus> stimuli = key.stimuli;
+  const auto group = [several](const design::KeyedStimulus& stimulus) {
     return std::pair(stimulus.stimulus.method, several ? stimulus.stimulus.class_index : 0);
   };
-  const auto place = [&](const KeyedStimulus& stimulus) {
+  const auto place = [&](const design::KeyedStimulus& stimulus) {
     return std::pair(group(stimulus), stimulus.stimulus);
   };
   std::ranges::sort(stimuli, {}, place);
-  std::vector<std::vector<KeyedStimulus>> groups;
-  for (const KeyedStimulus& stimulus : stimuli) {
+  std::vector<std::vector<design::KeyedStimulus>> groups;
+  for (const design::KeyedStimulus& stimulus : stimuli) {
     if (groups.empty() || group(groups.back().front()) != group(stimulus)) groups.emplace_back();
     groups.back().push_back(stimulus);
   }
@@ -211,8 +214,8 @@ std::vector<std::vector<KeyedStimulus>> groups_of(const StudyKey& key) {
 }
 
 /// Lines of nearly the same length.
-std::vector<std::vector<KeyedStimulus>> lines_of(const StudyKey& key) {
-  std::vector<std::vector<KeyedStimulus>> lines;
+std::vector<std::vector<design::KeyedStimulus>> lines_of(const design::StudyKey& key) {
+  std::vector<std::vector<design::KeyedStimulus>> lines;
   for (const auto& group : groups_of(key)) {
     const std::size_t count = (group.size() + kMaxSheetColumns - 1) / kMaxSheetColumns;
     for (std::size_t i = 0; i < count; ++i) {
@@ -224,7 +227,7 @@ std::vector<std::vector<KeyedStimulus>> lines_of(const StudyKey& key) {
   return lines;
 }
 
-void check(const StudyKey& key, const Pack& pack, int side_px) {
+void check(const design::StudyKey& key, const engine::Pack& pack, int side_px) {
   if (side_px < 1) throw std::invalid_argument("make_stimulus_sheet: side_px is below 1");
   if (key.stimuli.size() > kMaxSheetStimuli) {
     throw UsageError(fmt::format(
@@ -239,13 +242,14 @@ void check(const StudyKey& key, const Pack& pack, int side_px) {
 
 }  // namespace
 
-StimulusSheet make_stimulus_sheet(const StudyKey& key, const Pack& pack, int side_px,
+StimulusSheet make_stimulus_sheet(const design::StudyKey& key, const engine::Pack& pack,
+                                  int side_px,
                                   const std::function<void(int done, int of)>& progress) {
   check(key, pack, side_px);
   StimulusSheet sheet{key.study.name,
                       std::string(name_of(key.study.protocol)),
                       in_words(key.study.rendering),
-                      to_hex(study_seal(key)),
+                      to_hex(design::study_seal(key)),
                       key.simulated,
                       side_px,
                       {}};
@@ -253,7 +257,7 @@ StimulusSheet make_stimulus_sheet(const StudyKey& key, const Pack& pack, int sid
   int done = 0;
   for (const auto& line : lines_of(key)) {
     sheet.lines.emplace_back();
-    for (const KeyedStimulus& stimulus : line) {
+    for (const design::KeyedStimulus& stimulus : line) {
       sheet.lines.back().push_back(cards.card(stimulus));
       if (progress) progress(++done, static_cast<int>(key.stimuli.size()));
     }
@@ -261,4 +265,4 @@ StimulusSheet make_stimulus_sheet(const StudyKey& key, const Pack& pack, int sid
   return sheet;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// More do not fit into one document that opens.
 inline constexpr std::size_t kMaxSheetStimuli = 500;
@@ -27,15 +27,15 @@ struct SheetCard {
   std::string exemplar;  ///< "2 of 5"; empty if the class has one image
   std::string method;    ///< in words, with the option that matters most
   std::string code;
-  std::string image;    ///< name of its file
-  GreyImage picture;    ///< the image, at most side_px wide and high
-  ColourImage texture;  ///< the same of its texture, with a frame round the patch
-  ColourImage arrows;   ///< the forces in the patch, square, side_px
+  std::string image;            ///< name of its file
+  GreyImage picture;            ///< the image, at most side_px wide and high
+  engine::ColourImage texture;  ///< the same of its texture, with a frame round the patch
+  engine::ColourImage arrows;   ///< the forces in the patch, square, side_px
   PlaneGeometry geometry;
-  ArrowPatch patch;
+  engine::ArrowPatch patch;
   double arrow_n = 0.0;  ///< force of an arrow as long as a pixel of the patch is wide
-  FieldStatistics statistics;
-  Gains gains;
+  engine::FieldStatistics statistics;
+  engine::Gains gains;
   double picture_entropy = 0.0;  ///< nats
   double texture_entropy = 0.0;  ///< nats, of the texture's picture
 };
@@ -58,7 +58,7 @@ struct StimulusSheet {
 /// \throws UsageError if there are more than kMaxSheetStimuli
 /// \throws FileError if an image or a field cannot be read
 [[nodiscard]] StimulusSheet make_stimulus_sheet(
-    const StudyKey& key, const Pack& pack, int side_px,
+    const design::StudyKey& key, const engine::Pack& pack, int side_px,
     const std::function<void(int done, int of)>& progress = {});
 
 /// One HTML document that needs no other file and no network.
@@ -72,4 +72,4 @@ void draw_sheet_png(const StimulusSheet& sheet, const std::filesystem::path& pat
 /// Draws the sheet as a PDF of A4 pages, one for each line. \throws as draw_with_gnuplot
 void draw_sheet_pdf(const StimulusSheet& sheet, const std::filesystem::path& path);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

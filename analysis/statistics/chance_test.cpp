@@ -11,7 +11,7 @@
 
 #include <boost/math/distributions/binomial.hpp>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// Orders of longer blocks are not counted: it would take too long.
@@ -226,4 +226,4 @@ std::optional<ChanceTest> chance_test(int classes, std::span<const AnsweredBlock
   return test;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Answers that a participant gave within one block, in order (class indices; nothing: no
 /// response), and the classes that were presented.
@@ -58,4 +58,4 @@ struct ChanceTest {
                                                     const RedrawnBlock& redraw = {},
                                                     int deals = 9999);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -6,7 +6,7 @@
 
 #include <boost/math/distributions/chi_squared.hpp>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
@@ -193,4 +193,4 @@ std::optional<ChoiceModel> choice_model(const ConfusionMatrix& confusion) {
   return model;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

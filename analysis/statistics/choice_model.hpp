@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Zeros leave some parameters without a value; those are NaN, the counts expected exist always.
 /// Classes between which answers go both ways, directly or by others, form a group: only within it
@@ -34,4 +34,4 @@ struct ChoiceModel {
 /// \return nothing if a class was never presented with a response, or never answered
 [[nodiscard]] std::optional<ChoiceModel> choice_model(const ConfusionMatrix& confusion);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -13,7 +13,7 @@
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 void require_arguments(std::size_t participants, int draws, double level) {
@@ -129,4 +129,4 @@ std::optional<Interval> bootstrap_mean(std::span<const double> values, std::uint
   return expanded_percentiles(std::move(means), values.size(), level);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 inline constexpr int kBootstrapDraws = 9999;
 
@@ -42,4 +42,4 @@ inline constexpr int kBootstrapDraws = 9999;
                                                      int draws = kBootstrapDraws,
                                                      double level = kConfidenceLevel);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -9,7 +9,7 @@
 
 #include <boost/math/distributions/chi_squared.hpp>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 using Occasions = std::span<const std::vector<bool>>;
@@ -109,4 +109,4 @@ std::optional<double> cochran_q_permuted_p(
   return (as_far + 1.0) / (deals + 1.0);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

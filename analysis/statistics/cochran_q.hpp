@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 struct CochranQ {
   double q = 0.0;
@@ -30,4 +30,4 @@ struct CochranQ {
     std::span<const std::vector<std::vector<bool>>> by_participant, int deals = 9999,
     std::uint64_t index = 0);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

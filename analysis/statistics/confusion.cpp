@@ -3,7 +3,7 @@
 #include <numeric>
 #include <stdexcept>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 int checked_classes(int classes) {
@@ -57,4 +57,4 @@ std::optional<double> percentage(int part, int whole) noexcept {
   return 100.0 * part / whole;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

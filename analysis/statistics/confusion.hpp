@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// One trial: the class that was presented and the class that was answered, if any.
 struct Choice {
@@ -50,4 +50,4 @@ class ConfusionMatrix {
 /// \return 100 * part / whole, or nothing if the whole is 0
 [[nodiscard]] std::optional<double> percentage(int part, int whole) noexcept;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

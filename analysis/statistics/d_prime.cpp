@@ -11,7 +11,7 @@
 #include <boost/math/quadrature/trapezoidal.hpp>
 #include <boost/math/tools/toms748_solve.hpp>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// Beyond this distance from its mean nothing of a normal variable is left in double precision.
@@ -61,4 +61,4 @@ DPrime d_prime(Proportion proportion, int alternatives, double level) {
   return result;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

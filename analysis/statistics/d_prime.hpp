@@ -7,7 +7,7 @@
 
 #include <optional>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Integral over z of phi(z - d) Phi(z)^(m - 1).
 /// \param alternatives  >= 2
@@ -26,4 +26,4 @@ struct DPrime {
 [[nodiscard]] DPrime d_prime(Proportion proportion, int alternatives,
                              double level = kConfidenceLevel);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

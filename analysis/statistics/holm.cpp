@@ -4,7 +4,7 @@
 #include <numeric>
 #include <stdexcept>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 std::vector<double> holm_adjusted(std::span<const double> p_values) {
   for (const double p : p_values) {
@@ -24,4 +24,4 @@ std::vector<double> holm_adjusted(std::span<const double> p_values) {
   return adjusted;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

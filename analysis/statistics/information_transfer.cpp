@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// Presented and answered classes of one participant's trials with a response.
@@ -90,4 +90,4 @@ InformationTransfer information_transfer(int classes,
   return transfer;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Over trials with a response; all three are absent without any.
 struct InformationTransfer {
@@ -36,4 +36,4 @@ struct InformationTransfer {
     int classes, std::span<const std::vector<Choice>> by_participant, std::uint64_t index = 0,
     int permutations = 500);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

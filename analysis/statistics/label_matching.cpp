@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <limits>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// The assignment problem's potentials and matching, one row added after another (the Hungarian
@@ -93,4 +93,4 @@ LabelMatching best_label_matching(const ConfusionMatrix& confusion) {
   return best;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// The one-to-one matching of classes and answers with the most trials.
 struct LabelMatching {
@@ -19,4 +19,4 @@ struct LabelMatching {
 /// chance even for answers at random.
 [[nodiscard]] LabelMatching best_label_matching(const ConfusionMatrix& confusion);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -6,7 +6,7 @@
 
 #include <boost/multiprecision/cpp_int.hpp>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 using Integer = boost::multiprecision::cpp_int;
@@ -77,4 +77,4 @@ std::vector<double> match_probabilities(const ClassCounts& counts, int trials) {
   return probabilities;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Of every class: how often it was presented and how often answered.
 using ClassCounts = std::vector<std::pair<int, int>>;
@@ -17,4 +17,4 @@ using ClassCounts = std::vector<std::pair<int, int>>;
 /// Cost grows with the third power of trials: 25 take 20 us, 300 take 20 ms.
 [[nodiscard]] std::vector<double> match_probabilities(const ClassCounts& counts, int trials);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

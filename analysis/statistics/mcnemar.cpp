@@ -5,7 +5,7 @@
 
 #include <boost/math/distributions/binomial.hpp>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 double mcnemar_mid_p(int first_only, int second_only) {
   if (first_only < 0 || second_only < 0) {
@@ -20,4 +20,4 @@ double mcnemar_mid_p(int first_only, int second_only) {
   return 2.0 * boost::math::cdf(half, fewer) - as_extreme;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

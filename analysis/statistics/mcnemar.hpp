@@ -4,7 +4,7 @@
 
 #include <optional>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// McNemar's mid-p test, two-sided, of the pairs that disagree: what is more extreme, and half of
 /// what is as extreme.
@@ -13,4 +13,4 @@ namespace touchtrial {
 /// \throws std::invalid_argument if a count is negative
 [[nodiscard]] double mcnemar_mid_p(int first_only, int second_only);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 std::optional<double> decibels(double a, double b) {
   if (!(a > 0.0 && b > 0.0)) return std::nullopt;
@@ -30,4 +30,4 @@ MethodComparison compare_methods(std::span<const PairedAccuracy> participants, s
           decibels(first, second), bootstrap_mean(differences, index, draws)};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

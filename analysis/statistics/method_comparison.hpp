@@ -9,7 +9,7 @@
 #include <optional>
 #include <span>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// One participant's proportion correct with each method.
 struct PairedAccuracy {
@@ -42,4 +42,4 @@ struct MethodComparison {
                                                std::uint64_t index = 0,
                                                int draws = kBootstrapDraws);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

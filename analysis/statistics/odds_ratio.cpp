@@ -5,7 +5,7 @@
 
 #include <boost/math/distributions/normal.hpp>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 void require_valid(const Proportion& one) {
@@ -60,4 +60,4 @@ std::optional<OddsRatio> mantel_haenszel(
   return OddsRatio{estimate, {estimate / factor, estimate * factor}};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

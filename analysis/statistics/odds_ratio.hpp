@@ -9,7 +9,7 @@
 #include <span>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 struct OddsRatio {
   double estimate = 1.0;
@@ -25,4 +25,4 @@ struct OddsRatio {
     std::span<const std::pair<Proportion, Proportion>> participants,
     double level = kConfidenceLevel);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -8,7 +8,7 @@
 
 #include <boost/math/distributions/students_t.hpp>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 double mean_of(std::span<const double> values) {
@@ -48,4 +48,4 @@ MeanEstimate participant_mean(std::span<const double> values, Interval range, do
   return estimate;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -8,7 +8,7 @@
 #include <optional>
 #include <span>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// A mean and Student's t interval around it.
 struct MeanEstimate {
@@ -31,4 +31,4 @@ struct MeanEstimate {
                                             Interval range = {0.0, 1.0},
                                             double level = kConfidenceLevel);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

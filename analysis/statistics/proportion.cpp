@@ -6,7 +6,7 @@
 #include <boost/math/distributions/beta.hpp>
 #include <boost/math/distributions/normal.hpp>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 void require_valid(Proportion proportion, double level) {
@@ -63,4 +63,4 @@ Interval jeffreys_interval(Proportion proportion, double level) {
           proportion.correct == proportion.n ? 1.0 : beta_quantile(a, b, 1.0 - tail)};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 inline constexpr double kConfidenceLevel = 0.95;
 
@@ -42,4 +42,4 @@ struct Proportion {
 /// and 1 where everything is correct. Same arguments, result and errors as wilson_interval.
 [[nodiscard]] Interval jeffreys_interval(Proportion proportion, double level = kConfidenceLevel);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

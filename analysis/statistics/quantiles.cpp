@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 std::optional<double> quantile(std::span<const double> sorted, double share) {
   if (!(share >= 0.0 && share <= 1.0)) {
@@ -27,4 +27,4 @@ Quartiles quartiles(std::vector<double> values) {
           quantile(values, 0.75)};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// \param sorted  rising \param share  0 .. 1
 /// \return nothing without values
@@ -23,4 +23,4 @@ struct Quartiles {
 /// \throws std::invalid_argument if a value is not finite
 [[nodiscard]] Quartiles quartiles(std::vector<double> values);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

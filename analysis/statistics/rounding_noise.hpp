@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// \return 0 for a figure nearer to it than 1e-12, else the figure
 [[nodiscard]] inline double without_noise(double figure) noexcept {
@@ -11,4 +11,4 @@ namespace touchtrial {
   return std::abs(figure) < kNoise ? 0.0 : figure;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// Sums that differ by less than this share of the largest possible one are equal but for rounding.
@@ -133,4 +133,4 @@ double sign_flip_attainable(std::span<const double> differences, double level) {
   return two_sided_p(differences, enough);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -6,7 +6,7 @@
 #include <optional>
 #include <span>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Up to this many participants all sign patterns are counted; beyond, 99,999 random ones.
 inline constexpr int kExactSignFlips = 32;
@@ -24,4 +24,4 @@ inline constexpr int kExactSignFlips = 32;
 /// \throws std::invalid_argument if a difference is not finite
 [[nodiscard]] double sign_flip_attainable(std::span<const double> differences, double level);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -9,43 +9,43 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
-SessionCourse::SessionCourse(const Study& study, int enrolment)
-    : study_(study), enrolment_(enrolment), schedule_(make_schedule(study, enrolment)) {
+SessionCourse::SessionCourse(const design::Study& study, int enrolment)
+    : study_(study), enrolment_(enrolment), schedule_(design::make_schedule(study, enrolment)) {
   for (std::size_t i = 0; i < schedule_.presentations.size(); ++i) due_.push_back(i);
 }
 
-void SessionCourse::fail(const Event& event, const std::string& why) const {
+void SessionCourse::fail(const store::Event& event, const std::string& why) const {
   throw VerificationError(
       fmt::format("session {}, event {}: {}", event.session, event.sequence, why));
 }
 
-void SessionCourse::fail(const Event& event, int trial, const std::string& why) const {
+void SessionCourse::fail(const store::Event& event, int trial, const std::string& why) const {
   throw VerificationError(fmt::format("session {}, trial {}: {}", event.session, trial, why));
 }
 
-void SessionCourse::follow(const Event& event) {
+void SessionCourse::follow(const store::Event& event) {
   switch (event.kind) {
-    case EventKind::presented:
+    case store::EventKind::presented:
       return present(event);
-    case EventKind::first_contact:
-    case EventKind::answered:
-    case EventKind::timed_out:
-    case EventKind::interrupted:
-    case EventKind::explored_again:
+    case store::EventKind::first_contact:
+    case store::EventKind::answered:
+    case store::EventKind::timed_out:
+    case store::EventKind::interrupted:
+    case store::EventKind::explored_again:
       return follow_trial(event);
-    case EventKind::block_restarted:
+    case store::EventKind::block_restarted:
       return restart_block(event);
-    case EventKind::paused:
+    case store::EventKind::paused:
       is_paused_ = true;
       return;
-    case EventKind::resumed:
+    case store::EventKind::resumed:
       return take_up(event);
-    case EventKind::stopped:
+    case store::EventKind::stopped:
       is_stopped_ = true;
       return;
-    case EventKind::closed:
+    case store::EventKind::closed:
       return close(event);
     default:
       return;  // remarks, practice and traces stand anywhere
@@ -53,22 +53,22 @@ void SessionCourse::follow(const Event& event) {
 }
 
 bool SessionCourse::is_over() const {
-  return is_timed_out_ && study_.trials.on_timeout == OnTimeout::no_response;
+  return is_timed_out_ && study_.trials.on_timeout == design::OnTimeout::no_response;
 }
 
 bool SessionCourse::was_voided(int trial) const {
   const auto& all = schedule_.presentations;
-  return std::any_of(all.begin(), all.end(), [&](const Presentation& one) {
+  return std::any_of(all.begin(), all.end(), [&](const design::Presentation& one) {
     const auto restarted = first_trials_.find(one.block);
     return one.trial == trial && restarted != first_trials_.end() && trial < restarted->second;
   });
 }
 
-void SessionCourse::present(const Event& event) {
-  const TrialBody body = trial_from_json(event.body);
+void SessionCourse::present(const store::Event& event) {
+  const store::TrialBody body = store::trial_from_json(event.body);
   const auto& all = schedule_.presentations;
   if (std::none_of(all.begin(), all.end(),
-                   [&](const Presentation& one) { return one.trial == body.trial; })) {
+                   [&](const design::Presentation& one) { return one.trial == body.trial; })) {
     fail(event, body.trial, "was presented but not scheduled");
   }
   if (was_voided(body.trial)) {
@@ -85,7 +85,7 @@ void SessionCourse::present(const Event& event) {
          fmt::format("was presented while trial {} was under way", all[*under_way_].trial));
   }
   if (due_.empty()) fail(event, body.trial, "was presented after all that was due");
-  const Presentation& next = all[due_.front()];
+  const design::Presentation& next = all[due_.front()];
   if (next.trial != body.trial) {
     fail(event, body.trial, fmt::format("was presented where trial {} was due", next.trial));
   }
@@ -99,25 +99,25 @@ void SessionCourse::present(const Event& event) {
   ++presentations_;
 }
 
-void SessionCourse::require_under_way(const Event& event, int trial) const {
+void SessionCourse::require_under_way(const store::Event& event, int trial) const {
   const std::string name(name_of(event.kind));
   if (!under_way_ || schedule_.presentations[*under_way_].trial != trial) {
     fail(event, trial, name + ", but not under way");
   }
-  if (event.kind == EventKind::interrupted) return;
+  if (event.kind == store::EventKind::interrupted) return;
   if (is_paused_) fail(event, trial, name + " while the session was paused");
   if (is_spoilt_) fail(event, trial, name + " although the program had ended in it");
 }
 
-void SessionCourse::follow_trial(const Event& event) {
-  const int trial = trial_from_json(event.body).trial;
+void SessionCourse::follow_trial(const store::Event& event) {
+  const int trial = store::trial_from_json(event.body).trial;
   require_under_way(event, trial);
-  if (event.kind == EventKind::interrupted) return give_up(event, trial);
-  if (event.kind == EventKind::timed_out) is_timed_out_ = true;
-  if (event.kind == EventKind::answered) under_way_.reset();
+  if (event.kind == store::EventKind::interrupted) return give_up(event, trial);
+  if (event.kind == store::EventKind::timed_out) is_timed_out_ = true;
+  if (event.kind == store::EventKind::answered) under_way_.reset();
 }
 
-void SessionCourse::give_up(const Event& event, int trial) {
+void SessionCourse::give_up(const store::Event& event, int trial) {
   if (is_over()) {
     fail(event, trial, "interrupted, but its time was over");
   }
@@ -125,19 +125,19 @@ void SessionCourse::give_up(const Event& event, int trial) {
   under_way_.reset();
   is_spoilt_ = false;
   switch (study_.trials.on_interruption) {
-    case OnInterruption::repeat:
+    case design::OnInterruption::repeat:
       due_.push_back(spoilt);
       return;
-    case OnInterruption::leave_out:
+    case design::OnInterruption::leave_out:
       return;
-    case OnInterruption::restart_block:
+    case design::OnInterruption::restart_block:
       block_to_restart_ = schedule_.presentations[spoilt].block;
       return;
   }
 }
 
-void SessionCourse::restart_block(const Event& event) {
-  const BlockBody body = block_from_json(event.body);
+void SessionCourse::restart_block(const store::Event& event) {
+  const store::BlockBody body = store::block_from_json(event.body);
   if (block_to_restart_ != body.block) {
     fail(event, fmt::format("block {} was restarted, but nothing in it was interrupted, or the "
                             "study does not restart blocks",
@@ -154,17 +154,17 @@ void SessionCourse::restart_block(const Event& event) {
                             body.first_trial, first));
   }
   std::erase_if(due_, [&](std::size_t i) { return all[i].block == body.block; });
-  const std::vector<Presentation> again =
-      restarted_block(study_, enrolment_, body.block, restarts_[body.block]++, first);
+  const std::vector<design::Presentation> again =
+      design::restarted_block(study_, enrolment_, body.block, restarts_[body.block]++, first);
   for (std::size_t i = again.size(); i-- > 0;) due_.push_front(all.size() + i);
   all.insert(all.end(), again.begin(), again.end());
   first_trials_[body.block] = first;
   block_to_restart_.reset();
 }
 
-void SessionCourse::take_up(const Event& event) {
+void SessionCourse::take_up(const store::Event& event) {
   constexpr double kSecondsInHour = 3600.0;
-  const ResumedBody body = resumed_from_json(event.body);
+  const store::ResumedBody body = store::resumed_from_json(event.body);
   if (body.after == "pause") {
     if (!is_paused_) fail(event, "the session was resumed, but not paused");
   } else if (body.away_s > study_.trials.resume_within_h * kSecondsInHour) {
@@ -176,8 +176,8 @@ void SessionCourse::take_up(const Event& event) {
   is_paused_ = false;
 }
 
-void SessionCourse::close(const Event& event) const {
-  if (!completion_from_json(event.body)) return;
+void SessionCourse::close(const store::Event& event) const {
+  if (!store::completion_from_json(event.body)) return;
   if (is_stopped_) fail(event, "the session is complete, but was stopped");
   if (block_to_restart_) {
     fail(event, fmt::format("the session is complete, but block {} was not restarted",
@@ -193,4 +193,4 @@ void SessionCourse::close(const Event& event) const {
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -10,7 +10,7 @@
 #include <optional>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Goes through a session's events as its runner did, which presents what is due and nothing else:
 /// catch trials and lead-ins in their places, what was interrupted as the study's policy has it,
@@ -18,32 +18,32 @@ namespace touchtrial {
 class SessionCourse {
  public:
   /// \param study  must outlive this \throws StudyError if the study has no order for it
-  SessionCourse(const Study& study, int enrolment);
+  SessionCourse(const design::Study& study, int enrolment);
 
   /// Takes the session's next event.
   /// \throws VerificationError, naming session and trial, if it is not what can follow
-  void follow(const Event& event);
+  void follow(const store::Event& event);
 
   /// The schedule with which the session began, and after it the blocks that came again.
-  [[nodiscard]] const Schedule& schedule() const noexcept { return schedule_; }
+  [[nodiscard]] const design::Schedule& schedule() const noexcept { return schedule_; }
   [[nodiscard]] int presentations() const noexcept { return presentations_; }
 
  private:
-  [[noreturn]] void fail(const Event& event, const std::string& why) const;
-  [[noreturn]] void fail(const Event& event, int trial, const std::string& why) const;
+  [[noreturn]] void fail(const store::Event& event, const std::string& why) const;
+  [[noreturn]] void fail(const store::Event& event, int trial, const std::string& why) const;
   [[nodiscard]] bool is_over() const;  ///< what is under way, without an answer
   [[nodiscard]] bool was_voided(int trial) const;
-  void follow_trial(const Event& event);
-  void present(const Event& event);
-  void require_under_way(const Event& event, int trial) const;
-  void give_up(const Event& event, int trial);
-  void restart_block(const Event& event);
-  void take_up(const Event& event);
-  void close(const Event& event) const;
+  void follow_trial(const store::Event& event);
+  void present(const store::Event& event);
+  void require_under_way(const store::Event& event, int trial) const;
+  void give_up(const store::Event& event, int trial);
+  void restart_block(const store::Event& event);
+  void take_up(const store::Event& event);
+  void close(const store::Event& event) const;
 
-  const Study& study_;
+  const design::Study& study_;
   int enrolment_;
-  Schedule schedule_;
+  design::Schedule schedule_;
   std::deque<std::size_t> due_;           ///< indices of presentations
   std::map<int, int> restarts_;           ///< by block
   std::map<int, int> first_trials_;       ///< of the last restart, by block
@@ -56,4 +56,4 @@ class SessionCourse {
   int presentations_ = 0;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

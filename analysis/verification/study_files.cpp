@@ -7,7 +7,7 @@
 #include <array>
 #include <system_error>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 namespace fs = std::filesystem;
@@ -35,7 +35,7 @@ Opened<File> opened(Open open) {
   }
 }
 
-Opened<StudyKey> open_key(const StudyFiles& files) {
+Opened<design::StudyKey> open_key(const StudyFiles& files) {
   if (!files.key_named && files.key.empty()) {
     return {std::nullopt, CheckState::not_checked, "needs the key; name it with --key"};
   }
@@ -43,35 +43,39 @@ Opened<StudyKey> open_key(const StudyFiles& files) {
     return {std::nullopt, CheckState::not_checked,
             "there is no " + one_line(files.key.string()) + "; name the key with --key"};
   }
-  return opened<StudyKey>([&] { return load_study_key(files.key); });
+  return opened<design::StudyKey>([&] { return design::load_study_key(files.key); });
 }
 
-bool has_code_of(const StudyKey& key, const Pack& pack) {
+bool has_code_of(const design::StudyKey& key, const engine::Pack& pack) {
   const auto& entries = pack.manifest().entries;
-  return std::any_of(key.stimuli.begin(), key.stimuli.end(), [&](const KeyedStimulus& stimulus) {
-    return std::any_of(entries.begin(), entries.end(),
-                       [&](const PackEntry& entry) { return entry.code == stimulus.code; });
-  });
+  return std::any_of(
+      key.stimuli.begin(), key.stimuli.end(), [&](const design::KeyedStimulus& stimulus) {
+        return std::any_of(entries.begin(), entries.end(), [&](const engine::PackEntry& entry) {
+          return entry.code == stimulus.code;
+        });
+      });
 }
 
 /// The pack where the key says may since have been made anew for another study, or, with the same
 /// seed and hence the same identity, for an edited study that is simulated. Codes of other studies
 /// are drawn at random: a pack that has one of the key's is the study's, whatever it says.
-bool was_made_anew(const StudyStore& store, const StudyKey& key, const Pack& pack) {
-  const StudyCommitment& commitment = store.commitment();
+bool was_made_anew(const store::StudyStore& store, const design::StudyKey& key,
+                   const engine::Pack& pack) {
+  const store::StudyCommitment& commitment = store.commitment();
   const bool is_of_other = pack.manifest().study_id != commitment.study_id;
   if (!key.simulated) return is_of_other && !has_code_of(key, pack);
   return is_of_other || pack.digest() != commitment.pack;
 }
 
-Opened<Pack> find_pack(const StudyStore& store, const StudyKey& key) {
+Opened<engine::Pack> find_pack(const store::StudyStore& store, const design::StudyKey& key) {
   const std::string folder = one_line(key.pack_folder.string());
   const auto leave = [](const std::string& why) {
-    return Opened<Pack>{std::nullopt, CheckState::not_checked, why + "; name the pack with --pack"};
+    return Opened<engine::Pack>{std::nullopt, CheckState::not_checked,
+                                why + "; name the pack with --pack"};
   };
   if (key.pack_folder.empty()) return leave("the key names no pack");
   if (is_absent(key.pack_folder)) return leave("there is no " + folder);
-  Opened<Pack> pack = opened<Pack>([&] { return Pack(key.pack_folder); });
+  Opened<engine::Pack> pack = opened<engine::Pack>([&] { return engine::Pack(key.pack_folder); });
   try {
     if (pack.file && was_made_anew(store, key, *pack.file)) {
       return leave(folder + " was made anew for another study, or for this one after a change");
@@ -82,9 +86,9 @@ Opened<Pack> find_pack(const StudyStore& store, const StudyKey& key) {
   return pack;
 }
 
-Opened<Pack> open_pack(const StudyFiles& files, const StudyStore& store,
-                       const std::optional<StudyKey>& key) {
-  if (!files.pack.empty()) return opened<Pack>([&] { return Pack(files.pack); });
+Opened<engine::Pack> open_pack(const StudyFiles& files, const store::StudyStore& store,
+                               const std::optional<design::StudyKey>& key) {
+  if (!files.pack.empty()) return opened<engine::Pack>([&] { return engine::Pack(files.pack); });
   if (key) return find_pack(store, *key);
   return {std::nullopt, CheckState::not_checked, "needs the key, or --pack"};
 }
@@ -97,7 +101,7 @@ void put(Verification& verification, const char* name, const Opened<File>& opene
   if (check != verification.checks.end()) *check = {name, opened.state, opened.why};
 }
 
-Verification of_damaged(const DamagedStore& error) {
+Verification of_damaged(const store::DamagedStore& error) {
   constexpr std::array kOthers{"key",       "seal",     "configuration", "schedule",
                                "responses", "payloads", "traces",        "pack"};
   Verification verification;
@@ -113,17 +117,18 @@ Verification of_damaged(const DamagedStore& error) {
 
 Verification verify_files(const StudyFiles& files, const std::optional<Digest>& head,
                           const StudyOpener& open) try {
-  const StudyStore store =
-      open ? open(files.database) : StudyStore::open(files.database, StudyStore::Access::read_only);
-  const Opened<StudyKey> key = open_key(files);
-  const Opened<Pack> pack = open_pack(files, store, key.file);
+  const store::StudyStore store =
+      open ? open(files.database)
+           : store::StudyStore::open(files.database, store::StudyStore::Access::read_only);
+  const Opened<design::StudyKey> key = open_key(files);
+  const Opened<engine::Pack> pack = open_pack(files, store, key.file);
   Verification verification =
       verify_study(store, key.file ? &*key.file : nullptr, pack.file ? &*pack.file : nullptr, head);
   put(verification, "key", key);
   put(verification, "pack", pack);
   return verification;
-} catch (const DamagedStore& error) {
+} catch (const store::DamagedStore& error) {
   return of_damaged(error);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -7,7 +7,7 @@
 #include <functional>
 #include <optional>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Where a study's files are.
 struct StudyFiles {
@@ -18,7 +18,7 @@ struct StudyFiles {
 };
 
 /// How the database is opened; it may throw what StudyStore::open throws.
-using StudyOpener = std::function<StudyStore(const std::filesystem::path&)>;
+using StudyOpener = std::function<store::StudyStore(const std::filesystem::path&)>;
 
 /// As verify_study. A damaged database, key or pack is a failed check.
 /// \param open  for reading; empty: as StudyStore does
@@ -26,4 +26,4 @@ using StudyOpener = std::function<StudyStore(const std::filesystem::path&)>;
 [[nodiscard]] Verification verify_files(const StudyFiles& files, const std::optional<Digest>& head,
                                         const StudyOpener& open = {});
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -13,18 +13,18 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 // Every check below returns what it held against what, and throws an Error where that fails.
 
-std::string check_chain(const StudyStore& store) {
+std::string check_chain(const store::StudyStore& store) {
   if (const auto fault = store.first_fault()) throw VerificationError(shown(*fault));
   return fmt::format("the file's chain and those of {}, their traces and tables",
                      counted(static_cast<std::int64_t>(store.sessions().size()), "session"));
 }
 
-std::string check_key(const StudyStore& store, const StudyKey& key) {
+std::string check_key(const store::StudyStore& store, const design::StudyKey& key) {
   const std::string& study_id = store.commitment().study_id;
   if (key.study_id != study_id) {
     throw VerificationError(fmt::format("is the key of study {}, the database is of study {}",
@@ -33,11 +33,11 @@ std::string check_key(const StudyStore& store, const StudyKey& key) {
   return "the key of study " + study_id;
 }
 
-std::string check_seal(const StudyStore& store, const StudyKey& key) {
+std::string check_seal(const store::StudyStore& store, const design::StudyKey& key) {
   require_key_of(store, key);
-  const StudyCommitment& commitment = store.commitment();
-  store.for_each(EventKind::opened, [&](const Event& event) {
-    const SessionOpening opening = opening_from_json(event.body);
+  const store::StudyCommitment& commitment = store.commitment();
+  store.for_each(store::EventKind::opened, [&](const store::Event& event) {
+    const store::SessionOpening opening = store::opening_from_json(event.body);
     if (opening.study_id == commitment.study_id && opening.seal == commitment.seal) return;
     throw VerificationError(
         fmt::format("session {}: was opened under another study's seal; it does not belong here",
@@ -47,12 +47,12 @@ std::string check_seal(const StudyStore& store, const StudyKey& key) {
                      to_hex(commitment.seal).substr(0, 16));
 }
 
-std::string check_configuration(const StudyStore& store, const StudyKey& key) {
-  const StudyCommitment& commitment = store.commitment();
+std::string check_configuration(const store::StudyStore& store, const design::StudyKey& key) {
+  const store::StudyCommitment& commitment = store.commitment();
   const auto require = [](bool same, const char* what) {
     if (!same) throw VerificationError(std::string(what) + " differs between key and database");
   };
-  require(blinded_configuration(key) == commitment.configuration, "the configuration");
+  require(design::blinded_configuration(key) == commitment.configuration, "the configuration");
   require(key.study.name == commitment.study, "the study's name");
   require(name_of(key.study.protocol) == commitment.protocol, "the protocol");
   require(key.study.scored_trials() == commitment.scored_trials, "the number of scored trials");
@@ -65,10 +65,11 @@ std::string check_configuration(const StudyStore& store, const StudyKey& key) {
 }
 
 /// A session's events as the study and its enrolment number alone have them follow.
-SessionCourse course_of(const StudyStore& store, const Study& study, const SessionRow& session) {
+SessionCourse course_of(const store::StudyStore& store, const design::Study& study,
+                        const store::SessionRow& session) {
   try {
     SessionCourse course(study, session.enrolment);
-    for (const Event& event : store.events(session.session)) course.follow(event);
+    for (const store::Event& event : store.events(session.session)) course.follow(event);
     return course;
   } catch (const StudyError& error) {
     throw VerificationError(fmt::format("session {}: the study has no order for enrolment {}: {}",
@@ -76,10 +77,10 @@ SessionCourse course_of(const StudyStore& store, const Study& study, const Sessi
   }
 }
 
-std::string check_schedule(const StudyStore& store, const StudyKey& key) {
-  const std::map<int, Schedule> schedules = open_schedules(store, key);
+std::string check_schedule(const store::StudyStore& store, const design::StudyKey& key) {
+  const std::map<int, design::Schedule> schedules = open_schedules(store, key);
   int presentations = 0;
-  for (const SessionRow& session : store.sessions()) {
+  for (const store::SessionRow& session : store.sessions()) {
     const SessionCourse course = course_of(store, key.study, session);
     presentations += course.presentations();
     const auto schedule = schedules.find(session.session);
@@ -93,10 +94,10 @@ std::string check_schedule(const StudyStore& store, const StudyKey& key) {
                      schedules.size(), presentations);
 }
 
-std::string check_responses(const StudyStore& store) {
+std::string check_responses(const store::StudyStore& store) {
   const int positions = store.commitment().positions;
   int responses = 0;
-  for (const TrialRow& row : store.trials()) {
+  for (const store::TrialRow& row : store.trials()) {
     for (const std::optional<int>& position : {row.position, row.first_position}) {
       if (!position || (*position >= 0 && *position < positions)) continue;
       throw VerificationError(fmt::format("session {}, trial {}: answers position {} of {}",
@@ -107,15 +108,15 @@ std::string check_responses(const StudyStore& store) {
   return fmt::format("{} answers within the {} pictures", responses, positions);
 }
 
-bool has_sealed_part(const Event& event) {
-  return event.kind == EventKind::opened || event.kind == EventKind::trace_stored ||
-         event.kind == EventKind::closed || !event.sealed.empty();
+bool has_sealed_part(const store::Event& event) {
+  return event.kind == store::EventKind::opened || event.kind == store::EventKind::trace_stored ||
+         event.kind == store::EventKind::closed || !event.sealed.empty();
 }
 
-std::string check_payloads(const StudyStore& store, const StudyKey& key) {
+std::string check_payloads(const store::StudyStore& store, const design::StudyKey& key) {
   int opened = 0;
   for (const auto& [session, own] : participant_keys(store, key)) {
-    for (const Event& event : store.events(session)) {
+    for (const store::Event& event : store.events(session)) {
       if (!has_sealed_part(event)) continue;
       static_cast<void>(opened_part(event, own));
       ++opened;
@@ -125,8 +126,8 @@ std::string check_payloads(const StudyStore& store, const StudyKey& key) {
   return fmt::format("{} sealed parts of events, the ends of chains among them", opened);
 }
 
-void check_trace(const StudyStore& store, const Event& event, const SecretKey& own) {
-  const TraceBody body = trace_body_from_json(event.body);
+void check_trace(const store::StudyStore& store, const store::Event& event, const SecretKey& own) {
+  const store::TraceBody body = store::trace_body_from_json(event.body);
   const auto box = store.sealed_trace(event.session, body.trial);
   const auto fail = [&](const std::string& what) {
     throw VerificationError(
@@ -134,15 +135,15 @@ void check_trace(const StudyStore& store, const Event& event, const SecretKey& o
   };
   if (!box) return fail("is missing");
   const auto samples = static_cast<std::size_t>(body.samples);
-  const auto trace = unsealed_trace(*box, own, samples);
+  const auto trace = store::unsealed_trace(*box, own, samples);
   if (!trace) return fail("does not open");
   if (trace->samples.size() != samples) fail("has another number of samples than its event says");
 }
 
-std::string check_traces(const StudyStore& store, const StudyKey& key) {
+std::string check_traces(const store::StudyStore& store, const design::StudyKey& key) {
   const std::map<int, SecretKey> keys = participant_keys(store, key);
   int traces = 0;
-  store.for_each(EventKind::trace_stored, [&](const Event& event) {
+  store.for_each(store::EventKind::trace_stored, [&](const store::Event& event) {
     const auto own = keys.find(event.session);
     if (own == keys.end()) return;
     check_trace(store, event, own->second);
@@ -151,14 +152,15 @@ std::string check_traces(const StudyStore& store, const StudyKey& key) {
   return fmt::format("{} traces opened and decoded", traces);
 }
 
-std::string check_pack(const StudyStore& store, const StudyKey* key, const Pack& pack) {
+std::string check_pack(const store::StudyStore& store, const design::StudyKey* key,
+                       const engine::Pack& pack) {
   if (pack.manifest().study_id != store.commitment().study_id) {
     throw VerificationError("the pack is of study " + one_line(pack.manifest().study_id));
   }
   if (pack.digest() != store.commitment().pack) {
     throw VerificationError("the pack is not the one that the database was begun with");
   }
-  for (const PackEntry& entry : pack.manifest().entries) {
+  for (const engine::PackEntry& entry : pack.manifest().entries) {
     if (pack.is_intact(entry.code)) continue;
     throw VerificationError("field " + entry.code + " of the pack is not what was prepared");
   }
@@ -166,21 +168,23 @@ std::string check_pack(const StudyStore& store, const StudyKey* key, const Pack&
     return fmt::format("{} fields intact; not held against the key",
                        pack.manifest().entries.size());
   }
-  for (const KeyedStimulus& stimulus : key->stimuli) static_cast<void>(pack.entry(stimulus.code));
+  for (const design::KeyedStimulus& stimulus : key->stimuli)
+    static_cast<void>(pack.entry(stimulus.code));
   return fmt::format("{} fields intact, every code of the key among them",
                      pack.manifest().entries.size());
 }
 
 /// Where a hash stands on a chain, in words; empty: nowhere.
-std::string place_on(const std::vector<Event>& chain, const Digest& head, const std::string& name) {
+std::string place_on(const std::vector<store::Event>& chain, const Digest& head,
+                     const std::string& name) {
   const auto found = std::find_if(chain.begin(), chain.end(),
-                                  [&](const Event& event) { return event.hash == head; });
+                                  [&](const store::Event& event) { return event.hash == head; });
   if (found == chain.end()) return "";
   return fmt::format("event {} of {}, which has {}", found->sequence, name, chain.size());
 }
 
 /// In what was collected, heads of the stations' own files count as well.
-std::string check_head(const StudyStore& store, const Digest& head) {
+std::string check_head(const store::StudyStore& store, const Digest& head) {
   std::string place = place_on(store.events(0), head, "the file's chain");
   for (int station = 1; place.empty() && station <= store.stations(); ++station) {
     place =
@@ -231,8 +235,8 @@ bool Verification::complete() const noexcept {
                       [](const Check& check) { return check.state == CheckState::not_checked; });
 }
 
-Verification verify_study(const StudyStore& store, const StudyKey* key, const Pack* pack,
-                          const std::optional<Digest>& head) {
+Verification verify_study(const store::StudyStore& store, const design::StudyKey* key,
+                          const engine::Pack* pack, const std::optional<Digest>& head) {
   Verification verification;
   try {
     verification.head = store.file_head();
@@ -240,8 +244,8 @@ Verification verify_study(const StudyStore& store, const StudyKey* key, const Pa
   } catch (const StoreError&) {
     // The first check says what is wrong with the file's chain.
   }
-  const auto with_key = [&](const char* name,
-                            std::string (*check)(const StudyStore&, const StudyKey&)) {
+  const auto with_key = [&](const char* name, std::string (*check)(const store::StudyStore&,
+                                                                   const design::StudyKey&)) {
     verification.checks.push_back(key == nullptr ? left(name, "key")
                                                  : done(name, [&] { return check(store, *key); }));
   };
@@ -262,4 +266,4 @@ Verification verify_study(const StudyStore& store, const StudyKey* key, const Pa
   return verification;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

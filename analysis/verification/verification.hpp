@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 enum class CheckState { passed, failed, not_checked };
 /// "passed", "failed", "not-checked"
@@ -25,7 +25,7 @@ struct Verification {
   bool simulated = false;
   std::vector<Check> checks;
   /// Where the file's chain ends; whoever keeps it elsewhere can show that nothing was cut off.
-  std::optional<ChainHead> head;
+  std::optional<store::ChainHead> head;
 
   /// Whether nothing failed; what could not be checked does not fail.
   [[nodiscard]] bool holds() const noexcept;
@@ -39,8 +39,9 @@ struct Verification {
 /// nothing of outcomes: it may be used on a running study. \param key,pack  null: the checks that
 /// need it are not made \param head  a hash that was once the end of the file's chain, which must
 /// still be on it
-[[nodiscard]] Verification verify_study(const StudyStore& store, const StudyKey* key,
-                                        const Pack* pack, const std::optional<Digest>& head = {});
+[[nodiscard]] Verification verify_study(const store::StudyStore& store, const design::StudyKey* key,
+                                        const engine::Pack* pack,
+                                        const std::optional<Digest>& head = {});
 
 /// One JSON object, indented, ending with a line feed.
 [[nodiscard]] std::string verification_json(const Verification& verification);
@@ -48,4 +49,4 @@ struct Verification {
 /// One line a check, ending with a line feed.
 [[nodiscard]] std::string verification_text(const Verification& verification);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -9,7 +9,7 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// Which checks were not made, lest their absence be taken for success.
@@ -55,4 +55,4 @@ std::string verification_text(const Verification& verification) {
   return text + unmade_line(verification);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -7,13 +7,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 using nlohmann::ordered_json;
 
-const char* word_for(PlaneOrientation orientation) {
-  return orientation == PlaneOrientation::horizontal ? "horizontal" : "vertical";
+const char* word_for(device::PlaneOrientation orientation) {
+  return orientation == device::PlaneOrientation::horizontal ? "horizontal" : "vertical";
 }
 
 const char* word_for(WorkspaceSource source) {
@@ -32,7 +32,7 @@ std::string workspace_text(const StudyFit& fit) {
   if (!fit.workspace) return "takes any plane, as it has no frame of its own\n";
   const Vec3 size = fit.workspace->greatest_mm - fit.workspace->least_mm;
   return fmt::format("workspace {:.1f} x {:.1f} x {:.1f} mm{}, {}\n", size.x, size.y, size.z,
-                     fit.workspace->shape == WorkspaceShape::ellipsoid ? " (rounded)" : "",
+                     fit.workspace->shape == device::WorkspaceShape::ellipsoid ? " (rounded)" : "",
                      fit.source == WorkspaceSource::device
                          ? "as the device tells"
                          : "as its maker states; the device was not asked");
@@ -52,7 +52,7 @@ ordered_json plane_json(const PlaneGeometry& plane) {
 
 ordered_json workspace_json(const StudyFit& fit) {
   if (!fit.workspace) return nullptr;
-  const bool rounded = fit.workspace->shape == WorkspaceShape::ellipsoid;
+  const bool rounded = fit.workspace->shape == device::WorkspaceShape::ellipsoid;
   return {{"from", word_for(fit.source)},
           {"shape", rounded ? "ellipsoid" : "box"},
           {"least_mm", vec_json(fit.workspace->least_mm)},
@@ -61,11 +61,11 @@ ordered_json workspace_json(const StudyFit& fit) {
 
 }  // namespace
 
-PlaneGeometry common_plane_of(const Study& study) {
+PlaneGeometry common_plane_of(const design::Study& study) {
   PlaneGeometry plane{study.rendering.pitch_mm, 0, 0};
-  for (const StudyClass& shown : study.classes) {
+  for (const design::StudyClass& shown : study.classes) {
     for (const auto& image : shown.images) {
-      const GreyImage picture = read_grey_image(study.folder / image);
+      const GreyImage picture = engine::read_grey_image(study.folder / image);
       const bool first = plane.height_px == 0;
       plane.height_px = first ? picture.height() : std::min(plane.height_px, picture.height());
       plane.width_px = first ? picture.width() : std::min(plane.width_px, picture.width());
@@ -74,9 +74,10 @@ PlaneGeometry common_plane_of(const Study& study) {
   return plane;
 }
 
-StudyFit fit_study(const Study& study, const std::string& driver, const DeviceSettings& settings,
-                   std::optional<PlaneOrientation> orientation) {
-  const DeviceDriver& known = device_driver(driver);
+StudyFit fit_study(const design::Study& study, const std::string& driver,
+                   const device::DeviceSettings& settings,
+                   std::optional<device::PlaneOrientation> orientation) {
+  const device::DeviceDriver& known = device::device_driver(driver);
   StudyFit fit;
   fit.study = study.name;
   fit.driver = driver;
@@ -87,7 +88,7 @@ StudyFit fit_study(const Study& study, const std::string& driver, const DeviceSe
     fit.source = WorkspaceSource::device;
   }
   fit.plane = common_plane_of(study);
-  fit.fit = fit_plane(fit.plane, fit.workspace, settings.use_of(driver), orientation);
+  fit.fit = device::fit_plane(fit.plane, fit.workspace, settings.use_of(driver), orientation);
   return fit;
 }
 
@@ -104,14 +105,14 @@ std::string fit_text(const StudyFit& fit) {
                     "fits: {}, top-left corner at {:.1f}, {:.1f}, {:.1f} mm (right, up, "
                     "towards the person), {:.0f} mm around it\n",
                     word_for(fit.fit.placement->orientation), origin.x, origin.y, origin.z,
-                    kWorkspaceMarginMm);
+                    device::kWorkspaceMarginMm);
 }
 
 std::string fit_json(const StudyFit& fit) {
   ordered_json object = {{"study", fit.study},
                          {"driver", fit.driver},
                          {"fits", fit.fit.fits},
-                         {"margin_mm", kWorkspaceMarginMm},
+                         {"margin_mm", device::kWorkspaceMarginMm},
                          {"plane", plane_json(fit.plane)},
                          {"workspace", workspace_json(fit)},
                          {"orientation", nullptr},
@@ -125,4 +126,4 @@ std::string fit_json(const StudyFit& fit) {
   return object.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

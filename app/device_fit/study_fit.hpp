@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// Where a workspace is known from.
 enum class WorkspaceSource {
@@ -21,24 +21,24 @@ struct StudyFit {
   std::string study;
   std::string driver;
   PlaneGeometry plane;
-  std::optional<Workspace> workspace;
+  std::optional<device::Workspace> workspace;
   WorkspaceSource source = WorkspaceSource::none;
-  WorkspaceFit fit;
+  device::WorkspaceFit fit;
 };
 
 /// The part of the plane that all pictures of a study have, as a session presents it.
 /// \throws FileError if a picture cannot be read
-[[nodiscard]] PlaneGeometry common_plane_of(const Study& study);
+[[nodiscard]] PlaneGeometry common_plane_of(const design::Study& study);
 
 /// \param orientation  nothing: as the settings say
 /// \throws UsageError if there is no such driver; DeviceError if only a device could tell its
 ///   workspace and none can be opened; as common_plane_of
-[[nodiscard]] StudyFit fit_study(const Study& study, const std::string& driver,
-                                 const DeviceSettings& settings,
-                                 std::optional<PlaneOrientation> orientation);
+[[nodiscard]] StudyFit fit_study(const design::Study& study, const std::string& driver,
+                                 const device::DeviceSettings& settings,
+                                 std::optional<device::PlaneOrientation> orientation);
 
 [[nodiscard]] std::string fit_text(const StudyFit& fit);
 /// Documented in docs/devices/README.md.
 [[nodiscard]] std::string fit_json(const StudyFit& fit);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -5,40 +5,41 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 /// Ticks as time, by the rate that the run was to have.
-double seconds_of(std::int64_t ticks, const ServoReport& report) {
+double seconds_of(std::int64_t ticks, const device::ServoReport& report) {
   return report.rate_hz > 0.0 ? static_cast<double>(ticks) / report.rate_hz : 0.0;
 }
 
-std::string phase_text(const TestPhase& phase, const ServoReport& run) {
+std::string phase_text(const TestPhase& phase, const device::ServoReport& run) {
   return fmt::format("{:<8} {:5.1f} s, contact {:5.1f} s, greatest force {:.2f} N\n", phase.name,
                      seconds_of(phase.felt.ticks, run), seconds_of(phase.felt.contact_ticks, run),
                      phase.felt.greatest_force_n);
 }
 
-const char* words_for(const ServoReport& run, bool quit) {
-  if (run.fault == SafetyFault::emergency_stop) return "halted";
+const char* words_for(const device::ServoReport& run, bool quit) {
+  if (run.fault == device::SafetyFault::emergency_stop) return "halted";
   switch (run.end) {
-    case ServoEnd::time_limit:
+    case device::ServoEnd::time_limit:
       return "time was up";
-    case ServoEnd::hand_stopped:
+    case device::ServoEnd::hand_stopped:
       return quit ? "stopped by q" : "the device had no more to give";
-    case ServoEnd::comfort_stop:
+    case device::ServoEnd::comfort_stop:
       return "let go on request";
-    case ServoEnd::fault:
+    case device::ServoEnd::fault:
       break;
   }
   return "fault";
 }
 
-std::string run_text(const ServoReport& run, bool quit) {
+std::string run_text(const device::ServoReport& run, bool quit) {
   const std::string fault =
-      run.fault == SafetyFault::none ? "" : fmt::format(", {}", name_of(run.fault));
-  const std::string device =
-      run.device_fault == DeviceFault::none ? "" : fmt::format(" ({})", name_of(run.device_fault));
+      run.fault == device::SafetyFault::none ? "" : fmt::format(", {}", device::name_of(run.fault));
+  const std::string device = run.device_fault == device::DeviceFault::none
+                                 ? ""
+                                 : fmt::format(" ({})", device::name_of(run.device_fault));
   return fmt::format(
       "ticks:   {:.1f} a second, {} left out; {} forces changed by safety (limit {:.2f} N)\n"
       "late:    half within {:.0f} us, 99 % {:.0f} us, 99.9 % {:.0f} us, worst {:.0f} us\n"
@@ -48,25 +49,25 @@ std::string run_text(const ServoReport& run, bool quit) {
       device);
 }
 
-std::string scheduling_text(const SchedulingObtained& had) {
-  const std::string got = had.policy == SchedulingPolicy::fifo
+std::string scheduling_text(const device::SchedulingObtained& had) {
+  const std::string got = had.policy == device::SchedulingPolicy::fifo
                               ? fmt::format("real time, priority {}", had.priority)
                               : std::string("as an ordinary thread");
   return "servo:   " + got + (had.memory_locked ? ", memory locked" : ", memory not locked") +
          (had.reason.empty() ? "" : "; " + had.reason) + "\n";
 }
 
-nlohmann::ordered_json phase_json(const TestPhase& phase, const ServoReport& run) {
+nlohmann::ordered_json phase_json(const TestPhase& phase, const device::ServoReport& run) {
   return {{"phase", phase.name},
           {"ticks", phase.felt.ticks},
           {"contact_s", seconds_of(phase.felt.contact_ticks, run)},
           {"greatest_force_n", phase.felt.greatest_force_n}};
 }
 
-nlohmann::ordered_json run_json(const ServoReport& run) {
-  return {{"end", name_of(run.end)},
-          {"fault", name_of(run.fault)},
-          {"device_fault", name_of(run.device_fault)},
+nlohmann::ordered_json run_json(const device::ServoReport& run) {
+  return {{"end", device::name_of(run.end)},
+          {"fault", device::name_of(run.fault)},
+          {"device_fault", device::name_of(run.device_fault)},
           {"ticks", run.ticks},
           {"rate_hz", run.rate_hz},
           {"overruns", run.overruns},
@@ -83,7 +84,7 @@ nlohmann::ordered_json run_json(const ServoReport& run) {
 }  // namespace
 
 std::string test_text(const DeviceTest& test) {
-  const DeviceInfo& device = test.device;
+  const device::DeviceInfo& device = test.device;
   std::string text = device.name + (device.model.empty() ? "" : ": " + device.model) +
                      (device.serial.empty() ? "" : ", serial " + device.serial) +
                      (device.firmware.empty() ? "" : ", firmware " + device.firmware) + "\n" +
@@ -106,7 +107,7 @@ std::string test_json(const DeviceTest& test) {
                                {"serial", test.device.serial},
                                {"firmware", test.device.firmware},
                                {"scheduling",
-                                {{"policy", name_of(test.scheduling.policy)},
+                                {{"policy", device::name_of(test.scheduling.policy)},
                                  {"priority", test.scheduling.priority},
                                  {"memory_locked", test.scheduling.memory_locked},
                                  {"reason", test.scheduling.reason}}},
@@ -116,4 +117,4 @@ std::string test_json(const DeviceTest& test) {
   return object.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -10,24 +10,24 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 struct TestPhase {
   std::string name;  ///< "wall" or "texture"
-  ForceSequence::Part felt;
+  device::ForceSequence::Part felt;
 };
 
 struct DeviceTest {
-  DeviceInfo device;
-  SchedulingObtained scheduling;
-  std::optional<ServoReport> run;      ///< nothing: it was stopped before it began
-  bool quit = false;                   ///< by the person, with q
-  std::vector<TestPhase> phases;       ///< those that began
-  std::filesystem::path fault_record;  ///< empty unless a fault was recorded
+  device::DeviceInfo device;
+  device::SchedulingObtained scheduling;
+  std::optional<device::ServoReport> run;  ///< nothing: it was stopped before it began
+  bool quit = false;                       ///< by the person, with q
+  std::vector<TestPhase> phases;           ///< those that began
+  std::filesystem::path fault_record;      ///< empty unless a fault was recorded
 };
 
 [[nodiscard]] std::string test_text(const DeviceTest& test);
 /// Documented in docs/devices/README.md.
 [[nodiscard]] std::string test_json(const DeviceTest& test);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

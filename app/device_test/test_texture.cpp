@@ -6,27 +6,27 @@
 
 #include <array>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
-TextureField bark(int side_px, const RenderingOptions& options) {
-  const GreyImage image = generate_stimulus("bark", kDefaultStimuliSeed, side_px);
-  return make_texture_field(extract_texture<double>(image, {}).texture, options);
+engine::TextureField bark(int side_px, const engine::RenderingOptions& options) {
+  const GreyImage image = stimuli::generate_stimulus("bark", stimuli::kDefaultStimuliSeed, side_px);
+  return engine::make_texture_field(engine::extract_texture<double>(image, {}).texture, options);
 }
 
 }  // namespace
 
 TestTexture::TestTexture(int side_px) : field_(bark(side_px, options_)) {
   const std::array fields = {field_.view()};
-  gains_ = choose_gains(fields, options_).of_field.front();
+  gains_ = engine::choose_gains(fields, options_).of_field.front();
 }
 
-RenderingModel TestTexture::texture() const noexcept {
+engine::RenderingModel TestTexture::texture() const noexcept {
   return {field_.view(), options_, gains_};
 }
 
-RenderingModel TestTexture::wall() const noexcept {
-  return {FieldView{.geometry = plane()}, options_, Gains{}};
+engine::RenderingModel TestTexture::wall() const noexcept {
+  return {engine::FieldView{.geometry = plane()}, options_, engine::Gains{}};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -5,7 +5,7 @@
 #include "engine/rendering/rendering_model.hpp"
 #include "engine/rendering/texture_field.hpp"
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// Bark, extracted and rendered with the defaults of a study (adaptive method, model `paper`).
 class TestTexture {
@@ -14,14 +14,14 @@ class TestTexture {
   explicit TestTexture(int side_px);
 
   [[nodiscard]] PlaneGeometry plane() const noexcept { return field_.view().geometry; }
-  [[nodiscard]] RenderingModel texture() const noexcept;
+  [[nodiscard]] engine::RenderingModel texture() const noexcept;
   /// The same plane with nothing on it.
-  [[nodiscard]] RenderingModel wall() const noexcept;
+  [[nodiscard]] engine::RenderingModel wall() const noexcept;
 
  private:
-  RenderingOptions options_;
-  TextureField field_;
-  Gains gains_;
+  engine::RenderingOptions options_;
+  engine::TextureField field_;
+  engine::Gains gains_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 /// A whole number from 1 to `most`, and nothing else; 0 otherwise.
@@ -19,7 +19,7 @@ int number_in(const std::string& text, int most) {
 
 }  // namespace
 
-AnswerTyping::AnswerTyping(const AnswerStep& step, std::vector<std::string> labels)
+AnswerTyping::AnswerTyping(const session::AnswerStep& step, std::vector<std::string> labels)
     : step_(step), labels_(std::move(labels)) {}
 
 void AnswerTyping::take(char key) {
@@ -71,4 +71,4 @@ std::string AnswerTyping::prompt() const {
   return prompt + ": " + line_.text();
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

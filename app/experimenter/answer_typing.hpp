@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// One answer: a label's number and Enter; Enter again to confirm, or another number, once, for a
 /// participant who changes it; then the confidence, if it is asked for. Not thread-safe.
 class AnswerTyping {
  public:
   /// \param labels  copied
-  AnswerTyping(const AnswerStep& step, std::vector<std::string> labels);
+  AnswerTyping(const session::AnswerStep& step, std::vector<std::string> labels);
 
   void take(char key);
   [[nodiscard]] std::string prompt() const;
@@ -26,7 +26,7 @@ class AnswerTyping {
   void end_line();
   void choose(int number);
 
-  AnswerStep step_;
+  session::AnswerStep step_;
   std::vector<std::string> labels_;
   TypedLine line_;
   SpokenAnswer typed_;
@@ -35,4 +35,4 @@ class AnswerTyping {
   std::optional<SpokenAnswer> answer_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -4,9 +4,9 @@
 
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
-void ConsoleExperimenter::show(const SessionStatus& status) {
+void ConsoleExperimenter::show(const session::SessionStatus& status) {
   inner_.show(status);
   const std::lock_guard lock(mutex_);
   status_ = status;
@@ -16,11 +16,11 @@ void ConsoleExperimenter::show(const SessionStatus& status) {
   if (listener_) listener_();
 }
 
-std::optional<ExperimenterRequest> ConsoleExperimenter::request() {
+std::optional<session::ExperimenterRequest> ConsoleExperimenter::request() {
   {
     const std::lock_guard lock(mutex_);
     if (!added_.empty()) {
-      ExperimenterRequest first = std::move(added_.front());
+      session::ExperimenterRequest first = std::move(added_.front());
       added_.pop_front();
       return first;
     }
@@ -28,12 +28,12 @@ std::optional<ExperimenterRequest> ConsoleExperimenter::request() {
   return inner_.request();
 }
 
-void ConsoleExperimenter::add(const ExperimenterRequest& request) {
+void ConsoleExperimenter::add(const session::ExperimenterRequest& request) {
   const std::lock_guard lock(mutex_);
   added_.push_back(request);
 }
 
-SessionStatus ConsoleExperimenter::status() const {
+session::SessionStatus ConsoleExperimenter::status() const {
   const std::lock_guard lock(mutex_);
   return status_;
 }
@@ -43,4 +43,4 @@ void ConsoleExperimenter::on_change(std::function<void()> listener) {
   listener_ = std::move(listener);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

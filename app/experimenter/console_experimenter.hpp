@@ -22,22 +22,22 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// Passes everything on to another experimenter, and has room for a window's requests beside. Never
 /// knows what is presented, nor whether an answer was right.
-class ConsoleExperimenter final : public Experimenter {
+class ConsoleExperimenter final : public session::Experimenter {
  public:
   /// \param inner  must outlive this
-  explicit ConsoleExperimenter(Experimenter& inner) : inner_(inner) {}
+  explicit ConsoleExperimenter(session::Experimenter& inner) : inner_(inner) {}
 
   /// \name The session's thread
   ///@{
-  void show(const SessionStatus& status) override;
+  void show(const session::SessionStatus& status) override;
   /// What the window asked for first, then the inner one's.
-  [[nodiscard]] std::optional<ExperimenterRequest> request() override;
-  [[nodiscard]] std::optional<std::vector<Tick>> day_sheet(
-      const std::vector<DaySheetItem>& items) override {
+  [[nodiscard]] std::optional<session::ExperimenterRequest> request() override;
+  [[nodiscard]] std::optional<std::vector<session::Tick>> day_sheet(
+      const std::vector<session::DaySheetItem>& items) override {
     return inner_.day_sheet(items);
   }
   void acknowledged(int trial) override { inner_.acknowledged(trial); }
@@ -45,21 +45,21 @@ class ConsoleExperimenter final : public Experimenter {
 
   /// \name Any thread
   ///@{
-  void add(const ExperimenterRequest& request);
+  void add(const session::ExperimenterRequest& request);
   /// As it was shown last.
-  [[nodiscard]] SessionStatus status() const;
+  [[nodiscard]] session::SessionStatus status() const;
   /// Called whenever the status reads otherwise than before; null: nobody is. Must call nothing of
   /// this object.
   void on_change(std::function<void()> listener);
   ///@}
 
  private:
-  Experimenter& inner_;
+  session::Experimenter& inner_;
   mutable std::mutex mutex_;
-  SessionStatus status_;
+  session::SessionStatus status_;
   std::string words_;
-  std::deque<ExperimenterRequest> added_;
+  std::deque<session::ExperimenterRequest> added_;
   std::function<void()> listener_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -10,10 +10,10 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
-using Kind = ExperimenterRequest::Kind;
+using Kind = session::ExperimenterRequest::Kind;
 
 constexpr PackedColour kInk = 0xFF202020;
 constexpr PackedColour kGround = 0xFFF6F4F2;
@@ -80,7 +80,7 @@ void grey(const char* text) {
   ImGui::PopStyleColor();
 }
 
-void draw_heading(const SessionStatus& status) {
+void draw_heading(const session::SessionStatus& status) {
   large(status.participant.empty() ? "no session yet" : status.participant);
   std::string stage = status.stage;
   if (status.practice && status.stage != "practice") stage += " (practice)";
@@ -90,7 +90,7 @@ void draw_heading(const SessionStatus& status) {
   large(stage);
 }
 
-void draw_progress(const SessionStatus& status, float density) {
+void draw_progress(const session::SessionStatus& status, float density) {
   const bool is_begun = status.trial > 0 && status.of > 0;
   const std::string words = is_begun ? fmt::format("trial {} of {}", status.trial, status.of)
                                      : std::string("no trial yet");
@@ -109,7 +109,7 @@ void fact(const char* name, const std::string& value) {
   ImGui::TextWrapped("%s", value.c_str());
 }
 
-void draw_facts(const SessionStatus& status) {
+void draw_facts(const session::SessionStatus& status) {
   const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(status.elapsed).count();
   const bool is_measured = status.rate_hz > 0.0;
   if (!ImGui::BeginTable("facts", 3)) return;
@@ -139,7 +139,7 @@ bool button(const char* label, ImVec2 size, bool is_enabled = true) {
   return pressed;
 }
 
-std::string words_of(const ExperimenterRequest& request) {
+std::string words_of(const session::ExperimenterRequest& request) {
   switch (request.kind) {
     case Kind::pause:
       return "pause";
@@ -161,7 +161,8 @@ std::string words_of(const ExperimenterRequest& request) {
 
 }  // namespace
 
-void ConsolePanel::draw(const SessionStatus& status, Vec2 size, float density, bool may_write) {
+void ConsolePanel::draw(const session::SessionStatus& status, Vec2 size, float density,
+                        bool may_write) {
   const Look look(density);
   ImGui::SetNextWindowPos({0.0F, 0.0F});
   ImGui::SetNextWindowSize(to_imgui(size));
@@ -179,7 +180,7 @@ void ConsolePanel::draw(const SessionStatus& status, Vec2 size, float density, b
   ImGui::End();
 }
 
-void ConsolePanel::draw_buttons(const SessionStatus& status, float density) {
+void ConsolePanel::draw_buttons(const session::SessionStatus& status, float density) {
   const float third =
       (ImGui::GetContentRegionAvail().x - 2.0F * ImGui::GetStyle().ItemSpacing.x) / 3.0F;
   const ImVec2 size = {third, kButtonHeight * density};
@@ -277,10 +278,10 @@ void ConsolePanel::send() {
 }
 
 void ConsolePanel::ask(Kind kind, const std::string& text, const std::string& code) {
-  const ExperimenterRequest request{kind, text, code};
+  const session::ExperimenterRequest request{kind, text, code};
   asked_.push_front(words_of(request));
   if (asked_.size() > kAskedShown) asked_.pop_back();
   ask_(request);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -21,7 +21,7 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 constexpr const char* kTitle = "Touchtrial console";
@@ -159,7 +159,7 @@ struct ConsoleWindow::State {
   State(ConsoleExperimenter& model, ConsoleWindowOptions wanted)
       : console(model),
         options(std::move(wanted)),
-        panel([this](const ExperimenterRequest& asked) { console.add(asked); }) {}
+        panel([this](const session::ExperimenterRequest& asked) { console.add(asked); }) {}
 
   static State& of(GLFWwindow* window) {
     return *static_cast<State*>(glfwGetWindowUserPointer(window));
@@ -308,7 +308,7 @@ struct ConsoleWindow::State {
   Surface surface;
   int frames_due = kSettling;
   bool picture_wanted = false;
-  std::optional<ColourImage> picture;
+  std::optional<engine::ColourImage> picture;
 
   // Drawing thread.
   ImGuiContext* context = nullptr;
@@ -380,7 +380,7 @@ void ConsoleWindow::draw() {
   glfwSwapBuffers(s.window);
 }
 
-std::optional<ColourImage> ConsoleWindow::picture(std::chrono::milliseconds longest) {
+std::optional<engine::ColourImage> ConsoleWindow::picture(std::chrono::milliseconds longest) {
   State& s = *state_;
   {
     const std::lock_guard lock(s.mutex);
@@ -393,4 +393,4 @@ std::optional<ColourImage> ConsoleWindow::picture(std::chrono::milliseconds long
   return std::exchange(s.picture, std::nullopt);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -9,7 +9,7 @@
 #include <memory>
 #include <optional>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 struct ConsoleWindowOptions {
   /// From 1 as the system counts them; none: wherever the system puts a window.
@@ -43,11 +43,11 @@ class ConsoleWindow {
   ///@}
 
   /// Waits for the next picture; any other thread. \return nothing if none comes
-  [[nodiscard]] std::optional<ColourImage> picture(std::chrono::milliseconds longest);
+  [[nodiscard]] std::optional<engine::ColourImage> picture(std::chrono::milliseconds longest);
 
  private:
   struct State;
   std::unique_ptr<State> state_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 constexpr char kEscape = '\x1b';
@@ -43,20 +43,20 @@ void RequestTyping::take(char key) {
   }
 }
 
-std::optional<ExperimenterRequest> RequestTyping::next() {
+std::optional<session::ExperimenterRequest> RequestTyping::next() {
   if (requests_.empty()) return std::nullopt;
-  ExperimenterRequest request = std::move(requests_.front());
+  session::ExperimenterRequest request = std::move(requests_.front());
   requests_.pop_front();
   return request;
 }
 
-void RequestTyping::ask(ExperimenterRequest::Kind kind, const std::string& text,
+void RequestTyping::ask(session::ExperimenterRequest::Kind kind, const std::string& text,
                         const std::string& code) {
   requests_.push_back({kind, text, code});
 }
 
 void RequestTyping::begin(char key) {
-  using Kind = ExperimenterRequest::Kind;
+  using Kind = session::ExperimenterRequest::Kind;
   switch (key) {
     case 'p':
       ask(Kind::pause);
@@ -84,7 +84,7 @@ void RequestTyping::begin(char key) {
 }
 
 void RequestTyping::end_line() {
-  using Kind = ExperimenterRequest::Kind;
+  using Kind = session::ExperimenterRequest::Kind;
   const std::string text = line_.text();
   line_.clear();
   const Field ended = std::exchange(field_, Field::none);
@@ -142,4 +142,4 @@ const char* request_keys_help() noexcept {
   return "keys: p pause, r resume, c comfort stop, n note, d deviation, a abort";
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// A line that grows by keys: UTF-8, backspace takes the last character.
 class TypedLine {
@@ -28,7 +28,7 @@ class RequestTyping {
  public:
   void take(char key);
   /// The next request, each once.
-  [[nodiscard]] std::optional<ExperimenterRequest> next();
+  [[nodiscard]] std::optional<session::ExperimenterRequest> next();
   /// What is asked of the experimenter, with what was typed so far; empty: nothing is.
   [[nodiscard]] std::string prompt() const;
 
@@ -36,16 +36,16 @@ class RequestTyping {
   enum class Field { none, pause_reason, stop_reason, note, code, remark, sure, abort_reason };
   void begin(char key);
   void end_line();
-  void ask(ExperimenterRequest::Kind kind, const std::string& text = {},
+  void ask(session::ExperimenterRequest::Kind kind, const std::string& text = {},
            const std::string& code = {});
 
   Field field_ = Field::none;
   TypedLine line_;
   std::string code_;
-  std::deque<ExperimenterRequest> requests_;
+  std::deque<session::ExperimenterRequest> requests_;
 };
 
 /// The keys in a line of their own.
 [[nodiscard]] const char* request_keys_help() noexcept;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <numeric>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 void SpokenAnswers::see_pictures(const std::vector<std::string>& labels) {
   participant_.see_pictures(labels);
@@ -19,14 +19,14 @@ void SpokenAnswers::see_pictures(const std::vector<std::string>& labels) {
   }
 }
 
-std::optional<StepReply> SpokenAnswers::attend(const Step& step) {
+std::optional<session::StepReply> SpokenAnswers::attend(const session::Step& step) {
   const auto shown = participant_.attend(step);
-  const auto* asked = std::get_if<AnswerStep>(&step);
-  if (asked == nullptr || asked->sight != Sight::blindfold) return shown;
+  const auto* asked = std::get_if<session::AnswerStep>(&step);
+  if (asked == nullptr || asked->sight != design::Sight::blindfold) return shown;
   if (shown && shown->explore_again) return shown;
   const auto spoken = entry_.spoken_answer(*asked, sorted_);
   if (!spoken) return std::nullopt;
-  StepReply reply;
+  session::StepReply reply;
   reply.at = std::chrono::steady_clock::now();
   reply.position = positions_.at(spoken->label);
   if (spoken->first) reply.first_position = positions_.at(*spoken->first);
@@ -34,4 +34,4 @@ std::optional<StepReply> SpokenAnswers::attend(const Step& step) {
   return reply;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

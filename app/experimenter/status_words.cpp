@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 bool begins_character(char byte) {
@@ -13,7 +13,7 @@ bool begins_character(char byte) {
 
 }  // namespace
 
-std::string progress_words(const SessionStatus& status) {
+std::string progress_words(const session::SessionStatus& status) {
   std::string words = status.participant + "  " + status.stage;
   if (status.practice && status.stage != "practice") words += " (practice)";
   if (status.trial > 0) words += fmt::format("  trial {} of {}", status.trial, status.of);
@@ -21,7 +21,7 @@ std::string progress_words(const SessionStatus& status) {
   return words;
 }
 
-std::string status_line(const SessionStatus& status) {
+std::string status_line(const session::SessionStatus& status) {
   const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(status.elapsed).count();
   std::string line = progress_words(status);
   line += fmt::format("  {}:{:02}", seconds / 60, seconds % 60);
@@ -49,4 +49,4 @@ std::string last_of(const std::string& text, int columns) {
   return text.substr(begin);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -13,7 +13,7 @@
 #include <sys/ioctl.h>
 #include <unistd.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 int columns_of_terminal() {
@@ -29,7 +29,7 @@ ExperimenterTerminal standard_terminal() {
   if (::isatty(STDIN_FILENO) != 0) {
     terminal.key = [keys = std::make_shared<TerminalKeys>()] { return keys->next(); };
   }
-  StopOnSignals::before_dying(TerminalKeys::restore);
+  device::StopOnSignals::before_dying(TerminalKeys::restore);
   terminal.write = [](const std::string& text) {
     std::fputs(text.c_str(), stderr);
     std::fflush(stderr);
@@ -49,7 +49,7 @@ TerminalExperimenter::~TerminalExperimenter() {
   if (terminal_.rewrites && !shown_.empty()) terminal_.write("\n");
 }
 
-void TerminalExperimenter::add(const ExperimenterRequest& request) {
+void TerminalExperimenter::add(const session::ExperimenterRequest& request) {
   const std::lock_guard lock(mutex_);
   added_.push_back(request);
 }
@@ -99,7 +99,7 @@ void TerminalExperimenter::rewrite(const std::string& line) {
   }
 }
 
-void TerminalExperimenter::show(const SessionStatus& status) {
+void TerminalExperimenter::show(const session::SessionStatus& status) {
   status_ = first_of(status_line(status), terminal_.columns - 1);
   if (terminal_.rewrites) {
     rewrite(line_now());
@@ -111,7 +111,7 @@ void TerminalExperimenter::show(const SessionStatus& status) {
   write_line(status_line(status));
 }
 
-std::optional<ExperimenterRequest> TerminalExperimenter::request() {
+std::optional<session::ExperimenterRequest> TerminalExperimenter::request() {
   take_keys();
   if (auto typed = typing_.next()) {
     // Force comes on only after the line that says so was shown anew.
@@ -121,18 +121,18 @@ std::optional<ExperimenterRequest> TerminalExperimenter::request() {
   }
   const std::lock_guard lock(mutex_);
   if (added_.empty()) return std::nullopt;
-  ExperimenterRequest first = added_.front();
+  session::ExperimenterRequest first = added_.front();
   added_.erase(added_.begin());
   return first;
 }
 
-std::optional<std::vector<Tick>> TerminalExperimenter::day_sheet(
-    const std::vector<DaySheetItem>& items) {
-  if (!terminal_.key) return std::vector<Tick>{};
+std::optional<std::vector<session::Tick>> TerminalExperimenter::day_sheet(
+    const std::vector<session::DaySheetItem>& items) {
+  if (!terminal_.key) return std::vector<session::Tick>{};
   if (!sheet_) sheet_.emplace(items);
   take_keys();
   if (sheet_->is_done()) {
-    std::vector<Tick> ticks = sheet_->ticks();
+    std::vector<session::Tick> ticks = sheet_->ticks();
     sheet_.reset();
     return ticks;
   }
@@ -150,7 +150,7 @@ void TerminalExperimenter::show_item(const std::string& text) {
   shown_.clear();
 }
 
-Attendant::Says TerminalExperimenter::attend(const std::string& need) {
+session::Attendant::Says TerminalExperimenter::attend(const std::string& need) {
   spoken_.reset();  // of a trial that was interrupted: its line would hide what is needed
   take_keys();
   const Says says = said(need.empty());
@@ -165,11 +165,11 @@ Attendant::Says TerminalExperimenter::attend(const std::string& need) {
   return says;
 }
 
-Attendant::Says TerminalExperimenter::said(bool is_ready) {
+session::Attendant::Says TerminalExperimenter::said(bool is_ready) {
   bool stops = false;
   // The session records the abort, its reason, and whatever else was typed, once it asks.
   while (const auto request = typing_.next()) {
-    stops = stops || request->kind == ExperimenterRequest::Kind::abort;
+    stops = stops || request->kind == session::ExperimenterRequest::Kind::abort;
     add(*request);
   }
   if (stops) return Says::stop;
@@ -181,7 +181,7 @@ void TerminalExperimenter::forget_spoken_answer() {
 }
 
 std::optional<SpokenAnswer> TerminalExperimenter::spoken_answer(
-    const AnswerStep& step, const std::vector<std::string>& labels) {
+    const session::AnswerStep& step, const std::vector<std::string>& labels) {
   if (!spoken_) spoken_.emplace(step, labels);
   take_keys();
   const std::optional<SpokenAnswer> answer = spoken_->answer();
@@ -193,4 +193,4 @@ std::optional<SpokenAnswer> TerminalExperimenter::spoken_answer(
   return answer;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

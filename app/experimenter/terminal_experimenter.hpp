@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// What a terminal is to the experimenter's side of a session.
 struct ExperimenterTerminal {
@@ -33,7 +33,9 @@ struct ExperimenterTerminal {
 
 /// Never shows what is presented, nor whether an answer was right. All functions but `add` belong
 /// to the session's thread.
-class TerminalExperimenter final : public Experimenter, public Attendant, public SpokenEntry {
+class TerminalExperimenter final : public session::Experimenter,
+                                   public session::Attendant,
+                                   public SpokenEntry {
  public:
   explicit TerminalExperimenter(ExperimenterTerminal terminal);
   /// Ends the line.
@@ -42,17 +44,17 @@ class TerminalExperimenter final : public Experimenter, public Attendant, public
   TerminalExperimenter& operator=(const TerminalExperimenter&) = delete;
 
   /// A request that something else makes: another window, the sound. Any thread.
-  void add(const ExperimenterRequest& request);
+  void add(const session::ExperimenterRequest& request);
 
-  void show(const SessionStatus& status) override;
-  [[nodiscard]] std::optional<ExperimenterRequest> request() override;
+  void show(const session::SessionStatus& status) override;
+  [[nodiscard]] std::optional<session::ExperimenterRequest> request() override;
   /// At once and empty if nobody types.
-  [[nodiscard]] std::optional<std::vector<Tick>> day_sheet(
-      const std::vector<DaySheetItem>& items) override;
+  [[nodiscard]] std::optional<std::vector<session::Tick>> day_sheet(
+      const std::vector<session::DaySheetItem>& items) override;
   /// Key g arms, if it comes after the line that says so; a, after a question, stops.
   [[nodiscard]] Says attend(const std::string& need) override;
   [[nodiscard]] std::optional<SpokenAnswer> spoken_answer(
-      const AnswerStep& step, const std::vector<std::string>& labels) override;
+      const session::AnswerStep& step, const std::vector<std::string>& labels) override;
   void forget_spoken_answer() override;
 
  private:
@@ -79,7 +81,7 @@ class TerminalExperimenter final : public Experimenter, public Attendant, public
   std::string shown_;
   std::string progress_;
   std::mutex mutex_;
-  std::vector<ExperimenterRequest> added_;
+  std::vector<session::ExperimenterRequest> added_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

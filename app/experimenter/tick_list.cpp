@@ -4,9 +4,9 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
-TickList::TickList(std::vector<DaySheetItem> items) : items_(std::move(items)) {}
+TickList::TickList(std::vector<session::DaySheetItem> items) : items_(std::move(items)) {}
 
 void TickList::take(char key) {
   if (key == 'b' && !ticks_.empty()) {
@@ -15,9 +15,9 @@ void TickList::take(char key) {
   }
   if (is_done()) return;
   if (key == '\n' || key == '\r' || key == 'y') {
-    ticks_.push_back(Tick::done);
+    ticks_.push_back(session::Tick::done);
   } else if (key == 's') {
-    ticks_.push_back(Tick::skipped);
+    ticks_.push_back(session::Tick::skipped);
   }
 }
 
@@ -31,4 +31,4 @@ std::string TickList::prompt() const {
   return fmt::format("Enter: done, s: skip ({}), b: back ", items_[ticks_.size()].code);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

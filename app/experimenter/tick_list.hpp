@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// Enter or y: done; s: skipped, a deviation; b: back to the item before. Not thread-safe.
 class TickList {
  public:
-  explicit TickList(std::vector<DaySheetItem> items);
+  explicit TickList(std::vector<session::DaySheetItem> items);
 
   void take(char key);
   /// The item that is asked for now, and how; empty once all are ticked.
@@ -19,11 +19,11 @@ class TickList {
   [[nodiscard]] std::string prompt() const;
   [[nodiscard]] bool is_done() const noexcept { return ticks_.size() == items_.size(); }
   /// In the items' order, as far as they are ticked.
-  [[nodiscard]] const std::vector<Tick>& ticks() const noexcept { return ticks_; }
+  [[nodiscard]] const std::vector<session::Tick>& ticks() const noexcept { return ticks_; }
 
  private:
-  std::vector<DaySheetItem> items_;
-  std::vector<Tick> ticks_;
+  std::vector<session::DaySheetItem> items_;
+  std::vector<session::Tick> ticks_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-namespace touchtrial::jitter {
+namespace touchtrial::app::jitter {
 namespace {
 
 constexpr double kStartHeightMm = 2.0;
@@ -19,14 +19,14 @@ constexpr Vec2 kTurnsPerS = {0.31, 0.23};
 constexpr double kFastestMmPerS = 80.0;
 constexpr double kTau = 6.283185307179586;
 
-TextureField bench_field() {
-  const GreyImage picture = generate_stimulus("bark", kDefaultStimuliSeed);
-  return make_texture_field(extract_texture<double>(picture, {}).texture, {});
+engine::TextureField bench_field() {
+  const GreyImage picture = stimuli::generate_stimulus("bark", stimuli::kDefaultStimuliSeed);
+  return engine::make_texture_field(engine::extract_texture<double>(picture, {}).texture, {});
 }
 
-RenderingModel model_of(const TextureField& field) {
+engine::RenderingModel model_of(const engine::TextureField& field) {
   const std::array fields = {field.view()};
-  return {field.view(), {}, choose_gains(fields, {}).of_field.front()};
+  return {field.view(), {}, engine::choose_gains(fields, {}).of_field.front()};
 }
 
 /// As far as the plane reaches, unless that would be too fast.
@@ -42,11 +42,11 @@ LedStylus::LedStylus(const PlaneGeometry& plane, double rate_hz) noexcept
                 reach_of(plane.height_mm(), kTurnsPerS.y)},
       tick_s_(1.0 / rate_hz) {}
 
-DeviceInfo LedStylus::info() const {
+device::DeviceInfo LedStylus::info() const {
   return {"led stylus", "", 3.3, true};
 }
 
-DeviceStatus LedStylus::read(DeviceSample& sample) noexcept {
+device::DeviceStatus LedStylus::read(device::DeviceSample& sample) noexcept {
   const double time_s = static_cast<double>(ticks_) * tick_s_;
   const Vec2 turn = {kTau * kTurnsPerS.x, kTau * kTurnsPerS.y};
   const double z_mm = std::max(-kDepthMm, kStartHeightMm - kDescentMmPerS * time_s);
@@ -56,10 +56,10 @@ DeviceStatus LedStylus::read(DeviceSample& sample) noexcept {
                           reach_mm_.y * turn.y * std::cos(turn.y * time_s),
                           z_mm > -kDepthMm ? -kDescentMmPerS : 0.0};
   sample.sequence = static_cast<std::uint64_t>(++ticks_);
-  return DeviceStatus::ok;
+  return device::DeviceStatus::ok;
 }
 
 BenchScene::BenchScene()
     : field_(bench_field()), plane_(field_.view().geometry), model_(model_of(field_)) {}
 
-}  // namespace touchtrial::jitter
+}  // namespace touchtrial::app::jitter

@@ -7,17 +7,19 @@
 
 #include <cstdint>
 
-namespace touchtrial::jitter {
+namespace touchtrial::app::jitter {
 
 /// A device whose stylus comes down on the plane and then strokes it at up to 80 mm/s, 1 mm deep,
 /// whatever the force. Its state is a function of the number of ticks.
-class LedStylus final : public HapticDevice {
+class LedStylus final : public device::HapticDevice {
  public:
   LedStylus(const PlaneGeometry& plane, double rate_hz) noexcept;
 
-  [[nodiscard]] DeviceInfo info() const override;
-  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override;
-  [[nodiscard]] DeviceStatus write(Vec3) noexcept override { return DeviceStatus::ok; }
+  [[nodiscard]] device::DeviceInfo info() const override;
+  [[nodiscard]] device::DeviceStatus read(device::DeviceSample& sample) noexcept override;
+  [[nodiscard]] device::DeviceStatus write(Vec3) noexcept override {
+    return device::DeviceStatus::ok;
+  }
   void halt() noexcept override {}
   void rearm() noexcept override {}
 
@@ -33,13 +35,13 @@ class BenchScene {
  public:
   BenchScene();
 
-  [[nodiscard]] const RenderingModel& model() const noexcept { return model_; }
+  [[nodiscard]] const engine::RenderingModel& model() const noexcept { return model_; }
   [[nodiscard]] const PlaneGeometry& plane() const noexcept { return plane_; }
 
  private:
-  TextureField field_;
+  engine::TextureField field_;
   PlaneGeometry plane_;
-  RenderingModel model_;
+  engine::RenderingModel model_;
 };
 
-}  // namespace touchtrial::jitter
+}  // namespace touchtrial::app::jitter

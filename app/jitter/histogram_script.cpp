@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial::jitter {
+namespace touchtrial::app::jitter {
 namespace {
 
 /// Distinct for readers with any colour vision (Okabe and Ito).
@@ -51,10 +51,10 @@ std::string terminal_for(const std::filesystem::path& picture, int panels) {
 }
 
 /// Percent of the ticks in each bar, by the bar's number on the logarithmic axis.
-std::map<int, double> bars_of(const DurationHistogram& histogram) {
+std::map<int, double> bars_of(const device::DurationHistogram& histogram) {
   std::map<int, double> bars;
-  for (std::size_t i = 0; i < DurationHistogram::kBins; ++i) {
-    const DurationHistogram::Bin bin = histogram.bin(i);
+  for (std::size_t i = 0; i < device::DurationHistogram::kBins; ++i) {
+    const device::DurationHistogram::Bin bin = histogram.bin(i);
     if (bin.count == 0) continue;
     const double middle_us = 0.5e-3 * static_cast<double>(bin.least_ns + bin.end_ns);
     const double place = kBarsOfDecade * std::log10(std::max(middle_us, kShortestUs));
@@ -64,7 +64,7 @@ std::map<int, double> bars_of(const DurationHistogram& histogram) {
   return bars;
 }
 
-std::string data_of(std::size_t number, const DurationHistogram& histogram, double floor) {
+std::string data_of(std::size_t number, const device::DurationHistogram& histogram, double floor) {
   const std::map<int, double> bars = bars_of(histogram);
   std::string data = fmt::format("$bars{} << EOD\n", number);
   if (!bars.empty()) {
@@ -81,7 +81,7 @@ std::string title_of(const Measurement& m) {
   const std::string load =
       m.conditions.load == 0 ? "no load" : fmt::format("{} threads of load", m.conditions.load);
   const std::string had =
-      m.scheduling.policy == SchedulingPolicy::fifo ? "SCHED_FIFO" : "SCHED_OTHER";
+      m.scheduling.policy == device::SchedulingPolicy::fifo ? "SCHED_FIFO" : "SCHED_OTHER";
   return had + ", " + load;
 }
 
@@ -92,7 +92,8 @@ std::string panel(std::span<const Measurement> all, double rate_hz) {
     if (all[i].conditions.rate_hz != rate_hz) continue;
     const char* colour = kColours[curve++ % kColours.size()];
     plot += fmt::format("{}$bars{} with histeps lc rgb '{}' lw 2 title {}",
-                        plot.empty() ? "plot " : ", ", i, colour, gnuplot_string(title_of(all[i])));
+                        plot.empty() ? "plot " : ", ", i, colour,
+                        analysis::gnuplot_string(title_of(all[i])));
   }
   return plot + "\n";
 }
@@ -133,4 +134,4 @@ std::string histogram_script(Measured what, std::span<const Measurement> all,
   return script + "unset multiplot\n";
 }
 
-}  // namespace touchtrial::jitter
+}  // namespace touchtrial::app::jitter

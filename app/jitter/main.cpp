@@ -1,5 +1,5 @@
 #include "app/jitter/program.hpp"
 
 int main(int argc, char** argv) {
-  return touchtrial::jitter::run_program(argc, argv);
+  return touchtrial::app::jitter::run_program(argc, argv);
 }

@@ -10,7 +10,7 @@
 #include <atomic>
 #include <optional>
 
-namespace touchtrial::jitter {
+namespace touchtrial::app::jitter {
 namespace {
 
 /// 16 s at 4 kHz, 3.7 MB.
@@ -18,15 +18,15 @@ constexpr std::size_t kRingSamples = 65'536;
 constexpr double kRecordedS = 5.0;
 
 /// Real time that never waits for a tick, and takes the time between two.
-class ServiceClock final : public ServoClock {
+class ServiceClock final : public device::ServoClock {
  public:
-  ServiceClock(const SampleRing& ring, DurationHistogram& service) noexcept
+  ServiceClock(const device::SampleRing& ring, device::DurationHistogram& service) noexcept
       : ring_(ring), service_(service) {}
 
-  [[nodiscard]] Time now() noexcept override { return monotonic_now(); }
+  [[nodiscard]] Time now() noexcept override { return device::monotonic_now(); }
 
   void wait_until(Time) noexcept override {
-    const Time end = monotonic_now();
+    const Time end = device::monotonic_now();
     if (begin_) service_.add(end - *begin_);
     begin_ = end;
     if (++ticks_ % kLookEvery == 0) let_the_writer_catch_up();
@@ -40,13 +40,13 @@ class ServiceClock final : public ServoClock {
   void let_the_writer_catch_up() noexcept {
     if (ring_.waiting() < ring_.capacity() / 2) return;
     while (ring_.waiting() > ring_.capacity() / 4) {
-      sleep_until(monotonic_now() + std::chrono::milliseconds(1));
+      device::sleep_until(device::monotonic_now() + std::chrono::milliseconds(1));
     }
-    begin_ = monotonic_now();
+    begin_ = device::monotonic_now();
   }
 
-  const SampleRing& ring_;
-  DurationHistogram& service_;
+  const device::SampleRing& ring_;
+  device::DurationHistogram& service_;
   std::optional<Time> begin_;
   int ticks_ = 0;
 };
@@ -64,16 +64,18 @@ class Rig {
     done_.scheduling = thread_.scheduling();
   }
 
-  [[nodiscard]] SampleRing& ring() noexcept { return ring_; }
-  [[nodiscard]] SchedulingPolicy policy() const noexcept { return done_.scheduling.policy; }
-  [[nodiscard]] DurationHistogram& histogram() noexcept { return done_.histogram; }
+  [[nodiscard]] device::SampleRing& ring() noexcept { return ring_; }
+  [[nodiscard]] device::SchedulingPolicy policy() const noexcept { return done_.scheduling.policy; }
+  [[nodiscard]] device::DurationHistogram& histogram() noexcept { return done_.histogram; }
 
   /// \param lateness  where the loop puts it; null: nowhere
-  Measurement run(ServoClock& clock, std::int64_t ticks, DurationHistogram* lateness) {
-    const ServoOptions options{
+  Measurement run(device::ServoClock& clock, std::int64_t ticks,
+                  device::DurationHistogram* lateness) {
+    const device::ServoOptions options{
         .limit_ticks = ticks, .fade_ticks = 0, .rate_hz = done_.conditions.rate_hz};
-    const ServoHooks hooks{&control_, &state_, &heartbeat_, &recorder_, lateness};
-    thread_.run([&] { done_.report = run_servo(stylus_, force_, sink_, options, clock, hooks); });
+    const device::ServoHooks hooks{&control_, &state_, &heartbeat_, &recorder_, lateness};
+    thread_.run(
+        [&] { done_.report = device::run_servo(stylus_, force_, sink_, options, clock, hooks); });
     done_.written = drain_.finish();
     done_.dropped = sink_.dropped();
     return done_;
@@ -81,17 +83,17 @@ class Rig {
 
  private:
   Measurement done_;
-  ServoThread thread_;
+  device::ServoThread thread_;
   LoadThreads load_;
   LedStylus stylus_;
-  ModelForce force_;
-  SampleRing ring_{kRingSamples};
-  RingSink sink_{ring_};
+  session::ModelForce force_;
+  device::SampleRing ring_{kRingSamples};
+  device::RingSink sink_{ring_};
   TraceDrain drain_{ring_};
-  ServoControl control_;
-  LatestValue<ServoState> state_;
+  device::ServoControl control_;
+  device::LatestValue<device::ServoState> state_;
   std::atomic<std::int64_t> heartbeat_{0};
-  FlightRecorder recorder_;
+  device::FlightRecorder recorder_;
 };
 
 }  // namespace
@@ -99,7 +101,7 @@ class Rig {
 Measurement measure_lateness(const BenchScene& scene, const Conditions& conditions,
                              double seconds) {
   Rig rig(scene, conditions);
-  PacedClock clock(PacedClock::usual_spin(rig.policy()));
+  device::PacedClock clock(device::PacedClock::usual_spin(rig.policy()));
   const auto ticks = static_cast<std::int64_t>(seconds * conditions.rate_hz);
   return rig.run(clock, ticks, &rig.histogram());
 }
@@ -111,4 +113,4 @@ Measurement measure_service(const BenchScene& scene, const Conditions& condition
   return rig.run(clock, ticks, nullptr);
 }
 
-}  // namespace touchtrial::jitter
+}  // namespace touchtrial::app::jitter

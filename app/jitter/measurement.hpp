@@ -9,23 +9,23 @@
 
 #include <cstdint>
 
-namespace touchtrial::jitter {
+namespace touchtrial::app::jitter {
 
 /// The conditions of one measurement.
 struct Conditions {
-  double rate_hz = kServoRateHz;
-  SchedulingPolicy policy = SchedulingPolicy::fifo;  ///< asked for
-  int load = 0;                                      ///< threads that spin beside it, >= 0
+  double rate_hz = device::kServoRateHz;
+  device::SchedulingPolicy policy = device::SchedulingPolicy::fifo;  ///< asked for
+  int load = 0;  ///< threads that spin beside it, >= 0
 };
 
 /// One measurement. In both kinds the servo has its hooks on, and samples go through a ring to a
 /// thread that encodes traces.
 struct Measurement {
   Conditions conditions;
-  SchedulingObtained scheduling;
-  ServoReport report;
-  DurationHistogram histogram;  ///< of lateness, or of service times
-  std::int64_t dropped = 0;     ///< samples for which the ring had no room
+  device::SchedulingObtained scheduling;
+  device::ServoReport report;
+  device::DurationHistogram histogram;  ///< of lateness, or of service times
+  std::int64_t dropped = 0;             ///< samples for which the ring had no room
   TraceDrain::Totals written;
 };
 
@@ -41,4 +41,4 @@ struct Measurement {
 [[nodiscard]] Measurement measure_service(const BenchScene& scene, const Conditions& conditions,
                                           std::int64_t ticks);
 
-}  // namespace touchtrial::jitter
+}  // namespace touchtrial::app::jitter

@@ -15,15 +15,15 @@
 
 #include <CLI/CLI.hpp>
 
-namespace touchtrial::jitter {
+namespace touchtrial::app::jitter {
 namespace {
 
 constexpr int kFailed = 1;
 constexpr int kBadInput = 2;
 
 struct Arguments {
-  std::vector<double> rates_hz = {kServoRateHz};
-  std::vector<SchedulingPolicy> policies = {SchedulingPolicy::fifo};
+  std::vector<double> rates_hz = {device::kServoRateHz};
+  std::vector<device::SchedulingPolicy> policies = {device::SchedulingPolicy::fifo};
   std::vector<int> loads = {0};
   double seconds = 10.0;
   std::int64_t unpaced_ticks = 0;
@@ -32,8 +32,8 @@ struct Arguments {
 };
 
 void set_up(CLI::App& program, Arguments& a) {
-  const std::map<std::string, SchedulingPolicy> policies = {{"other", SchedulingPolicy::other},
-                                                            {"fifo", SchedulingPolicy::fifo}};
+  const std::map<std::string, device::SchedulingPolicy> policies = {
+      {"other", device::SchedulingPolicy::other}, {"fifo", device::SchedulingPolicy::fifo}};
   program.add_option("--rate", a.rates_hz, "Ticks a second, 1000 to 10000; several: 1000,4000")
       ->check(CLI::Range(1000.0, 10'000.0))
       ->delimiter(',');
@@ -58,7 +58,7 @@ void set_up(CLI::App& program, Arguments& a) {
 std::vector<Conditions> conditions_of(const Arguments& a) {
   std::vector<Conditions> all;
   for (const double rate_hz : a.rates_hz) {
-    for (const SchedulingPolicy policy : a.policies) {
+    for (const device::SchedulingPolicy policy : a.policies) {
       for (const int load : a.loads) all.push_back({rate_hz, policy, load});
     }
   }
@@ -82,12 +82,12 @@ void run(const Arguments& a) {
   const Measured what = a.unpaced_ticks > 0 ? Measured::service : Measured::lateness;
   if (!a.picture.empty()) {
     static_cast<void>(histogram_script(what, {}, a.picture));  // refuses a wrong ending early
-    require_gnuplot();
+    analysis::require_gnuplot();
   }
   const std::vector<Measurement> measurements = measure(a, conditions_of(a));
   print(a.json ? results_json(what, measurements) : results_text(what, measurements));
   if (!a.picture.empty()) {
-    draw_with_gnuplot(histogram_script(what, measurements, a.picture), a.picture);
+    analysis::draw_with_gnuplot(histogram_script(what, measurements, a.picture), a.picture);
   }
 }
 
@@ -123,4 +123,4 @@ int run_program(int argc, char** argv) noexcept {
   }
 }
 
-}  // namespace touchtrial::jitter
+}  // namespace touchtrial::app::jitter

@@ -4,15 +4,15 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial::jitter {
+namespace touchtrial::app::jitter {
 namespace {
 
 nlohmann::ordered_json json_of(const Measurement& m) {
   return {{"rate_hz", m.conditions.rate_hz},
-          {"policy", name_of(m.conditions.policy)},
+          {"policy", device::name_of(m.conditions.policy)},
           {"load", m.conditions.load},
           {"obtained",
-           {{"policy", name_of(m.scheduling.policy)},
+           {{"policy", device::name_of(m.scheduling.policy)},
             {"priority", m.scheduling.priority},
             {"memory_locked", m.scheduling.memory_locked},
             {"reason", m.scheduling.reason}}},
@@ -25,7 +25,7 @@ nlohmann::ordered_json json_of(const Measurement& m) {
           {"worst_us", m.histogram.percentile_us(1.0)},
           {"dropped", m.dropped},
           {"written_samples", m.written.samples},
-          {"end", name_of(m.report.end)}};
+          {"end", device::name_of(m.report.end)}};
 }
 
 }  // namespace
@@ -40,4 +40,4 @@ std::string results_json(Measured what, std::span<const Measurement> measurement
   return results.dump(2) + "\n";
 }
 
-}  // namespace touchtrial::jitter
+}  // namespace touchtrial::app::jitter

@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial::jitter {
+namespace touchtrial::app::jitter {
 namespace {
 
 constexpr const char* kLatenessHead =
@@ -17,9 +17,9 @@ constexpr const char* kServiceHead =
     "| ticks | asked | had | load | p50, us | p99, us | p99.9, us | worst, us | dropped | "
     "written |\n| ---: | --- | --- | ---: | ---: | ---: | ---: | ---: | ---: | ---: |\n";
 
-std::string scheduling_of(const SchedulingObtained& had) {
-  std::string text(name_of(had.policy));
-  if (had.policy == SchedulingPolicy::fifo) text += fmt::format(" {}", had.priority);
+std::string scheduling_of(const device::SchedulingObtained& had) {
+  std::string text(device::name_of(had.policy));
+  if (had.policy == device::SchedulingPolicy::fifo) text += fmt::format(" {}", had.priority);
   return text + (had.memory_locked ? ", locked" : "");
 }
 
@@ -32,7 +32,7 @@ std::string row_of(Measured what, const Measurement& m) {
   return fmt::format(
       "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |\n",
       lateness ? fmt::format("{:.0f}", m.conditions.rate_hz) : fmt::format("{}", m.report.ticks),
-      name_of(m.conditions.policy), scheduling_of(m.scheduling), m.conditions.load, us(0.5),
+      device::name_of(m.conditions.policy), scheduling_of(m.scheduling), m.conditions.load, us(0.5),
       us(0.99), us(0.999), us(1.0), lateness ? m.report.overruns : m.dropped,
       lateness ? fmt::format("{:.1f}", m.report.rate_hz) : fmt::format("{}", m.written.samples));
 }
@@ -46,8 +46,9 @@ std::string results_text(Measured what, std::span<const Measurement> measurement
   for (const Measurement& m : measurements) {
     text += row_of(what, m);
     if (!m.scheduling.reason.empty()) reasons.insert(m.scheduling.reason);
-    if (m.report.end == ServoEnd::fault) {
-      reasons.insert("a run ended early with the fault " + std::string(name_of(m.report.fault)));
+    if (m.report.end == device::ServoEnd::fault) {
+      reasons.insert("a run ended early with the fault " +
+                     std::string(device::name_of(m.report.fault)));
     }
     if (what == Measured::lateness && m.dropped > 0) {
       reasons.insert(fmt::format("{} samples were lost: the writer did not keep up", m.dropped));
@@ -57,4 +58,4 @@ std::string results_text(Measured what, std::span<const Measurement> measurement
   return text;
 }
 
-}  // namespace touchtrial::jitter
+}  // namespace touchtrial::app::jitter

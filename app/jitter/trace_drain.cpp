@@ -3,7 +3,7 @@
 #include <chrono>
 #include <vector>
 
-namespace touchtrial::jitter {
+namespace touchtrial::app::jitter {
 namespace {
 
 constexpr std::size_t kSamplesOfTrace = 60'000;
@@ -12,7 +12,7 @@ constexpr auto kPause = std::chrono::milliseconds(1);
 
 }  // namespace
 
-TraceDrain::TraceDrain(SampleRing& ring) : ring_(ring) {
+TraceDrain::TraceDrain(device::SampleRing& ring) : ring_(ring) {
   trace_.samples.reserve(kSamplesOfTrace);
   thread_ = std::thread(&TraceDrain::drain, this);
 }
@@ -28,7 +28,7 @@ TraceDrain::Totals TraceDrain::finish() {
 }
 
 void TraceDrain::drain() {
-  std::vector<ServoSample> batch(kBatch);
+  std::vector<device::ServoSample> batch(kBatch);
   while (true) {
     // Asked before looking: what came before the end was told is found by this look.
     const bool last = ending_;
@@ -40,8 +40,8 @@ void TraceDrain::drain() {
   encode();
 }
 
-void TraceDrain::keep(std::span<const ServoSample> samples) {
-  for (const ServoSample& sample : samples) {
+void TraceDrain::keep(std::span<const device::ServoSample> samples) {
+  for (const device::ServoSample& sample : samples) {
     trace_.samples.push_back({sample.position_mm, sample.force_n});
     if (trace_.samples.size() == kSamplesOfTrace) encode();
   }
@@ -50,9 +50,9 @@ void TraceDrain::keep(std::span<const ServoSample> samples) {
 
 void TraceDrain::encode() {
   if (!trace_.samples.empty()) {
-    totals_.bytes += static_cast<std::int64_t>(encode_trace(trace_).size());
+    totals_.bytes += static_cast<std::int64_t>(store::encode_trace(trace_).size());
   }
   trace_.samples.clear();
 }
 
-}  // namespace touchtrial::jitter
+}  // namespace touchtrial::app::jitter

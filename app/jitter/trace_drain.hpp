@@ -9,14 +9,14 @@
 #include <span>
 #include <thread>
 
-namespace touchtrial::jitter {
+namespace touchtrial::app::jitter {
 
 /// A thread that takes samples out of a ring and encodes them as a session stores them, in traces
 /// of a minute at 1 kHz. The traces are let go of.
 class TraceDrain {
  public:
   /// \param ring  must outlive this
-  explicit TraceDrain(SampleRing& ring);
+  explicit TraceDrain(device::SampleRing& ring);
   ~TraceDrain();
   TraceDrain(const TraceDrain&) = delete;
   TraceDrain& operator=(const TraceDrain&) = delete;
@@ -30,14 +30,14 @@ class TraceDrain {
 
  private:
   void drain();
-  void keep(std::span<const ServoSample> samples);
+  void keep(std::span<const device::ServoSample> samples);
   void encode();
 
-  SampleRing& ring_;
-  Trace trace_;
+  device::SampleRing& ring_;
+  store::Trace trace_;
   Totals totals_;
   std::atomic<bool> ending_{false};
   std::thread thread_;
 };
 
-}  // namespace touchtrial::jitter
+}  // namespace touchtrial::app::jitter

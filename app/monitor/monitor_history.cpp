@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 /// Bins that a rate is taken over.
@@ -17,7 +17,7 @@ void Extent::add(double value) noexcept {
 
 MonitorHistory::MonitorHistory(double rate_hz) : rate_hz_(rate_hz), bins_(kBins) {}
 
-void MonitorHistory::add(const ServoSample& sample) {
+void MonitorHistory::add(const device::ServoSample& sample) {
   if (sample.tick <= last_tick_) {
     bins_.assign(kBins, Bin{});
     newest_ = -1;
@@ -83,4 +83,4 @@ const MonitorHistory::Bin& MonitorHistory::from_oldest(std::size_t index) const 
   return bins_[place % kBins];
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

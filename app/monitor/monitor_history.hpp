@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// The least and the greatest of a time; nothing was there if least > greatest.
 struct Extent {
@@ -35,7 +35,7 @@ class MonitorHistory {
   explicit MonitorHistory(double rate_hz);
 
   /// Samples in the order of their ticks. One whose tick is before the last begins a new run.
-  void add(const ServoSample& sample);
+  void add(const device::ServoSample& sample);
   /// How late a tick began at worst since the last call, µs; belongs to the bins since then.
   void add_lateness(double late_us);
 
@@ -63,4 +63,4 @@ class MonitorHistory {
   std::int64_t told_until_ = -1;  ///< the newest bin when lateness was told last
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 /// As long as anybody looks.
@@ -15,9 +15,9 @@ constexpr double kFadeS = 0.1;
 constexpr double kRingS = 2.0;
 
 /// A clock that keeps how late it was at worst.
-class WatchedClock final : public ServoClock {
+class WatchedClock final : public device::ServoClock {
  public:
-  WatchedClock(ServoClock& clock, std::atomic<std::int64_t>& worst_ns) noexcept
+  WatchedClock(device::ServoClock& clock, std::atomic<std::int64_t>& worst_ns) noexcept
       : clock_(clock), worst_ns_(worst_ns) {}
 
   [[nodiscard]] Time now() noexcept override { return clock_.now(); }
@@ -32,14 +32,14 @@ class WatchedClock final : public ServoClock {
   }
 
  private:
-  ServoClock& clock_;
+  device::ServoClock& clock_;
   std::atomic<std::int64_t>& worst_ns_;
 };
 
 }  // namespace
 
-MonitorRun::MonitorRun(HapticDevice& device, double rate_hz, const SafetyLimits& limits,
-                       WatchdogTime& time)
+MonitorRun::MonitorRun(device::HapticDevice& device, double rate_hz,
+                       const device::SafetyLimits& limits, device::WatchdogTime& time)
     : device_(device),
       options_{.limit_ticks = static_cast<std::int64_t>(kLongestRunS * rate_hz),
                .fade_ticks = static_cast<std::int64_t>(kFadeS * rate_hz),
@@ -48,7 +48,7 @@ MonitorRun::MonitorRun(HapticDevice& device, double rate_hz, const SafetyLimits&
       wall_(rate_hz),
       ring_(static_cast<std::size_t>(kRingS * rate_hz)),
       sink_(ring_),
-      watchdog_(device, control_, heartbeat_, Watchdog::silence_for(device.info()), time),
+      watchdog_(device, control_, heartbeat_, device::Watchdog::silence_for(device.info()), time),
       signals_(device, control_) {}
 
 MonitorRun::~MonitorRun() {
@@ -56,7 +56,7 @@ MonitorRun::~MonitorRun() {
 }
 
 void MonitorRun::start() {
-  if (running() || StopOnSignals::asked()) return;
+  if (running() || device::StopOnSignals::asked()) return;
   control_.reset();
   device_.rearm();
   waited_for_ = false;
@@ -66,10 +66,10 @@ void MonitorRun::start() {
 }
 
 void MonitorRun::run() noexcept {
-  PacedClock paced(PacedClock::usual_spin(thread_.scheduling().policy));
+  device::PacedClock paced(device::PacedClock::usual_spin(thread_.scheduling().policy));
   WatchedClock clock(paced, worst_late_ns_);
-  report_ = run_servo(device_, wall_, sink_, options_, clock,
-                      {.control = &control_, .state = &states_, .heartbeat = &heartbeat_});
+  report_ = device::run_servo(device_, wall_, sink_, options_, clock,
+                              {.control = &control_, .state = &states_, .heartbeat = &heartbeat_});
 }
 
 bool MonitorRun::running() {
@@ -82,13 +82,13 @@ bool MonitorRun::running() {
   return false;
 }
 
-std::optional<ServoReport> MonitorRun::ended() {
+std::optional<device::ServoReport> MonitorRun::ended() {
   if (running() || !has_run_) return std::nullopt;
   return report_;
 }
 
 void MonitorRun::collect(MonitorHistory& history) {
-  std::array<ServoSample, 256> samples;
+  std::array<device::ServoSample, 256> samples;
   while (const std::size_t count = ring_.pop(samples)) {
     for (std::size_t i = 0; i < count; ++i) history.add(samples[i]);
   }
@@ -96,4 +96,4 @@ void MonitorRun::collect(MonitorHistory& history) {
   if (late_ns >= 0) history.add_lateness(static_cast<double>(late_ns) * 1e-3);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -13,7 +13,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// Runs a device against the test wall, under a watchdog, and halts it by signals as long as this
 /// lives. Belongs to one thread; none of its functions waits for the servo but the destructor.
@@ -22,8 +22,8 @@ class MonitorRun {
   /// \param device  must outlive this
   /// \param rate_hz  1,000 to 10,000
   /// \throws std::logic_error if there is another StopOnSignals
-  MonitorRun(HapticDevice& device, double rate_hz, const SafetyLimits& limits,
-             WatchdogTime& time = system_watchdog_time());
+  MonitorRun(device::HapticDevice& device, double rate_hz, const device::SafetyLimits& limits,
+             device::WatchdogTime& time = device::system_watchdog_time());
   /// The force fades to zero and the servo ends.
   ~MonitorRun();
   MonitorRun(const MonitorRun&) = delete;
@@ -35,11 +35,11 @@ class MonitorRun {
   void comfort_stop() noexcept { control_.comfort_stop(); }
   [[nodiscard]] bool running();
   /// How the last run ended; nothing while one runs, or before the first.
-  [[nodiscard]] std::optional<ServoReport> ended();
+  [[nodiscard]] std::optional<device::ServoReport> ended();
 
   [[nodiscard]] TestWall& wall() noexcept { return wall_; }
-  [[nodiscard]] const ServoState& newest() noexcept { return states_.get(); }
-  [[nodiscard]] const SchedulingObtained& scheduling() const noexcept {
+  [[nodiscard]] const device::ServoState& newest() noexcept { return states_.get(); }
+  [[nodiscard]] const device::SchedulingObtained& scheduling() const noexcept {
     return thread_.scheduling();
   }
   /// Moves what has come since the last time into the history.
@@ -48,21 +48,21 @@ class MonitorRun {
  private:
   void run() noexcept;
 
-  HapticDevice& device_;
-  ServoOptions options_;
+  device::HapticDevice& device_;
+  device::ServoOptions options_;
   TestWall wall_;
-  SampleRing ring_;
-  RingSink sink_;
-  ServoControl control_;
+  device::SampleRing ring_;
+  device::RingSink sink_;
+  device::ServoControl control_;
   std::atomic<std::int64_t> heartbeat_{0};
-  Watchdog watchdog_;
-  StopOnSignals signals_;
-  LatestValue<ServoState> states_;
+  device::Watchdog watchdog_;
+  device::StopOnSignals signals_;
+  device::LatestValue<device::ServoState> states_;
   std::atomic<std::int64_t> worst_late_ns_{-1};  ///< since the last `collect`
-  ServoReport report_;
+  device::ServoReport report_;
   bool waited_for_ = true;
   bool has_run_ = false;
-  ServoThread thread_;  ///< last: it ends before what it uses, and before what guards it
+  device::ServoThread thread_;  ///< last: it ends before what it uses, and before what guards it
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

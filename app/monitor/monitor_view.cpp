@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 constexpr int kValueTicks = 4;
@@ -75,14 +75,14 @@ std::string buttons_of(std::uint32_t buttons) {
   return names.empty() ? "none" : names;
 }
 
-std::string device_name(const DeviceInfo& device) {
+std::string device_name(const device::DeviceInfo& device) {
   std::string name = device.model.empty() ? device.name : device.model;
   if (!device.serial.empty()) name += ", serial " + device.serial;
   return name;
 }
 
 void draw_facts(const MonitorPicture& picture) {
-  const ServoState& now = picture.newest;
+  const device::ServoState& now = picture.newest;
   const auto vector = [](Vec3 v, const char* format) {
     return fmt::format(fmt::runtime(format), v.x, v.y, v.z);
   };
@@ -173,4 +173,4 @@ MonitorRequests draw_monitor(GlfwWindow& window, const MonitorPicture& picture) 
   return requests;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -10,13 +10,13 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// Everything that is drawn.
 struct MonitorPicture {
-  DeviceInfo device;
+  device::DeviceInfo device;
   StateLine state;
-  ServoState newest;
+  device::ServoState newest;
   std::vector<std::string> notes;  ///< what the servo got of the system, and the last run
   const MonitorHistory* history = nullptr;
   double rate_hz = 1000.0;  ///< that was asked for
@@ -37,4 +37,4 @@ struct MonitorRequests {
 /// Draws one picture between begin_frame and end_frame of the window. Main thread.
 [[nodiscard]] MonitorRequests draw_monitor(GlfwWindow& window, const MonitorPicture& picture);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// As ImGui packs them: 0xAABBGGRR.
 using PackedColour = std::uint32_t;
@@ -17,4 +17,4 @@ inline constexpr PackedColour kWhite = 0xFFFFFFFF;
 inline constexpr PackedColour kGrey = 0xFF6E6E6E;
 inline constexpr PackedColour kPale = 0xFFE4E4E4;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

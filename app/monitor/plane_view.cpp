@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 /// A square that holds what the simulated hand strokes, where a device names no workspace.
@@ -39,7 +39,7 @@ struct Sight {
 Sight sight_of(const MonitorPicture& picture, const GlfwWindow& window, Vec2 corner, Vec2 size) {
   Sight sight;
   sight.middle_at = corner + 0.5 * size;
-  if (picture.device.name == kMouseDriver) {
+  if (picture.device.name == device::kMouseDriver) {
     sight.mm_per_unit = window.mm_per_unit();
     sight.middle_mm = 0.5 * sight.mm_per_unit * size;
     return sight;
@@ -111,4 +111,4 @@ void draw_plane(const MonitorPicture& picture, const GlfwWindow& window, float w
   ImGui::TextColored({0.43F, 0.43F, 0.43F, 1.0F}, "%s", caption.c_str());
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

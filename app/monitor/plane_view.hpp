@@ -3,11 +3,11 @@
 
 #include "app/monitor/monitor_view.hpp"
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// Draws at ImGui's cursor, and takes the pointer there for a mouse.
 /// \param width,height  window units
 void draw_plane(const MonitorPicture& picture, const GlfwWindow& window, float width, float height,
                 MonitorRequests& requests);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 struct PlotLine {
   std::string name;  ///< in the legend
@@ -41,4 +41,4 @@ struct Plot {
 /// \param density  as GlfwWindow::density
 void draw_plot(const Plot& plot, float width, float height, float density);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

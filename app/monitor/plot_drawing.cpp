@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 /// Where a plot's lines go, and how numbers get there.
@@ -128,4 +128,4 @@ void draw_plot(const Plot& plot, float width, float height, float density) {
   ImGui::Dummy({width, height});
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 Extent extent_of(const std::vector<PlotLine>& lines, Extent at_least) {
@@ -42,4 +42,4 @@ PlotScale decades_for(const std::vector<PlotLine>& lines, Extent at_least) {
           std::pow(10.0, std::ceil(std::log10(all.greatest) - 1e-9)), 10.0, true};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <atomic>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// The plane z = 0, felt from in front (z > 0) alone: switched on behind the stylus' back it waits
 /// until the stylus has come out in front of it. It comes and goes within 100 ms.
-class TestWall final : public ForceSource {
+class TestWall final : public device::ForceSource {
  public:
   static constexpr double kStiffness_n_per_mm = 0.4;
   static constexpr double kMaxForceN = 1.0;
@@ -28,7 +28,7 @@ class TestWall final : public ForceSource {
   }
   ///@}
 
-  [[nodiscard]] Vec3 force_n(const DeviceSample& sample) noexcept override {
+  [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override {
     const bool on = is_on();
     const double depth_mm = -sample.position_mm.z;
     const bool met = on && (met_.load(std::memory_order_relaxed) || depth_mm <= 0.0);
@@ -46,4 +46,4 @@ class TestWall final : public ForceSource {
   std::atomic<bool> met_{false};
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

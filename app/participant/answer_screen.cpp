@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 constexpr int kFeelAgain = 102;
@@ -14,7 +14,7 @@ constexpr double kBadge = 40.0;  ///< height of the number below a picture
 
 }  // namespace
 
-AnswerScreen::AnswerScreen(const AnswerStep& step, const ScreenContext& context,
+AnswerScreen::AnswerScreen(const session::AnswerStep& step, const ScreenContext& context,
                            std::vector<std::string> labels)
     : step_(step), context_(context), labels_(std::move(labels)) {}
 
@@ -36,7 +36,7 @@ void AnswerScreen::paint(Canvas& canvas) {
                          with_numbers(step_.practice ? words.practice_of : words.trial_of,
                                       {step_.trial, step_.of})});
   if (answered_at_) return paint_confidence(canvas);
-  const bool spoken = step_.sight == Sight::blindfold;
+  const bool spoken = step_.sight == design::Sight::blindfold;
   const std::string note =
       step_.time_is_up ? words.time_is_up : (spoken ? words.answer_spoken_text : "");
   const Box area = draw_heading(canvas, spoken ? words.answer_spoken_title : words.answer_title,
@@ -160,7 +160,7 @@ void AnswerScreen::choose(int position) {
   chosen_ = position;
 }
 
-std::optional<StepReply> AnswerScreen::activate(int id, Time at) {
+std::optional<session::StepReply> AnswerScreen::activate(int id, Time at) {
   if (answered_at_ && id < kNextTarget) {
     confidence_ = id + 1;
     focus(kNextTarget);
@@ -170,7 +170,7 @@ std::optional<StepReply> AnswerScreen::activate(int id, Time at) {
     choose(id);
     return std::nullopt;
   }
-  StepReply reply;
+  session::StepReply reply;
   if (id == kFeelAgain) {
     reply.explore_again = true;
     return reply;
@@ -187,4 +187,4 @@ std::optional<StepReply> AnswerScreen::activate(int id, Time at) {
   return reply;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

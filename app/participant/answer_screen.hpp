@@ -8,18 +8,18 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// Pictures of the originals in the participant's own layout, or their names where answers are
 /// spoken. A choice may be changed once; then only Next is left.
 class AnswerScreen final : public Screen {
  public:
-  AnswerScreen(const AnswerStep& step, const ScreenContext& context,
+  AnswerScreen(const session::AnswerStep& step, const ScreenContext& context,
                std::vector<std::string> labels);
 
  private:
   void paint(Canvas& canvas) override;
-  [[nodiscard]] std::optional<StepReply> activate(int id, Time at) override;
+  [[nodiscard]] std::optional<session::StepReply> activate(int id, Time at) override;
   [[nodiscard]] int default_target() const noexcept override;
   bool takes_key(const InputEvent& event) override;
 
@@ -32,7 +32,7 @@ class AnswerScreen final : public Screen {
   [[nodiscard]] int count() const noexcept { return static_cast<int>(labels_.size()); }
   [[nodiscard]] std::string hint() const;
 
-  AnswerStep step_;
+  session::AnswerStep step_;
   ScreenContext context_;
   std::vector<std::string> labels_;
   int chosen_ = -1;
@@ -41,4 +41,4 @@ class AnswerScreen final : public Screen {
   int confidence_ = 0;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

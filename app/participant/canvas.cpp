@@ -8,7 +8,7 @@
 
 #include <imgui.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 constexpr double kSmall = 19.0;
@@ -214,4 +214,4 @@ void Canvas::picture(PictureShelf& shelf, const std::string& label, const Box& b
   list_.AddImage(texture, to_imgui(x, y), to_imgui(x + width, y + height));
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

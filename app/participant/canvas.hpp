@@ -10,7 +10,7 @@
 struct ImDrawList;
 struct ImFont;
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// Window units from the top-left corner.
 struct Box {
@@ -142,4 +142,4 @@ class Canvas {
   std::vector<PlacedText> texts_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -1,7 +1,7 @@
 /// \file Sounds that a participant's window asks for.
 #pragma once
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 enum class Cue {
   plane_on,   ///< the plane can be touched
@@ -17,4 +17,4 @@ class Cues {
   virtual void tone(Cue cue) noexcept = 0;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 // What instructions ask for, and where bars end. Source: docs/participant-window.md.
@@ -82,7 +82,7 @@ void ExploringScreen::paint_plane(Canvas& canvas) {
     canvas.label({0.0, canvas.size().y - 84.0 * unit, canvas.size().x, 30.0 * unit}, Letters::small,
                  tone::kQuiet, context_.words->exploring_mouse);
   }
-  const StylusState stylus = view_.pointer->stylus();
+  const device::StylusState stylus = view_.pointer->stylus();
   if (stylus.sequence == 0) return;
   draw_stylus(placed.corner + (1.0 / placed.mm_per_unit) * stylus.position_mm,
               view_.pressed->load(), true, static_cast<float>(unit));
@@ -107,4 +107,4 @@ void ExploringScreen::paint_bars(Canvas& canvas) {
                tone::kWarn, words.too_hard, Align::left);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -7,7 +7,7 @@
 
 #include <atomic>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// What the practice's bars show. Written behind the servo, read by the drawing thread.
 struct FeltNow {
@@ -26,7 +26,7 @@ struct PlaneOnScreen {
 /// What a plane is explored with.
 struct ExploringView {
   const FeltNow* bars = nullptr;               ///< in practice
-  PointerExchange* pointer = nullptr;          ///< the mouse's plane and stylus
+  device::PointerExchange* pointer = nullptr;  ///< the mouse's plane and stylus
   const std::atomic<bool>* pressed = nullptr;  ///< the mouse's button, with `pointer`
   PlaneGeometry plane;
 };
@@ -42,7 +42,7 @@ class ExploringScreen final : public Screen {
 
  private:
   void paint(Canvas& canvas) override;
-  [[nodiscard]] std::optional<StepReply> activate(int /*id*/, Time /*at*/) override {
+  [[nodiscard]] std::optional<session::StepReply> activate(int /*id*/, Time /*at*/) override {
     return std::nullopt;
   }
   void paint_plane(Canvas& canvas);
@@ -52,4 +52,4 @@ class ExploringScreen final : public Screen {
   ScreenContext context_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
-FeedbackScreen::FeedbackScreen(const FeedbackStep& step, const ScreenContext& context,
+FeedbackScreen::FeedbackScreen(const session::FeedbackStep& step, const ScreenContext& context,
                                std::vector<std::string> labels)
     : step_(step), context_(context), labels_(std::move(labels)) {}
 
@@ -21,7 +21,7 @@ void FeedbackScreen::paint(Canvas& canvas) {
   const Words& words = *context_.words;
   const bool correct = step_.answered == step_.correct;
   const std::string title = correct ? words.correct_title : words.wrong_title;
-  if (context_.sight == Sight::blindfold) {
+  if (context_.sight == design::Sight::blindfold) {
     draw_card(canvas, title, std::string(words.it_was) + ": " + name_of(step_.correct));
   } else {
     const Box area = draw_heading(canvas, title);
@@ -62,8 +62,8 @@ void FeedbackScreen::paint_pictures(Canvas& canvas, const Box& area,
   }
 }
 
-std::optional<StepReply> FeedbackScreen::activate(int /*id*/, Time /*at*/) {
-  return StepReply{};
+std::optional<session::StepReply> FeedbackScreen::activate(int /*id*/, Time /*at*/) {
+  return session::StepReply{};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -9,7 +9,7 @@
 
 #include <GLFW/glfw3.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 // OpenGL 1.2, which some systems' gl.h stops short of.
@@ -53,7 +53,7 @@ void* GlPictureShelf::texture(const std::string& label, int width, int height) {
   if (texture.name == 0) glGenTextures(1, &texture.name);
   if (texture.width != across || texture.height != down) {
     glBindTexture(GL_TEXTURE_2D, texture.name);
-    upload(resized(found->second, down, across));
+    upload(engine::resized(found->second, down, across));
     texture.width = across;
     texture.height = down;
   }
@@ -61,4 +61,4 @@ void* GlPictureShelf::texture(const std::string& label, int width, int height) {
   return reinterpret_cast<void*>(static_cast<std::intptr_t>(texture.name));
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

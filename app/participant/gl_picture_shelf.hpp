@@ -7,7 +7,7 @@
 #include <map>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// The drawing thread's, with its OpenGL context current.
 class GlPictureShelf final : public PictureShelf {
@@ -38,4 +38,4 @@ class GlPictureShelf final : public PictureShelf {
   std::map<std::string, Texture> textures_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

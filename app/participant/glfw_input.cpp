@@ -4,7 +4,7 @@
 
 #include <GLFW/glfw3.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 Key key_of(int key, bool shift) {
@@ -82,4 +82,4 @@ void Gamepads::poll(const std::function<void(Key)>& tell) {
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -6,7 +6,7 @@
 #include <array>
 #include <functional>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// \param key,action,modifiers  as GLFW's key callback has them
 /// \return an event of Key::none for keys that mean nothing, and for a key that comes up
@@ -27,4 +27,4 @@ class Gamepads {
   bool any_ = false;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

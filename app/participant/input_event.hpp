@@ -5,7 +5,7 @@
 
 #include <chrono>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 enum class Key {
   none,
@@ -42,4 +42,4 @@ struct InputEvent {
   Vec2 position;        ///< of the pointer, window units from the top-left corner
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

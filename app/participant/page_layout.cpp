@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 constexpr double kMargin = 56.0;
@@ -124,4 +124,4 @@ Box draw_heading(Canvas& canvas, const std::string& title, const std::string& no
   return area;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// How far along; nothing is drawn where `of` is 0.
 struct Progress {
@@ -41,4 +41,4 @@ Box draw_heading(Canvas& canvas, const std::string& title, const std::string& no
 /// \param pattern  each "{}" is replaced by the next number
 [[nodiscard]] std::string with_numbers(const char* pattern, const std::vector<int>& numbers);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -22,7 +22,7 @@
 
 #include <GLFW/glfw3.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -185,7 +185,7 @@ struct ParticipantWindow::State {
     if (options.pointer == nullptr) return;
     const WindowSurface surface = exchange.surface();
     const PlaneGeometry now = newest_plane();
-    PointerState state;
+    device::PointerState state;
     if (exploring && now.width_px > 0) {
       const PlaneOnScreen placed =
           place_plane(surface.size, {now.width_mm(), now.height_mm()}, surface.glass.mm_per_unit);
@@ -227,10 +227,10 @@ struct ParticipantWindow::State {
     glfwSetInputMode(window, GLFW_CURSOR, hide ? GLFW_CURSOR_HIDDEN : GLFW_CURSOR_NORMAL);
   }
 
-  void switch_to(const Step& next) {
+  void switch_to(const session::Step& next) {
     std::shared_ptr<Screen> made;
     if (suspended && is_same_step(suspended->first, next)) made = suspended->second;
-    const bool pauses = std::holds_alternative<PauseStep>(next);
+    const bool pauses = std::holds_alternative<session::PauseStep>(next);
     if (pauses && step && !replied) {
       suspended = {*step, screen};
     } else if (!pauses) {
@@ -239,7 +239,8 @@ struct ParticipantWindow::State {
     screen = made ? made : screen_for(next, context, labels);
     step = next;
     replied = false;
-    if (const auto* const ready = std::get_if<ReadyStep>(&next)) practice = ready->practice;
+    if (const auto* const ready = std::get_if<session::ReadyStep>(&next))
+      practice = ready->practice;
     exchange.show(screen);
   }
 
@@ -277,14 +278,14 @@ struct ParticipantWindow::State {
 
   // Session's thread.
   std::vector<std::string> labels;
-  std::optional<Step> step;
+  std::optional<session::Step> step;
   std::shared_ptr<Screen> screen;
-  std::optional<std::pair<Step, std::shared_ptr<Screen>>> suspended;
+  std::optional<std::pair<session::Step, std::shared_ptr<Screen>>> suspended;
   bool replied = false;
   bool practice = false;
 
   // Behind the servo.
-  std::optional<ServoSample> last_felt;
+  std::optional<device::ServoSample> last_felt;
   bool is_too_hard = false;
 
   std::thread drawing;
@@ -306,7 +307,7 @@ void ParticipantWindow::pump(milliseconds longest) {
   });
   s.hide_pointer();
   s.publish_pointer();
-  if (StopOnSignals::asked()) s.leave(WindowGone::signal);
+  if (device::StopOnSignals::asked()) s.leave(WindowGone::signal);
   ++s.pumps;
 }
 
@@ -318,21 +319,22 @@ void ParticipantWindow::see_pictures(const std::vector<std::string>& labels) {
   state_->labels = labels;
 }
 
-std::optional<StepReply> ParticipantWindow::attend(const Step& step) {
+std::optional<session::StepReply> ParticipantWindow::attend(const session::Step& step) {
   State& s = *state_;
   s.exchange.check();
-  if (s.exploring.exchange(false) && s.options.sight == Sight::blindfold) s.cue(Cue::plane_off);
+  if (s.exploring.exchange(false) && s.options.sight == design::Sight::blindfold)
+    s.cue(Cue::plane_off);
   if (gone()) {
     std::this_thread::sleep_for(kAttention);
     return std::nullopt;
   }
   if (!s.step || s.replied || !is_same_step(*s.step, step)) s.switch_to(step);
-  std::optional<StepReply> reply = s.exchange.reply(*s.screen, kAttention);
+  std::optional<session::StepReply> reply = s.exchange.reply(*s.screen, kAttention);
   s.replied = reply.has_value();
   return reply;
 }
 
-HapticDevice& ParticipantWindow::begin_exploring(const PlaneGeometry& plane) {
+device::HapticDevice& ParticipantWindow::begin_exploring(const PlaneGeometry& plane) {
   if (!state_->options.device) throw std::logic_error("ParticipantWindow: no device to explore");
   show_exploring(plane);
   return state_->options.device();
@@ -362,10 +364,10 @@ void ParticipantWindow::show_exploring(const PlaneGeometry& plane) {
   s.plane_on = Clock::now().time_since_epoch();
   s.exploring = true;
   glfwPostEmptyEvent();
-  if (s.options.sight == Sight::blindfold) s.cue(Cue::plane_on);
+  if (s.options.sight == design::Sight::blindfold) s.cue(Cue::plane_on);
 }
 
-void ParticipantWindow::exploring(ServoControl& servo) {
+void ParticipantWindow::exploring(device::ServoControl& servo) {
   State& s = *state_;
   s.exchange.check();  // nobody explores before a window that is dead
   if (gone()) servo.emergency_stop();
@@ -373,7 +375,7 @@ void ParticipantWindow::exploring(ServoControl& servo) {
   if (s.finish_asked) servo.finish();
 }
 
-void ParticipantWindow::feel(const ServoSample& sample) noexcept {
+void ParticipantWindow::feel(const device::ServoSample& sample) noexcept {
   State& s = *state_;
   const double force_n = norm(sample.force_n);
   if (force_n > kTooHardN && !s.is_too_hard) s.cue(Cue::too_hard);
@@ -415,16 +417,16 @@ bool ParticipantWindow::wait_until_shown(milliseconds longest) {
   return state_->exchange.wait_until_shown(longest);
 }
 
-ColourImage ParticipantWindow::picture() {
-  std::optional<ColourImage> picture = state_->exchange.picture(kPictureLimit);
+engine::ColourImage ParticipantWindow::picture() {
+  std::optional<engine::ColourImage> picture = state_->exchange.picture(kPictureLimit);
   check();
   if (!picture) throw DeviceError("window: no picture came; look at the graphics driver");
   return std::move(*picture);
 }
 
-ColourImage ParticipantWindow::console_picture() {
+engine::ColourImage ParticipantWindow::console_picture() {
   if (!state_->console) throw std::logic_error("ParticipantWindow: no experimenter's window");
-  std::optional<ColourImage> picture = state_->console->picture(kPictureLimit);
+  std::optional<engine::ColourImage> picture = state_->console->picture(kPictureLimit);
   check();
   if (!picture) throw DeviceError("window: no picture came; look at the graphics driver");
   return std::move(*picture);
@@ -455,4 +457,4 @@ void run_beside(ParticipantWindow& window, const std::function<void()>& session)
   window.check();
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

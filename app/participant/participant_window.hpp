@@ -18,7 +18,7 @@
 #include <utility>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 class ConsoleExperimenter;
 
@@ -28,17 +28,17 @@ struct ParticipantWindowOptions {
   /// A window of this size instead.
   std::optional<std::pair<int, int>> size_px;
   std::string language = "en";  ///< "en" or "de"; others are English
-  Sight sight = Sight::curtain;
+  design::Sight sight = design::Sight::curtain;
   /// Pictures of the originals by label, the practice's too.
   std::map<std::string, GreyImage> pictures;
   double pitch_mm = 0.2;    ///< of the study; with a picture's pixels its size on the screen
   double rate_hz = 1000.0;  ///< of the servo
   /// The device that is explored, asked for as each plane comes on.
-  std::function<HapticDevice&()> device;
+  std::function<device::HapticDevice&()> device;
   Cues* cues = nullptr;  ///< null: silent; must outlive the window
   /// Of the device "mouse": the window then shows the plane and the stylus. Must outlive the
   /// window.
-  PointerExchange* pointer = nullptr;
+  device::PointerExchange* pointer = nullptr;
   /// A second window, for whoever runs the session. Must outlive the window; null: none.
   ConsoleExperimenter* console = nullptr;
   /// Where it comes up, from 1; none: wherever the system puts it.
@@ -62,7 +62,7 @@ enum class WindowGone {
 /// The experimenter's window, if there is one, lives on the same threads. Keys that are not text
 /// written there are the participant's, whichever window has the focus; while a plane is on, all
 /// are.
-class ParticipantWindow final : public Participant {
+class ParticipantWindow final : public session::Participant {
  public:
   /// \throws DeviceError with the remedy if there is no display, no OpenGL 3.2, or no such monitor
   explicit ParticipantWindow(const ParticipantWindowOptions& options);
@@ -83,15 +83,15 @@ class ParticipantWindow final : public Participant {
   void see_pictures(const std::vector<std::string>& labels) override;
   /// Blocks for up to 10 ms. Nothing once the window is gone, and as long as a pause lasts; a step
   /// that a pause interrupted goes on as it was.
-  [[nodiscard]] std::optional<StepReply> attend(const Step& step) override;
+  [[nodiscard]] std::optional<session::StepReply> attend(const session::Step& step) override;
   /// \throws std::logic_error if the options have no device
-  [[nodiscard]] HapticDevice& begin_exploring(const PlaneGeometry& plane) override;
+  [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& plane) override;
   /// The screen while a plane is on, for a device that somebody else brings.
   void show_exploring(const PlaneGeometry& plane);
   /// Hands on what the person asks for; an emergency stop once the window is gone.
-  void exploring(ServoControl& servo) override;
+  void exploring(device::ServoControl& servo) override;
   ///@}
-  void feel(const ServoSample& sample) noexcept override;
+  void feel(const device::ServoSample& sample) noexcept override;
 
   /// \name Any thread
   ///@{
@@ -107,9 +107,9 @@ class ParticipantWindow final : public Participant {
   /// within the time, or the window is gone
   [[nodiscard]] bool wait_until_shown(std::chrono::milliseconds longest);
   /// What is on the screen: waits for a picture. \throws DeviceError if none comes within 10 s
-  [[nodiscard]] ColourImage picture();
+  [[nodiscard]] engine::ColourImage picture();
   /// What is in the experimenter's window, likewise. \throws std::logic_error if there is none
-  [[nodiscard]] ColourImage console_picture();
+  [[nodiscard]] engine::ColourImage console_picture();
   ///@}
 
  private:
@@ -121,4 +121,4 @@ class ParticipantWindow final : public Participant {
 /// until it has ended. \throws what the session threw, or the drawing of the window
 void run_beside(ParticipantWindow& window, const std::function<void()>& session);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 constexpr double kBarMm = 10.0;
@@ -79,4 +79,4 @@ void draw_scale_bar(Canvas& canvas, const Box& room, const ScreenContext& contex
                Align::left);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// Where pictures lie, and how large they are.
 struct PictureGrid {
@@ -24,4 +24,4 @@ struct PictureGrid {
 /// A bar of 10 mm of the pictures' scale, and what that scale is.
 void draw_scale_bar(Canvas& canvas, const Box& room, const ScreenContext& context, double shown);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

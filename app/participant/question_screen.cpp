@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 constexpr int kOneColumn = 6;
@@ -41,13 +41,14 @@ std::string utf8_of(const std::u32string& text) {
   return bytes;
 }
 
-QuestionScreen::QuestionScreen(const Questionnaire& questionnaire, const ScreenContext& context)
+QuestionScreen::QuestionScreen(const design::Questionnaire& questionnaire,
+                               const ScreenContext& context)
     : questionnaire_(questionnaire),
       context_(context),
       chosen_(questionnaire.questions.size(), -1),
       typed_(questionnaire.questions.size()) {}
 
-std::string QuestionScreen::in_language(const Translated& text) const {
+std::string QuestionScreen::in_language(const design::Translated& text) const {
   for (const std::string& code : {context_.language, std::string("en")}) {
     if (const auto found = text.find(code); found != text.end()) return found->second;
   }
@@ -55,7 +56,8 @@ std::string QuestionScreen::in_language(const Translated& text) const {
 }
 
 bool QuestionScreen::is_answered() const {
-  return question().kind == QuestionKind::choice ? chosen_[page_] >= 0 : !typed_[page_].empty();
+  return question().kind == design::QuestionKind::choice ? chosen_[page_] >= 0
+                                                         : !typed_[page_].empty();
 }
 
 void QuestionScreen::paint(Canvas& canvas) {
@@ -66,7 +68,7 @@ void QuestionScreen::paint(Canvas& canvas) {
   draw_progress(canvas, {number - 1, count, with_numbers(words.question_of, {number, count})});
   const bool missing = question().required && !is_answered();
   const Box area = draw_heading(canvas, in_language(question().text));
-  if (question().kind == QuestionKind::choice) {
+  if (question().kind == design::QuestionKind::choice) {
     paint_options(canvas, area);
   } else {
     paint_field(canvas, area);
@@ -99,7 +101,7 @@ void QuestionScreen::paint_options(Canvas& canvas, const Box& area) {
 
 void QuestionScreen::paint_field(Canvas& canvas, const Box& area) {
   const double unit = canvas.unit();
-  const bool number = question().kind == QuestionKind::number;
+  const bool number = question().kind == design::QuestionKind::number;
   const double width = std::min(area.width, (number ? 320.0 : 860.0) * unit);
   const double height = number ? 72.0 * unit : std::min(area.height * 0.8, 260.0 * unit);
   const Box field = {std::round(area.x + (area.width - width) / 2.0),
@@ -131,8 +133,8 @@ void QuestionScreen::choose(int option) {
   focus(kNextTarget);
 }
 
-std::optional<StepReply> QuestionScreen::activate(int id, Time /*at*/) {
-  if (questionnaire_.questions.empty()) return StepReply{};
+std::optional<session::StepReply> QuestionScreen::activate(int id, Time /*at*/) {
+  if (questionnaire_.questions.empty()) return session::StepReply{};
   if (id < kNextTarget) {
     choose(id);
     return std::nullopt;
@@ -149,7 +151,7 @@ std::optional<StepReply> QuestionScreen::activate(int id, Time /*at*/) {
     caret_ = typed().size();
     return std::nullopt;
   }
-  StepReply reply;
+  session::StepReply reply;
   reply.answers = answers();
   return reply;
 }
@@ -158,17 +160,17 @@ std::vector<std::string> QuestionScreen::answers() const {
   std::vector<std::string> all;
   for (std::size_t i = 0; i < questionnaire_.questions.size(); ++i) {
     switch (questionnaire_.questions[i].kind) {
-      case QuestionKind::choice:
+      case design::QuestionKind::choice:
         all.push_back(chosen_[i] < 0 ? "" : std::to_string(chosen_[i]));
         break;
-      case QuestionKind::number: {
+      case design::QuestionKind::number: {
         // Numbers never depend on the language.
         std::string number = utf8_of(typed_[i]);
         std::replace(number.begin(), number.end(), ',', '.');
         all.push_back(std::move(number));
         break;
       }
-      case QuestionKind::text:
+      case design::QuestionKind::text:
         all.push_back(utf8_of(typed_[i]));
         break;
     }
@@ -178,7 +180,7 @@ std::vector<std::string> QuestionScreen::answers() const {
 
 bool QuestionScreen::takes_key(const InputEvent& event) {
   if (questionnaire_.questions.empty()) return false;
-  if (question().kind == QuestionKind::choice) {
+  if (question().kind == design::QuestionKind::choice) {
     const int count = static_cast<int>(question().options.size());
     if (event.kind != InputEvent::Kind::key || event.key != Key::digit) return false;
     if (event.digit >= 1 && event.digit <= count) choose(event.digit - 1);
@@ -192,7 +194,7 @@ bool QuestionScreen::takes_key(const InputEvent& event) {
 }
 
 void QuestionScreen::write(char32_t letter) {
-  const bool number = question().kind == QuestionKind::number;
+  const bool number = question().kind == design::QuestionKind::number;
   if (number && !is_of_number(letter)) return;
   if (letter < U' ' || typed().size() >= (number ? kLongestNumber : kLongestText)) return;
   typed().insert(std::min(caret_, typed().size()), 1, letter);
@@ -227,4 +229,4 @@ bool QuestionScreen::edit(Key key) {
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -6,16 +6,16 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 class QuestionScreen final : public Screen {
  public:
   /// \param questionnaire  outlives this
-  QuestionScreen(const Questionnaire& questionnaire, const ScreenContext& context);
+  QuestionScreen(const design::Questionnaire& questionnaire, const ScreenContext& context);
 
  private:
   void paint(Canvas& canvas) override;
-  [[nodiscard]] std::optional<StepReply> activate(int id, Time at) override;
+  [[nodiscard]] std::optional<session::StepReply> activate(int id, Time at) override;
   [[nodiscard]] int default_target() const noexcept override { return kNextTarget; }
   bool takes_key(const InputEvent& event) override;
 
@@ -24,13 +24,13 @@ class QuestionScreen final : public Screen {
   void choose(int option);
   void write(char32_t letter);
   bool edit(Key key);
-  [[nodiscard]] const Question& question() const { return questionnaire_.questions[page_]; }
+  [[nodiscard]] const design::Question& question() const { return questionnaire_.questions[page_]; }
   [[nodiscard]] std::u32string& typed() { return typed_[page_]; }
   [[nodiscard]] bool is_answered() const;
-  [[nodiscard]] std::string in_language(const Translated& text) const;
+  [[nodiscard]] std::string in_language(const design::Translated& text) const;
   [[nodiscard]] std::vector<std::string> answers() const;
 
-  const Questionnaire& questionnaire_;
+  const design::Questionnaire& questionnaire_;
   ScreenContext context_;
   std::size_t page_ = 0;
   std::vector<int> chosen_;            ///< option of each question; -1: none
@@ -41,4 +41,4 @@ class QuestionScreen final : public Screen {
 /// UTF-8. Invalid code points are left out.
 [[nodiscard]] std::string utf8_of(const std::u32string& text);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 void Screen::draw(Canvas& canvas) {
   paint(canvas);
@@ -24,9 +24,9 @@ int Screen::target_at(Vec2 position) const noexcept {
   return -1;
 }
 
-std::optional<StepReply> Screen::take(const InputEvent& event) {
+std::optional<session::StepReply> Screen::take(const InputEvent& event) {
   if (done_) return std::nullopt;
-  std::optional<StepReply> reply;
+  std::optional<session::StepReply> reply;
   switch (event.kind) {
     case InputEvent::Kind::key:
     case InputEvent::Kind::repeat:
@@ -43,7 +43,7 @@ std::optional<StepReply> Screen::take(const InputEvent& event) {
   return reply;
 }
 
-std::optional<StepReply> Screen::take_pointer(const InputEvent& event) {
+std::optional<session::StepReply> Screen::take_pointer(const InputEvent& event) {
   const int under = target_at(event.position);
   attention_.hover = under;
   if (event.kind == InputEvent::Kind::pressed) {
@@ -56,7 +56,7 @@ std::optional<StepReply> Screen::take_pointer(const InputEvent& event) {
   return activate(under, event.at);
 }
 
-std::optional<StepReply> Screen::take_key(const InputEvent& event) {
+std::optional<session::StepReply> Screen::take_key(const InputEvent& event) {
   if (takes_key(event)) return std::nullopt;
   // A key that is held down does nothing twice.
   if (event.kind != InputEvent::Kind::key) return std::nullopt;
@@ -125,4 +125,4 @@ void Screen::move_focus(Key key) {
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// How large things are on the screen.
 struct Glass {
@@ -24,7 +24,7 @@ struct Glass {
 struct ScreenContext {
   const Words* words = nullptr;
   std::string language = "en";
-  Sight sight = Sight::curtain;
+  design::Sight sight = design::Sight::curtain;
   bool mouse = false;             ///< the device is a mouse
   PictureShelf* shelf = nullptr;  ///< of the pictures below
   const Glass* glass = nullptr;
@@ -41,7 +41,7 @@ class Screen {
   /// Attention that `draw` is to show: give it to the canvas.
   [[nodiscard]] const Attention& attention() const noexcept { return attention_; }
   /// \return the reply, once: whatever comes after it is ignored
-  [[nodiscard]] std::optional<StepReply> take(const InputEvent& event);
+  [[nodiscard]] std::optional<session::StepReply> take(const InputEvent& event);
   /// Whether its picture changes by itself.
   [[nodiscard]] virtual bool is_alive() const noexcept { return false; }
   [[nodiscard]] bool is_done() const noexcept { return done_; }
@@ -49,7 +49,7 @@ class Screen {
  protected:
   virtual void paint(Canvas& canvas) = 0;
   /// A target was clicked, or chosen by keys.
-  [[nodiscard]] virtual std::optional<StepReply> activate(int id, Time at) = 0;
+  [[nodiscard]] virtual std::optional<session::StepReply> activate(int id, Time at) = 0;
   /// \return the target that Enter stands for where none has the focus; -1: none
   [[nodiscard]] virtual int default_target() const noexcept { return -1; }
   /// Keys that mean something else than elsewhere. \return whether it was one
@@ -60,8 +60,8 @@ class Screen {
   [[nodiscard]] const std::vector<Target>& targets() const noexcept { return targets_; }
 
  private:
-  [[nodiscard]] std::optional<StepReply> take_key(const InputEvent& event);
-  [[nodiscard]] std::optional<StepReply> take_pointer(const InputEvent& event);
+  [[nodiscard]] std::optional<session::StepReply> take_key(const InputEvent& event);
+  [[nodiscard]] std::optional<session::StepReply> take_pointer(const InputEvent& event);
   [[nodiscard]] int target_at(Vec2 position) const noexcept;
   void move_focus(Key key);
 
@@ -71,14 +71,15 @@ class Screen {
 };
 
 /// \param labels  of the pictures, by position
-[[nodiscard]] std::shared_ptr<Screen> screen_for(const Step& step, const ScreenContext& context,
+[[nodiscard]] std::shared_ptr<Screen> screen_for(const session::Step& step,
+                                                 const ScreenContext& context,
                                                  const std::vector<std::string>& labels);
 
 /// Whether a step is the one that is shown already, asked for again.
-[[nodiscard]] bool is_same_step(const Step& a, const Step& b);
+[[nodiscard]] bool is_same_step(const session::Step& a, const session::Step& b);
 
 /// Targets of every screen.
 inline constexpr int kNextTarget = 100;
 inline constexpr int kBackTarget = 101;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

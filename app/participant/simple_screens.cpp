@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 void NoteScreen::paint(Canvas& canvas) {
   draw_progress(canvas, content_.progress);
@@ -10,8 +10,8 @@ void NoteScreen::paint(Canvas& canvas) {
   if (!content_.button.empty()) draw_footer(canvas, {{kNextTarget, content_.button}});
 }
 
-std::optional<StepReply> NoteScreen::activate(int /*id*/, Time /*at*/) {
-  return StepReply{};
+std::optional<session::StepReply> NoteScreen::activate(int /*id*/, Time /*at*/) {
+  return session::StepReply{};
 }
 
 PagesScreen::PagesScreen(std::vector<std::string> pages, const Words& words)
@@ -42,7 +42,7 @@ void PagesScreen::paint(Canvas& canvas) {
   draw_footer(canvas, buttons);
 }
 
-std::optional<StepReply> PagesScreen::activate(int id, Time /*at*/) {
+std::optional<session::StepReply> PagesScreen::activate(int id, Time /*at*/) {
   focus(-1);
   if (id == kBackTarget) {
     if (page_ > 0) --page_;
@@ -50,7 +50,7 @@ std::optional<StepReply> PagesScreen::activate(int id, Time /*at*/) {
   }
   if (++page_ < pages_.size()) return std::nullopt;
   page_ = pages_.size() - 1;
-  return StepReply{};
+  return session::StepReply{};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// A card, and at most one button.
 class NoteScreen final : public Screen {
@@ -23,7 +23,7 @@ class NoteScreen final : public Screen {
 
  private:
   void paint(Canvas& canvas) override;
-  [[nodiscard]] std::optional<StepReply> activate(int id, Time at) override;
+  [[nodiscard]] std::optional<session::StepReply> activate(int id, Time at) override;
   [[nodiscard]] int default_target() const noexcept override { return kNextTarget; }
 
   Content content_;
@@ -36,7 +36,7 @@ class PagesScreen final : public Screen {
 
  private:
   void paint(Canvas& canvas) override;
-  [[nodiscard]] std::optional<StepReply> activate(int id, Time at) override;
+  [[nodiscard]] std::optional<session::StepReply> activate(int id, Time at) override;
   [[nodiscard]] int default_target() const noexcept override { return kNextTarget; }
 
   std::vector<std::string> pages_;
@@ -48,9 +48,9 @@ class PagesScreen final : public Screen {
 class BlankScreen final : public Screen {
  private:
   void paint(Canvas& /*canvas*/) override {}
-  [[nodiscard]] std::optional<StepReply> activate(int /*id*/, Time /*at*/) override {
+  [[nodiscard]] std::optional<session::StepReply> activate(int /*id*/, Time /*at*/) override {
     return std::nullopt;
   }
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

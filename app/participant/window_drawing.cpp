@@ -15,7 +15,7 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -211,4 +211,4 @@ void draw_until_ended(GLFWwindow* window, WindowExchange& exchange, Glass& glass
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

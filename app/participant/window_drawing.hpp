@@ -6,7 +6,7 @@
 
 struct GLFWwindow;
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 class ConsoleWindow;
 
@@ -20,4 +20,4 @@ class ConsoleWindow;
 void draw_until_ended(GLFWwindow* window, WindowExchange& exchange, Glass& glass,
                       GlPictureShelf& shelf, ConsoleWindow* console);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

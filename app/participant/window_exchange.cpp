@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 void WindowExchange::show(std::shared_ptr<Screen> screen) {
   const std::lock_guard lock(mutex_);
@@ -15,8 +15,8 @@ void WindowExchange::show(std::shared_ptr<Screen> screen) {
   for_drawing_.notify_all();
 }
 
-std::optional<StepReply> WindowExchange::reply(const Screen& of,
-                                               std::chrono::milliseconds longest) {
+std::optional<session::StepReply> WindowExchange::reply(const Screen& of,
+                                                        std::chrono::milliseconds longest) {
   std::unique_lock lock(mutex_);
   for_others_.wait_for(lock, longest, [&] { return replied_by_.get() == &of || failure_; });
   if (replied_by_.get() != &of) return std::nullopt;
@@ -74,7 +74,8 @@ void WindowExchange::shown(const std::shared_ptr<Screen>& screen, bool events_le
   for_others_.notify_all();
 }
 
-void WindowExchange::replied(const std::shared_ptr<Screen>& screen, const StepReply& reply) {
+void WindowExchange::replied(const std::shared_ptr<Screen>& screen,
+                             const session::StepReply& reply) {
   const std::lock_guard lock(mutex_);
   if (screen != screen_) return;  // the session has gone on meanwhile
   replied_by_ = screen;
@@ -82,7 +83,7 @@ void WindowExchange::replied(const std::shared_ptr<Screen>& screen, const StepRe
   for_others_.notify_all();
 }
 
-void WindowExchange::keep(ColourImage picture) {
+void WindowExchange::keep(engine::ColourImage picture) {
   const std::lock_guard lock(mutex_);
   picture_ = std::move(picture);
   picture_wanted_ = false;
@@ -106,7 +107,7 @@ bool WindowExchange::wait_until_shown(std::chrono::milliseconds longest) {
                               [this] { return shown_ == screen_ && settled_ && events_.empty(); });
 }
 
-std::optional<ColourImage> WindowExchange::picture(std::chrono::milliseconds longest) {
+std::optional<engine::ColourImage> WindowExchange::picture(std::chrono::milliseconds longest) {
   std::unique_lock lock(mutex_);
   picture_.reset();
   picture_wanted_ = true;
@@ -120,4 +121,4 @@ void WindowExchange::check() const {
   if (failure_) std::rethrow_exception(failure_);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -13,7 +13,7 @@
 #include <optional>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// The window as the main thread knows it.
 struct WindowSurface {
@@ -43,7 +43,8 @@ class WindowExchange {
   ///@{
   void show(std::shared_ptr<Screen> screen);
   /// The reply that the screen has given, once; waits for it.
-  [[nodiscard]] std::optional<StepReply> reply(const Screen& of, std::chrono::milliseconds longest);
+  [[nodiscard]] std::optional<session::StepReply> reply(const Screen& of,
+                                                        std::chrono::milliseconds longest);
   ///@}
 
   /// \name Main thread
@@ -60,8 +61,8 @@ class WindowExchange {
   [[nodiscard]] Work wait_for_work(std::chrono::milliseconds longest);
   /// \param events_left  that have not been taken to the screen yet
   void shown(const std::shared_ptr<Screen>& screen, bool events_left);
-  void replied(const std::shared_ptr<Screen>& screen, const StepReply& reply);
-  void keep(ColourImage picture);
+  void replied(const std::shared_ptr<Screen>& screen, const session::StepReply& reply);
+  void keep(engine::ColourImage picture);
   void failed(std::exception_ptr failure);
   ///@}
 
@@ -71,7 +72,7 @@ class WindowExchange {
   /// Waits until the newest screen is on the glass, with all events that came taken.
   [[nodiscard]] bool wait_until_shown(std::chrono::milliseconds longest);
   /// Waits for the next picture. \return nothing if none comes
-  [[nodiscard]] std::optional<ColourImage> picture(std::chrono::milliseconds longest);
+  [[nodiscard]] std::optional<engine::ColourImage> picture(std::chrono::milliseconds longest);
   /// \throws what drawing threw
   void check() const;
 
@@ -82,10 +83,10 @@ class WindowExchange {
   std::shared_ptr<Screen> screen_;
   std::shared_ptr<Screen> shown_;
   std::shared_ptr<Screen> replied_by_;
-  std::optional<StepReply> reply_;
+  std::optional<session::StepReply> reply_;
   WindowSurface surface_;
   std::vector<InputEvent> events_;
-  std::optional<ColourImage> picture_;
+  std::optional<engine::ColourImage> picture_;
   std::exception_ptr failure_;
   bool picture_wanted_ = false;
   bool dirty_ = true;
@@ -94,4 +95,4 @@ class WindowExchange {
   bool ending_ = false;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -3,14 +3,15 @@
 #include <chrono>
 #include <cstddef>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 constexpr std::chrono::milliseconds kPictureLimit{1000};
 
 }  // namespace
 
-WindowSubject::WindowSubject(ParticipantWindow& window, Participant& subject, bool real_time)
+WindowSubject::WindowSubject(ParticipantWindow& window, session::Participant& subject,
+                             bool real_time)
     : window_(window), subject_(subject), real_time_(real_time) {}
 
 void WindowSubject::see_pictures(const std::vector<std::string>& labels) {
@@ -18,9 +19,9 @@ void WindowSubject::see_pictures(const std::vector<std::string>& labels) {
   subject_.see_pictures(labels);
 }
 
-std::optional<StepReply> WindowSubject::attend(const Step& step) {
-  std::optional<StepReply> reply = window_.attend(step);
-  if (std::holds_alternative<PauseStep>(step)) return std::nullopt;
+std::optional<session::StepReply> WindowSubject::attend(const session::Step& step) {
+  std::optional<session::StepReply> reply = window_.attend(step);
+  if (std::holds_alternative<session::PauseStep>(step)) return std::nullopt;
   if (!reply && !meant_) meant_ = subject_.attend(step);
   if (!reply && meant_ && !typed_ && window_.wait_until_shown(kPictureLimit)) {
     type(step, *meant_);
@@ -36,18 +37,18 @@ std::optional<StepReply> WindowSubject::attend(const Step& step) {
   return reply;
 }
 
-HapticDevice& WindowSubject::begin_exploring(const PlaneGeometry& plane) {
+device::HapticDevice& WindowSubject::begin_exploring(const PlaneGeometry& plane) {
   forget();
   window_.show_exploring(plane);
   return subject_.begin_exploring(plane);
 }
 
-void WindowSubject::exploring(ServoControl& servo) {
+void WindowSubject::exploring(device::ServoControl& servo) {
   subject_.exploring(servo);
   window_.exploring(servo);
 }
 
-void WindowSubject::feel(const ServoSample& sample) noexcept {
+void WindowSubject::feel(const device::ServoSample& sample) noexcept {
   subject_.feel(sample);
   window_.feel(sample);
 }
@@ -65,17 +66,17 @@ void WindowSubject::press(Key key, int digit) {
   window_.inject(event);
 }
 
-void WindowSubject::type(const Step& step, const StepReply& reply) {
-  if (const auto* const pages = std::get_if<InstructionStep>(&step)) {
+void WindowSubject::type(const session::Step& step, const session::StepReply& reply) {
+  if (const auto* const pages = std::get_if<session::InstructionStep>(&step)) {
     for (std::size_t i = 0; i < pages->pages.size(); ++i) press(Key::enter);
     if (pages->pages.empty()) press(Key::enter);
     return;
   }
-  if (const auto* const asked = std::get_if<QuestionStep>(&step)) {
-    for (const Question& question : asked->questionnaire->questions) {
+  if (const auto* const asked = std::get_if<session::QuestionStep>(&step)) {
+    for (const design::Question& question : asked->questionnaire->questions) {
       // Whatever must be answered gets the first option, or a 1.
-      if (question.required && question.kind == QuestionKind::choice) press(Key::digit, 1);
-      if (question.required && question.kind != QuestionKind::choice) {
+      if (question.required && question.kind == design::QuestionKind::choice) press(Key::digit, 1);
+      if (question.required && question.kind != design::QuestionKind::choice) {
         InputEvent event;
         event.kind = InputEvent::Kind::letter;
         event.at = std::chrono::steady_clock::now();
@@ -87,7 +88,7 @@ void WindowSubject::type(const Step& step, const StepReply& reply) {
     if (asked->questionnaire->questions.empty()) press(Key::enter);
     return;
   }
-  if (const auto* const answer = std::get_if<AnswerStep>(&step)) {
+  if (const auto* const answer = std::get_if<session::AnswerStep>(&step)) {
     if (reply.first_position) press(Key::digit, *reply.first_position + 1);
     press(Key::digit, reply.position + 1);
     press(Key::enter);
@@ -100,4 +101,4 @@ void WindowSubject::type(const Step& step, const StepReply& reply) {
   press(Key::enter);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

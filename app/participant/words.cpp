@@ -1,6 +1,6 @@
 #include "app/participant/words.hpp"
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 constexpr Words kEnglish = {
@@ -148,4 +148,4 @@ const Words& words_in(const std::string& language) {
   return language.starts_with("de") ? kGerman : kEnglish;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

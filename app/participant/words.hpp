@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// All the window's own words in one language. Where a number goes, "{}" stands.
 struct Words {
@@ -73,4 +73,4 @@ struct Words {
 /// \param language  "de..." is German, anything else English
 [[nodiscard]] const Words& words_in(const std::string& language);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

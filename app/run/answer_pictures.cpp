@@ -2,13 +2,13 @@
 
 #include "engine/image_file.hpp"
 
-namespace touchtrial {
+namespace touchtrial::app {
 
-std::map<std::string, GreyImage> answer_pictures(const Study& study) {
+std::map<std::string, GreyImage> answer_pictures(const design::Study& study) {
   std::map<std::string, GreyImage> pictures;
-  const auto add = [&](const std::vector<StudyClass>& classes) {
-    for (const StudyClass& shown : classes) {
-      pictures.emplace(shown.label, read_grey_image(study.folder / shown.images.front()));
+  const auto add = [&](const std::vector<design::StudyClass>& classes) {
+    for (const design::StudyClass& shown : classes) {
+      pictures.emplace(shown.label, engine::read_grey_image(study.folder / shown.images.front()));
     }
   };
   add(study.classes);
@@ -16,4 +16,4 @@ std::map<std::string, GreyImage> answer_pictures(const Study& study) {
   return pictures;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

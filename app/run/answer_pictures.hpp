@@ -7,10 +7,10 @@
 #include <map>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// The first image of every class by its label, those of practice too.
 /// \throws FileError if an image cannot be read
-[[nodiscard]] std::map<std::string, GreyImage> answer_pictures(const Study& study);
+[[nodiscard]] std::map<std::string, GreyImage> answer_pictures(const design::Study& study);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

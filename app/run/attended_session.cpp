@@ -26,10 +26,10 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
-ParticipantWindowOptions window_options(const RunOptions& options, const Study& study) {
+ParticipantWindowOptions window_options(const RunOptions& options, const design::Study& study) {
   ParticipantWindowOptions window;
   window.monitor = options.monitor;
   window.size_px = options.window_px;
@@ -48,31 +48,34 @@ std::string why_gone(const ParticipantWindow& window) {
 }
 
 /// What a person hears. A device that is only seen makes no sound that would have to be covered.
-MaskingPlan masking_of(const RunOptions& options, const Study& study, const DeviceInfo& device) {
-  MaskingPlan plan = study.session.masking;
+design::MaskingPlan masking_of(const RunOptions& options, const design::Study& study,
+                               const device::DeviceInfo& device) {
+  design::MaskingPlan plan = study.session.masking;
   plan.wanted = plan.wanted && options.sound && !device.visual;
   return plan;
 }
 
 /// What was not as the study asks before the session began.
-std::vector<ExperimenterRequest> known_deviations(const RunOptions& options, const Study& study,
-                                                  const SessionDevice& device) {
-  std::vector<ExperimenterRequest> known = device.to_record();
+std::vector<session::ExperimenterRequest> known_deviations(const RunOptions& options,
+                                                           const design::Study& study,
+                                                           const SessionDevice& device) {
+  std::vector<session::ExperimenterRequest> known = device.to_record();
   if (study.session.masking.wanted && !options.sound && !device.info().visual) {
-    known.push_back({ExperimenterRequest::Kind::deviation, "--no-sound", "no-masking-noise"});
+    known.push_back(
+        {session::ExperimenterRequest::Kind::deviation, "--no-sound", "no-masking-noise"});
   }
   return known;
 }
 
 /// A device that is only seen needs no warming up, no curtain and no headphones.
-SessionTexts texts_for(const Study& study, const DeviceInfo& device) {
-  SessionTexts texts = session_texts(study);
+session::SessionTexts texts_for(const design::Study& study, const device::DeviceInfo& device) {
+  session::SessionTexts texts = session_texts(study);
   if (device.visual) texts.day_sheet.clear();
   return texts;
 }
 
 /// Force never comes on by itself.
-void require_consent(const DeviceInfo& device) {
+void require_consent(const device::DeviceInfo& device) {
   if (device.visual || ::isatty(STDIN_FILENO) != 0) return;
   throw UsageError(
       "run: standard input is no terminal, where the experimenter lets the force on; start it from "
@@ -92,14 +95,15 @@ class PersonsSession {
         sound_(masking_of(options, study.key.study, device_.info()), study.key.study.seed) {
     require_consent(device_.info());
     if (!sound_.trouble().empty()) spdlog::warn("{}", sound_.trouble());
-    for (const ExperimenterRequest& known : known_deviations(options, study.key.study, device_)) {
+    for (const session::ExperimenterRequest& known :
+         known_deviations(options, study.key.study, device_)) {
       terminal_.add(known);
     }
   }
 
   int run() {
     ParticipantWindowOptions wanted = window_options(options_, study_.key.study);
-    wanted.device = [this]() -> HapticDevice& { return device_.device(); };
+    wanted.device = [this]() -> device::HapticDevice& { return device_.device(); };
     wanted.pointer = device_.pointer();
     if (options_.sound) wanted.cues = &sound_;
     if (options_.console) wanted.console = &console_;
@@ -112,42 +116,43 @@ class PersonsSession {
 
  private:
   int run_before(ParticipantWindow& window) {
-    RealTimeExplorer explorer;
+    session::RealTimeExplorer explorer;
     const EnteredSession entered =
-        enter_session(options_, study_, store_, [&](SessionOpening& opening) {
-          describe_station(opening, device_.info(), explorer.scheduling(), kServoRateHz,
-                           device_.certificate());
+        enter_session(options_, study_, store_, [&](store::SessionOpening& opening) {
+          session::describe_station(opening, device_.info(), explorer.scheduling(),
+                                    device::kServoRateHz, device_.certificate());
         });
-    SteadySessionClock clock(entered.clock);
+    session::SteadySessionClock clock(entered.clock);
     const ParticipantPractice practice(study_, source_.plane(), entered.enrolment);
     SpokenAnswers spoken(window, terminal_);
-    const bool speaks = study_.key.study.session.sight == Sight::blindfold;
+    const bool speaks = study_.key.study.session.sight == design::Sight::blindfold;
     RunExperimenter experimenter(
         console_, [&] { return why_gone(window); }, [this] { return sound_.to_record(); });
-    const SessionTexts texts = texts_for(study_.key.study, device_.info());
-    const SessionTally tally = run_session(
-        *entered.session, {.key = study_.key,
-                           .source = source_,
-                           .participant = speaks ? static_cast<Participant&>(spoken) : window,
-                           .clock = clock,
-                           .explorer = explorer,
-                           .devices = device_.station(),
-                           .experimenter = experimenter,
-                           .texts = texts,
-                           .practice = practice.textures(),
-                           .participant_name = options_.participant,
-                           .device_name = device_.driver(),
-                           .limits = device_.limits()});
+    const session::SessionTexts texts = texts_for(study_.key.study, device_.info());
+    const session::SessionTally tally = session::run_session(
+        *entered.session,
+        {.key = study_.key,
+         .source = source_,
+         .participant = speaks ? static_cast<session::Participant&>(spoken) : window,
+         .clock = clock,
+         .explorer = explorer,
+         .devices = device_.station(),
+         .experimenter = experimenter,
+         .texts = texts,
+         .practice = practice.textures(),
+         .participant_name = options_.participant,
+         .device_name = device_.driver(),
+         .limits = device_.limits()});
     return conclude_session(options_, entered.number, tally, store_);
   }
 
   const RunOptions& options_;
   const RunStudy& study_;
-  StimulusSource source_;
+  session::StimulusSource source_;
   TerminalExperimenter terminal_;
   ConsoleExperimenter console_{terminal_};
   SessionDevice device_;
-  StudyStore store_;  ///< not made for nothing: the device is there
+  store::StudyStore store_;  ///< not made for nothing: the device is there
   SessionSound sound_;
 };
 
@@ -158,35 +163,36 @@ int run_attended(const RunOptions& options, const RunStudy& study) {
 }
 
 int run_simulated_at_window(const RunOptions& options, const RunStudy& study) {
-  StudyStore store = run_database_for(options, study);
-  const StimulusSource source(study.pack, study.key.study.rendering);
+  store::StudyStore store = run_database_for(options, study);
+  const session::StimulusSource source(study.pack, study.key.study.rendering);
   const SimulatedSitter sitter = simulated_sitter_for(options, study, source);
-  const SessionTexts texts = session_texts(study.key.study);
+  const session::SessionTexts texts = session_texts(study.key.study);
   ParticipantWindow window(window_options(options, study.key.study));
   int code = 1;
   run_beside(window, [&] {
     const SimulatedCourse course = simulated_course(options);
     const EnteredSession entered = enter_session(
-        options, study, store, [&](SessionOpening& opening) { course.describe(opening); });
-    const std::unique_ptr<SessionClock> clock = course.clock(entered.clock);
-    SimulatedParticipant mind(sitter.subject, sitter.knowledge, options.seed, entered.enrolment);
+        options, study, store, [&](store::SessionOpening& opening) { course.describe(opening); });
+    const std::unique_ptr<session::SessionClock> clock = course.clock(entered.clock);
+    session::SimulatedParticipant mind(sitter.subject, sitter.knowledge, options.seed,
+                                       entered.enrolment);
     WindowSubject participant(window, mind, options.real_time);
-    AlwaysReady devices;
-    RunExperimenter experimenter(no_experimenter(), [&] { return why_gone(window); });
-    const SessionTally tally =
-        run_session(*entered.session, {.key = study.key,
-                                       .source = source,
-                                       .participant = participant,
-                                       .clock = *clock,
-                                       .explorer = *course.explorer,
-                                       .devices = devices,
-                                       .experimenter = experimenter,
-                                       .texts = texts,
-                                       .participant_name = options.participant,
-                                       .device_name = "simulated"});
+    session::AlwaysReady devices;
+    RunExperimenter experimenter(session::no_experimenter(), [&] { return why_gone(window); });
+    const session::SessionTally tally =
+        session::run_session(*entered.session, {.key = study.key,
+                                                .source = source,
+                                                .participant = participant,
+                                                .clock = *clock,
+                                                .explorer = *course.explorer,
+                                                .devices = devices,
+                                                .experimenter = experimenter,
+                                                .texts = texts,
+                                                .participant_name = options.participant,
+                                                .device_name = "simulated"});
     code = conclude_session(options, entered.number, tally, store);
   });
   return code;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

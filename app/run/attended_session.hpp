@@ -4,7 +4,7 @@
 #include "app/run/run_options.hpp"
 #include "app/run/run_study.hpp"
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// The participant's window belongs to the calling thread, the program's main one; the session runs
 /// on another. \return as run_study_session
@@ -14,4 +14,4 @@ namespace touchtrial {
 /// The same for a simulated participant, who answers with the window's keys.
 [[nodiscard]] int run_simulated_at_window(const RunOptions& options, const RunStudy& study);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -6,7 +6,7 @@
 #include <atomic>
 #include <csignal>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 constexpr std::array kSignals = {SIGINT, SIGTERM, SIGHUP};
@@ -37,16 +37,16 @@ EndingSignals::~EndingSignals() {
 
 int EndingSignals::which() noexcept {
   constexpr int kShellOffset = 128;
-  if (StopOnSignals::asked()) return StopOnSignals::exit_code() - kShellOffset;
+  if (device::StopOnSignals::asked()) return device::StopOnSignals::exit_code() - kShellOffset;
   return came.load();
 }
 
 std::string EndingSignals::message() {
-  if (StopOnSignals::asked()) return StopOnSignals::message();
+  if (device::StopOnSignals::asked()) return device::StopOnSignals::message();
   for (std::size_t i = 0; i < kSignals.size(); ++i) {
     if (kSignals[i] == came.load()) return std::string("stopped by ") + kNames[i];
   }
   return "";
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// While this lives, SIGINT, SIGTERM and SIGHUP are remembered instead of ending the program. One
 /// at a time.
@@ -22,4 +22,4 @@ class EndingSignals {
   [[nodiscard]] static std::string message();
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

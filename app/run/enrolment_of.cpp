@@ -7,13 +7,13 @@
 #include <filesystem>
 #include <set>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 /// Numbers that are kept for somebody are among them: their first session still stands there.
-std::set<int> taken_numbers(const StudyStore& store) {
+std::set<int> taken_numbers(const store::StudyStore& store) {
   std::set<int> taken;
-  for (const SessionRow& row : store.sessions()) taken.insert(row.enrolment);
+  for (const store::SessionRow& row : store.sessions()) taken.insert(row.enrolment);
   return taken;
 }
 
@@ -30,10 +30,10 @@ void require_station(const RunOptions& options, const std::filesystem::path& pla
 }
 
 /// A file with another station's numbers is that station's, or somebody gave the wrong name.
-void require_own_file(const RunOptions& options, const EnrolmentPlan& plan,
+void require_own_file(const RunOptions& options, const design::EnrolmentPlan& plan,
                       const std::set<int>& taken) {
   for (const int number : taken) {
-    const std::string* const owner = station_of(plan, number);
+    const std::string* const owner = design::station_of(plan, number);
     if (owner == nullptr || *owner == options.station) continue;
     throw UsageError(one_line(options.database.string()) + ": has number " +
                      std::to_string(number) + ", which is station " + *owner +
@@ -44,19 +44,20 @@ void require_own_file(const RunOptions& options, const EnrolmentPlan& plan,
 
 }  // namespace
 
-int enrolment_of(const RunOptions& options, const Study& study, const StudyStore& store) {
+int enrolment_of(const RunOptions& options, const design::Study& study,
+                 const store::StudyStore& store) {
   if (options.enrolment > 0) return options.enrolment;
   const int free_or_inherited = store.enrolment_for(options.participant);
   const std::set<int> taken = taken_numbers(store);
   if (taken.contains(free_or_inherited)) return free_or_inherited;
   const std::filesystem::path plan =
-      options.plan.empty() ? plan_path_for(options.study) : options.plan;
+      options.plan.empty() ? design::plan_path_for(options.study) : options.plan;
   require_station(options, plan);
   if (options.station.empty()) return free_or_inherited;
-  const EnrolmentPlan dealt = load_plan(plan, study);
-  const int next = next_of_station(dealt, options.station, taken, plan.string());
+  const design::EnrolmentPlan dealt = design::load_plan(plan, study);
+  const int next = design::next_of_station(dealt, options.station, taken, plan.string());
   require_own_file(options, dealt, taken);
   return next;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

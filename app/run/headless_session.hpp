@@ -4,9 +4,9 @@
 #include "app/run/run_options.hpp"
 #include "app/run/run_study.hpp"
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// \return as run_study_session
 [[nodiscard]] int run_headless(const RunOptions& options, const RunStudy& study);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -7,7 +7,7 @@
 
 #include <optional>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// The practice textures of one participant of a study.
 class ParticipantPractice {
@@ -16,17 +16,17 @@ class ParticipantPractice {
   ParticipantPractice(const RunStudy& study, const PlaneGeometry& plane, int enrolment);
 
   /// Null if the study has no practice. Valid as long as this.
-  [[nodiscard]] const PracticeTextures* textures() const noexcept {
+  [[nodiscard]] const session::PracticeTextures* textures() const noexcept {
     return textures_ ? &*textures_ : nullptr;
   }
 
  private:
-  [[nodiscard]] PracticeRound round(int number) const;
+  [[nodiscard]] session::PracticeRound round(int number) const;
 
-  const Study& study_;
+  const design::Study& study_;
   int enrolment_;
-  std::optional<PracticeSet> set_;
-  std::optional<PracticeTextures> textures_;
+  std::optional<design::PracticeSet> set_;
+  std::optional<session::PracticeTextures> textures_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -7,14 +7,14 @@
 
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 [[noreturn]] void refuse(const RunOptions& options, const std::string& why) {
   throw StoreError(options.database.string() + ": " + why);
 }
 
-void require_same(const StudyCommitment& stored, const StudyCommitment& ours,
+void require_same(const store::StudyCommitment& stored, const store::StudyCommitment& ours,
                   const RunOptions& options) {
   if (stored.study_id != ours.study_id || stored.seal != ours.seal) {
     refuse(options,
@@ -37,11 +37,13 @@ void require_same(const StudyCommitment& stored, const StudyCommitment& ours,
 
 }  // namespace
 
-StudyStore run_database_for(const RunOptions& options, const RunStudy& study) {
-  const StudyCommitment ours =
-      commitment_of(study.key, study.pack, options.is_simulated(), options.pilot);
-  if (!is_there(options.database)) return StudyStore::create(options.database, ours, utc_now());
-  StudyStore store = StudyStore::open(options.database, StudyStore::Access::read_write);
+store::StudyStore run_database_for(const RunOptions& options, const RunStudy& study) {
+  const store::StudyCommitment ours =
+      session::commitment_of(study.key, study.pack, options.is_simulated(), options.pilot);
+  if (!is_there(options.database))
+    return store::StudyStore::create(options.database, ours, utc_now());
+  store::StudyStore store =
+      store::StudyStore::open(options.database, store::StudyStore::Access::read_write);
   require_same(store.commitment(), ours, options);
   if (store.stations() > 0) {
     refuse(options,
@@ -51,4 +53,4 @@ StudyStore run_database_for(const RunOptions& options, const RunStudy& study) {
   return store;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

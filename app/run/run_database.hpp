@@ -5,11 +5,11 @@
 #include "app/run/run_study.hpp"
 #include "protocols/store/study_store.hpp"
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// Opens the database, or makes it with the study's commitment if there is none.
 /// \throws StoreError if it is of another study, or one of pilot or simulated sessions is to have
 ///   others; what StudyStore::open throws
-[[nodiscard]] StudyStore run_database_for(const RunOptions& options, const RunStudy& study);
+[[nodiscard]] store::StudyStore run_database_for(const RunOptions& options, const RunStudy& study);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

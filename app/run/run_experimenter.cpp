@@ -5,16 +5,17 @@
 
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
-RunExperimenter::RunExperimenter(Experimenter& inner, std::function<std::string()> gone,
-                                 std::function<std::optional<ExperimenterRequest>()> more)
+RunExperimenter::RunExperimenter(session::Experimenter& inner, std::function<std::string()> gone,
+                                 std::function<std::optional<session::ExperimenterRequest>()> more)
     : inner_(inner), gone_(std::move(gone)), more_(std::move(more)) {}
 
-std::optional<ExperimenterRequest> RunExperimenter::request() {
+std::optional<session::ExperimenterRequest> RunExperimenter::request() {
   std::string why = EndingSignals::message();
   if (why.empty() && gone_) why = gone_();
-  if (!why.empty()) return ExperimenterRequest{ExperimenterRequest::Kind::leave, why, ""};
+  if (!why.empty())
+    return session::ExperimenterRequest{session::ExperimenterRequest::Kind::leave, why, ""};
   if (auto request = more_ ? more_() : std::nullopt) return request;
   return inner_.request();
 }
@@ -24,4 +25,4 @@ void RunExperimenter::acknowledged(int trial) {
   inner_.acknowledged(trial);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// What is done with a session that the participant has already.
 enum class OnExisting { refuse, resume, restart };
@@ -41,4 +41,4 @@ struct RunOptions {
   [[nodiscard]] bool is_simulated() const noexcept { return subject.has_value(); }
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

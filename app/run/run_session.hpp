@@ -3,7 +3,7 @@
 
 #include "app/run/run_options.hpp"
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// \return the exit code: 0 if the session is complete, 1 if it was stopped or left open, 128 and
 ///   the signal's number if a signal ended the program
@@ -11,4 +11,4 @@ namespace touchtrial {
 ///   it then stays open and can be taken up
 [[nodiscard]] int run_study_session(const RunOptions& options);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

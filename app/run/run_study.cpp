@@ -8,33 +8,33 @@
 
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
 
-PackPlace place_of(const RunOptions& options) {
-  PackPlace place =
-      options.pack.empty() ? default_pack_place(options.study) : pack_place_at(options.pack);
+design::PackPlace place_of(const RunOptions& options) {
+  design::PackPlace place = options.pack.empty() ? design::default_pack_place(options.study)
+                                                 : design::pack_place_at(options.pack);
   const fs::path beside_database = key_path_for(options.database, {});
   if (is_there(beside_database)) place.key = beside_database;
   if (!options.key.empty()) place.key = options.key;
   return place;
 }
 
-void require_unchanged(const StudyKey& key, const Study& study) {
-  if (study_seal(rekeyed(key, study)) == study_seal(key)) return;
+void require_unchanged(const design::StudyKey& key, const design::Study& study) {
+  if (design::study_seal(design::rekeyed(key, study)) == design::study_seal(key)) return;
   throw StudyError(study.source +
                    ": has changed since it was prepared; run `touchtrial prepare` again for a new "
                    "study, or take the change back");
 }
 
-void require_intact(const Pack& pack, const StudyKey& key) {
+void require_intact(const engine::Pack& pack, const design::StudyKey& key) {
   const std::string folder = pack.folder().string();
   if (pack.manifest().study_id != key.study_id) {
     throw FileError(folder + ": is the pack of another key; name both with --pack and --key");
   }
-  for (const PackEntry& entry : pack.manifest().entries) {
+  for (const engine::PackEntry& entry : pack.manifest().entries) {
     if (!pack.is_intact(entry.code)) {
       throw FileError(folder + ": field " + entry.code +
                       " is not what was prepared; copy the pack anew, or run `touchtrial prepare`");
@@ -42,23 +42,23 @@ void require_intact(const Pack& pack, const StudyKey& key) {
   }
 }
 
-RunStudy simulated_study(const RunOptions& options, const Study& study) {
-  StudyKey key = simulated_key(study, options.study);
+RunStudy simulated_study(const RunOptions& options, const design::Study& study) {
+  design::StudyKey key = simulated_key(study, options.study);
   const fs::path path = key_path_for(options.database, {});
   refuse_other_key(path, key);
   prepare_simulated_pack(key);
   // Before there is a database: one without its key would be of no use to anybody. Nor would one
   // beside another study's key.
-  if (!is_there(path) && !is_there(options.database)) save_study_key(path, key);
-  Pack pack(key.pack_folder);
+  if (!is_there(path) && !is_there(options.database)) design::save_study_key(path, key);
+  engine::Pack pack(key.pack_folder);
   return {std::move(key), std::move(pack)};
 }
 
 }  // namespace
 
 RunStudy run_study_for(const RunOptions& options) {
-  const Study study = load_study(options.study);
-  const PackPlace place = place_of(options);
+  const design::Study study = design::load_study(options.study);
+  const design::PackPlace place = place_of(options);
   if (!is_there(place.key)) {
     if (options.is_simulated() && options.pack.empty() && options.key.empty()) {
       return simulated_study(options, study);
@@ -66,16 +66,17 @@ RunStudy run_study_for(const RunOptions& options) {
     throw FileError(place.key.string() + ": there is no key; run `touchtrial prepare " +
                     options.study.string() + "` first, or name it with --key");
   }
-  StudyKey key = load_study_key(place.key);
+  design::StudyKey key = design::load_study_key(place.key);
   require_unchanged(key, study);
   key.study.folder = study.folder;
   if (key.simulated && !options.is_simulated()) {
     throw StoreError(place.key.string() +
                      ": is a simulated study's key; give people another --db and a prepared study");
   }
-  Pack pack(options.pack.empty() && is_there(key.pack_folder) ? key.pack_folder : place.pack);
+  engine::Pack pack(options.pack.empty() && is_there(key.pack_folder) ? key.pack_folder
+                                                                      : place.pack);
   require_intact(pack, key);
   return {std::move(key), std::move(pack)};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

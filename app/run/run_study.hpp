@@ -5,11 +5,11 @@
 #include "engine/pack/pack.hpp"
 #include "protocols/design/study_key.hpp"
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 struct RunStudy {
-  StudyKey key;
-  Pack pack;
+  design::StudyKey key;
+  engine::Pack pack;
 };
 
 /// Loads what `prepare` made: `--key`, else the key beside the database, else that beside the pack.
@@ -19,4 +19,4 @@ struct RunStudy {
 /// \throws FileError if pack or key is missing or damaged, with the remedy
 [[nodiscard]] RunStudy run_study_for(const RunOptions& options);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -14,21 +14,21 @@
 
 #include <spdlog/spdlog.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
 
 /// Drivers that need no device in the room are never chosen by themselves.
-bool is_a_rig(const DeviceListing& listing) {
-  return listing.present && listing.driver != kMouseDriver && listing.driver != "simulated" &&
-         listing.driver != "replay";
+bool is_a_rig(const device::DeviceListing& listing) {
+  return listing.present && listing.driver != device::kMouseDriver &&
+         listing.driver != "simulated" && listing.driver != "replay";
 }
 
-std::string chosen_driver(const std::string& named, const DeviceSettings& settings) {
-  if (!named.empty()) return device_driver(named).name;
+std::string chosen_driver(const std::string& named, const device::DeviceSettings& settings) {
+  if (!named.empty()) return device::device_driver(named).name;
   std::vector<std::string> found;
-  for (const DeviceListing& listing : list_devices(settings)) {
+  for (const device::DeviceListing& listing : device::list_devices(settings)) {
     if (is_a_rig(listing)) found.push_back(listing.driver);
   }
   if (found.size() == 1) return found.front();
@@ -40,33 +40,34 @@ std::string chosen_driver(const std::string& named, const DeviceSettings& settin
 
 }  // namespace
 
-Attendant::Says SessionDevice::Consent::attend(const std::string& need) {
+session::Attendant::Says SessionDevice::Consent::attend(const std::string& need) {
   if (need.empty()) return Says::arm;
   std::this_thread::sleep_for(std::chrono::milliseconds(10));
   return Says::wait;
 }
 
 SessionDevice::SessionDevice(const RunOptions& options, const PlaneGeometry& plane,
-                             Attendant& attendant)
-    : settings_(device_settings_for(options.settings)),
+                             session::Attendant& attendant)
+    : settings_(device::device_settings_for(options.settings)),
       driver_(chosen_driver(options.device, settings_)) {
   first_ = open();
   first_->halt();
   info_ = first_->info();
-  const auto placement = placement_of(plane, info_, settings_.use_of(driver_));
+  const auto placement = device::placement_of(plane, info_, settings_.use_of(driver_));
   look_at_certificate(options);
   station_.emplace([this] { return first_ ? std::move(first_) : open(); }, placement,
-                   info_.visual ? static_cast<Attendant&>(consent_) : attendant);
+                   info_.visual ? static_cast<session::Attendant&>(consent_) : attendant);
 }
 
-std::unique_ptr<HapticDevice> SessionDevice::open() {
-  if (driver_ == kMouseDriver) return std::make_unique<MouseDevice>(pointer_, pointer_clock_);
-  return open_device(driver_, settings_);
+std::unique_ptr<device::HapticDevice> SessionDevice::open() {
+  if (driver_ == device::kMouseDriver)
+    return std::make_unique<device::MouseDevice>(pointer_, pointer_clock_);
+  return device::open_device(driver_, settings_);
 }
 
 void SessionDevice::look_at_certificate(const RunOptions& options) {
   if (info_.visual || info_.simulated) return;
-  using Kind = ExperimenterRequest::Kind;
+  using Kind = session::ExperimenterRequest::Kind;
   const fs::path usual = driver_ + "-certificate.json";
   const fs::path path = options.certificate.empty() ? usual : options.certificate;
   if (options.certificate.empty() && !is_there(usual)) {
@@ -77,13 +78,13 @@ void SessionDevice::look_at_certificate(const RunOptions& options) {
     to_record_.push_back({Kind::deviation, "none was given", "no-certificate"});
     return;
   }
-  const ReadCertificate read = read_certificate(path);
+  const device::ReadCertificate read = device::read_certificate(path);
   const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
-  const std::string warning = check_certificate(read.certificate, info_, now);
+  const std::string warning = device::check_certificate(read.certificate, info_, now);
   certificate_ = to_hex(read.hash);
   if (warning.empty()) return;
   spdlog::warn("{}", warning);
   to_record_.push_back({Kind::deviation, warning, "no-certificate"});
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

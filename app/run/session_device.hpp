@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// Opened when it is made, so that whoever opens the session knows what the hand will be on.
 /// Made on the main thread; then it belongs to the session's.
@@ -25,43 +25,46 @@ class SessionDevice {
   /// \throws UsageError if no device is named and not exactly one is plugged in; DeviceError with
   ///   the remedy if it cannot be opened, its room does not hold the plane, or its certificate does
   ///   not hold; as read_certificate
-  SessionDevice(const RunOptions& options, const PlaneGeometry& plane, Attendant& attendant);
+  SessionDevice(const RunOptions& options, const PlaneGeometry& plane,
+                session::Attendant& attendant);
 
-  [[nodiscard]] DeviceStation& station() noexcept { return *station_; }
+  [[nodiscard]] session::DeviceStation& station() noexcept { return *station_; }
   /// In the plane frame, once the station is ready.
-  [[nodiscard]] HapticDevice& device() { return station_->device(); }
-  [[nodiscard]] const DeviceInfo& info() const noexcept { return info_; }
+  [[nodiscard]] device::HapticDevice& device() { return station_->device(); }
+  [[nodiscard]] const device::DeviceInfo& info() const noexcept { return info_; }
   [[nodiscard]] const std::string& driver() const noexcept { return driver_; }
-  [[nodiscard]] LabLimits limits() const { return settings_.use_of(driver_).limits; }
+  [[nodiscard]] device::LabLimits limits() const { return settings_.use_of(driver_).limits; }
   /// SHA-256 of the certificate, hexadecimal; empty: there is none.
   [[nodiscard]] const std::string& certificate() const noexcept { return certificate_; }
   /// What the session's record is to say of the device, each once.
-  [[nodiscard]] const std::vector<ExperimenterRequest>& to_record() const noexcept {
+  [[nodiscard]] const std::vector<session::ExperimenterRequest>& to_record() const noexcept {
     return to_record_;
   }
   /// Of the device "mouse": the window's; null for all others.
-  [[nodiscard]] PointerExchange* pointer() noexcept { return info_.visual ? &pointer_ : nullptr; }
+  [[nodiscard]] device::PointerExchange* pointer() noexcept {
+    return info_.visual ? &pointer_ : nullptr;
+  }
 
  private:
   /// There is no force that anybody would have to consent to.
-  class Consent final : public Attendant {
+  class Consent final : public session::Attendant {
    public:
     [[nodiscard]] Says attend(const std::string& need) override;
   };
 
-  [[nodiscard]] std::unique_ptr<HapticDevice> open();
+  [[nodiscard]] std::unique_ptr<device::HapticDevice> open();
   void look_at_certificate(const RunOptions& options);
 
-  DeviceSettings settings_;
+  device::DeviceSettings settings_;
   std::string driver_;
-  PointerExchange pointer_;
-  PacedClock pointer_clock_{PacedClock::Time{}};
+  device::PointerExchange pointer_;
+  device::PacedClock pointer_clock_{device::PacedClock::Time{}};
   Consent consent_;
-  std::unique_ptr<HapticDevice> first_;  ///< until the station takes it
-  DeviceInfo info_;
+  std::unique_ptr<device::HapticDevice> first_;  ///< until the station takes it
+  device::DeviceInfo info_;
   std::string certificate_;
-  std::vector<ExperimenterRequest> to_record_;
-  std::optional<DeviceStation> station_;
+  std::vector<session::ExperimenterRequest> to_record_;
+  std::optional<session::DeviceStation> station_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -5,11 +5,12 @@
 #include "protocols/session/session_runner.hpp"
 #include "protocols/store/study_store.hpp"
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// Prints the session's summary, which says nothing of outcomes, and, if it was left open, how to
 /// take it up again. \return as run_study_session
 [[nodiscard]] int conclude_session(const RunOptions& options, int session,
-                                   const SessionTally& tally, const StudyStore& store);
+                                   const session::SessionTally& tally,
+                                   const store::StudyStore& store);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

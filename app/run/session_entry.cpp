@@ -14,78 +14,83 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 using std::chrono::nanoseconds;
 
 /// How the study's blocks come again in this participant's session.
-BlockRestart block_restart_of(const StudyKey& key, int enrolment) {
+session::BlockRestart block_restart_of(const design::StudyKey& key, int enrolment) {
   return {[&key, enrolment](int block, int restarts_before, int first_trial) {
-            return restarted_block(key.study, enrolment, block, restarts_before, first_trial);
+            return design::restarted_block(key.study, enrolment, block, restarts_before,
+                                           first_trial);
           },
-          [&key](const std::vector<Presentation>& presentations) {
+          [&key](const std::vector<design::Presentation>& presentations) {
             return block_to_json(presentations, key);
           }};
 }
 
-EnteredSession new_session(const RunOptions& options, const RunStudy& study, StudyStore& store,
-                           int enrolment, const DescribeOpening& describe) {
+EnteredSession new_session(const RunOptions& options, const RunStudy& study,
+                           store::StudyStore& store, int enrolment,
+                           const DescribeOpening& describe) {
   EnteredSession entered;
   entered.number = store.next_session();
   entered.enrolment = enrolment;
   SystemEntropy entropy;
   const SecretKey key = entropy.secret("participant key");
-  entered.sink = store.begin_session(entered.number,
-                                     wrap_participant_key(study.key.master, entered.number, key));
-  const Schedule schedule = make_schedule(study.key.study, enrolment);
-  entered.session = std::make_unique<Session>(schedule, study.key.study.trials,
-                                              SessionRecorder(entered.number, key, *entered.sink),
-                                              block_restart_of(study.key, enrolment));
-  SessionOpening opening;
+  entered.sink = store.begin_session(
+      entered.number, store::wrap_participant_key(study.key.master, entered.number, key));
+  const design::Schedule schedule = design::make_schedule(study.key.study, enrolment);
+  entered.session = std::make_unique<session::Session>(
+      schedule, study.key.study.trials, store::SessionRecorder(entered.number, key, *entered.sink),
+      block_restart_of(study.key, enrolment));
+  store::SessionOpening opening;
   opening.participant = options.participant;
   opening.enrolment = enrolment;
   opening.study_id = study.key.study_id;
-  opening.seal = study_seal(study.key);
+  opening.seal = design::study_seal(study.key);
   opening.pilot = options.pilot;
   describe(opening);
-  entered.session->open({}, opening, schedule_to_json(schedule, study.key));
+  entered.session->open({}, opening, design::schedule_to_json(schedule, study.key));
   return entered;
 }
 
 /// How long ago the session's last event was.
-nanoseconds away(const StudyStore& store, const SessionRow& row, const Event& last) {
+nanoseconds away(const store::StudyStore& store, const store::SessionRow& row,
+                 const store::Event& last) {
   nanoseconds opened{};
-  store.for_each(EventKind::session_opened, [&](const Event& event) {
-    if (session_opened_from_json(event.body).session == row.session) opened = event.at;
+  store.for_each(store::EventKind::session_opened, [&](const store::Event& event) {
+    if (store::session_opened_from_json(event.body).session == row.session) opened = event.at;
   });
   return std::max(nanoseconds{}, utc_now() - opened - last.at);
 }
 
-std::string standing(const StudyStore& store, const SessionRow& row, nanoseconds away) {
+std::string standing(const store::StudyStore& store, const store::SessionRow& row,
+                     nanoseconds away) {
   int done = 0;
-  for (const TrialRow& trial : store.trials()) {
-    if (trial.session == row.session && trial.state == TrialState::answered) ++done;
+  for (const store::TrialRow& trial : store.trials()) {
+    if (trial.session == row.session && trial.state == store::TrialState::answered) ++done;
   }
   const auto minutes = std::chrono::duration_cast<std::chrono::minutes>(away).count();
   return fmt::format("participant {} has session {}, with {} trials answered, left {} h {} min ago",
                      row.participant, row.session, done, minutes / 60, minutes % 60);
 }
 
-Session restored(const RunStudy& study, const StudyStore& store, const SessionRow& row,
-                 EventSink& sink) {
-  const std::vector<Event> events = store.events(row.session);
+session::Session restored(const RunStudy& study, const store::StudyStore& store,
+                          const store::SessionRow& row, store::EventSink& sink) {
+  const std::vector<store::Event> events = store.events(row.session);
   const auto wrapped = store.wrapped_key(row.session);
-  const auto key =
-      wrapped ? unwrap_participant_key(study.key.master, row.own_session, *wrapped) : std::nullopt;
-  const auto secret = key ? unsealed(events.front(), *key) : std::nullopt;
+  const auto key = wrapped
+                       ? store::unwrap_participant_key(study.key.master, row.own_session, *wrapped)
+                       : std::nullopt;
+  const auto secret = key ? store::unsealed(events.front(), *key) : std::nullopt;
   if (!secret) {
     throw StoreError(fmt::format("session {}: its schedule cannot be read; run `touchtrial verify`",
                                  row.session));
   }
-  Session session(schedule_from_json(*secret, study.key), study.key.study.trials,
-                  SessionRecorder(row.session, *key, sink),
-                  block_restart_of(study.key, row.enrolment));
+  session::Session session(design::schedule_from_json(*secret, study.key), study.key.study.trials,
+                           store::SessionRecorder(row.session, *key, sink),
+                           block_restart_of(study.key, row.enrolment));
   session.restore(events);
   return session;
 }
@@ -95,15 +100,16 @@ nanoseconds time_after(const RunOptions& options, nanoseconds last, nanoseconds 
   return options.is_simulated() && !options.real_time ? last : last + away;
 }
 
-EnteredSession resumed_session(const RunOptions& options, const RunStudy& study, StudyStore& store,
-                               const SessionRow& row, nanoseconds away) {
+EnteredSession resumed_session(const RunOptions& options, const RunStudy& study,
+                               store::StudyStore& store, const store::SessionRow& row,
+                               nanoseconds away) {
   EnteredSession entered;
   entered.number = row.session;
   entered.enrolment = row.enrolment;
   entered.resumed = true;
   entered.sink = store.continue_session(row.session);
-  entered.session = std::make_unique<Session>(restored(study, store, row, *entered.sink));
-  Session& session = *entered.session;
+  entered.session = std::make_unique<session::Session>(restored(study, store, row, *entered.sink));
+  session::Session& session = *entered.session;
   entered.clock = time_after(options, session.last(), away);
   session.take_up(entered.clock, {.after = "program-ended",
                                   .away_s = std::chrono::duration<double>(away).count(),
@@ -121,13 +127,13 @@ void require_young(const RunOptions& options, const RunStudy& study, const std::
                   options.database.string(), standing, limit_h));
 }
 
-bool is_visual(const SessionOpening& opening) {
+bool is_visual(const store::SessionOpening& opening) {
   return opening.station && opening.station->visual;
 }
 
 /// Of another kind of device it would be two sessions, and one that is seen is not blind.
-void require_same_kind(const RunOptions& options, const SessionRow& row, const SessionOpening& then,
-                       const SessionOpening& now) {
+void require_same_kind(const RunOptions& options, const store::SessionRow& row,
+                       const store::SessionOpening& then, const store::SessionOpening& now) {
   if (is_visual(now) == is_visual(then)) return;
   throw StoreError(fmt::format(
       "{}: session {} was begun with device '{}', and '{}' is {}: go on with the former",
@@ -136,9 +142,9 @@ void require_same_kind(const RunOptions& options, const SessionRow& row, const S
 }
 
 /// The hand is on something else than before: said once it is taken up.
-void record_other_station(EnteredSession& entered, const SessionOpening& then,
-                          const SessionOpening& now) {
-  const auto certificate = [](const SessionOpening& opening) {
+void record_other_station(EnteredSession& entered, const store::SessionOpening& then,
+                          const store::SessionOpening& now) {
+  const auto certificate = [](const store::SessionOpening& opening) {
     return opening.station ? opening.station->calibration : std::string();
   };
   if (then.device != now.device || then.device_serial != now.device_serial) {
@@ -151,30 +157,32 @@ void record_other_station(EnteredSession& entered, const SessionOpening& then,
 }
 
 /// The session ends as it stands.
-void give_up(const RunStudy& study, StudyStore& store, const SessionRow& row) {
-  const std::unique_ptr<EventSink> sink = store.continue_session(row.session);
-  Session session = restored(study, store, row, *sink);
-  if (session.accepts(SessionInput::stop)) session.stop(session.last(), "restarted");
+void give_up(const RunStudy& study, store::StudyStore& store, const store::SessionRow& row) {
+  const std::unique_ptr<store::EventSink> sink = store.continue_session(row.session);
+  session::Session session = restored(study, store, row, *sink);
+  if (session.accepts(session::SessionInput::stop)) session.stop(session.last(), "restarted");
   session.close(session.last());
 }
 
 /// In the same place of the order. The session has ended.
-EnteredSession begin_anew(const RunOptions& options, const RunStudy& study, StudyStore& store,
-                          const SessionRow& row, const DescribeOpening& describe) {
+EnteredSession begin_anew(const RunOptions& options, const RunStudy& study,
+                          store::StudyStore& store, const store::SessionRow& row,
+                          const DescribeOpening& describe) {
   store.replace(row.session, row.participant, utc_now(), "restarted");
   return new_session(options, study, store, row.enrolment, describe);
 }
 
-EnteredSession existing_session(const RunOptions& options, const RunStudy& study, StudyStore& store,
-                                const SessionRow& row, const DescribeOpening& describe) {
+EnteredSession existing_session(const RunOptions& options, const RunStudy& study,
+                                store::StudyStore& store, const store::SessionRow& row,
+                                const DescribeOpening& describe) {
   const bool may_be_restarted =
-      options.on_existing == OnExisting::restart && row.state == SessionState::stopped;
+      options.on_existing == OnExisting::restart && row.state == store::SessionState::stopped;
   if (may_be_restarted) return begin_anew(options, study, store, row, describe);
-  if (row.state != SessionState::open) {
+  if (row.state != store::SessionState::open) {
     throw StoreError(fmt::format(
         "{}: participant {} already has session {}, which is {}; give another participant id",
         options.database.string(), row.participant, row.session,
-        row.state == SessionState::completed ? "complete" : "stopped"));
+        row.state == store::SessionState::completed ? "complete" : "stopped"));
   }
   const nanoseconds gone = away(store, row, store.last_event(row.session).value());
   const std::string stands = standing(store, row, gone);
@@ -188,9 +196,10 @@ EnteredSession existing_session(const RunOptions& options, const RunStudy& study
     return begin_anew(options, study, store, row, describe);
   }
   require_young(options, study, stands, gone);
-  SessionOpening now;
+  store::SessionOpening now;
   describe(now);
-  const SessionOpening then = opening_from_json(store.events(row.session).front().body);
+  const store::SessionOpening then =
+      store::opening_from_json(store.events(row.session).front().body);
   require_same_kind(options, row, then, now);
   EnteredSession entered = resumed_session(options, study, store, row, gone);
   record_other_station(entered, then, now);
@@ -199,8 +208,8 @@ EnteredSession existing_session(const RunOptions& options, const RunStudy& study
 
 }  // namespace
 
-EnteredSession enter_session(const RunOptions& options, const RunStudy& study, StudyStore& store,
-                             const DescribeOpening& describe) {
+EnteredSession enter_session(const RunOptions& options, const RunStudy& study,
+                             store::StudyStore& store, const DescribeOpening& describe) {
   if (const auto row = store.session_of(options.participant)) {
     return existing_session(options, study, store, *row, describe);
   }
@@ -208,4 +217,4 @@ EnteredSession enter_session(const RunOptions& options, const RunStudy& study, S
                      describe);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

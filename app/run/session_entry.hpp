@@ -10,7 +10,7 @@
 #include <functional>
 #include <memory>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// A session that may be run, and what it stands on. Must not outlive the store.
 struct EnteredSession {
@@ -18,18 +18,19 @@ struct EnteredSession {
   int enrolment = 0;
   bool resumed = false;
   std::chrono::nanoseconds clock{};  ///< what the session's clock is to show now
-  std::unique_ptr<EventSink> sink;
-  std::unique_ptr<Session> session;
+  std::unique_ptr<store::EventSink> sink;
+  std::unique_ptr<session::Session> session;
 };
 
 /// Fills in what a new session's first event says of device and station.
-using DescribeOpening = std::function<void(SessionOpening&)>;
+using DescribeOpening = std::function<void(store::SessionOpening&)>;
 
 /// Opens a new session for the participant, or takes up the one that they have, as
 /// `options.on_existing` says. Its first or next event is stored by then.
 /// \throws StoreError if the participant has a session that may not be taken up (which, how far it
 ///   is, and what to do), or the database refuses
 [[nodiscard]] EnteredSession enter_session(const RunOptions& options, const RunStudy& study,
-                                           StudyStore& store, const DescribeOpening& describe);
+                                           store::StudyStore& store,
+                                           const DescribeOpening& describe);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -9,34 +9,36 @@
 #include <thread>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 SimulatedSitter simulated_sitter_for(const RunOptions& options, const RunStudy& study,
-                                     const StimulusSource& source) {
-  SubjectModel subject = subject_for(*options.subject, study.key.study);
-  FeltKnowledge knowledge = learn_by_feeling(
-      LabelledFields(study.key, source), subject, study.key.study.rendering.max_force_n,
+                                     const session::StimulusSource& source) {
+  session::SubjectModel subject = subject_for(*options.subject, study.key.study);
+  session::FeltKnowledge knowledge = session::learn_by_feeling(
+      session::LabelledFields(study.key, source), subject, study.key.study.rendering.max_force_n,
       options.seed, static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
   return {std::move(subject), std::move(knowledge)};
 }
 
 SimulatedCourse simulated_course(const RunOptions& options) {
-  if (options.real_time) return {std::make_unique<RealTimeExplorer>()};
-  return {std::make_unique<VirtualExplorer>()};
+  if (options.real_time) return {std::make_unique<session::RealTimeExplorer>()};
+  return {std::make_unique<session::VirtualExplorer>()};
 }
 
-void SimulatedCourse::describe(SessionOpening& opening) const {
+void SimulatedCourse::describe(store::SessionOpening& opening) const {
   opening.device = "simulated";
-  if (const auto* const real_time = dynamic_cast<const RealTimeExplorer*>(explorer.get())) {
-    const DeviceInfo device{"simulated", "", HandOptions{}.max_force_n, true};
-    describe_station(opening, device, real_time->scheduling(), kServoRateHz, "");
+  if (const auto* const real_time =
+          dynamic_cast<const session::RealTimeExplorer*>(explorer.get())) {
+    const device::DeviceInfo device{"simulated", "", device::HandOptions{}.max_force_n, true};
+    session::describe_station(opening, device, real_time->scheduling(), device::kServoRateHz, "");
   }
   opening.simulated = true;
 }
 
-std::unique_ptr<SessionClock> SimulatedCourse::clock(std::chrono::nanoseconds start) const {
-  if (explorer->in_real_time()) return std::make_unique<SteadySessionClock>(start);
-  return std::make_unique<VirtualSessionClock>(start);
+std::unique_ptr<session::SessionClock> SimulatedCourse::clock(
+    std::chrono::nanoseconds start) const {
+  if (explorer->in_real_time()) return std::make_unique<session::SteadySessionClock>(start);
+  return std::make_unique<session::VirtualSessionClock>(start);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

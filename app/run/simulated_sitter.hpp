@@ -14,24 +14,24 @@
 #include <chrono>
 #include <memory>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// A subject model that has learnt the study's classes.
 struct SimulatedSitter {
-  SubjectModel subject;
-  FeltKnowledge knowledge;
+  session::SubjectModel subject;
+  session::FeltKnowledge knowledge;
 };
 /// Takes half a second or so. \throws as subject_for
 [[nodiscard]] SimulatedSitter simulated_sitter_for(const RunOptions& options, const RunStudy& study,
-                                                   const StimulusSource& source);
+                                                   const session::StimulusSource& source);
 
 /// How time goes in a simulated participant's session: virtual, or real if that was asked for.
 struct SimulatedCourse {
-  std::unique_ptr<Explorer> explorer;
+  std::unique_ptr<session::Explorer> explorer;
   /// What the session's first event says of the device.
-  void describe(SessionOpening& opening) const;
-  [[nodiscard]] std::unique_ptr<SessionClock> clock(std::chrono::nanoseconds start) const;
+  void describe(store::SessionOpening& opening) const;
+  [[nodiscard]] std::unique_ptr<session::SessionClock> clock(std::chrono::nanoseconds start) const;
 };
 [[nodiscard]] SimulatedCourse simulated_course(const RunOptions& options);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

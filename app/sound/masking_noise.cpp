@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 constexpr int kOctaves = 16;
@@ -44,4 +44,4 @@ std::vector<float> masking_noise(double level_dbfs, std::uint64_t seed) {
   return noise;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

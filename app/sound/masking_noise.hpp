@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// Above this the noise's peaks and a tone together could leave the range of the sound card.
 inline constexpr double kHighestMaskingDbfs = -18.0;
@@ -17,4 +17,4 @@ inline constexpr double kHighestMaskingDbfs = -18.0;
 /// \return 2^18 samples, 5.5 s at 48 kHz, without a constant part; |sample| < 0.8
 [[nodiscard]] std::vector<float> masking_noise(double level_dbfs, std::uint64_t seed);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -8,16 +8,16 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
-ExperimenterRequest no_masking(const std::string& why) {
-  return {ExperimenterRequest::Kind::deviation, why, "no-masking-noise"};
+session::ExperimenterRequest no_masking(const std::string& why) {
+  return {session::ExperimenterRequest::Kind::deviation, why, "no-masking-noise"};
 }
 
 }  // namespace
 
-SessionSound::SessionSound(const MaskingPlan& plan, std::uint64_t seed)
+SessionSound::SessionSound(const design::MaskingPlan& plan, std::uint64_t seed)
     : plan_(plan),
       mixer_(SoundCard::kRateHz,
              plan.wanted ? masking_noise(plan.level_dbfs, seed) : std::vector<float>{}) {
@@ -33,15 +33,16 @@ void SessionSound::tone(Cue cue) noexcept {
   mixer_.tone(cue);
 }
 
-std::optional<ExperimenterRequest> SessionSound::to_record() {
+std::optional<session::ExperimenterRequest> SessionSound::to_record() {
   if (!plan_.wanted) return std::nullopt;
   if (!recorded_) {
     recorded_ = true;
     if (!card_) return no_masking(trouble_);
-    return ExperimenterRequest{ExperimenterRequest::Kind::note,
-                               fmt::format("masking noise at {:.1f} dBFS rms",
-                                           std::min(plan_.level_dbfs, kHighestMaskingDbfs)),
-                               ""};
+    return session::ExperimenterRequest{
+        session::ExperimenterRequest::Kind::note,
+        fmt::format("masking noise at {:.1f} dBFS rms",
+                    std::min(plan_.level_dbfs, kHighestMaskingDbfs)),
+        ""};
   }
   if (!card_ || loss_recorded_ || card_->plays()) return std::nullopt;
   loss_recorded_ = true;
@@ -49,4 +50,4 @@ std::optional<ExperimenterRequest> SessionSound::to_record() {
   return no_masking(trouble_);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

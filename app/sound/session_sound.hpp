@@ -11,14 +11,14 @@
 #include <optional>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// Masking noise for the whole session and tones. A machine without sound is silent: that is said
 /// once and recorded, and the session goes on.
 class SessionSound final : public Cues {
  public:
   /// Begins the noise, if it is wanted. \param seed  of the noise
-  SessionSound(const MaskingPlan& plan, std::uint64_t seed);
+  SessionSound(const design::MaskingPlan& plan, std::uint64_t seed);
 
   void tone(Cue cue) noexcept override;
 
@@ -26,10 +26,10 @@ class SessionSound final : public Cues {
   [[nodiscard]] const std::string& trouble() const noexcept { return trouble_; }
   /// What the session's record is to have, each once: the level of the noise as a note, or the
   /// deviation "no-masking-noise". Ask several times a second; one thread.
-  [[nodiscard]] std::optional<ExperimenterRequest> to_record();
+  [[nodiscard]] std::optional<session::ExperimenterRequest> to_record();
 
  private:
-  MaskingPlan plan_;
+  design::MaskingPlan plan_;
   SoundMixer mixer_;
   std::optional<SoundCard> card_;
   std::string trouble_;
@@ -37,4 +37,4 @@ class SessionSound final : public Cues {
   bool loss_recorded_ = false;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -11,7 +11,7 @@
 #include <portaudio.h>
 #include <unistd.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 /// While it lives, standard error leads nowhere: looking for outputs, ALSA and JACK write a line
@@ -90,4 +90,4 @@ bool SoundCard::plays() const noexcept {
   return Pa_IsStreamActive(stream_->stream) == 1;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -5,7 +5,7 @@
 
 #include <memory>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// Plays a mixer on the system's usual output (PortAudio), both ears alike. Made and destroyed on
 /// one thread; the mixer is rendered on the sound card's own.
@@ -28,4 +28,4 @@ class SoundCard {
   std::unique_ptr<Stream> stream_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

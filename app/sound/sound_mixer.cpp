@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 /// Three at once and the loudest noise stay within full scale.
@@ -91,4 +91,4 @@ void SoundMixer::render(std::span<float> samples) noexcept {
   rendered_.fetch_add(static_cast<std::int64_t>(samples.size()));
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

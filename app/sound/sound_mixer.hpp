@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// One channel. `render` belongs to the sound card's thread; everything else may be called on any.
 /// Neither waits for the other. Everything begins and ends in ramps, so that nothing clicks.
@@ -47,4 +47,4 @@ class SoundMixer {
   std::atomic<std::int64_t> rendered_{0};
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -3,9 +3,9 @@
 
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 [[nodiscard]] std::string_view english_texts_json() noexcept;
 [[nodiscard]] std::string_view german_texts_json() noexcept;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

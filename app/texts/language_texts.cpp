@@ -6,7 +6,7 @@
 #include <array>
 #include <span>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 constexpr std::array<std::string_view, 12> kInstructions{
@@ -97,4 +97,4 @@ const LanguageTexts& texts_in(std::string_view language) {
   return built_in_languages().front();
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

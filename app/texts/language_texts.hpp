@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 struct QuestionText {
   std::string id;
@@ -36,4 +36,4 @@ struct LanguageTexts {
 /// That of the code ("de", "de-AT"); English if there is none.
 [[nodiscard]] const LanguageTexts& texts_in(std::string_view language);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 using Words = std::map<std::string, std::string>;
@@ -32,7 +32,7 @@ std::string seconds_text(double seconds, const std::string& language) {
   return text;
 }
 
-Words words_for(const Study& study, const LanguageTexts& texts) {
+Words words_for(const design::Study& study, const LanguageTexts& texts) {
   return {{"pictures", std::to_string(study.classes.size())},
           {"limit", seconds_text(study.trials.explore_limit_s, texts.language)},
           {"confidence", std::to_string(study.session.confidence_levels)},
@@ -40,23 +40,23 @@ Words words_for(const Study& study, const LanguageTexts& texts) {
 }
 
 /// Which parts of the instructions stand on which page.
-std::vector<std::vector<std::string>> pages_for(const Study& study) {
-  std::vector<std::string> rules{study.trials.on_timeout == OnTimeout::fade ? "time_fade"
-                                                                            : "time_no_response"};
+std::vector<std::vector<std::string>> pages_for(const design::Study& study) {
+  std::vector<std::string> rules{
+      study.trials.on_timeout == design::OnTimeout::fade ? "time_fade" : "time_no_response"};
   if (study.session.confidence_levels > 0) rules.push_back("confidence");
   if (study.session.masking.wanted) rules.push_back("masking");
   std::vector<std::vector<std::string>> pages{
       {"welcome"},
-      {study.protocol == Protocol::classification ? "classification" : "comparison"},
+      {study.protocol == design::Protocol::classification ? "classification" : "comparison"},
       {"hand"},
-      {study.session.sight == Sight::blindfold ? "blindfold" : "curtain"},
+      {study.session.sight == design::Sight::blindfold ? "blindfold" : "curtain"},
       rules};
   if (study.trials.practice > 0) pages.push_back({"practice"});
   pages.push_back({"comfort"});
   return pages;
 }
 
-std::vector<std::string> own_instructions(const Study& study, const LanguageTexts& texts) {
+std::vector<std::string> own_instructions(const design::Study& study, const LanguageTexts& texts) {
   const Words words = words_for(study, texts);
   std::vector<std::string> pages;
   for (const std::vector<std::string>& parts : pages_for(study)) {
@@ -69,7 +69,7 @@ std::vector<std::string> own_instructions(const Study& study, const LanguageText
   return pages;
 }
 
-std::vector<std::string> instructions(const Study& study, const LanguageTexts& texts) {
+std::vector<std::string> instructions(const design::Study& study, const LanguageTexts& texts) {
   const auto given = study.session.instructions.find(study.session.language);
   if (given != study.session.instructions.end() && !given->second.empty()) return given->second;
   return own_instructions(study, texts);
@@ -78,12 +78,13 @@ std::vector<std::string> instructions(const Study& study, const LanguageTexts& t
 /// The same question in every language that the program has.
 /// \param of  a language's wording
 template <typename Wording>
-Question question_in_all(Wording of) {
-  Question question;
+design::Question question_in_all(Wording of) {
+  design::Question question;
   for (const LanguageTexts& texts : built_in_languages()) {
     const QuestionText& wording = of(texts);
     question.id = wording.id;
-    question.kind = wording.options.empty() ? QuestionKind::text : QuestionKind::choice;
+    question.kind =
+        wording.options.empty() ? design::QuestionKind::text : design::QuestionKind::choice;
     question.text[texts.language] = wording.text;
     question.options.resize(wording.options.size());
     for (std::size_t i = 0; i < wording.options.size(); ++i) {
@@ -93,8 +94,8 @@ Question question_in_all(Wording of) {
   return question;
 }
 
-std::vector<Question> questions_in_all(std::vector<QuestionText> LanguageTexts::*list) {
-  std::vector<Question> questions;
+std::vector<design::Question> questions_in_all(std::vector<QuestionText> LanguageTexts::*list) {
+  std::vector<design::Question> questions;
   for (std::size_t i = 0; i < (built_in_languages().front().*list).size(); ++i) {
     questions.push_back(question_in_all(
         [&](const LanguageTexts& texts) -> const QuestionText& { return (texts.*list).at(i); }));
@@ -102,17 +103,17 @@ std::vector<Question> questions_in_all(std::vector<QuestionText> LanguageTexts::
   return questions;
 }
 
-Questionnaire handedness_inventory() {
-  Questionnaire inventory{"handedness", questions_in_all(&LanguageTexts::handedness)};
-  Question& hand = inventory.questions.emplace_back(question_in_all(
+design::Questionnaire handedness_inventory() {
+  design::Questionnaire inventory{"handedness", questions_in_all(&LanguageTexts::handedness)};
+  design::Question& hand = inventory.questions.emplace_back(question_in_all(
       [](const LanguageTexts& texts) -> const QuestionText& { return texts.pen_hand; }));
   hand.required = true;
   return inventory;
 }
 
-void join(std::vector<Question>& questions, const Question& given) {
+void join(std::vector<design::Question>& questions, const design::Question& given) {
   const auto same = std::find_if(questions.begin(), questions.end(),
-                                 [&](const Question& own) { return own.id == given.id; });
+                                 [&](const design::Question& own) { return own.id == given.id; });
   if (same == questions.end()) {
     questions.push_back(given);
   } else {
@@ -120,16 +121,16 @@ void join(std::vector<Question>& questions, const Question& given) {
   }
 }
 
-std::optional<Questionnaire> closing_questions(const SessionPlan& plan) {
-  Questionnaire closing{"closing", {}};
+std::optional<design::Questionnaire> closing_questions(const design::SessionPlan& plan) {
+  design::Questionnaire closing{"closing", {}};
   if (plan.closing) closing.questions = questions_in_all(&LanguageTexts::closing);
-  for (const Question& given : plan.closing_questions) join(closing.questions, given);
+  for (const design::Question& given : plan.closing_questions) join(closing.questions, given);
   if (closing.questions.empty()) return std::nullopt;
   return closing;
 }
 
 /// Items' keys in a language file, and the deviation that skipping each of them is.
-std::vector<std::pair<std::string, std::string>> items_for(const SessionPlan& plan) {
+std::vector<std::pair<std::string, std::string>> items_for(const design::SessionPlan& plan) {
   std::vector<std::pair<std::string, std::string>> items{
       {"consent", plan.consent_version.empty() ? "consent" : "consent_version"},
       {"warm-up", "warm_up"},
@@ -137,7 +138,7 @@ std::vector<std::pair<std::string, std::string>> items_for(const SessionPlan& pl
       {"gravity-compensation", "gravity"},
       {"fixture-touch", "fixture"},
       {"placement", "placement"}};
-  if (plan.sight == Sight::blindfold) {
+  if (plan.sight == design::Sight::blindfold) {
     items.emplace_back("labels-learnt", "labels");
     items.emplace_back("blindfold", "blindfold");
   } else {
@@ -149,9 +150,10 @@ std::vector<std::pair<std::string, std::string>> items_for(const SessionPlan& pl
   return items;
 }
 
-std::vector<DaySheetItem> day_sheet(const Study& study, const LanguageTexts& texts) {
+std::vector<session::DaySheetItem> day_sheet(const design::Study& study,
+                                             const LanguageTexts& texts) {
   const Words words = words_for(study, texts);
-  std::vector<DaySheetItem> sheet;
+  std::vector<session::DaySheetItem> sheet;
   for (const auto& [code, key] : items_for(study.session)) {
     sheet.push_back({"no-" + code, filled(texts.day_sheet.at(key), words)});
   }
@@ -164,9 +166,9 @@ std::vector<DaySheetItem> day_sheet(const Study& study, const LanguageTexts& tex
 
 }  // namespace
 
-SessionTexts session_texts(const Study& study) {
+session::SessionTexts session_texts(const design::Study& study) {
   const LanguageTexts& texts = texts_in(study.session.language);
-  SessionTexts session;
+  session::SessionTexts session;
   session.instructions = instructions(study, texts);
   if (study.session.handedness) session.handedness = handedness_inventory();
   session.closing = closing_questions(study.session);
@@ -174,7 +176,7 @@ SessionTexts session_texts(const Study& study) {
   return session;
 }
 
-std::vector<DaySheetItem> day_sheet_after(const Study& study) {
+std::vector<session::DaySheetItem> day_sheet_after(const design::Study& study) {
   const LanguageTexts& texts = texts_in(study.session.language);
   return {{"no-fixture-touch-after", texts.day_sheet_after.at("fixture_after")},
           {"no-questions-after", texts.day_sheet_after.at("questions_after")},
@@ -195,4 +197,4 @@ std::optional<double> laterality_quotient(const std::vector<std::string>& answer
   return sum / static_cast<double>(kItems);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -9,15 +9,15 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// The study's pages of instruction take the place of the program's, in languages that it has them
 /// in; its closing questions and day-sheet items stand after the program's own, and a question with
 /// the id of one of these in its place. English where the program has not the study's language.
-[[nodiscard]] SessionTexts session_texts(const Study& study);
+[[nodiscard]] session::SessionTexts session_texts(const design::Study& study);
 
 /// Day-sheet items for the time after the participant has left.
-[[nodiscard]] std::vector<DaySheetItem> day_sheet_after(const Study& study);
+[[nodiscard]] std::vector<session::DaySheetItem> day_sheet_after(const design::Study& study);
 
 /// Laterality quotient of the short form of the Edinburgh inventory; source: Veale (2014),
 /// Laterality 19, 164-177.
@@ -25,4 +25,4 @@ namespace touchtrial {
 /// \return from -100 (left) to 100 (right); nothing if one of the four items was left out
 [[nodiscard]] std::optional<double> laterality_quotient(const std::vector<std::string>& answers);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -6,7 +6,7 @@
 
 #include <imgui.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 constexpr float kTextHeight = 16.0F;
@@ -76,4 +76,4 @@ ImFont* add_font(float height, FontWeight weight) {
   return font != nullptr ? font : add_own(height);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -3,7 +3,7 @@
 
 struct ImFont;
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// Two sizes of one face in Dear ImGui's current context: text first, then what is read from afar.
 /// DejaVu Sans or a face like it where one is installed, else ImGui's own, enlarged.
@@ -20,4 +20,4 @@ ImFont* add_font(float height, FontWeight weight);
 inline constexpr int kTextFont = 0;
 inline constexpr int kLargeFont = 1;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

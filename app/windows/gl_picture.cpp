@@ -5,13 +5,13 @@
 
 #include <GLFW/glfw3.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
-ColourImage drawn_picture(int width, int height) {
+engine::ColourImage drawn_picture(int width, int height) {
   std::vector<unsigned char> bytes(static_cast<std::size_t>(width) * height * 3);
   glPixelStorei(GL_PACK_ALIGNMENT, 1);
   glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, bytes.data());
-  ColourImage picture(height, width);
+  engine::ColourImage picture(height, width);
   for (int y = 0; y < height; ++y) {
     const unsigned char* row = bytes.data() + static_cast<std::size_t>(height - 1 - y) * width * 3;
     for (int x = 0; x < width; ++x) {
@@ -21,4 +21,4 @@ ColourImage drawn_picture(int width, int height) {
   return picture;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -3,10 +3,10 @@
 
 #include "engine/pictures/colour_image.hpp"
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// The current context's picture, before it is swapped to the screen. \param width,height  pixels,
 /// >= 1
-[[nodiscard]] ColourImage drawn_picture(int width, int height);
+[[nodiscard]] engine::ColourImage drawn_picture(int width, int height);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

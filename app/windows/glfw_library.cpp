@@ -4,7 +4,7 @@
 
 #include <GLFW/glfw3.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 GlfwLibrary::GlfwLibrary() {
   if (glfwInit() != GLFW_TRUE) {
@@ -23,4 +23,4 @@ void refuse_window(const std::string& remedy) {
       "window: " + std::string(reason == nullptr ? "unknown error" : reason) + "; " + remedy));
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

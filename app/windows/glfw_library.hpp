@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// GLFW for as long as there is a window; one at a time. Main thread.
 class GlfwLibrary {
@@ -18,4 +18,4 @@ class GlfwLibrary {
 /// \throws DeviceError always: GLFW's last error, and the remedy
 [[noreturn]] void refuse_window(const std::string& remedy);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

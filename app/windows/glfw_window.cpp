@@ -16,7 +16,7 @@
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 /// Of a frame's time that is spent waiting for events; the screen itself paces the rest, where it
@@ -113,7 +113,7 @@ struct GlfwWindow::State {
     std::vector<unsigned char> bytes(static_cast<std::size_t>(width) * height * 3);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, bytes.data());
-    picture = ColourImage(height, width);
+    picture = engine::ColourImage(height, width);
     for (int y = 0; y < height; ++y) {
       const unsigned char* row =
           bytes.data() + static_cast<std::size_t>(height - 1 - y) * width * 3;
@@ -129,7 +129,7 @@ struct GlfwWindow::State {
   std::function<void()> stop_listener;
   double frame_began_s = 0.0;
   bool keeps_pictures = false;
-  ColourImage picture;
+  engine::ColourImage picture;
 };
 
 GlfwWindow::GlfwWindow(const WindowOptions& options) : state_(std::make_unique<State>(options)) {}
@@ -192,9 +192,9 @@ void GlfwWindow::keep_pictures() {
   state_->keeps_pictures = true;
 }
 
-const ColourImage& GlfwWindow::picture() {
+const engine::ColourImage& GlfwWindow::picture() {
   if (state_->picture.empty()) throw std::logic_error("GlfwWindow: no picture was kept");
   return state_->picture;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

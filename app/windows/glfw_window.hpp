@@ -8,7 +8,7 @@
 #include <memory>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 struct WindowOptions {
   std::string title;
@@ -59,7 +59,7 @@ class GlfwWindow {
   /// Sizes on screen are to be multiplied by this, 1 at 96 units to the inch.
   [[nodiscard]] float density() const;
   /// The picture that was shown last. \throws std::logic_error before the first
-  [[nodiscard]] const ColourImage& picture();
+  [[nodiscard]] const engine::ColourImage& picture();
   /// Pictures are only kept once this is asked for.
   void keep_pictures();
 
@@ -68,4 +68,4 @@ class GlfwWindow {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

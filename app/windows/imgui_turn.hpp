@@ -4,7 +4,7 @@
 
 #include <mutex>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// Held from setting the context to the end of rendering, not while a screen is waited for.
 inline std::mutex& imgui_turn() {
@@ -12,4 +12,4 @@ inline std::mutex& imgui_turn() {
   return turn;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

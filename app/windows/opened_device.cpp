@@ -6,15 +6,15 @@
 #include <chrono>
 #include <thread>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
-OpenedDevice::OpenedDevice(const std::string& driver, const DeviceSettings& settings,
+OpenedDevice::OpenedDevice(const std::string& driver, const device::DeviceSettings& settings,
                            Vec2 plane_mm) {
-  if (driver == kMouseDriver) {
+  if (driver == device::kMouseDriver) {
     window_ = std::make_unique<PointerWindow>(exchange_, plane_mm);
-    device_ = std::make_unique<MouseDevice>(exchange_, clock_);
+    device_ = std::make_unique<device::MouseDevice>(exchange_, clock_);
   } else {
-    device_ = open_device(driver, settings);
+    device_ = device::open_device(driver, settings);
   }
 }
 
@@ -32,4 +32,4 @@ bool OpenedDevice::stop_asked() const {
   return window_ && (window_->stop_asked() || window_->close_asked());
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

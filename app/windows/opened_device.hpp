@@ -10,7 +10,7 @@
 #include <memory>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// Every driver of the registry; "mouse" with a PointerWindow. Belongs to the main thread, which
 /// must call `attend` again and again while a servo runs the device on another: a window that
@@ -19,12 +19,12 @@ class OpenedDevice {
  public:
   /// \param plane_mm  sides of the plane that a window shows, > 0
   /// \throws as open_device, and DeviceError if the window that it needs cannot be had
-  OpenedDevice(const std::string& driver, const DeviceSettings& settings, Vec2 plane_mm);
+  OpenedDevice(const std::string& driver, const device::DeviceSettings& settings, Vec2 plane_mm);
   ~OpenedDevice();
   OpenedDevice(const OpenedDevice&) = delete;
   OpenedDevice& operator=(const OpenedDevice&) = delete;
 
-  [[nodiscard]] HapticDevice& device() noexcept { return *device_; }
+  [[nodiscard]] device::HapticDevice& device() noexcept { return *device_; }
   [[nodiscard]] bool has_window() const noexcept { return window_ != nullptr; }
   /// One picture of the window, about every 16 ms; without one, that long a pause.
   void attend();
@@ -32,10 +32,10 @@ class OpenedDevice {
   [[nodiscard]] bool stop_asked() const;
 
  private:
-  PointerExchange exchange_;
-  PacedClock clock_{PacedClock::Time{}};
+  device::PointerExchange exchange_;
+  device::PacedClock clock_{device::PacedClock::Time{}};
   std::unique_ptr<PointerWindow> window_;
-  std::unique_ptr<HapticDevice> device_;
+  std::unique_ptr<device::HapticDevice> device_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

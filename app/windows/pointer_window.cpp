@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 constexpr const char* kTitle = "Touchtrial: pilot with a mouse, visual and not blind";
@@ -57,7 +57,7 @@ double draw_centred(ImDrawList& list, Vec2 top, const std::string& text) {
 
 }  // namespace
 
-PointerWindow::PointerWindow(PointerExchange& exchange, Vec2 plane_mm)
+PointerWindow::PointerWindow(device::PointerExchange& exchange, Vec2 plane_mm)
     : exchange_(exchange), plane_mm_(plane_mm), window_(options_for(plane_mm)) {
   window_.on_pointer([this](const WindowPointer& pointer) { publish(pointer); });
   window_.on_stop_key([this] { stop_asked_ = true; });
@@ -106,7 +106,7 @@ void PointerWindow::draw_frame() {
 }
 
 void PointerWindow::draw_pointer() {
-  const StylusState stylus = exchange_.stylus();
+  const device::StylusState stylus = exchange_.stylus();
   frames_without_news_ = stylus.sequence == shown_ ? frames_without_news_ + 1 : 0;
   shown_ = stylus.sequence;
   const bool is_live = shown_ > 0 && frames_without_news_ < kFramesUntilStale;
@@ -122,4 +122,4 @@ std::string PointerWindow::scale_in_words() const {
   return fmt::format("{:.0f} x {:.0f} mm, {}", plane_mm_.x, plane_mm_.y, scale);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

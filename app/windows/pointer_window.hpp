@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// A blank plane at its true size, and the stylus on it. Nothing else that is drawn depends on a
 /// texture. A plane larger than the screen is shown smaller, and a line below it says so.
@@ -19,7 +19,7 @@ class PointerWindow {
   ///   goes
   /// \param plane_mm  its sides, > 0
   /// \throws DeviceError as GlfwWindow
-  PointerWindow(PointerExchange& exchange, Vec2 plane_mm);
+  PointerWindow(device::PointerExchange& exchange, Vec2 plane_mm);
   /// The device is told that the window has closed.
   ~PointerWindow();
   PointerWindow(const PointerWindow&) = delete;
@@ -43,7 +43,7 @@ class PointerWindow {
   void draw_pointer();
   [[nodiscard]] std::string scale_in_words() const;
 
-  PointerExchange& exchange_;
+  device::PointerExchange& exchange_;
   Vec2 plane_mm_;
   GlfwWindow window_;
   double mm_per_unit_ = 1.0;  ///< of the plane, as drawn
@@ -54,4 +54,4 @@ class PointerWindow {
   bool stop_asked_ = false;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -4,7 +4,7 @@
 
 #include <GLFW/glfw3.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 namespace {
 
 constexpr double kMmPerInch = 25.4;
@@ -89,4 +89,4 @@ double stated_mm_per_unit(int size_mm, int width) noexcept {
   return can_be_true ? mm_per_unit : 0.0;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

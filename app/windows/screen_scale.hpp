@@ -3,7 +3,7 @@
 
 struct GLFWwindow;
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 /// Of the monitor that shows most of a window.
 struct ScreenScale {
@@ -25,4 +25,4 @@ struct ScreenScale {
 ///   to the inch
 [[nodiscard]] double stated_mm_per_unit(int size_mm, int width) noexcept;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

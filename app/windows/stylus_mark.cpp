@@ -2,7 +2,7 @@
 
 #include <imgui.h>
 
-namespace touchtrial {
+namespace touchtrial::app {
 
 void draw_stylus(Vec2 at, bool pressed, bool is_live, float density) {
   constexpr ImU32 kWhite = IM_COL32(255, 255, 255, 255);
@@ -18,4 +18,4 @@ void draw_stylus(Vec2 at, bool pressed, bool is_live, float density) {
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::app

@@ -23,7 +23,7 @@ Case daub4_case_of(const std::string& who, const std::string& input, int size_px
 
 /// The largest error of ll, lh, hl and hh.
 double error_of_bands(const GreyImage& image, const std::array<const Plane<float>*, 4>& bands) {
-  const SubBands truth = daub4_sub_bands(image);
+  const engine::SubBands truth = engine::daub4_sub_bands(image);
   const std::array<const Plane<double>*, 4> truths = {&truth.ll, &truth.lh, &truth.hl, &truth.hh};
   double largest = 0.0;
   for (std::size_t i = 0; i < bands.size(); ++i) {
@@ -35,7 +35,7 @@ double error_of_bands(const GreyImage& image, const std::array<const Plane<float
 struct OurBands {
   explicit OurBands(int size_px) : image(square_of(timed_picture(), size_px)) {}
   GreyImage image;
-  Extraction<float> result;
+  engine::Extraction<float> result;
 };
 
 struct PeerBands {
@@ -77,9 +77,9 @@ Case daub4_case(int size_px) {
   Case one = daub4_case_of(our_name(), "u8", size_px);
   one.make = [=] {
     const auto ours = std::make_shared<OurBands>(size_px);
-    return Job{[=] { extract_sub_bands(ours->image, ours->result); },
+    return Job{[=] { engine::extract_sub_bands(ours->image, ours->result); },
                [=] {
-                 const Extraction<float>& result = ours->result;
+                 const engine::Extraction<float>& result = ours->result;
                  return error_of_bands(ours->image, {&result.sub_band_ll, &result.sub_band_lh,
                                                      &result.sub_band_hl, &result.sub_band_hh});
                }};

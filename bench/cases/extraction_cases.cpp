@@ -56,9 +56,9 @@ struct OurExtraction {
   }
 
   GreyImage image;
-  ExtractionOptions options;
-  WantedPlanes wanted;
-  Extraction<float> result;
+  engine::ExtractionOptions options;
+  engine::WantedPlanes wanted;
+  engine::Extraction<float> result;
 };
 
 struct PeerExtraction {
@@ -104,9 +104,11 @@ Case extraction_case(int size_px, int radius, Extras extras) {
   Case one = extraction_case_of(extras, our_name(), size_px, radius, kOurTolerance);
   one.make = [=] {
     const auto ours = std::make_shared<OurExtraction>(size_px, radius, extras);
-    return Job{
-        [=] { extract_texture_into(ours->image, ours->options, ours->wanted, ours->result); },
-        error_up_to(size_px, [=] { return ours->error(extras); })};
+    return Job{[=] {
+                 engine::extract_texture_into(ours->image, ours->options, ours->wanted,
+                                              ours->result);
+               },
+               error_up_to(size_px, [=] { return ours->error(extras); })};
   };
   return one;
 }

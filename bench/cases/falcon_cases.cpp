@@ -16,9 +16,9 @@ constexpr double kStepMm = 0.1;
 constexpr double kTurnBackMm = 30.0;
 constexpr Vec3 kForceN = {0.3, -0.2, 0.6};
 
-std::vector<falcon::PerLeg> readings_of_a_stroke() {
+std::vector<device::falcon::PerLeg> readings_of_a_stroke() {
   RandomStream random(1, "benchmark falcon");
-  std::vector<falcon::PerLeg> readings;
+  std::vector<device::falcon::PerLeg> readings;
   Vec3 place_mm;
   Vec3 heading = {1.0, 0.0, 0.0};
   while (readings.size() < kReadings) {
@@ -26,7 +26,8 @@ std::vector<falcon::PerLeg> readings_of_a_stroke() {
     if (norm(place_mm) > kTurnBackMm) heading = -1.0 * place_mm;
     heading = (1.0 / norm(heading)) * heading;
     place_mm = place_mm + kStepMm * heading;
-    const auto legs = falcon::inverse_kinematics(falcon::to_native_m(place_mm)).value();
+    const auto legs =
+        device::falcon::inverse_kinematics(device::falcon::to_native_m(place_mm)).value();
     readings.push_back({legs[0].theta1_rad, legs[1].theta1_rad, legs[2].theta1_rad});
   }
   return readings;
@@ -35,16 +36,16 @@ std::vector<falcon::PerLeg> readings_of_a_stroke() {
 struct FalconStroke {
   /// \param warm  each pose is sought from the one before, as the driver does
   void run(bool warm) {
-    for (const falcon::PerLeg& reading : readings) {
-      const falcon::Pose pose =
-          falcon::forward_kinematics(reading, warm ? last_m : falcon::kCentreM);
+    for (const device::falcon::PerLeg& reading : readings) {
+      const device::falcon::Pose pose =
+          device::falcon::forward_kinematics(reading, warm ? last_m : device::falcon::kCentreM);
       last_m = pose.native_m;
-      sum_nm += falcon::torques_nm(pose.jacobian, kForceN).value()[0];
+      sum_nm += device::falcon::torques_nm(pose.jacobian, kForceN).value()[0];
     }
   }
 
-  std::vector<falcon::PerLeg> readings = readings_of_a_stroke();
-  Vec3 last_m = falcon::kCentreM;
+  std::vector<device::falcon::PerLeg> readings = readings_of_a_stroke();
+  Vec3 last_m = device::falcon::kCentreM;
   double sum_nm = 0.0;  ///< so that no pose can be left out
 };
 

@@ -37,7 +37,7 @@ struct OurTransform {
   }
 
   Plane<Real> samples;
-  RealFft<Real> fft;
+  engine::RealFft<Real> fft;
 };
 
 template <typename Real>

@@ -35,22 +35,23 @@ struct Stroke {
   std::vector<Vec3> places_mm;
 };
 
-TextureField field_of(const GreyImage& image, const RenderingOptions& options) {
-  return make_texture_field(extract_texture<double>(image, {}).texture, options);
+engine::TextureField field_of(const GreyImage& image, const engine::RenderingOptions& options) {
+  return engine::make_texture_field(engine::extract_texture<double>(image, {}).texture, options);
 }
 
-RenderingOptions options_of(ModelKind model) {
-  RenderingOptions options;
+engine::RenderingOptions options_of(engine::ModelKind model) {
+  engine::RenderingOptions options;
   options.model = model;
   return options;
 }
 
 struct ModelStroke {
-  explicit ModelStroke(ModelKind kind)
+  explicit ModelStroke(engine::ModelKind kind)
       : options(options_of(kind)),
         image(square_of(timed_picture(), kUsualSize_px)),
         field(field_of(image, options)),
-        model(field.view(), options, choose_gains(std::array{field.view()}, options).of_field[0]),
+        model(field.view(), options,
+              engine::choose_gains(std::array{field.view()}, options).of_field[0]),
         stroke(kUsualSize_px * options.pitch_mm) {}
 
   void run() {
@@ -62,16 +63,16 @@ struct ModelStroke {
     }
   }
 
-  RenderingOptions options;
+  engine::RenderingOptions options;
   GreyImage image;
-  TextureField field;
-  RenderingModel model;
-  Bristle touch;
+  engine::TextureField field;
+  engine::RenderingModel model;
+  engine::Bristle touch;
   Stroke stroke;
   Vec3 sum_n;  ///< so that no evaluation can be left out
 };
 
-Case force_case(ModelKind model, const char* name) {
+Case force_case(engine::ModelKind model, const char* name) {
   Case one;
   one.work = "force evaluation";
   one.who = our_name() + ", " + name;
@@ -85,11 +86,11 @@ Case force_case(ModelKind model, const char* name) {
 }  // namespace
 
 Case paper_force_case() {
-  return force_case(ModelKind::paper, "paper");
+  return force_case(engine::ModelKind::paper, "paper");
 }
 
 Case surface_force_case() {
-  return force_case(ModelKind::surface, "surface");
+  return force_case(engine::ModelKind::surface, "surface");
 }
 
 Cases force_cases() {

@@ -25,9 +25,9 @@ constexpr double kPeerTolerance = 2e-3;
 /// An image with the orders that the adaptive method gives it.
 struct OrderedImage {
   explicit OrderedImage(int size_px) : image(square_of(timed_picture(), size_px)) {
-    WantedPlanes wanted;
+    engine::WantedPlanes wanted;
     wanted.order = true;
-    orders = extract_texture<float>(image, {}, wanted).order;
+    orders = engine::extract_texture<float>(image, {}, wanted).order;
   }
 
   [[nodiscard]] Plane<double> half_orders() const {
@@ -64,10 +64,12 @@ struct AdaptiveFilter {
 Job adaptive_job(int size_px, int radius) {
   const auto filter = std::make_shared<AdaptiveFilter>(size_px);
   return {
-      [=] { filter_adaptive(filter->input.image, radius, filter->input.orders, filter->texture); },
+      [=] {
+        engine::filter_adaptive(filter->input.image, radius, filter->input.orders, filter->texture);
+      },
       [=] {
         const auto truth =
-            gl_texture<double>(filter->input.image, radius, filter->input.half_orders());
+            engine::gl_texture<double>(filter->input.image, radius, filter->input.half_orders());
         return largest_difference(filter->texture, truth);
       }};
 }
@@ -75,21 +77,22 @@ Job adaptive_job(int size_px, int radius) {
 struct FixedFilter {
   explicit FixedFilter(int size_px) : image(square_of(timed_picture(), size_px)) {}
   GreyImage image;
-  Extraction<float> result;
+  engine::Extraction<float> result;
 };
 
 Case fixed_filter_case(int size_px, int radius) {
   Case one = our_case("G-L fixed", size_px, radius, {});
   one.make = [=] {
     const auto filter = std::make_shared<FixedFilter>(size_px);
-    ExtractionOptions options;
-    options.method = Method::fixed;
+    engine::ExtractionOptions options;
+    options.method = engine::Method::fixed;
     options.radius = radius;
     options.order = kFixedOrder;
-    return Job{[=] { extract_texture_into(filter->image, options, {}, filter->result); },
+    return Job{[=] { engine::extract_texture_into(filter->image, options, {}, filter->result); },
                [=] {
-                 return largest_difference(filter->result.texture,
-                                           gl_texture<double>(filter->image, radius, kFixedOrder));
+                 return largest_difference(
+                     filter->result.texture,
+                     engine::gl_texture<double>(filter->image, radius, kFixedOrder));
                }};
   };
   return one;
@@ -104,7 +107,7 @@ struct Filter2d {
 
   [[nodiscard]] double error(int radius) const {
     return largest_difference(plane_of<float>(texture),
-                              gl_texture<double>(image, radius, kFixedOrder));
+                              engine::gl_texture<double>(image, radius, kFixedOrder));
   }
 
   GreyImage image;
@@ -167,12 +170,13 @@ Case double_case(int size_px, int radius) {
   one.make = [=] {
     const auto naive = std::make_shared<Naive<double>>(size_px);
     const auto half = std::make_shared<Plane<double>>(naive->input.half_orders());
-    return Job{[=] { naive->texture = gl_texture<double>(naive->input.image, radius, *half); },
-               [=] {
-                 Plane<long double> truth(size_px, size_px);
-                 naive_mask_texture(naive->input.image, naive->orders, radius, truth);
-                 return largest_difference(naive->texture, truth);
-               }};
+    return Job{
+        [=] { naive->texture = engine::gl_texture<double>(naive->input.image, radius, *half); },
+        [=] {
+          Plane<long double> truth(size_px, size_px);
+          naive_mask_texture(naive->input.image, naive->orders, radius, truth);
+          return largest_difference(naive->texture, truth);
+        }};
   };
   return one;
 }

@@ -26,8 +26,8 @@ struct Counted {
   [[nodiscard]] double error() const {
     double largest = 0.0;
     for (std::size_t i = 0; i < table.size(); ++i) {
-      const GlcmStatistics truth =
-          reference::glcm_statistics(image, kGlcmOffsets[i].dy, kGlcmOffsets[i].dx);
+      const engine::GlcmStatistics truth =
+          reference::glcm_statistics(image, engine::kGlcmOffsets[i].dy, engine::kGlcmOffsets[i].dx);
       largest = std::max(
           {largest, relative(table[i].angular_second_moment, truth.angular_second_moment),
            relative(table[i].entropy, truth.entropy), relative(table[i].contrast, truth.contrast),
@@ -37,7 +37,7 @@ struct Counted {
   }
 
   GreyImage image;
-  GlcmTable table{};
+  engine::GlcmTable table{};
 };
 
 template <class Measure>
@@ -54,7 +54,7 @@ Case glcm_case_of(const std::string& who, int size_px, Measure measure) {
 
 Case glcm_case(int size_px) {
   return glcm_case_of(our_name(), size_px,
-                      [](const GreyImage& image) { return glcm_statistics(image); });
+                      [](const GreyImage& image) { return engine::glcm_statistics(image); });
 }
 
 Case pair_loop_case(int size_px) {

@@ -21,15 +21,15 @@ constexpr double kTolerance = 1e-4;
 struct TexturePair {
   explicit TexturePair(int size_px) {
     const GreyImage image = square_of(timed_picture(), size_px);
-    ExtractionOptions options;
-    a = texture_picture(extract_texture<float>(image, options).texture);
-    options.method = Method::fixed;
+    engine::ExtractionOptions options;
+    a = engine::texture_picture(engine::extract_texture<float>(image, options).texture);
+    options.method = engine::Method::fixed;
     options.order = kFixedOrder;
-    b = texture_picture(extract_texture<float>(image, options).texture);
+    b = engine::texture_picture(engine::extract_texture<float>(image, options).texture);
   }
 
   [[nodiscard]] double error() const {
-    const double truth = a.width() > kLargestReference_px ? ms_ssim<double>(a, b).unit
+    const double truth = a.width() > kLargestReference_px ? engine::ms_ssim<double>(a, b).unit
                                                           : reference::ms_ssim(a, b).unit;
     return std::abs(similarity - truth);
   }
@@ -64,7 +64,7 @@ Case ms_ssim_case(int size_px) {
   const bool in_double = sizeof(Real) == sizeof(double);
   return ms_ssim_case_of(
       our_name() + (in_double ? ", double" : ""), size_px,
-      [](const TexturePair& pair) { return ms_ssim<Real>(pair.a, pair.b).unit; });
+      [](const TexturePair& pair) { return engine::ms_ssim<Real>(pair.a, pair.b).unit; });
 }
 
 template Case ms_ssim_case<float>(int);

@@ -35,10 +35,11 @@ Case tv_gabor_case_of(const std::string& who, int size_px, Decompose decompose) 
   return one;
 }
 
-Case solver_case(const std::string& who, TvGaborAlgorithm algorithm, int size_px, int steps) {
+Case solver_case(const std::string& who, engine::TvGaborAlgorithm algorithm, int size_px,
+                 int steps) {
   return tv_gabor_case_of(who + ", " + std::to_string(steps) + " steps", size_px,
                           [=](const GreyImage& image) {
-                            TvGaborCourse<float> course(image, {}, algorithm);
+                            engine::TvGaborCourse<float> course(image, {}, algorithm);
                             course.advance(steps);
                             return course.point().texture;
                           });
@@ -47,18 +48,18 @@ Case solver_case(const std::string& who, TvGaborAlgorithm algorithm, int size_px
 /// As extraction calls it, until the gap is 1e-5.
 Case default_stop_case(int size_px) {
   return tv_gabor_case_of(our_name() + ", default stop", size_px, [](const GreyImage& image) {
-    return tv_gabor<float>(image, {}).texture;
+    return engine::tv_gabor<float>(image, {}).texture;
   });
 }
 
 }  // namespace
 
 Case admm_case(int size_px, int steps) {
-  return solver_case(our_name(), TvGaborAlgorithm::admm, size_px, steps);
+  return solver_case(our_name(), engine::TvGaborAlgorithm::admm, size_px, steps);
 }
 
 Case fixed_point_case(int size_px, int steps) {
-  return solver_case("fixed point", TvGaborAlgorithm::fixed_point, size_px, steps);
+  return solver_case("fixed point", engine::TvGaborAlgorithm::fixed_point, size_px, steps);
 }
 
 Cases tv_gabor_cases(const Scope& scope) {
@@ -66,7 +67,7 @@ Cases tv_gabor_cases(const Scope& scope) {
   for (const int size_px : scope.sizes_px) {
     if (size_px > kLargest_px) continue;
     cases.push_back(default_stop_case(size_px));
-    cases.push_back(solver_case("FISTA", TvGaborAlgorithm::fista, size_px, kFistaSteps));
+    cases.push_back(solver_case("FISTA", engine::TvGaborAlgorithm::fista, size_px, kFistaSteps));
   }
   return cases;
 }

@@ -116,7 +116,8 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-Worst stroke_all(const std::vector<Plane<double>>& textures, const RenderingOptions& options) {
+Worst stroke_all(const std::vector<Plane<double>>& textures,
+                 const engine::RenderingOptions& options) {
   std::vector<double> vibration;
   std::vector<double> lost;
   for (const Plane<double>& texture : textures) {
@@ -137,11 +138,11 @@ std::string sweep_texture(const std::vector<Plane<double>>& textures) {
   std::puts(
       "\nmodel    N/mm  vibration mm/s at 2 mm/s: median, largest   "
       "lost contacts/s at 100 mm/s: median, largest");
-  for (const ModelKind model : {ModelKind::paper, ModelKind::surface}) {
-    const char* name = model == ModelKind::paper ? "paper" : "surface";
+  for (const engine::ModelKind model : {engine::ModelKind::paper, engine::ModelKind::surface}) {
+    const char* name = model == engine::ModelKind::paper ? "paper" : "surface";
     data += fmt::format("${} << EOD\n", name);
     for (const double stiffness : kTextureNPerMm) {
-      RenderingOptions options;
+      engine::RenderingOptions options;
       options.model = model;
       options.texture_stiffness_n_per_mm = stiffness;
       const Worst worst = stroke_all(textures, options);
@@ -198,19 +199,19 @@ Plane<double> middle_of(const Plane<double>& texture) {
 std::vector<Plane<double>> textures_of(const std::filesystem::path& stimuli) {
   std::vector<Plane<double>> textures;
   for (const char* name : kTextures) {
-    const GreyImage image = read_grey_image(stimuli / (std::string(name) + ".png"));
-    textures.push_back(middle_of(extract_texture<double>(image, {}).texture));
+    const GreyImage image = engine::read_grey_image(stimuli / (std::string(name) + ".png"));
+    textures.push_back(middle_of(engine::extract_texture<double>(image, {}).texture));
   }
   return textures;
 }
 
 void run(const std::filesystem::path& stimuli, const std::filesystem::path& out, bool png) {
-  require_gnuplot();
+  analysis::require_gnuplot();
   const std::string ending = png ? ".png" : ".svg";
-  draw_with_gnuplot(draw_wall(png), out / ("passivity-stiffness" + ending));
-  draw_with_gnuplot(draw_wall_damping(png), out / ("passivity-damping" + ending));
+  analysis::draw_with_gnuplot(draw_wall(png), out / ("passivity-stiffness" + ending));
+  analysis::draw_with_gnuplot(draw_wall_damping(png), out / ("passivity-damping" + ending));
   std::fflush(stdout);
-  draw_with_gnuplot(draw_texture(png, textures_of(stimuli)), out / ("chatter" + ending));
+  analysis::draw_with_gnuplot(draw_texture(png, textures_of(stimuli)), out / ("chatter" + ending));
 }
 
 }  // namespace

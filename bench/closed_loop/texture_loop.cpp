@@ -33,19 +33,19 @@ class HighPass {
 
  private:
   static constexpr double kShare =
-      2.0 * std::numbers::pi * kCutHz / (2.0 * std::numbers::pi * kCutHz + kServoRateHz);
+      2.0 * std::numbers::pi * kCutHz / (2.0 * std::numbers::pi * kCutHz + device::kServoRateHz);
   std::array<Vec3, 2> slow_{};
 };
 
-class ChatterSink final : public SampleSink {
+class ChatterSink final : public device::SampleSink {
  public:
   explicit ChatterSink(double push_n) : push_n_(push_n) {}
 
-  void record(const ServoSample& sample) noexcept override {
-    const Vec3 fast = high_pass_.of(kServoRateHz * (sample.position_mm - before_mm_));
+  void record(const device::ServoSample& sample) noexcept override {
+    const Vec3 fast = high_pass_.of(device::kServoRateHz * (sample.position_mm - before_mm_));
     before_mm_ = sample.position_mm;
     const bool touches = sample.force_n.z > 0.0;
-    if (static_cast<double>(sample.tick) >= kLandingS * kServoRateHz) {
+    if (static_cast<double>(sample.tick) >= kLandingS * device::kServoRateHz) {
       ++ticks_;
       power_ += fast.x * fast.x + fast.y * fast.y + fast.z * fast.z;
       lost_ += touched_ && !touches ? 1 : 0;
@@ -56,7 +56,7 @@ class ChatterSink final : public SampleSink {
 
   [[nodiscard]] Chatter chatter() const {
     const auto ticks = static_cast<double>(std::max<std::int64_t>(ticks_, 1));
-    return {std::sqrt(power_ / ticks), static_cast<double>(lost_) * kServoRateHz / ticks,
+    return {std::sqrt(power_ / ticks), static_cast<double>(lost_) * device::kServoRateHz / ticks,
             deviation_n_};
   }
 
@@ -71,33 +71,33 @@ class ChatterSink final : public SampleSink {
   double deviation_n_ = 0.0;
 };
 
-SimulatedHand stroking_hand(const PlaneGeometry& plane, const TextureStroke& stroke) {
-  HandOptions hand;
+device::SimulatedHand stroking_hand(const PlaneGeometry& plane, const TextureStroke& stroke) {
+  device::HandOptions hand;
   hand.push_n = stroke.push_n;
   hand.explore_s = stroke.time_s;
-  ExplorationOptions path;
+  device::ExplorationOptions path;
   path.slowest_mm_s = stroke.speed_mm_s;
   path.fastest_mm_s = stroke.speed_mm_s;
   path.duration_s = stroke.time_s;
   RandomStream random(stroke.seed, "closed loop: stroke");
-  return {hand, ExplorationPath(plane, path, random)};
+  return {hand, device::ExplorationPath(plane, path, random)};
 }
 
 }  // namespace
 
-Chatter stroke_texture(const Plane<double>& texture, const RenderingOptions& options,
+Chatter stroke_texture(const Plane<double>& texture, const engine::RenderingOptions& options,
                        const TextureStroke& stroke) {
-  const TextureField field = make_texture_field(texture, options);
-  const FieldView view = field.view();
-  const Gains gains = choose_gains({&view, 1}, options).of_field.front();
-  const RenderingModel model(view, options, gains);
-  SimulatedHand hand = stroking_hand(view.geometry, stroke);
-  ModelForce force(model);
+  const engine::TextureField field = engine::make_texture_field(texture, options);
+  const engine::FieldView view = field.view();
+  const engine::Gains gains = engine::choose_gains({&view, 1}, options).of_field.front();
+  const engine::RenderingModel model(view, options, gains);
+  device::SimulatedHand hand = stroking_hand(view.geometry, stroke);
+  session::ModelForce force(model);
   ChatterSink sink(stroke.push_n);
-  const ServoReport report = run_servo_in_virtual_time(hand, force, sink, {});
-  if (report.end == ServoEnd::fault) {
+  const device::ServoReport report = device::run_servo_in_virtual_time(hand, force, sink, {});
+  if (report.end == device::ServoEnd::fault) {
     throw std::runtime_error("closed loop: the run ended as a fault: " +
-                             std::string(name_of(report.fault)));
+                             std::string(device::name_of(report.fault)));
   }
   return sink.chatter();
 }

@@ -28,7 +28,8 @@ struct Chatter {
 /// \param texture  T, as extracted; \param options  whose gains come from the stiffness budget
 /// \throws std::invalid_argument as make_texture_field and choose_gains
 /// \throws std::runtime_error if the run ended as a fault, which is named
-[[nodiscard]] Chatter stroke_texture(const Plane<double>& texture, const RenderingOptions& options,
+[[nodiscard]] Chatter stroke_texture(const Plane<double>& texture,
+                                     const engine::RenderingOptions& options,
                                      const TextureStroke& stroke = {});
 
 }  // namespace touchtrial::bench

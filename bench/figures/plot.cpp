@@ -53,7 +53,7 @@ std::string plot_of(const std::vector<Curve>& curves, const std::string& style) 
     plot += fmt::format("{}$curve{} with {} lc rgb '{}' pt {} ps 1.1 lw 1.8 title {}",
                         plot.empty() ? "plot " : ", ", i, style,
                         kColours[static_cast<std::size_t>(curve.colour)],
-                        static_cast<int>(curve.mark), gnuplot_string(curve.title));
+                        static_cast<int>(curve.mark), analysis::gnuplot_string(curve.title));
   }
   return data + plot + "\n";
 }

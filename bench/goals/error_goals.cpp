@@ -29,13 +29,13 @@ struct TextureFigures {
 void look_at(const GreyImage& image, int radius, const std::vector<std::string>& targets,
              TextureFigures& figures) {
   const ExtractionTruth truth(image, radius, false);
-  ExtractionOptions options;
+  engine::ExtractionOptions options;
   options.radius = radius;
-  WantedPlanes wanted;
+  engine::WantedPlanes wanted;
   wanted.picture = true;
   for (const std::string& target : targets) {
     const ForcedTarget forced(target);
-    const auto result = extract_texture<float>(image, options, wanted);
+    const auto result = engine::extract_texture<float>(image, options, wanted);
     figures.error_grey = std::max(figures.error_grey, truth.texture_error(result.texture));
     figures.unlike_pixels = std::max(figures.unlike_pixels, truth.unlike_pixels(result.picture));
   }
@@ -78,18 +78,19 @@ std::vector<GoalResult> hard_errors(const std::vector<std::string>& targets) {
 }
 
 double ms_ssim_error(const GreyImage& a, const GreyImage& b) {
-  return std::abs(ms_ssim<float>(a, b).unit - ms_ssim<double>(a, b).unit);
+  return std::abs(engine::ms_ssim<float>(a, b).unit - engine::ms_ssim<double>(a, b).unit);
 }
 
 std::vector<GoalResult> ms_ssim_errors() {
   double on_textures = 0.0;
   for (const Picture& picture : shipped_pictures()) {
-    ExtractionOptions options;
+    engine::ExtractionOptions options;
     const GreyImage adaptive =
-        texture_picture(extract_texture<float>(picture.image, options).texture);
-    options.method = Method::fixed;
+        engine::texture_picture(engine::extract_texture<float>(picture.image, options).texture);
+    options.method = engine::Method::fixed;
     options.order = kFixedOrder;
-    const GreyImage fixed = texture_picture(extract_texture<float>(picture.image, options).texture);
+    const GreyImage fixed =
+        engine::texture_picture(engine::extract_texture<float>(picture.image, options).texture);
     on_textures = std::max(on_textures, ms_ssim_error(adaptive, fixed));
   }
   const std::vector<Picture> hard = hard_images(kHardSize_px);

@@ -56,16 +56,18 @@ struct StudyFigures {
 
 /// The classification study that comes with the program, 20 participants of 25 trials of 10 s, one
 /// transaction a session, in one thread; by the wall clock, because the disk belongs to it.
-StudyFigures simulate_once(const StudyKey& key, const Pack& pack, const fs::path& database) {
-  const SubjectModel subject = parse_subject_model(default_subject_json(), "default subject");
-  SimulationOptions options;
+StudyFigures simulate_once(const design::StudyKey& key, const engine::Pack& pack,
+                           const fs::path& database) {
+  const session::SubjectModel subject =
+      session::parse_subject_model(app::default_subject_json(), "default subject");
+  session::SimulationOptions options;
   options.participants = kParticipants;
   const auto start = std::chrono::steady_clock::now();
-  SimulationReport report;
+  session::SimulationReport report;
   {
-    StudyStore store = StudyStore::create(database, commitment_of(key, pack, true, false),
-                                          std::chrono::nanoseconds(0));
-    report = simulate_study(key, pack, subject, options, store);
+    store::StudyStore store = store::StudyStore::create(
+        database, session::commitment_of(key, pack, true, false), std::chrono::nanoseconds(0));
+    report = session::simulate_study(key, pack, subject, options, store);
   }
   const std::chrono::duration<double, std::micro> us = std::chrono::steady_clock::now() - start;
   return {us.count(), static_cast<double>(fs::file_size(database)) / report.presentations};
@@ -88,12 +90,13 @@ std::vector<GoalResult> results_of(const StudyFigures& figures) {
 
 std::vector<GoalResult> measure_study(int rounds) {
   const ScratchFolder folder;
-  const Study study = load_study(fs::path(TOUCHTRIAL_SOURCE_DIR) / "config/classification.json");
+  const design::Study study =
+      design::load_study(fs::path(TOUCHTRIAL_SOURCE_DIR) / "config/classification.json");
   SeededEntropy entropy(study.seed);
-  StudyKey key = make_study_key(study, entropy, true);
+  design::StudyKey key = design::make_study_key(study, entropy, true);
   key.pack_folder = folder.path() / "pack";
-  prepare_pack(key, key.pack_folder, {});
-  const Pack pack(key.pack_folder);
+  design::prepare_pack(key, key.pack_folder, {});
+  const engine::Pack pack(key.pack_folder);
   std::vector<double> times_us;
   StudyFigures figures;
   for (int round = 0; round < rounds; ++round) {

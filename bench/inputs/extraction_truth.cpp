@@ -13,14 +13,14 @@ namespace {
 constexpr double kBranchWidth = 1e-3;
 constexpr double kTieWidth_grey = 1e-4;
 
-Extraction<double> extracted(const GreyImage& image, int radius, bool with_force) {
-  ExtractionOptions options;
+engine::Extraction<double> extracted(const GreyImage& image, int radius, bool with_force) {
+  engine::ExtractionOptions options;
   options.radius = radius;
-  WantedPlanes wanted;
+  engine::WantedPlanes wanted;
   wanted.csgv = true;
   wanted.picture = true;
   wanted.force = with_force;
-  return extract_texture<double>(image, options, wanted);
+  return engine::extract_texture<double>(image, options, wanted);
 }
 
 bool is_near_tie(double texture) {
@@ -35,8 +35,8 @@ ExtractionTruth::ExtractionTruth(const GreyImage& image, int radius, bool with_f
 
 bool ExtractionTruth::is_at_branch(int y, int x) const {
   const double csgv = truth_.csgv.at(y, x);
-  return std::abs(csgv - kFlatBelowCsgv) < kBranchWidth ||
-         std::abs(csgv - kSteepAboveCsgv) < kBranchWidth;
+  return std::abs(csgv - engine::kFlatBelowCsgv) < kBranchWidth ||
+         std::abs(csgv - engine::kSteepAboveCsgv) < kBranchWidth;
 }
 
 /// Of the pixel or a neighbour. \pre inside the edge

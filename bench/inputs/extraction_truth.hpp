@@ -26,7 +26,7 @@ class ExtractionTruth {
   [[nodiscard]] bool is_at_branch(int y, int x) const;
   [[nodiscard]] bool is_near_branch(int y, int x) const;
 
-  Extraction<double> truth_;
+  engine::Extraction<double> truth_;
 };
 
 /// The same, kept until another is asked for: in double a large image takes seconds.

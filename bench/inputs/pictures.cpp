@@ -26,7 +26,7 @@ Picture drawn(const std::string& name, int size_px, LevelAt level_at) {
 }
 
 GreyImage& chosen_picture() {
-  static GreyImage picture = read_grey_image(kStimuli / "bark.png");
+  static GreyImage picture = engine::read_grey_image(kStimuli / "bark.png");
   return picture;
 }
 
@@ -34,11 +34,11 @@ GreyImage& chosen_picture() {
 
 std::vector<Picture> shipped_pictures() {
   std::vector<Picture> pictures;
-  for (const StimulusRecipe& recipe : stimulus_recipes()) {
-    if (recipe.kind == StimulusKind::flat) continue;
+  for (const stimuli::StimulusRecipe& recipe : stimuli::stimulus_recipes()) {
+    if (recipe.kind == stimuli::StimulusKind::flat) continue;
     const std::string label(recipe.label);
-    pictures.push_back(
-        {label, recipe.kind == StimulusKind::object, read_grey_image(kStimuli / (label + ".png"))});
+    pictures.push_back({label, recipe.kind == stimuli::StimulusKind::object,
+                        engine::read_grey_image(kStimuli / (label + ".png"))});
   }
   std::stable_partition(pictures.begin(), pictures.end(),
                         [](const Picture& picture) { return !picture.has_ground; });
@@ -59,9 +59,9 @@ std::vector<Picture> hard_images(int size_px) {
 GreyImage square_of(const GreyImage& picture, int size_px) {
   GreyImage square(size_px, size_px);
   for (int y = 0; y < size_px; ++y) {
-    const auto from = picture.row(symmetric_index(y, picture.height()));
+    const auto from = picture.row(engine::symmetric_index(y, picture.height()));
     for (int x = 0; x < size_px; ++x) {
-      square.at(y, x) = from[static_cast<std::size_t>(symmetric_index(x, picture.width()))];
+      square.at(y, x) = from[static_cast<std::size_t>(engine::symmetric_index(x, picture.width()))];
     }
   }
   return square;
@@ -72,7 +72,7 @@ const GreyImage& timed_picture() {
 }
 
 void choose_timed_picture(const std::filesystem::path& path) {
-  chosen_picture() = read_grey_image(path);
+  chosen_picture() = engine::read_grey_image(path);
 }
 
 }  // namespace touchtrial::bench

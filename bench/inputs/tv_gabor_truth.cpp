@@ -19,7 +19,7 @@ const Plane<double>& tv_gabor_truth(const GreyImage& image) {
   };
   static std::optional<Remembered> last;
   if (!last || last->image != image) {
-    TvGaborCourse<double> course(image, {}, TvGaborAlgorithm::admm);
+    engine::TvGaborCourse<double> course(image, {}, engine::TvGaborAlgorithm::admm);
     course.advance(kSteps);
     last = Remembered{image, course.point().texture};
   }

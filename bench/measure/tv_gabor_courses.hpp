@@ -26,7 +26,7 @@ struct SolverCourse {
 /// \param steps  between two looks \param looks  how many \param image  not flat
 template <typename Real>
 [[nodiscard]] std::vector<CoursePoint> watch_course(const GreyImage& image,
-                                                    TvGaborAlgorithm algorithm, int steps,
+                                                    engine::TvGaborAlgorithm algorithm, int steps,
                                                     int looks);
 
 /// Steps that ADMM in single precision takes to come this close, in tens; nothing if a few hundred

@@ -36,9 +36,9 @@ Real masked(const GreyImage& image, int y, int x, int radius, const Mask<Real>& 
   Real sum = 0;
   std::size_t i = 0;
   for (int dy = -radius; dy <= radius; ++dy) {
-    const auto row = image.row(symmetric_index(y + dy, image.height()));
+    const auto row = image.row(engine::symmetric_index(y + dy, image.height()));
     for (int dx = -radius; dx <= radius; ++dx) {
-      const auto column = static_cast<std::size_t>(symmetric_index(x + dx, image.width()));
+      const auto column = static_cast<std::size_t>(engine::symmetric_index(x + dx, image.width()));
       sum += mask[i++] * static_cast<Real>(row[column]);
     }
   }

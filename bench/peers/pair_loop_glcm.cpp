@@ -39,11 +39,11 @@ Moments moments_of(const cv::Mat& p) {
   return moments;
 }
 
-GlcmStatistics statistics_of(const cv::Mat& counts) {
+engine::GlcmStatistics statistics_of(const cv::Mat& counts) {
   cv::Mat p;
   counts.convertTo(p, CV_64F, 1.0 / cv::sum(counts)[0]);
   const Moments moments = moments_of(p);
-  GlcmStatistics statistics{0.0, 0.0, 0.0, 0.0, 0.0};
+  engine::GlcmStatistics statistics{0.0, 0.0, 0.0, 0.0, 0.0};
   for (int i = 0; i < p.rows; ++i) {
     const auto* const row = p.ptr<double>(i);
     for (int j = 0; j < p.cols; ++j) {
@@ -61,10 +61,11 @@ GlcmStatistics statistics_of(const cv::Mat& counts) {
 
 }  // namespace
 
-GlcmTable pair_loop_glcm(const cv::Mat& image) {
-  GlcmTable table{};
-  for (std::size_t i = 0; i < kGlcmOffsets.size(); ++i) {
-    table[i] = statistics_of(counts_of(image, kGlcmOffsets[i].dy, kGlcmOffsets[i].dx));
+engine::GlcmTable pair_loop_glcm(const cv::Mat& image) {
+  engine::GlcmTable table{};
+  for (std::size_t i = 0; i < engine::kGlcmOffsets.size(); ++i) {
+    table[i] =
+        statistics_of(counts_of(image, engine::kGlcmOffsets[i].dy, engine::kGlcmOffsets[i].dx));
   }
   return table;
 }

@@ -8,6 +8,6 @@
 namespace touchtrial::bench {
 
 /// \param image  8 bit
-[[nodiscard]] GlcmTable pair_loop_glcm(const cv::Mat& image);
+[[nodiscard]] engine::GlcmTable pair_loop_glcm(const cv::Mat& image);
 
 }  // namespace touchtrial::bench

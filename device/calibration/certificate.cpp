@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 Vec3 direction_of(CalibrationAxis axis) noexcept {
@@ -76,4 +76,4 @@ std::string check_certificate(const Certificate& certificate, const DeviceInfo& 
          device.name;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 inline constexpr double kStandardGravityMS2 = 9.80665;
 /// A force constant that is further off than this share fails.
@@ -90,4 +90,4 @@ struct ReadCertificate {
 [[nodiscard]] std::string check_certificate(const Certificate& certificate,
                                             const DeviceInfo& device, std::chrono::sys_seconds now);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -10,7 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 constexpr std::string_view kKind = "touchtrial device calibration 1";
@@ -161,4 +161,4 @@ ReadCertificate read_certificate(const std::filesystem::path& path) {
   return {read_object(parse_strict_json(text_of(content), path.string())), sha256(content)};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 constexpr double kSpringNPerMm = 0.4;
@@ -62,4 +62,4 @@ HoldFigures HoldMeasurement::figures() const noexcept {
   return figures;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -5,7 +5,7 @@
 #include "core/vec.hpp"
 #include "device/servo/servo.hpp"
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// Means over the steady end of a run, device frame.
 struct HoldFigures {
@@ -53,4 +53,4 @@ class HoldMeasurement final : public ForceSource, public SampleSink {
   double squares_mm2_ = 0.0;  ///< sum, about the place
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -2,7 +2,7 @@
 
 #include <type_traits>
 
-namespace touchtrial::dhd {
+namespace touchtrial::device::dhd {
 namespace {
 
 template <typename Pointer>
@@ -40,4 +40,4 @@ Api load_api(const DynamicLibrary& library) {
   return api;
 }
 
-}  // namespace touchtrial::dhd
+}  // namespace touchtrial::device::dhd

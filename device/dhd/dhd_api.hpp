@@ -7,7 +7,7 @@
 #include <array>
 #include <cstddef>
 
-namespace touchtrial::dhd {
+namespace touchtrial::device::dhd {
 
 /// What most functions return: below 0 an error, 0 done, or one of these.
 constexpr int kTimeGuard = 1;       ///< asked too soon: the values are those of before
@@ -57,4 +57,4 @@ struct Api {
 /// \throws DeviceError if a function is missing
 [[nodiscard]] Api load_api(const DynamicLibrary& library);
 
-}  // namespace touchtrial::dhd
+}  // namespace touchtrial::device::dhd

@@ -4,7 +4,7 @@
 #include "device/dhd/dhd_session.hpp"
 #include "device/platform/realtime.hpp"
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// The loop ends before the session that it talks through.
 struct DhdDevice::Running {
@@ -50,4 +50,4 @@ DeviceReadiness DhdDevice::readiness() const noexcept {
   return running_->loop->readiness();
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -6,7 +6,7 @@
 
 #include <memory>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// The driver "dhd". A thread of its own polls the device at 4 kHz; its velocity threshold and
 /// watchdog stay on beneath our safety chain, its time guard is set, gravity compensation and the
@@ -36,4 +36,4 @@ class DhdDevice final : public HapticDevice {
   std::unique_ptr<Running> running_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <chrono>
 
-namespace touchtrial::dhd {
+namespace touchtrial::device::dhd {
 namespace {
 
 constexpr std::chrono::nanoseconds kPeriod{static_cast<std::int64_t>(1e9 / kPollRateHz)};
@@ -103,4 +103,4 @@ void Loop::fail_call() noexcept {
   link_.fail(there ? DeviceFault::driver : DeviceFault::link_lost);
 }
 
-}  // namespace touchtrial::dhd
+}  // namespace touchtrial::device::dhd

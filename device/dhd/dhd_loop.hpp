@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <thread>
 
-namespace touchtrial::dhd {
+namespace touchtrial::device::dhd {
 
 /// How often the device is asked: about what its USB link gives.
 constexpr double kPollRateHz = 4000.0;
@@ -50,4 +50,4 @@ class Loop {
   std::thread thread_;
 };
 
-}  // namespace touchtrial::dhd
+}  // namespace touchtrial::device::dhd

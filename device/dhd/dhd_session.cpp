@@ -7,7 +7,7 @@
 #include <locale>
 #include <sstream>
 
-namespace touchtrial::dhd {
+namespace touchtrial::device::dhd {
 namespace {
 
 char open_device_of(const Library& library, int index) {
@@ -102,4 +102,4 @@ void Session::expect(int result, const std::string& what) const {
                              "; run the vendor's diagnostic"));
 }
 
-}  // namespace touchtrial::dhd
+}  // namespace touchtrial::device::dhd

@@ -7,7 +7,7 @@
 
 #include <string>
 
-namespace touchtrial::dhd {
+namespace touchtrial::device::dhd {
 
 /// For a library that cannot be used.
 constexpr const char* kRemedy =
@@ -55,4 +55,4 @@ class Session {
   char device_;
 };
 
-}  // namespace touchtrial::dhd
+}  // namespace touchtrial::device::dhd

@@ -4,7 +4,7 @@
 #include "device/dhd/dhd_device.hpp"
 #include "device/dhd/dhd_session.hpp"
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 DeviceListing empty_listing(const DhdSettings& settings) {
@@ -57,4 +57,4 @@ DeviceDriver dhd_driver() {
           std::nullopt, false};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

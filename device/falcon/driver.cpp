@@ -5,7 +5,7 @@
 #include "device/falcon/falcon_firmware.hpp"
 #include "device/falcon/usb_falcon.hpp"
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 /// What is wrong with the firmware's file; empty if nothing is.
@@ -50,4 +50,4 @@ DeviceDriver falcon_driver() {
   return {"falcon", "Novint Falcon, over USB", list_falcons, open_falcon, falcon::kFalconWorkspace};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -3,7 +3,7 @@
 #include "core/errors.hpp"
 #include "device/falcon/falcon_firmware.hpp"
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 using std::chrono::milliseconds;
@@ -138,4 +138,4 @@ void FalconDevice::say_farewell() noexcept {
   }
 }
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

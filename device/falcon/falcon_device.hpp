@@ -15,7 +15,7 @@
 #include <memory>
 #include <thread>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 
 /// The ball that every Falcon reaches.
 inline constexpr Workspace kFalconWorkspace = {
@@ -94,4 +94,4 @@ class FalconDevice final : public HapticDevice {
 /// \throws DeviceError if the device is gone
 [[nodiscard]] bool falcon_answers(FtdiTransport& transport);
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

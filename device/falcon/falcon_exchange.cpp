@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 
 FalconExchange::FalconExchange(const FalconSettings& settings, DeviceLink& link) noexcept
     : link_(link), gravity_bias_n_(settings.gravity_bias_n), led_order_(settings.led_order) {}
@@ -85,4 +85,4 @@ Packet FalconExchange::command(Time now) noexcept {
   return encode_command(command);
 }
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

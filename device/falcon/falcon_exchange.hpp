@@ -12,7 +12,7 @@
 #include <chrono>
 #include <optional>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 
 /// Belongs to the driver's own thread; the link takes samples to the servo and brings forces.
 /// Nothing here allocates, locks or throws.
@@ -78,4 +78,4 @@ class FalconExchange final : public FtdiStreamSink {
   VelocityEstimate velocity_;
 };
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 using std::chrono::milliseconds;
@@ -69,7 +69,8 @@ bool answers(FtdiTransport& transport, std::span<const std::uint8_t> expected) {
   Bytes bytes;
   for (int idle = 0; idle < kPatiencePackets && bytes.size() < kUsbPacketSize;) {
     idle = receive_more(transport, bytes) ? 0 : idle + 1;
-    if (!std::ranges::search(bytes, expected).empty()) return true;
+    if (std::search(bytes.begin(), bytes.end(), expected.begin(), expected.end()) != bytes.end())
+      return true;
   }
   return false;
 }
@@ -164,4 +165,4 @@ void set_up_running_falcon(FtdiTransport& transport) {
   purge(transport);
 }
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 
 /// Sizes of a file that can be an image: those known have 7,914 and 8,492 bytes.
 constexpr std::size_t kLeastFirmwareBytes = 4'096;
@@ -32,4 +32,4 @@ void load_falcon_firmware(FtdiTransport& transport, std::span<const std::uint8_t
 /// Sets the chip up for talking to loaded firmware: latency 1 ms, running speed, empty buffers.
 void set_up_running_falcon(FtdiTransport& transport);
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -6,7 +6,7 @@
 #include <array>
 #include <numbers>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 
 inline constexpr double kArmM = 0.060;             ///< a
 inline constexpr double kParallelogramM = 0.1025;  ///< b
@@ -48,4 +48,4 @@ struct LegPoint {
           in_leg.z};
 }
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

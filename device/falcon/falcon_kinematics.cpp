@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <limits>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 constexpr double kDegPerCount = 0.0364347;
@@ -230,4 +230,4 @@ Pose forward_kinematics(const PerLeg& theta1_rad, Vec3 start_m) noexcept {
   return pose;
 }
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

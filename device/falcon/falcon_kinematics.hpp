@@ -18,7 +18,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 
 using EncoderCounts = std::array<std::int16_t, 3>;
 using PerLeg = std::array<double, 3>;
@@ -85,4 +85,4 @@ struct Pose {
 ///                 millisecond); if that leads nowhere, the centre is tried
 [[nodiscard]] Pose forward_kinematics(const PerLeg& theta1_rad, Vec3 start_m = kCentreM) noexcept;
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 constexpr std::uint8_t kFirst = '<';
@@ -156,4 +156,4 @@ Vec3 with_gravity_bias(Vec3 force_n, Vec3 bias_n) noexcept {
   return force_n + (size > kMostBiasN ? kMostBiasN / size : 1.0) * bias_n;
 }
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -18,7 +18,7 @@
 #include <optional>
 #include <span>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 
 inline constexpr std::size_t kPacketSize = 16;
 using Packet = std::array<std::uint8_t, kPacketSize>;
@@ -118,4 +118,4 @@ class FalconStream {
 /// \param bias_n  device frame; a norm beyond 1 N is cut to that
 [[nodiscard]] Vec3 with_gravity_bias(Vec3 force_n, Vec3 bias_n) noexcept;
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

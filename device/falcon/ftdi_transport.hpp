@@ -11,7 +11,7 @@
 #include <span>
 #include <string>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 
 /// The chip's vendor requests (request type 0x40, index 0) that the driver uses.
 enum class FtdiRequest : std::uint8_t {
@@ -70,4 +70,4 @@ class FtdiTransport {
   ///@}
 };
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 /// Whether it can be claimed, told by doing so for a moment.
@@ -80,4 +80,4 @@ std::unique_ptr<FtdiTransport> open_usb_falcon(const std::string& serial) {
   return std::make_unique<UsbFtdi>(std::move(context), std::move(handle));
 }
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

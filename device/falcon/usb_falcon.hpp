@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 
 /// A Falcon that is plugged in.
 struct UsbFalcon {
@@ -26,4 +26,4 @@ struct UsbFalcon {
 ///   another program has it
 [[nodiscard]] std::unique_ptr<FtdiTransport> open_usb_falcon(const std::string& serial);
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 constexpr unsigned char kOutEndpoint = 0x02;
@@ -144,4 +144,4 @@ void LIBUSB_CALL UsbFtdi::on_sent(libusb_transfer* transfer) {
   if (self.sink_ != nullptr) self.note(transfer->status);
 }
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

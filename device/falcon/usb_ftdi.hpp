@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 
 class UsbFtdi final : public FtdiTransport {
  public:
@@ -55,4 +55,4 @@ class UsbFtdi final : public FtdiTransport {
   bool lost_ = false;
 };
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

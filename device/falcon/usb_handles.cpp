@@ -6,7 +6,7 @@
 #include <array>
 #include <utility>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 constexpr std::uint16_t kVendor = 0x0403;
@@ -119,4 +119,4 @@ std::string usb_remedy(int error) {
   }
 }
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

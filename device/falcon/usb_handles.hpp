@@ -7,7 +7,7 @@
 
 #include <libusb.h>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 
 struct UsbRelease {
   void operator()(libusb_context* context) const noexcept { libusb_exit(context); }
@@ -50,4 +50,4 @@ class UsbClaim {
 /// What to do about an error of libusb's, as the end of a message: "LIBUSB_ERROR_ACCESS: ...".
 [[nodiscard]] std::string usb_remedy(int error);
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

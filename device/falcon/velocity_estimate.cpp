@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 
 Vec3 VelocityEstimate::add(Vec3 position_mm, Time at) noexcept {
   drop_old(at);
@@ -42,4 +42,4 @@ Vec3 VelocityEstimate::slope_mm_s() const noexcept {
   return spread_s2 > 0.0 ? (1.0 / spread_s2) * product_mm_s : Vec3{};
 }
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -7,7 +7,7 @@
 #include <chrono>
 #include <cstddef>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 
 /// The slope of the straight line that fits the newest five positions best, by least squares and
 /// the times at which they came.
@@ -41,4 +41,4 @@ class VelocityEstimate {
   std::size_t count_ = 0;
 };
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

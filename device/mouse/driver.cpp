@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 std::string variable(const char* name) {
@@ -40,4 +40,4 @@ DeviceDriver mouse_driver() {
           list_mouse, refuse_without_window};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

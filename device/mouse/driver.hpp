@@ -3,7 +3,7 @@
 
 #include "device/registry.hpp"
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// The name of the driver.
 inline constexpr const char* kMouseDriver = "mouse";
@@ -13,4 +13,4 @@ inline constexpr const char* kMouseDriver = "mouse";
 /// MouseDevice beside it; whatever opens devices by name for a person goes through that.
 [[nodiscard]] DeviceDriver mouse_driver();
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 /// Of hand and stylus across the plane: 0.1 kg in N s^2/mm, and near critical damping on the usual
@@ -126,4 +126,4 @@ void MouseDevice::move_across(double step_s, double normal_force_n) noexcept {
   if (height_mm_ != next_mm) rise_mm_s_ = 0.0;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -11,7 +11,7 @@
 
 #include <atomic>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// How the stylus yields. The defaults let coarse textures be told apart: docs/devices/mouse.md.
 struct MouseOptions {
@@ -77,4 +77,4 @@ class MouseDevice final : public HapticDevice {
   std::atomic<bool> closed_{false};
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -4,7 +4,7 @@
 #include "device/latest_value.hpp"
 #include "device/mouse/pointer_source.hpp"
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// The PointerSource of every window: neither thread ever waits for the other.
 class PointerExchange final : public PointerSource {
@@ -31,4 +31,4 @@ class PointerExchange final : public PointerSource {
   std::uint64_t published_ = 0;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// The person's own pointer, as its window saw it last.
 struct PointerState {
@@ -33,4 +33,4 @@ class PointerSource {
   virtual void show(const StylusState& stylus) noexcept = 0;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

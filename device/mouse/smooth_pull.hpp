@@ -3,7 +3,7 @@
 
 #include "core/vec.hpp"
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// A critically damped mass on a spring, whose far end is moved about: two first-order lags in a
 /// row, each by the implicit Euler rule. What it gives is a weighted mean of what it was given, at
@@ -40,4 +40,4 @@ class SmoothPull {
   Vec2 rate_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

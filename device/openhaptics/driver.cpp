@@ -4,7 +4,7 @@
 #include "device/openhaptics/hd_session.hpp"
 #include "device/openhaptics/openhaptics_device.hpp"
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 std::vector<DeviceListing> list_openhaptics(const DeviceSettings& settings) {
@@ -36,4 +36,4 @@ DeviceDriver openhaptics_driver() {
           std::nullopt,     false};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

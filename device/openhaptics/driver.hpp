@@ -3,10 +3,10 @@
 
 #include "device/registry.hpp"
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// `list` loads the library and asks it for the device of the settings, which it lets go of at
 /// once; no force is switched on. The library has no other way to tell what is plugged in.
 [[nodiscard]] DeviceDriver openhaptics_driver();
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -2,7 +2,7 @@
 
 #include <type_traits>
 
-namespace touchtrial::hd {
+namespace touchtrial::device::hd {
 namespace {
 
 /// More errors than any stack holds: a library that never runs out of them must not hang us.
@@ -69,4 +69,4 @@ Errors drain_errors(const Api& api) noexcept {
   return errors;
 }
 
-}  // namespace touchtrial::hd
+}  // namespace touchtrial::device::hd

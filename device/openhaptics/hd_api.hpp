@@ -7,7 +7,7 @@
 
 #include <cstdint>
 
-namespace touchtrial::hd {
+namespace touchtrial::device::hd {
 
 using Handle = std::uint32_t;  ///< HHD: a device
 using Enum = std::uint32_t;
@@ -102,4 +102,4 @@ struct Errors {
 /// Takes all errors off the stack. No heap, lock or I/O of ours.
 [[nodiscard]] Errors drain_errors(const Api& api) noexcept;
 
-}  // namespace touchtrial::hd
+}  // namespace touchtrial::device::hd

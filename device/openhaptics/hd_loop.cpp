@@ -7,7 +7,7 @@
 #include <cmath>
 #include <thread>
 
-namespace touchtrial::hd {
+namespace touchtrial::device::hd {
 namespace {
 
 constexpr std::int64_t kTicksBetweenTemperatures = 100;
@@ -109,4 +109,4 @@ void Loop::send(Vec3 force_n) noexcept {
                     std::memory_order_release);
 }
 
-}  // namespace touchtrial::hd
+}  // namespace touchtrial::device::hd

@@ -8,7 +8,7 @@
 #include <chrono>
 #include <cstdint>
 
-namespace touchtrial::hd {
+namespace touchtrial::device::hd {
 
 /// What the device was found to offer when it was opened.
 struct LoopOptions {
@@ -64,4 +64,4 @@ class Loop {
   std::atomic<bool> closed_{false};
 };
 
-}  // namespace touchtrial::hd
+}  // namespace touchtrial::device::hd

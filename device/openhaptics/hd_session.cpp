@@ -9,7 +9,7 @@
 #include <sstream>
 #include <vector>
 
-namespace touchtrial::hd {
+namespace touchtrial::device::hd {
 namespace {
 
 /// Of the Touch, for a library that does not tell.
@@ -169,4 +169,4 @@ void Session::expect_no_error(const std::string& what) const {
                              "; run the vendor's diagnostic"));
 }
 
-}  // namespace touchtrial::hd
+}  // namespace touchtrial::device::hd

@@ -8,7 +8,7 @@
 
 #include <string>
 
-namespace touchtrial::hd {
+namespace touchtrial::device::hd {
 
 /// For a library that cannot be used.
 constexpr const char* kRemedy =
@@ -50,4 +50,4 @@ class Session {
   Handle device_;
 };
 
-}  // namespace touchtrial::hd
+}  // namespace touchtrial::device::hd

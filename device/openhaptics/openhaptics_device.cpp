@@ -6,7 +6,7 @@
 #include <chrono>
 #include <thread>
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 using std::chrono::milliseconds;
@@ -119,4 +119,4 @@ DeviceReadiness OpenHapticsDevice::readiness() const noexcept {
   return running_->loop().readiness();
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -6,7 +6,7 @@
 
 #include <memory>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// The driver "openhaptics". The library's frame is the device frame: x to the right, y up, z
 /// towards the person, mm. Forces go out from the library's own scheduler thread; its clamping and
@@ -38,4 +38,4 @@ class OpenHapticsDevice final : public HapticDevice {
   std::unique_ptr<Running> running_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

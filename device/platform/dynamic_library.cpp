@@ -14,7 +14,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 int load_flags(Unload unload) {
@@ -92,4 +92,4 @@ void* DynamicLibrary::address(const char* name) const {
   throw DeviceError(one_line(name_ + ": has no function " + name + "; " + remedy_));
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// What happens to the library when its last owner lets go of it.
 enum class Unload {
@@ -52,4 +52,4 @@ class DynamicLibrary {
 ///   for what DynamicLibrary itself would throw
 void expect_loading_survived(const std::filesystem::path& library, const std::string& remedy);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

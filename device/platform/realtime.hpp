@@ -4,7 +4,7 @@
 #include <chrono>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 enum class SchedulingPolicy {
   other,  ///< as every program: the thread shares the processor
@@ -39,4 +39,4 @@ struct SchedulingObtained {
 /// not end it.
 void sleep_until(std::chrono::nanoseconds time) noexcept;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -15,7 +15,7 @@
 #include <sys/prctl.h>
 #endif
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 constexpr std::size_t kStackTouched = std::size_t{256} * 1024;
@@ -102,4 +102,4 @@ void sleep_until(std::chrono::nanoseconds time) noexcept {
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// While this lives, signals and crashes halt a device. One at a time in a program.
 ///
@@ -43,4 +43,4 @@ class StopOnSignals {
   [[nodiscard]] static std::string message();
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

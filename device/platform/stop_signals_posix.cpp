@@ -10,7 +10,7 @@
 #include <signal.h>
 #include <time.h>
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 constexpr long kTimeToSendNs = 20'000'000;
@@ -154,4 +154,4 @@ std::string StopOnSignals::message() {
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -4,7 +4,7 @@
 
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 CsvRows::CsvRows(std::string_view text, std::string name) : text_(text), name_(std::move(name)) {
   constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
@@ -65,4 +65,4 @@ void CsvRows::pass_row_end() noexcept {
   ++line_;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 struct CsvRow {
   std::vector<std::string> fields;
@@ -37,4 +37,4 @@ class CsvRows {
   std::size_t line_ = 1;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -3,7 +3,7 @@
 #include "core/errors.hpp"
 #include "device/replay/replay_device.hpp"
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 RecordedMotion motion_of(const DeviceSettings& settings) {
@@ -38,4 +38,4 @@ DeviceDriver replay_driver() {
   return {"replay", "recorded motion from a CSV file; feels nothing", list_replay, open_replay};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -3,9 +3,9 @@
 
 #include "device/registry.hpp"
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// Replays the file of DeviceSettings::replay. `list` reads it, to tell whether it can be replayed.
 [[nodiscard]] DeviceDriver replay_driver();
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

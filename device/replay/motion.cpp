@@ -13,7 +13,7 @@
 #include <string_view>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 constexpr std::uintmax_t kLargestFile = std::uintmax_t{512} << 20U;
@@ -144,4 +144,4 @@ RecordedMotion read_motion_csv(const std::filesystem::path& file) {
   return {std::move(ticks), rate_hz};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

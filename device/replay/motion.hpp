@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// Where a replay takes its positions from. `position_mm` is called on the servo thread: no heap,
 /// lock or I/O.
@@ -50,4 +50,4 @@ class RecordedMotion final : public MotionSource {
 ///   a place beyond 10 m, a rate outside 10 to 20,000 Hz, or more than kMostTicks
 [[nodiscard]] RecordedMotion read_motion_csv(const std::filesystem::path& file);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

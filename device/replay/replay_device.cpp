@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 ReplayDevice::ReplayDevice(std::unique_ptr<const MotionSource> motion, double max_force_n)
     : motion_(std::move(motion)), max_force_n_(max_force_n) {
@@ -38,4 +38,4 @@ DeviceStatus ReplayDevice::write(Vec3 force_n) noexcept {
   return DeviceStatus::ok;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

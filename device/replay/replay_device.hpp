@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// The driver "replay". Each `write` is one tick, so it goes in virtual time as in real time; run
 /// the servo at the motion's rate. Positions are the recorded ones, in the plane frame; velocity is
@@ -39,4 +39,4 @@ class ReplayDevice final : public HapticDevice {
   std::vector<Vec3> forces_n_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

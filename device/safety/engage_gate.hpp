@@ -1,7 +1,7 @@
 /// \file Link of the safety chain: no force starts with a blow.
 #pragma once
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// Opens once the computed force is small, that is, while the hand is off the plane or only just on
 /// it; then it stays open until it is closed.
@@ -24,4 +24,4 @@ class EngageGate {
   bool open_ = false;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

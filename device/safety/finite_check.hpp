@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 [[nodiscard]] inline double squared_norm(Vec3 a) noexcept {
   return a.x * a.x + a.y * a.y + a.z * a.z;
@@ -20,4 +20,4 @@ namespace touchtrial {
   return all <= std::numeric_limits<double>::max();
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

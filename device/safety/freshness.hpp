@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// Counts how long a device repeats itself. A device that is slower than the servo repeats a number
 /// between its readings; only for stale_s is that a fault.
@@ -43,4 +43,4 @@ class Freshness {
   std::uint64_t sequence_ = 0;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

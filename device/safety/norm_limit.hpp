@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// The force, shortened to the limit with its direction kept (to rounding).
 /// \param force_n  whose square is finite
@@ -16,4 +16,4 @@ namespace touchtrial {
   return (limit_n / std::sqrt(squared_n2)) * force_n;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

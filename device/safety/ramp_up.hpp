@@ -3,7 +3,7 @@
 
 #include "core/vec.hpp"
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// A factor that grows evenly from 0 to 1. It counts calls and not time: a servo that slept has not
 /// shown the hand what it missed.
@@ -31,4 +31,4 @@ class RampUp {
   double share_ = 1.0;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

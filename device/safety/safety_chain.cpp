@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::device {
 SafetyChain::SafetyChain(const SafetyLimits& limits, double tick_s) noexcept
     : may_engage_(is_sound(limits) && tick_s > 0.0 && std::isfinite(tick_s)),
       gate_(limits.engage_force_n),
@@ -64,4 +64,4 @@ SafeForce SafetyChain::check(Vec3 force_n, const DeviceSample& sample,
   return {safe_n, safe_n == force_n ? SafetyVerdict::passed : SafetyVerdict::limited};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

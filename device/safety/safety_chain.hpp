@@ -13,7 +13,7 @@
 
 #include <cstdint>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// What the chain did to a force.
 enum class SafetyVerdict {
@@ -83,4 +83,4 @@ class SafetyChain {
   SlewLimit slew_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 /// Unlike std::min, NaN if either is.
@@ -32,4 +32,4 @@ SafetyLimits limits_on(const DeviceInfo& device, SafetyLimits limits) noexcept {
   return limits;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -3,7 +3,7 @@
 
 #include "device/haptic_device.hpp"
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// Within this time every force can be let go, whatever the slew limit: SafetyLimits whose slew
 /// limit would need longer from max_force_n to zero are unsound.
@@ -35,4 +35,4 @@ struct SafetyLimits {
   return limits.max_force_n / limits.max_slew_n_per_s;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

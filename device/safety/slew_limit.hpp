@@ -3,7 +3,7 @@
 
 #include "device/safety/norm_limit.hpp"
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// Follows the forces it is given, by at most one step a call. Late calls get no longer steps: the
 /// hand feels a step, whatever time went before it.
@@ -30,4 +30,4 @@ class SlewLimit {
   Vec3 sent_n_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

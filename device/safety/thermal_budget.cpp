@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 ThermalBudget::ThermalBudget(const SafetyLimits& limits, double tick_s) noexcept
     : peak_n_(limits.max_force_n),
@@ -32,4 +32,4 @@ double ThermalBudget::share_of_heat() const noexcept {
   return heat_ / most_heat_;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

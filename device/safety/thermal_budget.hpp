@@ -3,7 +3,7 @@
 
 #include "device/safety/safety_limits.hpp"
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// Motors warm with the square of the force. Their heat is taken as its running mean, which fades
 /// exponentially; in those terms, the force that they hold for ever gives the greatest heat there
@@ -52,4 +52,4 @@ class ThermalBudget {
   double heat_ = 0.0;            ///< N^2
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

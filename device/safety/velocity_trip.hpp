@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// Judges the speed that the device reports, and that by which its position changes: since the last
 /// new reading, in the time since it. Readings come from another thread, or over a bus, and two may
@@ -54,4 +54,4 @@ class VelocityTrip {
   std::uint64_t sequence_ = 0;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

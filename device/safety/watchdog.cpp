@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 constexpr int kLooksInSilence = 5;
@@ -85,4 +85,4 @@ void Watchdog::look(WatchdogTime::Time passed) noexcept {
   control_.stall();
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -10,7 +10,7 @@
 #include <mutex>
 #include <thread>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// Time as the watchdog sees it, so that tests own it. Used by the watchdog's thread, `now` by any.
 class WatchdogTime {
@@ -99,4 +99,4 @@ class WatchdogGuard {
   Watchdog& watchdog_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

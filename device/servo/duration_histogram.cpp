@@ -4,7 +4,7 @@
 #include <bit>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 /// Bins of one octave, and the width of the first ones: below it every nanosecond has its own.
@@ -59,4 +59,4 @@ DurationHistogram::Bin DurationHistogram::bin(std::size_t index) const noexcept 
   return {least_of(index), end_ns, counts_[index]};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// Counts durations in bins that are 1 ns wide below 32 ns and at most 1/32 of their lower edge
 /// (3.1 %) above, up to 2^36 ns (69 s), beyond which the last bin takes all. `add` allocates
@@ -44,4 +44,4 @@ class DurationHistogram {
   std::int64_t worst_ns_ = 0;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 constexpr double kMostTicks = 1e7;
@@ -98,4 +98,4 @@ std::string flight_csv(std::span<const FlightTick> ticks) {
   return text;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// Everything about one tick. Forces on a texture tell which one it is: of a blind session this is
 /// as secret as its trace.
@@ -51,4 +51,4 @@ class FlightRecorder {
 /// numbers as short as they are exact.
 [[nodiscard]] std::string flight_csv(std::span<const FlightTick> ticks);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 Vec3 ForceSequence::force_n(const DeviceSample& sample) noexcept {
   const std::int64_t changing = tick_ - change_tick_;
@@ -21,4 +21,4 @@ void ForceSequence::record(const ServoSample& sample) noexcept {
   part.greatest_force_n = std::max(part.greatest_force_n, norm(sample.force_n));
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

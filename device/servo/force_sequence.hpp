@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// Force source and sample sink in one. One run rather than two, because a hand that already rests
 /// on a plane would fall through it at the start of the second: the chain's small-force gate lets a
@@ -47,4 +47,4 @@ class ForceSequence final : public ForceSource, public SampleSink {
   Part parts_[2];
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -4,7 +4,7 @@
 #include "device/platform/realtime.hpp"
 #include "device/servo/servo_clock.hpp"
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// Sleeps until shortly before the deadline and spins for the rest, because a thread that sleeps
 /// is woken late.
@@ -30,4 +30,4 @@ class PacedClock final : public ServoClock {
   Time spin_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -1,6 +1,6 @@
 #include "device/servo/realtime_region.hpp"
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 // Of a plain type, so that reading it for the first time on a thread constructs nothing.
@@ -20,4 +20,4 @@ bool RealtimeRegion::entered() noexcept {
   return regions > 0;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

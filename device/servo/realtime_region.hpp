@@ -1,7 +1,7 @@
 /// \file Marks the code in which nothing may allocate, lock or do I/O, so that tests can tell.
 #pragma once
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// The calling thread is in the servo's loop while one of these lives. The servo enters once a run,
 /// so it costs nothing; tests watch allocations and locks of threads that are inside.
@@ -16,4 +16,4 @@ class RealtimeRegion {
   [[nodiscard]] static bool entered() noexcept;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

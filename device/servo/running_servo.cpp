@@ -3,7 +3,7 @@
 #include <memory>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 /// Tells of the end also when the work throws.
@@ -42,4 +42,4 @@ void RunningServo::finish() {
   thread_.wait();
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

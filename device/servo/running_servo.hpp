@@ -8,7 +8,7 @@
 #include <functional>
 #include <future>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// One run on a ServoThread, in a scope. However the scope is left, an exception of whoever attends
 /// included, the force is off and the thread at rest: nothing that the run uses goes before it.
@@ -35,4 +35,4 @@ class RunningServo {
   std::future<void> ended_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

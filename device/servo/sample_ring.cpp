@@ -5,7 +5,7 @@
 
 #include <boost/lockfree/spsc_queue.hpp>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 struct SampleRing::Queue {
   explicit Queue(std::size_t room) : capacity(room), samples(room) {}
@@ -43,4 +43,4 @@ std::size_t SampleRing::waiting() const noexcept {
   return queue_->samples.read_available();
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -9,7 +9,7 @@
 #include <memory>
 #include <span>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// A ring of a fixed capacity between two threads. All its memory is taken, and touched, when it
 /// is made. Neither side ever waits for the other.
@@ -59,4 +59,4 @@ class RingSink final : public SampleSink {
   std::atomic<std::int64_t> dropped_{0};
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

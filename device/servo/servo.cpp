@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <type_traits>
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 constexpr double kLeastRateHz = 1'000.0;
@@ -294,4 +294,4 @@ ServoReport run_servo_in_virtual_time(HapticDevice& device, ForceSource& force, 
   return run(device, force, sink, options, clock, {});
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -11,7 +11,7 @@
 #include <chrono>
 #include <cstdint>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// One tick of the servo at its usual rate.
 constexpr std::chrono::nanoseconds kServoTick{1'000'000};
@@ -138,4 +138,4 @@ struct ServoHooks {
 [[nodiscard]] ServoReport run_servo_in_virtual_time(HapticDevice& device, ForceSource& force,
                                                     SampleSink& sink, const ServoOptions& options);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

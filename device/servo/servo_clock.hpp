@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// Monotonic time since any fixed moment. Belongs to the servo thread.
 class ServoClock {
@@ -28,4 +28,4 @@ class VirtualClock final : public ServoClock {
   Time now_{};
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -4,7 +4,7 @@
 #include <atomic>
 #include <cstdint>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// Requests to one run of the servo. Every function may be called from any thread and from a signal
 /// handler; none waits. A request holds until `reset`.
@@ -48,4 +48,4 @@ class ServoControl {
   std::atomic<std::uint32_t> requests_{0};
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -1,6 +1,6 @@
 #include "device/servo/servo_names.hpp"
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 // No default in these: the compiler names a value that is new and has no word yet.
 
@@ -74,4 +74,4 @@ std::string_view name_of(SchedulingPolicy policy) noexcept {
   return policy == SchedulingPolicy::fifo ? "fifo" : "other";
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

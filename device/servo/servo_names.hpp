@@ -6,7 +6,7 @@
 
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 [[nodiscard]] std::string_view name_of(ServoEnd end) noexcept;
 [[nodiscard]] std::string_view name_of(SafetyVerdict verdict) noexcept;
@@ -14,4 +14,4 @@ namespace touchtrial {
 [[nodiscard]] std::string_view name_of(DeviceFault fault) noexcept;
 [[nodiscard]] std::string_view name_of(SchedulingPolicy policy) noexcept;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -8,7 +8,7 @@
 #include <thread>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 struct ServoThread::State {
   using Work = std::packaged_task<void()>;
@@ -86,4 +86,4 @@ void ServoThread::run(std::function<void()> work) {
   wait();
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -6,7 +6,7 @@
 #include <functional>
 #include <memory>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// A thread that asked for real-time scheduling once, when it was made, and then runs one piece of
 /// work after another: every trial of a session. All functions belong to the thread that made it.
@@ -37,4 +37,4 @@ class ServoThread {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

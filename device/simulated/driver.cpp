@@ -2,7 +2,7 @@
 
 #include "device/simulated/simulated_hand.hpp"
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 constexpr double kPitchMm = 0.2;
@@ -33,4 +33,4 @@ DeviceDriver simulated_driver() {
           open_simulated};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -3,7 +3,7 @@
 
 #include "device/registry.hpp"
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// Side of the square plane that the hand strokes when it is opened by name.
 constexpr double kSimulatedPlaneMm = 100.0;
@@ -14,4 +14,4 @@ constexpr double kSimulatedExploreS = 8.0 * 3600.0;
 /// servo's ticks, so the servo's clock paces it.
 [[nodiscard]] DeviceDriver simulated_driver();
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 /// Part of the plane that the path keeps to.
@@ -91,4 +91,4 @@ PathPoint ExplorationPath::at(double time_s, std::size_t& stroke) const noexcept
           speed_mm_s * s.direction};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 struct ExplorationOptions {
   double slowest_mm_s = 50.0;   ///< of a stroke's steady part, > 0
@@ -55,4 +55,4 @@ class ExplorationPath {
   std::vector<Stroke> strokes_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

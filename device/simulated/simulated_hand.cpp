@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::device {
 namespace {
 
 constexpr double kMmPerM = 1000.0;
@@ -78,4 +78,4 @@ std::chrono::nanoseconds SimulatedHand::now() const noexcept {
   return tick_ * kServoTick;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

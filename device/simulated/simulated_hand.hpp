@@ -7,7 +7,7 @@
 #include <chrono>
 #include <cstdint>
 
-namespace touchtrial {
+namespace touchtrial::device {
 
 /// A hand on a stylus, as a point mass. Defaults: a light pen grip, near critical damping.
 struct HandOptions {
@@ -54,4 +54,4 @@ class SimulatedHand final : public HapticDevice {
   DeviceSample state_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::device

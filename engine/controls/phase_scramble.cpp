@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 using Coefficient = std::complex<double>;
@@ -73,4 +73,4 @@ Plane<Real> phase_scrambled(const Plane<Real>& texture, std::uint64_t seed) {
 template Plane<float> phase_scrambled<float>(const Plane<float>&, std::uint64_t);
 template Plane<double> phase_scrambled<double>(const Plane<double>&, std::uint64_t);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Keeps the mean and the amplitude of every frequency of the texture, and replaces the phases by
 /// those of white noise. Rms and power spectrum stay to rounding; extremes may grow. A flat texture
@@ -18,4 +18,4 @@ namespace touchtrial {
 template <typename Real>
 [[nodiscard]] Plane<Real> phase_scrambled(const Plane<Real>& texture, std::uint64_t seed);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr int kGlcmSmallestSide = 2;
@@ -63,4 +63,4 @@ const OrderFigures& closest_order(const Evaluation& evaluation) {
       [](const OrderFigures& a, const OrderFigures& b) { return a.ms_ssim < b.ms_ssim; });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

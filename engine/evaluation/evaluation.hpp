@@ -10,7 +10,7 @@
 #include <functional>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Fixed orders k / 20 for k = 1 .. kSweptOrders: 0.05 to 0.95.
 inline constexpr int kSweptOrders = 19;
@@ -49,4 +49,4 @@ struct Evaluation {
 /// exponents 1; the lowest of several. \pre there are orders
 [[nodiscard]] const OrderFigures& closest_order(const Evaluation& evaluation);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -4,7 +4,7 @@
 
 #include <cstdlib>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 /// \return the variable's value if that is an absolute path, else nothing
@@ -32,4 +32,4 @@ std::filesystem::path user_cache_folder() {
   return home.empty() ? home : home / ".cache" / "touchtrial";
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

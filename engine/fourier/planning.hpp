@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Timing plans takes about as long as some hundred transforms: it pays from here on.
 inline constexpr std::size_t kSamplesWorthMeasuring = std::size_t{1} << 18U;
@@ -26,4 +26,4 @@ void use_estimated_plans();
 /// where neither variable holds an absolute path.
 [[nodiscard]] std::filesystem::path user_cache_folder();
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -14,7 +14,7 @@
 
 #include <fftw3.h>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 /// The names of FFTW's two libraries, by precision.
@@ -225,4 +225,4 @@ void RealFft<Real>::inverse() noexcept {
 template class RealFft<float>;
 template class RealFft<double>;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

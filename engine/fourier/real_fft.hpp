@@ -5,7 +5,7 @@
 #include <memory>
 #include <span>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// How a transform is planned.
 enum class FftPlan {
@@ -43,4 +43,4 @@ class RealFft {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -10,7 +10,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr std::uintmax_t kLargestWisdom_bytes = std::uintmax_t{1} << 20U;
@@ -108,4 +108,4 @@ const std::string& processor_name() {
   return name;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Thread-safe; processes that share a folder wait for each other while one of them measures.
 class WisdomFiles {
@@ -44,4 +44,4 @@ class WisdomFiles {
 /// The text with everything but letters, digits and dots replaced by dashes.
 [[nodiscard]] std::string as_file_name(const std::string& text);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -1,7 +1,7 @@
 #include "engine/image_formats/byte_order.hpp"
 #include "engine/image_formats/decoder_input.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr std::size_t kFileHeaderSize = 14;
@@ -94,4 +94,4 @@ DecoderInput check_bmp(ByteView file) {
   return input;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

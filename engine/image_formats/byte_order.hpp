@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 enum class ByteOrder { little, big };
 
@@ -41,4 +41,4 @@ enum class ByteOrder { little, big };
   return number_at(bytes, at, 4, ByteOrder::little);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -4,7 +4,7 @@
 #include <array>
 #include <charconv>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr std::array<std::string_view, 5> kSignsOfDamage = {
@@ -57,4 +57,4 @@ std::optional<std::string> damage_in(std::string_view printed) {
   return std::nullopt;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// What is done with a fourth (or, with grey, a second) channel.
 enum class Alpha {
@@ -33,4 +33,4 @@ struct DecoderInput {
 [[nodiscard]] DecoderInput check_tiff(ByteView file);
 [[nodiscard]] DecoderInput check_bmp(ByteView file);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Thrown inside the reader of pictures; `read_grey_image` adds the file's name and makes a
 /// FileError of it.
@@ -44,4 +44,4 @@ inline void check_image_size(std::int64_t width_px, std::int64_t height_px) {
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

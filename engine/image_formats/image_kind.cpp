@@ -5,7 +5,7 @@
 #include <array>
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 using namespace std::string_view_literals;
@@ -63,4 +63,4 @@ ImageKind kind_of_image(ByteView file) {
   throw ImageFault{"is not an image of a known kind", "give a PNG, JPEG, TIFF, BMP or PGM file"};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

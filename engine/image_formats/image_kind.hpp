@@ -3,11 +3,11 @@
 
 #include "core/bytes.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 enum class ImageKind { png, jpeg, tiff, bmp, pnm };
 
 /// \throws ImageFault if it is a picture of a kind that is not supported, or not a picture
 [[nodiscard]] ImageKind kind_of_image(ByteView file);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 enum Marker : std::uint32_t {
@@ -148,4 +148,4 @@ DecoderInput check_jpeg(ByteView file) {
   return walk.finish();
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

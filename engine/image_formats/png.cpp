@@ -4,7 +4,7 @@
 #include <array>
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr std::size_t kSignatureSize = 8;
@@ -122,4 +122,4 @@ DecoderInput check_png(ByteView file) {
   return input;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

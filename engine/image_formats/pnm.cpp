@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr std::uint32_t kLargestMaximum = 65535;
@@ -120,4 +120,4 @@ GreyImage read_pnm(ByteView file) {
   return image;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -5,7 +5,7 @@
 #include "core/bytes.hpp"
 #include "core/plane.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Samples are scaled to floor(v * 255 / maximum + 0.5), each channel for itself, then made grey
 /// like those of any other picture. Only the first picture of a file is read.
@@ -13,4 +13,4 @@ namespace touchtrial {
 /// \throws ImageFault if it is truncated, too large, or a sample exceeds the maximum
 [[nodiscard]] GreyImage read_pnm(ByteView file);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -11,7 +11,7 @@
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 namespace logging = cv::utils::logging;
@@ -106,4 +106,4 @@ GreyImage decode_grey(const DecoderInput& input) {
   throw_unsupported_image("has samples that are neither 8 nor 16 bits wide");
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

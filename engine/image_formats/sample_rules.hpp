@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// floor(v / 257 + 0.5) for a 16-bit sample; an 8-bit sample is itself.
 [[nodiscard]] constexpr std::uint32_t to_8_bit(std::uint16_t sample) noexcept {
@@ -31,4 +31,4 @@ namespace touchtrial {
   return static_cast<std::uint8_t>((299U * red + 587U * green + 114U * blue + 500U) / 1000U);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

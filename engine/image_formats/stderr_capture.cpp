@@ -7,7 +7,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 StderrCapture::StderrCapture() noexcept {
   std::fflush(stderr);
@@ -37,4 +37,4 @@ void StderrCapture::restore() noexcept {
   ::close(std::exchange(saved_, -1));
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// From construction to `take()`, or destruction, everything that the process writes to file
 /// descriptor 2 goes to memory. Instances must not overlap in time. Where the system has no spare
@@ -25,4 +25,4 @@ class StderrCapture {
   int saved_ = -1;   ///< where descriptor 2 went before
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 enum Compression : std::uint32_t { kNone = 1, kJpeg = 7, kFirstFax = 2, kLastFax = 4 };
@@ -215,4 +215,4 @@ DecoderInput check_tiff(ByteView file) {
   return input;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

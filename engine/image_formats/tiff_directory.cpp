@@ -1,6 +1,6 @@
 #include "engine/image_formats/tiff_directory.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr std::size_t kEntrySize = 12;
@@ -94,4 +94,4 @@ void TiffDirectory::store(Bytes& copy, std::size_t at, std::size_t size,
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 enum class TiffTag : std::uint32_t {
   width = 256,
@@ -62,4 +62,4 @@ class TiffDirectory {
   std::map<TiffTag, std::size_t> entries_;  ///< tag -> where its 12 bytes start
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

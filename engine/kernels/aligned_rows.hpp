@@ -6,7 +6,7 @@
 
 #include <hwy/aligned_allocator.h>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// The longest vector of any target, in bytes: how far a kernel may run past the end of a row.
 inline constexpr std::size_t kVectorBytes = 64;
@@ -56,4 +56,4 @@ class AlignedRows {
   hwy::AlignedFreeUniquePtr<Sample[]> samples_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -6,7 +6,7 @@
 #include <array>
 #include <cstddef>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr int kTaps = 4;
@@ -38,4 +38,4 @@ void ColumnFilter::extend(std::int16_t* row) const {
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

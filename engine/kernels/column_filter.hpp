@@ -8,7 +8,7 @@
 
 #include <cstdint>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Columns first .. last - 1 of something.
 struct Columns {
@@ -40,4 +40,4 @@ class ColumnFilter {
   FilteredRows rows_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -17,7 +17,7 @@
 // clang-format on
 
 HWY_BEFORE_NAMESPACE();
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace HWY_NAMESPACE {
 namespace {
 
@@ -112,11 +112,11 @@ void row_of_orders(const float* csgv, int count, float largest, float* out) {
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
-}  // namespace touchtrial
+}  // namespace touchtrial::engine
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 HWY_EXPORT(row_of_csgv);
@@ -132,5 +132,5 @@ void order_row(const float* csgv, int count, float largest, float* out) {
   HWY_DYNAMIC_DISPATCH(row_of_orders)(csgv, count, largest, out);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine
 #endif

@@ -5,7 +5,7 @@
 
 #include "engine/kernels/wavelet_rows.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Everything up to the gradient is exact in whole numbers: CSGV is exact where the gradient is a
 /// whole number along one axis, as for ramps, and 0 where there is none.
@@ -20,4 +20,4 @@ float csgv_row(const SobelRows& rows, int first, int count, float* csgv);
 /// \param out  receives 2 * count samples; two vectors behind them may be overwritten
 void order_row(const float* csgv, int count, float largest, float* out);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

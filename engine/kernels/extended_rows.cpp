@@ -13,7 +13,7 @@
 // clang-format on
 
 HWY_BEFORE_NAMESPACE();
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace HWY_NAMESPACE {
 namespace {
 
@@ -25,11 +25,11 @@ void widened(const std::uint8_t* from, int width, std::int16_t* to) {
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
-}  // namespace touchtrial
+}  // namespace touchtrial::engine
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 HWY_EXPORT(widened);
@@ -60,5 +60,5 @@ void ExtendedRows::load(int y) {
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine
 #endif

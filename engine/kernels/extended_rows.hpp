@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Rows y - reach .. y + reach of an image for one y at a time, as 16-bit integers, with `reach`
 /// mirrored samples at both ends. Every row is widened once; memory is (2 * reach + 1) rows,
@@ -42,4 +42,4 @@ class ExtendedRows {
   AlignedRows<std::int16_t> rows_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

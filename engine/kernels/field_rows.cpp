@@ -14,7 +14,7 @@
 // clang-format on
 
 HWY_BEFORE_NAMESPACE();
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace HWY_NAMESPACE {
 namespace {
 
@@ -85,11 +85,11 @@ void all_of_row(const StreamedRow& row) {
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
-}  // namespace touchtrial
+}  // namespace touchtrial::engine
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 HWY_EXPORT(row_of_picture);
@@ -112,5 +112,5 @@ void move_row(const StreamedRow& row) {
   HWY_DYNAMIC_DISPATCH(all_of_row)(row);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine
 #endif

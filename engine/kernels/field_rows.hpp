@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// clamp(floor(128 + T + 0.5), 0, 255), exactly, for any floats; NaN gives 0.
 /// \param width  >= 0; no more than this many samples are read or written
@@ -32,4 +32,4 @@ void force_row(const float* surface, int width, const SlopeRow& above, const Slo
 /// Moves all of a row past the caches.
 void move_row(const StreamedRow& row);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

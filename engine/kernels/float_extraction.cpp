@@ -14,7 +14,7 @@
 #include <cstddef>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 static_assert(ExtractionOptions::kMaxRadius <= kMaxGlRadius);
@@ -148,4 +148,4 @@ void extract_sub_bands(const GreyImage& image, Extraction<float>& result) {
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

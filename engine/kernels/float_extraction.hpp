@@ -7,7 +7,7 @@
 
 #include "engine/extraction.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// \param image  not empty  \param radius  1 .. ExtractionOptions::kMaxRadius
 /// \param result  receives all planes wanted but `enhanced`; others are emptied. Planes that have
@@ -29,4 +29,4 @@ void filter_adaptive(const GreyImage& image, int radius, const Plane<float>& ord
 /// The sub-bands alone: those planes of `result`.
 void extract_sub_bands(const GreyImage& image, Extraction<float>& result);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 ForceRows::ForceRows(int width)
     : width_(width),
@@ -52,4 +52,4 @@ void ForceRows::mend_ends(int row, bool last, float* force_x) {
   force_x[width_ - 1] -= beside * surface[width_ - 1];
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -8,7 +8,7 @@
 #include <array>
 #include <cstddef>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Takes the rows of a surface from top to bottom and gives the forces of each as soon as the next
 /// one is there; keeps three rows.
@@ -47,4 +47,4 @@ class ForceRows {
   std::array<SlopeRow, kRows> slopes_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

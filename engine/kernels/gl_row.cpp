@@ -18,7 +18,7 @@
 
 #ifndef TOUCHTRIAL_GL_ROW_ONCE
 #define TOUCHTRIAL_GL_ROW_ONCE
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 /// Columns that are worked on at a time: with usual radii all that they need stays in the
@@ -67,11 +67,11 @@ struct FixedFactors {
 };
 
 }  // namespace
-}  // namespace touchtrial
+}  // namespace touchtrial::engine
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace HWY_NAMESPACE {
 namespace {
 
@@ -233,11 +233,11 @@ void row_of_one_order(const ExtendedRows& rows, int radius, const FixedFactors& 
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
-}  // namespace touchtrial
+}  // namespace touchtrial::engine
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 HWY_EXPORT(row_of_orders);
@@ -256,5 +256,5 @@ void gl_row(const ExtendedRows& rows, int radius, double order, float* texture,
   (rows, radius, FixedFactors(order, radius), texture, beside);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine
 #endif

@@ -11,7 +11,7 @@
 
 #include <span>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// The largest radius that the kernel has room for.
 inline constexpr int kMaxGlRadius = 63;
@@ -27,4 +27,4 @@ void gl_row(const ExtendedRows& rows, int radius, const float* orders, float* te
 void gl_row(const ExtendedRows& rows, int radius, double order, float* texture,
             std::span<const StreamedRow> beside = {});
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstdint>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 /// The image is worked on in strips of columns, so that the rows kept stay in the first-level
@@ -72,4 +72,4 @@ void HalfGradient::compute(const GreyImage& image, Columns columns) {
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

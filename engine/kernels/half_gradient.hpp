@@ -7,7 +7,7 @@
 
 #include <cstddef>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// CSGV at half resolution, and its maximum, which is only known after the last row: it forces a
 /// second pass. Takes as many bytes as the image has pixels.
@@ -32,4 +32,4 @@ class HalfGradient {
   float largest_ = 0.0F;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -14,7 +14,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace HWY_NAMESPACE {
 namespace {
 
@@ -75,7 +75,7 @@ HWY_INLINE Integer load_bytes(const std::uint8_t* from) {
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
-}  // namespace touchtrial
+}  // namespace touchtrial::engine
 HWY_AFTER_NAMESPACE();
 
 #endif

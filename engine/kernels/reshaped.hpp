@@ -3,7 +3,7 @@
 
 #include "core/plane.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Gives the plane a shape; its samples are then whatever they were, or zero.
 template <typename Sample>
@@ -21,4 +21,4 @@ void reshape_if(bool wanted, Plane<Sample>& plane, int height, int width) {
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

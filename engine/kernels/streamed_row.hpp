@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Samples 0 .. count - 1 are still to be moved; `to` is a multiple of a cache line.
 /// \pre hwy::FlushStream() before another thread reads them
@@ -31,4 +31,4 @@ inline StreamedRow start_stream(const float* from, int width, float* to) {
   return {from + head, to + head, count};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -8,7 +8,7 @@
 
 #include <hwy/cache_control.h>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 /// From these sizes on it pays to write past the caches: for three planes long before they would
@@ -88,4 +88,4 @@ void TextureSink::wait(const float* from, float* to) {
   waiting_[waiting_count_++] = start_stream(from, width_, to);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

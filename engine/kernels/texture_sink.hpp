@@ -11,7 +11,7 @@
 #include <optional>
 #include <span>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Takes the rows of a texture from top to bottom and makes picture and force of them while they
 /// are in the cache. Planes too large for it are written past it, from rows of scratch.
@@ -49,4 +49,4 @@ class TextureSink {
   std::size_t waiting_count_ = 0;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -15,7 +15,7 @@
 
 #ifndef TOUCHTRIAL_WAVELET_ROWS_ONCE
 #define TOUCHTRIAL_WAVELET_ROWS_ONCE
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 /// Weights of four neighbouring samples.
@@ -40,11 +40,11 @@ constexpr RootTaps kLow = root_taps({1, 3, 3, 1}, {1, 1, -1, -1});
 constexpr RootTaps kHigh = root_taps({1, -3, 3, -1}, {-1, 1, 1, -1});
 
 }  // namespace
-}  // namespace touchtrial
+}  // namespace touchtrial::engine
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace HWY_NAMESPACE {
 namespace {
 
@@ -164,11 +164,11 @@ void values_along_x(const FilteredRows& rows, int count, const BandRows<float>& 
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
-}  // namespace touchtrial
+}  // namespace touchtrial::engine
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 HWY_EXPORT(along_y);
@@ -190,5 +190,5 @@ void filter_along_x(const FilteredRows& rows, int count, const BandRows<float>& 
   HWY_DYNAMIC_DISPATCH(values_along_x)(rows, count, out);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine
 #endif

@@ -10,7 +10,7 @@
 #include <array>
 #include <cstdint>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// The approximation to sqrt 3; from the Pell equation 5042^2 - 3 * 2911^2 = 1.
 inline constexpr int kRootNumerator = 5042;
@@ -56,4 +56,4 @@ void filter_along_x(const FilteredRows& rows, int count, const SobelRows& out);
 /// \param out  receives `count` samples each and no more
 void filter_along_x(const FilteredRows& rows, int count, const BandRows<float>& out);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

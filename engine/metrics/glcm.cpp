@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 /// n ln n, from a table where n is small, as most counts are.
@@ -154,4 +154,4 @@ GlcmTable glcm_statistics(const GreyImage& image) {
   return table;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

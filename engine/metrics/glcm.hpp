@@ -6,7 +6,7 @@
 
 #include <array>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Statistics of the matrix p(i, j): how often levels i and j are neighbours, in either order.
 struct GlcmStatistics {
@@ -38,4 +38,4 @@ using GlcmTable = std::array<GlcmStatistics, 4>;
 /// Thread-safe. Needs 1 MB while it runs.
 [[nodiscard]] GlcmTable glcm_statistics(const GreyImage& image);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -1,6 +1,6 @@
 #include "engine/metrics/glcm_counts.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 /// Indices into a cell, as in kGlcmOffsets.
@@ -44,4 +44,4 @@ void GlcmCounts::count_row(const std::uint8_t* row, const std::uint8_t* above, s
   ++cells_of(last)[above[last - 1]][kLeftUp];
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 inline constexpr int kGreyLevels = 256;
 
@@ -33,4 +33,4 @@ class GlcmCounts {
   std::vector<GlcmCell> cells_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr double kLeastCycles = 4.0;  // in the shorter side
@@ -101,4 +101,4 @@ double spectrum_slope(const GreyImage& image) {
   return n < 2.0 || spread <= 0.0 ? 0.0 : (xy - x * y / n) / spread;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

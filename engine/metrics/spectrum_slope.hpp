@@ -3,7 +3,7 @@
 
 #include "core/plane.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// The least side of an image for spectrum_slope(), in pixels.
 inline constexpr int kSlopeSmallestSide = 32;
@@ -17,4 +17,4 @@ inline constexpr int kSlopeSmallestSide = 32;
 /// Thread-safe.
 [[nodiscard]] double spectrum_slope(const GreyImage& image);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

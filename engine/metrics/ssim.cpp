@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr std::array<double, 5> kWangWeights = {0.0448, 0.2856, 0.3001, 0.2363, 0.1333};
@@ -100,4 +100,4 @@ template double ssim<double>(const GreyImage&, const GreyImage&);
 template MsSsim ms_ssim<float>(const GreyImage&, const GreyImage&);
 template MsSsim ms_ssim<double>(const GreyImage&, const GreyImage&);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -9,7 +9,7 @@
 
 #include "core/plane.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// The least side of an image for ssim() and ms_ssim(), in pixels.
 inline constexpr int kSsimSmallestSide = 11;
@@ -35,4 +35,4 @@ struct MsSsim {
 template <typename Real>
 [[nodiscard]] MsSsim ms_ssim(const GreyImage& a, const GreyImage& b);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -14,7 +14,7 @@
 
 #ifndef TOUCHTRIAL_SSIM_DEFICITS_ONCE
 #define TOUCHTRIAL_SSIM_DEFICITS_ONCE
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr int kTaps = 11;
@@ -92,11 +92,11 @@ struct RealSource {
 };
 
 }  // namespace
-}  // namespace touchtrial
+}  // namespace touchtrial::engine
 #endif
 
 HWY_BEFORE_NAMESPACE();
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace HWY_NAMESPACE {
 namespace {
 
@@ -327,11 +327,11 @@ MeanDeficits real_double(const SumDifference<double>& pair, Luminance luminance)
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
-}  // namespace touchtrial
+}  // namespace touchtrial::engine
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 HWY_EXPORT(grey_float);
@@ -358,5 +358,5 @@ MeanDeficits mean_deficits(const SumDifference<double>& pair, Luminance luminanc
   return HWY_DYNAMIC_DISPATCH(real_double)(pair, luminance);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine
 #endif

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 /// The two rows of a line of blocks; the same one twice where an odd last row is repeated.
@@ -84,4 +84,4 @@ template SumDifference<double> halved(const GreyPair&);
 template SumDifference<float> halved(const SumDifference<float>&);
 template SumDifference<double> halved(const SumDifference<double>&);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -11,7 +11,7 @@
 
 #include "core/plane.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// What was taken off u and v, in grey levels.
 struct PairOffsets {
@@ -56,4 +56,4 @@ template <typename Real>
 template <typename Real>
 [[nodiscard]] SumDifference<Real> halved(const SumDifference<Real>& pair);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -14,7 +14,7 @@
 #include <string>
 #include <type_traits>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 static_assert(std::endian::native == std::endian::little,
@@ -137,4 +137,4 @@ FieldView decode_field(ByteView file, const std::filesystem::path& path) {
   return view;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

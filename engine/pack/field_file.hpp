@@ -20,7 +20,7 @@
 
 #include <filesystem>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// The layout is that of the view; its `highest` is computed anew.
 /// \throws std::invalid_argument if the view is empty, too large, has another number of samples
@@ -32,4 +32,4 @@ namespace touchtrial {
 /// \throws FileError if the bytes are not exactly one field
 [[nodiscard]] FieldView decode_field(ByteView file, const std::filesystem::path& path);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

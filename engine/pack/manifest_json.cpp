@@ -10,7 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 using Json = nlohmann::json;
@@ -62,7 +62,7 @@ class Node {
       : value_(value), where_(std::move(where)), path_(path) {}
 
   [[noreturn]] void refuse(const std::string& reason) const {
-    touchtrial::refuse(path_, where_.to_string(), reason);
+    engine::refuse(path_, where_.to_string(), reason);
   }
 
   /// Checks that this is an object with these keys and no others.
@@ -200,4 +200,4 @@ PackManifest manifest_from_json(std::string_view text, const std::filesystem::pa
   return manifest_from(Node(root, Pointer(), path));
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

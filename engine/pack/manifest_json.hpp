@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Sorted keys and codes: one text for one manifest. \throws std::invalid_argument as
 /// write_manifest
@@ -19,4 +19,4 @@ namespace touchtrial {
 [[nodiscard]] PackManifest manifest_from_json(std::string_view text,
                                               const std::filesystem::path& path);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

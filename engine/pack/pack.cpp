@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <system_error>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr std::size_t kCodeLength = 16;
@@ -88,4 +88,4 @@ bool Pack::is_intact(const std::string& code) const {
   return sha256_of_file(field_path(folder_, known.code)) == known.checksum;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

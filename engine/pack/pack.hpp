@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// One field of a pack. Nothing here tells what it shows.
 struct PackEntry {
@@ -91,4 +91,4 @@ class Pack {
   PackManifest manifest_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 /// Finest difference in a feature that is believed, so that equal examples do not make a class
@@ -183,4 +183,4 @@ std::vector<double> FeltClassifier::log_likelihoods(std::span<const double> feat
   return logs;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Gaussian classes with a mean each and one covariance: that of the examples within classes,
 /// shrunk towards its diagonal by d / (d + degrees of freedom) for d features, plus the noise with
@@ -45,4 +45,4 @@ class FeltClassifier {
   double log_peak_ = 0.0;                   ///< density at a mean
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Octaves of wavelength on the plane, from the longest: 16 to 8 mm, 8 to 4, 4 to 2, 2 to 1, 1 to
 /// 0.5.
@@ -29,4 +29,4 @@ inline constexpr int kFeltFeatures = kPartsAt + kFeltParts;
 /// each.
 using FeltFeatures = std::array<double, kFeltFeatures>;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

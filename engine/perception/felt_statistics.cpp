@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 FeltStatistics::FeltStatistics(int labels, std::size_t features) : features_(features) {
   if (labels < 1 || features < 1) {
@@ -64,4 +64,4 @@ void FeltStatistics::add_to_scatter(int label, std::span<const double> features,
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

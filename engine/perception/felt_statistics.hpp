@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// What an example of a class felt like.
 struct FeltExample {
@@ -54,4 +54,4 @@ class FeltStatistics {
   std::vector<double> scatter_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <stdexcept>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr int kWindow = 256;
@@ -234,4 +234,4 @@ int TextureSense::windows() const noexcept {
   return state_->power.windows;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

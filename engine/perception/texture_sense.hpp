@@ -8,7 +8,7 @@
 
 #include <memory>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 struct SenseOptions {
   double rate_hz = 1000.0;     ///< of the samples, > 0
@@ -51,4 +51,4 @@ class TextureSense {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -11,7 +11,7 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 /// Filtered rows and zlib's best effort: textures pack poorly, so every per cent is welcome.
@@ -71,4 +71,4 @@ GreyImage resized(const GreyImage& image, int height, int width) {
   return result;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

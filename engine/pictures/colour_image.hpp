@@ -6,7 +6,7 @@
 
 #include <cstdint>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 struct Rgb {
   std::uint8_t red = 0;
@@ -29,4 +29,4 @@ using ColourImage = Plane<Rgb>;
 /// \throws std::invalid_argument if the picture is empty or a side is below 1
 [[nodiscard]] GreyImage resized(const GreyImage& image, int height, int width);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

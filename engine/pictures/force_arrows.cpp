@@ -13,7 +13,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgproc.hpp>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr int kPanel_px = 720;
@@ -204,4 +204,4 @@ ArrowPatch write_force_arrows(const std::filesystem::path& path, const GreyImage
   return patch;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

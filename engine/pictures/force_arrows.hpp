@@ -7,7 +7,7 @@
 
 #include <filesystem>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Side of the patch that is enlarged, pixels; less where the texture is smaller.
 inline constexpr int kArrowPatchSide_px = 24;
@@ -47,4 +47,4 @@ struct ArrowPatch {
 ArrowPatch write_force_arrows(const std::filesystem::path& path, const GreyImage& texture,
                               const ForceField<double>& force);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

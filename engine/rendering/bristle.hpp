@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// What a touch leaves for the next tick; one for each presentation. The bristle goes by positions
 /// alone, never by time: a path gives the same forces however fast it is stroked. It is passive:
@@ -38,4 +38,4 @@ class Bristle {
   bool holds_ = false;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

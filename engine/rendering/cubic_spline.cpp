@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr double kPole = -0.26794919243112270647;  // sqrt 3 - 2
@@ -149,4 +149,4 @@ SplinePoint spline_at(std::span<const float> coefficients, int height_px, int wi
   });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

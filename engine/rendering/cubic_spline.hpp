@@ -1,5 +1,5 @@
 /// \file The cubic B-spline through the samples of a plane: twice continuously differentiable,
-/// with the plane mirrored at its edges. Private to engine/rendering.
+/// with the plane mirrored at its edges.
 /// Source: docs/method.md, "Rendering" (Unser, Aldroubi and Eden 1993).
 #pragma once
 
@@ -7,7 +7,7 @@
 
 #include <span>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Coefficients of the spline that takes each sample's value at its pixel centre, under half-sample
 /// symmetric extension. By recursive filtering, exact to double rounding; a constant plane is
@@ -29,4 +29,4 @@ struct SplinePoint {
 [[nodiscard]] SplinePoint spline_at(std::span<const float> coefficients, int height_px,
                                     int width_px, double x_px, double y_px) noexcept;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 /// A 99th percentile below this share of the maximum says where a filter or a spline fades out.
@@ -88,4 +88,4 @@ double percentile(std::vector<float>& pool, double share) {
   return *middle + (position - whole) * (double{*next} - *middle);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

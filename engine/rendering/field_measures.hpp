@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Root mean square of |F_T| over all pixels, grey levels per pixel. Exactly 0 only if every force
 /// is zero; not finite if a sample is not.
@@ -36,4 +36,4 @@ void append_normal_stiffness(FieldView field, double scale, std::vector<float>& 
 /// empty. Reorders the pool. \param share  0 .. 1
 [[nodiscard]] double percentile(std::vector<float>& pool, double share);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

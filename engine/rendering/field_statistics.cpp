@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr double kFinestFeltMm = 1.0;
@@ -90,4 +90,4 @@ FieldStatistics field_statistics(FieldView field, Gains gains, const RenderingOp
   return surface_statistics(field, gains.height_mm, options.stiffness_n_per_mm);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// The speeds for which FieldStatistics foretells vibration.
 inline constexpr std::array<double, 3> kStrokeSpeedsMmPerS = {50.0, 100.0, 200.0};
@@ -31,4 +31,4 @@ struct FieldStatistics {
 [[nodiscard]] FieldStatistics field_statistics(FieldView field, Gains gains,
                                                const RenderingOptions& options = {});
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

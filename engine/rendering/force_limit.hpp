@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// The force, shortened to the limit with its direction kept. Also for forces whose squares
 /// overflow; what is not finite becomes zero.
@@ -19,4 +19,4 @@ namespace touchtrial {
   return (limit_n / norm(direction)) * direction;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

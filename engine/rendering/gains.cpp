@@ -8,7 +8,7 @@
 #include <optional>
 #include <stdexcept>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr double kRounding = 1e-9;  // relative; what is over the budget by less is on it
@@ -108,4 +108,4 @@ StudyGains choose_gains(std::span<const FieldView> fields, const RenderingOption
   return gains;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// The gains of every field, in the order given.
 struct StudyGains {
@@ -41,4 +41,4 @@ struct StudyGains {
 [[nodiscard]] StudyGains choose_gains(std::span<const FieldView> fields,
                                       const RenderingOptions& options);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 ForceField<double> force_planes(FieldView field) {
@@ -27,4 +27,4 @@ LateralField lateral_field(FieldView field, Gains gains) {
   return {force_planes(relief.view()), kStatedLoadN * gains.height_mm / field.geometry.pitch_mm};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

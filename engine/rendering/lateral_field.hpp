@@ -4,7 +4,7 @@
 #include "engine/force_field.hpp"
 #include "engine/rendering/texture_field.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Before the norm limit.
 struct LateralField {
@@ -18,4 +18,4 @@ struct LateralField {
 /// Thread-safe.
 [[nodiscard]] LateralField lateral_field(FieldView field, Gains gains);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr double dot(Vec3 a, Vec3 b) noexcept {
@@ -54,4 +54,4 @@ double loop_work_mj(const RenderingModel& model, std::span<const Vec3> corners_m
   return work_mj;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

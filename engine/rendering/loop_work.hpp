@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// A circle in a plane of constant height, as a polygon.
 /// \param centre_mm  its z is the height
@@ -27,4 +27,4 @@ namespace touchtrial {
 [[nodiscard]] double loop_work_mj(const RenderingModel& model, std::span<const Vec3> corners_mm,
                                   double step_mm = 0.005);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 /// Texture values at a point between pixels.
@@ -71,4 +71,4 @@ bool PaperModel::is_out_of_reach(double wall_n) const noexcept {
   return wall_n + gains_.normal_n * (field_.highest - reference_grey_) <= 0.0;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -5,7 +5,7 @@
 #include "core/vec.hpp"
 #include "engine/rendering/texture_field.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// The force on the stylus from one texture. Evaluated by the servo a thousand times a second.
 /// Plane frame, millimetres: x and y along the texture from its top-left corner, z out of the plane
@@ -40,4 +40,4 @@ class PaperModel {
   Gains gains_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -7,7 +7,7 @@
 #include <complex>
 #include <numeric>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr double kRounding = 1e-9;  // relative
@@ -59,4 +59,4 @@ std::vector<double> power_shares_above(const Plane<double>& x, const Plane<doubl
   return shares;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

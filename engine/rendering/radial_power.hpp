@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// For each limit, the share of the power of a vector field (both components, means removed) at
 /// radial spatial frequencies above it; 0 for a constant field. The spectrum is that of the plane
@@ -18,4 +18,4 @@ namespace touchtrial {
 [[nodiscard]] std::vector<double> power_shares_above(const Plane<double>& x, const Plane<double>& y,
                                                      std::span<const double> limits_cycles_per_px);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

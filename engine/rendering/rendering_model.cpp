@@ -1,6 +1,6 @@
 #include "engine/rendering/rendering_model.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 std::variant<PaperModel, SurfaceModel> model_of(FieldView field, const RenderingOptions& options,
@@ -15,4 +15,4 @@ RenderingModel::RenderingModel(FieldView field, const RenderingOptions& options,
                                Gains gains) noexcept
     : model_(model_of(field, options, gains)) {}
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -7,7 +7,7 @@
 
 #include <variant>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// The model that a study asks for. Copyable, no heap; refers to the field's numbers. Thread-safe.
 class RenderingModel {
@@ -28,4 +28,4 @@ class RenderingModel {
   std::variant<PaperModel, SurfaceModel> model_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// The rendering models.
 enum class ModelKind {
@@ -45,4 +45,4 @@ struct RenderingOptions {
   friend bool operator==(const RenderingOptions&, const RenderingOptions&) = default;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

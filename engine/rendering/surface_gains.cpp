@@ -8,7 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -123,4 +123,4 @@ StudyGains choose_surface_gains(std::span<const FieldView> fields,
   return gains;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -3,7 +3,7 @@
 
 #include "engine/rendering/gains.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// choose_gains for fields that are all splines. Fields are sampled anew for each try of alpha,
 /// which costs time in place of memory: about six tries.
@@ -11,4 +11,4 @@ namespace touchtrial {
 [[nodiscard]] StudyGains choose_surface_gains(std::span<const FieldView> fields,
                                               const RenderingOptions& options);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

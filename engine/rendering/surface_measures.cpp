@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 /// A column of three coefficients, weighted for the value and for the slope at its middle.
@@ -88,4 +88,4 @@ void append_stiffness_at_load(FieldView relief, double mm_per_grey, double wall_
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// The spline of a field at its pixel centres, in the samples of a field: `surface` is the height h
 /// in grey levels (without 128), the force minus the gradient of h, grey levels per pixel.
@@ -24,4 +24,4 @@ namespace touchtrial {
 void append_stiffness_at_load(FieldView relief, double mm_per_grey, double wall_n_per_mm,
                               std::vector<float>& pool);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 /// A factor along one axis, and how it changes per mm.
@@ -91,4 +91,4 @@ SurfaceModel::Relief SurfaceModel::relief_at(double x_mm, double y_mm) const noe
            (per_mm * h.along_y * down.value + height_mm * down.slope) * across.value}};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -6,7 +6,7 @@
 #include "engine/rendering/bristle.hpp"
 #include "engine/rendering/texture_field.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Width of the rim beyond the plane's edge in which the texture fades into the flat wall, mm. A
 /// step there would be an infinite force, and energy for whoever crosses it to and fro.
@@ -58,4 +58,4 @@ class SurfaceModel {
   double reach_mm_;  ///< nothing is felt at this height above the plane or higher
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

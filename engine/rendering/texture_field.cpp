@@ -9,7 +9,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 void check_options(const RenderingOptions& options) {
@@ -83,4 +83,4 @@ TextureField make_texture_field(const Plane<double>& texture, const RenderingOpt
   return {geometry, as_float(cubic_spline_coefficients(std::move(smooth)))};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -9,7 +9,7 @@
 #include <span>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// One pixel of a field for the model `paper`, before gains.
 struct FieldSample {
@@ -69,4 +69,4 @@ class TextureField {
 [[nodiscard]] TextureField make_texture_field(const Plane<double>& texture,
                                               const RenderingOptions& options);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -5,7 +5,7 @@
 
 #include <hwy/highway.h>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 /// What this processor can run, asked before anything is forced.
@@ -32,4 +32,4 @@ void force_simd_target(const std::optional<std::string>& name) {
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Names of the compiled targets that this processor can run, best first, for instance
 /// {"AVX3", "AVX2", "SSE4", "SSSE3"}; AVX3 is AVX-512. Not affected by force_simd_target().
@@ -18,4 +18,4 @@ namespace touchtrial {
 /// Affects the whole process: not to be called while a kernel runs in another thread.
 void force_simd_target(const std::optional<std::string>& name);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

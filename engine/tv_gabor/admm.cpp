@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr double kCautiousRelaxation = 1.8;
@@ -232,4 +232,4 @@ std::span<Real> TvGaborAdmm<Real>::plane_row(int y) const {
 template class TvGaborAdmm<float>;
 template class TvGaborAdmm<double>;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

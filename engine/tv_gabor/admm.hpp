@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// How eagerly an iteration moves. Each holds alone what it gained; with momentum the relaxation
 /// has to be smaller.
@@ -82,4 +82,4 @@ class TvGaborAdmm {
   std::vector<Real> target_x_, target_y_, above_, first_;  // rows
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 /// Rows of q = -p, made when they are wanted: the field itself keeps what the solver needs.
@@ -113,4 +113,4 @@ template TvGaborCertificate<float> certify(const TvGaborProblem<float>&, const V
 template TvGaborCertificate<double> certify(const TvGaborProblem<double>&,
                                             const VectorField<double>&, double, RealFft<double>&);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -7,7 +7,7 @@
 #include "engine/tv_gabor/problem.hpp"
 #include "engine/tv_gabor/vector_field.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 template <typename Real>
 struct TvGaborCertificate {
@@ -22,4 +22,4 @@ template <typename Real>
                                                const VectorField<Real>& field, double scale,
                                                RealFft<Real>& fft);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -10,7 +10,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 TvGaborOptions with_components(const GreyImage& image, TvGaborOptions options) {
@@ -108,4 +108,4 @@ TvGaborPoint<Real> TvGaborCourse<Real>::point() {
 template class TvGaborCourse<float>;
 template class TvGaborCourse<double>;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

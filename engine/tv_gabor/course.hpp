@@ -7,7 +7,7 @@
 
 #include <memory>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 enum class TvGaborAlgorithm {
   admm,         ///< the one that extraction uses, its checks included
@@ -54,4 +54,4 @@ class TvGaborCourse {
   std::unique_ptr<Solver> solver_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

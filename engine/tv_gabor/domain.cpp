@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 bool has_no_prime_factor_above_7(int n) {
@@ -51,4 +51,4 @@ template Plane<double> extended_to_torus<double>(const GreyImage&);
 template Plane<float> cropped_from_torus<float>(const Plane<float>&, int, int);
 template Plane<double> cropped_from_torus<double>(const Plane<double>&, int, int);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -4,7 +4,7 @@
 
 #include "core/plane.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Samples that the torus holds before the image on each axis; after it there are as many or more.
 inline constexpr int kTorusMargin = 16;
@@ -21,4 +21,4 @@ template <typename Real>
 template <typename Real>
 [[nodiscard]] Plane<Real> cropped_from_torus(const Plane<Real>& torus, int height, int width);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

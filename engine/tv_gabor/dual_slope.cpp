@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 template <typename Real>
 DualSlope<Real>::DualSlope(const TvGaborProblem<Real>& problem, RealFft<Real>& fft)
@@ -39,4 +39,4 @@ void DualSlope<Real>::go_to_row(int y) {
 template class DualSlope<float>;
 template class DualSlope<double>;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

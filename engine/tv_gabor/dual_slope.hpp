@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Steps of the projected gradient up to this length converge: |grad M div| <= 8.
 inline constexpr double kLongestDualStep = 0.125;
@@ -33,4 +33,4 @@ class DualSlope {
   std::vector<Real> x_, y_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

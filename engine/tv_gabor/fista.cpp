@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstddef>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 template <typename Real>
 TvGaborFista<Real>::TvGaborFista(const TvGaborProblem<Real>& problem, RealFft<Real>& fft)
@@ -45,4 +45,4 @@ void TvGaborFista<Real>::step() {
 template class TvGaborFista<float>;
 template class TvGaborFista<double>;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Steps of 1/8 from p = 0.
 template <typename Real>
@@ -29,4 +29,4 @@ class TvGaborFista {
   double t_ = 1.0;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

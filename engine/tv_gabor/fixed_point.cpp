@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 template <typename Real>
 TvGaborFixedPoint<Real>::TvGaborFixedPoint(const TvGaborProblem<Real>& problem, RealFft<Real>& fft)
@@ -32,4 +32,4 @@ void TvGaborFixedPoint<Real>::step() {
 template class TvGaborFixedPoint<float>;
 template class TvGaborFixedPoint<double>;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -8,7 +8,7 @@
 
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// p <- (p + tau w) / (1 + tau |w|), with tau = 1/8, from p = 0.
 template <typename Real>
@@ -27,4 +27,4 @@ class TvGaborFixedPoint {
   std::vector<Real> norms_;  // of a row
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

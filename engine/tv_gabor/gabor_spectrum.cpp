@@ -9,7 +9,7 @@
 #include <numbers>
 #include <numeric>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 constexpr int kPatchRadius = 5;
@@ -62,4 +62,4 @@ Plane<double> gabor_spectrum(std::span<const GaborComponent> components, int hei
   return spectrum;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -7,7 +7,7 @@
 
 #include <span>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Sum over the components of |g^|^2, scaled so that its maximum is 1, where g is an 11 x 11 even
 /// Gabor patch of standard deviation 2 px minus its own mean. Non-negative by construction, and
@@ -18,4 +18,4 @@ namespace touchtrial {
 [[nodiscard]] Plane<double> gabor_spectrum(std::span<const GaborComponent> components, int height,
                                            int width);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

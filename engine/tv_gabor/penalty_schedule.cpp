@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 /// Times the inverse of the mean gradient.
@@ -51,4 +51,4 @@ void PenaltySchedule::balance(const AdmmResiduals& residuals) {
   penalty_ = std::clamp(penalty_ * factor, first_penalty_ / kRange, first_penalty_ * kRange);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -4,7 +4,7 @@
 
 #include "engine/tv_gabor/admm.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Starts high and falls by the same factor at every check for 20 checks, which suits photographs:
 /// they converge meanwhile. What has not converged then, drawings mostly, has its residuals
@@ -35,4 +35,4 @@ class PenaltySchedule {
   int checks_ = 0;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

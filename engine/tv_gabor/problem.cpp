@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 template <typename Real>
 TvGaborProblem<Real> tv_gabor_problem(const GreyImage& image, const TvGaborOptions& options) {
@@ -35,4 +35,4 @@ template TvGaborProblem<double> tv_gabor_problem<double>(const GreyImage&, const
 template double mean_gradient(const Plane<float>&);
 template double mean_gradient(const Plane<double>&);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

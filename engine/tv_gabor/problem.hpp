@@ -5,7 +5,7 @@
 #include "core/plane.hpp"
 #include "engine/extraction.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 template <typename Real>
 struct TvGaborProblem {
@@ -24,4 +24,4 @@ template <typename Real>
 template <typename Real>
 [[nodiscard]] double mean_gradient(const Plane<Real>& torus);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

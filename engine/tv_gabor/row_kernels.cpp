@@ -8,7 +8,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace HWY_NAMESPACE {
 namespace {
 
@@ -170,11 +170,11 @@ void norms_f64(const double* x, const double* y, std::size_t width, double* out)
 
 }  // namespace
 }  // namespace HWY_NAMESPACE
-}  // namespace touchtrial
+}  // namespace touchtrial::engine
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 HWY_EXPORT(map_row_f32);
@@ -223,5 +223,5 @@ void norm_row(const double* x, const double* y, std::size_t width, double* out) 
   HWY_DYNAMIC_DISPATCH(norms_f64)(x, y, width, out);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine
 #endif

@@ -4,7 +4,7 @@
 
 #include <cstddef>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// One row of the ADMM map; see TvGaborAdmm. All have `width` samples but for `image_below` and so
 /// on, which are the rows below on the torus.
@@ -45,4 +45,4 @@ void clip_row(const Real* x, const Real* y, std::size_t width, Real scale, Real*
 template <typename Real>
 void norm_row(const Real* x, const Real* y, std::size_t width, Real* out);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 /// The gap should fall to this share of itself within this many checks.
@@ -76,4 +76,4 @@ bool TvGaborSolver<Real>::is_stalled() const {
 template class TvGaborSolver<float>;
 template class TvGaborSolver<double>;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

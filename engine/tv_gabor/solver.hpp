@@ -12,7 +12,7 @@
 
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 enum class SolverStop {
   converged,  ///< the gap is small enough
@@ -74,4 +74,4 @@ class TvGaborSolver {
   int steps_ = 0;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 /// sin^2(pi (n + 0.5) / N)
@@ -79,4 +79,4 @@ GaborComponent strongest_component(const GreyImage& image) {
   return *strongest;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

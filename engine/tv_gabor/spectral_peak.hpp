@@ -5,7 +5,7 @@
 #include "core/plane.hpp"
 #include "engine/extraction.hpp"
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// The frequencies among which the strongest is looked for, cycles per pixel: below them lies
 /// shading, above them hardly more than the pixel grid.
@@ -20,4 +20,4 @@ inline constexpr double kHighestPeakFrequency = 0.45;
 /// Thread-safe. Costs one Fourier transform in double.
 [[nodiscard]] GaborComponent strongest_component(const GreyImage& image);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 namespace {
 
 bool is_flat(const GreyImage& image) {
@@ -78,4 +78,4 @@ TvGaborResult<Real> tv_gabor(const GreyImage& image, const TvGaborOptions& optio
 template TvGaborResult<float> tv_gabor<float>(const GreyImage&, const TvGaborOptions&);
 template TvGaborResult<double> tv_gabor<double>(const GreyImage&, const TvGaborOptions&);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 template <typename Real>
 struct TvGaborResult {
@@ -26,4 +26,4 @@ struct TvGaborResult {
 template <typename Real>
 [[nodiscard]] TvGaborResult<Real> tv_gabor(const GreyImage& image, const TvGaborOptions& options);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

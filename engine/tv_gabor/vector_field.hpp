@@ -6,7 +6,7 @@
 
 #include <span>
 
-namespace touchtrial {
+namespace touchtrial::engine {
 
 /// Two planes of one shape: components along columns and along rows.
 template <typename Real>
@@ -50,4 +50,4 @@ void negative_divergence(const VectorField<Real>& field, std::span<Real> out) no
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::engine

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 namespace {
 
 /// One session on its arrival.
@@ -25,9 +25,9 @@ class ArrivedSession {
     if (!holds) refuse(otherwise);
   }
 
-  void check_chain(std::span<const Event> events, const SessionCourse& course) const {
-    ChainLink chain(own_session_);
-    for (const Event& event : events) {
+  void check_chain(std::span<const store::Event> events, const SessionCourse& course) const {
+    store::ChainLink chain(own_session_);
+    for (const store::Event& event : events) {
       if (const auto broken = chain.broken_by(event)) {
         refuse("event " + std::to_string(event.sequence) + ": " + *broken);
       }
@@ -39,9 +39,9 @@ class ArrivedSession {
             "it ends with another event than the file's chain says");
   }
 
-  void check_opening(const Event& event, const SessionCourse& course,
-                     const StudyCommitment& commitment) const {
-    const SessionOpening opening = body_of(event, opening_from_json);
+  void check_opening(const store::Event& event, const SessionCourse& course,
+                     const store::StudyCommitment& commitment) const {
+    const store::SessionOpening opening = store::body_of(event, store::opening_from_json);
     require(opening.study_id == commitment.study_id && opening.seal == commitment.seal,
             "it was recorded under another seal");
     require(opening.participant == course.opened.participant &&
@@ -49,10 +49,11 @@ class ArrivedSession {
             "it is another participant's than the file's chain says");
   }
 
-  void check_traces(std::span<const Event> events, std::map<std::int64_t, Bytes> digests) const {
-    for (const Event& event : events) {
-      if (event.kind != EventKind::trace_stored) continue;
-      const TraceBody body = body_of(event, trace_body_from_json);
+  void check_traces(std::span<const store::Event> events,
+                    std::map<std::int64_t, Bytes> digests) const {
+    for (const store::Event& event : events) {
+      if (event.kind != store::EventKind::trace_stored) continue;
+      const store::TraceBody body = store::body_of(event, store::trace_body_from_json);
       const auto found = digests.extract(body.trial);
       require(!found.empty() && std::equal(body.trace.begin(), body.trace.end(),
                                            found.mapped().begin(), found.mapped().end()),
@@ -68,12 +69,12 @@ class ArrivedSession {
   }
 
   void check_sealed_end(const Bytes& wrapped, const SecretKey& master,
-                        std::span<const Event> events) const {
-    const auto key = unwrap_participant_key(master, own_session_, wrapped);
+                        std::span<const store::Event> events) const {
+    const auto key = store::unwrap_participant_key(master, own_session_, wrapped);
     require(key.has_value(), "its key does not open with the study's key");
-    const auto secret = unsealed(events.back(), *key);
+    const auto secret = store::unsealed(events.back(), *key);
     require(secret.has_value(), "its sealed end does not open");
-    const ChainEnd end = chain_end_from_json(*secret);
+    const store::ChainEnd end = store::chain_end_from_json(*secret);
     require(end.length == static_cast<std::int64_t>(events.size()) - 1 &&
                 end.head == events.back().previous,
             "its sealed end is that of another chain");
@@ -88,10 +89,10 @@ class ArrivedSession {
 
 void check_session_arrival(pqxx::work& work, const ServerConnection& server, int session,
                            int own_session, const SessionCourse& course,
-                           const StudyCommitment& commitment,
+                           const store::StudyCommitment& commitment,
                            const std::optional<SecretKey>& master, bool has_key) {
   const ArrivedSession arrived(server, own_session);
-  const std::vector<Event> events = read_events(work, session);
+  const std::vector<store::Event> events = read_events(work, session);
   arrived.check_chain(events, course);
   arrived.check_opening(events.front(), course, commitment);
   arrived.check_traces(events, trace_digests(work, session));
@@ -101,11 +102,12 @@ void check_session_arrival(pqxx::work& work, const ServerConnection& server, int
 }
 
 void check_chain_arrival(pqxx::work& work, const ServerConnection& server, int station,
-                         std::span<const Event> file_chain, std::int64_t first) {
-  const std::vector<Event> tail = read_events(work, chain_number(station), first);
-  ChainLink chain =
-      first == 0 ? ChainLink(0) : ChainLink::after(file_chain[static_cast<std::size_t>(first - 1)]);
-  for (const Event& event : tail) {
+                         std::span<const store::Event> file_chain, std::int64_t first) {
+  const std::vector<store::Event> tail = read_events(work, chain_number(station), first);
+  store::ChainLink chain =
+      first == 0 ? store::ChainLink(0)
+                 : store::ChainLink::after(file_chain[static_cast<std::size_t>(first - 1)]);
+  for (const store::Event& event : tail) {
     if (const auto broken = chain.broken_by(event)) {
       server.refuse("the file's chain did not arrive whole: event " +
                     std::to_string(event.sequence) + ": " + *broken + "; nothing of it was kept");
@@ -117,4 +119,4 @@ void check_chain_arrival(pqxx::work& work, const ServerConnection& server, int s
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

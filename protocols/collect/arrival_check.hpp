@@ -9,7 +9,7 @@
 #include <optional>
 #include <span>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 
 /// A session: every hash recomputed, length and head as the file chain says, study and seal those
 /// of the commitment, its traces those that its events name, its key the one that it was opened
@@ -17,12 +17,12 @@ namespace touchtrial {
 /// its key must be there \throws StoreError naming what does not hold
 void check_session_arrival(pqxx::work& work, const ServerConnection& server, int session,
                            int own_session, const SessionCourse& course,
-                           const StudyCommitment& commitment,
+                           const store::StudyCommitment& commitment,
                            const std::optional<SecretKey>& master, bool has_key);
 
 /// The file chain from `first` on: every hash recomputed, and the end that of the station.
 /// \param file_chain  up to where it has been pushed
 void check_chain_arrival(pqxx::work& work, const ServerConnection& server, int station,
-                         std::span<const Event> file_chain, std::int64_t first);
+                         std::span<const store::Event> file_chain, std::int64_t first);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

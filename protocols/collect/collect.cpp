@@ -13,12 +13,12 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 namespace {
 
 /// A station and the chain that was read from it, in order.
 struct Station {
-  StationChain chain;
+  store::StationChain chain;
   std::unique_ptr<StationFile> file;
 };
 
@@ -31,34 +31,34 @@ template <typename Work>
 void named(const std::string& station, Work&& work) {
   try {
     work();
-  } catch (const EventFault& fault) {
-    throw DamagedStore(one_line(
+  } catch (const store::EventFault& fault) {
+    throw store::DamagedStore(one_line(
         fmt::format("{}: {}; restore it from a backup, or leave it out", station, fault.what())));
   }
 }
 
 Station read_station(std::unique_ptr<StationFile> file) {
   Station station{.chain = {.name = file->name(), .events = file->file_chain()}, .file = nullptr};
-  named(station.chain.name, [&] { check_file_chain(station.chain.events); });
+  named(station.chain.name, [&] { store::check_file_chain(station.chain.events); });
   station.file = std::move(file);
   return station;
 }
 
 /// Which session an event of a file chain is about, in words; empty if none.
-std::string about(const Event& event) {
-  if (event.kind == EventKind::session_opened) {
-    const SessionOpenedBody body = session_opened_from_json(event.body);
+std::string about(const store::Event& event) {
+  if (event.kind == store::EventKind::session_opened) {
+    const store::SessionOpenedBody body = store::session_opened_from_json(event.body);
     return fmt::format(" (session {}, participant {})", body.session, body.participant);
   }
-  return fmt::format(" ({})", name_of(event.kind));
+  return fmt::format(" ({})", store::name_of(event.kind));
 }
 
 /// Of two copies of one station's file the one that went further.
 /// \throws StoreError if each went on by itself
 void keep_further(Station& kept, Station& other, CollectReport& report) {
-  const std::vector<Event>& a = kept.chain.events;
-  const std::vector<Event>& b = other.chain.events;
-  const auto same = [](const Event& x, const Event& y) { return x.hash == y.hash; };
+  const std::vector<store::Event>& a = kept.chain.events;
+  const std::vector<store::Event>& b = other.chain.events;
+  const auto same = [](const store::Event& x, const store::Event& y) { return x.hash == y.hash; };
   const auto [in_a, in_b] = std::mismatch(a.begin(), a.end(), b.begin(), b.end(), same);
   if (in_a != a.end() && in_b != b.end()) {
     refuse(fmt::format(
@@ -75,7 +75,7 @@ std::vector<Station> distinct(Stations files, CollectReport& report) {
   std::map<Digest, Station> by_identity;
   for (std::unique_ptr<StationFile>& file : files) {
     Station station = read_station(std::move(file));
-    const auto identity = station_identity(station.chain.events);
+    const auto identity = store::station_identity(station.chain.events);
     if (!identity) {
       report.superfluous.push_back(station.chain.name);
       continue;
@@ -90,22 +90,22 @@ std::vector<Station> distinct(Stations files, CollectReport& report) {
   if (by_identity.empty()) refuse("none of the databases holds a session; nothing is collected");
   std::vector<Station> stations;
   for (auto& [identity, station] : by_identity) stations.push_back(std::move(station));
-  std::ranges::sort(stations, comes_before, &Station::chain);
+  std::ranges::sort(stations, store::comes_before, &Station::chain);
   return stations;
 }
 
 /// What the collected study is, while its sessions come in.
 class Collecting {
  public:
-  Collecting(Stations files, CollectedDraft draft, CollectReport& report)
+  Collecting(Stations files, store::CollectedDraft draft, CollectReport& report)
       : draft_(std::move(draft)), stations_(distinct(std::move(files), report)) {
-    std::vector<StationChain> chains;
+    std::vector<store::StationChain> chains;
     for (Station& station : stations_) chains.push_back(std::move(station.chain));
-    const CollectedChain& chain = draft_.begin(chains);
+    const store::CollectedChain& chain = draft_.begin(chains);
     places_ = chain.sessions;
     report.stations = static_cast<int>(stations_.size());
     report.sessions = static_cast<int>(places_.size());
-    for (const SessionPlace& place : chain.left_out) {
+    for (const store::SessionPlace& place : chain.left_out) {
       report.left_out.push_back(left_out(chains, place));
     }
   }
@@ -113,8 +113,9 @@ class Collecting {
   void take_sessions(TraceUse traces, const CollectProgress& progress) {
     const int count = static_cast<int>(places_.size());
     for (int session = 1; session <= count; ++session) {
-      const auto& [station, own] = places_[static_cast<std::size_t>(session) - 1];
-      StationFile& file = this->file(station);
+      const store::SessionPlace& place = places_[static_cast<std::size_t>(session) - 1];
+      const int own = place.own_session;
+      StationFile& file = this->file(place.station);
       named(file.name(), [&] {
         draft_.add_session(session, file.events(own), file.wrapped_key(own));
         if (traces == TraceUse::fetched) return;
@@ -126,27 +127,28 @@ class Collecting {
     }
   }
 
-  StudyStore finished(TraceUse traces) && {
+  store::StudyStore finished(TraceUse traces) && {
     if (traces == TraceUse::copied) return std::move(draft_).finished();
     // StudyStore asks from one thread at a time, as a station may be asked.
     const auto files = std::make_shared<std::vector<Station>>(std::move(stations_));
     return std::move(draft_).finished(
-        [files, places = std::move(places_)](int session, int trial) -> std::optional<SealedTrace> {
+        [files, places = std::move(places_)](int session,
+                                             int trial) -> std::optional<store::SealedTrace> {
           if (session < 1 || session > static_cast<int>(places.size())) return std::nullopt;
           const auto& [station, own] = places[static_cast<std::size_t>(session) - 1];
           std::optional<Bytes> box =
               (*files)[static_cast<std::size_t>(station) - 1].file->trace(own, trial);
           if (!box) return std::nullopt;
-          return SealedTrace{.session = own, .trial = trial, .box = *std::move(box)};
+          return store::SealedTrace{.session = own, .trial = trial, .box = *std::move(box)};
         });
   }
 
  private:
   StationFile& file(int station) { return *stations_[static_cast<std::size_t>(station) - 1].file; }
 
-  static SessionLeftOut left_out(const std::vector<StationChain>& chains,
-                                 const SessionPlace& place) {
-    const StationChain& chain = chains[static_cast<std::size_t>(place.station) - 1];
+  static SessionLeftOut left_out(const std::vector<store::StationChain>& chains,
+                                 const store::SessionPlace& place) {
+    const store::StationChain& chain = chains[static_cast<std::size_t>(place.station) - 1];
     const SessionCourse course = courses_of(chain.events).at(place.own_session);
     return {.station = chain.name,
             .session = place.own_session,
@@ -154,13 +156,13 @@ class Collecting {
             .cut_short = is_cut_short(course)};
   }
 
-  CollectedDraft draft_;
+  store::CollectedDraft draft_;
   std::vector<Station> stations_;
-  std::vector<SessionPlace> places_;
+  std::vector<store::SessionPlace> places_;
 };
 
-StudyStore collected(Stations files, CollectedDraft draft, TraceUse traces, CollectReport& report,
-                     const CollectProgress& progress) {
+store::StudyStore collected(Stations files, store::CollectedDraft draft, TraceUse traces,
+                            CollectReport& report, const CollectProgress& progress) {
   Collecting collecting(std::move(files), std::move(draft), report);
   collecting.take_sessions(traces, progress);
   return std::move(collecting).finished(traces);
@@ -171,16 +173,16 @@ StudyStore collected(Stations files, CollectedDraft draft, TraceUse traces, Coll
 CollectReport collect_into_file(Stations stations, const std::filesystem::path& target,
                                 const CollectProgress& progress) {
   CollectReport report;
-  static_cast<void>(collected(std::move(stations), CollectedDraft::in_file(target),
+  static_cast<void>(collected(std::move(stations), store::CollectedDraft::in_file(target),
                               TraceUse::copied, report, progress));
   return report;
 }
 
-StudyStore collected_for_reading(Stations stations, const std::string& name, TraceUse traces,
-                                 CollectReport* report, const CollectProgress& progress) {
+store::StudyStore collected_for_reading(Stations stations, const std::string& name, TraceUse traces,
+                                        CollectReport* report, const CollectProgress& progress) {
   CollectReport unread;
-  return collected(std::move(stations), CollectedDraft::temporary(name), traces,
+  return collected(std::move(stations), store::CollectedDraft::temporary(name), traces,
                    report == nullptr ? unread : *report, progress);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 
 /// Whether traces are taken along, or asked of the station when somebody wants one (the sources
 /// then live as long as the collected study).
@@ -53,9 +53,10 @@ CollectReport collect_into_file(Stations stations, const std::filesystem::path& 
 /// The same for reading, in a private temporary database that no other program sees and that is
 /// gone with the store, or with the program.
 /// \param name  of the whole, for messages  \param report  may be null
-[[nodiscard]] StudyStore collected_for_reading(Stations stations, const std::string& name,
-                                               TraceUse traces, CollectReport* report = nullptr,
-                                               const CollectProgress& progress = {});
+[[nodiscard]] store::StudyStore collected_for_reading(Stations stations, const std::string& name,
+                                                      TraceUse traces,
+                                                      CollectReport* report = nullptr,
+                                                      const CollectProgress& progress = {});
 
 /// The station that an SQLite file is, or the stations that were collected into it.
 /// \throws DamagedStore, naming file and session, if it is damaged or was tampered with
@@ -63,4 +64,4 @@ CollectReport collect_into_file(Stations stations, const std::filesystem::path& 
 ///   collected file that went on by itself
 [[nodiscard]] Stations stations_of_file(const std::filesystem::path& database);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

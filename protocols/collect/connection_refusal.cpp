@@ -9,7 +9,7 @@
 #include <libpq-fe.h>
 #include <poll.h>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 namespace {
 
 constexpr std::chrono::seconds kLongestAttempt{10};
@@ -69,4 +69,4 @@ ConnectionRefusal refusal_by(const ServerAddress& address) {
   return is_final ? ConnectionRefusal::credentials : ConnectionRefusal::unreached;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

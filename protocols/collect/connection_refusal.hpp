@@ -3,7 +3,7 @@
 
 #include "protocols/collect/server_address.hpp"
 
-namespace touchtrial {
+namespace touchtrial::collect {
 
 enum class ConnectionRefusal {
   unreached,    ///< nobody answered, the handshake broke off, or the server starts or stops
@@ -16,4 +16,4 @@ enum class ConnectionRefusal {
 /// \return unreached also if it succeeds now
 [[nodiscard]] ConnectionRefusal refusal_by(const ServerAddress& address);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

@@ -7,7 +7,7 @@
 #include <set>
 #include <stdexcept>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 namespace {
 
 template <typename Counts, typename CountOf>
@@ -62,7 +62,7 @@ EnrolmentBalance enrolment_balance(std::span<const EnrolledSession> sessions, in
     balance.highest = std::max(balance.highest, session.enrolment);
     if (!session.station_name.empty()) balance.names[session.station] = session.station_name;
     int& at_station = balance.stations[session.station];
-    if (!session.counts || session.state != SessionState::completed) continue;
+    if (!session.counts || session.state != store::SessionState::completed) continue;
     ++at_station;
     ++balance.rows[static_cast<std::size_t>(session.enrolment % method_rows)];
     taken.insert(session.enrolment);
@@ -83,4 +83,4 @@ std::vector<std::string> imbalances(const EnrolmentBalance& balance) {
   return lines;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

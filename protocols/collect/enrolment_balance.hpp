@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 
 /// One session, as far as balance goes.
 struct EnrolledSession {
   int station = 0;  ///< from 1
   int enrolment = 0;
-  SessionState state{};
+  store::SessionState state{};
   bool counts = true;          ///< neither excluded nor withdrawn nor replaced
   std::string station_name{};  ///< of its file; may be empty
 };
@@ -43,4 +43,4 @@ inline constexpr std::size_t kMostGaps = 20;
 /// that were passed over. Empty: nothing.
 [[nodiscard]] std::vector<std::string> imbalances(const EnrolmentBalance& balance);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

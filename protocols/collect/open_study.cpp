@@ -5,17 +5,18 @@
 
 #include <filesystem>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 
-StudyStore open_study(const std::string& where, TraceUse traces) {
-  if (!is_address(where)) return StudyStore::open(where, StudyStore::Access::read_only);
+store::StudyStore open_study(const std::string& where, TraceUse traces) {
+  if (!is_address(where))
+    return store::StudyStore::open(where, store::StudyStore::Access::read_only);
   const ServerAddress address(where);
   if (traces == TraceUse::fetched) {
     return collected_for_reading(stations_of_server(address), address.shown(), traces);
   }
   // Whoever wants all of it wants to know whether all of it holds.
   DerivedTables derived;
-  StudyStore collected =
+  store::StudyStore collected =
       collected_for_reading(stations_of_server(address, &derived), address.shown(), traces);
   derived(collected);
   return collected;
@@ -26,4 +27,4 @@ std::string study_name(const std::string& where) {
   return std::filesystem::path(where).filename().string();
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

@@ -6,7 +6,7 @@
 
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 
 /// Opens a database file as StudyStore::open does for reading, or collects what a server has of all
 /// stations into a private temporary database.
@@ -14,10 +14,11 @@ namespace touchtrial {
 /// \param traces  whether whoever reads a study that is kept elsewhere wants all of its traces
 /// \throws what StudyStore::open throws; also what ServerAddress, stations_of_server and
 ///   collected_for_reading throw
-[[nodiscard]] StudyStore open_study(const std::string& where, TraceUse traces = TraceUse::fetched);
+[[nodiscard]] store::StudyStore open_study(const std::string& where,
+                                           TraceUse traces = TraceUse::fetched);
 
 /// What a study is called in reports: the name of its file, or the address of its server without
 /// user. \throws what ServerAddress throws
 [[nodiscard]] std::string study_name(const std::string& where);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

@@ -10,7 +10,7 @@
 
 #include <libpq-fe.h>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 namespace {
 
 using Parameters = std::map<std::string, std::string>;
@@ -107,4 +107,4 @@ ServerAddress::ServerAddress(const std::string& where) {
   connection_ = joined(parameters);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

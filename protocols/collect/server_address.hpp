@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 
 /// Whether a place is an address and no file: everything with "://" is, so that a scheme that was
 /// mistyped is not taken for a file name and repeated, password and all.
@@ -29,4 +29,4 @@ class ServerAddress {
   std::string shown_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 
 /// "{1,NULL,\"text\"}", to be cast to the column's type in SQL.
 class ServerArray {
@@ -57,4 +57,4 @@ class ServerArray {
   std::string values_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

@@ -7,7 +7,7 @@
 #include <initializer_list>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 namespace {
 
 /// SHA-256 in SQL, which arrivals are checked with, came with this version.
@@ -113,21 +113,22 @@ void ServerConnection::wipe_deleted_keys() noexcept {
   }
 }
 
-void ServerConnection::refuse_damage(const EventFault& fault) const {
+void ServerConnection::refuse_damage(const store::EventFault& fault) const {
   // A station's file chain stands under its negative number.
   const auto known = places_.find(static_cast<int>(fault.session()));
   const std::string place = known != places_.end() ? known->second
                             : fault.session() < 0
                                 ? "station " + std::to_string(-fault.session()) + ", file chain"
                                 : "session " + std::to_string(fault.session()) + " of the server";
-  throw DamagedStore(address_.shown() + ": " + place +
-                     (fault.sequence() < 0 ? "" : ", event " + std::to_string(fault.sequence())) +
-                     ": " + fault.bare() + "; restore the database from a backup");
+  throw store::DamagedStore(
+      address_.shown() + ": " + place +
+      (fault.sequence() < 0 ? "" : ", event " + std::to_string(fault.sequence())) + ": " +
+      fault.bare() + "; restore the database from a backup");
 }
 
 void ServerConnection::refuse_garbage(const std::string& what) const {
-  throw DamagedStore(address_.shown() + ": holds what Touchtrial did not write (" +
-                     without_ending(what) + "); restore the database from a backup");
+  throw store::DamagedStore(address_.shown() + ": holds what Touchtrial did not write (" +
+                            without_ending(what) + "); restore the database from a backup");
 }
 
 // Of some errors libpqxx has a type and forgets the state, of others it has the state alone.
@@ -153,10 +154,10 @@ void ServerConnection::translate(const pqxx::failure& error) const {
   }
   if (is_a<pqxx::undefined_table>(error) || is_a<pqxx::undefined_column>(error) ||
       is_a<pqxx::undefined_function>(error) || state_is({"42P01", "42703", "42883"})) {
-    throw DamagedStore(address_.shown() + ": lacks what Touchtrial made there (" +
-                       complaint(error) +
-                       "); restore the database from a backup, or make a new one and sync all "
-                       "stations again");
+    throw store::DamagedStore(
+        address_.shown() + ": lacks what Touchtrial made there (" + complaint(error) +
+        "); restore the database from a backup, or make a new one and sync all "
+        "stations again");
   }
   if (state_is({"25006"})) {
     refuse("the database is read-only (" + complaint(error) +
@@ -173,4 +174,4 @@ void ServerConnection::translate(const pqxx::failure& error) const {
   refuse(complaint(error) + "; run the same command again, or ask whoever keeps the server");
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

@@ -15,7 +15,7 @@
 
 #include <pqxx/pqxx>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 
 /// The connection broke or the server went away: what was not committed is not there, and what was
 /// being committed may be. Trying again on a new connection may help.
@@ -93,7 +93,7 @@ class ServerConnection {
   decltype(auto) translated(Work&& work) const {
     try {
       return work();
-    } catch (const EventFault& fault) {
+    } catch (const store::EventFault& fault) {
       refuse_damage(fault);
     } catch (const pqxx::failure& error) {
       translate(error);
@@ -106,7 +106,7 @@ class ServerConnection {
 
  private:
   [[noreturn]] void translate(const pqxx::failure& error) const;
-  [[noreturn]] void refuse_damage(const EventFault& fault) const;
+  [[noreturn]] void refuse_damage(const store::EventFault& fault) const;
   [[noreturn]] void refuse_garbage(const std::string& what) const;
   void check_server();
 
@@ -115,4 +115,4 @@ class ServerConnection {
   pqxx::connection connection_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

@@ -10,16 +10,16 @@
 #include <utility>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 namespace {
 
 /// Station on the server, and the session's own number.
 using Place = std::pair<int, int>;
 
 /// One row of a derived table as text, in the order of its columns.
-std::string text_of(const SessionRow& row) {
+std::string text_of(const store::SessionRow& row) {
   return row.participant + "|" + std::to_string(row.enrolment) + "|" +
-         std::string(name_of(row.state)) + "|" + std::to_string(row.simulated) + "|" +
+         std::string(store::name_of(row.state)) + "|" + std::to_string(row.simulated) + "|" +
          std::to_string(row.pilot) + "|" + std::to_string(row.excluded) + "|" +
          std::to_string(row.withdrawn) + "|" + row.device + "|" + row.replaced_by;
 }
@@ -29,11 +29,11 @@ std::string text_of(const std::optional<Value>& value) {
   return value ? std::to_string(*value) : "";
 }
 
-std::string text_of(const TrialRow& row) {
+std::string text_of(const store::TrialRow& row) {
   const auto time = [](const std::optional<std::chrono::nanoseconds>& at) {
     return at ? std::to_string(at->count()) : std::string();
   };
-  return std::to_string(row.block) + "|" + std::string(name_of(row.state)) + "|" +
+  return std::to_string(row.block) + "|" + std::string(store::name_of(row.state)) + "|" +
          time(row.presented_at) + "|" + time(row.contact_at) + "|" + std::to_string(row.valid) +
          "|" + std::to_string(row.overruns) + "|" + std::to_string(row.samples) + "|" +
          std::to_string(row.explorations) + "|" + time(row.answered_at) + "|" +
@@ -53,19 +53,19 @@ constexpr const char* kTrialRows =
 
 class DerivedCheck {
  public:
-  DerivedCheck(pqxx::work& work, const ServerConnection& server, const StudyStore& collected)
+  DerivedCheck(pqxx::work& work, const ServerConnection& server, const store::StudyStore& collected)
       : work_(work), server_(server) {
     std::map<int, int> stations;  // on the server, by the number in the collected study
     for (int station = 1; station <= collected.stations(); ++station) {
-      const auto identity = station_identity(collected.station_chain(station));
+      const auto identity = store::station_identity(collected.station_chain(station));
       const auto number = identity ? find_station(work, *identity) : std::nullopt;
       if (number) stations[station] = *number;
     }
-    for (const SessionRow& row : collected.sessions()) {
+    for (const store::SessionRow& row : collected.sessions()) {
       places_[row.session] = {stations[row.station], row.own_session};
       sessions_[places_[row.session]] = text_of(row);
     }
-    for (const TrialRow& row : collected.trials()) {
+    for (const store::TrialRow& row : collected.trials()) {
       trials_[{places_[row.session], row.trial}] = {row.rate_hz, text_of(row)};
       responses_ += row.answered_at ? 1 : 0;
     }
@@ -87,17 +87,19 @@ class DerivedCheck {
     }
     if (!trials_.empty()) refuse("trials", trials_.begin()->first.first);
     if (work_.exec1("SELECT count(*) FROM responses")[0].as<int>() != responses_) {
-      throw DamagedStore(server_.address().shown() +
-                         ": table responses holds rows without a trial; restore the database from "
-                         "a backup");
+      throw store::DamagedStore(
+          server_.address().shown() +
+          ": table responses holds rows without a trial; restore the database from "
+          "a backup");
     }
   }
 
  private:
   [[noreturn]] void refuse(const std::string& table, const Place& place) const {
-    throw DamagedStore(server_.address().shown() + ", station " + std::to_string(place.first) +
-                       ", session " + std::to_string(place.second) + ": derived table " + table +
-                       " disagrees with the events; restore the database from a backup");
+    throw store::DamagedStore(server_.address().shown() + ", station " +
+                              std::to_string(place.first) + ", session " +
+                              std::to_string(place.second) + ": derived table " + table +
+                              " disagrees with the events; restore the database from a backup");
   }
 
   pqxx::work& work_;
@@ -110,8 +112,9 @@ class DerivedCheck {
 
 }  // namespace
 
-void check_derived(pqxx::work& work, const ServerConnection& server, const StudyStore& collected) {
+void check_derived(pqxx::work& work, const ServerConnection& server,
+                   const store::StudyStore& collected) {
   DerivedCheck(work, server, collected).run();
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

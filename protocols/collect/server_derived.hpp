@@ -5,11 +5,12 @@
 #include "protocols/collect/server_connection.hpp"
 #include "protocols/store/study_store.hpp"
 
-namespace touchtrial {
+namespace touchtrial::collect {
 
 /// \param collected  from the same server, at the same moment
 /// \throws DamagedStore naming station and session at which sessions, trials or responses are not
 ///   what the events come to
-void check_derived(pqxx::work& work, const ServerConnection& server, const StudyStore& collected);
+void check_derived(pqxx::work& work, const ServerConnection& server,
+                   const store::StudyStore& collected);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 namespace {
 
 /// As much as goes to or comes from the server at a time, roughly, in bytes.
@@ -23,9 +23,9 @@ class EventBatch {
  public:
   EventBatch(pqxx::work& work, int session) : work_(work), session_(session) {}
 
-  void add(const Event& event) {
+  void add(const store::Event& event) {
     sequences_.add(event.sequence);
-    kinds_.add(name_of(event.kind));
+    kinds_.add(store::name_of(event.kind));
     times_.add(event.at.count());
     bodies_.add(std::string_view(event.body));
     sealed_.add(ByteView(event.sealed));
@@ -89,13 +89,13 @@ std::optional<std::int64_t> count_of(const std::optional<std::chrono::nanosecond
   return time->count();
 }
 
-void insert_trial_rows(pqxx::work& work, int session, const DerivedRows& rows) {
+void insert_trial_rows(pqxx::work& work, int session, const store::DerivedRows& rows) {
   ServerArray trials, blocks, states, presented, contacts, valid, overruns, samples, rates,
       explorations;
   for (const auto& [id, row] : rows.trials) {
     trials.add(row.trial);
     blocks.add(row.block);
-    states.add(name_of(row.state));
+    states.add(store::name_of(row.state));
     presented.add(row.presented_at.count());
     contacts.add(count_of(row.contact_at));
     valid.add(row.valid);
@@ -113,7 +113,7 @@ void insert_trial_rows(pqxx::work& work, int session, const DerivedRows& rows) {
       valid.text(), overruns.text(), samples.text(), rates.text(), explorations.text());
 }
 
-void insert_response_rows(pqxx::work& work, int session, const DerivedRows& rows) {
+void insert_response_rows(pqxx::work& work, int session, const store::DerivedRows& rows) {
   ServerArray trials, times, positions, firsts, confidences;
   for (const auto& [id, row] : rows.trials) {
     if (!row.answered_at || !row.position) continue;
@@ -134,21 +134,21 @@ Digest digest_of(const pqxx::field& field, int session, std::int64_t sequence) {
   const Bytes bytes = bytes_of(field);
   Digest digest{};
   if (bytes.size() != digest.size()) {
-    throw EventFault(session, sequence, "a hash of the event is not 32 bytes long");
+    throw store::EventFault(session, sequence, "a hash of the event is not 32 bytes long");
   }
   std::copy(bytes.begin(), bytes.end(), digest.begin());
   return digest;
 }
 
 /// \param row  sequence, kind, at_ns, body, sealed, previous, hash, own_session
-Event event_of(const pqxx::row& row, int session) {
+store::Event event_of(const pqxx::row& row, int session) {
   const auto sequence = row[0].as<std::int64_t>();
   const auto name = row[1].as<std::string>();
-  const std::optional<EventKind> kind = event_kind_from_name(name);
-  if (!kind) throw EventFault(session, sequence, "unknown kind of event '" + name + "'");
+  const std::optional<store::EventKind> kind = store::event_kind_from_name(name);
+  if (!kind) throw store::EventFault(session, sequence, "unknown kind of event '" + name + "'");
   const auto own = row[7].is_null() ? session : row[7].as<std::int64_t>();
   if (own < 0 || own > std::numeric_limits<int>::max() || (own == 0) != (session < 0)) {
-    throw EventFault(session, sequence, "no session of a station has this number");
+    throw store::EventFault(session, sequence, "no session of a station has this number");
   }
   return {.session = static_cast<int>(own),
           .sequence = sequence,
@@ -168,14 +168,14 @@ void refuse_large_events(pqxx::work& work, int session) {
       "ORDER BY sequence LIMIT 1",
       session, kLargestEvent);
   if (found.empty()) return;
-  throw EventFault(session, found[0][0].as<std::int64_t>(), "the event is absurdly large");
+  throw store::EventFault(session, found[0][0].as<std::int64_t>(), "the event is absurdly large");
 }
 
 }  // namespace
 
-void insert_events(pqxx::work& work, int session, std::span<const Event> events) {
+void insert_events(pqxx::work& work, int session, std::span<const store::Event> events) {
   EventBatch batch(work, session);
-  for (const Event& event : events) batch.add(event);
+  for (const store::Event& event : events) batch.add(event);
   batch.send();
 }
 
@@ -190,28 +190,28 @@ void insert_key(pqxx::work& work, int session, const Bytes& wrapped) {
                     binary(wrapped));
 }
 
-void insert_session(pqxx::work& work, const SessionRow& row) {
+void insert_session(pqxx::work& work, const store::SessionRow& row) {
   work.exec_params0(
       "INSERT INTO sessions(session, participant, enrolment, state, simulated, pilot, excluded, "
       "withdrawn, device, replaced_by, own_session, station) "
       "VALUES($1, $2, $3, $4, $5, $6, $7, $8, $9, nullif($10, ''), $11, $12)",
-      row.session, row.participant, row.enrolment, std::string(name_of(row.state)),
+      row.session, row.participant, row.enrolment, std::string(store::name_of(row.state)),
       int{row.simulated}, int{row.pilot}, int{row.excluded}, int{row.withdrawn}, row.device,
       row.replaced_by, row.own_session, row.station);
 }
 
-void insert_trials(pqxx::work& work, int session, const DerivedRows& rows) {
+void insert_trials(pqxx::work& work, int session, const store::DerivedRows& rows) {
   insert_trial_rows(work, session, rows);
   insert_response_rows(work, session, rows);
 }
 
-std::vector<Event> read_events(pqxx::work& work, int session, std::int64_t first) {
+std::vector<store::Event> read_events(pqxx::work& work, int session, std::int64_t first) {
   refuse_large_events(work, session);
   const pqxx::result rows = work.exec_params(
       "SELECT sequence, kind, at_ns, body, sealed, previous, hash, own_session FROM events "
       "WHERE session = $1 AND sequence >= $2 ORDER BY sequence",
       session, first);
-  std::vector<Event> events;
+  std::vector<store::Event> events;
   events.reserve(rows.size());
   for (const pqxx::row& row : rows) events.push_back(event_of(row, session));
   return events;
@@ -241,7 +241,8 @@ std::vector<TrialRange> trace_batches(pqxx::work& work, int session) {
            session)) {
     const auto trial = row[0].as<std::int64_t>();
     const auto size = row[1].as<std::int64_t>();
-    if (size > kLargestTrace) throw EventFault(session, kNoEvent, "a trace is absurdly large");
+    if (size > kLargestTrace)
+      throw store::EventFault(session, store::kNoEvent, "a trace is absurdly large");
     if (batches.empty() || bytes + size > static_cast<std::int64_t>(kBatch)) {
       batches.push_back({trial, trial});
       bytes = 0;
@@ -273,4 +274,4 @@ std::map<std::int64_t, Bytes> trace_digests(pqxx::work& work, int session) {
   return digests;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

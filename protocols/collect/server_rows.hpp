@@ -15,22 +15,23 @@
 #include <utility>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 
 /// \param session  the number on the server; -1, -2, ... for a station's file chain
-void insert_events(pqxx::work& work, int session, std::span<const Event> events);
+void insert_events(pqxx::work& work, int session, std::span<const store::Event> events);
 /// All of a session's traces, a few megabytes at a time.
 void insert_traces(pqxx::work& work, int session, StationFile& station, int own_session);
 void insert_key(pqxx::work& work, int session, const Bytes& wrapped);
 /// Its number on the server is row.session.
-void insert_session(pqxx::work& work, const SessionRow& row);
+void insert_session(pqxx::work& work, const store::SessionRow& row);
 /// Rows of trials and responses. \param rows  by own numbers
-void insert_trials(pqxx::work& work, int session, const DerivedRows& rows);
+void insert_trials(pqxx::work& work, int session, const store::DerivedRows& rows);
 
 /// Events as the station wrote them: with the session's own number, 0 for a file chain.
 /// \param first  sequence from which on
 /// \throws EventFault, by the number on the server, if a row is no event or absurdly large
-[[nodiscard]] std::vector<Event> read_events(pqxx::work& work, int session, std::int64_t first = 0);
+[[nodiscard]] std::vector<store::Event> read_events(pqxx::work& work, int session,
+                                                    std::int64_t first = 0);
 [[nodiscard]] std::optional<Bytes> read_key(pqxx::work& work, int session);
 [[nodiscard]] std::optional<Bytes> read_trace(pqxx::work& work, int session, int trial);
 /// Trials from the first to the last.
@@ -47,4 +48,4 @@ struct TrialRange {
 /// SHA-256 of every trace of a session, by trial, as the server has it.
 [[nodiscard]] std::map<std::int64_t, Bytes> trace_digests(pqxx::work& work, int session);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

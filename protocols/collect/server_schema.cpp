@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 namespace {
 
 // A station's name is that of its file when it first came, for messages. Session numbers come from
@@ -24,15 +24,15 @@ CREATE FUNCTION touchtrial_append_only() RETURNS trigger LANGUAGE plpgsql AS
   $$ BEGIN RAISE EXCEPTION '% are append-only', TG_TABLE_NAME; END $$;
 )sql";
 
-std::string name_of(ColumnType type) {
+std::string name_of(store::ColumnType type) {
   switch (type) {
-    case ColumnType::integer:
+    case store::ColumnType::integer:
       return "BIGINT";
-    case ColumnType::real:
+    case store::ColumnType::real:
       return "DOUBLE PRECISION";
-    case ColumnType::text:
+    case store::ColumnType::text:
       return "TEXT";
-    case ColumnType::blob:
+    case store::ColumnType::blob:
       return "BYTEA";
   }
   return {};
@@ -44,23 +44,23 @@ std::string listed(std::span<const std::string_view> names) {
   return text;
 }
 
-std::string column_sql(const TableColumn& column) {
+std::string column_sql(const store::TableColumn& column) {
   std::string sql = std::string(column.name) + " " + name_of(column.type);
   if (!column.nullable) sql += " NOT NULL";
   if (!column.default_value.empty()) sql += " DEFAULT " + std::string(column.default_value);
   return sql;
 }
 
-std::string table_sql(const TableDefinition& table) {
+std::string table_sql(const store::TableDefinition& table) {
   const std::string name(table.name);
   std::string sql = "CREATE TABLE " + name + "(";
-  for (const TableColumn& column : table.columns) sql += column_sql(column) + ", ";
-  for (const TableReference& reference : table.references) {
+  for (const store::TableColumn& column : table.columns) sql += column_sql(column) + ", ";
+  for (const store::TableReference& reference : table.references) {
     sql += "FOREIGN KEY(" + listed(reference.columns) + ") REFERENCES " +
            std::string(reference.table) + "(" + listed(reference.columns) + "), ";
   }
   sql += "PRIMARY KEY(" + listed(table.key) + "));";
-  for (const UniqueIndex& index : table.unique) {
+  for (const store::UniqueIndex& index : table.unique) {
     sql += "CREATE UNIQUE INDEX " + std::string(index.name) + " ON " + name + "(" +
            std::string(index.column) + ") WHERE " + std::string(index.where) + ";";
   }
@@ -73,18 +73,20 @@ std::string table_sql(const TableDefinition& table) {
 
 void make_first_version(pqxx::work& work) {
   work.exec(kServerAlone);
-  for (const TableDefinition& table : table_definitions()) work.exec(table_sql(table));
+  for (const store::TableDefinition& table : store::table_definitions())
+    work.exec(table_sql(table));
   // Sealed bytes do not shrink, and trying costs more than all the rest of storing them.
   work.exec("ALTER TABLE traces ALTER COLUMN box SET STORAGE EXTERNAL");
   work.exec("CREATE UNIQUE INDEX sessions_of_station ON sessions(station, own_session)");
 }
 
 constexpr std::array<ServerMigration, 1> kMigrations = {make_first_version};
-static_assert(kFirstServerVersion + kMigrations.size() - 1 == kSchemaVersion);
+static_assert(kFirstServerVersion + kMigrations.size() - 1 == store::kSchemaVersion);
 
 std::string our_names() {
   std::string names = "{stations";
-  for (const TableDefinition& table : table_definitions()) names += "," + std::string(table.name);
+  for (const store::TableDefinition& table : store::table_definitions())
+    names += "," + std::string(table.name);
   return names + "}";
 }
 
@@ -152,10 +154,10 @@ void bring_forward(ServerConnection& server, std::span<const ServerMigration> st
 void require_current(ServerConnection& server) {
   const std::optional<int> version = server_version(server);
   if (!version) server.refuse("holds no study yet; push one with `touchtrial sync`");
-  if (*version > kSchemaVersion) refuse_newer(server, *version, kSchemaVersion);
-  if (*version < kSchemaVersion) {
+  if (*version > store::kSchemaVersion) refuse_newer(server, *version, store::kSchemaVersion);
+  if (*version < store::kSchemaVersion) {
     server.refuse("is of an older schema; the next `touchtrial sync` brings it up to date");
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 
 /// The version of tables.hpp with which servers began.
 inline constexpr int kFirstServerVersion = 3;
@@ -33,4 +33,4 @@ void bring_forward(ServerConnection& server,
 /// \throws StoreError, with the remedy, unless the tables are there and of this version
 void require_current(ServerConnection& server);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

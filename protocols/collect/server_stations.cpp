@@ -11,7 +11,7 @@
 #include <memory>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 namespace {
 
 /// A connection and the moment that it looks at.
@@ -46,12 +46,12 @@ class ServerStation final : public StationFile {
 
   const std::string& name() const override { return name_; }
 
-  std::vector<Event> file_chain() override {
+  std::vector<store::Event> file_chain() override {
     return snapshot_->ask(
         [&](pqxx::work& work) { return read_events(work, chain_number(station_)); });
   }
 
-  std::vector<Event> events(int own_session) override {
+  std::vector<store::Event> events(int own_session) override {
     const std::optional<int> session = number_of(own_session);
     if (!session) return {};
     return snapshot_->ask([&](pqxx::work& work) { return read_events(work, *session); });
@@ -104,9 +104,9 @@ void refuse_strays(pqxx::work& work, const ServerConnection& server) {
         ") e LEFT JOIN sessions s USING(session) LEFT JOIN stations t ON t.station = -e.session "
         "WHERE s.session IS NULL AND t.station IS NULL LIMIT 1");
     if (strays.empty()) continue;
-    throw DamagedStore(server.address().shown() + ": table " + table + " holds rows of session " +
-                       strays[0][0].as<std::string>() +
-                       ", which no station has; restore the database from a backup");
+    throw store::DamagedStore(server.address().shown() + ": table " + table +
+                              " holds rows of session " + strays[0][0].as<std::string>() +
+                              ", which no station has; restore the database from a backup");
   }
 }
 
@@ -143,7 +143,7 @@ std::map<int, std::unique_ptr<ServerStation>> named_stations(
 Stations stations_of_server(const ServerAddress& address, DerivedTables* derived) {
   const auto snapshot = std::make_shared<Snapshot>(address);
   if (derived != nullptr) {
-    *derived = [snapshot](const StudyStore& collected) {
+    *derived = [snapshot](const store::StudyStore& collected) {
       snapshot->ask([&](pqxx::work& work) { check_derived(work, snapshot->server(), collected); });
     };
   }
@@ -160,4 +160,4 @@ Stations stations_of_server(const ServerAddress& address, DerivedTables* derived
   });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

@@ -6,11 +6,11 @@
 
 #include <functional>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 
 /// Holds the derived tables of a server against what was collected from it.
 /// \throws DamagedStore naming station and session if they disagree
-using DerivedTables = std::function<void(const StudyStore& collected)>;
+using DerivedTables = std::function<void(const store::StudyStore& collected)>;
 
 /// Every station, all as they were at one moment, whatever is pushed meanwhile. They share one
 /// connection, which lives as long as any of them.
@@ -20,4 +20,4 @@ using DerivedTables = std::function<void(const StudyStore& collected)>;
 [[nodiscard]] Stations stations_of_server(const ServerAddress& address,
                                           DerivedTables* derived = nullptr);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 namespace {
 
 /// Of a session that stands in another's way.
@@ -19,7 +19,7 @@ struct Holder {
   int enrolment = 0;
 };
 
-std::optional<Holder> holder_of(pqxx::work& work, const SessionRow& row) {
+std::optional<Holder> holder_of(pqxx::work& work, const store::SessionRow& row) {
   const pqxx::result found = work.exec_params(
       "SELECT s.session, coalesce(s.own_session, s.session), s.station, t.name, s.participant, "
       "s.enrolment FROM sessions s JOIN stations t USING(station) WHERE s.replaced_by IS NULL "
@@ -42,7 +42,7 @@ auto parsed_from(int session, const std::string& body, Parse parse) {
   try {
     return parse(body);
   } catch (const StoreError& error) {
-    throw EventFault(session, 0, error.what());
+    throw store::EventFault(session, 0, error.what());
   }
 }
 
@@ -52,8 +52,8 @@ std::string opening_of(pqxx::work& work, int session) {
       "SELECT body FROM events WHERE session = $1 AND sequence = 0 AND octet_length(body) < 65536",
       session);
   if (found.empty()) return "of which no opening is there";
-  const SessionOpening opening =
-      parsed_from(session, found[0][0].as<std::string>(), opening_from_json);
+  const store::SessionOpening opening =
+      parsed_from(session, found[0][0].as<std::string>(), store::opening_from_json);
   std::string text = opening.opened_utc.empty() ? "" : "opened " + opening.opened_utc + " ";
   text += "on " + opening.device;
   if (!opening.device_serial.empty()) text += " " + opening.device_serial;
@@ -61,7 +61,8 @@ std::string opening_of(pqxx::work& work, int session) {
 }
 
 /// What is there, where it is not the same study; stations may differ in the program's version.
-std::optional<std::string> difference(const StudyCommitment& there, StudyCommitment here) {
+std::optional<std::string> difference(const store::StudyCommitment& there,
+                                      store::StudyCommitment here) {
   here.program_version = there.program_version;
   if (there == here) return std::nullopt;
   if (there.study_id != here.study_id || there.study != here.study) return "another study";
@@ -90,7 +91,7 @@ std::optional<int> find_station(pqxx::work& work, const Digest& identity) {
 }
 
 int register_station(pqxx::work& work, const ServerConnection& server, const Digest& identity,
-                     const std::string& name, const Event& commitment) {
+                     const std::string& name, const store::Event& commitment) {
   // Two first stations of two studies come one after the other.
   work.exec("SELECT pg_advisory_xact_lock(hashtextextended('touchtrial ' || current_schema(), 0))");
   refuse_other_study(work, server, commitment);
@@ -102,35 +103,37 @@ int register_station(pqxx::work& work, const ServerConnection& server, const Dig
       .as<int>();
 }
 
-void refuse_other_study(pqxx::work& work, const ServerConnection& server, const Event& commitment) {
+void refuse_other_study(pqxx::work& work, const ServerConnection& server,
+                        const store::Event& commitment) {
   const pqxx::result found = work.exec(
       "SELECT body, session FROM events WHERE session < 0 AND sequence = 0 ORDER BY session DESC "
       "LIMIT 1");
   if (found.empty()) return;
-  const StudyCommitment there =
-      parsed_from(found[0][1].as<int>(), found[0][0].as<std::string>(), commitment_from_json);
-  const auto other = difference(there, body_of(commitment, commitment_from_json));
+  const store::StudyCommitment there = parsed_from(
+      found[0][1].as<int>(), found[0][0].as<std::string>(), store::commitment_from_json);
+  const auto other = difference(there, store::body_of(commitment, store::commitment_from_json));
   if (!other) return;
   server.refuse("holds " + *other + " (" + one_line(there.study) +
                 "); give each its own database (createdb)");
 }
 
-ChainHead chain_head(pqxx::work& work, int station) {
+store::ChainHead chain_head(pqxx::work& work, int station) {
   const pqxx::result found = work.exec_params(
       "SELECT sequence, hash FROM events WHERE session = $1 ORDER BY sequence DESC LIMIT 1",
       chain_number(station));
   if (found.empty()) return {};
   const Bytes hash = bytes_of(found[0][1]);
-  ChainHead head{.length = found[0][0].as<std::int64_t>() + 1, .hash = {}};
+  store::ChainHead head{.length = found[0][0].as<std::int64_t>() + 1, .hash = {}};
   if (hash.size() != head.hash.size()) {
-    throw EventFault(chain_number(station), head.length - 1, "its hash is not 32 bytes long");
+    throw store::EventFault(chain_number(station), head.length - 1,
+                            "its hash is not 32 bytes long");
   }
   std::copy(hash.begin(), hash.end(), head.hash.begin());
   return head;
 }
 
 std::optional<std::int64_t> parting(pqxx::work& work, int station,
-                                    std::span<const Event> file_chain) {
+                                    std::span<const store::Event> file_chain) {
   const pqxx::result hashes = work.exec_params(
       "SELECT sequence, hash FROM events WHERE session = $1 AND sequence < $2 ORDER BY sequence",
       chain_number(station), file_chain.size());
@@ -143,19 +146,21 @@ std::optional<std::int64_t> parting(pqxx::work& work, int station,
   return std::nullopt;
 }
 
-void refuse_if_cut_off(pqxx::work& work, const ServerConnection& server, const SessionRow& row) {
+void refuse_if_cut_off(pqxx::work& work, const ServerConnection& server,
+                       const store::SessionRow& row) {
   const pqxx::result found =
       work.exec_params("SELECT 1 FROM sessions WHERE station = $1 AND own_session = $2",
                        row.station, row.own_session);
   if (found.empty()) return;
-  throw DamagedStore(
+  throw store::DamagedStore(
       server.address().shown() + ": the server lost the end of the chain of station " +
       std::to_string(row.station) + ", but has its session " + std::to_string(row.own_session) +
       " still; restore the database from a backup, or make a new one and sync all "
       "stations again");
 }
 
-void refuse_if_taken(pqxx::work& work, const ServerConnection& server, const SessionRow& row) {
+void refuse_if_taken(pqxx::work& work, const ServerConnection& server,
+                     const store::SessionRow& row) {
   if (!row.replaced_by.empty()) return;
   const std::optional<Holder> holder = holder_of(work, row);
   if (!holder) return;
@@ -203,4 +208,4 @@ std::vector<KeyThere> keys_of_station(pqxx::work& work, int station) {
   return keys;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 
 /// The session number under which a station's file chain is kept.
 [[nodiscard]] constexpr int chain_number(int station) {
@@ -25,23 +25,26 @@ void lock_station(pqxx::work& work, const Digest& identity);
 /// \throws StoreError if the server has another study
 [[nodiscard]] int register_station(pqxx::work& work, const ServerConnection& server,
                                    const Digest& identity, const std::string& name,
-                                   const Event& commitment);
+                                   const store::Event& commitment);
 /// \throws StoreError if there is a study, and it is another
-void refuse_other_study(pqxx::work& work, const ServerConnection& server, const Event& commitment);
+void refuse_other_study(pqxx::work& work, const ServerConnection& server,
+                        const store::Event& commitment);
 
-[[nodiscard]] ChainHead chain_head(pqxx::work& work, int station);
+[[nodiscard]] store::ChainHead chain_head(pqxx::work& work, int station);
 /// The first event at which the server's copy of a chain is another one; nothing if one of the two
 /// is the beginning of the other.
 [[nodiscard]] std::optional<std::int64_t> parting(pqxx::work& work, int station,
-                                                  std::span<const Event> file_chain);
+                                                  std::span<const store::Event> file_chain);
 
 /// \pre the station's file chain on the server ends before this session does
 /// \throws DamagedStore if this very session is there: the server's end of the chain is gone
-void refuse_if_cut_off(pqxx::work& work, const ServerConnection& server, const SessionRow& row);
+void refuse_if_cut_off(pqxx::work& work, const ServerConnection& server,
+                       const store::SessionRow& row);
 
 /// \throws StoreError, naming the session that is there, if its participant or enrolment number is
 ///   taken by one that nobody replaced
-void refuse_if_taken(pqxx::work& work, const ServerConnection& server, const SessionRow& row);
+void refuse_if_taken(pqxx::work& work, const ServerConnection& server,
+                     const store::SessionRow& row);
 
 /// Brings a session that is there up to date with the chain up to `end`: exclusion, replacement,
 /// withdrawal, which destroys its key.
@@ -57,4 +60,4 @@ struct KeyThere {
 };
 [[nodiscard]] std::vector<KeyThere> keys_of_station(pqxx::work& work, int station);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

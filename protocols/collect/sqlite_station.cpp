@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 namespace {
 
 [[noreturn]] void refuse(const std::filesystem::path& database, const std::string& why) {
@@ -21,24 +21,25 @@ namespace {
 class SqliteStation final : public StationFile {
  public:
   /// \param station  0: the file is a station's own
-  SqliteStation(std::shared_ptr<const StudyStore> store, const std::string& file, int station)
+  SqliteStation(std::shared_ptr<const store::StudyStore> store, const std::string& file,
+                int station)
       : store_(std::move(store)),
         station_(station),
         name_(station == 0 ? file : fmt::format("{}, station {}", file, station)) {
-    for (const SessionRow& row : store_->sessions()) {
+    for (const store::SessionRow& row : store_->sessions()) {
       if (row.station == station) sessions_[row.own_session] = row.session;
     }
   }
 
   [[nodiscard]] const std::string& name() const override { return name_; }
-  [[nodiscard]] std::vector<Event> file_chain() override {
+  [[nodiscard]] std::vector<store::Event> file_chain() override {
     return station_ == 0 ? store_->events(0) : store_->station_chain(station_);
   }
-  [[nodiscard]] std::vector<Event> events(int own_session) override {
+  [[nodiscard]] std::vector<store::Event> events(int own_session) override {
     const auto found = sessions_.find(own_session);
     if (found == sessions_.end()) return {};
-    std::vector<Event> events = store_->events(found->second);
-    for (Event& event : events) {
+    std::vector<store::Event> events = store_->events(found->second);
+    for (store::Event& event : events) {
       event.session = event.own_session();
       event.renumbered_from.reset();
     }
@@ -51,51 +52,51 @@ class SqliteStation final : public StationFile {
   [[nodiscard]] std::optional<Bytes> trace(int own_session, int trial) override {
     const auto found = sessions_.find(own_session);
     if (found == sessions_.end()) return std::nullopt;
-    std::optional<SealedTrace> sealed = store_->sealed_trace(found->second, trial);
+    std::optional<store::SealedTrace> sealed = store_->sealed_trace(found->second, trial);
     if (!sealed) return std::nullopt;
     return std::move(sealed->box);
   }
   void for_each_trace(int own_session,
                       const std::function<void(int, const Bytes&)>& visit) override {
-    for (const Event& event : events(own_session)) {
-      if (event.kind != EventKind::trace_stored) continue;
-      const int trial = trace_body_from_json(event.body).trial;
+    for (const store::Event& event : events(own_session)) {
+      if (event.kind != store::EventKind::trace_stored) continue;
+      const int trial = store::trace_body_from_json(event.body).trial;
       if (const std::optional<Bytes> box = trace(own_session, trial)) visit(trial, *box);
     }
   }
 
  private:
-  std::shared_ptr<const StudyStore> store_;
+  std::shared_ptr<const store::StudyStore> store_;
   int station_;
   std::string name_;
   std::map<int, int> sessions_;  ///< number in the file, by own number
 };
 
 /// What was decided on a collected file after it was made would be lost with it.
-void refuse_own_decisions(const StudyStore& store, const std::filesystem::path& database) {
-  std::vector<StationChain> chains;
+void refuse_own_decisions(const store::StudyStore& store, const std::filesystem::path& database) {
+  std::vector<store::StationChain> chains;
   for (int station = 1; station <= store.stations(); ++station) {
     chains.push_back({.name = "", .events = store.station_chain(station)});
   }
-  const std::size_t collected = collected_chain(chains).events.size();
-  const std::vector<Event> events = store.events(0);
+  const std::size_t collected = store::collected_chain(chains).events.size();
+  const std::vector<store::Event> events = store.events(0);
   if (events.size() == collected) return;
   refuse(database,
          fmt::format("was collected from stations, and then '{}' was recorded in it, which no "
                      "other file would have; record that at the station, or after the last merge, "
                      "and merge the stations' own files",
-                     name_of(events[collected].kind)));
+                     store::name_of(events[collected].kind)));
 }
 
 }  // namespace
 
 Stations stations_of_file(const std::filesystem::path& database) {
-  const auto store =
-      std::make_shared<const StudyStore>(StudyStore::open(database, StudyStore::Access::read_only));
-  if (const auto fault = store->first_fault(TraceCheck::skip)) {
-    throw DamagedStore(one_line(
-        fmt::format("{}: {}, event {}: {}; restore it from a backup, or leave it out",
-                    database.string(), chain_named(fault->session), fault->sequence, fault->what)));
+  const auto store = std::make_shared<const store::StudyStore>(
+      store::StudyStore::open(database, store::StudyStore::Access::read_only));
+  if (const auto fault = store->first_fault(store::TraceCheck::skip)) {
+    throw store::DamagedStore(one_line(fmt::format(
+        "{}: {}, event {}: {}; restore it from a backup, or leave it out", database.string(),
+        store::chain_named(fault->session), fault->sequence, fault->what)));
   }
   Stations stations;
   const int count = store->stations();
@@ -106,4 +107,4 @@ Stations stations_of_file(const std::filesystem::path& database) {
   return stations;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

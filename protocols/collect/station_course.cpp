@@ -4,43 +4,44 @@
 
 #include <algorithm>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 namespace {
 
 /// The session that an event on the file chain is about, if it is one that changes a session.
-SessionCourse& course(std::map<int, SessionCourse>& courses, const Event& event, int session) {
+SessionCourse& course(std::map<int, SessionCourse>& courses, const store::Event& event,
+                      int session) {
   const auto found = courses.find(session);
   if (found != courses.end()) return found->second;
-  throw EventFault(event.session, event.sequence,
-                   "session " + std::to_string(session) + " has not been opened");
+  throw store::EventFault(event.session, event.sequence,
+                          "session " + std::to_string(session) + " has not been opened");
 }
 
-void add(std::map<int, SessionCourse>& courses, const Event& event) {
+void add(std::map<int, SessionCourse>& courses, const store::Event& event) {
   switch (event.kind) {
-    case EventKind::session_opened: {
-      const SessionOpenedBody body = body_of(event, session_opened_from_json);
+    case store::EventKind::session_opened: {
+      const store::SessionOpenedBody body = store::body_of(event, store::session_opened_from_json);
       courses[body.session].opened = body;
       return;
     }
-    case EventKind::session_closed: {
-      const SessionClosedBody body = body_of(event, session_closed_from_json);
+    case store::EventKind::session_closed: {
+      const store::SessionClosedBody body = store::body_of(event, store::session_closed_from_json);
       SessionCourse& session = course(courses, event, body.session);
       session.end = body;
       session.closed_at = event.sequence;
       return;
     }
-    case EventKind::participant_excluded: {
-      const ParticipantBody body = body_of(event, participant_from_json);
+    case store::EventKind::participant_excluded: {
+      const store::ParticipantBody body = store::body_of(event, store::participant_from_json);
       course(courses, event, body.session).excluded_at = event.sequence;
       return;
     }
-    case EventKind::participant_withdrawn: {
-      const ParticipantBody body = body_of(event, participant_from_json);
+    case store::EventKind::participant_withdrawn: {
+      const store::ParticipantBody body = store::body_of(event, store::participant_from_json);
       course(courses, event, body.session).withdrawn_at = event.sequence;
       return;
     }
-    case EventKind::participant_replaced: {
-      const ReplacementBody body = body_of(event, replacement_from_json);
+    case store::EventKind::participant_replaced: {
+      const store::ReplacementBody body = store::body_of(event, store::replacement_from_json);
       SessionCourse& session = course(courses, event, body.session);
       session.replaced_at = event.sequence;
       session.replaced_by = body.by;
@@ -73,13 +74,13 @@ bool is_cut_short(const SessionCourse& course) noexcept {
   return !course.closed_at && (course.replaced_at || course.withdrawn_at);
 }
 
-std::map<int, SessionCourse> courses_of(std::span<const Event> file_chain) {
+std::map<int, SessionCourse> courses_of(std::span<const store::Event> file_chain) {
   std::map<int, SessionCourse> courses;
-  for (const Event& event : file_chain) add(courses, event);
+  for (const store::Event& event : file_chain) add(courses, event);
   return courses;
 }
 
-std::vector<ChainSegment> segments_of(std::span<const Event> file_chain, std::int64_t first,
+std::vector<ChainSegment> segments_of(std::span<const store::Event> file_chain, std::int64_t first,
                                       const std::function<bool(int)>& has_key) {
   const std::map<int, SessionCourse> courses = courses_of(file_chain);
   std::map<std::int64_t, int> closings;
@@ -105,4 +106,4 @@ std::vector<ChainSegment> segments_of(std::span<const Event> file_chain, std::in
   return segments;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

@@ -13,12 +13,12 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 
 /// What the file chain says of one session, and at which of its events.
 struct SessionCourse {
-  SessionOpenedBody opened;
-  SessionClosedBody end;  ///< only if closed_at
+  store::SessionOpenedBody opened;
+  store::SessionClosedBody end;  ///< only if closed_at
   std::optional<std::int64_t> closed_at;
   std::optional<std::int64_t> excluded_at;
   std::optional<std::int64_t> withdrawn_at;
@@ -35,7 +35,7 @@ struct SessionCourse {
 [[nodiscard]] bool is_cut_short(const SessionCourse& course) noexcept;
 
 /// By own number. \throws EventFault if a body is no such, or names a session that was not opened
-[[nodiscard]] std::map<int, SessionCourse> courses_of(std::span<const Event> file_chain);
+[[nodiscard]] std::map<int, SessionCourse> courses_of(std::span<const store::Event> file_chain);
 
 /// A piece of a file chain that is pushed in one transaction, with the sessions that it closes.
 struct ChainSegment {
@@ -51,8 +51,8 @@ struct ChainSegment {
 /// somebody else took its place, because until then it stands in that one's way. So wherever
 /// pushing breaks off, what is on the server holds by itself.
 /// \param has_key  whether a session's wrapped key is still in the file
-[[nodiscard]] std::vector<ChainSegment> segments_of(std::span<const Event> file_chain,
+[[nodiscard]] std::vector<ChainSegment> segments_of(std::span<const store::Event> file_chain,
                                                     std::int64_t first,
                                                     const std::function<bool(int)>& has_key);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

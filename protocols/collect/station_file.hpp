@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 
 /// One station's file, read as that station wrote it: sessions have the numbers that they have
 /// there, events are as they were hashed (Event::renumbered_from empty, the file chain's session
@@ -24,10 +24,10 @@ class StationFile {
   /// For messages: "A.db", or "postgresql://host/study, station 2".
   [[nodiscard]] virtual const std::string& name() const = 0;
   /// The file's own chain, from the study's commitment on.
-  [[nodiscard]] virtual std::vector<Event> file_chain() = 0;
+  [[nodiscard]] virtual std::vector<store::Event> file_chain() = 0;
   /// A session's events in order; none if there is no such session.
   /// \param own_session  its number at the station
-  [[nodiscard]] virtual std::vector<Event> events(int own_session) = 0;
+  [[nodiscard]] virtual std::vector<store::Event> events(int own_session) = 0;
   /// Nothing after a withdrawal.
   [[nodiscard]] virtual std::optional<Bytes> wrapped_key(int own_session) = 0;
   /// The sealed trace of a trial, if there is one.
@@ -38,4 +38,4 @@ class StationFile {
                               const std::function<void(int, const Bytes&)>& visit) = 0;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

@@ -15,7 +15,7 @@
 #include <thread>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 namespace {
 
 using std::chrono::milliseconds;
@@ -39,7 +39,7 @@ class StationPush {
     chain_ = station.file_chain();
     if (chain_.empty()) throw StoreError(station.name() + ": its file chain is empty");
     courses_ = courses_of(chain_);
-    commitment_ = body_of(chain_.front(), commitment_from_json);
+    commitment_ = store::body_of(chain_.front(), store::commitment_from_json);
     for (const auto& [session, course] : courses_) {
       if (course.closed_at) continue;
       (is_cut_short(course) ? report_.cut_short : report_.left_open).push_back(named(session));
@@ -52,12 +52,12 @@ class StationPush {
 
  private:
   [[nodiscard]] PushedSession named(int session) const {
-    const SessionOpenedBody& opened = courses_.at(session).opened;
+    const store::SessionOpenedBody& opened = courses_.at(session).opened;
     return {session, opened.participant, opened.enrolment};
   }
   /// Nobody has the same second event: it holds the first session's key and first event.
   [[nodiscard]] const Digest& identity() const { return chain_[1].hash; }
-  [[nodiscard]] std::span<const Event> chain_to(std::int64_t end) const {
+  [[nodiscard]] std::span<const store::Event> chain_to(std::int64_t end) const {
     return std::span(chain_).first(static_cast<std::size_t>(end));
   }
 
@@ -73,16 +73,17 @@ class StationPush {
   void restore_keys();
   [[nodiscard]] int station_number(pqxx::work& work);
   void push_session(pqxx::work& work, int station, int session, std::int64_t end);
-  [[nodiscard]] SessionRow row_of(const DerivedRows& rows, int session, std::int64_t end) const;
+  [[nodiscard]] store::SessionRow row_of(const store::DerivedRows& rows, int session,
+                                         std::int64_t end) const;
   void note_pushed(const ChainSegment& segment);
 
   StationFile& station_;
   const ServerAddress& address_;
   const PushOptions& options_;
   PushReport& report_;
-  std::vector<Event> chain_;
+  std::vector<store::Event> chain_;
   std::map<int, SessionCourse> courses_;
-  StudyCommitment commitment_;
+  store::StudyCommitment commitment_;
   std::unique_ptr<ServerConnection> server_;
   bool was_connected_ = false;
   bool planned_ = false;
@@ -183,9 +184,9 @@ void StationPush::look_only() {
     if (!has_tables) continue;
     server_->look([&](pqxx::work& work) {
       for (const int session : segment.sessions) {
-        DerivedRows rows;
-        for (const Event& event : station_.events(session)) fold(rows, event);
-        SessionRow row = row_of(rows, session, segment.end);
+        store::DerivedRows rows;
+        for (const store::Event& event : station_.events(session)) store::fold(rows, event);
+        store::SessionRow row = row_of(rows, session, segment.end);
         row.station = report_.station;
         refuse_if_cut_off(work, *server_, row);
         refuse_if_taken(work, *server_, row);
@@ -207,7 +208,7 @@ std::int64_t StationPush::stored_length() {
 }
 
 std::int64_t StationPush::length_there(pqxx::work& work, int station) const {
-  const ChainHead head = chain_head(work, station);
+  const store::ChainHead head = chain_head(work, station);
   const auto here = static_cast<std::int64_t>(chain_.size());
   if (const auto parted = parting(work, station, chain_)) {
     server_->refuse("has another event " + std::to_string(*parted) + " of the chain of " +
@@ -249,7 +250,7 @@ void StationPush::push(const ChainSegment& segment) {
       }
     }
     for (const int session : segment.sessions) push_session(work, station, session, segment.end);
-    const std::span<const Event> chain = chain_to(segment.end);
+    const std::span<const store::Event> chain = chain_to(segment.end);
     insert_events(work, chain_number(station),
                   chain.subspan(static_cast<std::size_t>(segment.first)));
     check_chain_arrival(work, *server_, station, chain, segment.first);
@@ -265,10 +266,10 @@ int StationPush::station_number(pqxx::work& work) {
 }
 
 void StationPush::push_session(pqxx::work& work, int station, int session, std::int64_t end) {
-  const std::vector<Event> events = station_.events(session);
-  DerivedRows rows;
-  for (const Event& event : events) fold(rows, event);
-  SessionRow row = row_of(rows, session, end);
+  const std::vector<store::Event> events = station_.events(session);
+  store::DerivedRows rows;
+  for (const store::Event& event : events) store::fold(rows, event);
+  store::SessionRow row = row_of(rows, session, end);
   row.station = station;
   refuse_if_cut_off(work, *server_, row);
   refuse_if_taken(work, *server_, row);
@@ -283,7 +284,8 @@ void StationPush::push_session(pqxx::work& work, int station, int session, std::
                         options_.master, !row.withdrawn);
 }
 
-SessionRow StationPush::row_of(const DerivedRows& rows, int session, std::int64_t end) const {
+store::SessionRow StationPush::row_of(const store::DerivedRows& rows, int session,
+                                      std::int64_t end) const {
   const auto found = rows.sessions.find(session);
   if (found == rows.sessions.end()) {
     throw StoreError(station_.name() + ": session " + std::to_string(session) +
@@ -291,7 +293,7 @@ SessionRow StationPush::row_of(const DerivedRows& rows, int session, std::int64_
   }
   const SessionCourse& course = courses_.at(session);
   const auto holds = [&](const std::optional<std::int64_t>& at) { return at && *at < end; };
-  SessionRow row = found->second;
+  store::SessionRow row = found->second;
   row.excluded = holds(course.excluded_at);
   row.withdrawn = holds(course.withdrawn_at);
   if (holds(course.replaced_at)) row.replaced_by = course.replaced_by;
@@ -306,12 +308,13 @@ void StationPush::note_pushed(const ChainSegment& segment) {
   if (options_.progress) options_.progress(static_cast<int>(report_.pushed.size()), to_push_);
 }
 
-SessionState state_named(int session, const std::string& name) {
-  const auto* const found = std::find(kSessionStates.begin(), kSessionStates.end(), name);
-  if (found == kSessionStates.end()) {
-    throw EventFault(session, kNoEvent, "no state of a session: " + one_line(name));
+store::SessionState state_named(int session, const std::string& name) {
+  const auto* const found =
+      std::find(store::kSessionStates.begin(), store::kSessionStates.end(), name);
+  if (found == store::kSessionStates.end()) {
+    throw store::EventFault(session, store::kNoEvent, "no state of a session: " + one_line(name));
   }
-  return static_cast<SessionState>(found - kSessionStates.begin());
+  return static_cast<store::SessionState>(found - store::kSessionStates.begin());
 }
 
 }  // namespace
@@ -339,7 +342,8 @@ std::vector<EnrolledSession> sessions_on_server(const ServerAddress& address) {
              "s.replaced_by IS NULL, s.session, coalesce(t.name, '') FROM sessions s LEFT JOIN "
              "stations t USING(station) ORDER BY s.session")) {
       if (row[1].as<std::int64_t>() < 1) {
-        throw EventFault(row[4].as<int>(), kNoEvent, "its enrolment number is below 1");
+        throw store::EventFault(row[4].as<int>(), store::kNoEvent,
+                                "its enrolment number is below 1");
       }
       sessions.push_back({.station = row[0].as<int>(),
                           .enrolment = row[1].as<int>(),
@@ -351,4 +355,4 @@ std::vector<EnrolledSession> sessions_on_server(const ServerAddress& address) {
   });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::collect {
 
 /// A session of the station, as the pushing is told about.
 struct PushedSession {
@@ -63,4 +63,4 @@ void push_station(StationFile& station, const ServerAddress& server, const PushO
 /// All sessions on a server, of every station. \throws StoreError if they cannot be read
 [[nodiscard]] std::vector<EnrolledSession> sessions_on_server(const ServerAddress& server);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::collect

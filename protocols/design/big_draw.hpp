@@ -8,7 +8,7 @@
 
 #include <boost/multiprecision/cpp_int.hpp>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 using BigCount = boost::multiprecision::cpp_int;
 
@@ -29,4 +29,4 @@ using BigCount = boost::multiprecision::cpp_int;
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

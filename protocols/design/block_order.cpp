@@ -7,7 +7,7 @@
 #include "protocols/design/order_rules.hpp"
 #include "protocols/design/williams_order.hpp"
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 /// A block of a study, with the streams that decide it.
@@ -158,4 +158,4 @@ BlockOrder make_block_order(const Study& study, std::span<const int> methods,
   return order;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 /// What a trial presents before an image is chosen.
 struct BlockItem {
@@ -29,4 +29,4 @@ struct BlockOrder {
 [[nodiscard]] BlockOrder make_block_order(const Study& study, std::span<const int> methods,
                                           const std::string& purpose, int enrolment);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -3,7 +3,7 @@
 #include <numeric>
 #include <span>
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 /// Which of the places after the first are taken: `count` of `places`.
@@ -35,4 +35,4 @@ std::vector<Presentation> with_catch_trials(const std::vector<Presentation>& sho
   return all;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 /// Spreads catch trials among presentations: every choice of places is equally likely, but for the
 /// first place of all. A catch trial belongs to the block of the presentation before it. Trial
@@ -14,4 +14,4 @@ namespace touchtrial {
 [[nodiscard]] std::vector<Presentation> with_catch_trials(const std::vector<Presentation>& shown,
                                                           int count, RandomStream& random);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

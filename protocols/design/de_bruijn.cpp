@@ -5,7 +5,7 @@
 #include <numeric>
 #include <span>
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 constexpr int kRoot = 0;  // any will do: circuits have no beginning
@@ -59,4 +59,4 @@ std::vector<int> random_de_bruijn_cycle(int symbols, RandomStream& random) {
   return cycle;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 /// A de Bruijn cycle of order 2, each equally likely, from a uniformly random place: k*k symbols in
 /// which every ordered pair of symbols (equal ones too) occurs once as neighbours, last to first
@@ -15,4 +15,4 @@ namespace touchtrial {
 /// \param symbols  k >= 1
 [[nodiscard]] std::vector<int> random_de_bruijn_cycle(int symbols, RandomStream& random);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

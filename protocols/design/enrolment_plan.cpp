@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 constexpr std::size_t kLongestName = 32;
@@ -172,4 +172,4 @@ int next_of_station(const EnrolmentPlan& plan, const std::string& station,
                    "station the new plan");
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 /// Numbers that follow each other; both ends belong to it.
 struct EnrolmentRange {
@@ -78,4 +78,4 @@ void extend_plan(EnrolmentPlan& plan, const Study& study, int participants);
 /// \throws FileError if it cannot be written
 void save_plan(const std::filesystem::path& path, const EnrolmentPlan& plan);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 constexpr std::size_t kMostRanges = 10'000;
@@ -97,4 +97,4 @@ void save_plan(const std::filesystem::path& path, const EnrolmentPlan& plan) {
   replace_file(path, document.dump(2) + "\n");
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

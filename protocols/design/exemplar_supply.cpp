@@ -4,7 +4,7 @@
 #include <span>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 int ExemplarSupply::next(int class_index, int method) {
   const std::size_t images = study_.classes[static_cast<std::size_t>(class_index)].images.size();
@@ -28,4 +28,4 @@ int ExemplarSupply::next(int class_index, int method) {
   return exemplar;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

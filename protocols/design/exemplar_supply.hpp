@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 /// Deals the images of each class and method like a pack of cards of one participant: all are used
 /// before any repeats, then they are shuffled anew.
@@ -35,4 +35,4 @@ class ExemplarSupply {
   std::map<std::pair<int, int>, Deck> decks_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -7,7 +7,7 @@
 #include <numeric>
 #include <unordered_map>
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 using State = std::u16string;  ///< how many symbols have 0, 1, .. copies left; then the last one's
@@ -234,4 +234,4 @@ RunBefore run_at_end(const std::vector<int>& order, RunBefore before) {
   return before;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 /// What came before an order begins, and how often in a row.
 struct RunBefore {
@@ -44,4 +44,4 @@ struct RunBefore {
 /// The run at the end of what came before and an order after it.
 [[nodiscard]] RunBefore run_at_end(const std::vector<int>& order, RunBefore before);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

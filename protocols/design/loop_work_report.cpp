@@ -12,7 +12,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 constexpr int kLoopsOfStimulus = 50;
@@ -59,16 +59,16 @@ struct Works {
   std::vector<double> press_slide_lift;
 };
 
-void go_round(const RenderingModel& model, const PlaneGeometry& plane, double depth_mm,
+void go_round(const engine::RenderingModel& model, const PlaneGeometry& plane, double depth_mm,
               double air_mm, Works& works) {
   for (const Loop& loop : random_loops()) {
     const auto [middle_mm, radius_mm] = placed(loop, plane);
-    const auto circle = circle_path({middle_mm.x, middle_mm.y, -depth_mm}, radius_mm);
-    works.planar.push_back(std::abs(loop_work_mj(model, circle)));
+    const auto circle = engine::circle_path({middle_mm.x, middle_mm.y, -depth_mm}, radius_mm);
+    works.planar.push_back(std::abs(engine::loop_work_mj(model, circle)));
     const Vec2 half_mm = radius_mm * Vec2{std::cos(loop.direction), std::sin(loop.direction)};
     const auto slide =
-        press_slide_lift_path(middle_mm - half_mm, middle_mm + half_mm, air_mm, -depth_mm);
-    works.press_slide_lift.push_back(std::abs(loop_work_mj(model, slide)));
+        engine::press_slide_lift_path(middle_mm - half_mm, middle_mm + half_mm, air_mm, -depth_mm);
+    works.press_slide_lift.push_back(std::abs(engine::loop_work_mj(model, slide)));
   }
 }
 
@@ -82,10 +82,11 @@ std::vector<Plane<double>> textures_of(const Study& study) {
   for (int c = 0; c < static_cast<int>(study.classes.size()); ++c) {
     const auto& images = study.classes[static_cast<std::size_t>(c)].images;
     for (int e = 0; e < static_cast<int>(images.size()); ++e) {
-      const GreyImage grey = read_grey_image(study.folder / images[static_cast<std::size_t>(e)]);
+      const GreyImage grey =
+          engine::read_grey_image(study.folder / images[static_cast<std::size_t>(e)]);
       for (int m = 0; m < study.presented_methods(); ++m) {
-        const ExtractionOptions method = method_of(study, {c, e, m});
-        textures.push_back(extract_texture<double>(grey, method).texture);
+        const engine::ExtractionOptions method = method_of(study, {c, e, m});
+        textures.push_back(engine::extract_texture<double>(grey, method).texture);
       }
     }
   }
@@ -93,24 +94,26 @@ std::vector<Plane<double>> textures_of(const Study& study) {
 }
 
 /// A height that no stimulus reaches, for the way back.
-double air_mm(FieldView field, const RenderingOptions& options, Gains gains) {
+double air_mm(engine::FieldView field, const engine::RenderingOptions& options,
+              engine::Gains gains) {
   const double paper_mm =
       gains.normal_n * (field.highest - options.reference_grey) / options.stiffness_n_per_mm;
   const double surface_mm = gains.height_mm * field.highest;
   return 1.0 + std::max({0.0, paper_mm, surface_mm});
 }
 
-ModelLoopWork loop_work_under(const RenderingOptions& options,
+ModelLoopWork loop_work_under(const engine::RenderingOptions& options,
                               const std::vector<Plane<double>>& textures) {
-  std::vector<TextureField> fields;
-  for (const auto& texture : textures) fields.push_back(make_texture_field(texture, options));
-  std::vector<FieldView> views;
-  for (const TextureField& field : fields) views.push_back(field.view());
-  const StudyGains gains = choose_gains(views, options);
+  std::vector<engine::TextureField> fields;
+  for (const auto& texture : textures)
+    fields.push_back(engine::make_texture_field(texture, options));
+  std::vector<engine::FieldView> views;
+  for (const engine::TextureField& field : fields) views.push_back(field.view());
+  const engine::StudyGains gains = engine::choose_gains(views, options);
   Works works;
   for (std::size_t i = 0; i < views.size(); ++i) {
-    const RenderingModel model(views[i], options, gains.of_field[i]);
-    go_round(model, views[i].geometry, kStatedLoadN / options.stiffness_n_per_mm,
+    const engine::RenderingModel model(views[i], options, gains.of_field[i]);
+    go_round(model, views[i].geometry, engine::kStatedLoadN / options.stiffness_n_per_mm,
              air_mm(views[i], options, gains.of_field[i]), works);
   }
   return {options.model, summary_of(works.planar), summary_of(works.press_slide_lift),
@@ -123,8 +126,8 @@ std::vector<ModelLoopWork> loop_work_of(const Study& study) {
   check_images_exist(study);
   const std::vector<Plane<double>> textures = textures_of(study);
   std::vector<ModelLoopWork> works;
-  for (const ModelKind model : {ModelKind::paper, ModelKind::surface}) {
-    RenderingOptions options = study.rendering;
+  for (const engine::ModelKind model : {engine::ModelKind::paper, engine::ModelKind::surface}) {
+    engine::RenderingOptions options = study.rendering;
     options.model = model;
     options.gains.reset();
     options.friction = 0.0;
@@ -133,4 +136,4 @@ std::vector<ModelLoopWork> loop_work_of(const Study& study) {
   return works;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

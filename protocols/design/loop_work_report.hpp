@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 /// Magnitudes of the work round loops of one kind, mJ. Without friction, a loop that takes energy
 /// gives it when followed the other way round, so a magnitude is what a hand could gain.
@@ -17,7 +17,7 @@ struct LoopWork {
 
 /// What one model does on all stimuli of a study.
 struct ModelLoopWork {
-  ModelKind model = ModelKind::paper;
+  engine::ModelKind model = engine::ModelKind::paper;
   LoopWork planar;             ///< circles at the depth of the stated load on a flat wall
   LoopWork press_slide_lift;   ///< down to that depth, straight across, up, and back in the air
   int loops_of_each_kind = 0;  ///< over all stimuli
@@ -29,4 +29,4 @@ struct ModelLoopWork {
 /// \throws StudyError if an image is missing; FileError if one cannot be read
 [[nodiscard]] std::vector<ModelLoopWork> loop_work_of(const Study& study);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -3,7 +3,7 @@
 #include "protocols/design/limited_orders.hpp"
 #include "protocols/design/williams_order.hpp"
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 int classes_of(const Study& study) {
@@ -95,4 +95,4 @@ std::optional<OrderObstacle> obstacle_to_order(const Study& study) {
   return obstacle_to_limit(study);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 /// Why an order is impossible.
 struct OrderObstacle {
@@ -20,4 +20,4 @@ struct OrderObstacle {
 /// Whether the study's limit of runs excludes an order that it would have otherwise.
 [[nodiscard]] bool max_run_matters(const Study& study);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

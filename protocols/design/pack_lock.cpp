@@ -9,7 +9,7 @@
 #include <sys/file.h>
 #include <unistd.h>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 PackLock::PackLock(const std::filesystem::path& folder, bool wait)
     : descriptor_(::open((folder / "prepare.lock").c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644)) {
@@ -29,4 +29,4 @@ PackLock::~PackLock() {
   ::close(descriptor_);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

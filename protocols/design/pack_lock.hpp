@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 /// Holds `prepare.lock` in the pack's folder; the system lets go of it however the process ends.
 class PackLock {
@@ -19,4 +19,4 @@ class PackLock {
   int descriptor_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

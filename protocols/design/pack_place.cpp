@@ -1,6 +1,6 @@
 #include "protocols/design/prepare.hpp"
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 std::filesystem::path beside(const std::filesystem::path& study_file, const char* ending) {
@@ -26,4 +26,4 @@ PackPlace pack_place_at(const std::filesystem::path& pack_folder) {
   return {pack, key};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

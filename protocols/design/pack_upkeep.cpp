@@ -6,7 +6,7 @@
 #include <system_error>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 constexpr std::string_view kManifestName = "pack.json";
@@ -21,7 +21,7 @@ bool is_number(std::string_view text) {
 std::optional<std::string> code_of_file(std::string_view name) {
   if (!name.ends_with(kFieldEnding)) return std::nullopt;
   name.remove_suffix(kFieldEnding.size());
-  if (!is_pack_code(name)) return std::nullopt;
+  if (!engine::is_pack_code(name)) return std::nullopt;
   return std::string(name);
 }
 
@@ -35,8 +35,9 @@ bool is_draft(std::string_view name) {
   return target == kManifestName || code_of_file(target).has_value();
 }
 
-bool names_code(const PackManifest& manifest, const std::string& code) {
-  return std::ranges::find(manifest.entries, code, &PackEntry::code) != manifest.entries.end();
+bool names_code(const engine::PackManifest& manifest, const std::string& code) {
+  return std::ranges::find(manifest.entries, code, &engine::PackEntry::code) !=
+         manifest.entries.end();
 }
 
 }  // namespace
@@ -45,14 +46,14 @@ std::string unfinished_id(const StudyKey& key) {
   return to_hex(ByteView(derive_key(key.master, "identity of an unfinished pack")).first(16));
 }
 
-const PackEntry* EarlierPack::recorded(const std::string& code, const Digest& tag) const {
+const engine::PackEntry* EarlierPack::recorded(const std::string& code, const Digest& tag) const {
   if (!pack || !names_code(pack->manifest(), code)) return nullptr;
-  const PackEntry& entry = pack->entry(code);
+  const engine::PackEntry& entry = pack->entry(code);
   return entry.input_tag == tag ? &entry : nullptr;
 }
 
-const PackEntry* EarlierPack::reusable(const std::string& code, const Digest& tag) const {
-  const PackEntry* entry = recorded(code, tag);
+const engine::PackEntry* EarlierPack::reusable(const std::string& code, const Digest& tag) const {
+  const engine::PackEntry* entry = recorded(code, tag);
   if (entry == nullptr) return nullptr;
   try {
     return pack->is_intact(code) ? entry : nullptr;
@@ -86,7 +87,7 @@ EarlierPack earlier_pack(const std::filesystem::path& folder, const StudyKey& ke
   return earlier;
 }
 
-void remove_leftovers(const std::filesystem::path& folder, const PackManifest& manifest) {
+void remove_leftovers(const std::filesystem::path& folder, const engine::PackManifest& manifest) {
   std::vector<std::filesystem::path> leftovers;
   for (const auto& file : std::filesystem::directory_iterator(folder)) {
     const std::string name = file.path().filename().string();
@@ -100,4 +101,4 @@ void remove_leftovers(const std::filesystem::path& folder, const PackManifest& m
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -10,7 +10,7 @@
 #include <string>
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 /// The identity that a pack has while it is being built: nothing is presented from such a pack,
 /// because it is not the study's, and the next `prepare` knows it as its own.
@@ -18,17 +18,17 @@ namespace touchtrial {
 
 /// What lay in the folder before.
 struct EarlierPack {
-  std::optional<Pack> pack;  ///< of this study, finished or not
-  std::string damage;        ///< why a table of contents could not be used; empty if all is well
+  std::optional<engine::Pack> pack;  ///< of this study, finished or not
+  std::string damage;  ///< why a table of contents could not be used; empty if all is well
 
   /// The entry whose field is whole and made from this input.
-  [[nodiscard]] const PackEntry* reusable(const std::string& code, const Digest& tag) const;
+  [[nodiscard]] const engine::PackEntry* reusable(const std::string& code, const Digest& tag) const;
   /// Of a field that is not reusable, for people who ask what was built.
   [[nodiscard]] std::string_view why_not_reusable(const std::string& code, const Digest& tag) const;
 
  private:
   /// The entry of a field made from this input, whole or not.
-  [[nodiscard]] const PackEntry* recorded(const std::string& code, const Digest& tag) const;
+  [[nodiscard]] const engine::PackEntry* recorded(const std::string& code, const Digest& tag) const;
 };
 
 /// \throws FileError if the folder holds another study's pack. A simulated study replaces it:
@@ -37,6 +37,6 @@ struct EarlierPack {
 
 /// Removes fields that the manifest does not name, and drafts of writers that were interrupted.
 /// Other files stay. Only while the pack is locked.
-void remove_leftovers(const std::filesystem::path& folder, const PackManifest& manifest);
+void remove_leftovers(const std::filesystem::path& folder, const engine::PackManifest& manifest);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -11,7 +11,7 @@
 #include <optional>
 #include <span>
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 GreyImage middle_of(const GreyImage& image, const PlaneGeometry& plane) {
@@ -32,7 +32,7 @@ GreyImage middle_of(const GreyImage& image, const PlaneGeometry& plane) {
 GreyImage practice_image(const Study& study, std::size_t index, const PlaneGeometry& plane) {
   const auto path = study.folder / study.practice.classes[index].images.front();
   try {
-    const GreyImage image = read_grey_image(path);
+    const GreyImage image = engine::read_grey_image(path);
     if (image.height() >= plane.height_px && image.width() >= plane.width_px) {
       return middle_of(image, plane);
     }
@@ -44,9 +44,10 @@ GreyImage practice_image(const Study& study, std::size_t index, const PlaneGeome
                    " x " + std::to_string(plane.height_px) + "; take a larger image");
 }
 
-TextureField practice_field(const Study& study, std::size_t index, const PlaneGeometry& plane) {
-  ExtractionOptions method = study.methods.front();
-  if (method.control != Control::none) {
+engine::TextureField practice_field(const Study& study, std::size_t index,
+                                    const PlaneGeometry& plane) {
+  engine::ExtractionOptions method = study.methods.front();
+  if (method.control != engine::Control::none) {
     const std::string purpose = "control of practice " + study.practice.classes[index].label;
     method.control_seed = RandomStream(study.seed, purpose).bits();
   }
@@ -56,37 +57,38 @@ TextureField practice_field(const Study& study, std::size_t index, const PlaneGe
       .field;
 }
 
-std::vector<TextureField> practice_fields(const Study& study, const PlaneGeometry& plane) {
-  std::vector<TextureField> fields;
+std::vector<engine::TextureField> practice_fields(const Study& study, const PlaneGeometry& plane) {
+  std::vector<engine::TextureField> fields;
   for (std::size_t i = 0; i < study.practice.classes.size(); ++i) {
     fields.push_back(practice_field(study, i, plane));
   }
   return fields;
 }
 
-Gains weaker(const Gains& one, const Gains& other) {
+engine::Gains weaker(const engine::Gains& one, const engine::Gains& other) {
   return {.tangential_n = std::min(one.tangential_n, other.tangential_n),
           .normal_n = std::min(one.normal_n, other.normal_n),
           .height_mm = std::min(one.height_mm, other.height_mm)};
 }
 
 /// One for each field.
-std::vector<Gains> practice_gains(const std::vector<TextureField>& fields, const Gains& of_pack,
-                                  const RenderingOptions& rendering) {
+std::vector<engine::Gains> practice_gains(const std::vector<engine::TextureField>& fields,
+                                          const engine::Gains& of_pack,
+                                          const engine::RenderingOptions& rendering) {
   if (fields.empty()) return {};
-  std::vector<FieldView> views;
-  for (const TextureField& field : fields) views.push_back(field.view());
-  std::vector<Gains> gains = choose_gains(views, rendering).of_field;
-  if (rendering.gains || rendering.equalise != Equalise::none) return gains;
-  for (Gains& of_field : gains) of_field = weaker(of_field, of_pack);
+  std::vector<engine::FieldView> views;
+  for (const engine::TextureField& field : fields) views.push_back(field.view());
+  std::vector<engine::Gains> gains = engine::choose_gains(views, rendering).of_field;
+  if (rendering.gains || rendering.equalise != engine::Equalise::none) return gains;
+  for (engine::Gains& of_field : gains) of_field = weaker(of_field, of_pack);
   return gains;
 }
 
-std::vector<RenderingModel> practice_models(const std::vector<TextureField>& fields,
-                                            const Gains& of_pack,
-                                            const RenderingOptions& rendering) {
-  const std::vector<Gains> gains = practice_gains(fields, of_pack, rendering);
-  std::vector<RenderingModel> models;
+std::vector<engine::RenderingModel> practice_models(const std::vector<engine::TextureField>& fields,
+                                                    const engine::Gains& of_pack,
+                                                    const engine::RenderingOptions& rendering) {
+  const std::vector<engine::Gains> gains = practice_gains(fields, of_pack, rendering);
+  std::vector<engine::RenderingModel> models;
   for (std::size_t i = 0; i < fields.size(); ++i) {
     models.emplace_back(fields[i].view(), rendering, gains[i]);
   }
@@ -107,20 +109,20 @@ std::vector<int> shuffled_classes(const Study& study, RandomStream& random) {
 
 }  // namespace
 
-PracticeSet::PracticeSet(const Study& study, const Gains& gains, const PlaneGeometry& plane)
+PracticeSet::PracticeSet(const Study& study, const engine::Gains& gains, const PlaneGeometry& plane)
     : plane_(plane),
       fields_(practice_fields(study, plane)),
       models_(practice_models(fields_, gains, study.rendering)),
-      flat_(FieldView{.geometry = plane}, study.rendering, Gains{}) {}
+      flat_(engine::FieldView{.geometry = plane}, study.rendering, engine::Gains{}) {}
 
-const RenderingModel& PracticeSet::model(int class_index) const {
+const engine::RenderingModel& PracticeSet::model(int class_index) const {
   return models_.at(static_cast<std::size_t>(class_index));
 }
 
-Gains weakest_gains(const PackManifest& manifest) {
+engine::Gains weakest_gains(const engine::PackManifest& manifest) {
   if (manifest.entries.empty()) return {};
-  Gains weakest = manifest.entries.front().gains;
-  for (const PackEntry& entry : manifest.entries) weakest = weaker(weakest, entry.gains);
+  engine::Gains weakest = manifest.entries.front().gains;
+  for (const engine::PackEntry& entry : manifest.entries) weakest = weaker(weakest, entry.gains);
   return weakest;
 }
 
@@ -141,4 +143,4 @@ std::vector<int> practice_layout(const Study& study, int enrolment, int round) {
   return shuffled_classes(study, random);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

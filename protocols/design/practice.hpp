@@ -9,7 +9,7 @@
 
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 /// The force models of a study's practice textures, and of the plane without texture that catch
 /// trials present. Textures are taken with the study's first method and rendered as the study is,
@@ -24,7 +24,7 @@ class PracticeSet {
   /// \param plane  that all stimuli of the pack have, in pixels; the middle of an image is taken
   /// \throws StudyError with the place of an image that is missing, unreadable or smaller than the
   ///   plane
-  PracticeSet(const Study& study, const Gains& gains, const PlaneGeometry& plane);
+  PracticeSet(const Study& study, const engine::Gains& gains, const PlaneGeometry& plane);
   PracticeSet(const PracticeSet&) = delete;
   PracticeSet& operator=(const PracticeSet&) = delete;
   PracticeSet(PracticeSet&&) = default;
@@ -33,20 +33,20 @@ class PracticeSet {
 
   [[nodiscard]] int classes() const noexcept { return static_cast<int>(models_.size()); }
   /// \param class_index  in the study's practice classes. \throws std::out_of_range
-  [[nodiscard]] const RenderingModel& model(int class_index) const;
+  [[nodiscard]] const engine::RenderingModel& model(int class_index) const;
   /// A wall and nothing else.
-  [[nodiscard]] const RenderingModel& flat() const noexcept { return flat_; }
+  [[nodiscard]] const engine::RenderingModel& flat() const noexcept { return flat_; }
   [[nodiscard]] const PlaneGeometry& plane() const noexcept { return plane_; }
 
  private:
   PlaneGeometry plane_;
-  std::vector<TextureField> fields_;
-  std::vector<RenderingModel> models_;
-  RenderingModel flat_;
+  std::vector<engine::TextureField> fields_;
+  std::vector<engine::RenderingModel> models_;
+  engine::RenderingModel flat_;
 };
 
 /// Each gain at its lowest in the pack.
-[[nodiscard]] Gains weakest_gains(const PackManifest& manifest);
+[[nodiscard]] engine::Gains weakest_gains(const engine::PackManifest& manifest);
 
 /// The textures of a practice round, one for each of its `trials.practice` presentations: indices
 /// into the practice classes, each as often as any other or once more, in a random order. A
@@ -57,4 +57,4 @@ class PracticeSet {
 /// The practice class whose picture is at each position, random for each participant and round.
 [[nodiscard]] std::vector<int> practice_layout(const Study& study, int enrolment, int round);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

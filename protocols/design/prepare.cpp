@@ -20,7 +20,7 @@
 
 #include <tbb/parallel_for.h>
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -75,15 +75,16 @@ class Preparation {
         logs_(options.explain ? key.stimuli.size() : 0) {
     report_.stimuli.resize(key.stimuli.size());
     if (earlier_.pack) {
-      for (const PackEntry& entry : earlier_.pack->manifest().entries) on_disk_[entry.code] = entry;
+      for (const engine::PackEntry& entry : earlier_.pack->manifest().entries)
+        on_disk_[entry.code] = entry;
     }
   }
 
   PrepareReport run() {
     check_images_exist(key_.study);
     provide_fields();
-    const Pack fields(folder_);
-    const StudyGains gains = measure(fields);
+    const engine::Pack fields(folder_);
+    const engine::StudyGains gains = measure(fields);
     finish(fields.manifest());
     advise(gains);
     hand_over_stages();
@@ -123,7 +124,7 @@ class Preparation {
 
   /// \param large_too  false leaves a large image for later
   void provide_fields_of(ImageOfStudy& image, bool large_too) {
-    StageTimer timer(log_of(image.first_stimulus));
+    engine::StageTimer timer(log_of(image.first_stimulus));
     const GreyImage grey = read(image);
     image.size_px = static_cast<std::int64_t>(grey.size());
     if (image.size_px > options_.large_image_px && !large_too) return;
@@ -139,7 +140,7 @@ class Preparation {
     }
   }
 
-  [[nodiscard]] StageLog* log_of(std::size_t stimulus) {
+  [[nodiscard]] engine::StageLog* log_of(std::size_t stimulus) {
     return options_.explain ? &logs_[stimulus] : nullptr;
   }
 
@@ -156,7 +157,7 @@ class Preparation {
 
   [[nodiscard]] GreyImage read(const ImageOfStudy& image) const {
     try {
-      return read_grey_image(image.path);
+      return engine::read_grey_image(image.path);
     } catch (const FileError& error) {
       refuse_image(key_.study, image, error.what());
     }
@@ -165,9 +166,9 @@ class Preparation {
   void provide_field(std::size_t i, const GreyImage& image, std::optional<TakenTexture>& taken) {
     const Clock::time_point start = Clock::now();
     const auto& [code, stimulus] = key_.stimuli[i];
-    const ExtractionOptions method = method_of(key_.study, stimulus);
+    const engine::ExtractionOptions method = method_of(key_.study, stimulus);
     const Digest tag = input_tag(key_.master, image, method, key_.study.rendering);
-    const PackEntry* earlier = earlier_.reusable(code, tag);
+    const engine::PackEntry* earlier = earlier_.reusable(code, tag);
     if (earlier != nullptr) {
       entries_[i] = *earlier;
       note_reuse(i, seconds_since(start));
@@ -184,20 +185,20 @@ class Preparation {
     note_done(entries_[i]);
   }
 
-  void build(std::size_t i, const GreyImage& image, const ExtractionOptions& method,
+  void build(std::size_t i, const GreyImage& image, const engine::ExtractionOptions& method,
              const Digest& tag, std::optional<TakenTexture>& taken) {
     const auto& [code, stimulus] = key_.stimuli[i];
     const BuiltField built =
         build_field(image, method, key_.study.rendering, taken, is_needed_again(i), log_of(i));
-    StageTimer timer(log_of(i));
-    entries_[i] = {code, write_field(folder_, code, built.field.view()), tag, {}};
+    engine::StageTimer timer(log_of(i));
+    entries_[i] = {code, engine::write_field(folder_, code, built.field.view()), tag, {}};
     timer.done("write field", earlier_.why_not_reusable(code, tag), size_of_field(code));
     solver_warnings_[i] = solver_warning(key_.study, stimulus, built);
   }
 
   void note_reuse(std::size_t i, double seconds) {
     if (!options_.explain) return;
-    logs_[i].add({"field", StageState::reused,
+    logs_[i].add({"field", engine::StageState::reused,
                   "same picture and options, and intact: nothing was extracted", seconds,
                   size_of_field(key_.stimuli[i].code)});
   }
@@ -211,7 +212,7 @@ class Preparation {
 
   /// Finished fields are put on record once a second, so that an interrupted run is not for
   /// nothing.
-  void note_done(const PackEntry& entry) {
+  void note_done(const engine::PackEntry& entry) {
     const std::lock_guard lock(mutex_);
     on_disk_[entry.code] = entry;
     if (building_ && seconds_since(recorded_) > 1.0) write_unfinished();
@@ -220,25 +221,25 @@ class Preparation {
   }
 
   void write_unfinished() {
-    PackManifest manifest{unfinished_id(key_), {}};
+    engine::PackManifest manifest{unfinished_id(key_), {}};
     for (const auto& [code, entry] : on_disk_) manifest.entries.push_back(entry);
-    write_manifest(folder_, manifest);
+    engine::write_manifest(folder_, manifest);
     recorded_ = Clock::now();
   }
 
-  StudyGains measure(const Pack& fields) {
-    std::vector<MappedField> mapped;
-    std::vector<FieldView> views;
+  engine::StudyGains measure(const engine::Pack& fields) {
+    std::vector<engine::MappedField> mapped;
+    std::vector<engine::FieldView> views;
     for (const KeyedStimulus& stimulus : key_.stimuli) {
       mapped.push_back(fields.map(stimulus.code));
       views.push_back(mapped.back().view());
     }
-    StageTimer timer(study_log());
-    StudyGains gains = choose_gains(views, key_.study.rendering);
+    engine::StageTimer timer(study_log());
+    engine::StudyGains gains = engine::choose_gains(views, key_.study.rendering);
     timer.done("gains",
                key_.study.rendering.gains ? "explicit, held against the stiffness budget"
                                           : "from the stiffness of all stimuli together",
-               views.size() * sizeof(Gains));
+               views.size() * sizeof(engine::Gains));
     flat_.resize(views.size());
     const auto measure_one = [&](std::size_t i) { describe(i, views[i], gains.of_field[i]); };
     tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t i) {
@@ -250,25 +251,26 @@ class Preparation {
     return gains;
   }
 
-  [[nodiscard]] StageLog* study_log() { return options_.explain ? &study_log_ : nullptr; }
+  [[nodiscard]] engine::StageLog* study_log() { return options_.explain ? &study_log_ : nullptr; }
 
-  [[nodiscard]] bool is_large(FieldView field) const noexcept {
+  [[nodiscard]] bool is_large(engine::FieldView field) const noexcept {
     return std::int64_t{field.geometry.height_px} * field.geometry.width_px >
            options_.large_image_px;
   }
 
-  void describe(std::size_t i, FieldView field, Gains gains) {
+  void describe(std::size_t i, engine::FieldView field, engine::Gains gains) {
     PreparedStimulus& prepared = report_.stimuli[i];
     entries_[i].gains = gains;
     prepared.gains = gains;
     prepared.bytes = size_of_field(key_.stimuli[i].code);
     flat_[i] = is_flat(field) ? 1 : 0;
     if (options_.statistics) {
-      StageTimer timer(log_of(i));
-      prepared.statistics = field_statistics(field, gains, key_.study.rendering);
-      timer.done("statistics", "they follow the gains of the study", sizeof(FieldStatistics));
+      engine::StageTimer timer(log_of(i));
+      prepared.statistics = engine::field_statistics(field, gains, key_.study.rendering);
+      timer.done("statistics", "they follow the gains of the study",
+                 sizeof(engine::FieldStatistics));
     } else if (options_.explain) {
-      logs_[i].skip("statistics", "nobody asked for them", sizeof(FieldStatistics));
+      logs_[i].skip("statistics", "nobody asked for them", sizeof(engine::FieldStatistics));
     }
   }
 
@@ -287,14 +289,14 @@ class Preparation {
     report_.study_stages = study_log_.stages();
   }
 
-  void finish(const PackManifest& before) {
-    PackManifest manifest{key_.study_id, entries_};
-    std::ranges::sort(manifest.entries, {}, &PackEntry::code);
+  void finish(const engine::PackManifest& before) {
+    engine::PackManifest manifest{key_.study_id, entries_};
+    std::ranges::sort(manifest.entries, {}, &engine::PackEntry::code);
     const bool unchanged =
         before.study_id == manifest.study_id && before.entries == manifest.entries;
-    StageTimer timer(study_log());
+    engine::StageTimer timer(study_log());
     if (!unchanged) {
-      write_manifest(folder_, manifest);
+      engine::write_manifest(folder_, manifest);
       timer.done("pack.json", "fields or gains have changed", size_of(folder_ / "pack.json"));
     } else if (options_.explain) {
       study_log_.reuse("pack.json", "fields and gains are as they were",
@@ -303,7 +305,7 @@ class Preparation {
     remove_leftovers(folder_, manifest);
   }
 
-  void advise(const StudyGains& gains) {
+  void advise(const engine::StudyGains& gains) {
     std::uintmax_t pixels_of_study = 0;
     for (const ImageOfStudy& image : images_) {
       pixels_of_study += static_cast<std::uintmax_t>(image.size_px);
@@ -332,15 +334,15 @@ class Preparation {
   PrepareOptions options_;
   EarlierPack earlier_;
   std::vector<ImageOfStudy> images_;
-  std::vector<PackEntry> entries_;
+  std::vector<engine::PackEntry> entries_;
   std::vector<std::string> solver_warnings_;
   std::vector<std::uint8_t> flat_;
-  std::vector<StageLog> logs_;  ///< of the stimuli, if an explanation is wanted
-  StageLog study_log_;
+  std::vector<engine::StageLog> logs_;  ///< of the stimuli, if an explanation is wanted
+  engine::StageLog study_log_;
   PrepareReport report_;
 
   std::mutex mutex_;  ///< of what follows
-  std::map<std::string, PackEntry> on_disk_;
+  std::map<std::string, engine::PackEntry> on_disk_;
   bool building_ = false;
   Clock::time_point recorded_;
   int done_ = 0;
@@ -380,4 +382,4 @@ PrepareReport prepare_pack(const StudyKey& key, const std::filesystem::path& pac
   return Preparation(key, pack_folder, progress, options).run();
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

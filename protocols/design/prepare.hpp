@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 /// Where a study's pack and key lie.
 struct PackPlace {
@@ -34,11 +34,11 @@ struct PreparedStimulus {
   int exemplar = 0;
   std::string method;  ///< its label
   bool reused = false;
-  FieldStatistics statistics;  ///< zeros if they were not asked for
-  Gains gains;
+  engine::FieldStatistics statistics;  ///< zeros if they were not asked for
+  engine::Gains gains;
   double seconds = 0.0;
   std::uintmax_t bytes = 0;
-  std::vector<Stage> stages;  ///< if an explanation was asked for
+  std::vector<engine::Stage> stages;  ///< if an explanation was asked for
 };
 
 /// Work that was not done, and why.
@@ -52,7 +52,8 @@ struct PrepareReport {
   std::vector<PreparedStimulus> stimuli;
   std::vector<SkippedWork> skipped;
   std::vector<std::string> warnings;
-  std::vector<Stage> study_stages;  ///< of all stimuli together, if an explanation was asked for
+  std::vector<engine::Stage>
+      study_stages;  ///< of all stimuli together, if an explanation was asked for
 };
 
 inline constexpr std::int64_t kLargeImagePixels = std::int64_t{1} << 22;
@@ -85,4 +86,4 @@ using Progress = std::function<void(int done, int of)>;
 PrepareReport prepare_pack(const StudyKey& key, const std::filesystem::path& pack_folder,
                            const Progress& progress = {}, const PrepareOptions& options = {});
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

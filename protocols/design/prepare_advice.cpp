@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <map>
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 std::string image_in_words(const Study& study, int class_index, int exemplar) {
@@ -32,31 +32,31 @@ std::vector<SkippedWork> skipped_work(const Study& study, std::uintmax_t pixels)
     skipped.push_back({study.methods[m].label + " x " + std::to_string(images) + " stimuli",
                        "the classification protocol presents only its first method, " +
                            study.methods.front().label,
-                       pixels * sizeof(FieldSample)});
+                       pixels * sizeof(engine::FieldSample)});
   }
   return skipped;
 }
 
-std::vector<std::string> rendering_warnings(const RenderingOptions& rendering,
-                                            const StudyGains& gains) {
+std::vector<std::string> rendering_warnings(const engine::RenderingOptions& rendering,
+                                            const engine::StudyGains& gains) {
   std::vector<std::string> warnings;
   if (gains.over_budget) {
     warnings.push_back("/rendering/gains: the explicit gains exceed the stiffness budget of " +
                        number_text(rendering.texture_stiffness_n_per_mm) +
                        " N/mm, where devices may buzz; lower them or give \"budget\"");
   }
-  const auto is_nothing = [](const Gains& of_field) { return of_field == Gains{}; };
+  const auto is_nothing = [](const engine::Gains& of_field) { return of_field == engine::Gains{}; };
   if (!rendering.gains && std::ranges::all_of(gains.of_field, is_nothing)) {
     warnings.emplace_back(
         "/rendering/gains: all are 0, and nothing will be felt: every picture is flat, or has a "
         "side "
         "of less than 3 pixels, too thin for a stiffness budget; take other pictures");
   }
-  if (rendering.gains && rendering.equalise == Equalise::rms) {
+  if (rendering.gains && rendering.equalise == engine::Equalise::rms) {
     warnings.emplace_back(
         "/rendering/equalise: rms has no effect beside explicit gains; give gains \"budget\"");
   }
-  if (rendering.model == ModelKind::paper && rendering.reference_grey == 0.0) {
+  if (rendering.model == engine::ModelKind::paper && rendering.reference_grey == 0.0) {
     warnings.emplace_back(
         "/rendering/reference_grey: 0 is the paper's literal reading, a step of force at the "
         "surface from which a hand bounces; 128 has none");
@@ -88,4 +88,4 @@ std::vector<std::string> twin_warnings(const Study& study, std::span<const Diges
   return warnings;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 /// A stimulus in words: class, image and method.
 [[nodiscard]] std::string described(const Study& study, const StimulusIndex& stimulus);
@@ -18,8 +18,8 @@ namespace touchtrial {
 [[nodiscard]] std::vector<SkippedWork> skipped_work(const Study& study, std::uintmax_t pixels);
 
 /// Options that are allowed and probably not meant.
-[[nodiscard]] std::vector<std::string> rendering_warnings(const RenderingOptions& rendering,
-                                                          const StudyGains& gains);
+[[nodiscard]] std::vector<std::string> rendering_warnings(const engine::RenderingOptions& rendering,
+                                                          const engine::StudyGains& gains);
 
 /// \return a warning if the solver gave up on the stimulus, else nothing
 [[nodiscard]] std::string solver_warning(const Study& study, const StimulusIndex& stimulus,
@@ -30,4 +30,4 @@ namespace touchtrial {
 [[nodiscard]] std::vector<std::string> twin_warnings(const Study& study,
                                                      std::span<const Digest> pixels);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -13,7 +13,7 @@
 #include <span>
 #include <stdexcept>
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 /// The methods of each block, and the purpose of its random streams.
@@ -149,4 +149,4 @@ std::string schedule_rule(const Study& study) {
          (trials.catch_trials > 0 ? "; catch=" + std::to_string(trials.catch_trials) : "");
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 /// Indices into the study's classes, a class's images, and the study's methods.
 struct StimulusIndex {
@@ -65,4 +65,4 @@ struct Schedule {
 /// Names this rule and its version; the seal commits to it.
 [[nodiscard]] std::string schedule_rule(const Study& study);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

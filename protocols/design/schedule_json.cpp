@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 using nlohmann::json;
@@ -125,4 +125,4 @@ std::vector<Presentation> block_from_json(const std::string& text, const StudyKe
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

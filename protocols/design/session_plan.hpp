@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 /// A text in several languages, by their codes ("en", "de").
 using Translated = std::map<std::string, std::string>;
@@ -85,4 +85,4 @@ struct Registration {
   friend bool operator==(const Registration&, const Registration&) = default;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

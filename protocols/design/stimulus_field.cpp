@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 /// To be raised with every change of the engine that changes fields: all packs are built anew then.
@@ -16,11 +16,11 @@ constexpr std::string_view kComputation = "touchtrial field 2";
 
 /// The rendering options that the field's bytes depend on. Gains are not among them: they are
 /// applied when the field is felt.
-std::string rendering_text(const RenderingOptions& rendering) {
+std::string rendering_text(const engine::RenderingOptions& rendering) {
   nlohmann::json text{{"model", word_for(kModelNames, rendering.model)},
                       {"pitch_mm", rendering.pitch_mm},
                       {"filter_mm", rendering.filter_mm}};
-  if (rendering.model == ModelKind::paper) text["neighbourhood"] = rendering.neighbourhood;
+  if (rendering.model == engine::ModelKind::paper) text["neighbourhood"] = rendering.neighbourhood;
   return text.dump();
 }
 
@@ -29,32 +29,34 @@ bool is_flat(const GreyImage& image) {
   return std::ranges::all_of(image.samples(), [level](std::uint8_t grey) { return grey == level; });
 }
 
-TextureField rendered(Plane<double> texture, const RenderingOptions& rendering, StageLog* log) {
-  StageTimer timer(log);
-  TextureField field = make_texture_field(texture, rendering);
+engine::TextureField rendered(Plane<double> texture, const engine::RenderingOptions& rendering,
+                              engine::StageLog* log) {
+  engine::StageTimer timer(log);
+  engine::TextureField field = engine::make_texture_field(texture, rendering);
   const double sigma_px = to_px(rendering.filter_mm, rendering.pitch_mm);
-  const bool has_forces = rendering.model == ModelKind::paper;
+  const bool has_forces = rendering.model == engine::ModelKind::paper;
   timer.done(has_forces ? "filter, forces" : "filter, spline",
              sigma_px > 0.0 ? "a Gaussian of " + number_text(sigma_px) + " px first"
                             : "unfiltered: there is nothing to filter, or filter_mm is 0",
              field.view().samples.size_bytes() + field.view().coefficients.size_bytes());
   if (!has_forces && log != nullptr) {
     log->skip("force planes", "the model surface needs the height alone",
-              texture.size() * (sizeof(FieldSample) - sizeof(float)));
+              texture.size() * (sizeof(engine::FieldSample) - sizeof(float)));
   }
   return field;
 }
 
 /// What every method takes from a flat image: nothing, or as luminance a level.
-Plane<double> flat_texture(const GreyImage& image, const ExtractionOptions& method) {
-  const double level =
-      method.method == Method::luminance ? luminance_texture<double>(image).at(0, 0) : 0.0;
+Plane<double> flat_texture(const GreyImage& image, const engine::ExtractionOptions& method) {
+  const double level = method.method == engine::Method::luminance
+                           ? engine::luminance_texture<double>(image).at(0, 0)
+                           : 0.0;
   return {image.height(), image.width(), level};
 }
 
 /// On a level neither control nor filter has anything to do.
-BuiltField flat_field(const GreyImage& image, const ExtractionOptions& method,
-                      RenderingOptions rendering, StageLog* log) {
+BuiltField flat_field(const GreyImage& image, const engine::ExtractionOptions& method,
+                      engine::RenderingOptions rendering, engine::StageLog* log) {
   if (log != nullptr) {
     const std::uint64_t plane = image.size() * sizeof(double);
     log->skip("sub-bands", "the image is flat", plane);
@@ -67,8 +69,8 @@ BuiltField flat_field(const GreyImage& image, const ExtractionOptions& method,
   return {rendered(flat_texture(image, method), rendering, log)};
 }
 
-void take_texture(const GreyImage& image, const ExtractionOptions& method,
-                  std::optional<TakenTexture>& taken, StageLog* log) {
+void take_texture(const GreyImage& image, const engine::ExtractionOptions& method,
+                  std::optional<TakenTexture>& taken, engine::StageLog* log) {
   if (taken && taken->method == method) {
     if (log != nullptr) {
       log->reuse("texture", "taken for another stimulus of this image",
@@ -77,27 +79,28 @@ void take_texture(const GreyImage& image, const ExtractionOptions& method,
     return;
   }
   taken.reset();
-  taken = TakenTexture{method, extract_texture<double>(image, method, {}, log)};
+  taken = TakenTexture{method, engine::extract_texture<double>(image, method, {}, log)};
 }
 
 }  // namespace
 
-Digest input_tag(const SecretKey& master, const GreyImage& image, const ExtractionOptions& method,
-                 const RenderingOptions& rendering) {
+Digest input_tag(const SecretKey& master, const GreyImage& image,
+                 const engine::ExtractionOptions& method,
+                 const engine::RenderingOptions& rendering) {
   FieldHasher hasher;
   hasher.add(kComputation).add(std::int64_t{image.height()}).add(std::int64_t{image.width()});
   hasher.add(ByteView(image.samples())).add(to_json(method).dump()).add(rendering_text(rendering));
-  if (method.control != Control::none) {
+  if (method.control != engine::Control::none) {
     hasher.add(static_cast<std::int64_t>(method.control_seed));
   }
   const Digest input = hasher.finish();
   return keyed_hash(derive_key(master, "input"), ByteView(input));
 }
 
-ExtractionOptions method_of(const Study& study, const StimulusIndex& stimulus) {
+engine::ExtractionOptions method_of(const Study& study, const StimulusIndex& stimulus) {
   const auto& method = study.methods[static_cast<std::size_t>(stimulus.method)];
-  ExtractionOptions options = method;
-  if (options.control == Control::none) return options;
+  engine::ExtractionOptions options = method;
+  if (options.control == engine::Control::none) return options;
   const StudyClass& shown = study.classes[static_cast<std::size_t>(stimulus.class_index)];
   const auto& image = shown.images[static_cast<std::size_t>(stimulus.exemplar)];
   const Digest identity =
@@ -106,41 +109,41 @@ ExtractionOptions method_of(const Study& study, const StimulusIndex& stimulus) {
   return options;
 }
 
-ExtractionOptions without_control(ExtractionOptions method) {
-  method.control = Control::none;
+engine::ExtractionOptions without_control(engine::ExtractionOptions method) {
+  method.control = engine::Control::none;
   method.control_seed = 0;
   return method;
 }
 
-BuiltField build_field(const GreyImage& image, const ExtractionOptions& method,
-                       const RenderingOptions& rendering, std::optional<TakenTexture>& taken,
-                       bool keep, StageLog* log) {
+BuiltField build_field(const GreyImage& image, const engine::ExtractionOptions& method,
+                       const engine::RenderingOptions& rendering,
+                       std::optional<TakenTexture>& taken, bool keep, engine::StageLog* log) {
   if (is_flat(image)) return flat_field(image, method, rendering, log);
   take_texture(image, without_control(method), taken, log);
-  Extraction<double> extraction;
+  engine::Extraction<double> extraction;
   if (keep) {
     extraction = taken->extraction;
   } else {
     extraction = std::move(taken->extraction);
     taken.reset();
   }
-  if (method.control == Control::none && log != nullptr) {
+  if (method.control == engine::Control::none && log != nullptr) {
     log->skip("control", "none asked for", image.size() * sizeof(double));
   }
-  apply_control(method, extraction.texture, log);
+  engine::apply_control(method, extraction.texture, log);
   return {rendered(std::move(extraction.texture), rendering, log), extraction.gap, extraction.steps,
           extraction.converged};
 }
 
-bool is_flat(FieldView field) noexcept {
-  if (field.model() == ModelKind::surface) {
+bool is_flat(engine::FieldView field) noexcept {
+  if (field.model() == engine::ModelKind::surface) {
     const float level = field.coefficients.front();
     return std::ranges::all_of(field.coefficients, [level](float c) { return c == level; });
   }
   const float level = field.samples.front().surface;
-  return std::ranges::all_of(field.samples, [level](const FieldSample& sample) {
+  return std::ranges::all_of(field.samples, [level](const engine::FieldSample& sample) {
     return sample.force_x == 0.0F && sample.force_y == 0.0F && sample.surface == level;
   });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

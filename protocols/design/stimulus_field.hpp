@@ -10,46 +10,50 @@
 
 #include <optional>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 /// A stimulus' method with the seed of its control, which is its own: derived from the study's seed
 /// and from what the stimulus is, so that exemplars and methods differ, and that a stimulus keeps
 /// its phases when others come or go.
-[[nodiscard]] ExtractionOptions method_of(const Study& study, const StimulusIndex& stimulus);
+[[nodiscard]] engine::ExtractionOptions method_of(const Study& study,
+                                                  const StimulusIndex& stimulus);
 
 /// A keyed hash of everything that decides a field's bytes: pixels, method, model, pitch, filter,
 /// neighbourhood (`paper`), and the version of this computation. Equal tags: the field need not be
 /// built.
 [[nodiscard]] Digest input_tag(const SecretKey& master, const GreyImage& image,
-                               const ExtractionOptions& method, const RenderingOptions& rendering);
+                               const engine::ExtractionOptions& method,
+                               const engine::RenderingOptions& rendering);
 
 /// A field with what the solver said of it.
 struct BuiltField {
-  TextureField field;
+  engine::TextureField field;
   double gap = 0.0;
   int steps = 0;
   bool converged = true;
 };
 
 /// The same method without a control.
-[[nodiscard]] ExtractionOptions without_control(ExtractionOptions method);
+[[nodiscard]] engine::ExtractionOptions without_control(engine::ExtractionOptions method);
 
 /// A texture that has been taken from an image, for stimuli of the same image that differ in their
 /// control only.
 struct TakenTexture {
-  ExtractionOptions method;  ///< without its control
-  Extraction<double> extraction;
+  engine::ExtractionOptions method;  ///< without its control
+  engine::Extraction<double> extraction;
 };
 
 /// \param taken  used if it is of this method, replaced if not; nothing may have been taken yet. A
 ///   flat image needs none, and changes nothing of it.
 /// \param keep  whether the texture is to be left there: another stimulus needs it
 /// \param log  takes the stages, if there is one
-[[nodiscard]] BuiltField build_field(const GreyImage& image, const ExtractionOptions& method,
-                                     const RenderingOptions& rendering,
-                                     std::optional<TakenTexture>& taken, bool keep, StageLog* log);
+[[nodiscard]] BuiltField build_field(const GreyImage& image,
+                                     const engine::ExtractionOptions& method,
+                                     const engine::RenderingOptions& rendering,
+                                     std::optional<TakenTexture>& taken, bool keep,
+                                     engine::StageLog* log);
 
 /// Whether nothing can be felt in the field but a smooth wall.
-[[nodiscard]] bool is_flat(FieldView field) noexcept;
+[[nodiscard]] bool is_flat(engine::FieldView field) noexcept;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -2,17 +2,17 @@
 
 #include "protocols/design/stimulus_field.hpp"
 
-namespace touchtrial {
+namespace touchtrial::design {
 
-ExtractionOptions presented_method(const Study& study, const StimulusIndex& stimulus) {
+engine::ExtractionOptions presented_method(const Study& study, const StimulusIndex& stimulus) {
   return method_of(study, stimulus);
 }
 
-bool is_made_from(const PackEntry& entry, const StudyKey& key, const GreyImage& image,
+bool is_made_from(const engine::PackEntry& entry, const StudyKey& key, const GreyImage& image,
                   const StimulusIndex& stimulus) {
   return entry.code == key.code_of(stimulus) &&
          entry.input_tag ==
              input_tag(key.master, image, method_of(key.study, stimulus), key.study.rendering);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <span>
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{16} << 20U;
@@ -166,4 +166,4 @@ Study load_study(const std::filesystem::path& path) {
   return parse_study(text_of(content), path.parent_path(), path.string());
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

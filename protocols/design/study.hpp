@@ -13,20 +13,20 @@
 #include <string_view>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 enum class Protocol { classification, comparison };
 [[nodiscard]] std::string_view name_of(Protocol protocol);
 
 /// A way of taking textures, and what tables and files call it.
-struct StudyMethod : ExtractionOptions {
+struct StudyMethod : engine::ExtractionOptions {
   std::string label;  ///< unique in the study
 
   friend bool operator==(const StudyMethod&, const StudyMethod&) = default;
 };
 
 /// The label of a method that is given none: its name, and its control's if it has one.
-[[nodiscard]] std::string default_label(const ExtractionOptions& method);
+[[nodiscard]] std::string default_label(const engine::ExtractionOptions& method);
 
 enum class TrialOrder { shuffled, de_bruijn, uniform, williams };
 enum class OnTimeout { fade, no_response };
@@ -60,7 +60,7 @@ struct Study {
   Protocol protocol = Protocol::classification;
   std::vector<StudyClass> classes;   ///< >= 2, labels unique
   std::vector<StudyMethod> methods;  ///< >= 1, labels unique
-  RenderingOptions rendering;
+  engine::RenderingOptions rendering;
   TrialOptions trials;
   PracticePlan practice;
   SessionPlan session;
@@ -85,4 +85,4 @@ struct Study {
 [[nodiscard]] Study parse_study(std::string_view text, const std::filesystem::path& folder,
                                 const std::string& source);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

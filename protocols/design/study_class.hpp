@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 /// Each image is an exemplar.
 struct StudyClass {
@@ -15,4 +15,4 @@ struct StudyClass {
   friend bool operator==(const StudyClass&, const StudyClass&) = default;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 constexpr std::size_t kLongestLabel = 64;   // bytes
@@ -68,4 +68,4 @@ std::vector<StudyClass> read_classes(const JsonValue& place, std::size_t most_im
   return classes;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

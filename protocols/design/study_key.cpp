@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 constexpr std::size_t kStudyIdBytes = 16;
@@ -98,4 +98,4 @@ StudyKey rekeyed(const StudyKey& key, const Study& study) {
   return changed;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 /// One code and its meaning.
 struct KeyedStimulus {
@@ -78,4 +78,4 @@ void save_study_key(const std::filesystem::path& path, const StudyKey& key);
 /// count.
 [[nodiscard]] Digest study_seal(const StudyKey& key);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 using nlohmann::json;
@@ -155,4 +155,4 @@ StudyKey load_study_key(const std::filesystem::path& path) {
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -5,17 +5,17 @@
 #include <algorithm>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 /// A key besides "name", and the methods that it means something to.
 struct MethodKey {
   std::string_view key;
-  std::vector<Method> methods;
+  std::vector<engine::Method> methods;
 };
 
 const std::vector<MethodKey>& method_keys() {
-  using enum Method;
+  using enum engine::Method;
   static const std::vector<MethodKey> keys = {
       {"radius", {adaptive, fixed, median}},
       {"order", {fixed}},
@@ -40,7 +40,7 @@ std::vector<std::string_view> known_keys() {
   return keys;
 }
 
-bool belongs_to(Method method, const MethodKey& entry) {
+bool belongs_to(engine::Method method, const MethodKey& entry) {
   return std::find(entry.methods.begin(), entry.methods.end(), method) != entry.methods.end();
 }
 
@@ -54,16 +54,16 @@ std::string owners_of(const MethodKey& entry) {
   return owners;
 }
 
-Method read_name(const JsonValue& place) {
-  const std::vector<std::string> names = method_names();
+engine::Method read_name(const JsonValue& place) {
+  const std::vector<std::string> names = engine::method_names();
   const std::vector<std::string_view> views(names.begin(), names.end());
   const std::size_t chosen = place.choice(std::span<const std::string_view>(views));
-  const auto method = method_from_name(names[chosen]);
+  const auto method = engine::method_from_name(names[chosen]);
   if (!method) place.refuse("is not a method of this version; choose another");
   return *method;
 }
 
-void refuse_foreign_keys(const JsonObject& object, Method method) {
+void refuse_foreign_keys(const JsonObject& object, engine::Method method) {
   for (const MethodKey& entry : method_keys()) {
     const auto member = object.find(entry.key);
     if (!member || belongs_to(method, entry)) continue;
@@ -73,7 +73,7 @@ void refuse_foreign_keys(const JsonObject& object, Method method) {
 }
 
 /// A list, or the word "auto".
-void read_components(const JsonValue& place, TvGaborOptions& options) {
+void read_components(const JsonValue& place, engine::TvGaborOptions& options) {
   constexpr std::size_t kMost = 64;
   constexpr std::array<std::string_view, 1> kWords = {"auto"};
   options.automatic =
@@ -107,11 +107,12 @@ void read_integer(const JsonObject& object, std::string_view key, int low, int h
   }
 }
 
-TvGaborOptions read_tv_gabor(const JsonObject& object) {
-  TvGaborOptions options;
-  read_number(object, "lambda",
-              {.low = TvGaborOptions::kMinLambda, .high = TvGaborOptions::kMaxLambda},
-              options.lambda);
+engine::TvGaborOptions read_tv_gabor(const JsonObject& object) {
+  engine::TvGaborOptions options;
+  read_number(
+      object, "lambda",
+      {.low = engine::TvGaborOptions::kMinLambda, .high = engine::TvGaborOptions::kMaxLambda},
+      options.lambda);
   if (const auto member = object.find("components")) read_components(*member, options);
   read_number(object, "gap", {.low = 0.0, .high = 1.0, .open_low = true}, options.gap);
   read_integer(object, "max_steps", 1, 1'000'000, options.max_steps);
@@ -119,7 +120,7 @@ TvGaborOptions read_tv_gabor(const JsonObject& object) {
 }
 
 StudyMethod read_method(const JsonValue& place) {
-  using Options = ExtractionOptions;
+  using Options = engine::ExtractionOptions;
   const std::vector<std::string_view> known = known_keys();
   const JsonObject object = place.object(std::span<const std::string_view>(known));
   StudyMethod options;
@@ -127,9 +128,9 @@ StudyMethod read_method(const JsonValue& place) {
   refuse_foreign_keys(object, options.method);
   read_integer(object, "radius", 1, Options::kMaxRadius, options.radius);
   read_number(object, "order", {.low = 0.0, .high = 1.0, .open_high = true}, options.order);
-  read_choice(object, "norm", kNormNames, options.norm);
-  read_choice(object, "gradient", kGradientNames, options.gradient);
-  read_choice(object, "combine", kCombineNames, options.combine);
+  read_choice(object, "norm", engine::kNormNames, options.norm);
+  read_choice(object, "gradient", engine::kGradientNames, options.gradient);
+  read_choice(object, "combine", engine::kCombineNames, options.combine);
   read_integer(object, "levels", 1, Options::kMaxLevels, options.levels);
   read_number(object, "sigma_px", {.low = 0.0, .high = Options::kMaxSigma_px, .open_low = true},
               options.sigma_px);
@@ -137,16 +138,16 @@ StudyMethod read_method(const JsonValue& place) {
   read_number(object, "divisor", {.low = Options::kMinDivisor, .high = Options::kMaxDivisor},
               options.divisor);
   options.tv_gabor = read_tv_gabor(object);
-  read_choice(object, "control", kControlNames, options.control);
+  read_choice(object, "control", engine::kControlNames, options.control);
   const auto label = object.find("label");
   options.label = label ? read_plain_name(*label) : default_label(options);
   return options;
 }
 
-nlohmann::json components_json(const TvGaborOptions& options) {
+nlohmann::json components_json(const engine::TvGaborOptions& options) {
   if (options.automatic) return "auto";
   nlohmann::json list = nlohmann::json::array();
-  for (const GaborComponent& component : options.components) {
+  for (const engine::GaborComponent& component : options.components) {
     list.push_back(
         {{"frequency", component.frequency_cycles_per_px}, {"direction", component.direction_deg}});
   }
@@ -155,10 +156,10 @@ nlohmann::json components_json(const TvGaborOptions& options) {
 
 }  // namespace
 
-std::string default_label(const ExtractionOptions& method) {
+std::string default_label(const engine::ExtractionOptions& method) {
   std::string label(name_of(method.method));
-  if (method.control != Control::none)
-    label += "-" + std::string(name_among(kControlNames, method.control));
+  if (method.control != engine::Control::none)
+    label += "-" + std::string(engine::name_among(engine::kControlNames, method.control));
   return label;
 }
 
@@ -175,33 +176,34 @@ std::vector<StudyMethod> read_methods(const JsonValue& place) {
   return methods;
 }
 
-nlohmann::json to_json(const ExtractionOptions& method) {
-  const nlohmann::json all = {{"radius", method.radius},
-                              {"order", method.order},
-                              {"norm", name_among(kNormNames, method.norm)},
-                              {"gradient", name_among(kGradientNames, method.gradient)},
-                              {"combine", name_among(kCombineNames, method.combine)},
-                              {"levels", method.levels},
-                              {"sigma_px", method.sigma_px},
-                              {"threshold", method.threshold_grey},
-                              {"divisor", method.divisor},
-                              {"lambda", method.tv_gabor.lambda},
-                              {"components", components_json(method.tv_gabor)},
-                              {"gap", method.tv_gabor.gap},
-                              {"max_steps", method.tv_gabor.max_steps}};
+nlohmann::json to_json(const engine::ExtractionOptions& method) {
+  const nlohmann::json all = {
+      {"radius", method.radius},
+      {"order", method.order},
+      {"norm", engine::name_among(engine::kNormNames, method.norm)},
+      {"gradient", engine::name_among(engine::kGradientNames, method.gradient)},
+      {"combine", engine::name_among(engine::kCombineNames, method.combine)},
+      {"levels", method.levels},
+      {"sigma_px", method.sigma_px},
+      {"threshold", method.threshold_grey},
+      {"divisor", method.divisor},
+      {"lambda", method.tv_gabor.lambda},
+      {"components", components_json(method.tv_gabor)},
+      {"gap", method.tv_gabor.gap},
+      {"max_steps", method.tv_gabor.max_steps}};
   nlohmann::json object = {{"name", name_of(method.method)}};
   for (const MethodKey& entry : method_keys()) {
     if (belongs_to(method.method, entry)) object[std::string(entry.key)] = all.at(entry.key);
   }
-  if (method.control != Control::none)
-    object["control"] = name_among(kControlNames, method.control);
+  if (method.control != engine::Control::none)
+    object["control"] = engine::name_among(engine::kControlNames, method.control);
   return object;
 }
 
 nlohmann::json to_json(const StudyMethod& method) {
-  nlohmann::json object = to_json(static_cast<const ExtractionOptions&>(method));
+  nlohmann::json object = to_json(static_cast<const engine::ExtractionOptions&>(method));
   if (method.label != default_label(method)) object["label"] = method.label;
   return object;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -7,7 +7,7 @@
 #include <array>
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 inline constexpr std::array kProtocolNames = {
     Named<Protocol>{"classification", Protocol::classification},
@@ -39,11 +39,13 @@ inline constexpr std::array kQuestionKindNames = {
     Named<QuestionKind>{"number", QuestionKind::number},
     Named<QuestionKind>{"text", QuestionKind::text}};
 
-inline constexpr std::array kModelNames = {Named<ModelKind>{"paper", ModelKind::paper},
-                                           Named<ModelKind>{"surface", ModelKind::surface}};
+inline constexpr std::array kModelNames = {
+    Named<engine::ModelKind>{"paper", engine::ModelKind::paper},
+    Named<engine::ModelKind>{"surface", engine::ModelKind::surface}};
 
-inline constexpr std::array kEqualiseNames = {Named<Equalise>{"none", Equalise::none},
-                                              Named<Equalise>{"rms", Equalise::rms}};
+inline constexpr std::array kEqualiseNames = {
+    Named<engine::Equalise>{"none", engine::Equalise::none},
+    Named<engine::Equalise>{"rms", engine::Equalise::rms}};
 
 /// The word for a value; every value of the enumeration is in its table.
 template <typename Value, std::size_t size>
@@ -55,4 +57,4 @@ template <typename Value, std::size_t size>
   return {};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -1,7 +1,7 @@
 /// The study file's "practice".
 #include "protocols/design/study_sections.hpp"
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 PracticePlan read_practice(const JsonValue& place) {
   const JsonObject object = place.object({"classes", "criterion", "rounds"});
@@ -24,4 +24,4 @@ nlohmann::json to_json(const PracticePlan& practice) {
   return {{"classes", classes}, {"criterion", practice.criterion}, {"rounds", practice.rounds}};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

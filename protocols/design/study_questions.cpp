@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 constexpr std::size_t kMostQuestions = 50;
@@ -62,4 +62,4 @@ nlohmann::json to_json(const std::vector<Question>& questions) {
   return list;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

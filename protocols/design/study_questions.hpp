@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 /// \param language  the study's: every text must have it
 /// \throws StudyError with the place of what it cannot accept
@@ -18,4 +18,4 @@ namespace touchtrial {
 /// As the study file writes them, every key explicit but "options" where there are none.
 [[nodiscard]] nlohmann::json to_json(const std::vector<Question>& questions);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

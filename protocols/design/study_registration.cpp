@@ -2,7 +2,7 @@
 #include "protocols/design/study_sections.hpp"
 #include "protocols/design/study_texts.hpp"
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 constexpr std::size_t kLongestStatement = 4000;  // bytes
@@ -36,4 +36,4 @@ nlohmann::json to_json(const Registration& registration) {
           {"primary_test", registration.primary_test}};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

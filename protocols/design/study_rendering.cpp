@@ -2,12 +2,12 @@
 #include "protocols/design/study_names.hpp"
 #include "protocols/design/study_sections.hpp"
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
-Gains read_explicit_gains(const JsonValue& place, ModelKind model) {
+engine::Gains read_explicit_gains(const JsonValue& place, engine::ModelKind model) {
   const NumberRange range{.low = 0.0, .high = 10.0};
-  if (model == ModelKind::surface) {
+  if (model == engine::ModelKind::surface) {
     return {.height_mm = place.object({"height_mm"}).at("height_mm").number(range)};
   }
   const JsonObject object = place.object({"tangential_n", "normal_n"});
@@ -15,7 +15,7 @@ Gains read_explicit_gains(const JsonValue& place, ModelKind model) {
           .normal_n = object.at("normal_n").number(range)};
 }
 
-std::optional<Gains> read_gains(const JsonValue& place, ModelKind model) {
+std::optional<engine::Gains> read_gains(const JsonValue& place, engine::ModelKind model) {
   constexpr std::array kNames = {Named<int>{"budget", 0}};
   if (!place.is_text()) return read_explicit_gains(place, model);
   static_cast<void>(place.choice(kNames));
@@ -33,7 +33,7 @@ void read_number(const JsonObject& object, std::string_view key, const NumberRan
   if (const auto member = object.find(key)) number = member->number(range);
 }
 
-void read_wall(const JsonObject& object, RenderingOptions& options) {
+void read_wall(const JsonObject& object, engine::RenderingOptions& options) {
   read_number(object, "pitch_mm", {.low = 0.001, .high = 10.0}, options.pitch_mm);
   read_number(object, "stiffness_n_per_mm", {.low = 0.0, .high = 100.0, .open_low = true},
               options.stiffness_n_per_mm);
@@ -42,24 +42,25 @@ void read_wall(const JsonObject& object, RenderingOptions& options) {
               options.max_force_n);
 }
 
-void read_friction(const JsonObject& object, RenderingOptions& options) {
+void read_friction(const JsonObject& object, engine::RenderingOptions& options) {
   const auto friction = object.find("friction");
   if (!friction) return;
   options.friction = friction->number({.low = 0.0, .high = 10.0});
-  if (options.model == ModelKind::paper && options.friction != 0.0) {
+  if (options.model == engine::ModelKind::paper && options.friction != 0.0) {
     friction->refuse(
         "must be 0: the rendering model paper has no friction; leave it out or give \"model\": "
         "\"surface\"");
   }
 }
 
-nlohmann::json gains_json(const RenderingOptions& rendering) {
+nlohmann::json gains_json(const engine::RenderingOptions& rendering) {
   if (!rendering.gains) return "budget";
-  if (rendering.model == ModelKind::surface) return {{"height_mm", rendering.gains->height_mm}};
+  if (rendering.model == engine::ModelKind::surface)
+    return {{"height_mm", rendering.gains->height_mm}};
   return {{"tangential_n", rendering.gains->tangential_n}, {"normal_n", rendering.gains->normal_n}};
 }
 
-void read_texture(const JsonObject& object, RenderingOptions& options) {
+void read_texture(const JsonObject& object, engine::RenderingOptions& options) {
   read_number(object, "filter_mm", {.low = 0.0, .high = 10.0}, options.filter_mm);
   read_number(object, "texture_stiffness_n_per_mm", {.low = 0.0, .high = 100.0, .open_low = true},
               options.texture_stiffness_n_per_mm);
@@ -74,12 +75,12 @@ void read_texture(const JsonObject& object, RenderingOptions& options) {
 
 }  // namespace
 
-RenderingOptions read_rendering(const JsonValue& place) {
+engine::RenderingOptions read_rendering(const JsonValue& place) {
   const JsonObject object =
       place.object({"model", "pitch_mm", "stiffness_n_per_mm", "damping_n_s_per_mm", "filter_mm",
                     "texture_stiffness_n_per_mm", "gains", "equalise", "reference_grey", "friction",
                     "neighbourhood", "max_force_n"});
-  RenderingOptions options;
+  engine::RenderingOptions options;
   if (const auto model = object.find("model")) options.model = model->choice(kModelNames);
   read_friction(object, options);
   read_wall(object, options);
@@ -87,7 +88,7 @@ RenderingOptions read_rendering(const JsonValue& place) {
   return options;
 }
 
-nlohmann::json to_json(const RenderingOptions& rendering) {
+nlohmann::json to_json(const engine::RenderingOptions& rendering) {
   return {{"model", word_for(kModelNames, rendering.model)},
           {"pitch_mm", rendering.pitch_mm},
           {"stiffness_n_per_mm", rendering.stiffness_n_per_mm},
@@ -102,4 +103,4 @@ nlohmann::json to_json(const RenderingOptions& rendering) {
           {"max_force_n", rendering.max_force_n}};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 /// Everything that people read, as a hash that only the key's holder can check: names of textures
@@ -79,4 +79,4 @@ Digest study_seal(const StudyKey& key) {
   return hasher.finish();
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 /// What a study may have at most. The limits keep schedules, packs and pictures of a size that one
 /// participant, one disk and one screen can take.
@@ -26,7 +26,7 @@ inline constexpr int kMaxScoredTrials = 10'000;
 [[nodiscard]] std::vector<StudyClass> read_classes(const JsonValue& place,
                                                    std::size_t most_images = kMaxImagesOfClass);
 [[nodiscard]] std::vector<StudyMethod> read_methods(const JsonValue& place);
-[[nodiscard]] RenderingOptions read_rendering(const JsonValue& place);
+[[nodiscard]] engine::RenderingOptions read_rendering(const JsonValue& place);
 [[nodiscard]] TrialOptions read_trials(const JsonValue& place);
 [[nodiscard]] PracticePlan read_practice(const JsonValue& place);
 [[nodiscard]] SessionPlan read_session(const JsonValue& place);
@@ -37,12 +37,12 @@ inline constexpr int kMaxScoredTrials = 10'000;
 /// the trials, "max_run", "on_interruption" and "resume_within_h" are there only where they are not
 /// the default, so that what was sealed before they existed stays as it was. Equal options give
 /// equal JSON.
-[[nodiscard]] nlohmann::json to_json(const ExtractionOptions& method);
+[[nodiscard]] nlohmann::json to_json(const engine::ExtractionOptions& method);
 [[nodiscard]] nlohmann::json to_json(const StudyMethod& method);
-[[nodiscard]] nlohmann::json to_json(const RenderingOptions& rendering);
+[[nodiscard]] nlohmann::json to_json(const engine::RenderingOptions& rendering);
 [[nodiscard]] nlohmann::json to_json(const TrialOptions& trials);
 [[nodiscard]] nlohmann::json to_json(const PracticePlan& practice);
 [[nodiscard]] nlohmann::json to_json(const SessionPlan& session);
 [[nodiscard]] nlohmann::json to_json(const Registration& registration);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

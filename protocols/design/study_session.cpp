@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 constexpr std::size_t kMostPages = 20;
@@ -119,4 +119,4 @@ nlohmann::json to_json(const SessionPlan& session) {
       {"closing", session.closing}};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

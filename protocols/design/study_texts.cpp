@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 constexpr std::size_t kLongestQuestion = 500;  // bytes
@@ -63,4 +63,4 @@ Translated read_translated(const JsonValue& place, const std::string& language) 
   return text;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 /// The languages that the program's own texts come in, and so those of a study's.
 inline constexpr std::array<std::string_view, 2> kLanguages = {"en", "de"};
@@ -27,4 +27,4 @@ inline constexpr std::array<std::string_view, 2> kLanguages = {"en", "de"};
 /// A line in some of the languages. \throws StudyError if the study's language is not among them
 [[nodiscard]] Translated read_translated(const JsonValue& place, const std::string& language);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -2,7 +2,7 @@
 #include "protocols/design/study_names.hpp"
 #include "protocols/design/study_sections.hpp"
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 void read_count(const JsonObject& object, std::string_view key, int low, int high, int& count) {
@@ -66,4 +66,4 @@ nlohmann::json to_json(const TrialOptions& trials) {
   return text;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

@@ -6,7 +6,7 @@
 #include <numeric>
 #include <span>
 
-namespace touchtrial {
+namespace touchtrial::design {
 namespace {
 
 std::vector<int> shuffled_numbers(int first, int count, RandomStream& random) {
@@ -70,4 +70,4 @@ std::vector<int> random_williams_order(int symbols, int rows, int max_run, RunBe
   return order;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

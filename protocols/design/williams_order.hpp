@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::design {
 
 /// Whether `rows` of them can follow each other without a symbol coming more than `max_run` times
 /// in a row. Only two symbols cannot, with a limit of 1: their two rows are each other's mirror
@@ -23,4 +23,4 @@ namespace touchtrial {
 [[nodiscard]] std::vector<int> random_williams_order(int symbols, int rows, int max_run,
                                                      RunBefore before, RandomStream& random);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::design

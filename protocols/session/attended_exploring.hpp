@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// Passes everything on, and gives the desk its turn while the plane is on.
 class AttendedExploring final : public Participant {
@@ -20,18 +20,18 @@ class AttendedExploring final : public Participant {
   [[nodiscard]] std::optional<StepReply> attend(const Step& step) override {
     return participant_.attend(step);
   }
-  [[nodiscard]] HapticDevice& begin_exploring(const PlaneGeometry& plane) override {
+  [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& plane) override {
     return participant_.begin_exploring(plane);
   }
-  void exploring(ServoControl& servo) override {
+  void exploring(device::ServoControl& servo) override {
     participant_.exploring(servo);
     desk_.look(servo);
   }
-  void feel(const ServoSample& sample) noexcept override { participant_.feel(sample); }
+  void feel(const device::ServoSample& sample) noexcept override { participant_.feel(sample); }
 
  private:
   SessionDesk& desk_;
   Participant& participant_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -2,16 +2,17 @@
 
 #include "core/version.hpp"
 
-namespace touchtrial {
+namespace touchtrial::session {
 
-StudyCommitment commitment_of(const StudyKey& key, const Pack& pack, bool simulated, bool pilot) {
-  StudyCommitment commitment;
+store::StudyCommitment commitment_of(const design::StudyKey& key, const engine::Pack& pack,
+                                     bool simulated, bool pilot) {
+  store::StudyCommitment commitment;
   commitment.study = key.study.name;
   commitment.protocol = name_of(key.study.protocol);
   commitment.study_id = key.study_id;
-  commitment.seal = study_seal(key);
+  commitment.seal = design::study_seal(key);
   commitment.pack = pack.digest();
-  commitment.configuration = blinded_configuration(key);
+  commitment.configuration = design::blinded_configuration(key);
   commitment.scored_trials = key.study.scored_trials();
   commitment.positions = static_cast<int>(key.study.classes.size());
   commitment.simulated = simulated;
@@ -20,4 +21,4 @@ StudyCommitment commitment_of(const StudyKey& key, const Pack& pack, bool simula
   return commitment;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -5,10 +5,11 @@
 #include "protocols/design/study_key.hpp"
 #include "protocols/store/payload.hpp"
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// The first event of a study's file chain.
-[[nodiscard]] StudyCommitment commitment_of(const StudyKey& key, const Pack& pack, bool simulated,
-                                            bool pilot);
+[[nodiscard]] store::StudyCommitment commitment_of(const design::StudyKey& key,
+                                                   const engine::Pack& pack, bool simulated,
+                                                   bool pilot);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

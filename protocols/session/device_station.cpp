@@ -7,41 +7,41 @@
 #include <stdexcept>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::session {
 namespace {
 
-std::string need_of(DeviceReadiness readiness) {
+std::string need_of(device::DeviceReadiness readiness) {
   switch (readiness) {
-    case DeviceReadiness::needs_homing:
+    case device::DeviceReadiness::needs_homing:
       return "the device is not homed; move its handle through the whole range";
-    case DeviceReadiness::needs_inkwell:
+    case device::DeviceReadiness::needs_inkwell:
       return "the device is not calibrated; put the stylus into its inkwell";
-    case DeviceReadiness::needs_calibration:
+    case device::DeviceReadiness::needs_calibration:
       return "the device is not calibrated; run its vendor's calibration";
-    case DeviceReadiness::ready:
+    case device::DeviceReadiness::ready:
       break;
   }
   return "";
 }
 
-std::string identity_of(const DeviceInfo& device) {
+std::string identity_of(const device::DeviceInfo& device) {
   return device.name + (device.serial.empty() ? "" : " " + device.serial);
 }
 
-std::string text_of(const SchedulingObtained& scheduling) {
-  std::string text(name_of(scheduling.policy));
+std::string text_of(const device::SchedulingObtained& scheduling) {
+  std::string text(device::name_of(scheduling.policy));
   if (scheduling.priority > 0) text += " " + std::to_string(scheduling.priority);
   return text + (scheduling.memory_locked ? ", memory locked" : ", memory not locked");
 }
 
 }  // namespace
 
-DeviceStation::DeviceStation(Open open, const std::optional<PlanePlacement>& placement,
+DeviceStation::DeviceStation(Open open, const std::optional<device::PlanePlacement>& placement,
                              Attendant& attendant)
     : open_(std::move(open)), placement_(placement), attendant_(attendant) {}
 
 SupplyState DeviceStation::make_ready() {
-  if (StopOnSignals::asked()) return SupplyState::stopped;
+  if (device::StopOnSignals::asked()) return SupplyState::stopped;
   const std::string need = missing();
   if (need.empty() && armed_) return SupplyState::ready;
   const Attendant::Says says = attendant_.attend(need);
@@ -53,7 +53,7 @@ SupplyState DeviceStation::make_ready() {
 }
 
 std::string DeviceStation::missing() {
-  if (device_ && device_->fault() != DeviceFault::none) close();
+  if (device_ && device_->fault() != device::DeviceFault::none) close();
   if (!device_) {
     std::string why = open_again();
     if (!why.empty()) return why;
@@ -65,7 +65,7 @@ std::string DeviceStation::open_again() try {
   device_ = open_();
   // Until somebody consents.
   device_->halt();
-  const DeviceInfo info = device_->info();
+  const device::DeviceInfo info = device_->info();
   if (!first_) first_ = info;
   if (identity_of(info) != identity_of(*first_)) {
     close();
@@ -86,30 +86,30 @@ void DeviceStation::close() noexcept {
   armed_ = false;
 }
 
-HapticDevice& DeviceStation::device() {
+device::HapticDevice& DeviceStation::device() {
   if (!device_) throw std::logic_error("DeviceStation: no device is open");
   if (placed_) return *placed_;
   return *device_;
 }
 
-const DeviceInfo& DeviceStation::info() const {
+const device::DeviceInfo& DeviceStation::info() const {
   if (!first_) throw std::logic_error("DeviceStation: no device has been opened");
   return *first_;
 }
 
-void describe_station(SessionOpening& opening, const DeviceInfo& device,
-                      const SchedulingObtained& scheduling, double rate_hz,
+void describe_station(store::SessionOpening& opening, const device::DeviceInfo& device,
+                      const device::SchedulingObtained& scheduling, double rate_hz,
                       const std::string& certificate) {
   opening.device = device.name;
   opening.device_serial = device.serial;
   opening.simulated = device.simulated;
-  opening.station = StationRecord{.model = device.model,
-                                  .firmware = device.firmware,
-                                  .max_force_n = device.max_force_n,
-                                  .visual = device.visual,
-                                  .rate_hz = rate_hz,
-                                  .scheduling = text_of(scheduling),
-                                  .calibration = certificate};
+  opening.station = store::StationRecord{.model = device.model,
+                                         .firmware = device.firmware,
+                                         .max_force_n = device.max_force_n,
+                                         .visual = device.visual,
+                                         .rate_hz = rate_hz,
+                                         .scheduling = text_of(scheduling),
+                                         .calibration = certificate};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

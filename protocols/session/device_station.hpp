@@ -12,7 +12,7 @@
 #include <optional>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// Who is asked while a session waits for its device.
 class Attendant {
@@ -31,11 +31,12 @@ class DeviceStation final : public DeviceSupply {
  public:
   /// Opens the device; throws DeviceError, or FileError for its firmware, with the remedy if it
   /// cannot.
-  using Open = std::function<std::unique_ptr<HapticDevice>()>;
+  using Open = std::function<std::unique_ptr<device::HapticDevice>()>;
 
   /// \param placement  nothing for a device that speaks the plane frame
   /// \param attendant  must outlive this
-  DeviceStation(Open open, const std::optional<PlanePlacement>& placement, Attendant& attendant);
+  DeviceStation(Open open, const std::optional<device::PlanePlacement>& placement,
+                Attendant& attendant);
 
   /// A device other than the one that was there first (name or serial) is not taken. Stopped, too,
   /// once a signal has asked the program to end during an exploration.
@@ -43,9 +44,9 @@ class DeviceStation final : public DeviceSupply {
   void interrupted() override { armed_ = false; }
 
   /// In the plane frame; until the next `make_ready`. \throws std::logic_error if none is open
-  [[nodiscard]] HapticDevice& device();
+  [[nodiscard]] device::HapticDevice& device();
   /// Of the device that was there first. \throws std::logic_error if none was
-  [[nodiscard]] const DeviceInfo& info() const;
+  [[nodiscard]] const device::DeviceInfo& info() const;
 
  private:
   /// \return what is missing; empty if nothing is
@@ -54,18 +55,18 @@ class DeviceStation final : public DeviceSupply {
   void close() noexcept;
 
   Open open_;
-  std::optional<PlanePlacement> placement_;
+  std::optional<device::PlanePlacement> placement_;
   Attendant& attendant_;
-  std::unique_ptr<HapticDevice> device_;
-  std::optional<PlacedDevice> placed_;
-  std::optional<DeviceInfo> first_;
+  std::unique_ptr<device::HapticDevice> device_;
+  std::optional<device::PlacedDevice> placed_;
+  std::optional<device::DeviceInfo> first_;
   bool armed_ = false;
 };
 
 /// What a session's first event says of its device and servo thread.
 /// \param certificate  SHA-256 of the device's calibration certificate, hexadecimal, or empty
-void describe_station(SessionOpening& opening, const DeviceInfo& device,
-                      const SchedulingObtained& scheduling, double rate_hz,
+void describe_station(store::SessionOpening& opening, const device::DeviceInfo& device,
+                      const device::SchedulingObtained& scheduling, double rate_hz,
                       const std::string& certificate);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

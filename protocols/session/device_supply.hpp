@@ -1,7 +1,7 @@
 /// \file Where a session's device comes from, and how it comes back after a fault.
 #pragma once
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 enum class SupplyState {
   ready,    ///< open, homed and armed: forces may be sent
@@ -27,4 +27,4 @@ class AlwaysReady final : public DeviceSupply {
   [[nodiscard]] SupplyState make_ready() override { return SupplyState::ready; }
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

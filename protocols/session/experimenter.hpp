@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// What the experimenter is shown. Nothing in it depends on a stimulus or on an outcome.
 struct SessionStatus {
@@ -70,4 +70,4 @@ class Experimenter {
   virtual void acknowledged(int /*trial*/) {}
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -5,11 +5,11 @@
 #include <algorithm>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::session {
 namespace {
 
 /// Of two explorations of one presentation: the worse of each.
-ServoHealth joined(const ServoHealth& one, const ServoHealth& other) {
+store::ServoHealth joined(const store::ServoHealth& one, const store::ServoHealth& other) {
   return {.rate_hz = std::min(one.rate_hz, other.rate_hz),
           .lateness_p50_us = std::max(one.lateness_p50_us, other.lateness_p50_us),
           .lateness_p99_us = std::max(one.lateness_p99_us, other.lateness_p99_us),
@@ -30,13 +30,13 @@ void ExplorationRecord::begin() {
   health_.reset();
 }
 
-Trace& ExplorationRecord::next_trace() {
+store::Trace& ExplorationRecord::next_trace() {
   if (packing_.valid()) packing_.wait();
   return explorations_.empty() ? trace_ : more_;
 }
 
 void ExplorationRecord::add(const Exploration& done) {
-  const Trace& part = explorations_.empty() ? trace_ : more_;
+  const store::Trace& part = explorations_.empty() ? trace_ : more_;
   explorations_.push_back(static_cast<std::int64_t>(part.samples.size()));
   if (explorations_.size() > 1) {
     trace_.samples.insert(trace_.samples.end(), more_.samples.begin(), more_.samples.end());
@@ -55,8 +55,8 @@ void ExplorationRecord::pack(const Session& session, bool beside) {
                         [this, &session, trial] { return judged(session, trial); });
 }
 
-TraceBody ExplorationRecord::body(int trial) const {
-  TraceBody body;
+store::TraceBody ExplorationRecord::body(int trial) const {
+  store::TraceBody body;
   body.trial = trial;
   body.rate_hz = trace_.rate_hz;
   body.overruns = overruns_;
@@ -68,10 +68,10 @@ TraceBody ExplorationRecord::body(int trial) const {
 JudgedEvidence ExplorationRecord::judged(const Session& session, int trial) const {
   TrialFindings findings = findings_of(trace_, force_limit_n_);
   if (held_in_contact_ > 0) findings.measures.within_limits = false;
-  TraceBody body = this->body(trial);
+  store::TraceBody body = this->body(trial);
   body.valid = findings.long_enough;
   if (health_) findings.measures.limited_ticks = limited_ticks_;
   return {session.packed(body, findings.measures, trace_), findings.valid()};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

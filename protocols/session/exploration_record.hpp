@@ -10,11 +10,11 @@
 #include <optional>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// Evidence, and whether the trial was valid.
 struct JudgedEvidence {
-  TrialEvidence evidence;
+  store::TrialEvidence evidence;
   bool valid = false;
 };
 
@@ -24,7 +24,7 @@ class ExplorationRecord {
   /// A new presentation.
   void begin();
   /// Where the explorer puts the next exploration's samples. Waits for a packing that is under way.
-  [[nodiscard]] Trace& next_trace();
+  [[nodiscard]] store::Trace& next_trace();
   /// That exploration is over.
   void add(const Exploration& done);
   /// Ticks of the servo's clock that the explorations took.
@@ -38,19 +38,19 @@ class ExplorationRecord {
   [[nodiscard]] JudgedEvidence take() { return packing_.get(); }
 
  private:
-  [[nodiscard]] TraceBody body(int trial) const;
+  [[nodiscard]] store::TraceBody body(int trial) const;
   [[nodiscard]] JudgedEvidence judged(const Session& session, int trial) const;
 
-  Trace trace_;
-  Trace more_;  ///< of the exploration after the first
+  store::Trace trace_;
+  store::Trace more_;  ///< of the exploration after the first
   std::vector<std::int64_t> explorations_;
   std::int64_t ticks_ = 0;
   std::int64_t overruns_ = 0;
   std::int64_t limited_ticks_ = 0;
   std::int64_t held_in_contact_ = 0;
   double force_limit_n_ = 0.0;
-  std::optional<ServoHealth> health_;
+  std::optional<store::ServoHealth> health_;
   std::future<JudgedEvidence> packing_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

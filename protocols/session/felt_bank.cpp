@@ -11,7 +11,7 @@
 
 #include <tbb/parallel_for.h>
 
-namespace touchtrial {
+namespace touchtrial::session {
 namespace {
 
 constexpr unsigned kExplorationBits = 24;
@@ -26,7 +26,7 @@ void check(const FeltBankOptions& options) {
 /// Counts what is done, from any thread.
 class Count {
  public:
-  Count(const Progress& progress, int of) : progress_(progress), of_(of) {}
+  Count(const design::Progress& progress, int of) : progress_(progress), of_(of) {}
   void one_more() {
     if (!progress_) return;
     const std::lock_guard lock(mutex_);
@@ -34,7 +34,7 @@ class Count {
   }
 
  private:
-  const Progress& progress_;
+  const design::Progress& progress_;
   int of_;
   int done_ = 0;
   std::mutex mutex_;
@@ -42,14 +42,15 @@ class Count {
 
 }  // namespace
 
-FeltBank::FeltBank(const LabelledFields& fields, const Study& study, const SubjectModel& subject,
-                   const FeltBankOptions& options, const Progress& progress)
+FeltBank::FeltBank(const LabelledFields& fields, const design::Study& study,
+                   const SubjectModel& subject, const FeltBankOptions& options,
+                   const design::Progress& progress)
     : explorations_(options.explorations) {
   check(options);
   for (const LabelledField& field : fields.all()) stimuli_.push_back(field.stimulus);
   const auto each = static_cast<std::size_t>(explorations_);
   felt_.resize(stimuli_.size() * each);
-  const ServoOptions servo = trial_servo_options(study, kServoRateHz, {});
+  const device::ServoOptions servo = trial_servo_options(study, device::kServoRateHz, {});
   Count count(progress, static_cast<int>(felt_.size()));
   const auto feel = [&](std::size_t i) {
     const std::size_t place = i / each;
@@ -61,7 +62,7 @@ FeltBank::FeltBank(const LabelledFields& fields, const Study& study, const Subje
   JobArena(options.jobs).run([&] { tbb::parallel_for(std::size_t{0}, felt_.size(), feel); });
 }
 
-int FeltBank::place_of(const StimulusIndex& stimulus) const {
+int FeltBank::place_of(const design::StimulusIndex& stimulus) const {
   const auto found = std::ranges::lower_bound(stimuli_, stimulus);
   if (found == stimuli_.end() || *found != stimulus) {
     throw std::invalid_argument("FeltBank: the study does not present this stimulus");
@@ -69,12 +70,12 @@ int FeltBank::place_of(const StimulusIndex& stimulus) const {
   return static_cast<int>(found - stimuli_.begin());
 }
 
-FeltFeatures feel_trial(const LabelledField& field, const PlaneGeometry& plane, const Study& study,
-                        const SubjectModel& subject, std::uint64_t seed, int number,
-                        std::uint64_t nth) {
+engine::FeltFeatures feel_trial(const LabelledField& field, const PlaneGeometry& plane,
+                                const design::Study& study, const SubjectModel& subject,
+                                std::uint64_t seed, int number, std::uint64_t nth) {
   return feel_exploration(*field.model, plane, subject,
-                          trial_servo_options(study, kServoRateHz, {}),
+                          trial_servo_options(study, device::kServoRateHz, {}),
                           stream_of_trial(seed, kExplorationPurpose, number, nth));
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

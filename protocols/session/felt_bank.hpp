@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 struct FeltBankOptions {
   int explorations = 200;  ///< of each stimulus, 1 .. 2^24 - 1
@@ -32,33 +32,37 @@ class FeltBank {
   /// \param study  that the fields are of: exploration limit and force limit
   /// \param progress  counts explorations; called from one thread at a time
   /// \throws std::invalid_argument if an option is out of range
-  FeltBank(const LabelledFields& fields, const Study& study, const SubjectModel& subject,
-           const FeltBankOptions& options, const Progress& progress = {});
+  FeltBank(const LabelledFields& fields, const design::Study& study, const SubjectModel& subject,
+           const FeltBankOptions& options, const design::Progress& progress = {});
 
   [[nodiscard]] int stimuli() const noexcept { return static_cast<int>(stimuli_.size()); }
   [[nodiscard]] int explorations() const noexcept { return explorations_; }
   /// In the order of LabelledFields::all, which is that of the knowledge's prototypes too.
-  [[nodiscard]] const StimulusIndex& stimulus(int place) const noexcept { return stimuli_[place]; }
+  [[nodiscard]] const design::StimulusIndex& stimulus(int place) const noexcept {
+    return stimuli_[place];
+  }
   /// \throws std::invalid_argument if the study does not present it
-  [[nodiscard]] int place_of(const StimulusIndex& stimulus) const;
+  [[nodiscard]] int place_of(const design::StimulusIndex& stimulus) const;
   /// All explorations of one stimulus. \param place  0 .. stimuli() - 1
-  [[nodiscard]] std::span<const FeltFeatures> felt(int place) const noexcept {
+  [[nodiscard]] std::span<const engine::FeltFeatures> felt(int place) const noexcept {
     const auto count = static_cast<std::size_t>(explorations_);
     return {felt_.data() + static_cast<std::size_t>(place) * count, count};
   }
 
  private:
   int explorations_;
-  std::vector<StimulusIndex> stimuli_;
-  std::vector<FeltFeatures> felt_;
+  std::vector<design::StimulusIndex> stimuli_;
+  std::vector<engine::FeltFeatures> felt_;
 };
 
 /// What a participant of simulate_study feels in one presentation, to the bit: the servo path's
 /// exploration without its session. Cost: as one exploration of a bank.
 /// \param seed  of the simulation  \param number  of the participant, from 1
 /// \param nth  presentation that the participant begins, from 1, unscored ones counted
-[[nodiscard]] FeltFeatures feel_trial(const LabelledField& field, const PlaneGeometry& plane,
-                                      const Study& study, const SubjectModel& subject,
-                                      std::uint64_t seed, int number, std::uint64_t nth);
+[[nodiscard]] engine::FeltFeatures feel_trial(const LabelledField& field,
+                                              const PlaneGeometry& plane,
+                                              const design::Study& study,
+                                              const SubjectModel& subject, std::uint64_t seed,
+                                              int number, std::uint64_t nth);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

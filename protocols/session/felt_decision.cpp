@@ -6,7 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace touchtrial {
+namespace touchtrial::session {
 namespace {
 
 constexpr double kQuickestThoughtS = 0.8;
@@ -52,9 +52,9 @@ SeenPictures see(const std::vector<std::string>& labels, const SubjectModel& sub
   return seen;
 }
 
-std::vector<double> support_of_pictures(const FeltClassifier& classifier,
+std::vector<double> support_of_pictures(const engine::FeltClassifier& classifier,
                                         const SeenPictures& pictures,
-                                        const FeltFeatures& perceived) {
+                                        const engine::FeltFeatures& perceived) {
   const std::vector<double> logs = classifier.log_likelihoods(perceived);
   std::vector<double> support(pictures.bias.size(), -std::numeric_limits<double>::infinity());
   for (std::size_t i = 0; i < logs.size(); ++i) {
@@ -69,15 +69,15 @@ FeltDecision::FeltDecision(const Individual& individual, const FeltKnowledge& kn
       lapse_(individual.lapse()),
       classifier_(knowledge.examples, individual.weber()) {}
 
-ParticipantAnswer FeltDecision::answer(const FeltFeatures& felt, const SeenPictures& pictures,
-                                       RandomStream& random) const {
+ParticipantAnswer FeltDecision::answer(const engine::FeltFeatures& felt,
+                                       const SeenPictures& pictures, RandomStream& random) const {
   const bool lapses = random.uniform() < lapse_;
   const int anything = static_cast<int>(random.below(pictures.bias.size()));
   const double thought_s = random.uniform(kQuickestThoughtS, kSlowestThoughtS);
-  FeltFeatures perceived = felt;
+  engine::FeltFeatures perceived = felt;
   for (double& feature : perceived) feature += weber_ * random.normal();
   const int named = strongest(support_of_pictures(classifier_, pictures, perceived), random);
   return {lapses ? anything : named, std::chrono::milliseconds(std::llround(thought_s * 1000.0))};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// Draws of one presentation: a stream for a seed, a purpose, a participant and the presentation
 /// that is the nth to begin, lead-ins, catch trials and repetitions counted.
@@ -42,9 +42,9 @@ struct SeenPictures {
 /// prototypes matched to it, of log density plus bias; minus infinity if there is none. Cost: some
 /// microseconds.
 /// \param perceived  noise included
-[[nodiscard]] std::vector<double> support_of_pictures(const FeltClassifier& classifier,
+[[nodiscard]] std::vector<double> support_of_pictures(const engine::FeltClassifier& classifier,
                                                       const SeenPictures& pictures,
-                                                      const FeltFeatures& perceived);
+                                                      const engine::FeltFeatures& perceived);
 
 /// Somebody before pictures. Refers to nothing; immutable, thread-safe.
 class FeltDecision {
@@ -59,13 +59,13 @@ class FeltDecision {
   /// time, so that none shifts another. Cost: some microseconds.
   /// \param felt  before noise, natural logarithms of newtons
   /// \param random  stream_of_trial for kAnswerPurpose
-  [[nodiscard]] ParticipantAnswer answer(const FeltFeatures& felt, const SeenPictures& pictures,
-                                         RandomStream& random) const;
+  [[nodiscard]] ParticipantAnswer answer(const engine::FeltFeatures& felt,
+                                         const SeenPictures& pictures, RandomStream& random) const;
 
  private:
   double weber_;
   double lapse_;
-  FeltClassifier classifier_;
+  engine::FeltClassifier classifier_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -8,7 +8,7 @@
 #include "engine/rendering/rendering_model.hpp"
 #include "protocols/session/subject_model.hpp"
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// Puts a subject's hand on a plane, through device, servo and safety chain in virtual time, and
 /// senses what the servo did. A function of its arguments; thread-safe. Virtual time and the
@@ -17,8 +17,10 @@ namespace touchtrial {
 /// \param plane  what is told to be explored: StimulusSource::plane
 /// \param random  path and starting height
 /// \return before any noise, natural logarithms of newtons
-[[nodiscard]] FeltFeatures feel_exploration(const RenderingModel& model, const PlaneGeometry& plane,
-                                            const SubjectModel& subject,
-                                            const ServoOptions& options, RandomStream random);
+[[nodiscard]] engine::FeltFeatures feel_exploration(const engine::RenderingModel& model,
+                                                    const PlaneGeometry& plane,
+                                                    const SubjectModel& subject,
+                                                    const device::ServoOptions& options,
+                                                    RandomStream random);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

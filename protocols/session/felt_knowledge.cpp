@@ -9,12 +9,13 @@
 
 #include <tbb/parallel_for.h>
 
-namespace touchtrial {
+namespace touchtrial::session {
 namespace {
 
 /// A pass has no time limit: it lasts as long as the subject explores.
-ServoOptions training_options(const SubjectModel& subject, double max_force_n) {
-  const auto ticks = static_cast<std::int64_t>(std::ceil(subject.explore_s * kServoRateHz)) + 1;
+device::ServoOptions training_options(const SubjectModel& subject, double max_force_n) {
+  const auto ticks =
+      static_cast<std::int64_t>(std::ceil(subject.explore_s * device::kServoRateHz)) + 1;
   return {.limit_ticks = ticks, .fade_ticks = 0, .limits = {.max_force_n = max_force_n}};
 }
 
@@ -28,12 +29,12 @@ FeltKnowledge learn_by_feeling(const LabelledFields& fields, const SubjectModel&
   }
   const auto passes = static_cast<std::size_t>(subject.training_passes);
   knowledge.examples.resize(fields.all().size() * passes);
-  const ServoOptions options = training_options(subject, max_force_n);
+  const device::ServoOptions options = training_options(subject, max_force_n);
   const auto feel_example = [&](std::size_t i) {
     const std::size_t prototype = i / passes;
     // The same strokes on every field: what sets prototypes apart is what they are like, and not
     // where they happened to be stroked. Fields without a difference are learnt as equals.
-    const FeltFeatures felt =
+    const engine::FeltFeatures felt =
         feel_exploration(*fields.all()[prototype].model, fields.plane(), subject, options,
                          RandomStream(seed, "subject: training pass", i % passes));
     knowledge.examples[i] = {static_cast<int>(prototype), {felt.begin(), felt.end()}};
@@ -48,4 +49,4 @@ FeltKnowledge learn_by_feeling(const LabelledFields& fields, const SubjectModel&
   return knowledge;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// Remembered explorations; an example's label is its prototype, and prototypes have class labels.
 struct FeltKnowledge {
-  std::vector<FeltExample> examples;
+  std::vector<engine::FeltExample> examples;
   std::vector<std::string> label_of_prototype;
 };
 
@@ -26,4 +26,4 @@ struct FeltKnowledge {
                                              const SubjectModel& subject, double max_force_n,
                                              std::uint64_t seed, int jobs);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

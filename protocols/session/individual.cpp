@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::session {
 namespace {
 
 /// Each difference has a stream of its own, so that adding one leaves the others as they were.
@@ -61,4 +61,4 @@ std::vector<double> Individual::bias(const std::vector<std::string>& labels) con
   return bias;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

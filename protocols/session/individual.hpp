@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// A function of subject model, seed and number: the same at every study, in every thread.
 class Individual {
@@ -32,4 +32,4 @@ class Individual {
   double position_bias_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

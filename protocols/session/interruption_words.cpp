@@ -2,24 +2,25 @@
 
 #include "device/servo/servo_names.hpp"
 
-namespace touchtrial {
+namespace touchtrial::session {
 
-bool is_interrupted(const ServoReport& report) noexcept {
-  return report.end == ServoEnd::fault || report.end == ServoEnd::comfort_stop;
+bool is_interrupted(const device::ServoReport& report) noexcept {
+  return report.end == device::ServoEnd::fault || report.end == device::ServoEnd::comfort_stop;
 }
 
-std::string words_in_clear(const ServoReport& report) {
-  if (report.end == ServoEnd::comfort_stop) return "comfort stop";
-  if (report.fault == SafetyFault::emergency_stop) return "emergency stop";
-  if (report.device_fault == DeviceFault::link_lost) return "device lost";
+std::string words_in_clear(const device::ServoReport& report) {
+  if (report.end == device::ServoEnd::comfort_stop) return "comfort stop";
+  if (report.fault == device::SafetyFault::emergency_stop) return "emergency stop";
+  if (report.device_fault == device::DeviceFault::link_lost) return "device lost";
   return "device fault";
 }
 
-InterruptionDetail detail_of(const ServoReport& report, std::span<const FlightTick> ticks) {
-  return {.safety_fault = std::string(name_of(report.fault)),
-          .device_fault = std::string(name_of(report.device_fault)),
+store::InterruptionDetail detail_of(const device::ServoReport& report,
+                                    std::span<const device::FlightTick> ticks) {
+  return {.safety_fault = std::string(device::name_of(report.fault)),
+          .device_fault = std::string(device::name_of(report.device_fault)),
           .ticks = static_cast<std::int64_t>(ticks.size()),
-          .flight = flight_csv(ticks)};
+          .flight = device::flight_csv(ticks)};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -8,17 +8,17 @@
 #include <span>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// Whether the presentation was spoilt: by a fault, or because somebody asked for it.
-[[nodiscard]] bool is_interrupted(const ServoReport& report) noexcept;
+[[nodiscard]] bool is_interrupted(const device::ServoReport& report) noexcept;
 
 /// The reason that anybody may read: what somebody did ("comfort stop", "emergency stop", "device
 /// lost"), else "device fault". Faults that follow from forces or motion tell of the texture.
-[[nodiscard]] std::string words_in_clear(const ServoReport& report);
+[[nodiscard]] std::string words_in_clear(const device::ServoReport& report);
 
 /// What is sealed: the faults by name, and the ticks before them.
-[[nodiscard]] InterruptionDetail detail_of(const ServoReport& report,
-                                           std::span<const FlightTick> ticks);
+[[nodiscard]] store::InterruptionDetail detail_of(const device::ServoReport& report,
+                                                  std::span<const device::FlightTick> ticks);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

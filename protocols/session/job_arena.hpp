@@ -9,7 +9,7 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// As many threads as asked for, also beyond the processor's number, while the object lives.
 class JobArena {
@@ -39,4 +39,4 @@ class JobArena {
   tbb::task_arena arena_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -2,13 +2,13 @@
 
 #include <map>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
-LabelledFields::LabelledFields(const StudyKey& key, const StimulusSource& source)
+LabelledFields::LabelledFields(const design::StudyKey& key, const StimulusSource& source)
     : plane_(source.plane()) {
   // By meaning, not by code: codes are random, and what is learnt must not depend on them.
-  std::map<StimulusIndex, const RenderingModel*> by_meaning;
-  for (const KeyedStimulus& keyed : key.stimuli) {
+  std::map<design::StimulusIndex, const engine::RenderingModel*> by_meaning;
+  for (const design::KeyedStimulus& keyed : key.stimuli) {
     by_meaning[keyed.stimulus] = &source.model(keyed.code);
   }
   for (const auto& [stimulus, model] : by_meaning) {
@@ -16,4 +16,4 @@ LabelledFields::LabelledFields(const StudyKey& key, const StimulusSource& source
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

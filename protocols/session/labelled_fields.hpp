@@ -8,13 +8,13 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// One thing that can be felt under a name: a class by one of its images and one method.
 struct LabelledField {
   std::string label;
-  const RenderingModel* model = nullptr;
-  StimulusIndex stimulus{};
+  const engine::RenderingModel* model = nullptr;
+  design::StimulusIndex stimulus{};
 };
 
 /// Every presented stimulus of a study with its label, by class, image and method. Refers to the
@@ -22,7 +22,7 @@ struct LabelledField {
 class LabelledFields {
  public:
   /// \throws FileError if the pack lacks a stimulus of the study
-  LabelledFields(const StudyKey& key, const StimulusSource& source);
+  LabelledFields(const design::StudyKey& key, const StimulusSource& source);
 
   [[nodiscard]] const std::vector<LabelledField>& all() const noexcept { return fields_; }
   [[nodiscard]] const PlaneGeometry& plane() const noexcept { return plane_; }
@@ -32,4 +32,4 @@ class LabelledFields {
   PlaneGeometry plane_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

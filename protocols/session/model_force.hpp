@@ -4,20 +4,20 @@
 #include "device/servo/servo.hpp"
 #include "engine/rendering/rendering_model.hpp"
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// One presentation of a model, which must outlive it.
-class ModelForce final : public ForceSource {
+class ModelForce final : public device::ForceSource {
  public:
-  explicit ModelForce(const RenderingModel& model) noexcept : model_(model) {}
+  explicit ModelForce(const engine::RenderingModel& model) noexcept : model_(model) {}
 
-  [[nodiscard]] Vec3 force_n(const DeviceSample& sample) noexcept override {
+  [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override {
     return model_.force_n(sample.position_mm, sample.velocity_mm_s, touch_);
   }
 
  private:
-  const RenderingModel& model_;
-  Bristle touch_;
+  const engine::RenderingModel& model_;
+  engine::Bristle touch_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

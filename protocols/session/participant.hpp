@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// All that reaches a participant is in these calls: the pictures to choose from, the extent of the
 /// blank plane (the same in every trial), and what the device lets them feel. No code, label or
@@ -32,15 +32,15 @@ class Participant {
   /// A plane is about to be on. \return the device with the participant's hand on it, in the plane
   ///   frame; it may report stopped when the participant is done exploring. Valid until the next
   ///   call.
-  [[nodiscard]] virtual HapticDevice& begin_exploring(const PlaneGeometry& plane) = 0;
+  [[nodiscard]] virtual device::HapticDevice& begin_exploring(const PlaneGeometry& plane) = 0;
 
   /// In real time, while the plane is on: called over and over, to look for what the person does.
   /// Whoever is done calls `finish`, whoever wants no force `comfort_stop`.
-  virtual void exploring(ServoControl& /*servo*/) {}
+  virtual void exploring(device::ServoControl& /*servo*/) {}
 
   /// One tick of what the device did. In virtual time on the servo's thread; in real time behind
   /// it, on a thread of its own, over before the next step.
-  virtual void feel(const ServoSample& sample) noexcept = 0;
+  virtual void feel(const device::ServoSample& sample) noexcept = 0;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -3,12 +3,12 @@
 #include "protocols/session/interruption_words.hpp"
 #include "protocols/session/trial_run.hpp"
 
-namespace touchtrial {
+namespace touchtrial::session {
 
-PracticeProgress progress_of(const std::vector<PracticeBody>& practised, const PracticePlan& plan,
-                             int a_round) {
+PracticeProgress progress_of(const std::vector<store::PracticeBody>& practised,
+                             const design::PracticePlan& plan, int a_round) {
   PracticeProgress progress;
-  for (const PracticeBody& one : practised) {
+  for (const store::PracticeBody& one : practised) {
     if (one.round > progress.round) progress = {.round = one.round};
     ++progress.done;
     progress.correct += one.correct ? 1 : 0;
@@ -56,7 +56,7 @@ bool PracticeRun::run_round(int round) {
       continue;
     }
     const int position = order[static_cast<std::size_t>(at.done) % order.size()];
-    const std::optional<PracticeBody> done =
+    const std::optional<store::PracticeBody> done =
         present(at, position, *shown.models[static_cast<std::size_t>(position)]);
     if (!desk_.goes_on()) return false;
     if (!done) continue;
@@ -67,13 +67,13 @@ bool PracticeRun::run_round(int round) {
   return true;
 }
 
-std::optional<PracticeBody> PracticeRun::present(const PracticeProgress& at, int position,
-                                                 const RenderingModel& model) {
+std::optional<store::PracticeBody> PracticeRun::present(const PracticeProgress& at, int position,
+                                                        const engine::RenderingModel& model) {
   const int number = at.done + 1;
   if (!desk_.attend(ReadyStep{number, a_round_, true})) return std::nullopt;
   if (!explore(model)) return std::nullopt;
   desk_.enter("answering", true);
-  const SessionPlan& plan = desk_.parts().key.study.session;
+  const design::SessionPlan& plan = desk_.parts().key.study.session;
   const std::optional<StepReply> reply = answer({.trial = number,
                                                  .of = a_round_,
                                                  .practice = true,
@@ -82,10 +82,10 @@ std::optional<PracticeBody> PracticeRun::present(const PracticeProgress& at, int
                                                  .confidence_levels = 0,
                                                  .sight = plan.sight});
   if (!reply) return std::nullopt;
-  return PracticeBody{at.round, number, reply->position, reply->position == position};
+  return store::PracticeBody{at.round, number, reply->position, reply->position == position};
 }
 
-bool PracticeRun::explore(const RenderingModel& model) {
+bool PracticeRun::explore(const engine::RenderingModel& model) {
   const SessionParts& parts = desk_.parts();
   desk_.enter("exploring", true);
   const Exploration done =
@@ -104,4 +104,4 @@ std::optional<StepReply> PracticeRun::answer(const AnswerStep& step) {
   return reply;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// How far practice has come.
 struct PracticeProgress {
@@ -18,8 +18,8 @@ struct PracticeProgress {
   bool passed = false;
 };
 /// \param practised  in their order  \param a_round  presentations of a round
-[[nodiscard]] PracticeProgress progress_of(const std::vector<PracticeBody>& practised,
-                                           const PracticePlan& plan, int a_round);
+[[nodiscard]] PracticeProgress progress_of(const std::vector<store::PracticeBody>& practised,
+                                           const design::PracticePlan& plan, int a_round);
 
 /// The practice of a session. Goes on where an earlier run of the program has left off.
 class PracticeRun {
@@ -33,17 +33,17 @@ class PracticeRun {
   [[nodiscard]] PracticeProgress progress() const;
   [[nodiscard]] bool run_round(int round);
   /// \return nothing if it was interrupted, and is to be done again if the session goes on
-  [[nodiscard]] std::optional<PracticeBody> present(const PracticeProgress& at, int position,
-                                                    const RenderingModel& model);
-  [[nodiscard]] bool explore(const RenderingModel& model);
+  [[nodiscard]] std::optional<store::PracticeBody> present(const PracticeProgress& at, int position,
+                                                           const engine::RenderingModel& model);
+  [[nodiscard]] bool explore(const engine::RenderingModel& model);
   [[nodiscard]] std::optional<StepReply> answer(const AnswerStep& step);
 
   SessionDesk& desk_;
   const PracticeTextures& textures_;
   AttendedExploring participant_;
-  ServoOptions servo_;
-  Trace trace_;
+  device::ServoOptions servo_;
+  store::Trace trace_;
   int a_round_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 struct PracticeRound {
-  std::vector<std::string> labels;            ///< by position
-  std::vector<const RenderingModel*> models;  ///< by position
-  std::vector<int> order;                     ///< positions to present, one after the other
+  std::vector<std::string> labels;                    ///< by position
+  std::vector<const engine::RenderingModel*> models;  ///< by position
+  std::vector<int> order;                             ///< positions to present, one after the other
 };
 
 /// Of one participant. The models refer to fields that must outlive this.
@@ -23,4 +23,4 @@ struct PracticeTextures {
   std::function<PracticeRound(int round)> round;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -1,6 +1,6 @@
 #include "protocols/session/prompt_participant.hpp"
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 std::optional<StepReply> PromptParticipant::attend(const Step& step) {
   StepReply reply;
@@ -17,4 +17,4 @@ std::optional<StepReply> PromptParticipant::attend(const Step& step) {
   return reply;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

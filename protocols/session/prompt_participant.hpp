@@ -5,7 +5,7 @@
 
 #include <chrono>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// A choice, and the time that it took after exploring.
 struct ParticipantAnswer {
@@ -25,4 +25,4 @@ class PromptParticipant : public Participant {
   virtual void rest() {}
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

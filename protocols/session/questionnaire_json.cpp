@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::session {
 namespace {
 
 template <typename Number>
@@ -17,11 +17,11 @@ std::optional<Number> number_from(const std::string& text) {
   return value;
 }
 
-nlohmann::json value_of(QuestionKind kind, const std::string& answer) {
-  if (kind == QuestionKind::choice) {
+nlohmann::json value_of(design::QuestionKind kind, const std::string& answer) {
+  if (kind == design::QuestionKind::choice) {
     if (const auto index = number_from<int>(answer)) return *index;
   }
-  if (kind == QuestionKind::number) {
+  if (kind == design::QuestionKind::number) {
     if (const auto number = number_from<double>(answer)) return *number;
   }
   return answer;
@@ -29,16 +29,16 @@ nlohmann::json value_of(QuestionKind kind, const std::string& answer) {
 
 }  // namespace
 
-std::string answers_to_json(const Questionnaire& questionnaire,
+std::string answers_to_json(const design::Questionnaire& questionnaire,
                             const std::vector<std::string>& answers) {
   nlohmann::json object = nlohmann::json::object();
   for (std::size_t i = 0; i < questionnaire.questions.size() && i < answers.size(); ++i) {
     if (answers[i].empty()) continue;
-    const Question& question = questionnaire.questions[i];
+    const design::Question& question = questionnaire.questions[i];
     object[question.id] = value_of(question.kind, answers[i]);
   }
   // What people type is kept whatever it is; bytes that are no UTF-8 are replaced.
   return object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -17,7 +17,7 @@
 #include <optional>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::session {
 namespace {
 
 /// How long the session's thread waits for the servo's end before it looks after the participant
@@ -27,7 +27,8 @@ constexpr std::chrono::milliseconds kBetweenLooks{5};
 /// A writer that is late by this many samples loses some: 6.5 s at 10 kHz.
 constexpr std::size_t kLargestRing = std::size_t{1} << 16U;
 
-ServoHealth health_of(const ServoReport& report, std::int64_t lost, std::int64_t held) {
+store::ServoHealth health_of(const device::ServoReport& report, std::int64_t lost,
+                             std::int64_t held) {
   return {.rate_hz = report.rate_hz,
           .lateness_p50_us = report.lateness.p50_us,
           .lateness_p99_us = report.lateness.p99_us,
@@ -42,13 +43,14 @@ ServoHealth health_of(const ServoReport& report, std::int64_t lost, std::int64_t
 struct RealTimeExplorer::Machinery {
   explicit Machinery(const RealTimeOptions& wanted) : options(wanted), thread(wanted.scheduling) {}
 
-  [[nodiscard]] std::unique_ptr<ServoClock> make_clock() const {
+  [[nodiscard]] std::unique_ptr<device::ServoClock> make_clock() const {
     if (options.clock) return options.clock();
-    return std::make_unique<PacedClock>(PacedClock::usual_spin(thread.scheduling().policy));
+    return std::make_unique<device::PacedClock>(
+        device::PacedClock::usual_spin(thread.scheduling().policy));
   }
 
   /// Takes memory that the servo will use before it runs.
-  void make_room(const ServoOptions& servo) {
+  void make_room(const device::ServoOptions& servo) {
     const std::size_t wanted = std::clamp(most_samples(servo), std::size_t{1}, kLargestRing);
     if (!ring || ring->capacity() < wanted) ring.emplace(wanted);
     if (!recorder || recorder_rate_hz != servo.rate_hz) {
@@ -60,47 +62,51 @@ struct RealTimeExplorer::Machinery {
 
   /// One run of the servo, on its thread; this one looks after the participant meanwhile.
   /// \param began  set to when the servo starts
-  [[nodiscard]] ServoReport run(HapticDevice& device, const RenderingModel& model, SampleSink& sink,
-                                const ServoOptions& servo, Participant& participant,
-                                std::chrono::steady_clock::time_point& began);
+  [[nodiscard]] device::ServoReport run(device::HapticDevice& device,
+                                        const engine::RenderingModel& model,
+                                        device::SampleSink& sink, const device::ServoOptions& servo,
+                                        Participant& participant,
+                                        std::chrono::steady_clock::time_point& began);
 
   RealTimeOptions options;
-  ServoControl control;
-  std::atomic<std::int64_t> heartbeat{kServoAtRest};
-  MotorHeat heat;
-  std::optional<SampleRing> ring;
-  std::optional<FlightRecorder> recorder;
+  device::ServoControl control;
+  std::atomic<std::int64_t> heartbeat{device::kServoAtRest};
+  device::MotorHeat heat;
+  std::optional<device::SampleRing> ring;
+  std::optional<device::FlightRecorder> recorder;
   double recorder_rate_hz = 0.0;
-  ServoThread thread;
+  device::ServoThread thread;
 };
 
-ServoReport RealTimeExplorer::Machinery::run(HapticDevice& device, const RenderingModel& model,
-                                             SampleSink& sink, const ServoOptions& servo,
-                                             Participant& participant,
-                                             std::chrono::steady_clock::time_point& began) {
+device::ServoReport RealTimeExplorer::Machinery::run(device::HapticDevice& device,
+                                                     const engine::RenderingModel& model,
+                                                     device::SampleSink& sink,
+                                                     const device::ServoOptions& servo,
+                                                     Participant& participant,
+                                                     std::chrono::steady_clock::time_point& began) {
   control.forget_wishes();
   ModelForce force(model);
-  const std::unique_ptr<ServoClock> clock = make_clock();
-  ServoHooks hooks;
+  const std::unique_ptr<device::ServoClock> clock = make_clock();
+  device::ServoHooks hooks;
   hooks.control = &control;
   hooks.heartbeat = &heartbeat;
   hooks.recorder = &*recorder;
   hooks.heat = &heat;
-  const StopOnSignals signals(device, control);
-  Watchdog watchdog(device, control, heartbeat, Watchdog::silence_for(device.info()),
-                    *options.watchdog_time);
+  const device::StopOnSignals signals(device, control);
+  device::Watchdog watchdog(device, control, heartbeat,
+                            device::Watchdog::silence_for(device.info()), *options.watchdog_time);
   watchdog.arm();
-  ServoReport report;
-  RunningServo running(thread, control, [&] {
+  device::ServoReport report;
+  device::RunningServo running(thread, control, [&] {
     began = std::chrono::steady_clock::now();
-    report = run_servo(device, force, sink, servo, *clock, hooks);
+    report = device::run_servo(device, force, sink, servo, *clock, hooks);
   });
   while (running.runs(kBetweenLooks)) participant.exploring(control);
   running.finish();
   if (watchdog.disarm() && !is_interrupted(report)) {
     // It tripped while the run ended by itself: the device is halted, which is an interruption.
-    report.end = ServoEnd::fault;
-    report.fault = SafetyFault::stalled;
+    report.end = device::ServoEnd::fault;
+    report.fault = device::SafetyFault::stalled;
   }
   if (is_interrupted(report)) {
     device.halt();
@@ -114,22 +120,22 @@ RealTimeExplorer::RealTimeExplorer(const RealTimeOptions& options)
 
 RealTimeExplorer::~RealTimeExplorer() = default;
 
-const SchedulingObtained& RealTimeExplorer::scheduling() const noexcept {
+const device::SchedulingObtained& RealTimeExplorer::scheduling() const noexcept {
   return machinery_->thread.scheduling();
 }
 
-ServoControl& RealTimeExplorer::control() noexcept {
+device::ServoControl& RealTimeExplorer::control() noexcept {
   return machinery_->control;
 }
 
-Exploration RealTimeExplorer::explore(const RenderingModel& model, const PlaneGeometry& plane,
-                                      Participant& participant, const ServoOptions& options,
-                                      Trace& trace) {
+Exploration RealTimeExplorer::explore(const engine::RenderingModel& model,
+                                      const PlaneGeometry& plane, Participant& participant,
+                                      const device::ServoOptions& options, store::Trace& trace) {
   Machinery& m = *machinery_;
   m.make_room(options);
-  HapticDevice& device = participant.begin_exploring(plane);
+  device::HapticDevice& device = participant.begin_exploring(plane);
   TraceBuilder builder(trace, options.rate_hz, most_samples(options));
-  RingSink sink(*m.ring);
+  device::RingSink sink(*m.ring);
   Exploration done;
   {
     const TraceWriter writer(*m.ring, builder, participant);
@@ -143,4 +149,4 @@ Exploration RealTimeExplorer::explore(const RenderingModel& model, const PlaneGe
   return done;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -10,15 +10,15 @@
 #include <functional>
 #include <memory>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 struct RealTimeOptions {
-  SchedulingRequest scheduling{};
+  device::SchedulingRequest scheduling{};
   double flight_s = 3.0;  ///< that the flight record holds, > 0
   /// As the watchdog sees it; must outlive the explorer.
-  WatchdogTime* watchdog_time = &system_watchdog_time();
+  device::WatchdogTime* watchdog_time = &device::system_watchdog_time();
   /// The clock of each exploration; empty: a PacedClock. Tests own time.
-  std::function<std::unique_ptr<ServoClock>()> clock{};
+  std::function<std::unique_ptr<device::ServoClock>()> clock{};
 };
 
 /// Runs the servo on a thread of its own that asked for real-time scheduling once. Samples go
@@ -34,19 +34,19 @@ class RealTimeExplorer final : public Explorer {
 
   [[nodiscard]] bool in_real_time() const noexcept override { return true; }
   /// Also throws what `participant.exploring` throws: the force is zero by then.
-  [[nodiscard]] Exploration explore(const RenderingModel& model, const PlaneGeometry& plane,
-                                    Participant& participant, const ServoOptions& options,
-                                    Trace& trace) override;
+  [[nodiscard]] Exploration explore(const engine::RenderingModel& model, const PlaneGeometry& plane,
+                                    Participant& participant, const device::ServoOptions& options,
+                                    store::Trace& trace) override;
 
   /// Of the servo's thread.
-  [[nodiscard]] const SchedulingObtained& scheduling() const noexcept;
+  [[nodiscard]] const device::SchedulingObtained& scheduling() const noexcept;
   /// For other threads. Requests hold for the exploration that runs; an emergency stop that comes
   /// between two holds for the next.
-  [[nodiscard]] ServoControl& control() noexcept;
+  [[nodiscard]] device::ServoControl& control() noexcept;
 
  private:
   struct Machinery;
   std::unique_ptr<Machinery> machinery_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -7,7 +7,7 @@
 
 #include <algorithm>
 
-namespace touchtrial {
+namespace touchtrial::session {
 namespace {
 
 std::string section(const std::string& title, const std::string& text) {
@@ -23,16 +23,16 @@ std::string counted(int number, const std::string& one, const std::string& many)
 }
 
 /// In alphabetical order, so that their order in the study is not told.
-std::string labels_of(const Study& study) {
+std::string labels_of(const design::Study& study) {
   std::vector<std::string> labels;
-  for (const StudyClass& shown : study.classes) labels.push_back(shown.label);
+  for (const design::StudyClass& shown : study.classes) labels.push_back(shown.label);
   std::ranges::sort(labels);
   std::string list;
   for (const std::string& label : labels) list += (list.empty() ? "" : ", ") + label;
   return list;
 }
 
-std::string methods_of(const Study& study) {
+std::string methods_of(const design::Study& study) {
   std::string list;
   for (int m = 0; m < study.presented_methods(); ++m) {
     list += (m == 0 ? "" : ", ") + study.methods[static_cast<std::size_t>(m)].label;
@@ -40,22 +40,22 @@ std::string methods_of(const Study& study) {
   return list;
 }
 
-std::string participants_of(const Registration& registration) {
+std::string participants_of(const design::Registration& registration) {
   if (registration.participants == 0) return "";
   return counted(registration.participants, "participant", "participants") + ".";
 }
 
-std::string practice_of(const Study& study) {
+std::string practice_of(const design::Study& study) {
   if (study.trials.practice == 0) return "none";
-  const PracticePlan& practice = study.practice;
+  const design::PracticePlan& practice = study.practice;
   return counted(study.trials.practice, "presentation", "presentations") + " a round of " +
          counted(static_cast<int>(practice.classes.size()), "texture", "textures") +
          " that are not in the study; criterion " + std::to_string(practice.criterion) +
          " correct, " + counted(practice.rounds, "round", "rounds") + " at most";
 }
 
-std::string design_of(const Study& study) {
-  const TrialOptions& trials = study.trials;
+std::string design_of(const design::Study& study) {
+  const design::TrialOptions& trials = study.trials;
   return line("protocol", std::string(name_of(study.protocol))) +
          line("classes", std::to_string(study.classes.size()) + " (" + labels_of(study) + ")") +
          line("methods presented", methods_of(study)) +
@@ -63,7 +63,7 @@ std::string design_of(const Study& study) {
          line("time to explore", number_text(trials.explore_limit_s) + " s") +
          line("practice", practice_of(study)) +
          line("catch trials (not scored)", std::to_string(trials.catch_trials)) +
-         line("orders", schedule_rule(study));
+         line("orders", design::schedule_rule(study));
 }
 
 std::string validity_of(const ValidityRule& rule) {
@@ -79,8 +79,8 @@ std::string validity_of(const ValidityRule& rule) {
          line("servo", "no tick missed in contact");
 }
 
-std::string hashes_of(const StudyKey& key, const Pack& pack) {
-  return line("seal", "`" + to_hex(study_seal(key)) + "`") +
+std::string hashes_of(const design::StudyKey& key, const engine::Pack& pack) {
+  return line("seal", "`" + to_hex(design::study_seal(key)) + "`") +
          line("pack", "`" + to_hex(pack.digest()) + "`") +
          line("study identity", "`" + key.study_id + "`") +
          line("program", "Touchtrial " + std::string(program_version())) +
@@ -91,27 +91,28 @@ std::string hashes_of(const StudyKey& key, const Pack& pack) {
 
 }  // namespace
 
-void require_prepared(const Study& study, const StudyKey& key, const Pack& pack) {
+void require_prepared(const design::Study& study, const design::StudyKey& key,
+                      const engine::Pack& pack) {
   const auto refuse = [&study](const std::string& what) {
     throw UsageError(one_line(study.source + ": " + what));
   };
   if (key.simulated) refuse("its key is of a simulated study; run `touchtrial prepare`");
-  if (study_seal(rekeyed(key, study)) != study_seal(key)) {
+  if (design::study_seal(design::rekeyed(key, study)) != design::study_seal(key)) {
     refuse("has changed since it was prepared; run `touchtrial prepare` again");
   }
-  const PackManifest& manifest = pack.manifest();
+  const engine::PackManifest& manifest = pack.manifest();
   if (manifest.study_id != key.study_id) {
     refuse("pack and key do not belong together; run `touchtrial prepare`");
   }
-  for (const KeyedStimulus& keyed : key.stimuli) {
-    if (std::ranges::count(manifest.entries, keyed.code, &PackEntry::code) == 1) continue;
+  for (const design::KeyedStimulus& keyed : key.stimuli) {
+    if (std::ranges::count(manifest.entries, keyed.code, &engine::PackEntry::code) == 1) continue;
     refuse("the pack is not complete; run `touchtrial prepare` again");
   }
 }
 
-std::string registration_page(const StudyKey& key, const Pack& pack) {
-  const Study& study = key.study;
-  const Registration& registration = study.registration;
+std::string registration_page(const design::StudyKey& key, const engine::Pack& pack) {
+  const design::Study& study = key.study;
+  const design::Registration& registration = study.registration;
   return "# Preregistration of the study " + study.name + "\n" +
          section("Hypothesis", registration.hypothesis) +
          section("Sample size", participants_of(registration)) +
@@ -122,7 +123,7 @@ std::string registration_page(const StudyKey& key, const Pack& pack) {
          section("Commitment", hashes_of(key, pack));
 }
 
-std::vector<std::string> unstated(const Registration& registration) {
+std::vector<std::string> unstated(const design::Registration& registration) {
   std::vector<std::string> places;
   const auto look = [&places](const char* key, bool stated) {
     if (!stated) places.push_back(std::string("/registration/") + key);
@@ -135,4 +136,4 @@ std::vector<std::string> unstated(const Registration& registration) {
   return places;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

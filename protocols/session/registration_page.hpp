@@ -7,20 +7,21 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// Whether key and pack are those of the study as it stands.
 /// \param study  read anew from its file
 /// \throws UsageError with what differs and the remedy
-void require_prepared(const Study& study, const StudyKey& key, const Pack& pack);
+void require_prepared(const design::Study& study, const design::StudyKey& key,
+                      const engine::Pack& pack);
 
 /// Markdown: what the study's registration states, the design, the validity rule, and the hashes
 /// that bind study, key and pack. Reveals the classes' labels (sorted), methods, rendering and
 /// trials; no image name, code, seed, secret or schedule. The same input gives the same text.
 /// \pre require_prepared
-[[nodiscard]] std::string registration_page(const StudyKey& key, const Pack& pack);
+[[nodiscard]] std::string registration_page(const design::StudyKey& key, const engine::Pack& pack);
 
 /// What the registration leaves unsaid, as JSON pointers.
-[[nodiscard]] std::vector<std::string> unstated(const Registration& registration);
+[[nodiscard]] std::vector<std::string> unstated(const design::Registration& registration);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 using Phase = SessionPhase;
 using Input = SessionInput;
@@ -26,14 +26,14 @@ std::string_view name_of(SessionInput input) {
   return kNames[static_cast<std::size_t>(input)];
 }
 
-Session::Session(Schedule schedule, const TrialOptions& options, SessionRecorder recorder,
-                 BlockRestart restart)
+Session::Session(design::Schedule schedule, const design::TrialOptions& options,
+                 store::SessionRecorder recorder, BlockRestart restart)
     : schedule_(std::move(schedule)),
       options_(options),
       recorder_(std::move(recorder)),
       restart_(std::move(restart)),
       queue_(schedule_.presentations.size()) {
-  if (options.on_interruption == OnInterruption::restart_block &&
+  if (options.on_interruption == design::OnInterruption::restart_block &&
       !(restart_.draw && restart_.secret)) {
     throw std::invalid_argument("Session: a study that restarts blocks needs to know how");
   }
@@ -104,7 +104,7 @@ void Session::move_to(SessionPhase phase, Time at) noexcept {
   last_ = at;
 }
 
-const Presentation* Session::current() const noexcept {
+const design::Presentation* Session::current() const noexcept {
   return queue_.empty() ? nullptr : &schedule_.presentations[queue_.front()];
 }
 
@@ -113,7 +113,8 @@ bool Session::break_due() const noexcept {
          done_since_break_ >= options_.break_every;
 }
 
-void Session::open(Time at, const SessionOpening& opening, const std::string& secret_schedule) {
+void Session::open(Time at, const store::SessionOpening& opening,
+                   const std::string& secret_schedule) {
   require(Input::open, at);
   recorder_.opened(at, opening, secret_schedule);
   move_to(Phase::opened, at);
@@ -121,13 +122,13 @@ void Session::open(Time at, const SessionOpening& opening, const std::string& se
 
 void Session::calibrate(Time at, const std::string& text) {
   require(Input::calibrate, at);
-  recorder_.remarked(at, EventKind::calibrated, text);
+  recorder_.remarked(at, store::EventKind::calibrated, text);
   move_to(Phase::calibrated, at);
 }
 
 void Session::instruct(Time at, const std::string& text) {
   require(Input::instruct, at);
-  recorder_.remarked(at, EventKind::instructed, text);
+  recorder_.remarked(at, store::EventKind::instructed, text);
   move_to(queue_.empty() ? Phase::finished : Phase::ready, at);
 }
 
@@ -160,7 +161,7 @@ void Session::end_exploring(Time at) {
 
 void Session::time_out(Time at) {
   require(Input::time_out, at);
-  const bool over = options_.on_timeout == OnTimeout::no_response;
+  const bool over = options_.on_timeout == design::OnTimeout::no_response;
   recorder_.timed_out(at, current()->trial, over ? evidence_ : std::nullopt);
   was_timed_out_ = true;
   if (over) {
@@ -171,14 +172,14 @@ void Session::time_out(Time at) {
 }
 
 void Session::interrupt(Time at, const std::string& reason,
-                        const std::optional<InterruptionDetail>& detail) {
+                        const std::optional<store::InterruptionDetail>& detail) {
   require(Input::interrupt, at);
   recorder_.interrupted(at, current()->trial, reason, detail);
   give_up_presentation(at);
   if (block_to_restart_) restart_block(at);
 }
 
-void Session::keep_evidence(TrialEvidence evidence) {
+void Session::keep_evidence(store::TrialEvidence evidence) {
   require(Input::keep_evidence, last_);
   evidence_ = std::move(evidence);
 }
@@ -216,14 +217,14 @@ void Session::finish_presentation(Time at) noexcept {
 
 void Session::take_break(Time at, const std::string& text) {
   require(Input::take_break, at);
-  recorder_.remarked(at, EventKind::break_taken, text);
+  recorder_.remarked(at, store::EventKind::break_taken, text);
   done_since_break_ = 0;
   move_to(Phase::ready, at);
 }
 
 void Session::pause(Time at, const std::string& reason) {
   require(Input::pause, at);
-  recorder_.remarked(at, EventKind::paused, reason);
+  recorder_.remarked(at, store::EventKind::paused, reason);
   before_pause_ = phase_;
   move_to(Phase::paused, at);
 }
@@ -235,14 +236,14 @@ void Session::resume(Time at) {
   move_to(before_pause_, at);
 }
 
-void Session::practise(Time at, const PracticeBody& body) {
+void Session::practise(Time at, const store::PracticeBody& body) {
   require(Input::practise, at);
   recorder_.practised(at, body);
   remarks_.practice.push_back(body);
   move_to(phase_, at);
 }
 
-void Session::deviate(Time at, const DeviationBody& body) {
+void Session::deviate(Time at, const store::DeviationBody& body) {
   require(Input::note, at);
   recorder_.deviated(at, body);
   remarks_.deviations.insert(body.code);
@@ -251,7 +252,7 @@ void Session::deviate(Time at, const DeviationBody& body) {
 
 void Session::tick(Time at, const std::string& item) {
   require(Input::note, at);
-  recorder_.remarked(at, EventKind::ticked, item);
+  recorder_.remarked(at, store::EventKind::ticked, item);
   remarks_.ticked.insert(item);
   move_to(phase_, at);
 }
@@ -265,13 +266,13 @@ void Session::question(Time at, const std::string& name, const std::string& answ
 
 void Session::note(Time at, const std::string& text) {
   require(Input::note, at);
-  recorder_.remarked(at, EventKind::noted, text);
+  recorder_.remarked(at, store::EventKind::noted, text);
   move_to(phase_, at);
 }
 
 void Session::stop(Time at, const std::string& reason) {
   require(Input::stop, at);
-  recorder_.remarked(at, EventKind::stopped, reason);
+  recorder_.remarked(at, store::EventKind::stopped, reason);
   move_to(Phase::stopped, at);
 }
 
@@ -281,4 +282,4 @@ void Session::close(Time at) {
   move_to(Phase::closed, at);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -16,7 +16,7 @@
 #include <string_view>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// Where a session stands.
 enum class SessionPhase {
@@ -61,17 +61,18 @@ enum class SessionInput {
 /// How a block comes again in a fresh order (OnInterruption::restart_block).
 struct BlockRestart {
   /// The block's new presentations; the same for the same arguments.
-  std::function<std::vector<Presentation>(int block, int restarts_before, int first_trial)> draw;
+  std::function<std::vector<design::Presentation>(int block, int restarts_before, int first_trial)>
+      draw;
   /// What is sealed of them.
-  std::function<std::string(const std::vector<Presentation>&)> secret;
+  std::function<std::string(const std::vector<design::Presentation>&)> secret;
 };
 
 /// What was said so far beside the trials, so that nobody is asked twice.
 struct SessionRemarks {
-  std::set<std::string> ticked;          ///< items of the day sheet
-  std::set<std::string> deviations;      ///< codes
-  std::set<std::string> questionnaires;  ///< names
-  std::vector<PracticeBody> practice;    ///< in their order
+  std::set<std::string> ticked;               ///< items of the day sheet
+  std::set<std::string> deviations;           ///< codes
+  std::set<std::string> questionnaires;       ///< names
+  std::vector<store::PracticeBody> practice;  ///< in their order
 };
 
 /// A session as an event-driven state machine that owns the place in the schedule and the recorder.
@@ -86,16 +87,16 @@ class Session {
   using Time = std::chrono::nanoseconds;
 
   /// \param restart  needed only if the study restarts blocks
-  Session(Schedule schedule, const TrialOptions& options, SessionRecorder recorder,
-          BlockRestart restart = {});
+  Session(design::Schedule schedule, const design::TrialOptions& options,
+          store::SessionRecorder recorder, BlockRestart restart = {});
 
   /// Goes through what is stored of this session, and stands where it stood; the recorder goes on
   /// after the last event. On a fresh session only; records nothing.
   /// \throws StoreError if the events are not those of such a session
-  void restore(std::span<const Event> events);
+  void restore(std::span<const store::Event> events);
   /// The program has ended in the midst of the session, and this one takes it up: a presentation
   /// that was under way is interrupted, a pause is over.
-  void take_up(Time at, const ResumedBody& body);
+  void take_up(Time at, const store::ResumedBody& body);
 
   [[nodiscard]] SessionPhase phase() const noexcept { return phase_; }
   [[nodiscard]] bool accepts(SessionInput input) const noexcept;
@@ -103,7 +104,7 @@ class Session {
   [[nodiscard]] const std::vector<int>& layout() const noexcept { return schedule_.layout; }
   /// What `present` shows next, or, from `present` to the trial's end, what is shown now; nothing
   /// when all is done.
-  [[nodiscard]] const Presentation* current() const noexcept;
+  [[nodiscard]] const design::Presentation* current() const noexcept;
   /// Presentations still to be done, the current one included.
   [[nodiscard]] int presentations_left() const noexcept { return static_cast<int>(queue_.size()); }
   /// Presentations begun so far, interrupted ones included.
@@ -117,7 +118,7 @@ class Session {
   [[nodiscard]] bool break_due() const noexcept;
 
   /// \param secret_schedule  schedule_to_json's text, stored sealed
-  void open(Time at, const SessionOpening& opening, const std::string& secret_schedule);
+  void open(Time at, const store::SessionOpening& opening, const std::string& secret_schedule);
   void calibrate(Time at, const std::string& text = "");
   void instruct(Time at, const std::string& text = "");
 
@@ -134,15 +135,16 @@ class Session {
   /// on_interruption says. Nothing is kept of its evidence.
   /// \param reason  in clear: must tell nothing of the stimulus  \param detail  sealed
   void interrupt(Time at, const std::string& reason,
-                 const std::optional<InterruptionDetail>& detail = std::nullopt);
+                 const std::optional<store::InterruptionDetail>& detail = std::nullopt);
   /// SessionRecorder::packed; may be called on another thread, but not beside `restore`.
-  [[nodiscard]] TrialEvidence packed(const TraceBody& body, const TrialMeasures& measures,
-                                     const Trace& trace) const {
+  [[nodiscard]] store::TrialEvidence packed(const store::TraceBody& body,
+                                            const store::TrialMeasures& measures,
+                                            const store::Trace& trace) const {
     return recorder_.packed(body, measures, trace);
   }
   /// The samples of the presentation so far; those kept before are forgotten. Stored together with
   /// the answer, or with a time-out without one.
-  void keep_evidence(TrialEvidence evidence);
+  void keep_evidence(store::TrialEvidence evidence);
   /// The participant goes back to the plane before answering; not once time was up.
   void explore_again(Time at);
 
@@ -153,14 +155,14 @@ class Session {
   void confirm(Time at, std::optional<int> confidence = std::nullopt);
 
   /// One presentation of the practice, between instruction and the first trial.
-  void practise(Time at, const PracticeBody& body);
+  void practise(Time at, const store::PracticeBody& body);
   void take_break(Time at, const std::string& text = "");
   /// Whenever nothing is on the plane; `resume` goes on where `pause` was.
   void pause(Time at, const std::string& reason);
   void resume(Time at);
   /// Remarks, at any time between opening and closing.
   void note(Time at, const std::string& text);
-  void deviate(Time at, const DeviationBody& body);
+  void deviate(Time at, const store::DeviationBody& body);
   /// \param item  its code
   void tick(Time at, const std::string& item);
   /// \param answers  JSON, sealed
@@ -183,18 +185,18 @@ class Session {
   /// Takes the current presentation off, as the study's on_interruption has it.
   void give_up_presentation(Time at);
   void restart_block(Time at);
-  [[nodiscard]] std::vector<Presentation> drawn_again(int block, int first_trial);
-  void replace_block(int block, std::vector<Presentation> presentations);
+  [[nodiscard]] std::vector<design::Presentation> drawn_again(int block, int first_trial);
+  void replace_block(int block, std::vector<design::Presentation> presentations);
 
   // What stored events do, by group (session_restore.cpp).
-  void follow(const Event& event);
-  [[nodiscard]] bool follow_trial(const Event& event);
-  [[nodiscard]] bool follow_remark(const Event& event);
-  void follow_course(const Event& event);
+  void follow(const store::Event& event);
+  [[nodiscard]] bool follow_trial(const store::Event& event);
+  [[nodiscard]] bool follow_remark(const store::Event& event);
+  void follow_course(const store::Event& event);
 
-  Schedule schedule_;
-  TrialOptions options_;
-  SessionRecorder recorder_;
+  design::Schedule schedule_;
+  design::TrialOptions options_;
+  store::SessionRecorder recorder_;
   BlockRestart restart_;
   std::deque<std::size_t> queue_;  ///< indices into the schedule, the current one first
   SessionPhase phase_ = SessionPhase::fresh;
@@ -202,7 +204,7 @@ class Session {
   Time last_{};
   bool had_contact_ = false;
   bool was_timed_out_ = false;
-  std::optional<TrialEvidence> evidence_;
+  std::optional<store::TrialEvidence> evidence_;
   std::optional<Answer> answer_;
   std::optional<int> block_to_restart_;
   std::map<int, int> restarts_;  ///< of each block
@@ -211,4 +213,4 @@ class Session {
   int done_since_break_ = 0;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// Time since a session's opening, never decreasing. Not thread-safe.
 class SessionClock {
@@ -47,4 +47,4 @@ class SteadySessionClock final : public SessionClock {
   std::chrono::steady_clock::time_point zero_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

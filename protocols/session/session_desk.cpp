@@ -6,7 +6,7 @@
 #include <thread>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::session {
 namespace {
 
 constexpr std::chrono::milliseconds kBetweenShows{250};
@@ -70,7 +70,7 @@ std::optional<StepReply> SessionDesk::attend(const Step& step) {
   return std::nullopt;
 }
 
-void SessionDesk::look(ServoControl& servo) {
+void SessionDesk::look(device::ServoControl& servo) {
   show_now_and_then();
   // Whoever wants the session to end may ask for it for as long as it has not.
   while (!end_is_postponed()) {
@@ -85,7 +85,7 @@ bool SessionDesk::end_is_postponed() const noexcept {
                                  postponed_.back().kind == Request::Kind::leave);
 }
 
-void SessionDesk::heed(Request request, ServoControl& servo) {
+void SessionDesk::heed(Request request, device::ServoControl& servo) {
   switch (request.kind) {
     case Request::Kind::comfort_stop:
       reason_ = with_text("comfort stop", request.text);
@@ -113,7 +113,7 @@ std::string SessionDesk::note_interruption(const std::string& words) {
   return std::exchange(reason_, std::nullopt).value_or(words);
 }
 
-void SessionDesk::saw_servo(const ServoReport& report) {
+void SessionDesk::saw_servo(const device::ServoReport& report) {
   status_.rate_hz = report.rate_hz;
   status_.lateness_p99_us = report.lateness.p99_us;
   status_.overruns = report.overruns;
@@ -128,7 +128,7 @@ std::optional<ExperimenterRequest> SessionDesk::next_request() {
 
 bool SessionDesk::obey() {
   if (!goes_on()) return false;
-  if (StopOnSignals::asked()) return leave(StopOnSignals::message());
+  if (device::StopOnSignals::asked()) return leave(device::StopOnSignals::message());
   while (const std::optional<Request> request = next_request()) {
     if (!obey(*request)) return false;
   }
@@ -163,7 +163,7 @@ bool SessionDesk::obey_pause(const Request& request) {
   const std::string stage = std::exchange(status_.stage, "paused");
   show();
   for (;;) {
-    if (StopOnSignals::asked()) return leave(StopOnSignals::message());
+    if (device::StopOnSignals::asked()) return leave(device::StopOnSignals::message());
     while (const std::optional<Request> next = next_request()) {
       if (next->kind == Request::Kind::resume) {
         session_.resume(now());
@@ -232,11 +232,11 @@ bool SessionDesk::wait_for_device(SupplyState device) {
     device = parts_.devices.make_ready();
   }
   if (device == SupplyState::ready) return true;
-  if (StopOnSignals::asked()) return leave(StopOnSignals::message());
+  if (device::StopOnSignals::asked()) return leave(device::StopOnSignals::message());
   // Whoever stopped it may have said why.
   if (!obey()) return false;
   session_.stop(now(), "stopped while waiting for the device");
   return false;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

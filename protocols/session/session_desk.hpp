@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// Belongs to the session's thread.
 class SessionDesk {
@@ -34,7 +34,7 @@ class SessionDesk {
   [[nodiscard]] std::optional<StepReply> attend(const Step& step);
   /// While the plane is on, in real time: what the experimenter asks for ends the exploration, or
   /// waits for its end.
-  void look(ServoControl& servo);
+  void look(device::ServoControl& servo);
   /// Obeys what is asked for. \return whether what was under way goes on
   [[nodiscard]] bool obey();
   /// Waits until forces may be sent; the session is paused meanwhile if it can be.
@@ -47,14 +47,14 @@ class SessionDesk {
   [[nodiscard]] std::string note_interruption(const std::string& words);
   [[nodiscard]] int interruptions() const noexcept { return status_.interruptions; }
   /// How the servo kept time in the last exploration.
-  void saw_servo(const ServoReport& report);
+  void saw_servo(const device::ServoReport& report);
 
  private:
   using Request = ExperimenterRequest;
 
   [[nodiscard]] bool end_is_postponed() const noexcept;
   /// One request while the plane is on.
-  void heed(Request request, ServoControl& servo);
+  void heed(Request request, device::ServoControl& servo);
   [[nodiscard]] std::optional<Request> next_request();
   [[nodiscard]] bool obey(const Request& request);
   [[nodiscard]] bool obey_pause(const Request& request);
@@ -76,4 +76,4 @@ class SessionDesk {
   std::chrono::steady_clock::time_point shown_{};
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -4,19 +4,19 @@
 #include <algorithm>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 void Session::give_up_presentation(Time at) {
   const std::size_t spoilt = queue_.front();
   queue_.pop_front();
   evidence_.reset();
   switch (options_.on_interruption) {
-    case OnInterruption::repeat:
+    case design::OnInterruption::repeat:
       queue_.push_back(spoilt);
       break;
-    case OnInterruption::leave_out:
+    case design::OnInterruption::leave_out:
       break;
-    case OnInterruption::restart_block:
+    case design::OnInterruption::restart_block:
       queue_.push_front(spoilt);
       block_to_restart_ = schedule_.presentations[spoilt].block;
       break;
@@ -24,7 +24,7 @@ void Session::give_up_presentation(Time at) {
   move_to(queue_.empty() ? SessionPhase::finished : SessionPhase::ready, at);
 }
 
-std::vector<Presentation> Session::drawn_again(int block, int first_trial) {
+std::vector<design::Presentation> Session::drawn_again(int block, int first_trial) {
   return restart_.draw(block, restarts_[block], first_trial);
 }
 
@@ -32,14 +32,15 @@ std::vector<Presentation> Session::drawn_again(int block, int first_trial) {
 void Session::restart_block(Time at) {
   const int block = *block_to_restart_;
   const int first_trial =
-      std::ranges::max_element(schedule_.presentations, {}, &Presentation::trial)->trial + 1;
-  std::vector<Presentation> presentations = drawn_again(block, first_trial);
+      std::ranges::max_element(schedule_.presentations, {}, &design::Presentation::trial)->trial +
+      1;
+  std::vector<design::Presentation> presentations = drawn_again(block, first_trial);
   recorder_.block_restarted(at, block, first_trial, restart_.secret(presentations));
   replace_block(block, std::move(presentations));
   move_to(phase_, at);
 }
 
-void Session::replace_block(int block, std::vector<Presentation> presentations) {
+void Session::replace_block(int block, std::vector<design::Presentation> presentations) {
   std::erase_if(queue_, [&](std::size_t i) { return schedule_.presentations[i].block == block; });
   for (auto next = presentations.rbegin(); next != presentations.rend(); ++next) {
     schedule_.presentations.push_back(*next);
@@ -50,4 +51,4 @@ void Session::replace_block(int block, std::vector<Presentation> presentations) 
   block_to_restart_.reset();
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -4,7 +4,7 @@
 #include "protocols/session/session_stages.hpp"
 #include "protocols/session/trial_run.hpp"
 
-namespace touchtrial {
+namespace touchtrial::session {
 namespace {
 
 // In virtual time; people take the time that they take.
@@ -71,7 +71,7 @@ SessionTally run_session(Session& session, const SessionParts& parts) {
   return desk.tally();
 }
 
-SessionTally run_session_in_virtual_time(Session& session, const StudyKey& key,
+SessionTally run_session_in_virtual_time(Session& session, const design::StudyKey& key,
                                          const StimulusSource& source, Participant& participant) {
   VirtualSessionClock clock;
   VirtualExplorer explorer;
@@ -79,4 +79,4 @@ SessionTally run_session_in_virtual_time(Session& session, const StudyKey& key,
   return run_session(session, {key, source, participant, clock, explorer, devices});
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

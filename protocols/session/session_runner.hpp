@@ -20,7 +20,7 @@
 #include <optional>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// What a session came to, apart from outcomes.
 struct SessionTally {
@@ -39,19 +39,19 @@ struct SessionTally {
 
 /// What a session is run with. Everything must outlive the run.
 struct SessionParts {
-  const StudyKey& key;
+  const design::StudyKey& key;
   const StimulusSource& source;
   Participant& participant;
   SessionClock& clock;
   Explorer& explorer;
   DeviceSupply& devices;
-  double rate_hz = kServoRateHz;  ///< of the servo
+  double rate_hz = device::kServoRateHz;  ///< of the servo
   Experimenter& experimenter = no_experimenter();
   const SessionTexts& texts = no_texts();
   const PracticeTextures* practice = nullptr;  ///< null: nobody practises
   std::string participant_name{};              ///< as the experimenter is shown it
   std::string device_name{};                   ///< likewise
-  LabLimits limits{};                          ///< of the device, beside the study's
+  device::LabLimits limits{};                  ///< of the device, beside the study's
 };
 
 /// Runs a session that is open, or was taken up again, to its closing: day sheet, instructions,
@@ -69,7 +69,7 @@ struct SessionParts {
 SessionTally run_session(Session& session, const SessionParts& parts);
 
 /// The same in virtual time, from 0 on: with a participant who brings a simulated hand.
-SessionTally run_session_in_virtual_time(Session& session, const StudyKey& key,
+SessionTally run_session_in_virtual_time(Session& session, const design::StudyKey& key,
                                          const StimulusSource& source, Participant& participant);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::session {
 namespace {
 
 // In virtual time; people take the time that they take.
@@ -76,7 +76,7 @@ bool instruct(SessionDesk& desk) {
   return true;
 }
 
-bool ask(SessionDesk& desk, const std::optional<Questionnaire>& questionnaire) {
+bool ask(SessionDesk& desk, const std::optional<design::Questionnaire>& questionnaire) {
   if (!questionnaire) return true;
   if (desk.session().remarks().questionnaires.contains(questionnaire->name)) return true;
   desk.enter("questions");
@@ -120,4 +120,4 @@ void ask_closing_questions(SessionDesk& desk) {
   static_cast<void>(ask(desk, desk.parts().texts.closing));
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -3,7 +3,7 @@
 
 #include "protocols/session/session_desk.hpp"
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// Day sheet, device, instructions, handedness, practice, pictures: those that are not done yet.
 /// \return whether trials may begin
@@ -12,4 +12,4 @@ namespace touchtrial {
 /// The closing questions of a session whose trials are done.
 void ask_closing_questions(SessionDesk& desk);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -8,14 +8,14 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// Of one session. What is empty is left out of it.
 struct SessionTexts {
-  std::vector<std::string> instructions;    ///< pages
-  std::optional<Questionnaire> handedness;  ///< asked after the instructions
-  std::optional<Questionnaire> closing;     ///< asked after the last trial
-  std::vector<DaySheetItem> day_sheet;      ///< before the participant sits down
+  std::vector<std::string> instructions;            ///< pages
+  std::optional<design::Questionnaire> handedness;  ///< asked after the instructions
+  std::optional<design::Questionnaire> closing;     ///< asked after the last trial
+  std::vector<DaySheetItem> day_sheet;              ///< before the participant sits down
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -1,6 +1,6 @@
 #include "protocols/session/simulated_exploration.hpp"
 
-namespace touchtrial {
+namespace touchtrial::session {
 namespace {
 
 constexpr double kLowestStartMm = 10.0;
@@ -8,17 +8,17 @@ constexpr double kHighestStartMm = 20.0;
 
 }  // namespace
 
-SimulatedHand make_exploring_hand(const SubjectModel& subject, const PlaneGeometry& plane,
-                                  RandomStream& random) {
-  HandOptions hand;
+device::SimulatedHand make_exploring_hand(const SubjectModel& subject, const PlaneGeometry& plane,
+                                          RandomStream& random) {
+  device::HandOptions hand;
   hand.push_n = subject.push_n;
   hand.explore_s = subject.explore_s;
   hand.start_height_mm = random.uniform(kLowestStartMm, kHighestStartMm);
-  ExplorationOptions exploration;
+  device::ExplorationOptions exploration;
   exploration.slowest_mm_s = subject.slowest_mm_s;
   exploration.fastest_mm_s = subject.fastest_mm_s;
   exploration.duration_s = subject.explore_s;
-  return {hand, ExplorationPath(plane, exploration, random)};
+  return {hand, device::ExplorationPath(plane, exploration, random)};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

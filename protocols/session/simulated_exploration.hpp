@@ -5,10 +5,11 @@
 #include "device/simulated/simulated_hand.hpp"
 #include "protocols/session/subject_model.hpp"
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// A hand over the plane, with a path and a starting height drawn anew.
-[[nodiscard]] SimulatedHand make_exploring_hand(const SubjectModel& subject,
-                                                const PlaneGeometry& plane, RandomStream& random);
+[[nodiscard]] device::SimulatedHand make_exploring_hand(const SubjectModel& subject,
+                                                        const PlaneGeometry& plane,
+                                                        RandomStream& random);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

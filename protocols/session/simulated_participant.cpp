@@ -2,7 +2,7 @@
 
 #include "protocols/session/simulated_exploration.hpp"
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 SimulatedParticipant::SimulatedParticipant(const SubjectModel& subject,
                                            const FeltKnowledge& knowledge, std::uint64_t seed,
@@ -18,14 +18,14 @@ void SimulatedParticipant::see_pictures(const std::vector<std::string>& labels) 
   pictures_ = see(labels, subject_, individual_, knowledge_);
 }
 
-HapticDevice& SimulatedParticipant::begin_exploring(const PlaneGeometry& plane) {
+device::HapticDevice& SimulatedParticipant::begin_exploring(const PlaneGeometry& plane) {
   ++trials_begun_;
   sense_.reset(plane);
   RandomStream random = stream_of_trial(seed_, kExplorationPurpose, number_, trials_begun_);
   return hand_.emplace(make_exploring_hand(subject_, plane, random));
 }
 
-void SimulatedParticipant::feel(const ServoSample& sample) noexcept {
+void SimulatedParticipant::feel(const device::ServoSample& sample) noexcept {
   sense_.feel(sample.position_mm, sample.force_n);
 }
 
@@ -34,4 +34,4 @@ ParticipantAnswer SimulatedParticipant::answer() {
   return decision_.answer(sense_.features(), pictures_, random);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

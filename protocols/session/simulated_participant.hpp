@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// In each trial: strokes the plane on a path of its own, perceives the felt intensities with
 /// Weber noise, and names the picture whose class makes them likeliest, bias included; or lapses,
@@ -28,8 +28,8 @@ class SimulatedParticipant final : public PromptParticipant {
 
   /// \throws std::invalid_argument if a class that was learnt has no picture
   void see_pictures(const std::vector<std::string>& labels) override;
-  [[nodiscard]] HapticDevice& begin_exploring(const PlaneGeometry& plane) override;
-  void feel(const ServoSample& sample) noexcept override;
+  [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& plane) override;
+  void feel(const device::ServoSample& sample) noexcept override;
   [[nodiscard]] ParticipantAnswer answer() override;
 
  private:
@@ -39,10 +39,10 @@ class SimulatedParticipant final : public PromptParticipant {
   int number_;
   Individual individual_;
   FeltDecision decision_;
-  TextureSense sense_;
-  std::optional<SimulatedHand> hand_;
+  engine::TextureSense sense_;
+  std::optional<device::SimulatedHand> hand_;
   SeenPictures pictures_;
   std::uint64_t trials_begun_ = 0;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

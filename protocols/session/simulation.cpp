@@ -14,12 +14,12 @@
 
 #include <tbb/parallel_pipeline.h>
 
-namespace touchtrial {
+namespace touchtrial::session {
 namespace {
 
 /// What all sessions of a simulation share, read-only.
 struct Setting {
-  const StudyKey& key;
+  const design::StudyKey& key;
   const StimulusSource& source;
   const SubjectModel& subject;
   const FeltKnowledge& knowledge;
@@ -35,7 +35,7 @@ struct Place {
 
 /// A session on its way to the database.
 struct FinishedSession {
-  BufferedEvents events;
+  store::BufferedEvents events;
   Bytes wrapped_key;
   SessionTally tally;
 };
@@ -47,8 +47,8 @@ std::string participant_id(int number) {
   return "P" + digits;
 }
 
-SessionOpening opening_of(const Setting& setting, int number) {
-  SessionOpening opening;
+store::SessionOpening opening_of(const Setting& setting, int number) {
+  store::SessionOpening opening;
   opening.participant = participant_id(number);
   opening.enrolment = number;
   opening.study_id = setting.key.study_id;
@@ -68,22 +68,23 @@ SecretKey participant_key(const Setting& setting, int number) {
 FinishedSession run_session(const Setting& setting, const Place& place) {
   FinishedSession finished;
   const SecretKey key = participant_key(setting, place.number);
-  const Schedule schedule = make_schedule(setting.key.study, place.number);
+  const design::Schedule schedule = design::make_schedule(setting.key.study, place.number);
   Session session(schedule, setting.key.study.trials,
-                  SessionRecorder(place.session, key, finished.events));
-  session.open({}, opening_of(setting, place.number), schedule_to_json(schedule, setting.key));
+                  store::SessionRecorder(place.session, key, finished.events));
+  session.open({}, opening_of(setting, place.number),
+               design::schedule_to_json(schedule, setting.key));
   SimulatedParticipant participant(setting.subject, setting.knowledge, setting.seed, place.number);
   finished.tally = run_session_in_virtual_time(session, setting.key, setting.source, participant);
-  finished.wrapped_key = wrap_participant_key(setting.key.master, place.session, key);
+  finished.wrapped_key = store::wrap_participant_key(setting.key.master, place.session, key);
   return finished;
 }
 
 /// Stores sessions as they come, in order, and counts.
 class Collector {
  public:
-  Collector(StudyStore& store, const Progress& progress, int participants)
+  Collector(store::StudyStore& store, const design::Progress& progress, int participants)
       : store_(store), progress_(progress), participants_(participants) {
-    const std::vector<Event> file_chain = store.events(0);
+    const std::vector<store::Event> file_chain = store.events(0);
     if (!file_chain.empty()) at_ = file_chain.back().at;
   }
 
@@ -100,8 +101,8 @@ class Collector {
   [[nodiscard]] const SimulationReport& report() const noexcept { return report_; }
 
  private:
-  StudyStore& store_;
-  const Progress& progress_;
+  store::StudyStore& store_;
+  const design::Progress& progress_;
   int participants_;
   std::chrono::nanoseconds at_{};
   SimulationReport report_;
@@ -139,19 +140,19 @@ void run_sessions(const Setting& setting, const SimulationOptions& options, int 
 
 }  // namespace
 
-SimulationReport simulate_study(const StudyKey& key, const Pack& pack, const SubjectModel& subject,
-                                const SimulationOptions& options, StudyStore& store,
-                                const Progress& progress) {
+SimulationReport simulate_study(const design::StudyKey& key, const engine::Pack& pack,
+                                const SubjectModel& subject, const SimulationOptions& options,
+                                store::StudyStore& store, const design::Progress& progress) {
   check(options);
   subject.check_labels(key.study);
   const StimulusSource source(pack, key.study.rendering);
   const FeltKnowledge knowledge =
       learn_by_feeling(LabelledFields(key, source), subject, key.study.rendering.max_force_n,
                        options.seed, options.jobs);
-  const Setting setting{key, source, subject, knowledge, options.seed, study_seal(key)};
+  const Setting setting{key, source, subject, knowledge, options.seed, design::study_seal(key)};
   Collector collector(store, progress, options.participants);
   run_sessions(setting, options, store.next_session(), collector);
   return collector.report();
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

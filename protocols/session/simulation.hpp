@@ -9,7 +9,7 @@
 
 #include <cstdint>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 struct SimulationOptions {
   int participants = 20;      ///< >= 1
@@ -36,8 +36,8 @@ struct SimulationReport {
 /// \throws FileError if the pack lacks a stimulus; StoreError if a participant is already in the
 ///   database or it refuses a write; the sessions stored until then stay
 /// \throws std::invalid_argument if an option is out of range
-SimulationReport simulate_study(const StudyKey& key, const Pack& pack, const SubjectModel& subject,
-                                const SimulationOptions& options, StudyStore& store,
-                                const Progress& progress = {});
+SimulationReport simulate_study(const design::StudyKey& key, const engine::Pack& pack,
+                                const SubjectModel& subject, const SimulationOptions& options,
+                                store::StudyStore& store, const design::Progress& progress = {});
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -11,7 +11,7 @@
 #include <variant>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// Pages to read, one after the other.
 struct InstructionStep {
@@ -21,7 +21,7 @@ struct InstructionStep {
 /// A questionnaire; the reply's `answers` are in its order: a choice's as the option's index from
 /// 0, empty if it was left out.
 struct QuestionStep {
-  const Questionnaire* questionnaire = nullptr;  ///< outlives the step
+  const design::Questionnaire* questionnaire = nullptr;  ///< outlives the step
 };
 
 /// Before a practice round: which textures there are, to be told apart with feedback.
@@ -42,9 +42,9 @@ struct AnswerStep {
   int of = 0;
   bool practice = false;
   bool time_is_up = false;
-  bool may_explore_again = false;  ///< the reply may be `explore_again`
-  int confidence_levels = 0;       ///< 0: not asked
-  Sight sight = Sight::curtain;    ///< blindfold: the answer is spoken
+  bool may_explore_again = false;                ///< the reply may be `explore_again`
+  int confidence_levels = 0;                     ///< 0: not asked
+  design::Sight sight = design::Sight::curtain;  ///< blindfold: the answer is spoken
 };
 
 /// After a practice answer.
@@ -78,4 +78,4 @@ struct StepReply {
   std::vector<std::string> answers;   ///< QuestionStep
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

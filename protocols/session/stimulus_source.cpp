@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <span>
 
-namespace touchtrial {
+namespace touchtrial::session {
 namespace {
 
 constexpr std::size_t kLeastPage = 4096;
@@ -21,19 +21,19 @@ void touch(std::span<const std::byte> bytes) noexcept {
 
 }  // namespace
 
-StimulusSource::StimulusSource(const Pack& pack, const RenderingOptions& rendering)
+StimulusSource::StimulusSource(const engine::Pack& pack, const engine::RenderingOptions& rendering)
     : folder_(pack.folder().string()) {
-  for (const PackEntry& entry : pack.manifest().entries) {
+  for (const engine::PackEntry& entry : pack.manifest().entries) {
     fields_.push_back(pack.map(entry.code));
-    const FieldView view = fields_.back().view();
+    const engine::FieldView view = fields_.back().view();
     if (view.model() != rendering.model) {
       throw FileError(one_line(folder_ + ": field " + entry.code +
                                " is of another rendering model than the study; run `touchtrial "
                                "prepare`"));
     }
-    models_.emplace(entry.code, RenderingModel(view, rendering, entry.gains));
+    models_.emplace(entry.code, engine::RenderingModel(view, rendering, entry.gains));
     // Of a field that is read like any other, so that the servo's times are the same.
-    if (!flat_) flat_.emplace(view, rendering, Gains{});
+    if (!flat_) flat_.emplace(view, rendering, engine::Gains{});
     if (models_.size() == 1) plane_ = view.geometry;
     plane_.height_px = std::min(plane_.height_px, view.geometry.height_px);
     plane_.width_px = std::min(plane_.width_px, view.geometry.width_px);
@@ -44,14 +44,14 @@ StimulusSource::StimulusSource(const Pack& pack, const RenderingOptions& renderi
 }
 
 void StimulusSource::fetch() const noexcept {
-  for (const MappedField& field : fields_) {
-    const FieldView view = field.view();
+  for (const engine::MappedField& field : fields_) {
+    const engine::FieldView view = field.view();
     touch(std::as_bytes(view.samples));
     touch(std::as_bytes(view.coefficients));
   }
 }
 
-const RenderingModel& StimulusSource::model(const std::string& code) const {
+const engine::RenderingModel& StimulusSource::model(const std::string& code) const {
   const auto found = models_.find(code);
   if (found == models_.end()) {
     throw FileError(
@@ -60,4 +60,4 @@ const RenderingModel& StimulusSource::model(const std::string& code) const {
   return found->second;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// Maps every field of a pack and makes its force model once. Of a field, this reads the header;
 /// pages of samples are read when a stylus first touches them, or by `fetch`. Thread-safe once
@@ -19,13 +19,13 @@ class StimulusSource {
   /// \param rendering  of the study; gains come from the pack
   /// \throws FileError if a field is missing, truncated, no field or of another model, or the pack
   ///   is empty
-  StimulusSource(const Pack& pack, const RenderingOptions& rendering);
+  StimulusSource(const engine::Pack& pack, const engine::RenderingOptions& rendering);
 
   /// \throws FileError if the pack has no such code
-  [[nodiscard]] const RenderingModel& model(const std::string& code) const;
+  [[nodiscard]] const engine::RenderingModel& model(const std::string& code) const;
 
   /// A plane without texture, for catch trials.
-  [[nodiscard]] const RenderingModel& flat() const noexcept { return *flat_; }
+  [[nodiscard]] const engine::RenderingModel& flat() const noexcept { return *flat_; }
 
   /// Reads a byte of every page of every field, so that the servo finds them in memory. Of all and
   /// not of the one that comes next: which pages had to be fetched, and how long that took, would
@@ -38,10 +38,10 @@ class StimulusSource {
 
  private:
   std::string folder_;
-  std::vector<MappedField> fields_;
-  std::map<std::string, RenderingModel, std::less<>> models_;
-  std::optional<RenderingModel> flat_;
+  std::vector<engine::MappedField> fields_;
+  std::map<std::string, engine::RenderingModel, std::less<>> models_;
+  std::optional<engine::RenderingModel> flat_;
   PlaneGeometry plane_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

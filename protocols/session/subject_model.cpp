@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <set>
 
-namespace touchtrial {
+namespace touchtrial::session {
 namespace {
 
 constexpr NumberRange kWeber{0.0, 10.0};
@@ -108,9 +108,9 @@ SubjectModel load_subject_model(const std::filesystem::path& path) {
   return parse_subject_model(text_of(content), path.string());
 }
 
-void SubjectModel::check_labels(const Study& study) const {
+void SubjectModel::check_labels(const design::Study& study) const {
   std::vector<std::string_view> known;
-  for (const StudyClass& study_class : study.classes) known.emplace_back(study_class.label);
+  for (const design::StudyClass& study_class : study.classes) known.emplace_back(study_class.label);
   for (std::size_t i = 0; i < class_bias.size(); ++i) {
     const std::string pointer = "/bias/classes/" + std::to_string(i) + "/label";
     check_label(class_bias[i].label, pointer, source, known);
@@ -122,4 +122,4 @@ void SubjectModel::check_labels(const Study& study) const {
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

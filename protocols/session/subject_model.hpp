@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// A preference for the picture of one class, whatever is felt.
 struct ClassBias {
@@ -49,7 +49,7 @@ struct SubjectModel {
 
   /// Whether a label means something in a study.
   /// \throws StudyError with this file's JSON pointer if a label is none of the study's
-  void check_labels(const Study& study) const;
+  void check_labels(const design::Study& study) const;
 };
 
 /// Reads a subject file strictly: unknown keys, wrong types and impossible values are refused.
@@ -61,4 +61,4 @@ struct SubjectModel {
 /// The same from text. \param source  names the origin in errors
 [[nodiscard]] SubjectModel parse_subject_model(std::string_view text, const std::string& source);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

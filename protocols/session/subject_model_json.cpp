@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 std::string subject_model_json(const SubjectModel& model) {
   using Json = nlohmann::ordered_json;
@@ -30,4 +30,4 @@ std::string subject_model_json(const SubjectModel& model) {
   return subject.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 std::chrono::nanoseconds time_of_tick(std::int64_t tick, double rate_hz) noexcept {
   constexpr double kNanosecondsPerS = 1e9;
@@ -11,25 +11,25 @@ std::chrono::nanoseconds time_of_tick(std::int64_t tick, double rate_hz) noexcep
       std::llround(static_cast<double>(tick) * kNanosecondsPerS / rate_hz));
 }
 
-TraceBuilder::TraceBuilder(Trace& trace, double rate_hz, std::size_t most_samples)
+TraceBuilder::TraceBuilder(store::Trace& trace, double rate_hz, std::size_t most_samples)
     : trace_(trace), room_(most_samples) {
   trace.rate_hz = rate_hz;
   trace.samples.clear();
   trace.samples.reserve(most_samples);
 }
 
-void TraceBuilder::add(const ServoSample& sample) noexcept {
+void TraceBuilder::add(const device::ServoSample& sample) noexcept {
   const auto tick = static_cast<std::size_t>(std::max<std::int64_t>(sample.tick, 0));
   if (tick >= room_ || tick < trace_.samples.size()) return;
-  const TraceSample kept{sample.position_mm, sample.force_n};
+  const store::TraceSample kept{sample.position_mm, sample.force_n};
   hold_until(tick, kept);
   if (!landing_tick_ && sample.position_mm.z <= kLandingHeightMm) landing_tick_ = sample.tick;
   trace_.samples.push_back(kept);
 }
 
 /// Before the first sample there is none to hold, so that it is held backwards.
-void TraceBuilder::hold_until(std::size_t tick, const TraceSample& first) noexcept {
-  const TraceSample last = trace_.samples.empty() ? first : trace_.samples.back();
+void TraceBuilder::hold_until(std::size_t tick, const store::TraceSample& first) noexcept {
+  const store::TraceSample last = trace_.samples.empty() ? first : trace_.samples.back();
   while (trace_.samples.size() < tick) {
     trace_.samples.push_back(last);
     ++held_;
@@ -42,4 +42,4 @@ std::optional<std::chrono::nanoseconds> TraceBuilder::landed_at() const noexcept
   return time_of_tick(*landing_tick_, trace_.rate_hz);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -9,7 +9,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// Height above the plane, mm, at which the stylus is taken to have landed. A height, because the
 /// place and time at which a force begins tell of the texture, and first contacts are stored in
@@ -22,10 +22,10 @@ inline constexpr double kLandingHeightMm = 3.0;
 class TraceBuilder {
  public:
   /// \param trace  made empty, with room for `most_samples`; must outlive this
-  TraceBuilder(Trace& trace, double rate_hz, std::size_t most_samples);
+  TraceBuilder(store::Trace& trace, double rate_hz, std::size_t most_samples);
 
   /// Ticks must increase; those beyond the room, and those that are over, are left out.
-  void add(const ServoSample& sample) noexcept;
+  void add(const device::ServoSample& sample) noexcept;
 
   /// Samples that were filled in.
   [[nodiscard]] std::int64_t held() const noexcept { return held_; }
@@ -35,9 +35,9 @@ class TraceBuilder {
   [[nodiscard]] std::optional<std::chrono::nanoseconds> landed_at() const noexcept;
 
  private:
-  void hold_until(std::size_t tick, const TraceSample& first) noexcept;
+  void hold_until(std::size_t tick, const store::TraceSample& first) noexcept;
 
-  Trace& trace_;
+  store::Trace& trace_;
   std::size_t room_;
   std::int64_t held_ = 0;
   std::int64_t held_in_contact_ = 0;
@@ -47,4 +47,4 @@ class TraceBuilder {
 /// When a tick is due, since the first.
 [[nodiscard]] std::chrono::nanoseconds time_of_tick(std::int64_t tick, double rate_hz) noexcept;
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

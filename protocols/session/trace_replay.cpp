@@ -3,13 +3,13 @@
 #include <utility>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
-RecordedMotion motion_of(const Trace& trace) {
+device::RecordedMotion motion_of(const store::Trace& trace) {
   std::vector<Vec3> positions_mm;
   positions_mm.reserve(trace.samples.size());
-  for (const TraceSample& sample : trace.samples) positions_mm.push_back(sample.position_mm);
+  for (const store::TraceSample& sample : trace.samples) positions_mm.push_back(sample.position_mm);
   return {std::move(positions_mm), trace.rate_hz};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <span>
 
-namespace touchtrial {
+namespace touchtrial::session {
 namespace {
 
 // The servo must not be made to wake anybody, so that the writer looks by itself: often enough for
@@ -15,7 +15,7 @@ constexpr std::size_t kAtOnce = 256;
 
 }  // namespace
 
-TraceWriter::TraceWriter(SampleRing& ring, TraceBuilder& builder, Participant& participant)
+TraceWriter::TraceWriter(device::SampleRing& ring, TraceBuilder& builder, Participant& participant)
     : ring_(ring), builder_(builder), participant_(participant), thread_([this] { write(); }) {}
 
 void TraceWriter::finish() noexcept {
@@ -33,13 +33,13 @@ void TraceWriter::write() noexcept {
 }
 
 bool TraceWriter::take_some() noexcept {
-  std::array<ServoSample, kAtOnce> samples;
+  std::array<device::ServoSample, kAtOnce> samples;
   const std::size_t count = ring_.pop(samples);
-  for (const ServoSample& sample : std::span(samples).first(count)) {
+  for (const device::ServoSample& sample : std::span(samples).first(count)) {
     builder_.add(sample);
     participant_.feel(sample);
   }
   return count > 0;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -8,14 +8,14 @@
 #include <atomic>
 #include <thread>
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// Empties a ring while the servo fills it, as long as it lives: samples go to the trace, which
 /// fills gaps, and to the participant who feels. Made and finished on one thread.
 class TraceWriter {
  public:
   /// All must outlive this, and nobody else may use builder and `feel` until `finish`.
-  TraceWriter(SampleRing& ring, TraceBuilder& builder, Participant& participant);
+  TraceWriter(device::SampleRing& ring, TraceBuilder& builder, Participant& participant);
   ~TraceWriter() { finish(); }
   TraceWriter(const TraceWriter&) = delete;
   TraceWriter& operator=(const TraceWriter&) = delete;
@@ -28,11 +28,11 @@ class TraceWriter {
   /// \return whether there was anything
   bool take_some() noexcept;
 
-  SampleRing& ring_;
+  device::SampleRing& ring_;
   TraceBuilder& builder_;
   Participant& participant_;
   std::atomic<bool> finishing_{false};
   std::thread thread_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

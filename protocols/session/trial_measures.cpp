@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace touchtrial {
+namespace touchtrial::session {
 namespace {
 
 /// Sums over the samples in contact.
@@ -19,12 +19,12 @@ struct ContactSums {
   double force_squares = 0.0;
 };
 
-ContactSums sums_of(const Trace& trace, double max_force_n, const ValidityRule& rule) {
+ContactSums sums_of(const store::Trace& trace, double max_force_n, const ValidityRule& rule) {
   const auto squared = [](double value) { return value * value; };
   const double saturation = squared(0.999 * max_force_n);
   ContactSums sums;
-  const TraceSample* before = nullptr;  // the last sample, if it had contact
-  for (const TraceSample& sample : trace.samples) {
+  const store::TraceSample* before = nullptr;  // the last sample, if it had contact
+  for (const store::TraceSample& sample : trace.samples) {
     const Vec3& f = sample.force_n;
     if (!(f.z > 0.0)) {
       before = nullptr;
@@ -42,15 +42,15 @@ ContactSums sums_of(const Trace& trace, double max_force_n, const ValidityRule& 
   return sums;
 }
 
-double exploring_s(const Trace& trace) {
-  const auto landing = std::ranges::find_if(trace.samples, [](const TraceSample& sample) {
+double exploring_s(const store::Trace& trace) {
+  const auto landing = std::ranges::find_if(trace.samples, [](const store::TraceSample& sample) {
     return sample.position_mm.z <= kLandingHeightMm;
   });
   return static_cast<double>(trace.samples.end() - landing) / trace.rate_hz;
 }
 
 /// What was felt, without a verdict.
-TrialMeasures measures_of(const ContactSums& sums, double rate_hz) {
+store::TrialMeasures measures_of(const ContactSums& sums, double rate_hz) {
   if (sums.samples == 0) return {};
   const auto samples = static_cast<double>(sums.samples);
   return {samples / rate_hz, sums.path_mm, std::sqrt(sums.force_squares / samples),
@@ -59,9 +59,9 @@ TrialMeasures measures_of(const ContactSums& sums, double rate_hz) {
 
 }  // namespace
 
-TrialFindings findings_of(const Trace& trace, double max_force_n, const ValidityRule& rule) {
+TrialFindings findings_of(const store::Trace& trace, double max_force_n, const ValidityRule& rule) {
   const ContactSums sums = sums_of(trace, max_force_n, rule);
-  TrialMeasures measures = measures_of(sums, trace.rate_hz);
+  store::TrialMeasures measures = measures_of(sums, trace.rate_hz);
   // A median lies within bounds if at most half of the samples lie beyond either: no sorting.
   const bool median_fits = 2 * sums.weak <= sums.samples && 2 * sums.strong <= sums.samples;
   measures.within_limits = measures.contact_s >= rule.least_contact_s &&
@@ -70,4 +70,4 @@ TrialFindings findings_of(const Trace& trace, double max_force_n, const Validity
   return {measures, exploring_s(trace) >= rule.least_exploring_s};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -4,7 +4,7 @@
 #include "protocols/store/payload.hpp"
 #include "protocols/store/trace.hpp"
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// The validity rule, fixed before outcomes are seen. Forces, and the path and contact that they
 /// bend, tell textures apart, so that whether they are within limits is known after unblinding
@@ -19,7 +19,7 @@ struct ValidityRule {
 };
 
 struct TrialFindings {
-  TrialMeasures measures;
+  store::TrialMeasures measures;
   /// Follows from the number of samples and the time of landing, which are in clear as well: adds
   /// nothing to them.
   bool long_enough = false;
@@ -31,7 +31,7 @@ struct TrialFindings {
 /// A sample has contact if its normal force is above zero; it is saturated if its force's norm is
 /// within 0.1 % of the limit. The stylus has landed from the first sample at kLandingHeightMm or
 /// below. \param max_force_n  limit of the force's norm, > 0
-[[nodiscard]] TrialFindings findings_of(const Trace& trace, double max_force_n,
+[[nodiscard]] TrialFindings findings_of(const store::Trace& trace, double max_force_n,
                                         const ValidityRule& rule = {});
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <chrono>
 
-namespace touchtrial {
+namespace touchtrial::session {
 namespace {
 
 using Time = SessionClock::Time;
@@ -16,7 +16,7 @@ constexpr double kLeastAgainS = 0.5;
 
 }  // namespace
 
-ServoOptions servo_options(const SessionParts& parts) {
+device::ServoOptions servo_options(const SessionParts& parts) {
   return trial_servo_options(parts.key.study, parts.rate_hz, parts.limits);
 }
 
@@ -27,9 +27,9 @@ TrialRun::TrialRun(SessionDesk& desk)
       participant_(desk),
       servo_(servo_options(desk.parts())) {}
 
-const RenderingModel& TrialRun::model() const {
-  const Presentation& presentation = *session_.current();
-  if (presentation.kind == PresentationKind::catch_trial) return parts_.source.flat();
+const engine::RenderingModel& TrialRun::model() const {
+  const design::Presentation& presentation = *session_.current();
+  if (presentation.kind == design::PresentationKind::catch_trial) return parts_.source.flat();
   return parts_.source.model(parts_.key.code_of(presentation.stimulus));
 }
 
@@ -37,11 +37,11 @@ void TrialRun::run() {
   of_ = session_.presentations_begun() + session_.presentations_left();
   desk_.enter("ready");
   if (!desk_.attend(ReadyStep{session_.presentations_begun() + 1, of_, false})) return;
-  const RenderingModel& presented = model();
+  const engine::RenderingModel& presented = model();
   if (explore(presented)) answer(presented);
 }
 
-bool TrialRun::explore(const RenderingModel& model) {
+bool TrialRun::explore(const engine::RenderingModel& model) {
   if (parts_.explorer.in_real_time()) parts_.source.fetch();
   record_.begin();
   time_is_up_ = false;
@@ -54,10 +54,10 @@ bool TrialRun::explore(const RenderingModel& model) {
   return end_exploration(done, plane_on);
 }
 
-bool TrialRun::explore_again(const RenderingModel& model) {
-  ServoOptions rest = servo_;
+bool TrialRun::explore_again(const engine::RenderingModel& model) {
+  device::ServoOptions rest = servo_;
   rest.limit_ticks -= record_.ticks();
-  Trace& trace = record_.next_trace();
+  store::Trace& trace = record_.next_trace();
   const Time plane_on = desk_.now();
   session_.explore_again(plane_on);
   desk_.enter("exploring");
@@ -82,11 +82,11 @@ bool TrialRun::end_exploration(const Exploration& done, Time plane_on) {
   }
   record_.add(done);
   record_.pack(session_, parts_.explorer.in_real_time());
-  time_is_up_ = done.servo.end == ServoEnd::time_limit;
+  time_is_up_ = done.servo.end == device::ServoEnd::time_limit;
   if (!time_is_up_) {
     session_.end_exploring(ended);
   } else {
-    if (parts_.key.study.trials.on_timeout == OnTimeout::no_response) keep_evidence();
+    if (parts_.key.study.trials.on_timeout == design::OnTimeout::no_response) keep_evidence();
     session_.time_out(ended);
   }
   return session_.phase() == SessionPhase::answering;
@@ -99,7 +99,7 @@ void TrialRun::keep_evidence() {
 }
 
 AnswerStep TrialRun::question() const {
-  const SessionPlan& plan = parts_.key.study.session;
+  const design::SessionPlan& plan = parts_.key.study.session;
   const auto left_s = static_cast<double>(servo_.limit_ticks - record_.ticks()) / servo_.rate_hz;
   return {.trial = session_.presentations_begun(),
           .of = of_,
@@ -110,7 +110,7 @@ AnswerStep TrialRun::question() const {
           .sight = plan.sight};
 }
 
-void TrialRun::answer(const RenderingModel& model) {
+void TrialRun::answer(const engine::RenderingModel& model) {
   for (;;) {
     desk_.enter("answering");
     const AnswerStep step = question();
@@ -133,4 +133,4 @@ void TrialRun::confirm(const StepReply& reply) {
   parts_.experimenter.acknowledged(trial);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

@@ -5,11 +5,11 @@
 #include "protocols/session/exploration_record.hpp"
 #include "protocols/session/session_desk.hpp"
 
-namespace touchtrial {
+namespace touchtrial::session {
 
 /// The servo's options of a session's explorations: the study's limits, or the lab's where they are
 /// stricter.
-[[nodiscard]] ServoOptions servo_options(const SessionParts& parts);
+[[nodiscard]] device::ServoOptions servo_options(const SessionParts& parts);
 
 /// The trials of a session, one after the other.
 class TrialRun {
@@ -21,23 +21,23 @@ class TrialRun {
 
  private:
   /// \return whether the participant is to answer
-  [[nodiscard]] bool explore(const RenderingModel& model);
-  [[nodiscard]] bool explore_again(const RenderingModel& model);
+  [[nodiscard]] bool explore(const engine::RenderingModel& model);
+  [[nodiscard]] bool explore_again(const engine::RenderingModel& model);
   [[nodiscard]] bool end_exploration(const Exploration& done, SessionClock::Time plane_on);
-  void answer(const RenderingModel& model);
+  void answer(const engine::RenderingModel& model);
   void confirm(const StepReply& reply);
   void keep_evidence();
   [[nodiscard]] AnswerStep question() const;
-  [[nodiscard]] const RenderingModel& model() const;
+  [[nodiscard]] const engine::RenderingModel& model() const;
 
   SessionDesk& desk_;
   Session& session_;
   const SessionParts& parts_;
   AttendedExploring participant_;
-  ServoOptions servo_;
+  device::ServoOptions servo_;
   ExplorationRecord record_;
   int of_ = 0;  ///< presentations that there will be
   bool time_is_up_ = false;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::session

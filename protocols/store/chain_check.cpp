@@ -15,7 +15,7 @@
 #include <set>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::store {
 namespace {
 
 [[noreturn]] void fault(std::int64_t session, std::int64_t sequence, const std::string& what) {
@@ -279,4 +279,4 @@ std::optional<ChainFault> find_first_fault(const Database& database, TraceCheck 
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

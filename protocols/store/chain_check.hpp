@@ -6,7 +6,7 @@
 
 #include <optional>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 /// Looks, in this order, at the file's structure, its chain, every session's chain, what the file's
 /// chain says of the sessions, keys, traces, the derived tables, and the schema; structure and
@@ -14,4 +14,4 @@ namespace touchtrial {
 [[nodiscard]] std::optional<ChainFault> find_first_fault(const Database& database,
                                                          TraceCheck traces);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

@@ -1,6 +1,6 @@
 #include "protocols/store/chain_link.hpp"
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 ChainLink ChainLink::after(const Event& last) {
   ChainLink link(last.session, last.own_session());
@@ -36,4 +36,4 @@ void ChainLink::extend(const Event& next) {
   last_at_ = next.at;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

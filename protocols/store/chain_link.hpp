@@ -9,7 +9,7 @@
 #include <optional>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 /// The growing end of one chain. What events mean is the business of fold; this is about the chain.
 class ChainLink {
@@ -40,4 +40,4 @@ class ChainLink {
   std::chrono::nanoseconds last_at_{0};
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

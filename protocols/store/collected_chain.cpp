@@ -10,7 +10,7 @@
 #include <tuple>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::store {
 namespace {
 
 using std::chrono::nanoseconds;
@@ -372,4 +372,4 @@ StudyState state_of_chain(std::span<const Event> chain) {
   return state;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 /// A station's file chain as it stands in its own file, and what messages call the station.
 struct StationChain {
@@ -60,4 +60,4 @@ struct CollectedChain {
 /// What `state` of a chain (the events of session 0) is: see StudyStore::state.
 [[nodiscard]] StudyState state_of_chain(std::span<const Event> chain);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

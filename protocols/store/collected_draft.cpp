@@ -17,7 +17,7 @@
 
 #include <unistd.h>
 
-namespace touchtrial {
+namespace touchtrial::store {
 namespace {
 
 template <typename Visit>
@@ -241,4 +241,4 @@ StudyStore CollectedDraft::finished(TraceFetch fetch) && {
   return StudyStore::open(target, StudyStore::Access::read_only);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

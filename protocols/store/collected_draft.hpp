@@ -14,7 +14,7 @@
 #include <span>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 class Database;
 
@@ -63,4 +63,4 @@ class CollectedDraft {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

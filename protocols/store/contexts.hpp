@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 [[nodiscard]] inline std::string event_context(int own_session, std::int64_t sequence,
                                                EventKind kind) {
@@ -24,4 +24,4 @@ namespace touchtrial {
   return "participant-key|" + std::to_string(own_session);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

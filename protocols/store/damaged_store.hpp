@@ -3,7 +3,7 @@
 
 #include "core/errors.hpp"
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 /// A Touchtrial database that is truncated, lacks tables, or has pages that cannot be read: unlike
 /// a name that was mistyped, evidence that does not hold.
@@ -12,4 +12,4 @@ class DamagedStore : public StoreError {
   using StoreError::StoreError;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

@@ -13,7 +13,7 @@
 #include <sqlite3.h>
 #include <unistd.h>
 
-namespace touchtrial {
+namespace touchtrial::store {
 namespace {
 
 constexpr int kBusyTimeoutMs = 2000;
@@ -232,4 +232,4 @@ void Database::refuse(const SQLite::Exception& error) const {
   rethrow(path_, error);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

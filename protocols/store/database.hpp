@@ -15,7 +15,7 @@
 #include <SQLiteCpp/Exception.h>
 #include <SQLiteCpp/Transaction.h>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 /// Not to be shared between threads.
 class Database {
@@ -86,4 +86,4 @@ class Database {
   mutable std::map<std::string_view, SQLite::Statement> statements_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

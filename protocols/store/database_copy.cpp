@@ -5,7 +5,7 @@
 
 #include <system_error>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 void copy_database(const std::filesystem::path& from, const std::filesystem::path& to) {
   const Database database = Database::open(from, Database::Mode::read_only, kSchemaVersion);
@@ -21,4 +21,4 @@ void copy_database(const std::filesystem::path& from, const std::filesystem::pat
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 /// Lays a copy at a path, of the database as it is now, whatever others write meanwhile. A copy
 /// that is broken off leaves no file of that name; a file that is there is replaced. \throws
@@ -11,4 +11,4 @@ namespace touchtrial {
 ///   copy cannot be written
 void copy_database(const std::filesystem::path& from, const std::filesystem::path& to);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

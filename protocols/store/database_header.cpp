@@ -9,7 +9,7 @@
 #include <string>
 #include <system_error>
 
-namespace touchtrial {
+namespace touchtrial::store {
 namespace {
 
 constexpr char kMagic[] = "SQLite format 3";  // its final zero is part of it
@@ -80,4 +80,4 @@ void check_header(const std::filesystem::path& path, int newest_version) {
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

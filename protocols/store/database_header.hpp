@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 /// What tells our databases from other SQLite files: "TTRL" in SQLite's application_id.
 inline constexpr std::int32_t kApplicationId = 0x5454524c;
@@ -20,4 +20,4 @@ void check_header(const std::filesystem::path& path, int newest_version);
 /// Whether a write-ahead log lies beside the database, with anything in it.
 [[nodiscard]] bool has_log(const std::filesystem::path& path);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::store {
 namespace {
 
 constexpr std::int64_t kLowest = std::numeric_limits<std::int64_t>::min();
@@ -236,4 +236,4 @@ void delete_all_rows(const Database& database) {
   database.connection().exec("DELETE FROM responses; DELETE FROM trials; DELETE FROM sessions;");
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 /// By session. \throws EventFault if a row holds what no event gives rise to
 [[nodiscard]] std::vector<SessionRow> read_sessions(const Database& database);
@@ -20,4 +20,4 @@ namespace touchtrial {
 void write_rows(const Database& database, const DerivedRows& rows);
 void delete_all_rows(const Database& database);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

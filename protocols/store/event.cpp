@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::store {
 namespace {
 
 constexpr std::array<std::pair<EventKind, std::string_view>, 30> kNames = {{
@@ -71,4 +71,4 @@ Digest event_hash(const Event& event) {
       .finish();
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

@@ -11,7 +11,7 @@
 #include <string>
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 /// What happened. The first group belongs to the file's chain, the second to a session's.
 enum class EventKind {
@@ -78,4 +78,4 @@ struct Event {
 /// SHA-256 over own_session() and all other members, ciphertext included.
 [[nodiscard]] Digest event_hash(const Event& event);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

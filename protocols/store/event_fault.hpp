@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 /// In place of a sequence number: the fault is not in an event.
 inline constexpr std::int64_t kNoEvent = -1;
@@ -52,4 +52,4 @@ template <typename Parse>
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::store {
 namespace {
 
 constexpr std::int64_t kLowest = std::numeric_limits<std::int64_t>::min();
@@ -124,4 +124,4 @@ std::vector<std::int64_t> sessions_with_events(const Database& database) {
   return sessions;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

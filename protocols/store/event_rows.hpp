@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 using EventVisitor = std::function<void(const Event&)>;
 
@@ -40,4 +40,4 @@ void for_each_event(const Database& database, std::int64_t session, const EventV
 /// Every number but 0 that an event gives as its session, ascending.
 [[nodiscard]] std::vector<std::int64_t> sessions_with_events(const Database& database);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

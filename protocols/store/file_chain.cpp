@@ -4,7 +4,7 @@
 
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::store {
 namespace {
 
 [[noreturn]] void refuse(const Event& event, const std::string& why) {
@@ -106,4 +106,4 @@ SessionOnFile& FileChain::known(const Event& event, int session) {
   return found->second;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

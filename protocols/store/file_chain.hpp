@@ -10,7 +10,7 @@
 #include <set>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 /// One session as the file's chain knows it.
 struct SessionOnFile {
@@ -57,4 +57,4 @@ class FileChain {
   bool closed_ = false;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

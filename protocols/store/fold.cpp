@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::store {
 namespace {
 
 [[noreturn]] void refuse(const Event& event, const std::string& why) {
@@ -236,4 +236,4 @@ void fold(DerivedRows& rows, const Event& event) {
   if (!belongs_to_file_chain(event.kind)) fold_session_event(rows, event);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

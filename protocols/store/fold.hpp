@@ -9,7 +9,7 @@
 #include <optional>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 using TrialId = std::pair<int, int>;  ///< session, trial
 
@@ -36,4 +36,4 @@ struct FoldScope {
 ///   are then as they were
 void fold(DerivedRows& rows, const Event& event);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

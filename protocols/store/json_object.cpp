@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 std::string compact(const nlohmann::json& object) {
   try {
@@ -128,4 +128,4 @@ std::optional<JsonObject> JsonObject::optional_object(const char* key) const {
   return JsonObject(value, place_ + "/" + key);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

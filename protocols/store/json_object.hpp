@@ -11,7 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 /// \throws StoreError if a text in it is not UTF-8
 [[nodiscard]] std::string compact(const nlohmann::json& object);
@@ -54,4 +54,4 @@ class JsonObject {
   std::string place_;  ///< JSON pointer
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace touchtrial {
+namespace touchtrial::store {
 namespace {
 
 constexpr std::size_t kWrapPadding = 64;
@@ -50,4 +50,4 @@ std::optional<Trace> unsealed_trace(const SealedTrace& sealed, const SecretKey& 
   return unsealed_trace(sealed.session, sealed.trial, sealed.box, participant_key, sample_count);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

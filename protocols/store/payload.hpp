@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 /// First event of the file's chain: what this database is about, fixed before any trial.
 struct StudyCommitment {
@@ -150,4 +150,4 @@ struct TrialBody {
   std::string reason;  ///< `interrupted` only
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

@@ -6,7 +6,7 @@
 
 #include <limits>
 
-namespace touchtrial {
+namespace touchtrial::store {
 namespace {
 
 using nlohmann::json;
@@ -380,4 +380,4 @@ std::string renumbered_opening(const std::string& body, int session, int station
   return compact(object);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 /// `session-opened` on the file's chain: ties a session's chain and key to the file.
 struct SessionOpenedBody {
@@ -120,4 +120,4 @@ struct BlockBody {
 [[nodiscard]] std::string remark_from_json(const std::string& text);
 [[nodiscard]] bool completion_from_json(const std::string& text);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

@@ -14,7 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace touchtrial {
+namespace touchtrial::store {
 namespace {
 
 constexpr int kApplicationId = 0x54545250;  // "TTRP"
@@ -143,4 +143,4 @@ bool PersonalData::remove(const std::string& participant) {
   });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 struct PersonalRecord {
   std::string participant;
@@ -46,4 +46,4 @@ class PersonalData {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 Query& Query::bind(ByteView blob) {
   if (blob.size() > std::size_t{std::numeric_limits<int>::max()}) {
@@ -40,4 +40,4 @@ bool Query::is_null(int column) const {
   return statement_->isColumnNull(column);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

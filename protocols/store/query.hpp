@@ -14,7 +14,7 @@
 #include <SQLiteCpp/Column.h>
 #include <SQLiteCpp/Statement.h>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 /// Binds parameters from left to right, then steps through rows. The statement is reset when this
 /// goes, so that no read transaction stays open. Blobs are not copied: they must live until the
@@ -66,4 +66,4 @@ class Query {
   int bound_ = 0;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

@@ -8,7 +8,7 @@
 #include <SQLiteCpp/Backup.h>
 #include <sqlite3.h>
 
-namespace touchtrial {
+namespace touchtrial::store {
 namespace {
 
 // Events and traces are only ever added. REPLACE deletes without a delete trigger, so that inserts
@@ -223,4 +223,4 @@ void migrate(const Database& database, std::span<const Migration> steps) {
   });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

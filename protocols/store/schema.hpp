@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <span>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 /// One step forward; runs inside a transaction.
 using Migration = void (*)(SQLite::Database&);
@@ -31,4 +31,4 @@ void write_copy(const Database& database, const std::filesystem::path& to);
 /// `<db>.v<version>.backup`
 [[nodiscard]] std::filesystem::path backup_path(const std::filesystem::path& database, int version);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

@@ -5,7 +5,7 @@
 #include <map>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::store {
 namespace {
 
 /// By type and name: the table it belongs to, and how it was made.
@@ -45,4 +45,4 @@ std::optional<std::string> schema_fault(const Database& database) {
   return type + " " + name + " does not belong to the schema";
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::store {
 namespace {
 
 [[noreturn]] void fault(std::int64_t session, std::int64_t sequence, const std::string& what) {
@@ -89,4 +89,4 @@ void SessionCheck::check_key(const std::optional<Digest>& wrapped) const {
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

@@ -10,7 +10,7 @@
 #include <map>
 #include <optional>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 /// What a trace-stored event says of its trace.
 struct TraceClaim {
@@ -52,4 +52,4 @@ class SessionCheck {
   return opened.own_session > 0 ? opened.own_session : opened.session;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

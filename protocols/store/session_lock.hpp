@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 /// Holds a participant of a study until it goes. The kernel releases it with the process, however
 /// that ends. It is on `<db>.lock`, an empty file that stays; other participants are not hindered.
@@ -24,4 +24,4 @@ class SessionLock {
   int file_ = -1;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

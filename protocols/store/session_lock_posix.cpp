@@ -11,7 +11,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-namespace touchtrial {
+namespace touchtrial::store {
 namespace {
 
 /// The participant's own byte of the file, which need not be that long.
@@ -64,4 +64,4 @@ SessionLock::~SessionLock() {
   if (file_ >= 0) ::close(file_);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

@@ -6,7 +6,7 @@
 
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::store {
 namespace {
 
 bool is_remark(EventKind kind) {
@@ -198,4 +198,4 @@ RecordedEvent SessionRecorder::chained(std::chrono::nanoseconds at, std::int64_t
   return {std::move(event), std::move(draft.trace)};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 /// An encrypted trace, on its way to a database or from one.
 struct SealedTrace {
@@ -150,4 +150,4 @@ class SessionRecorder {
   std::chrono::nanoseconds last_at_{0};
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

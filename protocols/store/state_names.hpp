@@ -6,7 +6,7 @@
 #include <array>
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 /// In the order of the enumerators.
 inline constexpr std::array<std::string_view, 3> kSessionStates = {"open", "completed", "stopped"};
@@ -20,4 +20,4 @@ inline constexpr std::array<std::string_view, 5> kTrialStates = {
   return kTrialStates[static_cast<std::size_t>(state)];
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

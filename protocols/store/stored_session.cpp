@@ -6,7 +6,7 @@
 
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::store {
 namespace {
 
 void require_link(const ChainLink& chain, const Event& event) {
@@ -112,4 +112,4 @@ void store_whole_session(StoredStudy& study, const BufferedEvents& session,
   study.conclude(session.events.back(), at);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

@@ -5,7 +5,7 @@
 #include "protocols/store/chain_link.hpp"
 #include "protocols/store/stored_study.hpp"
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 /// The durable sink: every event is one transaction.
 class StoredSession final : public EventSink {
@@ -35,4 +35,4 @@ void check_whole_session(const StoredStudy& study, const BufferedEvents& session
 void store_whole_session(StoredStudy& study, const BufferedEvents& session,
                          const Bytes& wrapped_key, std::chrono::nanoseconds at);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

@@ -12,7 +12,7 @@
 #include <set>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::store {
 namespace {
 
 constexpr std::size_t kLongestParticipant = 32;
@@ -345,4 +345,4 @@ void StoredStudy::check_replacement(const SessionRow& row, const std::string& by
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

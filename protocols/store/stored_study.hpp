@@ -15,7 +15,7 @@
 #include <string>
 #include <utility>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 class StoredStudy {
  public:
@@ -86,4 +86,4 @@ class StoredStudy {
   mutable std::optional<StudyCommitment> commitment_;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

@@ -16,7 +16,7 @@
 
 #include <unistd.h>
 
-namespace touchtrial {
+namespace touchtrial::store {
 namespace {
 
 void remove_database(const std::filesystem::path& path) {
@@ -352,4 +352,4 @@ void StudyStore::rebuild_derived() {
   });
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

@@ -19,7 +19,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 /// How a session stands, derived from its events.
 enum class SessionState { open, completed, stopped };
@@ -279,4 +279,4 @@ class StudyStore {
 /// \throws StoreError if the text is not such
 [[nodiscard]] TrialMeasures measures_from_json(const std::string& text);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

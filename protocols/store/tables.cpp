@@ -2,7 +2,7 @@
 
 #include <array>
 
-namespace touchtrial {
+namespace touchtrial::store {
 namespace {
 
 using enum ColumnType;
@@ -76,4 +76,4 @@ std::span<const TableDefinition> table_definitions() {
   return kTables;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

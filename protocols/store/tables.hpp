@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 /// Counts every change of the tables, in files and on servers.
 inline constexpr int kSchemaVersion = 3;
@@ -48,4 +48,4 @@ struct TableDefinition {
 /// to.
 [[nodiscard]] std::span<const TableDefinition> table_definitions();
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

@@ -15,7 +15,7 @@
 
 #include <zstd.h>
 
-namespace touchtrial {
+namespace touchtrial::store {
 namespace {
 
 constexpr std::array<std::uint8_t, 4> kMagic = {'T', 'T', 'R', '1'};
@@ -271,4 +271,4 @@ std::size_t trace_padding(std::size_t sample_count) {
   return 2048 + 8 * std::min(sample_count, kMaxSamples);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::store {
 
 struct TraceSample {
   Vec3 position_mm;
@@ -31,4 +31,4 @@ struct Trace {
 /// the size of a stored trace does not tell rough textures from smooth ones.
 [[nodiscard]] std::size_t trace_padding(std::size_t sample_count);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::store

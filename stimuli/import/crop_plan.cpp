@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 /// Crops along one axis whose starts are half a side apart or more.
@@ -127,4 +127,4 @@ std::vector<int> shared_out(std::span<const PhotoSize> photos, int side_px, int 
   return left == 0 ? shares : std::vector<int>{};
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 
 struct PhotoSize {
   int height_px = 0;
@@ -39,4 +39,4 @@ struct CropPlace {
 [[nodiscard]] std::vector<int> shared_out(std::span<const PhotoSize> photos, int side_px,
                                           int count);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -7,7 +7,7 @@
 
 #include <unistd.h>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -61,4 +61,4 @@ void DraftFolder::keep() noexcept {
   if (!earlier_.empty()) fs::remove_all(earlier_, ignored);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

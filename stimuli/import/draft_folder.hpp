@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 
 /// Files are written into a draft beside the target; `put_in_place` renames it. Until `keep` is
 /// called, the destructor brings everything back to what it was.
@@ -31,4 +31,4 @@ class DraftFolder {
   bool kept_ = false;
 };
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

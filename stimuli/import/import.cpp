@@ -12,7 +12,7 @@
 #include <algorithm>
 #include <map>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -156,7 +156,7 @@ class Import {
   }
 
   static void put_down(const fs::path& draft, ImportedPicture& picture, const GreyImage& pixels) {
-    write_png(draft / picture.file, pixels);
+    engine::write_png(draft / picture.file, pixels);
     picture.sha256 = sha256_of_file(draft / picture.file);
     picture.pixels_sha256 = sha256(pixels.samples());
   }
@@ -168,7 +168,7 @@ class Import {
     record_.equal = equal_levels(set, options_.equalise);
     for (ImportedPicture& picture : record_.pictures) {
       const EqualisedPicture result =
-          equalised(read_grey_image(draft / picture.file), picture.levels, record_.equal);
+          equalised(engine::read_grey_image(draft / picture.file), picture.levels, record_.equal);
       picture.clipped_share = result.clipped_share;
       put_down(draft, picture, result.picture);
     }
@@ -225,4 +225,4 @@ ImportReport import_photographs(const ImportOptions& options, const ImportProgre
   return Import(options, progress).run();
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

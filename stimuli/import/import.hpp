@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 
 inline constexpr int kMinCropSizePx = 16;
 inline constexpr int kMaxCropSizePx = 4096;
@@ -74,4 +74,4 @@ using ImportProgress = std::function<void(int done, int total)>;
 ///   same, unreadable, of a label that cannot be), or an output cannot be written
 ImportReport import_photographs(const ImportOptions& options, const ImportProgress& progress = {});
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -6,7 +6,7 @@
 #include <array>
 #include <cstdio>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 /// Three digits are enough for advice.
@@ -127,4 +127,4 @@ std::vector<std::string> import_warnings(const std::vector<ImportedClass>& class
   return warnings;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 
 /// Waves shorter than this are finer than devices render well.
 inline constexpr double kFinestFeatureMm = 1.0;
@@ -22,4 +22,4 @@ inline constexpr double kFewestFeatures = 8.0;
                                                        const ImportRecord& record,
                                                        const ImportOptions& options);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -10,7 +10,7 @@
 #include <numeric>
 #include <system_error>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -171,4 +171,4 @@ std::vector<std::vector<int>> plan_shares(const std::vector<SizedClass>& classes
   return shares;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 
 /// Options in range, texts that JSON can hold, and places that may be written to.
 /// \param options  with every path filled in
@@ -31,4 +31,4 @@ struct SizedClass {
 [[nodiscard]] std::vector<std::vector<int>> plan_shares(const std::vector<SizedClass>& classes,
                                                         const ImportOptions& options);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

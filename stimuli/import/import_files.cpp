@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -161,4 +161,4 @@ bool is_imported(const std::filesystem::path& folder) {
   }
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 
 inline constexpr std::string_view kImportFormat = "touchtrial-import";
 
@@ -54,4 +54,4 @@ struct ImportRecord {
 /// Whether a folder is what an earlier import wrote.
 [[nodiscard]] bool is_imported(const std::filesystem::path& folder);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

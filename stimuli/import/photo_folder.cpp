@@ -10,7 +10,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -205,4 +205,4 @@ PhotoFolder list_photographs(const fs::path& folder) {
   return result;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

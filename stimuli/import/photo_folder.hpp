@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 
 /// The photographs of one label, in natural order of their names.
 struct PhotoClass {
@@ -31,4 +31,4 @@ struct PhotoFolder {
 /// Whether a text can go into a JSON file.
 [[nodiscard]] bool is_utf8(const std::string& text);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -9,7 +9,7 @@
 
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 constexpr double kMostEnlarged = 4.0;
@@ -43,10 +43,10 @@ int scaled(int length_px, double scale) {
 
 Photograph read_photograph(const std::filesystem::path& path, const ImportOptions& options) {
   const Bytes file = read_file(path);
-  const ImageNotes notes = notes_of_image(file);
+  const engine::ImageNotes notes = engine::notes_of_image(file);
   Photograph photo;
   photo.path = path;
-  photo.image = upright(decode_grey_image(file, path.string()), notes.orientation);
+  photo.image = engine::upright(engine::decode_grey_image(file, path.string()), notes.orientation);
   photo.sha256 = sha256(file);
   photo.pixels_sha256 = FieldHasher()
                             .add(std::int64_t{photo.image.height()})
@@ -59,10 +59,10 @@ Photograph read_photograph(const std::filesystem::path& path, const ImportOption
   photo.said_pixels_per_mm = notes.pixels_per_mm;
   photo.scale = scale_for(photo, options);
   if (photo.scale != 1.0) {
-    photo.image = resized(photo.image, scaled(photo.height_px, photo.scale),
-                          scaled(photo.width_px, photo.scale));
+    photo.image = engine::resized(photo.image, scaled(photo.height_px, photo.scale),
+                                  scaled(photo.width_px, photo.scale));
   }
   return photo;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <optional>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 
 struct Photograph {
   std::filesystem::path path;
@@ -28,4 +28,4 @@ struct Photograph {
 [[nodiscard]] Photograph read_photograph(const std::filesystem::path& path,
                                          const ImportOptions& options);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 using Histogram = std::array<std::int64_t, 256>;
@@ -118,4 +118,4 @@ EqualisedPicture equalised(const GreyImage& picture, const PictureLevels& levels
   return result;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -8,7 +8,7 @@
 #include <optional>
 #include <span>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 
 /// The mean that equalising gives: the wall's own grey.
 inline constexpr double kEqualMeanGrey = 128.0;
@@ -48,4 +48,4 @@ struct EqualisedPicture {
 [[nodiscard]] EqualisedPicture equalised(const GreyImage& picture, const PictureLevels& levels,
                                          const EqualLevels& wanted);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

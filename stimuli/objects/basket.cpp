@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 constexpr double kMiddle = 250.0;
@@ -167,4 +167,4 @@ GreyImage make_wicker(const Specimen& specimen, int size_px) {
   return photographed(specimen, relief, lamp, {118.0});
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

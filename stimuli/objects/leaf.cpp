@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 constexpr double kVeinDistance = 40.0;
@@ -168,4 +168,4 @@ GreyImage make_venation(const Specimen& specimen, int size_px) {
   return photographed(specimen, relief, lamp, {118.0});
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 constexpr double kBark = 24.0;  ///< thickness of the bark
@@ -144,4 +144,4 @@ GreyImage make_endgrain(const Specimen& specimen, int size_px) {
   return photographed(specimen, relief, lamp, {118.0});
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 constexpr double kHalfAngle = 1.02;  ///< of the fan, radians
@@ -138,4 +138,4 @@ GreyImage make_ribs(const Specimen& specimen, int size_px) {
   return photographed(specimen, relief, lamp, {118.0});
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 /// Lightness of the ground among the lightnesses of the object.
@@ -47,4 +47,4 @@ GreyImage photographed(const Specimen& specimen, const StillLife& scene, Lamp la
   return developed(averaged(light), print_for(specimen, print), counts);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -3,7 +3,7 @@
 
 #include "stimuli/relief.hpp"
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 
 /// One point of an object; `covers` is false where the ground shows.
 struct ObjectPoint {
@@ -48,4 +48,4 @@ template <typename Object>
   return scene;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

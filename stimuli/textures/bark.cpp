@@ -2,7 +2,7 @@
 #include "stimuli/recipes.hpp"
 #include "stimuli/relief.hpp"
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 /// Tall plates with deep furrows between them, cracked across, with fibres along.
@@ -60,4 +60,4 @@ GreyImage make_bark(const Specimen& specimen, int size_px) {
   return photographed(specimen, relief, lamp, {122.0, 0.84});
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

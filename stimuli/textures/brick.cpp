@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 constexpr double kBrickLength = 128.0;  ///< with a joint
@@ -157,4 +157,4 @@ GreyImage make_brick(const Specimen& specimen, int size_px) {
   return photographed(specimen, relief, lamp, {116.0, 0.92});
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

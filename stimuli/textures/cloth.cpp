@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 /// What one system of threads shows at a point.
@@ -116,4 +116,4 @@ GreyImage make_cloth(const Specimen& specimen, int size_px) {
   return photographed(specimen, relief, lamp, {126.0, 0.75});
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 /// A sheet of pressed cork: granules of many sizes and shades, some torn out, dark flecks of bark.
@@ -61,4 +61,4 @@ GreyImage make_cork(const Specimen& specimen, int size_px) {
   return photographed(specimen, relief, lamp, {124.0});
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 /// Grained leather: cushions of two sizes between creases, wrinkles where it was bent, pores.
@@ -62,4 +62,4 @@ GreyImage make_leather(const Specimen& specimen, int size_px) {
   return photographed(specimen, relief, lamp, {116.0});
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 struct Pebble {
@@ -188,4 +188,4 @@ GreyImage make_pebbles(const Specimen& specimen, int size_px) {
   return photographed(specimen, relief, lamp, {118.0, 0.95});
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 /// One of the waves that make up the ripples.
@@ -79,4 +79,4 @@ GreyImage make_sand(const Specimen& specimen, int size_px) {
   return photographed(specimen, relief, lamp, {120.0});
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

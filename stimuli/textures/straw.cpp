@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace touchtrial {
+namespace touchtrial::stimuli {
 namespace {
 
 struct Stalk {
@@ -145,4 +145,4 @@ GreyImage make_straw(const Specimen& specimen, int size_px) {
   return photographed(specimen, relief, lamp, {122.0, 0.75});
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::stimuli

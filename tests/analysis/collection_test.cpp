@@ -16,13 +16,13 @@ FakeSession session_of(const std::string& participant, int enrolment) {
   return {.participant = participant, .enrolment = enrolment, .answers = FakeStudy::always_right()};
 }
 
-StationRecord falcon() {
-  StationRecord station;
+store::StationRecord falcon() {
+  store::StationRecord station;
   station.model = "Falcon";
   return station;
 }
 
-int sum_of(const ParticipantFlow& flow) {
+int sum_of(const analysis::ParticipantFlow& flow) {
   return flow.withdrawn + flow.replaced + flow.excluded + flow.stopped + flow.open +
          flow.other_kind + flow.unseen + flow.analysed;
 }
@@ -30,9 +30,9 @@ int sum_of(const ParticipantFlow& flow) {
 }  // namespace
 
 TEST_CASE("load_collection tells what the study prescribes") {
-  FakeStudy study(Protocol::classification,
+  FakeStudy study(design::Protocol::classification,
                   {.trials = R"({"explore_limit_s": 30, "on_timeout": "no-response"})"});
-  const Prescription prescription = load_collection(study.store()).prescription;
+  const analysis::Prescription prescription = analysis::load_collection(study.store()).prescription;
   CHECK(prescription.explore_limit_s == 30.0);
   CHECK(prescription.on_timeout == "no-response");
   CHECK(prescription.order == "shuffled");
@@ -43,22 +43,22 @@ TEST_CASE("load_collection tells what the study prescribes") {
 }
 
 TEST_CASE("A prescription follows the section on sessions where there is one") {
-  const Prescription prescription = prescription_from_json(
+  const analysis::Prescription prescription = analysis::prescription_from_json(
       R"({"trials":{"explore_limit_s":5,"on_timeout":"fade","order":"uniform","repeats":2},
           "session":{"sight":"blindfold","masking":{"wanted":false,"level_dbfs":-40.5}}})");
   CHECK(prescription.sight == "blindfold");
   CHECK_FALSE(prescription.masking_wanted);
   CHECK(prescription.masking_dbfs == -40.5);
-  CHECK_THROWS_AS(prescription_from_json("{}"), StoreError);
-  CHECK_THROWS_AS(prescription_from_json("no JSON"), StoreError);
+  CHECK_THROWS_AS(analysis::prescription_from_json("{}"), StoreError);
+  CHECK_THROWS_AS(analysis::prescription_from_json("no JSON"), StoreError);
 }
 
 TEST_CASE("A session's record holds practice, deviations, resumptions and station") {
-  FakeStudy study(Protocol::classification, {.simulated = false});
+  FakeStudy study(design::Protocol::classification, {.simulated = false});
   FakeSession session = session_of("P01", 1);
   session.station = falcon();
-  session.servo = ServoHealth{.rate_hz = 998.0, .lateness_p99_us = 40.0};
-  session.before_trials = [](SessionRecorder& recorder) {
+  session.servo = store::ServoHealth{.rate_hz = 998.0, .lateness_p99_us = 40.0};
+  session.before_trials = [](store::SessionRecorder& recorder) {
     recorder.practised(milliseconds(10), {.round = 1, .presentation = 1, .correct = false});
     recorder.practised(milliseconds(20), {.round = 2, .presentation = 1, .correct = true});
     recorder.practised(milliseconds(30), {.round = 2, .presentation = 2, .correct = true});
@@ -71,9 +71,9 @@ TEST_CASE("A session's record holds practice, deviations, resumptions and statio
   study.store().note(1, milliseconds(100), "moved-hand", "during trial 3");
   study.store().note(1, milliseconds(110), "", "a remark is no deviation");
 
-  const Collection collection = load_collection(study.store());
+  const analysis::Collection collection = analysis::load_collection(study.store());
   REQUIRE(collection.sessions.size() == 1);
-  const SessionRecord& record = collection.sessions[0];
+  const analysis::SessionRecord& record = collection.sessions[0];
   CHECK(record.row.participant == "P01");
   REQUIRE(record.practice);
   CHECK(record.practice->rounds == 2);
@@ -93,26 +93,26 @@ TEST_CASE("A session's record holds practice, deviations, resumptions and statio
 }
 
 TEST_CASE("Practice that did not reach its criterion is told") {
-  FakeStudy study(Protocol::classification);
+  FakeStudy study(design::Protocol::classification);
   FakeSession session = session_of("P01", 1);
-  session.before_trials = [](SessionRecorder& recorder) {
+  session.before_trials = [](store::SessionRecorder& recorder) {
     recorder.practised(milliseconds(10), {.round = 1, .presentation = 1, .correct = false});
     recorder.deviated(milliseconds(20), {"practice-not-passed", "0 of 1"});
   };
   study.add(session);
   study.add(session_of("P02", 2));
-  const Collection collection = load_collection(study.store());
+  const analysis::Collection collection = analysis::load_collection(study.store());
   CHECK_FALSE(collection.sessions[0].practice->passed);
   CHECK_FALSE(collection.sessions[1].practice);
 }
 
 TEST_CASE("Every participant is counted once, by the session that stands") {
-  FakeStudy study(Protocol::classification);
+  FakeStudy study(design::Protocol::classification);
   study.add(session_of("complete", 1));
   FakeSession stopped = session_of("stopped", 2);
   stopped.complete = false;
-  stopped.before_trials = [](SessionRecorder& recorder) {
-    recorder.remarked(milliseconds(10), EventKind::stopped, "felt unwell");
+  stopped.before_trials = [](store::SessionRecorder& recorder) {
+    recorder.remarked(milliseconds(10), store::EventKind::stopped, "felt unwell");
   };
   study.add(stopped);
   study.add(session_of("asleep", 3));
@@ -123,7 +123,7 @@ TEST_CASE("Every participant is counted once, by the session that stands") {
   stopped.participant = "again";
   stopped.enrolment = 6;
   study.add(stopped);
-  StudyStore& store = study.store();
+  store::StudyStore& store = study.store();
   store.exclude(3, milliseconds(10), "fell asleep");
   store.withdraw(4, milliseconds(20), "no reason");
   store.replace(5, "successor", milliseconds(30), "did not finish");
@@ -131,8 +131,8 @@ TEST_CASE("Every participant is counted once, by the session that stands") {
   store.replace(6, "again", milliseconds(40), "power cut");
   study.add(session_of("again", 6));
 
-  const Collection collection = load_collection(store);
-  const ParticipantFlow& flow = collection.flow;
+  const analysis::Collection collection = analysis::load_collection(store);
+  const analysis::ParticipantFlow& flow = collection.flow;
   CHECK(flow.enrolled == 7);
   CHECK(flow.analysed == 3);  // complete, successor, again
   CHECK(flow.stopped == 1);
@@ -149,19 +149,19 @@ TEST_CASE("Every participant is counted once, by the session that stands") {
 }
 
 TEST_CASE("Of who withdrew a collection holds nothing but that") {
-  FakeStudy study(Protocol::classification, {.simulated = false});
+  FakeStudy study(design::Protocol::classification, {.simulated = false});
   FakeSession session = session_of("P01", 1);
   session.station = falcon();
-  session.servo = ServoHealth{};
-  session.before_trials = [](SessionRecorder& recorder) {
+  session.servo = store::ServoHealth{};
+  session.before_trials = [](store::SessionRecorder& recorder) {
     recorder.deviated(milliseconds(40), {"no-curtain", "told a name"});
   };
   study.add(session);
   study.store().exclude(1, milliseconds(10), "told a name");
   study.store().withdraw(1, milliseconds(20), "");
-  const Collection collection = load_collection(study.store());
+  const analysis::Collection collection = analysis::load_collection(study.store());
   REQUIRE(collection.sessions.size() == 1);
-  const SessionRecord& record = collection.sessions[0];
+  const analysis::SessionRecord& record = collection.sessions[0];
   CHECK(record.row.withdrawn);
   CHECK(record.row.participant.empty());
   CHECK(record.deviations.empty());
@@ -173,17 +173,17 @@ TEST_CASE("Of who withdrew a collection holds nothing but that") {
 }
 
 TEST_CASE("Who completes after an interim look is not analysed yet") {
-  FakeStudy study(Protocol::classification);
+  FakeStudy study(design::Protocol::classification);
   study.add(session_of("P01", 1));
-  CHECK(load_collection(study.store()).flow.analysed == 1);  // blind: to be analysed
+  CHECK(analysis::load_collection(study.store()).flow.analysed == 1);  // blind: to be analysed
   study.store().unblind(milliseconds(100), "safety", true);
   study.add(session_of("P02", 2));
-  const ParticipantFlow flow = load_collection(study.store()).flow;
+  const analysis::ParticipantFlow flow = analysis::load_collection(study.store()).flow;
   CHECK(flow.enrolled == 2);
   CHECK(flow.analysed == 1);
   CHECK(flow.unseen == 1);
   study.close_and_unblind();
-  CHECK(load_collection(study.store()).flow.analysed == 2);
+  CHECK(analysis::load_collection(study.store()).flow.analysed == 2);
 }
 
 }  // namespace touchtrial

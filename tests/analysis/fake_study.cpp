@@ -13,23 +13,23 @@ using std::chrono::milliseconds;
 
 constexpr int kRepeats = 4;
 
-StudyKey fake_key(Protocol protocol, const FakeOptions& options) {
+design::StudyKey fake_key(design::Protocol protocol, const FakeOptions& options) {
   nlohmann::json text = nlohmann::json::parse(fake_study_text(protocol, options.label));
   if (!options.trials.empty()) text["trials"].update(nlohmann::json::parse(options.trials));
-  const Study study = parse_study(text.dump(), ".", "fake.json");
+  const design::Study study = design::parse_study(text.dump(), ".", "fake.json");
   SeededEntropy entropy(11);
-  return make_study_key(study, entropy, options.simulated);
+  return design::make_study_key(study, entropy, options.simulated);
 }
 
-StudyCommitment fake_commitment(const StudyKey& key, const FakeOptions& options,
-                                const std::filesystem::path& pack) {
-  StudyCommitment commitment;
+store::StudyCommitment fake_commitment(const design::StudyKey& key, const FakeOptions& options,
+                                       const std::filesystem::path& pack) {
+  store::StudyCommitment commitment;
   commitment.study = key.study.name;
   commitment.protocol = name_of(key.study.protocol);
   commitment.study_id = key.study_id;
-  commitment.seal = study_seal(key);
-  if (std::filesystem::exists(pack)) commitment.pack = Pack(pack).digest();
-  commitment.configuration = blinded_configuration(key);
+  commitment.seal = design::study_seal(key);
+  if (std::filesystem::exists(pack)) commitment.pack = engine::Pack(pack).digest();
+  commitment.configuration = design::blinded_configuration(key);
   commitment.scored_trials = key.study.scored_trials();
   commitment.positions = static_cast<int>(key.study.classes.size());
   commitment.simulated = key.simulated;
@@ -39,48 +39,49 @@ StudyCommitment fake_commitment(const StudyKey& key, const FakeOptions& options,
 }
 
 /// A pack of 2 x 2 pixel fields, one for each code.
-std::filesystem::path fake_pack(const StudyKey& key, const std::filesystem::path& folder) {
+std::filesystem::path fake_pack(const design::StudyKey& key, const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
-  PackManifest manifest{key.study_id, {}};
-  for (const KeyedStimulus& stimulus : key.stimuli) {
-    const TextureField field({0.2, 2, 2}, Plane<FieldSample>(2, 2));
-    const Digest checksum = write_field(folder, stimulus.code, field.view());
+  engine::PackManifest manifest{key.study_id, {}};
+  for (const design::KeyedStimulus& stimulus : key.stimuli) {
+    const engine::TextureField field({0.2, 2, 2}, Plane<engine::FieldSample>(2, 2));
+    const Digest checksum = engine::write_field(folder, stimulus.code, field.view());
     manifest.entries.push_back({stimulus.code, checksum, {}, {0.01, 0.02}});
   }
-  std::ranges::sort(manifest.entries, {}, &PackEntry::code);
-  write_manifest(folder, manifest);
+  std::ranges::sort(manifest.entries, {}, &engine::PackEntry::code);
+  engine::write_manifest(folder, manifest);
   return folder;
 }
 
-StudyStore fake_store(const StudyKey& key, const FakeOptions& options,
-                      const std::filesystem::path& folder) {
+store::StudyStore fake_store(const design::StudyKey& key, const FakeOptions& options,
+                             const std::filesystem::path& folder) {
   const auto pack = folder / "study.pack";
   if (options.with_pack) fake_pack(key, pack);
-  return StudyStore::create(folder / "study.db", fake_commitment(key, options, pack),
-                            milliseconds(0));
+  return store::StudyStore::create(folder / "study.db", fake_commitment(key, options, pack),
+                                   milliseconds(0));
 }
 
-Trace fake_trace() {
-  Trace trace;
+store::Trace fake_trace() {
+  store::Trace trace;
   for (int i = 0; i < 20; ++i) trace.samples.push_back({{0.1 * i, 0.0, -0.5}, {0.0, 0.0, 0.25}});
   return trace;
 }
 
-int position_of(const Schedule& schedule, int class_index) {
+int position_of(const design::Schedule& schedule, int class_index) {
   const auto found = std::find(schedule.layout.begin(), schedule.layout.end(), class_index);
   return static_cast<int>(found - schedule.layout.begin());
 }
 
 /// The presentation at a place, from 1, begins at 10 times that in seconds.
-void interrupt_trial(SessionRecorder& recorder, const Presentation& shown, int place) {
+void interrupt_trial(store::SessionRecorder& recorder, const design::Presentation& shown,
+                     int place) {
   const milliseconds start(10'000 * place);
   recorder.presented(start, shown.trial, shown.block);
   recorder.interrupted(start + milliseconds(1000), shown.trial, "comfort stop");
 }
 
 /// It is touched 0.5 s and answered 4.25 s later.
-void record_trial(SessionRecorder& recorder, const FakeSession& session, const Schedule& schedule,
-                  const Presentation& shown, int place) {
+void record_trial(store::SessionRecorder& recorder, const FakeSession& session,
+                  const design::Schedule& schedule, const design::Presentation& shown, int place) {
   const milliseconds start(10'000 * place);
   recorder.presented(start, shown.trial, shown.block);
   recorder.first_contact(start + milliseconds(500), shown.trial);
@@ -90,7 +91,7 @@ void record_trial(SessionRecorder& recorder, const FakeSession& session, const S
   } else {
     recorder.timed_out(start + milliseconds(4250), shown.trial);
   }
-  TraceBody body;
+  store::TraceBody body;
   body.trial = shown.trial;
   body.rate_hz = 1000.0;
   body.valid = session.valid;
@@ -102,8 +103,8 @@ void record_trial(SessionRecorder& recorder, const FakeSession& session, const S
 
 }  // namespace
 
-std::string fake_study_text(Protocol protocol, const std::string& first_label) {
-  const bool comparison = protocol == Protocol::comparison;
+std::string fake_study_text(design::Protocol protocol, const std::string& first_label) {
+  const bool comparison = protocol == design::Protocol::comparison;
   nlohmann::json study{{"study", comparison ? "pair" : "single"},
                        {"protocol", name_of(protocol)},
                        {"trials", {{"repeats", kRepeats}}},
@@ -116,30 +117,30 @@ std::string fake_study_text(Protocol protocol, const std::string& first_label) {
   return study.dump();
 }
 
-FakeStudy::FakeStudy(Protocol protocol, const FakeOptions& options)
+FakeStudy::FakeStudy(design::Protocol protocol, const FakeOptions& options)
     : key_(fake_key(protocol, options)), store_(fake_store(key_, options, folder_.path())) {}
 
 void FakeStudy::add(const FakeSession& session) {
   const int number = store_.next_session();
   SeededEntropy entropy(static_cast<std::uint64_t>(number));
   const SecretKey own = entropy.secret("participant");
-  BufferedEvents buffer;
-  SessionRecorder recorder(number, own, buffer);
-  const Schedule schedule = make_schedule(key_.study, session.enrolment);
-  SessionOpening opening;
+  store::BufferedEvents buffer;
+  store::SessionRecorder recorder(number, own, buffer);
+  const design::Schedule schedule = design::make_schedule(key_.study, session.enrolment);
+  store::SessionOpening opening;
   opening.participant = session.participant;
   opening.enrolment = session.enrolment;
   opening.study_id = key_.study_id;
-  opening.seal = study_seal(key_);
+  opening.seal = design::study_seal(key_);
   opening.device = "simulated";
   opening.simulated = key_.simulated;
   opening.pilot = store_.commitment().pilot;
   opening.station = session.station;
-  recorder.opened(milliseconds(0), opening, schedule_to_json(schedule, key_));
+  recorder.opened(milliseconds(0), opening, design::schedule_to_json(schedule, key_));
   if (session.before_trials) session.before_trials(recorder);
   int place = 0;
-  const Presentation* again = nullptr;
-  for (const Presentation& presentation : schedule.presentations) {
+  const design::Presentation* again = nullptr;
+  for (const design::Presentation& presentation : schedule.presentations) {
     if (place == session.stop_after) break;
     if (presentation.trial == session.interrupt_trial) {
       again = &presentation;
@@ -150,7 +151,8 @@ void FakeStudy::add(const FakeSession& session) {
   }
   if (again != nullptr) record_trial(recorder, session, schedule, *again, ++place);
   recorder.closed(milliseconds(10'000'000), session.complete);
-  store_.add_session(buffer, wrap_participant_key(key_.master, number, own), milliseconds(number));
+  store_.add_session(buffer, store::wrap_participant_key(key_.master, number, own),
+                     milliseconds(number));
 }
 
 void FakeStudy::close_and_unblind() {
@@ -159,11 +161,11 @@ void FakeStudy::close_and_unblind() {
 }
 
 FakeAnswers FakeStudy::always_right() {
-  return [](const Presentation& shown) { return shown.stimulus.class_index; };
+  return [](const design::Presentation& shown) { return shown.stimulus.class_index; };
 }
 
 FakeAnswers FakeStudy::confusing(int from, int to) {
-  return [=](const Presentation& shown) {
+  return [=](const design::Presentation& shown) {
     return shown.stimulus.class_index == from ? to : shown.stimulus.class_index;
   };
 }

@@ -12,10 +12,10 @@
 namespace touchtrial {
 
 /// Class index of the answer to a presentation, or nothing to let the time run out.
-using FakeAnswers = std::function<std::optional<int>(const Presentation&)>;
+using FakeAnswers = std::function<std::optional<int>(const design::Presentation&)>;
 
 /// What was felt in a presentation.
-using FakeTraces = std::function<Trace(const Presentation&)>;
+using FakeTraces = std::function<store::Trace(const design::Presentation&)>;
 
 /// How one fake session goes.
 struct FakeSession {
@@ -24,13 +24,13 @@ struct FakeSession {
   FakeAnswers answers;
   bool complete = true;
   bool valid = true;
-  bool within_limits = true;               ///< by the sealed measures
-  std::optional<StationRecord> station{};  ///< as in real time
-  std::optional<ServoHealth> servo{};      ///< of every trial
-  int interrupt_trial = 0;                 ///< interrupted, and presented again at the end; 0: none
-  int stop_after = 1 << 20;                ///< presentations
+  bool within_limits = true;                      ///< by the sealed measures
+  std::optional<store::StationRecord> station{};  ///< as in real time
+  std::optional<store::ServoHealth> servo{};      ///< of every trial
+  int interrupt_trial = 0;   ///< interrupted, and presented again at the end; 0: none
+  int stop_after = 1 << 20;  ///< presentations
   /// Recorded after the opening, before 10 s have passed.
-  std::function<void(SessionRecorder&)> before_trials{};
+  std::function<void(store::SessionRecorder&)> before_trials{};
   FakeTraces traces{};  ///< empty: a touch too short to feel anything
 };
 
@@ -45,10 +45,10 @@ struct FakeOptions {
 /// Three classes, each with one image, four presentations a method.
 class FakeStudy {
  public:
-  explicit FakeStudy(Protocol protocol, const FakeOptions& options = {});
+  explicit FakeStudy(design::Protocol protocol, const FakeOptions& options = {});
 
-  [[nodiscard]] const StudyKey& key() const noexcept { return key_; }
-  [[nodiscard]] StudyStore& store() noexcept { return store_; }
+  [[nodiscard]] const design::StudyKey& key() const noexcept { return key_; }
+  [[nodiscard]] store::StudyStore& store() noexcept { return store_; }
   [[nodiscard]] const std::filesystem::path& folder() const noexcept { return folder_.path(); }
   [[nodiscard]] std::filesystem::path pack_folder() const { return folder() / "study.pack"; }
   [[nodiscard]] std::filesystem::path database() const { return folder() / "study.db"; }
@@ -63,11 +63,12 @@ class FakeStudy {
 
  private:
   TempFolder folder_;
-  StudyKey key_;
-  StudyStore store_;
+  design::StudyKey key_;
+  store::StudyStore store_;
 };
 
 /// Its study file.
-[[nodiscard]] std::string fake_study_text(Protocol protocol, const std::string& first_label);
+[[nodiscard]] std::string fake_study_text(design::Protocol protocol,
+                                          const std::string& first_label);
 
 }  // namespace touchtrial

@@ -19,21 +19,21 @@ std::vector<std::string> lines_of(const std::string& text) {
 }  // namespace
 
 TEST_CASE("display_width counts characters, not bytes, and wide ones twice") {
-  CHECK(display_width("") == 0);
-  CHECK(display_width("bark") == 4);
-  CHECK(display_width("écorce") == 6);
-  CHECK(display_width("木") == 2);
+  CHECK(analysis::display_width("") == 0);
+  CHECK(analysis::display_width("bark") == 4);
+  CHECK(analysis::display_width("écorce") == 6);
+  CHECK(analysis::display_width("木") == 2);
 }
 
 TEST_CASE("A table pads labels in any language to the same column") {
-  TextTable table({"class", "n"});
+  analysis::TextTable table({"class", "n"});
   table.add({"écorce", "5"});
   table.add({"木目", "12"});
   CHECK(table.text() == "  class    n\n  écorce   5\n  木目    12\n");
 }
 
 TEST_CASE("A table that is too wide goes on below with its first column repeated") {
-  TextTable table({"row", "aaaaaaaa", "bbbbbbbb", "cccccccc"});
+  analysis::TextTable table({"row", "aaaaaaaa", "bbbbbbbb", "cccccccc"});
   table.add({"one", "1", "2", "3"});
   const auto lines = lines_of(table.text(26));
   REQUIRE(lines.size() == 4);
@@ -44,37 +44,38 @@ TEST_CASE("A table that is too wide goes on below with its first column repeated
 }
 
 TEST_CASE("A cell that is too long is cut at a character") {
-  CHECK(fitted("short", 10) == "short");
-  CHECK(fitted("abcdef", 4) == "abc…");
-  CHECK(fitted("ééé", 2) == "é…");
-  CHECK(display_width(fitted("木木木木", 5)) == 5);
+  CHECK(analysis::fitted("short", 10) == "short");
+  CHECK(analysis::fitted("abcdef", 4) == "abc…");
+  CHECK(analysis::fitted("ééé", 2) == "é…");
+  CHECK(analysis::display_width(analysis::fitted("木木木木", 5)) == 5);
 }
 
 TEST_CASE("A table refuses rows of another length") {
-  TextTable table({"a", "b"});
+  analysis::TextTable table({"a", "b"});
   CHECK_THROWS_AS(table.add({"1"}), std::invalid_argument);
-  CHECK_THROWS_AS(TextTable({}), std::invalid_argument);
+  CHECK_THROWS_AS(analysis::TextTable({}), std::invalid_argument);
 }
 
 TEST_CASE("wrapped breaks paragraphs at spaces and indents what follows") {
   std::string words;
   for (int i = 0; i < 40; ++i) words += "word ";
-  const auto lines = lines_of(wrapped("  - ", words));
+  const auto lines = lines_of(analysis::wrapped("  - ", words));
   REQUIRE(lines.size() == 3);
   CHECK(lines[0].starts_with("  - word"));
   CHECK(lines[1].starts_with("    word"));
-  for (const std::string& line : lines) CHECK(display_width(line) <= kTextWidth);
+  for (const std::string& line : lines)
+    CHECK(analysis::display_width(line) <= analysis::kTextWidth);
 }
 
 TEST_CASE("Figures in text have signs where they differ and dashes where they do not exist") {
-  CHECK(percent_of({25, 20}) == "80.0%");
-  CHECK(percent_of({0, 0}) == "-");
-  CHECK(percent_range({0.0, 1.0}) == "[0.0, 100.0]");
-  CHECK(points(0.075) == "+7.5");
-  CHECK(points(-0.0001) == "0.0");
-  CHECK(signed_figure(std::nullopt, 2) == "-");
-  CHECK(signed_figure(0.4, 2) == "+0.40");
-  CHECK(p_value(0.000244140625) == "0.000244");
+  CHECK(analysis::percent_of({25, 20}) == "80.0%");
+  CHECK(analysis::percent_of({0, 0}) == "-");
+  CHECK(analysis::percent_range({0.0, 1.0}) == "[0.0, 100.0]");
+  CHECK(analysis::points(0.075) == "+7.5");
+  CHECK(analysis::points(-0.0001) == "0.0");
+  CHECK(analysis::signed_figure(std::nullopt, 2) == "-");
+  CHECK(analysis::signed_figure(0.4, 2) == "+0.40");
+  CHECK(analysis::p_value(0.000244140625) == "0.000244");
 }
 
 }  // namespace touchtrial

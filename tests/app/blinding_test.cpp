@@ -15,6 +15,7 @@
 #include <SQLiteCpp/Statement.h>
 
 using namespace touchtrial;
+using namespace touchtrial::engine;
 
 namespace {
 

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 using namespace touchtrial;
+using namespace touchtrial::store;
 
 namespace {
 

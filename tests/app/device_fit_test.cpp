@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 using namespace touchtrial;
+using namespace touchtrial::engine;
 using nlohmann::json;
 
 namespace {

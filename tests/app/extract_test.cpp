@@ -11,6 +11,7 @@
 #include <string>
 
 using namespace touchtrial;
+using namespace touchtrial::engine;
 
 namespace {
 

@@ -15,6 +15,8 @@
 #include <vector>
 
 using namespace touchtrial;
+using namespace touchtrial::design;
+using namespace touchtrial::store;
 
 namespace {
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 using namespace touchtrial;
+using namespace touchtrial::engine;
 
 TEST_CASE("prepare builds once, reuses afterwards, and rebuilds what changed") {
   const StudyFolder study;

@@ -9,6 +9,7 @@
 #include <vector>
 
 using namespace touchtrial;
+using namespace touchtrial::store;
 
 namespace {
 

@@ -55,7 +55,7 @@ inline json study_of(const std::string& protocol) {
 struct StudyFolder {
   explicit StudyFolder(const std::string& protocol = "classification") {
     for (std::size_t i = 0; i < kLabels.size(); ++i) {
-      write_png(path() / (kLabels[i] + "-photo.png"), texture_number(static_cast<int>(i)));
+      engine::write_png(path() / (kLabels[i] + "-photo.png"), texture_number(static_cast<int>(i)));
     }
     replace_file(path() / "cloths.json", study_of(protocol).dump());
     replace_file(path() / "quick.json",

@@ -11,13 +11,13 @@ namespace {
 
 Plane<double> texture_of(const std::string& name) {
   const std::string path = std::string(TOUCHTRIAL_STIMULI) + "/" + name + ".png";
-  return extract_texture<double>(read_grey_image(path), {}).texture;
+  return engine::extract_texture<double>(engine::read_grey_image(path), {}).texture;
 }
 
 TEST_CASE(
     "at the defaults hand, wall and texture are stable: contact is kept and nothing chatters") {
-  RenderingOptions options;
-  options.model = GENERATE(ModelKind::paper, ModelKind::surface);
+  engine::RenderingOptions options;
+  options.model = GENERATE(engine::ModelKind::paper, engine::ModelKind::surface);
   const std::string name = GENERATE("bark", "cloth");
   CAPTURE(name);
   const Chatter chatter = stroke_texture(texture_of(name), options);
@@ -27,11 +27,11 @@ TEST_CASE(
 }
 
 TEST_CASE("a texture of ten times the stiffness makes the hand chatter under model paper") {
-  RenderingOptions options;
+  engine::RenderingOptions options;
   options.texture_stiffness_n_per_mm = 4.0;
   const Plane<double> texture = texture_of("cloth");
   CHECK(stroke_texture(texture, options).vibration_mm_s >
-        20.0 * stroke_texture(texture, RenderingOptions{}).vibration_mm_s);
+        20.0 * stroke_texture(texture, engine::RenderingOptions{}).vibration_mm_s);
 }
 
 }  // namespace

@@ -66,7 +66,7 @@ std::string refusal(const Pointer& place, const json& value) {
   json file = json::object();
   file[place] = value;
   try {
-    static_cast<void>(parse_device_settings(file.dump(), "/lab", "devices.json"));
+    static_cast<void>(device::parse_device_settings(file.dump(), "/lab", "devices.json"));
   } catch (const StudyError& error) {
     return error.what();
   }
@@ -200,8 +200,9 @@ TEST_CASE("the defaults of the schema of device settings are the reader's") {
   for (const Leaf& leaf : all_leaves()) {
     if (leaf.rule.contains("default")) file[leaf.place] = leaf.rule.at("default");
   }
-  const DeviceSettings written = parse_device_settings(file.dump(), "/lab", "devices.json");
-  const DeviceSettings bare;
+  const device::DeviceSettings written =
+      device::parse_device_settings(file.dump(), "/lab", "devices.json");
+  const device::DeviceSettings bare;
   CHECK(written.falcon.serial == bare.falcon.serial);
   CHECK(written.falcon.gravity_bias_n == bare.falcon.gravity_bias_n);
   CHECK(written.falcon.led_order == bare.falcon.led_order);
@@ -219,7 +220,7 @@ TEST_CASE("the defaults of the schema of device settings are the reader's") {
 
 TEST_CASE("examples of the schema of device settings are accepted") {
   for (const json& example : schema().at("examples")) {
-    CHECK_NOTHROW(parse_device_settings(example.dump(), "/lab", "devices.json"));
+    CHECK_NOTHROW(device::parse_device_settings(example.dump(), "/lab", "devices.json"));
   }
 }
 

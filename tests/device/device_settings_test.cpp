@@ -16,8 +16,8 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-DeviceSettings parsed(const std::string& text) {
-  return parse_device_settings(text, "/lab", "devices.json");
+device::DeviceSettings parsed(const std::string& text) {
+  return device::parse_device_settings(text, "/lab", "devices.json");
 }
 
 bool is_refused(const std::string& text, const std::string& part) {
@@ -27,7 +27,7 @@ bool is_refused(const std::string& text, const std::string& part) {
 }  // namespace
 
 TEST_CASE("device settings say everything about the drivers") {
-  const DeviceSettings settings = parsed(R"({
+  const device::DeviceSettings settings = parsed(R"({
     "falcon": {"firmware": "fw.bin", "serial": "F7", "gravity_bias_n": [0, 0.5, -0.1],
                "led_order": [2, 0, 1]},
     "openhaptics": {"library": "/opt/libHD.so", "device": "Left", "rate_hz": 2000},
@@ -70,17 +70,17 @@ TEST_CASE("a library is a name for the system to look up or a path from the file
 }
 
 TEST_CASE("limits and placement are kept for each driver") {
-  const DeviceSettings settings = parsed(R"({
+  const device::DeviceSettings settings = parsed(R"({
     "falcon": {"limits": {"max_force_n": 2, "continuous_force_n": 0.5, "max_slew_n_per_s": 300,
                           "max_speed_mm_s": 900},
                "placement": {"orientation": "vertical", "centre_mm": [1, -2, 3]}},
     "simulated": {"limits": {"max_force_n": 1}}})");
-  const DeviceUse falcon = settings.use_of("falcon");
+  const device::DeviceUse falcon = settings.use_of("falcon");
   CHECK(falcon.limits.max_force_n == 2.0);
   CHECK(falcon.limits.continuous_force_n == 0.5);
   CHECK(falcon.limits.max_slew_n_per_s == 300.0);
   CHECK(falcon.limits.max_speed_mm_s == 900.0);
-  CHECK(falcon.orientation == PlaneOrientation::vertical);
+  CHECK(falcon.orientation == device::PlaneOrientation::vertical);
   CHECK(falcon.centre_mm == Vec3{1.0, -2.0, 3.0});
   CHECK(settings.use_of("simulated").limits.max_force_n == 1.0);
   CHECK_FALSE(settings.use_of("dhd").limits.max_force_n.has_value());
@@ -88,11 +88,11 @@ TEST_CASE("limits and placement are kept for each driver") {
 }
 
 TEST_CASE("a lab's limits make limits stricter and never looser") {
-  const SafetyLimits usual;
-  LabLimits lab;
+  const device::SafetyLimits usual;
+  device::LabLimits lab;
   lab.max_force_n = 50.0;
   lab.max_speed_mm_s = 500.0;
-  const SafetyLimits limits = stricter_of(usual, lab);
+  const device::SafetyLimits limits = device::stricter_of(usual, lab);
   CHECK(limits.max_force_n == usual.max_force_n);
   CHECK(limits.max_speed_mm_s == 500.0);
   CHECK(limits.max_slew_n_per_s == usual.max_slew_n_per_s);
@@ -100,22 +100,22 @@ TEST_CASE("a lab's limits make limits stricter and never looser") {
 }
 
 TEST_CASE("a lab's slew limit does not keep a force from being let go") {
-  LabLimits lab;
+  device::LabLimits lab;
   lab.max_slew_n_per_s = 1.0;
-  const SafetyLimits limits = stricter_of({}, lab);
-  CHECK(limits.max_slew_n_per_s == limits.max_force_n / kLongestLetGoS);
-  CHECK(is_sound(limits));
+  const device::SafetyLimits limits = device::stricter_of({}, lab);
+  CHECK(limits.max_slew_n_per_s == limits.max_force_n / device::kLongestLetGoS);
+  CHECK(device::is_sound(limits));
 }
 
 TEST_CASE("a lab's continuous force holds where none is known and beside a larger one") {
-  LabLimits lab;
+  device::LabLimits lab;
   lab.continuous_force_n = 0.9;
-  SafetyLimits known;
-  CHECK(stricter_of(known, lab).continuous_force_n == 0.9);
+  device::SafetyLimits known;
+  CHECK(device::stricter_of(known, lab).continuous_force_n == 0.9);
   known.continuous_force_n = 0.5;
-  CHECK(stricter_of(known, lab).continuous_force_n == 0.5);
+  CHECK(device::stricter_of(known, lab).continuous_force_n == 0.5);
   known.continuous_force_n = 2.0;
-  CHECK(stricter_of(known, lab).continuous_force_n == 0.9);
+  CHECK(device::stricter_of(known, lab).continuous_force_n == 0.9);
 }
 
 TEST_CASE("device settings are refused with the place and a remedy") {
@@ -125,12 +125,12 @@ TEST_CASE("device settings are refused with the place and a remedy") {
   CHECK(is_refused(R"({"falcon": {"led_order": [0, 1, 1]}})", "twice"));
   CHECK(is_refused(R"({"dhd": {"gravity_compensation": 1}})", "must be true or false"));
   CHECK(is_refused(R"({"simulated": {"placement": {}}})", "/simulated/placement"));
-  CHECK_THROWS_AS(read_device_settings("no/such/devices.json"), FileError);
+  CHECK_THROWS_AS(device::read_device_settings("no/such/devices.json"), FileError);
 }
 
 TEST_CASE("the example settings are accepted and relative to their file") {
   const fs::path file = fs::path(TOUCHTRIAL_SOURCE_DIR) / "config" / "devices.json";
-  const DeviceSettings settings = read_device_settings(file);
+  const device::DeviceSettings settings = device::read_device_settings(file);
   CHECK(settings.falcon.firmware == file.parent_path() / "falcon-firmware.bin");
   CHECK(settings.use_of("dhd").limits.max_speed_mm_s == 1000.0);
 }
@@ -140,13 +140,13 @@ TEST_CASE("settings of the user's folder serve unless a file is named") {
   const char* before = std::getenv("XDG_CONFIG_HOME");
   const std::string kept = before == nullptr ? "" : before;
   setenv("XDG_CONFIG_HOME", folder.path().c_str(), 1);
-  CHECK(default_device_settings_path() == folder.path() / "touchtrial" / "devices.json");
-  CHECK(device_settings_for("").falcon.serial.empty());
+  CHECK(device::default_device_settings_path() == folder.path() / "touchtrial" / "devices.json");
+  CHECK(device::device_settings_for("").falcon.serial.empty());
   make_folder(folder.path() / "touchtrial");
-  replace_file(default_device_settings_path(), R"({"falcon": {"serial": "usual"}})");
+  replace_file(device::default_device_settings_path(), R"({"falcon": {"serial": "usual"}})");
   replace_file(folder.path() / "mine.json", R"({"falcon": {"serial": "mine"}})");
-  CHECK(device_settings_for("").falcon.serial == "usual");
-  CHECK(device_settings_for(folder.path() / "mine.json").falcon.serial == "mine");
+  CHECK(device::device_settings_for("").falcon.serial == "usual");
+  CHECK(device::device_settings_for(folder.path() / "mine.json").falcon.serial == "mine");
   kept.empty() ? unsetenv("XDG_CONFIG_HOME") : setenv("XDG_CONFIG_HOME", kept.c_str(), 1);
 }
 

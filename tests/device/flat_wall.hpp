@@ -8,18 +8,18 @@
 
 namespace touchtrial {
 
-class FlatWall final : public ForceSource {
+class FlatWall final : public device::ForceSource {
  public:
-  [[nodiscard]] Vec3 force_n(const DeviceSample& sample) noexcept override {
+  [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override {
     return {0.0, 0.0, 0.4 * std::max(0.0, -sample.position_mm.z)};
   }
 };
 
-class KeptSamples final : public SampleSink {
+class KeptSamples final : public device::SampleSink {
  public:
-  void record(const ServoSample& sample) noexcept override { samples.push_back(sample); }
+  void record(const device::ServoSample& sample) noexcept override { samples.push_back(sample); }
 
-  std::vector<ServoSample> samples;
+  std::vector<device::ServoSample> samples;
 };
 
 }  // namespace touchtrial

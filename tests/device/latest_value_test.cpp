@@ -16,7 +16,7 @@ struct Pair {
 };
 
 TEST_CASE("a latest value starts as the first and stays until a newer one comes") {
-  LatestValue<Pair> latest(Pair{7, 7, 7});
+  device::LatestValue<Pair> latest(Pair{7, 7, 7});
   CHECK(latest.get().a == 7);
   latest.set({1, 1, 1});
   latest.set({2, 2, 2});
@@ -25,7 +25,7 @@ TEST_CASE("a latest value starts as the first and stays until a newer one comes"
 }
 
 TEST_CASE("a reader beside a writer sees whole values that never go back") {
-  LatestValue<Pair> latest;
+  device::LatestValue<Pair> latest;
   constexpr std::uint64_t kLast = 200'000;
   std::thread writer([&] {
     for (std::uint64_t i = 1; i <= kLast; ++i) latest.set({i, i, i});

@@ -14,19 +14,20 @@ constexpr Vec3 kDown{0.0, -1.0, 0.0};
 
 /// Which way the plane's axes point.
 struct Axes {
-  PlaneOrientation orientation;
+  device::PlaneOrientation orientation;
   Vec3 x, y, z;
 };
-constexpr Axes kTable{PlaneOrientation::horizontal, kRight, kTowardsPerson, kUp};
-constexpr Axes kWall{PlaneOrientation::vertical, kRight, kDown, kTowardsPerson};
+constexpr Axes kTable{device::PlaneOrientation::horizontal, kRight, kTowardsPerson, kUp};
+constexpr Axes kWall{device::PlaneOrientation::vertical, kRight, kDown, kTowardsPerson};
 
 TEST_CASE("a table's normal points up and a wall's to the person, and back again") {
   for (const Axes& axes : {kTable, kWall}) {
-    CHECK(to_device_direction({1.0, 0.0, 0.0}, axes.orientation) == axes.x);
-    CHECK(to_device_direction({0.0, 1.0, 0.0}, axes.orientation) == axes.y);
-    CHECK(to_device_direction({0.0, 0.0, 1.0}, axes.orientation) == axes.z);
+    CHECK(device::to_device_direction({1.0, 0.0, 0.0}, axes.orientation) == axes.x);
+    CHECK(device::to_device_direction({0.0, 1.0, 0.0}, axes.orientation) == axes.y);
+    CHECK(device::to_device_direction({0.0, 0.0, 1.0}, axes.orientation) == axes.z);
     const Vec3 any{0.3, -0.4, 1.2};
-    CHECK(to_plane_direction(to_device_direction(any, axes.orientation), axes.orientation) == any);
+    CHECK(device::to_plane_direction(device::to_device_direction(any, axes.orientation),
+                                     axes.orientation) == any);
   }
 }
 
@@ -34,23 +35,23 @@ TEST_CASE("a plane's positions count from its top-left corner") {
   const Vec3 corner_mm{-20.0, 5.0, -10.0};
   for (const Axes& axes : {kTable, kWall}) {
     const Vec3 place_mm = corner_mm + 7.0 * axes.x + 11.0 * axes.y + -2.0 * axes.z;
-    CHECK(norm(to_plane_position_mm(place_mm, {axes.orientation, corner_mm}) -
+    CHECK(norm(device::to_plane_position_mm(place_mm, {axes.orientation, corner_mm}) -
                Vec3{7.0, 11.0, -2.0}) < 1e-12);
   }
 }
 
 TEST_CASE("a plane's force pushes the hand on a Falcon out of the plane, however it stands") {
   for (const Axes& axes : {kTable, kWall}) {
-    falcon::FalconEmulator emulator({.firmware_runs = true, .homed = true});
-    falcon::Lockstep lockstep;
-    falcon::FalconOptions options;
+    device::falcon::FalconEmulator emulator({.firmware_runs = true, .homed = true});
+    device::falcon::Lockstep lockstep;
+    device::falcon::FalconOptions options;
     options.pace = lockstep.pace();
-    options.scheduling = {SchedulingPolicy::other, 0, false};
-    falcon::FalconDevice device(std::make_unique<falcon::EmulatorTransport>(emulator), {},
-                                std::move(options));
-    PlacedDevice placed(device, {axes.orientation, {-20.0, 0.0, 0.0}});
+    options.scheduling = {device::SchedulingPolicy::other, 0, false};
+    device::falcon::FalconDevice device(
+        std::make_unique<device::falcon::EmulatorTransport>(emulator), {}, std::move(options));
+    device::PlacedDevice placed(device, {axes.orientation, {-20.0, 0.0, 0.0}});
     lockstep.steps(2);
-    REQUIRE(placed.write({0.2, -0.3, 1.5}) == DeviceStatus::ok);
+    REQUIRE(placed.write({0.2, -0.3, 1.5}) == device::DeviceStatus::ok);
     lockstep.step();
     // As the emulated motors, which share no code with the driver, push the hand.
     CHECK(norm(emulator.force_n() - (0.2 * axes.x + -0.3 * axes.y + 1.5 * axes.z)) < 0.02);
@@ -61,8 +62,8 @@ TEST_CASE("a plane's force pushes the hand on a Falcon out of the plane, however
       return 0.1 * tick * axes.y + -0.05 * tick * axes.z;
     });
     lockstep.steps(60);
-    DeviceSample sample;
-    REQUIRE(placed.read(sample) == DeviceStatus::ok);
+    device::DeviceSample sample;
+    REQUIRE(placed.read(sample) == device::DeviceStatus::ok);
     CHECK(norm(sample.position_mm - Vec3{20.0, 6.0, -3.0}) < 0.1);
     CHECK(norm(sample.velocity_mm_s - Vec3{0.0, 100.0, -50.0}) < 15.0);
   }

@@ -10,35 +10,39 @@ namespace touchtrial {
 
 TEST_CASE("every driver has a name of its own and says what it is") {
   std::set<std::string> names;
-  for (const DeviceDriver& driver : device_drivers()) {
+  for (const device::DeviceDriver& driver : device::device_drivers()) {
     INFO(driver.name);
     CHECK(names.insert(driver.name).second);
     CHECK_FALSE(driver.what.empty());
-    CHECK(device_driver(driver.name).name == driver.name);
+    CHECK(device::device_driver(driver.name).name == driver.name);
   }
   CHECK(names.count("simulated") == 1);
 }
 
 TEST_CASE("every driver has a place in the device settings") {
-  for (const DeviceDriver& driver : device_drivers()) {
+  for (const device::DeviceDriver& driver : device::device_drivers()) {
     INFO(driver.name);
     const std::string text = R"({")" + driver.name + R"(": {"limits": {"max_force_n": 1.5}}})";
-    CHECK(parse_device_settings(text, "", "test").use_of(driver.name).limits.max_force_n == 1.5);
+    CHECK(device::parse_device_settings(text, "", "test").use_of(driver.name).limits.max_force_n ==
+          1.5);
   }
 }
 
 TEST_CASE("every driver is listed whether it has a device or not") {
   std::set<std::string> listed;
-  for (const DeviceListing& listing : list_devices({})) {
+  for (const device::DeviceListing& listing : device::list_devices({})) {
     INFO(listing.driver);
     CHECK((listing.present || listing.serial.empty()));
     listed.insert(listing.driver);
   }
-  for (const DeviceDriver& driver : device_drivers()) CHECK(listed.count(driver.name) == 1);
+  for (const device::DeviceDriver& driver : device::device_drivers())
+    CHECK(listed.count(driver.name) == 1);
 }
 
 TEST_CASE("a driver that does not exist is refused with the nearest that does") {
-  const auto opened = [](const char* name) { return [=] { return open_device(name, {}); }; };
+  const auto opened = [](const char* name) {
+    return [=] { return device::open_device(name, {}); };
+  };
   CHECK(refuses<UsageError>(opened("simulatd"),
                             "simulatd: there is no such device driver; did "
                             "you mean simulated?"));
@@ -46,15 +50,15 @@ TEST_CASE("a driver that does not exist is refused with the nearest that does") 
 }
 
 TEST_CASE("the simulated device opens and gives positions that move") {
-  const auto device = open_device("simulated", {});
+  const auto device = device::open_device("simulated", {});
   CHECK(device->info().name == "simulated");
   CHECK(device->info().simulated);
   CHECK_FALSE(device->info().workspace.has_value());
-  DeviceSample first;
-  REQUIRE(device->read(first) == DeviceStatus::ok);
-  for (int i = 0; i < 500; ++i) REQUIRE(device->write({}) == DeviceStatus::ok);
-  DeviceSample later;
-  REQUIRE(device->read(later) == DeviceStatus::ok);
+  device::DeviceSample first;
+  REQUIRE(device->read(first) == device::DeviceStatus::ok);
+  for (int i = 0; i < 500; ++i) REQUIRE(device->write({}) == device::DeviceStatus::ok);
+  device::DeviceSample later;
+  REQUIRE(device->read(later) == device::DeviceStatus::ok);
   CHECK(norm(later.position_mm - first.position_mm) > 1.0);
   CHECK(later.sequence > first.sequence);
 }

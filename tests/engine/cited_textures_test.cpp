@@ -16,8 +16,8 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-ExtractionOptions options_of(Method method) {
-  ExtractionOptions options;
+engine::ExtractionOptions options_of(engine::Method method) {
+  engine::ExtractionOptions options;
   options.method = method;
   return options;
 }
@@ -26,11 +26,11 @@ TEST_CASE("the gaussian texture agrees with its definition") {
   for (const Size size : awkward_sizes()) {
     const GreyImage image = noise_image(size);
     INFO(size.height << " x " << size.width);
-    CHECK(largest_difference(gaussian_texture<double>(image, 2.0),
+    CHECK(largest_difference(engine::gaussian_texture<double>(image, 2.0),
                              reference::gaussian_texture(image, 2.0)) < 1e-9);
   }
   const GreyImage image = cloth_image({20, 17});
-  CHECK(largest_difference(gaussian_texture<double>(image, 0.4),
+  CHECK(largest_difference(engine::gaussian_texture<double>(image, 0.4),
                            reference::gaussian_texture(image, 0.4)) < 1e-9);
 }
 
@@ -39,21 +39,22 @@ TEST_CASE("the median texture is its definition exactly") {
     for (const auto& [name, image] : example_images(size)) {
       for (const int radius : {1, 2, 6}) {
         INFO(name << ", " << size.height << " x " << size.width << ", radius " << radius);
-        CHECK(median_texture<double>(image, radius, 4.0) ==
+        CHECK(engine::median_texture<double>(image, radius, 4.0) ==
               reference::median_texture(image, radius, 4.0));
       }
     }
   }
   const GreyImage image = noise_image({12, 9});
-  CHECK(median_texture<double>(image, 63, 0.0) == reference::median_texture(image, 63, 0.0));
+  CHECK(engine::median_texture<double>(image, 63, 0.0) ==
+        reference::median_texture(image, 63, 0.0));
 }
 
 TEST_CASE("the median texture leaves differences up to the threshold alone") {
   GreyImage image = flat_image({9, 9}, 100);
   image.at(4, 4) = 104;
-  CHECK(largest_magnitude(median_texture<double>(image, 2, 4.0)) == 0.0);
+  CHECK(largest_magnitude(engine::median_texture<double>(image, 2, 4.0)) == 0.0);
   image.at(4, 4) = 105;
-  const Plane<double> texture = median_texture<double>(image, 2, 4.0);
+  const Plane<double> texture = engine::median_texture<double>(image, 2, 4.0);
   CHECK(texture.at(4, 4) == 5.0);
   CHECK(texture.at(4, 3) == 0.0);
 }
@@ -62,40 +63,47 @@ TEST_CASE("the edge texture agrees with its definition and ends at 127") {
   for (const Size size : awkward_sizes()) {
     for (const auto& [name, image] : example_images(size)) {
       INFO(name << ", " << size.height << " x " << size.width);
-      CHECK(largest_difference(edge_texture<double>(image, 4.0),
+      CHECK(largest_difference(engine::edge_texture<double>(image, 4.0),
                                reference::edge_texture(image, 4.0)) < 1e-11);
     }
   }
-  CHECK(largest_magnitude(edge_texture<double>(step_image({8, 8}, 0, 255), 4.0)) == 127.0);
-  CHECK(edge_texture<double>(step_image({8, 8}, 100, 110), 4.0).at(4, 4) == 10.0);
+  CHECK(largest_magnitude(engine::edge_texture<double>(step_image({8, 8}, 0, 255), 4.0)) == 127.0);
+  CHECK(engine::edge_texture<double>(step_image({8, 8}, 100, 110), 4.0).at(4, 4) == 10.0);
 }
 
 TEST_CASE("the luminance texture's picture is the image") {
   const GreyImage image = noise_image({10, 13});
-  CHECK(luminance_texture<double>(image).at(3, 4) == image.at(3, 4) - 128.0);
-  const auto texture = extract_texture<float>(image, options_of(Method::luminance)).texture;
-  CHECK(texture_picture(texture) == image);
+  CHECK(engine::luminance_texture<double>(image).at(3, 4) == image.at(3, 4) - 128.0);
+  const auto texture =
+      engine::extract_texture<float>(image, options_of(engine::Method::luminance)).texture;
+  CHECK(engine::texture_picture(texture) == image);
 }
 
 TEST_CASE("the cited extractors find nothing on a flat image") {
   const GreyImage image = flat_image({9, 30}, 83);
-  for (const Method method : {Method::gaussian, Method::median, Method::edge}) {
-    CHECK(largest_magnitude(extract_texture<double>(image, options_of(method)).texture) == 0.0);
+  for (const engine::Method method :
+       {engine::Method::gaussian, engine::Method::median, engine::Method::edge}) {
+    CHECK(largest_magnitude(engine::extract_texture<double>(image, options_of(method)).texture) ==
+          0.0);
   }
 }
 
 TEST_CASE("a float texture of the cited extractors is the double one rounded") {
   const GreyImage image = cloth_image({31, 20});
-  for (const Method method : {Method::gaussian, Method::median, Method::edge, Method::luminance}) {
-    const auto exact = extract_texture<double>(image, options_of(method)).texture;
-    CHECK(extract_texture<float>(image, options_of(method)).texture == converted<float>(exact));
+  for (const engine::Method method : {engine::Method::gaussian, engine::Method::median,
+                                      engine::Method::edge, engine::Method::luminance}) {
+    const auto exact = engine::extract_texture<double>(image, options_of(method)).texture;
+    CHECK(engine::extract_texture<float>(image, options_of(method)).texture ==
+          converted<float>(exact));
   }
 }
 
 TEST_CASE("the cited extractors give the enhanced image and no other by-product") {
   const GreyImage image = cloth_image({12, 12});
-  for (const Method method : {Method::gaussian, Method::median, Method::edge, Method::luminance}) {
-    const auto result = extract_texture<double>(image, options_of(method), WantedPlanes::all());
+  for (const engine::Method method : {engine::Method::gaussian, engine::Method::median,
+                                      engine::Method::edge, engine::Method::luminance}) {
+    const auto result =
+        engine::extract_texture<double>(image, options_of(method), engine::WantedPlanes::all());
     CHECK(result.enhanced.at(5, 6) == image.at(5, 6) + result.texture.at(5, 6));
     CHECK(result.order.empty());
     CHECK(result.csgv.empty());
@@ -106,23 +114,25 @@ TEST_CASE("the cited extractors give the enhanced image and no other by-product"
 
 TEST_CASE("parameters of the cited extractors out of range are refused by name") {
   for (const double sigma : {kNan, 0.0, -1.0, 1001.0}) {
-    ExtractionOptions options = options_of(Method::gaussian);
+    engine::ExtractionOptions options = options_of(engine::Method::gaussian);
     options.sigma_px = sigma;
-    CHECK(refusal_of([&] { check_options(options); }).starts_with("sigma: must be in (0, 1000]"));
+    CHECK(refusal_of([&] {
+            engine::check_options(options);
+          }).starts_with("sigma: must be in (0, 1000]"));
   }
   for (const double threshold : {kNan, -0.1, 256.0}) {
-    ExtractionOptions options = options_of(Method::median);
+    engine::ExtractionOptions options = options_of(engine::Method::median);
     options.threshold_grey = threshold;
-    CHECK(refusal_of([&] { check_options(options); }).starts_with("threshold:"));
+    CHECK(refusal_of([&] { engine::check_options(options); }).starts_with("threshold:"));
   }
   for (const double divisor : {kNan, 0.0, -4.0, 1e7}) {
-    ExtractionOptions options = options_of(Method::edge);
+    engine::ExtractionOptions options = options_of(engine::Method::edge);
     options.divisor = divisor;
-    CHECK(refusal_of([&] { check_options(options); }).starts_with("divisor:"));
+    CHECK(refusal_of([&] { engine::check_options(options); }).starts_with("divisor:"));
   }
-  ExtractionOptions options = options_of(Method::median);
+  engine::ExtractionOptions options = options_of(engine::Method::median);
   options.radius = 0;
-  CHECK(refusal_of([&] { check_options(options); }).starts_with("radius:"));
+  CHECK(refusal_of([&] { engine::check_options(options); }).starts_with("radius:"));
 }
 
 }  // namespace

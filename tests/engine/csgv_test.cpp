@@ -11,7 +11,8 @@ namespace touchtrial {
 namespace {
 
 Plane<double> csgv_of(const GreyImage& image) {
-  return doubled<double>(composite_gradient(daub4_sub_bands(image)), image.height(), image.width());
+  return engine::doubled<double>(engine::composite_gradient(engine::daub4_sub_bands(image)),
+                                 image.height(), image.width());
 }
 
 TEST_CASE("csgv of a flat image is exactly zero") {
@@ -37,7 +38,7 @@ TEST_CASE("doubled repeats every sample in a square of two, less at an odd edge"
   half.at(0, 1) = 1.0;
   half.at(1, 0) = 2.0;
   half.at(1, 1) = 3.0;
-  const Plane<float> full = doubled<float>(half, 3, 4);
+  const Plane<float> full = engine::doubled<float>(half, 3, 4);
   for (int y = 0; y < 3; ++y) {
     for (int x = 0; x < 4; ++x) CHECK(full.at(y, x) == static_cast<float>(half.at(y / 2, x / 2)));
   }

@@ -20,13 +20,13 @@ double energy(const Plane<double>& plane) {
   return sum;
 }
 
-double energy(const SubBands& bands) {
+double energy(const engine::SubBands& bands) {
   return energy(bands.ll) + energy(bands.lh) + energy(bands.hl) + energy(bands.hh);
 }
 
 TEST_CASE("daub4 turns a constant c into ll = 2c and no details") {
   for (const int level : {0, 1, 128, 255}) {
-    const SubBands bands = daub4_sub_bands(flat_image({9, 6}, level));
+    const engine::SubBands bands = engine::daub4_sub_bands(flat_image({9, 6}, level));
     REQUIRE(bands.ll.height() == 5);
     REQUIRE(bands.ll.width() == 3);
     CHECK(largest_difference(bands.ll, Plane<double>(5, 3, 2.0 * level)) < 1e-12);
@@ -37,7 +37,7 @@ TEST_CASE("daub4 turns a constant c into ll = 2c and no details") {
 }
 
 TEST_CASE("daub4 has no details for a ramp inside, its filters having two vanishing moments") {
-  const SubBands bands = daub4_sub_bands(ramp_image({20, 40}, 5));
+  const engine::SubBands bands = engine::daub4_sub_bands(ramp_image({20, 40}, 5));
   for (int x = 0; x < 18; ++x) CHECK(bands.hl.at(4, x) == Approx(0.0).margin(1e-11));
   CHECK(largest_magnitude(bands.hh) < 1e-11);
 }
@@ -53,11 +53,11 @@ TEST_CASE("daub4 keeps the energy of an image whose rim the extension repeats") 
       expected += static_cast<double>(image.at(y, x)) * image.at(y, x);
     }
   }
-  CHECK(energy(daub4_sub_bands(image)) == Approx(expected).epsilon(1e-13));
+  CHECK(energy(engine::daub4_sub_bands(image)) == Approx(expected).epsilon(1e-13));
 }
 
 TEST_CASE("daub4 tells vertical edges from horizontal ones") {
-  const SubBands vertical = daub4_sub_bands(step_image({16, 18}));
+  const engine::SubBands vertical = engine::daub4_sub_bands(step_image({16, 18}));
   CHECK(largest_magnitude(vertical.hl) > 10.0);
   CHECK(largest_magnitude(vertical.lh) < 1e-12);
 }
@@ -67,7 +67,7 @@ TEST_CASE("daub4 agrees with its definition at every size") {
   sizes.insert(sizes.end(), stimulus_sizes().begin(), stimulus_sizes().end());
   for (const Size size : sizes) {
     for (const GreyImage& image : {noise_image(size), cloth_image(size), ramp_image(size, 3)}) {
-      const SubBands bands = daub4_sub_bands(image);
+      const engine::SubBands bands = engine::daub4_sub_bands(image);
       INFO("size " << size.height << " x " << size.width);
       CHECK(largest_relative_difference(bands.ll, reference::sub_band(image, Tap::low, Tap::low)) <
             1e-12);
@@ -82,7 +82,7 @@ TEST_CASE("daub4 agrees with its definition at every size") {
 }
 
 TEST_CASE("daub4 refuses an empty image") {
-  CHECK_THROWS_AS(daub4_sub_bands(GreyImage()), std::invalid_argument);
+  CHECK_THROWS_AS(engine::daub4_sub_bands(GreyImage()), std::invalid_argument);
 }
 
 }  // namespace

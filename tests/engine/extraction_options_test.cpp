@@ -13,34 +13,34 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-std::string refusal_of_options(const ExtractionOptions& options) {
-  return refusal_of([&] { check_options(options); });
+std::string refusal_of_options(const engine::ExtractionOptions& options) {
+  return refusal_of([&] { engine::check_options(options); });
 }
 
-std::string refusal_of_tv_gabor(const TvGaborOptions& tv_gabor) {
-  ExtractionOptions options;
-  options.method = Method::tv_gabor;
+std::string refusal_of_tv_gabor(const engine::TvGaborOptions& tv_gabor) {
+  engine::ExtractionOptions options;
+  options.method = engine::Method::tv_gabor;
   options.tv_gabor = tv_gabor;
   return refusal_of_options(options);
 }
 
 TEST_CASE("an order that is negative, 1 or more is refused by name") {
   for (const double order : {kNan, kInfinity, -kInfinity, 1.0, -1.0, -1e-12, 1e300}) {
-    ExtractionOptions options;
-    options.method = Method::fixed;
+    engine::ExtractionOptions options;
+    options.method = engine::Method::fixed;
     options.order = order;
     INFO("order " << order);
     CHECK(refusal_of_options(options).starts_with("order: must be in [0, 1), not "));
     CHECK_FALSE(refusal_of([&] {
-                  (void)extract_texture<double>(noise_image({4, 4}), options);
+                  (void)engine::extract_texture<double>(noise_image({4, 4}), options);
                 }).empty());
   }
 }
 
 TEST_CASE("a radius outside 1 to 63 is refused by name") {
-  for (const Method method : {Method::adaptive, Method::fixed}) {
+  for (const engine::Method method : {engine::Method::adaptive, engine::Method::fixed}) {
     for (const int radius : {-1, 0, 64, std::numeric_limits<int>::max()}) {
-      ExtractionOptions options;
+      engine::ExtractionOptions options;
       options.method = method;
       options.radius = radius;
       CHECK(refusal_of_options(options) ==
@@ -50,26 +50,26 @@ TEST_CASE("a radius outside 1 to 63 is refused by name") {
 }
 
 TEST_CASE("the ends of every range are accepted") {
-  ExtractionOptions options;
-  options.method = Method::fixed;
+  engine::ExtractionOptions options;
+  options.method = engine::Method::fixed;
   options.order = 0.0;
   options.radius = 1;
   CHECK(refusal_of_options(options).empty());
   options.order = std::nextafter(1.0, 0.0);
-  options.radius = ExtractionOptions::kMaxRadius;
+  options.radius = engine::ExtractionOptions::kMaxRadius;
   CHECK(refusal_of_options(options).empty());
-  TvGaborOptions tv_gabor;
-  tv_gabor.lambda = TvGaborOptions::kMinLambda;
+  engine::TvGaborOptions tv_gabor;
+  tv_gabor.lambda = engine::TvGaborOptions::kMinLambda;
   tv_gabor.components = {{0.5, -720.0}};
   tv_gabor.max_steps = 1;
   CHECK(refusal_of_tv_gabor(tv_gabor).empty());
-  tv_gabor.lambda = TvGaborOptions::kMaxLambda;
+  tv_gabor.lambda = engine::TvGaborOptions::kMaxLambda;
   CHECK(refusal_of_tv_gabor(tv_gabor).empty());
 }
 
 TEST_CASE("a lambda that is not positive and finite is refused by name") {
   for (const double lambda : {kNan, kInfinity, 0.0, -0.01, 1e-7, 1e7}) {
-    TvGaborOptions options;
+    engine::TvGaborOptions options;
     options.lambda = lambda;
     INFO("lambda " << lambda);
     CHECK(refusal_of_tv_gabor(options).starts_with("lambda: must be from 1e-6 to 1e6, not "));
@@ -78,20 +78,20 @@ TEST_CASE("a lambda that is not positive and finite is refused by name") {
 
 TEST_CASE("a stop that cannot be reached is refused by name") {
   for (const double gap : {kNan, kInfinity, 0.0, -1e-5}) {
-    TvGaborOptions options;
+    engine::TvGaborOptions options;
     options.gap = gap;
     INFO("gap " << gap);
     CHECK(refusal_of_tv_gabor(options).starts_with("gap:"));
   }
   for (const int max_steps : {0, -5}) {
-    TvGaborOptions options;
+    engine::TvGaborOptions options;
     options.max_steps = max_steps;
     CHECK(refusal_of_tv_gabor(options).starts_with("max_steps:"));
   }
 }
 
 TEST_CASE("a component that is no oscillation is refused by name") {
-  TvGaborOptions options;
+  engine::TvGaborOptions options;
   options.components = {};
   CHECK(refusal_of_tv_gabor(options).starts_with("components:"));
   for (const double frequency : {kNan, 0.0, -0.25, 0.51, kInfinity}) {
@@ -106,12 +106,12 @@ TEST_CASE("a component that is no oscillation is refused by name") {
 }
 
 TEST_CASE("options of other methods are not looked at") {
-  ExtractionOptions options;
+  engine::ExtractionOptions options;
   options.order = kNan;
   options.tv_gabor.lambda = kNan;
   CHECK(refusal_of_options(options).empty());
   options = {};
-  options.method = Method::tv_gabor;
+  options.method = engine::Method::tv_gabor;
   options.radius = 0;
   CHECK(refusal_of_options(options).empty());
 }

@@ -19,15 +19,15 @@ namespace {
 constexpr double kDoubleTolerance = 1e-10;
 constexpr double kFloatTolerance = 4e-5;
 
-ExtractionOptions adaptive_options(int radius = 2) {
-  ExtractionOptions options;
+engine::ExtractionOptions adaptive_options(int radius = 2) {
+  engine::ExtractionOptions options;
   options.radius = radius;
   return options;
 }
 
-ExtractionOptions fixed_options(double order, int radius = 2) {
-  ExtractionOptions options;
-  options.method = Method::fixed;
+engine::ExtractionOptions fixed_options(double order, int radius = 2) {
+  engine::ExtractionOptions options;
+  options.method = engine::Method::fixed;
   options.order = order;
   options.radius = radius;
   return options;
@@ -41,7 +41,7 @@ bool is_at_branch_point(double csgv) {
 template <typename Real>
 double texture_error(const GreyImage& image, const Plane<double>& csgv,
                      const Plane<double>& expected, int radius) {
-  Plane<Real> texture = extract_texture<Real>(image, adaptive_options(radius)).texture;
+  Plane<Real> texture = engine::extract_texture<Real>(image, adaptive_options(radius)).texture;
   Plane<double> kept = expected;
   for (std::size_t i = 0; i < kept.size(); ++i) {
     if (is_at_branch_point(csgv.samples()[i])) {
@@ -62,7 +62,7 @@ void check_adaptive(const GreyImage& image, int radius) {
 TEST_CASE("the adaptive texture agrees with its definition at every size and radius") {
   for (const Size size : awkward_sizes()) {
     for (const auto& [name, image] : example_images(size)) {
-      for (const int radius : {1, 2, 3, 7, 20, ExtractionOptions::kMaxRadius}) {
+      for (const int radius : {1, 2, 3, 7, 20, engine::ExtractionOptions::kMaxRadius}) {
         INFO(name << ", " << size.height << " x " << size.width << ", radius " << radius);
         check_adaptive(image, radius);
       }
@@ -82,7 +82,8 @@ TEST_CASE("the adaptive texture agrees with its definition on real stimulus size
 TEMPLATE_TEST_CASE("the adaptive method keeps a flat image exactly flat", "", float, double) {
   for (int level = 0; level < 256; ++level) {
     const GreyImage image = flat_image({6, 5}, level);
-    const auto result = extract_texture<TestType>(image, adaptive_options(), WantedPlanes::all());
+    const auto result =
+        engine::extract_texture<TestType>(image, adaptive_options(), engine::WantedPlanes::all());
     CHECK(largest_magnitude(result.order) == 0.0);
     CHECK(largest_magnitude(result.texture) == 0.0);
     CHECK(largest_difference(result.enhanced, image) == 0.0);
@@ -92,8 +93,8 @@ TEMPLATE_TEST_CASE("the adaptive method keeps a flat image exactly flat", "", fl
 TEMPLATE_TEST_CASE("the adaptive texture of a negative is the negative texture", "", float,
                    double) {
   const GreyImage image = cloth_image({64, 63});
-  const auto positive = extract_texture<TestType>(image, adaptive_options()).texture;
-  auto negative = extract_texture<TestType>(negative_of(image), adaptive_options()).texture;
+  const auto positive = engine::extract_texture<TestType>(image, adaptive_options()).texture;
+  auto negative = engine::extract_texture<TestType>(negative_of(image), adaptive_options()).texture;
   for (TestType& sample : negative.samples()) sample = -sample;
   CHECK(largest_difference(negative, positive) < kFloatTolerance);
 }
@@ -103,13 +104,15 @@ TEST_CASE("the adaptive texture does not depend on brightness") {
   for (std::uint8_t& sample : dark.samples()) sample = static_cast<std::uint8_t>(sample / 2);
   GreyImage bright = dark;
   for (std::uint8_t& sample : bright.samples()) sample = static_cast<std::uint8_t>(sample + 100);
-  CHECK(largest_difference(extract_texture<double>(bright, adaptive_options()).texture,
-                           extract_texture<double>(dark, adaptive_options()).texture) < 1e-9);
+  CHECK(largest_difference(engine::extract_texture<double>(bright, adaptive_options()).texture,
+                           engine::extract_texture<double>(dark, adaptive_options()).texture) <
+        1e-9);
 }
 
 TEST_CASE("the adaptive method gives its by-products in the image's shape") {
   const GreyImage image = cloth_image({9, 12});
-  const auto result = extract_texture<double>(image, adaptive_options(), WantedPlanes::all());
+  const auto result =
+      engine::extract_texture<double>(image, adaptive_options(), engine::WantedPlanes::all());
   const Plane<double> csgv = reference::csgv(image);
   CHECK(largest_relative_difference(result.csgv, csgv) < 1e-11);
   CHECK(largest_difference(result.order, reference::order_map(csgv)) < 1e-12);
@@ -129,7 +132,8 @@ TEST_CASE("the adaptive method gives its by-products in the image's shape") {
 
 TEST_CASE("the fixed method uses one order for all pixels") {
   const GreyImage image = noise_image({13, 12});
-  const auto result = extract_texture<double>(image, fixed_options(0.55, 3), WantedPlanes::all());
+  const auto result =
+      engine::extract_texture<double>(image, fixed_options(0.55, 3), engine::WantedPlanes::all());
   CHECK(result.order == Plane<double>(13, 12, 0.55));
   CHECK(largest_difference(result.texture, reference::texture(image, result.order, 3)) <
         kDoubleTolerance);
@@ -138,15 +142,15 @@ TEST_CASE("the fixed method uses one order for all pixels") {
 }
 
 TEMPLATE_TEST_CASE("the fixed method of order zero finds no texture", "", float, double) {
-  const auto result = extract_texture<TestType>(noise_image({13, 12}), fixed_options(0.0));
+  const auto result = engine::extract_texture<TestType>(noise_image({13, 12}), fixed_options(0.0));
   CHECK(largest_magnitude(result.texture) == 0.0);
 }
 
 TEST_CASE("tv-gabor splits an image into cartoon and texture") {
   const GreyImage image = cloth_image({20, 24});
-  ExtractionOptions options;
-  options.method = Method::tv_gabor;
-  const auto result = extract_texture<double>(image, options, WantedPlanes::all());
+  engine::ExtractionOptions options;
+  options.method = engine::Method::tv_gabor;
+  const auto result = engine::extract_texture<double>(image, options, engine::WantedPlanes::all());
   CHECK(result.converged);
   CHECK(result.steps > 0);
   CHECK(result.gap <= options.tv_gabor.gap);
@@ -159,10 +163,11 @@ TEST_CASE("tv-gabor splits an image into cartoon and texture") {
 }
 
 TEST_CASE("planes that nobody wants are left empty") {
-  for (const Method method : {Method::adaptive, Method::fixed, Method::tv_gabor}) {
-    ExtractionOptions options;
+  for (const engine::Method method :
+       {engine::Method::adaptive, engine::Method::fixed, engine::Method::tv_gabor}) {
+    engine::ExtractionOptions options;
     options.method = method;
-    const auto result = extract_texture<float>(noise_image({8, 8}), options);
+    const auto result = engine::extract_texture<float>(noise_image({8, 8}), options);
     CHECK(result.texture.size() == 64);
     for (const Plane<float>* plane :
          {&result.sub_band_ll, &result.sub_band_lh, &result.sub_band_hl, &result.sub_band_hh,
@@ -173,22 +178,24 @@ TEST_CASE("planes that nobody wants are left empty") {
 }
 
 TEST_CASE("methods have the names of study files") {
-  CHECK(method_names() == std::vector<std::string>{"adaptive", "fixed", "tv-gabor", "gaussian",
-                                                   "median", "edge", "luminance"});
-  for (const std::string& name : method_names()) {
-    const auto method = method_from_name(name);
+  CHECK(engine::method_names() == std::vector<std::string>{"adaptive", "fixed", "tv-gabor",
+                                                           "gaussian", "median", "edge",
+                                                           "luminance"});
+  for (const std::string& name : engine::method_names()) {
+    const auto method = engine::method_from_name(name);
     REQUIRE(method.has_value());
-    CHECK(name_of(*method) == name);
+    CHECK(engine::name_of(*method) == name);
   }
-  CHECK_FALSE(method_from_name("tv_gabor").has_value());
-  CHECK_FALSE(method_from_name("").has_value());
+  CHECK_FALSE(engine::method_from_name("tv_gabor").has_value());
+  CHECK_FALSE(engine::method_from_name("").has_value());
 }
 
 TEST_CASE("extract_texture refuses an empty image, whatever the method") {
-  for (const Method method : {Method::adaptive, Method::fixed, Method::tv_gabor}) {
-    ExtractionOptions options;
+  for (const engine::Method method :
+       {engine::Method::adaptive, engine::Method::fixed, engine::Method::tv_gabor}) {
+    engine::ExtractionOptions options;
     options.method = method;
-    CHECK(refusal_of([&] { (void)extract_texture<float>(GreyImage(), options); }) ==
+    CHECK(refusal_of([&] { (void)engine::extract_texture<float>(GreyImage(), options); }) ==
           "extract_texture: the image is empty");
   }
 }

@@ -20,7 +20,7 @@ TEST_CASE("tangential_force of a unit ramp is -4 inside and -2 on the edge colum
   for (int y = 0; y < 6; ++y) {
     for (int x = 0; x < 7; ++x) surface.at(y, x) = x;
   }
-  const ForceField<double> force = tangential_force(surface, 3);
+  const engine::ForceField<double> force = engine::tangential_force(surface, 3);
   for (int y = 1; y < 5; ++y) {
     CHECK(force.x.at(y, 0) == -2.0);
     for (int x = 1; x < 6; ++x) CHECK(force.x.at(y, x) == -4.0);
@@ -32,14 +32,14 @@ TEST_CASE("tangential_force of a unit ramp is -4 inside and -2 on the edge colum
 TEST_CASE("tangential_force pushes from bright to dark") {
   Plane<double> surface(3, 3);
   surface.at(1, 0) = 100.0;  // bright on the left
-  const ForceField<double> force = tangential_force(surface, 3);
+  const engine::ForceField<double> force = engine::tangential_force(surface, 3);
   CHECK(force.x.at(1, 1) > 0.0);
   CHECK(force.y.at(1, 1) == 0.0);
 }
 
 TEST_CASE("tangential_force of 3 x 3 neighbours is half of minus the Sobel gradient inside") {
   const Plane<double> g = surface_of(noise_image({9, 11}));
-  const ForceField<double> force = tangential_force(g, 3);
+  const engine::ForceField<double> force = engine::tangential_force(g, 3);
   for (int y = 1; y < 8; ++y) {
     for (int x = 1; x < 10; ++x) {
       const double sobel_x = g.at(y - 1, x + 1) + 2 * g.at(y, x + 1) + g.at(y + 1, x + 1) -
@@ -54,7 +54,7 @@ TEST_CASE("tangential_force of 3 x 3 neighbours is half of minus the Sobel gradi
 
 TEST_CASE("tangential_force of a flat surface is exactly zero") {
   for (const int n : {3, 5, 9}) {
-    const ForceField<float> force = tangential_force(Plane<float>(6, 5, 128.3F), n);
+    const engine::ForceField<float> force = engine::tangential_force(Plane<float>(6, 5, 128.3F), n);
     CHECK(largest_magnitude(force.x) == 0.0);
     CHECK(largest_magnitude(force.y) == 0.0);
   }
@@ -65,10 +65,10 @@ TEST_CASE("tangential_force turns round when bright and dark change places") {
     const Plane<double> surface = surface_of(cloth_image({20, 23}));
     Plane<double> opposite = surface;
     for (double& sample : opposite.samples()) sample = -sample;
-    ForceField<double> force = tangential_force(surface, n);
+    engine::ForceField<double> force = engine::tangential_force(surface, n);
     for (double& sample : force.x.samples()) sample = -sample;
     for (double& sample : force.y.samples()) sample = -sample;
-    const ForceField<double> turned = tangential_force(opposite, n);
+    const engine::ForceField<double> turned = engine::tangential_force(opposite, n);
     CHECK(turned.x == force.x);
     CHECK(turned.y == force.y);
   }
@@ -78,9 +78,10 @@ TEST_CASE("tangential_force agrees with Eqs. 10-12 at every size and neighbourho
   for (const Size size : awkward_sizes()) {
     for (const int n : {3, 5, 7, 19}) {
       const Plane<double> surface = surface_of(noise_image(size));
-      const ForceField<double> expected = reference::tangential_force(surface, n);
-      const ForceField<double> exact = tangential_force(surface, n);
-      const ForceField<float> single = tangential_force(converted<float>(surface), n);
+      const engine::ForceField<double> expected = reference::tangential_force(surface, n);
+      const engine::ForceField<double> exact = engine::tangential_force(surface, n);
+      const engine::ForceField<float> single =
+          engine::tangential_force(converted<float>(surface), n);
       INFO("n " << n << ", " << size.height << " x " << size.width);
       CHECK(largest_relative_difference(exact.x, expected.x) < 1e-11);
       CHECK(largest_relative_difference(exact.y, expected.y) < 1e-11);
@@ -93,8 +94,8 @@ TEST_CASE("tangential_force agrees with Eqs. 10-12 at every size and neighbourho
 TEST_CASE("tangential_force agrees with Eqs. 10-12 on real stimulus sizes") {
   for (const Size size : stimulus_sizes()) {
     const Plane<double> surface = surface_of(cloth_image(size));
-    const ForceField<double> expected = reference::tangential_force(surface, 3);
-    const ForceField<double> force = tangential_force(surface, 3);
+    const engine::ForceField<double> expected = reference::tangential_force(surface, 3);
+    const engine::ForceField<double> force = engine::tangential_force(surface, 3);
     CHECK(largest_relative_difference(force.x, expected.x) < 1e-11);
     CHECK(largest_relative_difference(force.y, expected.y) < 1e-11);
   }
@@ -102,8 +103,8 @@ TEST_CASE("tangential_force agrees with Eqs. 10-12 on real stimulus sizes") {
 
 TEST_CASE("tangential_force takes a neighbourhood far larger than the surface") {
   const Plane<double> surface = surface_of(noise_image({5, 4}));
-  const ForceField<double> whole = tangential_force(surface, 9);
-  const ForceField<double> more = tangential_force(surface, INT_MAX);
+  const engine::ForceField<double> whole = engine::tangential_force(surface, 9);
+  const engine::ForceField<double> more = engine::tangential_force(surface, INT_MAX);
   CHECK(more.x == whole.x);
   CHECK(more.y == whole.y);
 }
@@ -112,9 +113,9 @@ TEST_CASE("tangential_force refuses what is no neighbourhood, and an empty surfa
   const Plane<double> surface(4, 4);
   for (const int n : {-3, 0, 1, 2, 4, INT_MIN}) {
     INFO("n " << n);
-    CHECK_THROWS_AS(tangential_force(surface, n), std::invalid_argument);
+    CHECK_THROWS_AS(engine::tangential_force(surface, n), std::invalid_argument);
   }
-  CHECK_THROWS_AS(tangential_force(Plane<float>(), 3), std::invalid_argument);
+  CHECK_THROWS_AS(engine::tangential_force(Plane<float>(), 3), std::invalid_argument);
 }
 
 }  // namespace

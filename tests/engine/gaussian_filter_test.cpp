@@ -47,7 +47,7 @@ TEST_CASE("gaussian_filtered agrees with the direct two-dimensional sum on any s
                              Size{13, 20});
   const double sigma_px = GENERATE(0.05, 0.3, 1.0, 2.0, 3.7);
   const Plane<double> plane = random_texture(size.height, size.width, 1, 255.0);
-  const Plane<double> filtered = gaussian_filtered(plane, sigma_px);
+  const Plane<double> filtered = engine::gaussian_filtered(plane, sigma_px);
   double worst = 0.0;
   for (int y = 0; y < size.height; ++y) {
     for (int x = 0; x < size.width; ++x) {
@@ -62,7 +62,7 @@ TEST_CASE("gaussian_filtered agrees with the direct two-dimensional sum on any s
 TEST_CASE("gaussian_filtered gives the weights of a sampled Gaussian") {
   Plane<double> impulse(1, 61, 0.0);
   impulse.at(0, 30) = 1.0;
-  const Plane<double> response = gaussian_filtered(impulse, 2.0);
+  const Plane<double> response = engine::gaussian_filtered(impulse, 2.0);
   CHECK(response.at(0, 30) == Approx(0.19947114020071635).epsilon(1e-12));
   CHECK(response.at(0, 32) / response.at(0, 30) == Approx(std::exp(-0.5)).epsilon(1e-12));
   CHECK(response.at(0, 23) == response.at(0, 37));
@@ -73,18 +73,18 @@ TEST_CASE("gaussian_filtered gives the weights of a sampled Gaussian") {
 TEST_CASE("gaussian_filtered keeps a flat plane exactly flat") {
   const double sigma_px = GENERATE(0.4, 2.0, 50.0, 1e6);
   const Plane<double> flat(6, 9, 0.1);
-  CHECK(gaussian_filtered(flat, sigma_px) == flat);
+  CHECK(engine::gaussian_filtered(flat, sigma_px) == flat);
 }
 
 TEST_CASE("gaussian_filtered keeps the mean of a plane") {
   const Plane<double> plane = random_texture(31, 18, 2);
-  CHECK(mean_of(gaussian_filtered(plane, 2.5)) == Approx(mean_of(plane)).margin(1e-12));
+  CHECK(mean_of(engine::gaussian_filtered(plane, 2.5)) == Approx(mean_of(plane)).margin(1e-12));
 }
 
 TEST_CASE("gaussian_filtered twice is one filter of root two times the width") {
   const Plane<double> plane = random_texture(40, 33, 3);
-  const Plane<double> twice = gaussian_filtered(gaussian_filtered(plane, 2.0), 2.0);
-  const Plane<double> once = gaussian_filtered(plane, std::sqrt(8.0));
+  const Plane<double> twice = engine::gaussian_filtered(engine::gaussian_filtered(plane, 2.0), 2.0);
+  const Plane<double> once = engine::gaussian_filtered(plane, std::sqrt(8.0));
   for (std::size_t i = 0; i < once.size(); ++i) {
     REQUIRE(twice.samples()[i] == Approx(once.samples()[i]).margin(1e-9));
   }
@@ -92,14 +92,14 @@ TEST_CASE("gaussian_filtered twice is one filter of root two times the width") {
 
 TEST_CASE("gaussian_filtered with sigma 0 gives the plane itself") {
   const Plane<double> plane = random_texture(4, 5, 4);
-  CHECK(gaussian_filtered(plane, 0.0) == plane);
+  CHECK(engine::gaussian_filtered(plane, 0.0) == plane);
 }
 
 TEST_CASE("gaussian_filtered with a boundless sigma gives the mean everywhere") {
   const double sigma_px = GENERATE(1e3, 1e300, std::numeric_limits<double>::infinity());
   const Plane<double> plane = random_texture(7, 10, 5);
   const double mean = mean_of(plane);
-  const Plane<double> filtered = gaussian_filtered(plane, sigma_px);
+  const Plane<double> filtered = engine::gaussian_filtered(plane, sigma_px);
   for (const double value : filtered.samples()) {
     REQUIRE(value == Approx(mean).margin(1e-9));
   }
@@ -107,9 +107,9 @@ TEST_CASE("gaussian_filtered with a boundless sigma gives the mean everywhere") 
 
 TEST_CASE("gaussian_filtered refuses an empty plane and an impossible sigma") {
   const Plane<double> plane(2, 2, 1.0);
-  CHECK_THROWS_AS(gaussian_filtered(Plane<double>(), 1.0), std::invalid_argument);
-  CHECK_THROWS_AS(gaussian_filtered(plane, -0.1), std::invalid_argument);
-  CHECK_THROWS_AS(gaussian_filtered(plane, std::nan("")), std::invalid_argument);
+  CHECK_THROWS_AS(engine::gaussian_filtered(Plane<double>(), 1.0), std::invalid_argument);
+  CHECK_THROWS_AS(engine::gaussian_filtered(plane, -0.1), std::invalid_argument);
+  CHECK_THROWS_AS(engine::gaussian_filtered(plane, std::nan("")), std::invalid_argument);
 }
 
 }  // namespace

@@ -19,14 +19,16 @@ constexpr int kMaxRadius = 9;
 void check_against_definition(const GreyImage& image, double order, int radius) {
   const Plane<double> orders(image.height(), image.width(), order);
   const Plane<double> expected = reference::texture(image, orders, radius);
-  CHECK(largest_difference(gl_texture<double>(image, radius, order), expected) < kDoubleTolerance);
-  CHECK(largest_difference(gl_texture<float>(image, radius, order), expected) < kFloatTolerance);
+  CHECK(largest_difference(engine::gl_texture<double>(image, radius, order), expected) <
+        kDoubleTolerance);
+  CHECK(largest_difference(engine::gl_texture<float>(image, radius, order), expected) <
+        kFloatTolerance);
 }
 
 TEST_CASE("gl_texture of one bright pixel is its own weights") {
   GreyImage image(5, 5);
   image.at(2, 2) = 80;
-  const Plane<double> texture = gl_texture<double>(image, 2, 0.5);
+  const Plane<double> texture = engine::gl_texture<double>(image, 2, 0.5);
   CHECK(texture.at(2, 2) == Approx(80 * (0.5 + 0.125)).epsilon(1e-15));
   CHECK(texture.at(2, 3) == Approx(-80 * 0.5 / 8).epsilon(1e-15));
   CHECK(texture.at(0, 4) == Approx(-80 * 0.125 / 8).epsilon(1e-15));
@@ -37,21 +39,21 @@ TEMPLATE_TEST_CASE("gl_texture of a flat image is exactly zero", "", float, doub
   for (const int level : {0, 1, 128, 255}) {
     const GreyImage image = flat_image({9, 11}, level);
     for (int radius = 1; radius <= kMaxRadius; ++radius) {
-      CHECK(largest_magnitude(gl_texture<TestType>(image, radius, 0.999)) == 0.0);
+      CHECK(largest_magnitude(engine::gl_texture<TestType>(image, radius, 0.999)) == 0.0);
     }
   }
 }
 
 TEMPLATE_TEST_CASE("gl_texture of order zero is zero", "", float, double) {
-  CHECK(largest_magnitude(gl_texture<TestType>(noise_image({20, 21}), 3, 0.0)) == 0.0);
+  CHECK(largest_magnitude(engine::gl_texture<TestType>(noise_image({20, 21}), 3, 0.0)) == 0.0);
 }
 
 TEMPLATE_TEST_CASE("gl_texture of a negative is the negative texture", "", float, double) {
   for (const int radius : {1, 2, 7}) {
     const GreyImage image = noise_image({31, 30});
-    Plane<TestType> texture = gl_texture<TestType>(image, radius, 0.6);
+    Plane<TestType> texture = engine::gl_texture<TestType>(image, radius, 0.6);
     for (TestType& sample : texture.samples()) sample = -sample;
-    CHECK(gl_texture<TestType>(negative_of(image), radius, 0.6) == texture);
+    CHECK(engine::gl_texture<TestType>(negative_of(image), radius, 0.6) == texture);
   }
 }
 
@@ -60,7 +62,7 @@ TEMPLATE_TEST_CASE("gl_texture does not depend on brightness", "", float, double
   for (std::uint8_t& sample : dark.samples()) sample = static_cast<std::uint8_t>(sample / 2);
   GreyImage bright = dark;
   for (std::uint8_t& sample : bright.samples()) sample = static_cast<std::uint8_t>(sample + 100);
-  CHECK(gl_texture<TestType>(bright, 4, 0.7) == gl_texture<TestType>(dark, 4, 0.7));
+  CHECK(engine::gl_texture<TestType>(bright, 4, 0.7) == engine::gl_texture<TestType>(dark, 4, 0.7));
 }
 
 TEST_CASE("gl_texture stays within 255 (1 - S_K), and reaches it") {
@@ -68,11 +70,12 @@ TEST_CASE("gl_texture stays within 255 (1 - S_K), and reaches it") {
   dot.at(8, 8) = 255;
   for (int radius = 1; radius <= kMaxRadius; ++radius) {
     for (const double order : {0.1, 0.5, 0.9, 0.999}) {
-      const double bound = 255.0 * (1.0 - gl_weight_sum(order, radius));
+      const double bound = 255.0 * (1.0 - engine::gl_weight_sum(order, radius));
       INFO("order " << order << ", radius " << radius);
       const GreyImage speckle = speckle_image({64, 63});
-      CHECK(largest_magnitude(gl_texture<double>(speckle, radius, order)) <= bound + 1e-10);
-      CHECK(gl_texture<double>(dot, radius, order).at(8, 8) == Approx(bound).epsilon(1e-13));
+      CHECK(largest_magnitude(engine::gl_texture<double>(speckle, radius, order)) <= bound + 1e-10);
+      CHECK(engine::gl_texture<double>(dot, radius, order).at(8, 8) ==
+            Approx(bound).epsilon(1e-13));
     }
   }
 }
@@ -106,8 +109,8 @@ TEST_CASE("gl_texture takes the order of the square that a pixel lies in") {
       full.at(y, x) = half.at(y / 2, x / 2) = 0.05 * (y / 2) + 0.1 * (x / 2);
     }
   }
-  CHECK(largest_difference(gl_texture<double>(image, 3, half), reference::texture(image, full, 3)) <
-        kDoubleTolerance);
+  CHECK(largest_difference(engine::gl_texture<double>(image, 3, half),
+                           reference::texture(image, full, 3)) < kDoubleTolerance);
 }
 
 }  // namespace

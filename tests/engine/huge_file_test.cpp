@@ -9,6 +9,7 @@
 #include <string>
 
 using namespace touchtrial;
+using namespace touchtrial::engine;
 using namespace touchtrial::samples;
 
 namespace {

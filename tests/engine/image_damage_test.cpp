@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 using namespace touchtrial;
+using namespace touchtrial::engine;
 using namespace touchtrial::samples;
 
 namespace {

@@ -10,6 +10,7 @@
 #include <thread>
 
 using namespace touchtrial;
+using namespace touchtrial::engine;
 using namespace touchtrial::samples;
 using Row = std::vector<int>;
 

@@ -5,6 +5,7 @@
 #include <string>
 
 using namespace touchtrial;
+using namespace touchtrial::engine;
 using namespace std::string_literals;
 
 namespace {

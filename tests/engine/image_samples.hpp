@@ -153,7 +153,7 @@ inline GreyImage read_bytes(const Bytes& bytes) {
   static const TempFolder folder;
   const auto path = folder.path() / "picture";
   std::ofstream(path, std::ios::binary) << text_of(bytes);
-  return read_grey_image(path);
+  return engine::read_grey_image(path);
 }
 
 /// The first row's pixels.

@@ -11,7 +11,7 @@ namespace {
 
 template <typename Real>
 int picture_of(Real texture) {
-  return texture_picture(Plane<Real>(1, 1, texture)).at(0, 0);
+  return engine::texture_picture(Plane<Real>(1, 1, texture)).at(0, 0);
 }
 
 TEMPLATE_TEST_CASE("texture_picture rounds ties upwards, never to even", "", float, double) {
@@ -40,7 +40,7 @@ TEMPLATE_TEST_CASE("the mapping abs shows magnitudes, rounded half up", "", floa
   texture.at(0, 0) = TestType(-3.5);
   texture.at(0, 1) = TestType(2.25);
   texture.at(0, 2) = TestType(-400);
-  const GreyImage picture = texture_picture(texture, Mapping::abs);
+  const GreyImage picture = engine::texture_picture(texture, engine::Mapping::abs);
   CHECK(picture.at(0, 0) == 4);
   CHECK(picture.at(0, 1) == 2);
   CHECK(picture.at(0, 2) == 255);
@@ -53,23 +53,24 @@ TEMPLATE_TEST_CASE("the mapping stretch fills 0 to 255, and shows a flat texture
   texture.at(0, 0) = TestType(-1);
   texture.at(0, 1) = TestType(1);
   texture.at(0, 2) = TestType(4);
-  const GreyImage picture = texture_picture(texture, Mapping::stretch);
+  const GreyImage picture = engine::texture_picture(texture, engine::Mapping::stretch);
   CHECK(picture.at(0, 0) == 0);
   CHECK(picture.at(0, 1) == 102);
   CHECK(picture.at(0, 2) == 255);
-  CHECK(texture_picture(Plane<TestType>(2, 3, TestType(7)), Mapping::stretch) == GreyImage(2, 3));
+  CHECK(engine::texture_picture(Plane<TestType>(2, 3, TestType(7)), engine::Mapping::stretch) ==
+        GreyImage(2, 3));
 }
 
 TEMPLATE_TEST_CASE("texture_surface adds mid-grey and rounds nothing", "", float, double) {
-  const Plane<TestType> surface = texture_surface(Plane<TestType>(2, 3, TestType(-200.25)));
+  const Plane<TestType> surface = engine::texture_surface(Plane<TestType>(2, 3, TestType(-200.25)));
   REQUIRE(surface.height() == 2);
   REQUIRE(surface.width() == 3);
   for (const TestType sample : surface.samples()) CHECK(sample == TestType(-72.25));
 }
 
 TEST_CASE("texture_picture and texture_surface refuse an empty texture") {
-  CHECK_THROWS_AS(texture_picture(Plane<float>()), std::invalid_argument);
-  CHECK_THROWS_AS(texture_surface(Plane<double>()), std::invalid_argument);
+  CHECK_THROWS_AS(engine::texture_picture(Plane<float>()), std::invalid_argument);
+  CHECK_THROWS_AS(engine::texture_surface(Plane<double>()), std::invalid_argument);
 }
 
 }  // namespace

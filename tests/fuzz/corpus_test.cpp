@@ -61,7 +61,7 @@ TEST_CASE("the pictures of the corpus are read, but for those that a fuzzer brok
   for (const fs::path& file : files_of("image")) {
     if (file.filename().string().starts_with("found-")) continue;
     INFO(file);
-    const GreyImage image = read_grey_image(file);
+    const GreyImage image = engine::read_grey_image(file);
     CHECK(image.size() <= 20);
     ++read;
   }

@@ -18,7 +18,7 @@ namespace {
 
 constexpr int kDraws = 1999;  ///< of a bootstrap, fewer than in a report
 
-double holds(const Interval& interval, double truth) {
+double holds(const analysis::Interval& interval, double truth) {
   return interval.low <= truth && truth <= interval.high ? 1.0 : 0.0;
 }
 
@@ -29,8 +29,9 @@ std::string described(const Population& population, int participants) {
 
 Finding coverage(const std::string& what, const std::string& population, const Average& share,
                  double least, double most, const std::string& why) {
-  return {"coverage", what, population, kConfidenceLevel, share.mean, share.standard_error,
-          least,      most, why};
+  return {
+      "coverage", what, population, analysis::kConfidenceLevel, share.mean, share.standard_error,
+      least,      most, why};
 }
 
 /// Participants' own accuracies differ by this much, beside what trials add by chance.
@@ -73,19 +74,19 @@ void add_group_level(const Population& population, int participants, int repetit
       return holds(interval_of(right), truth);
     });
   };
-  const Average t =
-      over_studies("t", [](const auto& right) { return participant_mean(shares(right)).interval; });
+  const Average t = over_studies(
+      "t", [](const auto& right) { return analysis::participant_mean(shares(right)).interval; });
   findings.push_back(coverage("mean over participants, t", who, t, 0.93, 0.965,
                               "accuracies of 25 trials are steps of 4 %, and skewed near 100 %"));
   const Average drawn = over_studies("bootstrap", [](const auto& right) {
-    return cluster_bootstrap(right, 0, kDraws).value_or(Interval{});
+    return analysis::cluster_bootstrap(right, 0, kDraws).value_or(analysis::Interval{});
   });
   findings.push_back(coverage("cluster bootstrap, expanded percentiles", who, drawn, 0.925, 0.965,
                               "as t: steps of 4 %, skew; and few participants to draw from"));
   const Average pooled = over_studies("pooled", [](const auto& right) {
-    Proportion all;
-    for (const Proportion& one : right) all = {all.n + one.n, all.correct + one.correct};
-    return wilson_interval(all);
+    analysis::Proportion all;
+    for (const analysis::Proportion& one : right) all = {all.n + one.n, all.correct + one.correct};
+    return analysis::wilson_interval(all);
   });
   const double narrow = pooled_coverage(population);
   findings.push_back(
@@ -106,8 +107,8 @@ std::pair<double, double> exact_coverage(int n, IntervalOf interval_of) {
     const boost::math::binomial binomial(n, p);
     double covered = 0.0;
     for (int correct = 0; correct <= n; ++correct) {
-      covered +=
-          boost::math::pdf(binomial, correct) * holds(interval_of(Proportion{n, correct}), p);
+      covered += boost::math::pdf(binomial, correct) *
+                 holds(interval_of(analysis::Proportion{n, correct}), p);
     }
     sum += covered;
     least = std::min(least, covered);
@@ -121,31 +122,32 @@ void add_proportion(const std::string& name, int n, IntervalOf interval_of, doub
                     std::vector<Finding>& findings) {
   const auto [mean, least] = exact_coverage(n, interval_of);
   const std::string who = fmt::format("{} independent trials, p 0.05 to 0.95", n);
-  findings.push_back({"coverage", name + ", mean over p", who, kConfidenceLevel, mean, 0.0,
-                      least_mean, most_mean, why});
-  findings.push_back({"coverage", name + ", least over p", who, kConfidenceLevel, least, 0.0,
-                      least_least, 1.0, "outcomes are whole numbers: coverage jumps with p"});
+  findings.push_back({"coverage", name + ", mean over p", who, analysis::kConfidenceLevel, mean,
+                      0.0, least_mean, most_mean, why});
+  findings.push_back({"coverage", name + ", least over p", who, analysis::kConfidenceLevel, least,
+                      0.0, least_least, 1.0, "outcomes are whole numbers: coverage jumps with p"});
 }
 
 void add_proportions(std::vector<Finding>& findings) {
   for (const int n : {25, 100}) {
     add_proportion(
-        "Wilson", n, [](Proportion p) { return wilson_interval(p); }, 0.945, 0.96, 0.90,
-        "close to nominal on average", findings);
+        "Wilson", n, [](analysis::Proportion p) { return analysis::wilson_interval(p); }, 0.945,
+        0.96, 0.90, "close to nominal on average", findings);
     add_proportion(
-        "Clopper-Pearson", n, [](Proportion p) { return clopper_pearson_interval(p); }, 0.95, 0.985,
+        "Clopper-Pearson", n,
+        [](analysis::Proportion p) { return analysis::clopper_pearson_interval(p); }, 0.95, 0.985,
         0.95, "never below nominal, so above it on average", findings);
     add_proportion(
-        "Jeffreys", n, [](Proportion p) { return jeffreys_interval(p); }, 0.94, 0.96, 0.87,
-        "close to nominal on average", findings);
+        "Jeffreys", n, [](analysis::Proportion p) { return analysis::jeffreys_interval(p); }, 0.94,
+        0.96, 0.87, "close to nominal on average", findings);
   }
 }
 
 void add_d_prime(int repetitions, std::vector<Finding>& findings) {
   const Population one{.d_prime = 1.75};
   const Average share = average_of(repetitions, "d'", [&](RandomStream& random) {
-    const Proportion right = accuracies(study_of(one, 1, random)).front();
-    const DPrime found = d_prime(right, one.classes);
+    const analysis::Proportion right = accuracies(study_of(one, 1, random)).front();
+    const analysis::DPrime found = analysis::d_prime(right, one.classes);
     return (!found.low || *found.low <= one.d_prime) && (!found.high || one.d_prime <= *found.high)
                ? 1.0
                : 0.0;
@@ -172,7 +174,7 @@ void add_differences(int participants, double spread, int repetitions,
       const auto second = accuracies({answers_of(worse, worse.d_prime + own, random)});
       differences.push_back(shares(first).front() - shares(second).front());
     }
-    return holds(participant_mean(differences, {-1.0, 1.0}).interval, truth);
+    return holds(analysis::participant_mean(differences, {-1.0, 1.0}).interval, truth);
   });
   findings.push_back(coverage("difference of two methods, t", who, share, 0.94, 0.96,
                               "differences of 25 trials are steps of 4 %"));
@@ -186,9 +188,9 @@ void add_odds_ratio(int participants, int repetitions, std::vector<Finding>& fin
   const Average share = average_of(repetitions, "odds" + who, [&](RandomStream& random) {
     const auto first = accuracies(study_of(better, participants, random));
     const auto second = accuracies(study_of(worse, participants, random));
-    std::vector<std::pair<Proportion, Proportion>> strata;
+    std::vector<std::pair<analysis::Proportion, analysis::Proportion>> strata;
     for (std::size_t i = 0; i < first.size(); ++i) strata.emplace_back(first[i], second[i]);
-    const auto ratio = mantel_haenszel(strata);
+    const auto ratio = analysis::mantel_haenszel(strata);
     return ratio ? holds(ratio->interval, truth) : 0.0;
   });
   findings.push_back(coverage("odds ratio, Mantel-Haenszel", who, share, 0.945, 0.96,

@@ -28,11 +28,12 @@ Finding error(const std::string& what, const std::string& population, const Aver
           share.standard_error, least, most,       why};
 }
 
-std::vector<AnsweredBlock> blocks_of(const std::vector<std::vector<Choice>>& study) {
-  std::vector<AnsweredBlock> blocks;
+std::vector<analysis::AnsweredBlock> blocks_of(
+    const std::vector<std::vector<analysis::Choice>>& study) {
+  std::vector<analysis::AnsweredBlock> blocks;
   for (const auto& choices : study) {
-    AnsweredBlock block;
-    for (const Choice& choice : choices) {
+    analysis::AnsweredBlock block;
+    for (const analysis::Choice& choice : choices) {
       block.presented.push_back(choice.presented);
       block.answered.push_back(choice.answered);
     }
@@ -47,7 +48,8 @@ void add_chance(int participants, double least, int repetitions, std::vector<Fin
       fmt::format("{} participants who feel nothing and prefer some answers", participants);
   const Average share = average_of(repetitions, "chance" + who, [&](RandomStream& random) {
     const auto blocks = blocks_of(study_of(guessing, participants, random));
-    return rejected(chance_test(guessing.classes, blocks, DealtOrder::permuted)->p);
+    return rejected(
+        analysis::chance_test(guessing.classes, blocks, analysis::DealtOrder::permuted)->p);
   });
   findings.push_back(error("above chance, exact over balanced orders", who, share, least, kLevel,
                            "an exact test of whole numbers stays below its level"));
@@ -70,7 +72,7 @@ void add_sign_flip(int participants, double least, double most, const std::strin
                    int repetitions, std::vector<Finding>& findings) {
   const std::string who = fmt::format("{} participants, two methods alike", participants);
   const Average share = average_of(repetitions, "sign flip" + who, [&](RandomStream& random) {
-    return rejected(sign_flip_p(equal_methods(participants, random)).value_or(1.0));
+    return rejected(analysis::sign_flip_p(equal_methods(participants, random)).value_or(1.0));
   });
   findings.push_back(error("sign flips over participants", who, share, least, most, why));
 }
@@ -85,7 +87,7 @@ void add_mcnemar(int repetitions, std::vector<Finding>& findings) {
       const bool second = random.uniform() < p;
       if (first != second) ++only[first ? 0 : 1];
     }
-    return rejected(mcnemar_mid_p(only[0], only[1]));
+    return rejected(analysis::mcnemar_mid_p(only[0], only[1]));
   });
   findings.push_back(error("McNemar, mid-p", fmt::format("{} people, one pair each", kPairs), share,
                            0.035, 0.055, "mid-p may pass its level slightly, whole numbers"));
@@ -121,12 +123,12 @@ void add_cochran(double taste, double least, double most, const std::string& why
     Occasions together;
     for (const Occasions& mine : study(random))
       together.insert(together.end(), mine.begin(), mine.end());
-    const auto q = cochran_q(together);
+    const auto q = analysis::cochran_q(together);
     return q ? rejected(q->p) : 0.0;
   });
   findings.push_back(error("Cochran's Q, chi-square", who, share, least, most, why));
   const Average permuted = average_of(repetitions / 4, "permuted" + who, [&](RandomStream& random) {
-    return rejected(cochran_q_permuted_p(study(random), kDeals).value_or(1.0));
+    return rejected(analysis::cochran_q_permuted_p(study(random), kDeals).value_or(1.0));
   });
   findings.push_back(error("Cochran's Q, methods exchanged within participants", who, permuted,
                            0.04, kLevel, "equal statistics count against"));
@@ -149,9 +151,9 @@ void add_holm(int repetitions, std::vector<Finding>& findings) {
       std::vector<double> differences;
       for (int i = 0; i < kParticipants; ++i)
         differences.push_back(accuracy[a][i] - accuracy[b][i]);
-      p.push_back(sign_flip_p(differences).value_or(1.0));
+      p.push_back(analysis::sign_flip_p(differences).value_or(1.0));
     }
-    return rejected(std::ranges::min(holm_adjusted(p)));
+    return rejected(std::ranges::min(analysis::holm_adjusted(p)));
   });
   findings.push_back(error("any of three pairs, Holm", who, share, 0.03, kLevel,
                            "pairs share participants: Holm is on the safe side"));

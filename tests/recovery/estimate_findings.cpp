@@ -24,16 +24,17 @@ void add_information(double d_prime, int repeats, int repetitions, std::vector<F
   const auto estimate = [&](auto figure) {
     return average_of(repetitions, "information" + who, [&](RandomStream& random) {
       const auto study = study_of(people, 1, random);
-      return figure(information_transfer(people.classes, study, 0, 20)) - truth;
+      return figure(analysis::information_transfer(people.classes, study, 0, 20)) - truth;
     });
   };
   const double miller = std::pow(people.classes - 1, 2) / (2.0 * n * std::numbers::ln2);
-  const Average raw = estimate([](const InformationTransfer& it) { return it.raw.value_or(0.0); });
+  const Average raw =
+      estimate([](const analysis::InformationTransfer& it) { return it.raw.value_or(0.0); });
   findings.push_back({"bias", "information transfer, raw, bit", who, 0.0, raw.mean,
                       raw.standard_error, 0.3 * miller, 1.5 * miller,
                       "upward; smaller where many cells stay empty"});
   const Average corrected =
-      estimate([](const InformationTransfer& it) { return it.corrected.value_or(0.0); });
+      estimate([](const analysis::InformationTransfer& it) { return it.corrected.value_or(0.0); });
   findings.push_back({"bias", "information transfer, Miller-Madow, bit", who, 0.0, corrected.mean,
                       corrected.standard_error, raw.mean - miller, raw.mean - miller,
                       "a first-order correction: too much where cells stay empty"});
@@ -43,7 +44,8 @@ void add_null(int repetitions, std::vector<Finding>& findings) {
   const Population guessing{.d_prime = 0.0};
   const Average difference = average_of(repetitions, "null", [&](RandomStream& random) {
     const auto study = study_of(guessing, 1, random);
-    const InformationTransfer it = information_transfer(guessing.classes, study, 0, 100);
+    const analysis::InformationTransfer it =
+        analysis::information_transfer(guessing.classes, study, 0, 100);
     return it.raw.value_or(0.0) - it.null_mean.value_or(0.0);
   });
   findings.push_back({"bias", "raw less its permutation null, bit", "25 trials at chance", 0.0,
@@ -78,7 +80,7 @@ void add_accuracy(const Population& people, const std::string& who, int repetiti
   const double truth = true_accuracy(people);
   const Average found = average_of(repetitions, "accuracy" + who, [&](RandomStream& random) {
     const auto right = accuracies(study_of(people, 12, random));
-    return participant_mean(shares(right)).mean.value_or(0.0);
+    return analysis::participant_mean(shares(right)).mean.value_or(0.0);
   });
   findings.push_back({"recovered", "mean accuracy", who, truth, found.mean, found.standard_error,
                       truth, truth, ""});
@@ -88,8 +90,9 @@ void add_swapped(int repetitions, std::vector<Finding>& findings) {
   const Population swapped{.d_prime = 3.0, .swaps_first_two = true};
   const double unswapped = true_accuracy({.d_prime = 3.0});
   const Average found = average_of(repetitions, "swapped", [&](RandomStream& random) {
-    const ConfusionMatrix confusion = confusion_of(swapped.classes, study_of(swapped, 1, random));
-    return best_label_matching(confusion).accuracy.share().value_or(0.0);
+    const analysis::ConfusionMatrix confusion =
+        confusion_of(swapped.classes, study_of(swapped, 1, random));
+    return analysis::best_label_matching(confusion).accuracy.share().value_or(0.0);
   });
   findings.push_back({"recovered", "best matching of swapped labels",
                       fmt::format("25 trials, d' 3, two labels swapped ({:.1f} % right)",
@@ -113,8 +116,8 @@ Plane<double> luce_probabilities() {
   return p;
 }
 
-ConfusionMatrix luce_answers(const Plane<double>& p, int of_each, RandomStream& random) {
-  ConfusionMatrix confusion(5);
+analysis::ConfusionMatrix luce_answers(const Plane<double>& p, int of_each, RandomStream& random) {
+  analysis::ConfusionMatrix confusion(5);
   for (int i = 0; i < 5; ++i) {
     for (int n = 0; n < of_each; ++n) {
       double rest = random.uniform();
@@ -130,18 +133,20 @@ void add_choice_model(int repetitions, std::vector<Finding>& findings) {
   const Plane<double> p = luce_probabilities();
   const auto add = [&](const std::string& what, double truth, auto figure) {
     const Average found = average_of(repetitions, "choice" + what, [&](RandomStream& random) {
-      const auto model = choice_model(luce_answers(p, 400, random));
+      const auto model = analysis::choice_model(luce_answers(p, 400, random));
       return model ? figure(*model) : 0.0;
     });
     findings.push_back({"recovered", what, "2,000 trials of a similarity choice model", truth,
                         found.mean, found.standard_error, 0.99 * truth, 1.02 * truth,
                         "ratios of counts are biased a little"});
   };
-  add("similarity of two classes", 0.3, [](const ChoiceModel& m) { return m.similarity.at(0, 1); });
-  add("similarity of two others", 0.1, [](const ChoiceModel& m) { return m.similarity.at(2, 4); });
-  add("bias for the first answer", 0.3, [](const ChoiceModel& m) { return m.bias[0]; });
+  add("similarity of two classes", 0.3,
+      [](const analysis::ChoiceModel& m) { return m.similarity.at(0, 1); });
+  add("similarity of two others", 0.1,
+      [](const analysis::ChoiceModel& m) { return m.similarity.at(2, 4); });
+  add("bias for the first answer", 0.3, [](const analysis::ChoiceModel& m) { return m.bias[0]; });
   const Average misfit = average_of(repetitions, "choice fit", [&](RandomStream& random) {
-    const auto model = choice_model(luce_answers(p, 400, random));
+    const auto model = analysis::choice_model(luce_answers(p, 400, random));
     return model && model->p.value_or(1.0) <= 0.05 ? 1.0 : 0.0;
   });
   findings.push_back({"type-I error", "choice model, goodness of fit (G squared)",

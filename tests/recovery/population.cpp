@@ -96,13 +96,14 @@ double drawn_d_prime(const Population& population, RandomStream& random) {
   return population.d_prime + population.spread * random.normal();
 }
 
-std::vector<Choice> answers_of(const Population& population, double d_prime, RandomStream& random) {
+std::vector<analysis::Choice> answers_of(const Population& population, double d_prime,
+                                         RandomStream& random) {
   std::vector<int> order;
   for (int i = 0; i < population.classes; ++i) {
     order.insert(order.end(), static_cast<std::size_t>(population.repeats), i);
   }
   shuffle(std::span(order), random);
-  std::vector<Choice> choices;
+  std::vector<analysis::Choice> choices;
   for (const int presented : order) {
     std::vector<double> felt = evidence(population, presented, d_prime);
     for (double& one : felt) one += random.normal();
@@ -114,9 +115,9 @@ std::vector<Choice> answers_of(const Population& population, double d_prime, Ran
   return choices;
 }
 
-std::vector<std::vector<Choice>> study_of(const Population& population, int participants,
-                                          RandomStream& random) {
-  std::vector<std::vector<Choice>> study;
+std::vector<std::vector<analysis::Choice>> study_of(const Population& population, int participants,
+                                                    RandomStream& random) {
+  std::vector<std::vector<analysis::Choice>> study;
   for (int i = 0; i < participants; ++i) {
     const double d_prime = drawn_d_prime(population, random);
     study.push_back(answers_of(population, d_prime, random));
@@ -124,27 +125,30 @@ std::vector<std::vector<Choice>> study_of(const Population& population, int part
   return study;
 }
 
-ConfusionMatrix confusion_of(int classes, const std::vector<std::vector<Choice>>& study) {
-  ConfusionMatrix confusion(classes);
+analysis::ConfusionMatrix confusion_of(int classes,
+                                       const std::vector<std::vector<analysis::Choice>>& study) {
+  analysis::ConfusionMatrix confusion(classes);
   for (const auto& choices : study) {
-    for (const Choice& choice : choices) confusion.add(choice);
+    for (const analysis::Choice& choice : choices) confusion.add(choice);
   }
   return confusion;
 }
 
-std::vector<Proportion> accuracies(const std::vector<std::vector<Choice>>& study) {
-  std::vector<Proportion> all;
+std::vector<analysis::Proportion> accuracies(
+    const std::vector<std::vector<analysis::Choice>>& study) {
+  std::vector<analysis::Proportion> all;
   for (const auto& choices : study) {
-    const auto right = std::ranges::count_if(
-        choices, [](const Choice& choice) { return choice.answered == choice.presented; });
+    const auto right = std::ranges::count_if(choices, [](const analysis::Choice& choice) {
+      return choice.answered == choice.presented;
+    });
     all.push_back({static_cast<int>(choices.size()), static_cast<int>(right)});
   }
   return all;
 }
 
-std::vector<double> shares(const std::vector<Proportion>& accuracies) {
+std::vector<double> shares(const std::vector<analysis::Proportion>& accuracies) {
   std::vector<double> all;
-  for (const Proportion& one : accuracies) all.push_back(one.share().value_or(0.0));
+  for (const analysis::Proportion& one : accuracies) all.push_back(one.share().value_or(0.0));
   return all;
 }
 

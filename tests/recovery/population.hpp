@@ -35,18 +35,20 @@ struct Population {
 [[nodiscard]] double drawn_d_prime(const Population& population, RandomStream& random);
 
 /// A participant's trials: a balanced order in random sequence.
-[[nodiscard]] std::vector<Choice> answers_of(const Population& population, double d_prime,
-                                             RandomStream& random);
+[[nodiscard]] std::vector<analysis::Choice> answers_of(const Population& population, double d_prime,
+                                                       RandomStream& random);
 
 /// One study: this many participants.
-[[nodiscard]] std::vector<std::vector<Choice>> study_of(const Population& population,
-                                                        int participants, RandomStream& random);
+[[nodiscard]] std::vector<std::vector<analysis::Choice>> study_of(const Population& population,
+                                                                  int participants,
+                                                                  RandomStream& random);
 
-[[nodiscard]] ConfusionMatrix confusion_of(int classes,
-                                           const std::vector<std::vector<Choice>>& study);
+[[nodiscard]] analysis::ConfusionMatrix confusion_of(
+    int classes, const std::vector<std::vector<analysis::Choice>>& study);
 
 /// Each participant's right answers.
-[[nodiscard]] std::vector<Proportion> accuracies(const std::vector<std::vector<Choice>>& study);
-[[nodiscard]] std::vector<double> shares(const std::vector<Proportion>& accuracies);
+[[nodiscard]] std::vector<analysis::Proportion> accuracies(
+    const std::vector<std::vector<analysis::Choice>>& study);
+[[nodiscard]] std::vector<double> shares(const std::vector<analysis::Proportion>& accuracies);
 
 }  // namespace touchtrial::recovery

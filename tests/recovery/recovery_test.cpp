@@ -3,6 +3,7 @@
 #include "support/catch.hpp"
 
 using namespace touchtrial;
+using namespace touchtrial::analysis;
 using namespace touchtrial::recovery;
 
 namespace {

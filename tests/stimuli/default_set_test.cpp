@@ -12,6 +12,8 @@
 #include <nlohmann/json.hpp>
 
 using namespace touchtrial;
+using namespace touchtrial::engine;
+using namespace touchtrial::stimuli;
 
 namespace {
 

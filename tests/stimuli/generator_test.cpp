@@ -12,6 +12,7 @@
 #include <vector>
 
 using namespace touchtrial;
+using namespace touchtrial::stimuli;
 
 namespace {
 

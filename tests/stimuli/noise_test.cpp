@@ -5,6 +5,7 @@
 #include <cmath>
 
 using namespace touchtrial;
+using namespace touchtrial::stimuli;
 
 TEST_CASE("noise is continuous, zero on its lattice and about zero on average") {
   const Noise noise(1, "test");

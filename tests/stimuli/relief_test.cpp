@@ -5,6 +5,7 @@
 #include <cmath>
 
 using namespace touchtrial;
+using namespace touchtrial::stimuli;
 
 namespace {
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 using namespace touchtrial;
+using namespace touchtrial::stimuli;
 
 TEST_CASE("the first exemplar is as the recipe says, with the seed's own noise") {
   const Specimen first(7);

@@ -25,7 +25,8 @@ std::atomic<std::int64_t> frees{0};
 std::atomic<std::int64_t> locks{0};
 
 void count(std::atomic<std::int64_t>& offences) noexcept {
-  if (touchtrial::RealtimeRegion::entered()) offences.fetch_add(1, std::memory_order_relaxed);
+  if (touchtrial::device::RealtimeRegion::entered())
+    offences.fetch_add(1, std::memory_order_relaxed);
 }
 
 }  // namespace

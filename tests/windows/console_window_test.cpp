@@ -23,12 +23,12 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
-using Kind = ExperimenterRequest::Kind;
+using Kind = session::ExperimenterRequest::Kind;
 
 constexpr int kParticipantWidth = 1280;
 
-SessionStatus status(const std::string& stage = "answering") {
-  SessionStatus now;
+session::SessionStatus status(const std::string& stage = "answering") {
+  session::SessionStatus now;
   now.participant = "P07";
   now.stage = stage;
   now.trial = 7;
@@ -41,8 +41,8 @@ SessionStatus status(const std::string& stage = "answering") {
   return now;
 }
 
-ParticipantWindowOptions options(ConsoleExperimenter& console) {
-  ParticipantWindowOptions all;
+app::ParticipantWindowOptions options(app::ConsoleExperimenter& console) {
+  app::ParticipantWindowOptions all;
   all.size_px = {kParticipantWidth, 720};
   all.console = &console;
   return all;
@@ -58,7 +58,7 @@ struct Room {
 
   template <typename Session>
   void run(const Session& session) {
-    run_beside(window, [&] { session(); });
+    app::run_beside(window, [&] { session(); });
   }
 
   /// Waits until the console shows what was done to it.
@@ -82,7 +82,7 @@ struct Room {
   }
 
   /// Waits for the next request, 20 s at most.
-  std::optional<ExperimenterRequest> request() {
+  std::optional<session::ExperimenterRequest> request() {
     const auto give_up = steady_clock::now() + std::chrono::seconds(20);
     while (steady_clock::now() < give_up) {
       if (auto asked = console.request()) return asked;
@@ -91,10 +91,10 @@ struct Room {
     return std::nullopt;
   }
 
-  Experimenter nobody;
-  ConsoleExperimenter console{nobody};
+  session::Experimenter nobody;
+  app::ConsoleExperimenter console{nobody};
   std::unique_ptr<VirtualScreen> screen;
-  ParticipantWindow window;
+  app::ParticipantWindow window;
 };
 
 /// Where the buttons are, in window units; found by the colour of the comfort stop.
@@ -103,12 +103,12 @@ struct Buttons {
   Place pause, resume, comfort_stop, note, deviation, abort;
 };
 
-bool is_vermillion(const Rgb& sample) {
-  return sample == Rgb{213, 94, 0};
+bool is_vermillion(const engine::Rgb& sample) {
+  return sample == engine::Rgb{213, 94, 0};
 }
 
 /// The middle of the lowest or of the highest button of that colour.
-std::pair<int, int> middle_of_vermillion(const ColourImage& picture, bool is_lowest) {
+std::pair<int, int> middle_of_vermillion(const engine::ColourImage& picture, bool is_lowest) {
   int y = is_lowest ? picture.height() - 1 : 0;
   const auto is_in_row = [&picture](int row) {
     for (int x = 0; x < picture.width(); ++x) {
@@ -128,15 +128,15 @@ std::pair<int, int> middle_of_vermillion(const ColourImage& picture, bool is_low
   return {(first + last) / 2, is_lowest ? y - 6 : y + 12};
 }
 
-Buttons buttons_of(const ColourImage& picture) {
+Buttons buttons_of(const engine::ColourImage& picture) {
   const auto [x, y] = middle_of_vermillion(picture, false);
   const int left = picture.width() - x;
   const int middle = picture.width() / 2;
   return {{left, y}, {middle, y}, {x, y}, {left, y + 54}, {middle, y + 54}, {x, y + 54}};
 }
 
-bool is(const std::optional<ExperimenterRequest>& request, Kind kind, const std::string& text = "",
-        const std::string& code = "") {
+bool is(const std::optional<session::ExperimenterRequest>& request, Kind kind,
+        const std::string& text = "", const std::string& code = "") {
   return request && request->kind == kind && request->text == text && request->code == code;
 }
 
@@ -184,7 +184,7 @@ TEST_CASE("keys pressed over the console are the participant's, but for what is 
   room.run([&] {
     room.console.show(status());
     const Buttons buttons = buttons_of(room.window.console_picture());
-    const AnswerStep answer{.trial = 7, .of = 25};
+    const session::AnswerStep answer{.trial = 7, .of = 25};
     CHECK_FALSE(room.window.attend(answer));
     CHECK(room.window.wait_until_shown(milliseconds(20'000)));
     room.click(buttons.note);
@@ -192,7 +192,7 @@ TEST_CASE("keys pressed over the console are the participant's, but for what is 
     CHECK(is(room.request(), Kind::note, "12"));
     for (int i = 0; i < 20; ++i) CHECK_FALSE(room.window.attend(answer));
     room.type("2 Return");
-    std::optional<StepReply> reply;
+    std::optional<session::StepReply> reply;
     for (int i = 0; i < 2000 && !reply; ++i) reply = room.window.attend(answer);
     REQUIRE(reply);
     CHECK(reply->position == 1);
@@ -208,7 +208,7 @@ TEST_CASE("while a plane is on the space bar is a comfort stop even where a note
     room.type("h o t");
     room.window.show_exploring({0.2, 256, 256});
     CHECK(room.window.wait_until_shown(milliseconds(20'000)));
-    ServoControl servo;
+    device::ServoControl servo;
     room.window.exploring(servo);
     CHECK_FALSE(servo.comfort_stop_asked());
     room.screen->type("space");
@@ -226,12 +226,12 @@ TEST_CASE("while a plane is on the space bar is a comfort stop even where a note
 TEST_CASE("the console is the same to the last byte, whatever the participant sees and answers") {
   Room room;
   room.run([&] {
-    std::optional<ColourImage> first;
+    std::optional<engine::ColourImage> first;
     room.console.show(status());
     for (const int position : {0, 1}) {
-      CHECK_FALSE(room.window.attend(FeedbackStep{0, position}));
+      CHECK_FALSE(room.window.attend(session::FeedbackStep{0, position}));
       CHECK(room.window.wait_until_shown(milliseconds(20'000)));
-      const ColourImage picture = room.window.console_picture();
+      const engine::ColourImage picture = room.window.console_picture();
       if (!first) first = picture;
       CHECK(picture == *first);
     }
@@ -240,17 +240,18 @@ TEST_CASE("the console is the same to the last byte, whatever the participant se
 
 TEST_CASE("the console's monitor is named if it is not there") {
   const auto screen = VirtualScreen::open();
-  Experimenter nobody;
-  ConsoleExperimenter console(nobody);
-  ParticipantWindowOptions wanted = options(console);
+  session::Experimenter nobody;
+  app::ConsoleExperimenter console(nobody);
+  app::ParticipantWindowOptions wanted = options(console);
   wanted.console_monitor = 2;
-  CHECK_THROWS_WITH(ParticipantWindow(wanted), holds_text("no monitor 2") && holds_text("has 1"));
+  CHECK_THROWS_WITH(app::ParticipantWindow(wanted),
+                    holds_text("no monitor 2") && holds_text("has 1"));
 }
 
-void keep(const ColourImage& picture, const std::string& name) {
+void keep(const engine::ColourImage& picture, const std::string& name) {
   const char* const folder = std::getenv("TOUCHTRIAL_SCREENSHOTS");
   REQUIRE(folder != nullptr);
-  const Bytes png = png_bytes(picture);
+  const Bytes png = engine::png_bytes(picture);
   std::ofstream(std::filesystem::path(folder) / (name + ".png"), std::ios::binary)
       .write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
 }

@@ -80,7 +80,7 @@ TEST_CASE("device monitor writes a picture of the window that is not blank") {
   const std::string driver = GENERATE("simulated", "mouse");
   REQUIRE(
       monitors(driver + " --wall --seconds 1 --size 900 600 --screenshot '" + file.string() + "'"));
-  const GreyImage picture = read_grey_image(file);
+  const GreyImage picture = engine::read_grey_image(file);
   CHECK(picture.width() == 900);
   CHECK(picture.height() == 600);
   std::set<int> levels;

@@ -12,7 +12,7 @@ namespace touchtrial {
 
 /// Waits until the window's main thread has taken all that VirtualScreen has done so far; on
 /// another thread. \throws std::runtime_error if it has not within a minute
-inline void wait_until_heard(const ParticipantWindow& window) {
+inline void wait_until_heard(const app::ParticipantWindow& window) {
   // The pump that is under way may have looked before; the one after it has not.
   const std::int64_t wanted = window.pumps() + 2;
   const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(1);

@@ -40,15 +40,15 @@ const std::map<std::string, GreyImage>& pictures() {
   static const std::map<std::string, GreyImage> made = [] {
     std::map<std::string, GreyImage> all;
     for (const std::string& label : kLabels) {
-      all[label] = generate_stimulus(label, kDefaultStimuliSeed, 256, 1);
+      all[label] = stimuli::generate_stimulus(label, stimuli::kDefaultStimuliSeed, 256, 1);
     }
     return all;
   }();
   return made;
 }
 
-ParticipantWindowOptions options(int width = 1280, int height = 720) {
-  ParticipantWindowOptions all;
+app::ParticipantWindowOptions options(int width = 1280, int height = 720) {
+  app::ParticipantWindowOptions all;
   all.size_px = {width, height};
   all.pictures = pictures();
   return all;
@@ -56,7 +56,7 @@ ParticipantWindowOptions options(int width = 1280, int height = 720) {
 
 /// A session's thread before the window, with a hand on the keyboard.
 struct Sitting {
-  explicit Sitting(const ParticipantWindowOptions& wanted = options(),
+  explicit Sitting(const app::ParticipantWindowOptions& wanted = options(),
                    const char* size = "1280x720")
       : screen(VirtualScreen::open(size)), window(wanted) {
     window.see_pictures(kLabels);
@@ -65,11 +65,11 @@ struct Sitting {
   /// Runs `session` beside the window.
   template <typename Session>
   void run(const Session& session) {
-    run_beside(window, [&] { session(); });
+    app::run_beside(window, [&] { session(); });
   }
 
   /// Shows a step until it is on the glass; session's thread.
-  void show(const Step& step) {
+  void show(const session::Step& step) {
     CHECK_FALSE(window.attend(step));
     CHECK(window.wait_until_shown(milliseconds(20'000)));
   }
@@ -87,7 +87,7 @@ struct Sitting {
     CHECK(window.wait_until_shown(milliseconds(20'000)));
   }
   /// Attends until there is a reply, or a minute has gone by.
-  std::optional<StepReply> reply_to(const Step& step) {
+  std::optional<session::StepReply> reply_to(const session::Step& step) {
     const auto give_up = steady_clock::now() + std::chrono::seconds(60);
     while (steady_clock::now() < give_up && !window.gone()) {
       if (const auto reply = window.attend(step)) return reply;
@@ -95,17 +95,17 @@ struct Sitting {
     return std::nullopt;
   }
   /// Types on a shown step. \return its reply
-  std::optional<StepReply> answer(const Step& step, const std::string& keys) {
+  std::optional<session::StepReply> answer(const session::Step& step, const std::string& keys) {
     show(step);
     screen->type(keys);
     return reply_to(step);
   }
 
   std::unique_ptr<VirtualScreen> screen;
-  ParticipantWindow window;
+  app::ParticipantWindow window;
 };
 
-AnswerStep answer_step(int trial = 1) {
+session::AnswerStep answer_step(int trial = 1) {
   return {.trial = trial, .of = 25};
 }
 
@@ -113,7 +113,7 @@ TEST_CASE("25 trials are answered with keys as chosen, each reply stamped betwee
   Sitting sitting;
   sitting.run([&] {
     for (int trial = 1; trial <= 25; ++trial) {
-      const ReadyStep ready{trial, 25, false};
+      const session::ReadyStep ready{trial, 25, false};
       CHECK(sitting.answer(ready, trial % 2 == 0 ? "space" : "Return"));
       sitting.window.show_exploring(kPlane);
       const int choice = (trial * 7) % 5;
@@ -130,14 +130,14 @@ TEST_CASE("25 trials are answered with keys as chosen, each reply stamped betwee
       CHECK(*reply->at > before);
       CHECK(*reply->at < steady_clock::now());
     }
-    CHECK(sitting.answer(EndStep{}, "Return"));
+    CHECK(sitting.answer(session::EndStep{}, "Return"));
   });
 }
 
 TEST_CASE("a picture and Next are clicked with a real mouse") {
   Sitting sitting;
   sitting.run([&] {
-    const AnswerStep step = answer_step();
+    const session::AnswerStep step = answer_step();
     sitting.show(step);
     // The middle one of five, and the button below.
     sitting.click(640, 320);
@@ -151,20 +151,21 @@ TEST_CASE("a picture and Next are clicked with a real mouse") {
 TEST_CASE("a key that was pressed before a screen was shown does nothing on it") {
   Sitting sitting;
   sitting.run([&] {
-    sitting.show(ReadyStep{1, 25, false});
+    sitting.show(session::ReadyStep{1, 25, false});
     sitting.type("Return Return Return");
-    CHECK(sitting.reply_to(ReadyStep{1, 25, false}));
-    sitting.show(BreakStep{1, 25});
-    for (int i = 0; i < 10; ++i) CHECK_FALSE(sitting.window.attend(BreakStep{1, 25}));
+    CHECK(sitting.reply_to(session::ReadyStep{1, 25, false}));
+    sitting.show(session::BreakStep{1, 25});
+    for (int i = 0; i < 10; ++i) CHECK_FALSE(sitting.window.attend(session::BreakStep{1, 25}));
   });
 }
 
 TEST_CASE("Escape ends nothing, on no screen") {
   Sitting sitting;
   sitting.run([&] {
-    sitting.show(ReadyStep{1, 25, false});
+    sitting.show(session::ReadyStep{1, 25, false});
     sitting.type("Escape");
-    for (int i = 0; i < 20; ++i) CHECK_FALSE(sitting.window.attend(ReadyStep{1, 25, false}));
+    for (int i = 0; i < 20; ++i)
+      CHECK_FALSE(sitting.window.attend(session::ReadyStep{1, 25, false}));
     CHECK_FALSE(sitting.window.gone());
   });
 }
@@ -175,9 +176,9 @@ TEST_CASE("a pause covers a choice, which is still there afterwards") {
     sitting.show(answer_step());
     sitting.type("4");
     CHECK(sitting.window.wait_until_shown(milliseconds(20'000)));
-    sitting.show(PauseStep{});
+    sitting.show(session::PauseStep{});
     sitting.type("2 Return");
-    for (int i = 0; i < 20; ++i) CHECK_FALSE(sitting.window.attend(PauseStep{}));
+    for (int i = 0; i < 20; ++i) CHECK_FALSE(sitting.window.attend(session::PauseStep{}));
     const auto reply = sitting.answer(answer_step(), "Return");
     REQUIRE(reply);
     CHECK(reply->position == 3);
@@ -189,11 +190,11 @@ TEST_CASE("while a plane is on the space bar stops the force and Enter ends the 
   Sitting sitting;
   const bool stops = GENERATE(true, false);
   sitting.run([&] {
-    sitting.show(ReadyStep{1, 25, false});
+    sitting.show(session::ReadyStep{1, 25, false});
     sitting.window.show_exploring(kPlane);
     CHECK(sitting.window.wait_until_shown(milliseconds(20'000)));
     std::this_thread::sleep_for(milliseconds(600));
-    ServoControl servo;
+    device::ServoControl servo;
     sitting.window.exploring(servo);
     CHECK_FALSE(servo.finish_asked());
     sitting.screen->type(stops ? "space" : "Return");
@@ -212,18 +213,18 @@ TEST_CASE("a window that is closed under force stops it at once, and replies no 
   sitting.run([&] {
     sitting.window.show_exploring(kPlane);
     sitting.window.close();
-    ServoControl servo;
+    device::ServoControl servo;
     sitting.window.exploring(servo);
     CHECK(servo.emergency_stop_asked());
-    CHECK(sitting.window.gone() == WindowGone::closed);
+    CHECK(sitting.window.gone() == app::WindowGone::closed);
     CHECK_FALSE(sitting.window.attend(answer_step()));
   });
 }
 
 /// Feels what a texture of this strength would give.
-void feel_texture(ParticipantWindow& window, double force_n) {
+void feel_texture(app::ParticipantWindow& window, double force_n) {
   for (int tick = 0; tick < 2000; ++tick) {
-    ServoSample sample;
+    device::ServoSample sample;
     sample.tick = tick;
     sample.position_mm = {0.1 * tick, 20.0 * force_n, -0.1};
     sample.force_n = {0.3 * force_n, 0.0, force_n};
@@ -234,36 +235,36 @@ void feel_texture(ParticipantWindow& window, double force_n) {
 TEST_CASE("the exploring screen is the same to the last byte, whatever is felt") {
   Sitting sitting;
   sitting.run([&] {
-    std::optional<ColourImage> first;
+    std::optional<engine::ColourImage> first;
     for (int trial = 1; trial <= 5; ++trial) {
-      sitting.show(ReadyStep{trial, 25, false});
+      sitting.show(session::ReadyStep{trial, 25, false});
       sitting.window.show_exploring(kPlane);
       feel_texture(sitting.window, 0.4 * trial);
       sitting.screen->move_pointer(100 * trial, 60 * trial);
       wait_until_heard(sitting.window);
       CHECK(sitting.window.wait_until_shown(milliseconds(20'000)));
-      const ColourImage picture = sitting.window.picture();
+      const engine::ColourImage picture = sitting.window.picture();
       if (!first) first = picture;
       CHECK(picture == *first);
       const auto samples = picture.samples();
       // No cursor, no edge, no text.
       CHECK(std::all_of(samples.begin(), samples.end(),
-                        [&](const Rgb& sample) { return sample == samples.front(); }));
+                        [&](const engine::Rgb& sample) { return sample == samples.front(); }));
     }
   });
 }
 
-class CountedCues final : public Cues {
+class CountedCues final : public app::Cues {
  public:
-  void tone(Cue cue) noexcept override {
-    if (cue == Cue::too_hard) ++too_hard;
+  void tone(app::Cue cue) noexcept override {
+    if (cue == app::Cue::too_hard) ++too_hard;
   }
   std::atomic<int> too_hard{0};
 };
 
 TEST_CASE("more than 2 N sounds once, until there has been less") {
   CountedCues cues;
-  ParticipantWindowOptions wanted = options();
+  app::ParticipantWindowOptions wanted = options();
   wanted.cues = &cues;
   Sitting sitting(wanted);
   feel_texture(sitting.window, 1.5);
@@ -276,14 +277,14 @@ TEST_CASE("more than 2 N sounds once, until there has been less") {
 }
 
 /// Chooses pictures in turn, and what is asked about itself.
-class Chooser final : public PromptParticipant {
+class Chooser final : public session::PromptParticipant {
  public:
   void see_pictures(const std::vector<std::string>& /*labels*/) override {}
-  [[nodiscard]] HapticDevice& begin_exploring(const PlaneGeometry& /*plane*/) override {
+  [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& /*plane*/) override {
     throw std::logic_error("not asked for");
   }
-  void feel(const ServoSample& /*sample*/) noexcept override {}
-  [[nodiscard]] ParticipantAnswer answer() override {
+  void feel(const device::ServoSample& /*sample*/) noexcept override {}
+  [[nodiscard]] session::ParticipantAnswer answer() override {
     return {next_++ % 5, std::chrono::seconds(3)};
   }
 
@@ -295,31 +296,31 @@ TEST_CASE("a simulated participant sits before the window and answers with its k
   Sitting sitting;
   Chooser chooser;
   sitting.run([&] {
-    WindowSubject subject(sitting.window, chooser, false);
+    app::WindowSubject subject(sitting.window, chooser, false);
     subject.see_pictures(kLabels);
-    const auto reply_to = [&](const Step& step) {
+    const auto reply_to = [&](const session::Step& step) {
       const auto give_up = steady_clock::now() + std::chrono::seconds(60);
       while (steady_clock::now() < give_up) {
         if (auto reply = subject.attend(step)) return *reply;
       }
       throw std::runtime_error("no reply");
     };
-    CHECK_FALSE(reply_to(InstructionStep{{"one", "two", "three"}}).at);
-    Questionnaire questions{"closing", {}};
-    questions.questions.push_back({"a", QuestionKind::text, {{"en", "Text"}}, {}, false});
+    CHECK_FALSE(reply_to(session::InstructionStep{{"one", "two", "three"}}).at);
+    design::Questionnaire questions{"closing", {}};
+    questions.questions.push_back({"a", design::QuestionKind::text, {{"en", "Text"}}, {}, false});
     questions.questions.push_back(
-        {"b", QuestionKind::choice, {{"en", "One"}}, {{{"en", "x"}}, {{"en", "y"}}}, true});
-    CHECK(reply_to(QuestionStep{&questions}).answers == std::vector<std::string>{"", "0"});
+        {"b", design::QuestionKind::choice, {{"en", "One"}}, {{{"en", "x"}}, {{"en", "y"}}}, true});
+    CHECK(reply_to(session::QuestionStep{&questions}).answers == std::vector<std::string>{"", "0"});
     for (int trial = 0; trial < 7; ++trial) {
-      static_cast<void>(reply_to(ReadyStep{trial + 1, 7, false}));
-      AnswerStep step = answer_step(trial + 1);
+      static_cast<void>(reply_to(session::ReadyStep{trial + 1, 7, false}));
+      session::AnswerStep step = answer_step(trial + 1);
       step.confidence_levels = trial % 2 == 0 ? 0 : 4;
-      const StepReply reply = reply_to(step);
+      const session::StepReply reply = reply_to(step);
       CHECK(reply.position == trial % 5);
       CHECK(reply.took == std::chrono::seconds(3));
       CHECK(reply.confidence.has_value() == (trial % 2 == 1));
     }
-    static_cast<void>(reply_to(EndStep{}));
+    static_cast<void>(reply_to(session::EndStep{}));
   });
 }
 
@@ -332,30 +333,31 @@ TEST_CASE("the window's title and the monitor's number are all that the system s
 
 TEST_CASE("a monitor that is not there is named, and how many there are") {
   const auto screen = VirtualScreen::open();
-  ParticipantWindowOptions wanted = options();
+  app::ParticipantWindowOptions wanted = options();
   wanted.size_px.reset();
   wanted.monitor = 3;
-  CHECK_THROWS_WITH(ParticipantWindow(wanted), holds_text("no monitor 3") && holds_text("has 1"));
+  CHECK_THROWS_WITH(app::ParticipantWindow(wanted),
+                    holds_text("no monitor 3") && holds_text("has 1"));
 }
 
 TEST_CASE("the whole screen is taken on the monitor that is asked for") {
-  ParticipantWindowOptions wanted = options();
+  app::ParticipantWindowOptions wanted = options();
   wanted.size_px.reset();
   Sitting sitting(wanted, "1920x1080");
   sitting.run([&] {
     sitting.show(answer_step());
-    const ColourImage picture = sitting.window.picture();
+    const engine::ColourImage picture = sitting.window.picture();
     CHECK(picture.width() == 1920);
     CHECK(picture.height() == 1080);
   });
 }
 
 /// What a participant may see, to be looked at by people.
-std::vector<std::pair<std::string, Step>> gallery() {
-  static const Questionnaire questions = {
+std::vector<std::pair<std::string, session::Step>> gallery() {
+  static const design::Questionnaire questions = {
       "closing",
       {{"hand",
-        QuestionKind::choice,
+        design::QuestionKind::choice,
         {{"en", "Which hand do you write with?"}, {"de", "Mit welcher Hand schreiben Sie?"}},
         {{{"en", "always the left"}, {"de", "immer mit der linken"}},
          {{"en", "usually the left"}, {"de", "meistens mit der linken"}},
@@ -363,10 +365,10 @@ std::vector<std::pair<std::string, Step>> gallery() {
          {{"en", "usually the right"}, {"de", "meistens mit der rechten"}},
          {{"en", "always the right"}, {"de", "immer mit der rechten"}}},
         true}}};
-  static const Questionnaire free_text = {
+  static const design::Questionnaire free_text = {
       "closing",
       {{"strategy",
-        QuestionKind::text,
+        design::QuestionKind::text,
         {{"en", "How did you decide?"}, {"de", "Wie haben Sie entschieden?"}},
         {}}}};
   const std::string page =
@@ -374,23 +376,23 @@ std::vector<std::pair<std::string, Step>> gallery() {
       "left and to the right, in long and even strokes, about as hard as you would write.\n\nTake "
       "as long as you like. When you have felt enough, press Enter and choose the picture that "
       "belongs to the surface.";
-  return {{"instructions", InstructionStep{{page, page}}},
-          {"question", QuestionStep{&questions}},
-          {"text", QuestionStep{&free_text}},
-          {"practice", PracticeStep{1}},
-          {"ready", ReadyStep{7, 25, false}},
-          {"answer", AnswerStep{.trial = 7, .of = 25, .may_explore_again = true}},
-          {"time-is-up", AnswerStep{.trial = 8, .of = 25, .time_is_up = true}},
-          {"spoken", AnswerStep{.trial = 9, .of = 25, .sight = Sight::blindfold}},
-          {"wrong", FeedbackStep{0, 4}},
-          {"right", FeedbackStep{1, 1}},
-          {"break", BreakStep{10, 25}},
-          {"pause", PauseStep{}},
-          {"end", EndStep{}}};
+  return {{"instructions", session::InstructionStep{{page, page}}},
+          {"question", session::QuestionStep{&questions}},
+          {"text", session::QuestionStep{&free_text}},
+          {"practice", session::PracticeStep{1}},
+          {"ready", session::ReadyStep{7, 25, false}},
+          {"answer", session::AnswerStep{.trial = 7, .of = 25, .may_explore_again = true}},
+          {"time-is-up", session::AnswerStep{.trial = 8, .of = 25, .time_is_up = true}},
+          {"spoken", session::AnswerStep{.trial = 9, .of = 25, .sight = design::Sight::blindfold}},
+          {"wrong", session::FeedbackStep{0, 4}},
+          {"right", session::FeedbackStep{1, 1}},
+          {"break", session::BreakStep{10, 25}},
+          {"pause", session::PauseStep{}},
+          {"end", session::EndStep{}}};
 }
 
-void keep(ParticipantWindow& window, const std::filesystem::path& file) {
-  const Bytes png = png_bytes(window.picture());
+void keep(app::ParticipantWindow& window, const std::filesystem::path& file) {
+  const Bytes png = engine::png_bytes(window.picture());
   std::ofstream(file, std::ios::binary)
       .write(reinterpret_cast<const char*>(png.data()), static_cast<std::streamsize>(png.size()));
 }
@@ -401,7 +403,7 @@ TEST_CASE("screenshots of every screen, for TOUCHTRIAL_SCREENSHOTS=FOLDER", "[.]
   const auto [width, height] =
       GENERATE(std::pair(1280, 720), std::pair(1920, 1080), std::pair(3840, 2160));
   const std::string language = GENERATE("en", "de");
-  ParticipantWindowOptions wanted = options(width, height);
+  app::ParticipantWindowOptions wanted = options(width, height);
   wanted.language = language;
   const std::string size = std::to_string(width) + "x" + std::to_string(height);
   Sitting sitting(wanted, size.c_str());
@@ -420,13 +422,13 @@ TEST_CASE("screenshots of every screen, for TOUCHTRIAL_SCREENSHOTS=FOLDER", "[.]
       std::this_thread::sleep_for(milliseconds(500));
       keep(sitting.window, file("answer-changed"));
     }
-    AnswerStep step = answer_step(12);
+    session::AnswerStep step = answer_step(12);
     step.confidence_levels = 5;
     sitting.show(step);
     sitting.screen->type("4 Return 3");
     std::this_thread::sleep_for(milliseconds(500));
     keep(sitting.window, file("confidence"));
-    static_cast<void>(sitting.answer(ReadyStep{2, 5, true}, "Return"));
+    static_cast<void>(sitting.answer(session::ReadyStep{2, 5, true}, "Return"));
     sitting.window.show_exploring(kPlane);
     feel_texture(sitting.window, 0.9);
     CHECK(sitting.window.wait_until_shown(milliseconds(20'000)));

@@ -23,26 +23,29 @@ constexpr int kSidePx = 300;  ///< 60 mm, more than any stroke's reach
 class PreparedTextures {
  public:
   PreparedTextures(const std::vector<std::string>& labels, int exemplar) {
-    std::vector<FieldView> views;
+    std::vector<engine::FieldView> views;
     for (const std::string& label : labels) {
-      const GreyImage image = generate_stimulus(label, kDefaultStimuliSeed, kSidePx, exemplar);
-      fields_.push_back(make_texture_field(extract_texture<double>(image, {}).texture, options_));
+      const GreyImage image =
+          stimuli::generate_stimulus(label, stimuli::kDefaultStimuliSeed, kSidePx, exemplar);
+      fields_.push_back(
+          engine::make_texture_field(engine::extract_texture<double>(image, {}).texture, options_));
     }
-    for (const TextureField& field : fields_) views.push_back(field.view());
-    const StudyGains gains = choose_gains(views, options_);
+    for (const engine::TextureField& field : fields_) views.push_back(field.view());
+    const engine::StudyGains gains = engine::choose_gains(views, options_);
     for (std::size_t i = 0; i < views.size(); ++i) {
       models_.emplace_back(views[i], options_, gains.of_field[i]);
     }
   }
 
   [[nodiscard]] TextureMaker maker() const {
-    return [this](std::size_t index) { return std::make_unique<ModelForce>(models_[index]); };
+    return
+        [this](std::size_t index) { return std::make_unique<session::ModelForce>(models_[index]); };
   }
 
  private:
-  RenderingOptions options_;
-  std::vector<TextureField> fields_;
-  std::vector<RenderingModel> models_;
+  engine::RenderingOptions options_;
+  std::vector<engine::TextureField> fields_;
+  std::vector<engine::RenderingModel> models_;
 };
 
 TEST_CASE("an observer of the drawn path names brick and cloth as a study presents them") {

@@ -20,43 +20,45 @@ namespace touchtrial {
 namespace {
 
 /// Keeps the last force that the servo wrote.
-class LastWritten final : public HapticDevice {
+class LastWritten final : public device::HapticDevice {
  public:
-  explicit LastWritten(HapticDevice& device) : device_(device) {}
-  [[nodiscard]] DeviceInfo info() const override { return device_.info(); }
-  [[nodiscard]] DeviceStatus read(DeviceSample& s) noexcept override { return device_.read(s); }
-  [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override {
+  explicit LastWritten(device::HapticDevice& device) : device_(device) {}
+  [[nodiscard]] device::DeviceInfo info() const override { return device_.info(); }
+  [[nodiscard]] device::DeviceStatus read(device::DeviceSample& s) noexcept override {
+    return device_.read(s);
+  }
+  [[nodiscard]] device::DeviceStatus write(Vec3 force_n) noexcept override {
     force_n_ = force_n;
     return device_.write(force_n);
   }
   void halt() noexcept override { device_.halt(); }
   void rearm() noexcept override { device_.rearm(); }
-  [[nodiscard]] DeviceFault fault() const noexcept override { return device_.fault(); }
+  [[nodiscard]] device::DeviceFault fault() const noexcept override { return device_.fault(); }
 
   Vec3 force_n_{1.0, 1.0, 1.0};
 
  private:
-  HapticDevice& device_;
+  device::HapticDevice& device_;
 };
 
-class NoSink final : public SampleSink {
+class NoSink final : public device::SampleSink {
  public:
-  void record(const ServoSample&) noexcept override {}
+  void record(const device::ServoSample&) noexcept override {}
 };
 
 /// A mouse under its window, a flat wall, and the servo in real time on a thread of its own.
 struct PilotStation {
   PilotStation() {
     thread.start([this] {
-      PacedClock servo_clock{std::chrono::microseconds(50)};
+      device::PacedClock servo_clock{std::chrono::microseconds(50)};
       // Long enough that only a test that hangs would see it end by itself.
-      const ServoOptions options = {.limit_ticks = 300'000};
-      report = run_servo(last, wall, sink, options, servo_clock, {.state = &states});
+      const device::ServoOptions options = {.limit_ticks = 300'000};
+      report = device::run_servo(last, wall, sink, options, servo_clock, {.state = &states});
     });
   }
 
   /// Lets the window live until the servo's state is as wanted. \return false if it never is
-  bool attend_until(const std::function<bool(const ServoState&)>& is_as_wanted) {
+  bool attend_until(const std::function<bool(const device::ServoState&)>& is_as_wanted) {
     const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(60);
     while (std::chrono::steady_clock::now() < give_up) {
       window->draw_frame();
@@ -65,17 +67,17 @@ struct PilotStation {
     return false;
   }
 
-  PointerExchange exchange;
-  std::unique_ptr<PointerWindow> window =
-      std::make_unique<PointerWindow>(exchange, Vec2{100.0, 80.0});
-  PacedClock clock{PacedClock::Time{}};
-  MouseDevice mouse{exchange, clock};
+  device::PointerExchange exchange;
+  std::unique_ptr<app::PointerWindow> window =
+      std::make_unique<app::PointerWindow>(exchange, Vec2{100.0, 80.0});
+  device::PacedClock clock{device::PacedClock::Time{}};
+  device::MouseDevice mouse{exchange, clock};
   LastWritten last{mouse};
   FlatWall wall;
   NoSink sink;
-  LatestValue<ServoState> states;
-  ServoReport report;
-  ServoThread thread{{SchedulingPolicy::other, 0, false}};
+  device::LatestValue<device::ServoState> states;
+  device::ServoReport report;
+  device::ServoThread thread{{device::SchedulingPolicy::other, 0, false}};
 };
 
 bool is_near(Vec3 position_mm, Vec2 where_mm) {
@@ -93,14 +95,14 @@ TEST_CASE(
   const Vec2 at = corner + (1.0 / mm_per_unit) * where_mm;
   screen->move_pointer(static_cast<int>(at.x), static_cast<int>(at.y));
   CHECK(station.attend_until(
-      [&](const ServoState& s) { return is_near(s.sample.position_mm, where_mm); }));
+      [&](const device::ServoState& s) { return is_near(s.sample.position_mm, where_mm); }));
   screen->press();
   CHECK(station.attend_until(
-      [](const ServoState& s) { return s.sample.buttons == 1U && s.force_n.z > 0.65; }));
+      [](const device::ServoState& s) { return s.sample.buttons == 1U && s.force_n.z > 0.65; }));
   CHECK(is_near(station.states.get().sample.position_mm, where_mm));
   screen->release();
   CHECK(station.attend_until(
-      [](const ServoState& s) { return s.sample.buttons == 0U && s.force_n.z == 0.0; }));
+      [](const device::ServoState& s) { return s.sample.buttons == 0U && s.force_n.z == 0.0; }));
   station.window.reset();
   station.thread.wait();
 }
@@ -111,19 +113,19 @@ TEST_CASE("a window that closes under a pressed stylus ends the servo with zero 
   const Vec2 at = station.window->plane_corner() + Vec2{50.0, 50.0};
   screen->move_pointer(static_cast<int>(at.x), static_cast<int>(at.y));
   screen->press();
-  CHECK(station.attend_until([](const ServoState& s) { return s.force_n.z > 0.65; }));
+  CHECK(station.attend_until([](const device::ServoState& s) { return s.force_n.z > 0.65; }));
   station.window.reset();
   station.thread.wait();
-  CHECK(station.report.end == ServoEnd::fault);
-  CHECK(station.report.device_fault == DeviceFault::link_lost);
+  CHECK(station.report.end == device::ServoEnd::fault);
+  CHECK(station.report.device_fault == device::DeviceFault::link_lost);
   CHECK(station.last.force_n_ == Vec3{});
   screen->release();
 }
 
 TEST_CASE("the pointer itself is hidden, so that only the stylus shows where the hand is") {
   const auto screen = VirtualScreen::open();
-  PointerExchange exchange;
-  PointerWindow window(exchange, {50.0, 50.0});
+  device::PointerExchange exchange;
+  app::PointerWindow window(exchange, {50.0, 50.0});
   for (int frame = 0; frame < 5; ++frame) window.draw_frame();
   CHECK(glfwGetInputMode(glfwGetCurrentContext(), GLFW_CURSOR) == GLFW_CURSOR_HIDDEN);
 }
@@ -132,10 +134,11 @@ TEST_CASE("the space bar asks to stop") {
   const auto screen = VirtualScreen::open();
   PilotStation station;
   screen->move_pointer(100, 100);
-  CHECK(station.attend_until([](const ServoState& s) { return s.sample.ready; }));
+  CHECK(station.attend_until([](const device::ServoState& s) { return s.sample.ready; }));
   CHECK_FALSE(station.window->stop_asked());
   screen->type("space");
-  CHECK(station.attend_until([&](const ServoState&) { return station.window->stop_asked(); }));
+  CHECK(station.attend_until(
+      [&](const device::ServoState&) { return station.window->stop_asked(); }));
   station.window.reset();
   station.thread.wait();
 }
@@ -143,16 +146,16 @@ TEST_CASE("the space bar asks to stop") {
 TEST_CASE("without a display the window says what to do about it") {
   ::unsetenv("DISPLAY");
   ::unsetenv("WAYLAND_DISPLAY");
-  PointerExchange exchange;
-  CHECK_THROWS_WITH(PointerWindow(exchange, {50.0, 50.0}), holds_text("graphical session"));
+  device::PointerExchange exchange;
+  CHECK_THROWS_WITH(app::PointerWindow(exchange, {50.0, 50.0}), holds_text("graphical session"));
 }
 
 TEST_CASE("a monitor's own size is believed only where it can be true") {
-  CHECK(stated_mm_per_unit(508, 1920) == Approx(0.26458).epsilon(1e-4));
-  CHECK(stated_mm_per_unit(0, 1920) == 0.0);
-  CHECK(stated_mm_per_unit(160, 1920) == Approx(0.0833).epsilon(1e-3));
-  CHECK(stated_mm_per_unit(16, 1920) == 0.0);
-  CHECK(stated_mm_per_unit(1600, 800) == 0.0);
+  CHECK(app::stated_mm_per_unit(508, 1920) == Approx(0.26458).epsilon(1e-4));
+  CHECK(app::stated_mm_per_unit(0, 1920) == 0.0);
+  CHECK(app::stated_mm_per_unit(160, 1920) == Approx(0.0833).epsilon(1e-3));
+  CHECK(app::stated_mm_per_unit(16, 1920) == 0.0);
+  CHECK(app::stated_mm_per_unit(1600, 800) == 0.0);
 }
 
 }  // namespace

@@ -61,19 +61,19 @@ struct Laboratory {
   TempFolder folder;
 };
 
-std::vector<TrialRow> trials_in(const std::string& database) {
-  return StudyStore::open(database, StudyStore::Access::read_only).trials();
+std::vector<store::TrialRow> trials_in(const std::string& database) {
+  return store::StudyStore::open(database, store::StudyStore::Access::read_only).trials();
 }
 
-std::vector<int> positions_of(const std::vector<TrialRow>& trials) {
+std::vector<int> positions_of(const std::vector<store::TrialRow>& trials) {
   std::vector<int> positions;
-  for (const TrialRow& trial : trials) positions.push_back(trial.position.value_or(-1));
+  for (const store::TrialRow& trial : trials) positions.push_back(trial.position.value_or(-1));
   return positions;
 }
 
 std::vector<int> positions_as_answered(const std::string& database) {
-  std::vector<TrialRow> trials = trials_in(database);
-  std::ranges::sort(trials, {}, &TrialRow::answered_at);
+  std::vector<store::TrialRow> trials = trials_in(database);
+  std::ranges::sort(trials, {}, &store::TrialRow::answered_at);
   return positions_of(trials);
 }
 

@@ -17,7 +17,7 @@ namespace touchtrial {
 namespace {
 
 /// Squares of one size.
-class Squares final : public PictureShelf {
+class Squares final : public app::PictureShelf {
  public:
   explicit Squares(double side_mm) : side_mm_(side_mm) {}
   [[nodiscard]] Vec2 size_mm(const std::string& /*label*/) const override {
@@ -38,17 +38,17 @@ class Paper {
     ImGui::SetCurrentContext(context_);
     ImGui::GetIO().IniFilename = nullptr;
     ImGui::GetIO().DisplaySize = {static_cast<float>(size.x), static_cast<float>(size.y)};
-    fonts_ = load_participant_fonts(design_unit(size));
+    fonts_ = app::load_participant_fonts(app::design_unit(size));
     ImGui::GetIO().Fonts->Build();
   }
   ~Paper() { ImGui::DestroyContext(context_); }
   Paper(const Paper&) = delete;
   Paper& operator=(const Paper&) = delete;
 
-  [[nodiscard]] Canvas draw(Screen& screen) const {
+  [[nodiscard]] app::Canvas draw(app::Screen& screen) const {
     ImGui::SetCurrentContext(context_);
     ImGui::NewFrame();
-    Canvas canvas(*ImGui::GetBackgroundDrawList(), fonts_, size_, screen.attention());
+    app::Canvas canvas(*ImGui::GetBackgroundDrawList(), fonts_, size_, screen.attention());
     screen.draw(canvas);
     ImGui::EndFrame();
     return canvas;
@@ -58,26 +58,26 @@ class Paper {
  private:
   Vec2 size_;
   ImGuiContext* context_;
-  Fonts fonts_;
+  app::Fonts fonts_;
 };
 
-bool lies_inside(const Box& inner, const Box& outer) {
+bool lies_inside(const app::Box& inner, const app::Box& outer) {
   constexpr double kRounding = 1.5;
   return inner.x >= outer.x - kRounding && inner.y >= outer.y - kRounding &&
          inner.right() <= outer.right() + kRounding && inner.bottom() <= outer.bottom() + kRounding;
 }
 
-bool overlap(const Box& a, const Box& b) {
+bool overlap(const app::Box& a, const app::Box& b) {
   constexpr double kRounding = 1.5;
   return a.x + kRounding < b.right() && b.x + kRounding < a.right() &&
          a.y + kRounding < b.bottom() && b.y + kRounding < a.bottom();
 }
 
 /// What is wrong with a picture; empty if nothing is.
-std::string faults_of(const Canvas& canvas) {
+std::string faults_of(const app::Canvas& canvas) {
   std::string faults;
-  const Box all = {0.0, 0.0, canvas.size().x, canvas.size().y};
-  const std::vector<PlacedText>& texts = canvas.texts();
+  const app::Box all = {0.0, 0.0, canvas.size().x, canvas.size().y};
+  const std::vector<app::PlacedText>& texts = canvas.texts();
   for (std::size_t i = 0; i < texts.size(); ++i) {
     if (!lies_inside(texts[i].box, all)) faults += "off the screen: " + texts[i].text + "\n";
     if (!lies_inside(texts[i].box, texts[i].room)) faults += "clipped: " + texts[i].text + "\n";
@@ -87,7 +87,7 @@ std::string faults_of(const Canvas& canvas) {
       }
     }
   }
-  const std::vector<Target>& targets = canvas.targets();
+  const std::vector<app::Target>& targets = canvas.targets();
   for (std::size_t i = 0; i < targets.size(); ++i) {
     if (!lies_inside(targets[i].box, all)) faults += "a button is off the screen\n";
     for (std::size_t j = 0; j < i; ++j) {
@@ -97,15 +97,15 @@ std::string faults_of(const Canvas& canvas) {
   return faults;
 }
 
-InputEvent key(Key which, int digit = 0) {
-  InputEvent event;
+app::InputEvent key(app::Key which, int digit = 0) {
+  app::InputEvent event;
   event.key = which;
   event.digit = digit;
   return event;
 }
 
-Question choice(int options) {
-  Question question{"hand", QuestionKind::choice, {}, {}, true};
+design::Question choice(int options) {
+  design::Question question{"hand", design::QuestionKind::choice, {}, {}, true};
   question.text = {{"en", "Which hand do you use to hold a toothbrush, or the thing most like it?"},
                    {"de", "Mit welcher Hand halten Sie eine Zahnbürste oder etwas Ähnliches?"}};
   for (int i = 0; i < options; ++i) {
@@ -115,55 +115,56 @@ Question choice(int options) {
   return question;
 }
 
-const Questionnaire& questions() {
-  static const Questionnaire all = {
+const design::Questionnaire& questions() {
+  static const design::Questionnaire all = {
       "closing",
       {choice(5),
        choice(9),
-       {"age", QuestionKind::number, {{"en", "Age?"}, {"de", "Alter?"}}, {}},
+       {"age", design::QuestionKind::number, {{"en", "Age?"}, {"de", "Alter?"}}, {}},
        {"strategy",
-        QuestionKind::text,
+        design::QuestionKind::text,
         {{"en", "How did you decide, and what did you listen or look for?"},
          {"de", "Wie haben Sie entschieden, und worauf haben Sie geachtet?"}},
         {}}}};
   return all;
 }
 
-std::vector<Step> steps_of_a_session() {
+std::vector<session::Step> steps_of_a_session() {
   const std::string page =
       "Feeling surfaces\n\nPlease hold the stylus like a pen, rest your forearm, and stroke the "
       "surface to the left and to the right. Do not tap it. Press about as hard as in writing.\n\n"
       "When you have felt enough, press Enter. You then choose a picture. There is no wrong "
       "answer, and nobody sees what you have chosen while you sit here.\n\nÄÖÜß – „so“ … ≤";
-  return {InstructionStep{{page, page, page + page}},
-          QuestionStep{&questions()},
-          PracticeStep{1},
-          PracticeStep{2},
-          ReadyStep{1, 25, false},
-          ReadyStep{3, 5, true},
-          AnswerStep{.trial = 25,
-                     .of = 25,
-                     .time_is_up = true,
-                     .may_explore_again = true,
-                     .confidence_levels = 9},
-          AnswerStep{.trial = 2, .of = 5, .practice = true},
-          AnswerStep{.trial = 2, .of = 25, .time_is_up = true, .sight = Sight::blindfold},
-          FeedbackStep{0, 1},
-          FeedbackStep{1, 1},
-          BreakStep{10, 25},
-          PauseStep{},
-          EndStep{}};
+  return {session::InstructionStep{{page, page, page + page}},
+          session::QuestionStep{&questions()},
+          session::PracticeStep{1},
+          session::PracticeStep{2},
+          session::ReadyStep{1, 25, false},
+          session::ReadyStep{3, 5, true},
+          session::AnswerStep{.trial = 25,
+                              .of = 25,
+                              .time_is_up = true,
+                              .may_explore_again = true,
+                              .confidence_levels = 9},
+          session::AnswerStep{.trial = 2, .of = 5, .practice = true},
+          session::AnswerStep{
+              .trial = 2, .of = 25, .time_is_up = true, .sight = design::Sight::blindfold},
+          session::FeedbackStep{0, 1},
+          session::FeedbackStep{1, 1},
+          session::BreakStep{10, 25},
+          session::PauseStep{},
+          session::EndStep{}};
 }
 
 /// Goes through all pages of a screen, with and without choices.
-void check_all_pages(const Paper& paper, Screen& screen) {
+void check_all_pages(const Paper& paper, app::Screen& screen) {
   for (int page = 0; page < 12 && !screen.is_done(); ++page) {
     CHECK(faults_of(paper.draw(screen)) == "");
-    static_cast<void>(screen.take(key(Key::digit, 2)));
+    static_cast<void>(screen.take(key(app::Key::digit, 2)));
     CHECK(faults_of(paper.draw(screen)) == "");
-    static_cast<void>(screen.take(key(Key::digit, 1)));
+    static_cast<void>(screen.take(key(app::Key::digit, 1)));
     CHECK(faults_of(paper.draw(screen)) == "");
-    static_cast<void>(screen.take(key(Key::enter)));
+    static_cast<void>(screen.take(key(app::Key::enter)));
   }
 }
 
@@ -176,44 +177,44 @@ TEST_CASE("everything on every screen can be read, in both languages and at all 
   CAPTURE(size.x, language, side_mm);
   const Paper paper(size);
   Squares shelf(side_mm);
-  const Glass glass = {size.x > 2000.0 ? 0.16 : 0.27, knows};
+  const app::Glass glass = {size.x > 2000.0 ? 0.16 : 0.27, knows};
   for (const std::size_t count : {2U, 5U, 9U}) {
-    const ScreenContext context = {.words = &words_in(language),
-                                   .language = language,
-                                   .mouse = count == 5U,
-                                   .shelf = &shelf,
-                                   .glass = &glass};
+    const app::ScreenContext context = {.words = &app::words_in(language),
+                                        .language = language,
+                                        .mouse = count == 5U,
+                                        .shelf = &shelf,
+                                        .glass = &glass};
     const std::vector<std::string> labels(count, "corrugated cardboard");
-    for (const Step& step : steps_of_a_session()) {
+    for (const session::Step& step : steps_of_a_session()) {
       CAPTURE(step.index(), count);
-      check_all_pages(paper, *screen_for(step, context, labels));
+      check_all_pages(paper, *app::screen_for(step, context, labels));
     }
   }
 }
 
 struct Asked {
-  explicit Asked(const AnswerStep& step = {.trial = 1, .of = 25}, int count = 5)
-      : screen(step, {.words = &words_in("en"), .shelf = &shelf, .glass = &glass},
+  explicit Asked(const session::AnswerStep& step = {.trial = 1, .of = 25}, int count = 5)
+      : screen(step, {.words = &app::words_in("en"), .shelf = &shelf, .glass = &glass},
                std::vector<std::string>(static_cast<std::size_t>(count), "x")) {
     static_cast<void>(paper.draw(screen));
   }
-  std::optional<StepReply> press(Key which, int digit = 0) {
-    std::optional<StepReply> reply = screen.take(key(which, digit));
+  std::optional<session::StepReply> press(app::Key which, int digit = 0) {
+    std::optional<session::StepReply> reply = screen.take(key(which, digit));
     static_cast<void>(paper.draw(screen));
     return reply;
   }
 
   Paper paper{{1280.0, 720.0}};
   Squares shelf{51.2};
-  Glass glass{0.27, true};
-  AnswerScreen screen;
+  app::Glass glass{0.27, true};
+  app::AnswerScreen screen;
 };
 
 TEST_CASE("an answer is a choice and Next; Enter alone answers nothing") {
   Asked asked;
-  CHECK_FALSE(asked.press(Key::enter));
-  CHECK_FALSE(asked.press(Key::digit, 3));
-  const auto reply = asked.press(Key::enter);
+  CHECK_FALSE(asked.press(app::Key::enter));
+  CHECK_FALSE(asked.press(app::Key::digit, 3));
+  const auto reply = asked.press(app::Key::enter);
   REQUIRE(reply);
   CHECK(reply->position == 2);
   CHECK_FALSE(reply->first_position);
@@ -221,50 +222,50 @@ TEST_CASE("an answer is a choice and Next; Enter alone answers nothing") {
 
 TEST_CASE("an answer is changed once, and then fixed; both choices are told") {
   Asked asked;
-  static_cast<void>(asked.press(Key::digit, 3));
-  static_cast<void>(asked.press(Key::digit, 3));
-  static_cast<void>(asked.press(Key::digit, 5));
-  static_cast<void>(asked.press(Key::digit, 1));
-  const auto reply = asked.press(Key::enter);
+  static_cast<void>(asked.press(app::Key::digit, 3));
+  static_cast<void>(asked.press(app::Key::digit, 3));
+  static_cast<void>(asked.press(app::Key::digit, 5));
+  static_cast<void>(asked.press(app::Key::digit, 1));
+  const auto reply = asked.press(app::Key::enter);
   REQUIRE(reply);
   CHECK(reply->position == 4);
   CHECK(reply->first_position == 2);
-  CHECK_FALSE(asked.press(Key::enter));
+  CHECK_FALSE(asked.press(app::Key::enter));
 }
 
 TEST_CASE("keys beyond the pictures choose nothing") {
   Asked asked;
-  static_cast<void>(asked.press(Key::digit, 6));
-  static_cast<void>(asked.press(Key::digit, 0));
-  CHECK_FALSE(asked.press(Key::enter));
+  static_cast<void>(asked.press(app::Key::digit, 6));
+  static_cast<void>(asked.press(app::Key::digit, 0));
+  CHECK_FALSE(asked.press(app::Key::enter));
 }
 
 TEST_CASE("arrows go from picture to picture, and down to Next") {
   Asked asked;
-  static_cast<void>(asked.press(Key::right));
-  static_cast<void>(asked.press(Key::right));
-  static_cast<void>(asked.press(Key::right));
-  static_cast<void>(asked.press(Key::left));
+  static_cast<void>(asked.press(app::Key::right));
+  static_cast<void>(asked.press(app::Key::right));
+  static_cast<void>(asked.press(app::Key::right));
+  static_cast<void>(asked.press(app::Key::left));
   CHECK(asked.screen.attention().focus == 1);
-  static_cast<void>(asked.press(Key::enter));
-  CHECK(asked.screen.attention().focus == kNextTarget);
-  const auto reply = asked.press(Key::enter);
+  static_cast<void>(asked.press(app::Key::enter));
+  CHECK(asked.screen.attention().focus == app::kNextTarget);
+  const auto reply = asked.press(app::Key::enter);
   REQUIRE(reply);
   CHECK(reply->position == 1);
 }
 
 TEST_CASE("confidence is asked after the answer, whose time is when Next was pressed") {
   Asked asked({.trial = 1, .of = 25, .confidence_levels = 4});
-  static_cast<void>(asked.press(Key::digit, 2));
-  InputEvent next = key(Key::enter);
-  next.at = InputEvent::Time(std::chrono::seconds(5));
+  static_cast<void>(asked.press(app::Key::digit, 2));
+  app::InputEvent next = key(app::Key::enter);
+  next.at = app::InputEvent::Time(std::chrono::seconds(5));
   CHECK_FALSE(asked.screen.take(next));
   static_cast<void>(asked.paper.draw(asked.screen));
-  CHECK_FALSE(asked.press(Key::enter));
-  static_cast<void>(asked.press(Key::digit, 5));
-  static_cast<void>(asked.press(Key::digit, 4));
-  InputEvent last = key(Key::enter);
-  last.at = InputEvent::Time(std::chrono::seconds(9));
+  CHECK_FALSE(asked.press(app::Key::enter));
+  static_cast<void>(asked.press(app::Key::digit, 5));
+  static_cast<void>(asked.press(app::Key::digit, 4));
+  app::InputEvent last = key(app::Key::enter);
+  last.at = app::InputEvent::Time(std::chrono::seconds(9));
   const auto reply = asked.screen.take(last);
   REQUIRE(reply);
   CHECK(reply->position == 1);
@@ -276,20 +277,20 @@ TEST_CASE("a picture and Next are clicked with the mouse; a slip off the button 
   Asked asked;
   const auto click = [&](int id, Vec2 slip) {
     const auto targets = asked.paper.draw(asked.screen).targets();
-    const auto found =
-        std::find_if(targets.begin(), targets.end(), [id](const Target& t) { return t.id == id; });
+    const auto found = std::find_if(targets.begin(), targets.end(),
+                                    [id](const app::Target& t) { return t.id == id; });
     REQUIRE(found != targets.end());
-    InputEvent event;
+    app::InputEvent event;
     event.position = {found->box.x + 5.0, found->box.y + 5.0};
-    event.kind = InputEvent::Kind::pressed;
+    event.kind = app::InputEvent::Kind::pressed;
     static_cast<void>(asked.screen.take(event));
-    event.kind = InputEvent::Kind::released;
+    event.kind = app::InputEvent::Kind::released;
     event.position = event.position + slip;
     return asked.screen.take(event);
   };
   CHECK_FALSE(click(4, {0.0, 0.0}));
-  CHECK_FALSE(click(kNextTarget, {0.0, -300.0}));
-  const auto reply = click(kNextTarget, {0.0, 0.0});
+  CHECK_FALSE(click(app::kNextTarget, {0.0, -300.0}));
+  const auto reply = click(app::kNextTarget, {0.0, 0.0});
   REQUIRE(reply);
   CHECK(reply->position == 4);
 }
@@ -299,8 +300,8 @@ TEST_CASE("feeling again is offered only where the step allows it") {
   Asked with({.trial = 1, .of = 25, .may_explore_again = true});
   CHECK(without.paper.draw(without.screen).targets().size() == 5);
   CHECK(with.paper.draw(with.screen).targets().size() == 6);
-  static_cast<void>(with.press(Key::back_tab));
-  const auto reply = with.press(Key::enter);
+  static_cast<void>(with.press(app::Key::back_tab));
+  const auto reply = with.press(app::Key::enter);
   REQUIRE(reply);
   CHECK(reply->explore_again);
 }
@@ -308,50 +309,51 @@ TEST_CASE("feeling again is offered only where the step allows it") {
 TEST_CASE("a questionnaire is answered by keys, back and forth, and some of it is left out") {
   const Paper paper({1280.0, 720.0});
   Squares shelf(51.2);
-  const Glass glass;
-  const ScreenContext context = {
-      .words = &words_in("de"), .language = "de", .shelf = &shelf, .glass = &glass};
-  const auto screen = screen_for(QuestionStep{&questions()}, context, {});
-  const auto press = [&](Key which, int digit = 0) {
+  const app::Glass glass;
+  const app::ScreenContext context = {
+      .words = &app::words_in("de"), .language = "de", .shelf = &shelf, .glass = &glass};
+  const auto screen = app::screen_for(session::QuestionStep{&questions()}, context, {});
+  const auto press = [&](app::Key which, int digit = 0) {
     static_cast<void>(paper.draw(*screen));
     return screen->take(key(which, digit));
   };
   const auto write = [&](char32_t letter) {
-    InputEvent event;
-    event.kind = InputEvent::Kind::letter;
+    app::InputEvent event;
+    event.kind = app::InputEvent::Kind::letter;
     event.letter = letter;
     CHECK_FALSE(screen->take(event));
   };
-  CHECK_FALSE(press(Key::enter));  // it must be answered
-  CHECK_FALSE(press(Key::digit, 5));
-  CHECK_FALSE(press(Key::enter));
-  CHECK_FALSE(press(Key::digit, 9));
-  CHECK_FALSE(press(Key::digit, 1));
-  CHECK_FALSE(press(Key::enter));
+  CHECK_FALSE(press(app::Key::enter));  // it must be answered
+  CHECK_FALSE(press(app::Key::digit, 5));
+  CHECK_FALSE(press(app::Key::enter));
+  CHECK_FALSE(press(app::Key::digit, 9));
+  CHECK_FALSE(press(app::Key::digit, 1));
+  CHECK_FALSE(press(app::Key::enter));
   for (const char32_t letter : U"2x3,5") {
     if (letter != 0) write(letter);
   }
-  CHECK_FALSE(press(Key::enter));
+  CHECK_FALSE(press(app::Key::enter));
   for (const char32_t letter : U"Rüe") {
     if (letter != 0) write(letter);
   }
-  CHECK_FALSE(press(Key::left));
+  CHECK_FALSE(press(app::Key::left));
   write(U'h');
-  CHECK_FALSE(press(Key::remove));
-  CHECK_FALSE(press(Key::backspace));
-  const auto reply = press(Key::enter);
+  CHECK_FALSE(press(app::Key::remove));
+  CHECK_FALSE(press(app::Key::backspace));
+  const auto reply = press(app::Key::enter);
   REQUIRE(reply);
   CHECK(reply->answers == std::vector<std::string>{"4", "0", "23.5", "Rü"});
 }
 
 TEST_CASE("pictures are in true size where there is room, and never larger") {
   const std::vector<Vec2> sizes(5, {200.0, 200.0});
-  const PictureGrid roomy = lay_out_pictures(sizes, {0.0, 0.0, 1200.0, 400.0}, 20.0, 40.0);
+  const app::PictureGrid roomy =
+      app::lay_out_pictures(sizes, {0.0, 0.0, 1200.0, 400.0}, 20.0, 40.0);
   CHECK(roomy.shown == 1.0);
   CHECK(roomy.pictures[4].width == Approx(200.0));
-  const PictureGrid tight = lay_out_pictures(sizes, {0.0, 0.0, 600.0, 400.0}, 20.0, 40.0);
+  const app::PictureGrid tight = app::lay_out_pictures(sizes, {0.0, 0.0, 600.0, 400.0}, 20.0, 40.0);
   CHECK(tight.shown == Approx(0.75));
-  for (const Box& picture : tight.pictures) {
+  for (const app::Box& picture : tight.pictures) {
     CHECK(lies_inside(picture, {0.0, 0.0, 600.0, 400.0}));
     CHECK(picture.width == Approx(150.0));
   }

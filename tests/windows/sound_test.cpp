@@ -60,7 +60,7 @@ double density_at(const std::vector<float>& samples, int first, int last) {
   return power / kLooks;
 }
 
-std::vector<float> rendered(SoundMixer& mixer, std::size_t count) {
+std::vector<float> rendered(app::SoundMixer& mixer, std::size_t count) {
   std::vector<float> samples(count);
   mixer.render(samples);
   return samples;
@@ -68,7 +68,7 @@ std::vector<float> rendered(SoundMixer& mixer, std::size_t count) {
 
 TEST_CASE("masking noise has the level that is asked for, and no constant part") {
   for (const double level : {-60.0, -30.0, -18.0}) {
-    const std::vector<float> noise = masking_noise(level, 7);
+    const std::vector<float> noise = app::masking_noise(level, 7);
     CHECK(20.0 * std::log10(rms_of(noise)) == Approx(level).margin(1e-4));
     double sum = 0.0;
     for (const float sample : noise) sum += sample;
@@ -78,18 +78,18 @@ TEST_CASE("masking noise has the level that is asked for, and no constant part")
 
 TEST_CASE("masking noise does not clip at the highest level, and nothing is louder") {
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
-    CHECK(peak_of(masking_noise(kHighestMaskingDbfs, seed)) < 0.8F);
+    CHECK(peak_of(app::masking_noise(app::kHighestMaskingDbfs, seed)) < 0.8F);
   }
-  CHECK(masking_noise(0.0, 1) == masking_noise(kHighestMaskingDbfs, 1));
+  CHECK(app::masking_noise(0.0, 1) == app::masking_noise(app::kHighestMaskingDbfs, 1));
 }
 
 TEST_CASE("masking noise follows from its seed") {
-  CHECK(masking_noise(-30.0, 3) == masking_noise(-30.0, 3));
-  CHECK(masking_noise(-30.0, 3) != masking_noise(-30.0, 4));
+  CHECK(app::masking_noise(-30.0, 3) == app::masking_noise(-30.0, 3));
+  CHECK(app::masking_noise(-30.0, 3) != app::masking_noise(-30.0, 4));
 }
 
 TEST_CASE("masking noise falls by three decibels an octave") {
-  const std::vector<float> noise = masking_noise(-30.0, 1);
+  const std::vector<float> noise = app::masking_noise(-30.0, 1);
   // 96 to 192 Hz and 3.1 to 6.1 kHz at 48 kHz: five octaves apart.
   const double low = density_at(noise, 524, 1048);
   const double high = density_at(noise, 16768, 33536);
@@ -97,7 +97,7 @@ TEST_CASE("masking noise falls by three decibels an octave") {
 }
 
 TEST_CASE("noise begins and ends in ramps without a step") {
-  SoundMixer mixer(kRateHz, std::vector<float>(1000, 0.5F));
+  app::SoundMixer mixer(kRateHz, std::vector<float>(1000, 0.5F));
   CHECK(peak_of(rendered(mixer, 500)) == 0.0F);
   float before = 0.0F;
   for (const bool on : {true, false}) {
@@ -113,8 +113,8 @@ TEST_CASE("noise begins and ends in ramps without a step") {
 }
 
 TEST_CASE("tones begin and end without a step, and stop by themselves") {
-  for (const Cue cue : {Cue::plane_on, Cue::plane_off, Cue::too_hard}) {
-    SoundMixer mixer(kRateHz, {});
+  for (const app::Cue cue : {app::Cue::plane_on, app::Cue::plane_off, app::Cue::too_hard}) {
+    app::SoundMixer mixer(kRateHz, {});
     mixer.tone(cue);
     const std::vector<float> samples = rendered(mixer, 48000);
     CHECK(peak_of(samples) > 0.05F);
@@ -130,35 +130,36 @@ TEST_CASE("tones begin and end without a step, and stop by themselves") {
 }
 
 TEST_CASE("a tone that sounds is not begun anew, and one asked for later is") {
-  SoundMixer mixer(kRateHz, {});
-  mixer.tone(Cue::too_hard);
+  app::SoundMixer mixer(kRateHz, {});
+  mixer.tone(app::Cue::too_hard);
   std::ignore = rendered(mixer, 6000);
-  mixer.tone(Cue::too_hard);
+  mixer.tone(app::Cue::too_hard);
   const std::vector<float> rest = rendered(mixer, 12000);
   CHECK(peak_of({rest.begin() + 6000, rest.end()}) == 0.0F);
-  mixer.tone(Cue::too_hard);
+  mixer.tone(app::Cue::too_hard);
   CHECK(peak_of(rendered(mixer, 6000)) > 0.05F);
 }
 
 TEST_CASE("all tones over the loudest noise stay within full scale") {
-  SoundMixer mixer(kRateHz, masking_noise(0.0, 5));
+  app::SoundMixer mixer(kRateHz, app::masking_noise(0.0, 5));
   mixer.mask(true);
   for (int i = 0; i < 20; ++i) {
-    for (const Cue cue : {Cue::plane_on, Cue::plane_off, Cue::too_hard}) mixer.tone(cue);
+    for (const app::Cue cue : {app::Cue::plane_on, app::Cue::plane_off, app::Cue::too_hard})
+      mixer.tone(cue);
     CHECK(peak_of(rendered(mixer, 12000)) < 1.0F);
   }
 }
 
 TEST_CASE("rendering sound allocates and locks nothing") {
-  SoundMixer mixer(kRateHz, masking_noise(-30.0, 5));
+  app::SoundMixer mixer(kRateHz, app::masking_noise(-30.0, 5));
   std::vector<float> samples(4800);
   std::ignore = take_realtime_offences();
   {
-    const RealtimeRegion region;
+    const device::RealtimeRegion region;
     mixer.mask(true);
-    mixer.tone(Cue::plane_on);
+    mixer.tone(app::Cue::plane_on);
     mixer.render(samples);
-    mixer.tone(Cue::too_hard);
+    mixer.tone(app::Cue::too_hard);
     mixer.render(samples);
   }
   CHECK(take_realtime_offences() == RealtimeOffences{});
@@ -181,19 +182,19 @@ class AlsaConfiguration {
 
 TEST_CASE("without a sound card a session is silent, says why, and records it once") {
   const AlsaConfiguration nothing("pcm.!default { type hw card 99 }\n");
-  SessionSound sound(MaskingPlan{}, 1);
-  sound.tone(Cue::plane_on);
+  app::SessionSound sound(design::MaskingPlan{}, 1);
+  sound.tone(app::Cue::plane_on);
   CHECK(sound.trouble().find("sound: ") == 0);
   const auto record = sound.to_record();
   REQUIRE(record);
-  CHECK(record->kind == ExperimenterRequest::Kind::deviation);
+  CHECK(record->kind == session::ExperimenterRequest::Kind::deviation);
   CHECK(record->code == "no-masking-noise");
   CHECK_FALSE(sound.to_record());
 }
 
 TEST_CASE("a study without masking noise records nothing about it") {
   const AlsaConfiguration nothing("pcm.!default { type hw card 99 }\n");
-  SessionSound sound({.wanted = false}, 1);
+  app::SessionSound sound({.wanted = false}, 1);
   CHECK_FALSE(sound.to_record());
 }
 
@@ -212,19 +213,19 @@ TEST_CASE("what is mixed arrives at the sound card sample by sample") {
   const AlsaConfiguration to_file("pcm.!default { type file\n slave.pcm { type null }\n file \"" +
                                   file.string() + "\"\n format \"raw\" }\n");
   constexpr std::int64_t kCount = 24000;
-  SoundMixer mixer(kRateHz, masking_noise(-30.0, 2));
+  app::SoundMixer mixer(kRateHz, app::masking_noise(-30.0, 2));
   mixer.mask(true);
-  mixer.tone(Cue::plane_on);
+  mixer.tone(app::Cue::plane_on);
   {
-    const SoundCard card(mixer);
+    const app::SoundCard card(mixer);
     CHECK(card.plays());
     for (int i = 0; i < 2000 && mixer.rendered() < 4 * kCount; ++i) {
       std::this_thread::sleep_for(std::chrono::milliseconds(10));
     }
   }
-  SoundMixer twin(kRateHz, masking_noise(-30.0, 2));
+  app::SoundMixer twin(kRateHz, app::masking_noise(-30.0, 2));
   twin.mask(true);
-  twin.tone(Cue::plane_on);
+  twin.tone(app::Cue::plane_on);
   const std::vector<float> played = samples_in(file);
   const std::vector<float> expected = rendered(twin, kCount);
   // The sound card's buffer is filled with silence before.

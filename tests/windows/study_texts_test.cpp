@@ -13,8 +13,8 @@
 namespace touchtrial {
 namespace {
 
-Study two_textures() {
-  Study study;
+design::Study two_textures() {
+  design::Study study;
   study.classes = {{"bark", {}}, {"cloth", {}}};
   return study;
 }
@@ -25,22 +25,22 @@ std::string all_of(const std::vector<std::string>& pages) {
   return text;
 }
 
-bool has(const std::vector<DaySheetItem>& sheet, std::string_view code) {
-  for (const DaySheetItem& item : sheet) {
+bool has(const std::vector<session::DaySheetItem>& sheet, std::string_view code) {
+  for (const session::DaySheetItem& item : sheet) {
     if (item.code == code) return true;
   }
   return false;
 }
 
 /// Every kind of study that has texts of its own.
-std::vector<Study> every_kind(const std::string& language) {
-  std::vector<Study> studies;
+std::vector<design::Study> every_kind(const std::string& language) {
+  std::vector<design::Study> studies;
   for (int bits = 0; bits < 32; ++bits) {
-    Study study = two_textures();
+    design::Study study = two_textures();
     study.session.language = language;
-    if ((bits & 1) != 0) study.protocol = Protocol::comparison;
-    if ((bits & 2) != 0) study.session.sight = Sight::blindfold;
-    if ((bits & 4) != 0) study.trials.on_timeout = OnTimeout::no_response;
+    if ((bits & 1) != 0) study.protocol = design::Protocol::comparison;
+    if ((bits & 2) != 0) study.session.sight = design::Sight::blindfold;
+    if ((bits & 4) != 0) study.trials.on_timeout = design::OnTimeout::no_response;
     if ((bits & 8) != 0) study.trials.practice = 5;
     if ((bits & 16) != 0) {
       study.session.confidence_levels = 5;
@@ -52,13 +52,14 @@ std::vector<Study> every_kind(const std::string& language) {
 }
 
 TEST_CASE("English and German ask the same questions with as many options") {
-  const auto& languages = built_in_languages();
+  const auto& languages = app::built_in_languages();
   REQUIRE(languages.size() == 2);
-  const LanguageTexts& english = languages[0];
-  const LanguageTexts& german = languages[1];
+  const app::LanguageTexts& english = languages[0];
+  const app::LanguageTexts& german = languages[1];
   CHECK(english.language == "en");
   CHECK(german.language == "de");
-  const auto same = [](const std::vector<QuestionText>& a, const std::vector<QuestionText>& b) {
+  const auto same = [](const std::vector<app::QuestionText>& a,
+                       const std::vector<app::QuestionText>& b) {
     REQUIRE(a.size() == b.size());
     for (std::size_t i = 0; i < a.size(); ++i) {
       CHECK(a[i].id == b[i].id);
@@ -72,28 +73,28 @@ TEST_CASE("English and German ask the same questions with as many options") {
 }
 
 TEST_CASE("a language file with a part missing, misspelt or empty is refused") {
-  const std::string good(english_texts_json());
+  const std::string good(app::english_texts_json());
   const auto with = [&](const std::string& from, const std::string& to) {
     std::string text = good;
     const auto at = text.find(from);
     REQUIRE(at != std::string::npos);
     return text.replace(at, from.size(), to);
   };
-  CHECK_NOTHROW(parse_language_texts(good, "en.json"));
-  CHECK_THROWS_AS(parse_language_texts(with("\"warm_up\"", "\"warmup\""), "x"), StudyError);
-  CHECK_THROWS_AS(parse_language_texts(with("\"language\": \"en\",", ""), "x"), StudyError);
-  CHECK_THROWS_AS(parse_language_texts(with("\"Right\"", "\"\""), "x"), StudyError);
-  CHECK_THROWS_AS(parse_language_texts(with("Welcome", "\xff"), "x"), StudyError);
+  CHECK_NOTHROW(app::parse_language_texts(good, "en.json"));
+  CHECK_THROWS_AS(app::parse_language_texts(with("\"warm_up\"", "\"warmup\""), "x"), StudyError);
+  CHECK_THROWS_AS(app::parse_language_texts(with("\"language\": \"en\",", ""), "x"), StudyError);
+  CHECK_THROWS_AS(app::parse_language_texts(with("\"Right\"", "\"\""), "x"), StudyError);
+  CHECK_THROWS_AS(app::parse_language_texts(with("Welcome", "\xff"), "x"), StudyError);
 }
 
 TEST_CASE("instructions of every study name its numbers and leave no word to be filled in") {
   for (const std::string language : {"en", "de"}) {
-    for (const Study& study : every_kind(language)) {
-      const SessionTexts texts = session_texts(study);
+    for (const design::Study& study : every_kind(language)) {
+      const session::SessionTexts texts = app::session_texts(study);
       CHECK(texts.instructions.size() >= 6);
       std::string text = all_of(texts.instructions);
       CHECK(text.find("60") != std::string::npos);
-      for (const DaySheetItem& item : texts.day_sheet) text += item.text;
+      for (const session::DaySheetItem& item : texts.day_sheet) text += item.text;
       CHECK(text.find_first_of("{}") == std::string::npos);
       CHECK(text.find("bark") == std::string::npos);
       // Speeds and forces that strokes should have.
@@ -104,23 +105,23 @@ TEST_CASE("instructions of every study name its numbers and leave no word to be 
 }
 
 TEST_CASE("a study's own instructions take the place of the program's in their language alone") {
-  Study study = two_textures();
+  design::Study study = two_textures();
   study.session.instructions["de"] = {"Nur das, {limit}."};
-  CHECK(session_texts(study).instructions.size() > 1);
+  CHECK(app::session_texts(study).instructions.size() > 1);
   study.session.language = "de";
-  CHECK(session_texts(study).instructions == std::vector<std::string>{"Nur das, {limit}."});
+  CHECK(app::session_texts(study).instructions == std::vector<std::string>{"Nur das, {limit}."});
 }
 
 TEST_CASE("a language that the program has not is English") {
-  Study study = two_textures();
-  const SessionTexts english = session_texts(study);
+  design::Study study = two_textures();
+  const session::SessionTexts english = app::session_texts(study);
   study.session.language = "fr";
-  CHECK(session_texts(study).instructions == english.instructions);
+  CHECK(app::session_texts(study).instructions == english.instructions);
 }
 
 TEST_CASE("the handedness inventory has four items with five options, then asks for the pen") {
-  Study study = two_textures();
-  const auto inventory = session_texts(study).handedness;
+  design::Study study = two_textures();
+  const auto inventory = app::session_texts(study).handedness;
   REQUIRE(inventory);
   REQUIRE(inventory->questions.size() == 5);
   for (int i = 0; i < 4; ++i) CHECK(inventory->questions[i].options.size() == 5);
@@ -128,42 +129,42 @@ TEST_CASE("the handedness inventory has four items with five options, then asks 
   CHECK(inventory->questions[0].text.at("de") == "Welche Hand benutzen Sie zum Schreiben?");
   CHECK(inventory->questions[0].options[4].at("en") == "Always left");
   study.session.handedness = false;
-  CHECK_FALSE(session_texts(study).handedness);
+  CHECK_FALSE(app::session_texts(study).handedness);
 }
 
 TEST_CASE("the laterality quotient goes from -100 to 100 and needs all four items") {
-  CHECK(laterality_quotient({"0", "0", "0", "0", "0"}) == 100.0);
-  CHECK(laterality_quotient({"4", "4", "4", "4"}) == -100.0);
-  CHECK(laterality_quotient({"0", "1", "2", "3"}) == 25.0);
-  CHECK_FALSE(laterality_quotient({"0", "", "2", "3"}));
-  CHECK_FALSE(laterality_quotient({"0", "5", "2", "3"}));
-  CHECK_FALSE(laterality_quotient({"0", "1", "2"}));
+  CHECK(app::laterality_quotient({"0", "0", "0", "0", "0"}) == 100.0);
+  CHECK(app::laterality_quotient({"4", "4", "4", "4"}) == -100.0);
+  CHECK(app::laterality_quotient({"0", "1", "2", "3"}) == 25.0);
+  CHECK_FALSE(app::laterality_quotient({"0", "", "2", "3"}));
+  CHECK_FALSE(app::laterality_quotient({"0", "5", "2", "3"}));
+  CHECK_FALSE(app::laterality_quotient({"0", "1", "2"}));
 }
 
 TEST_CASE("a study's closing questions follow the program's, or take their place") {
-  Study study = two_textures();
-  const std::size_t own = session_texts(study).closing.value().questions.size();
-  Question more;
+  design::Study study = two_textures();
+  const std::size_t own = app::session_texts(study).closing.value().questions.size();
+  design::Question more;
   more.id = "tired";
   study.session.closing_questions = {more};
-  CHECK(session_texts(study).closing.value().questions.size() == own + 1);
+  CHECK(app::session_texts(study).closing.value().questions.size() == own + 1);
   more.id = "heard";
   more.text["en"] = "Loud?";
   study.session.closing_questions = {more};
-  const auto questions = session_texts(study).closing.value().questions;
+  const auto questions = app::session_texts(study).closing.value().questions;
   CHECK(questions.size() == own);
   CHECK(questions.front().text.at("en") == "Loud?");
   study.session.closing = false;
-  CHECK(session_texts(study).closing.value().questions.size() == 1);
+  CHECK(app::session_texts(study).closing.value().questions.size() == 1);
   study.session.closing_questions.clear();
-  CHECK_FALSE(session_texts(study).closing);
+  CHECK_FALSE(app::session_texts(study).closing);
 }
 
 TEST_CASE("the day sheet has what the study needs, each with a deviation code of its own") {
-  Study study = two_textures();
+  design::Study study = two_textures();
   study.session.consent_version = "2026-03";
   study.session.day_sheet = {"The window is shut"};
-  const std::vector<DaySheetItem> sheet = session_texts(study).day_sheet;
+  const std::vector<session::DaySheetItem> sheet = app::session_texts(study).day_sheet;
   for (const char* code : {"no-warm-up", "no-calibration", "no-fixture-touch", "no-curtain",
                            "no-headphones", "no-masking-level", "no-consent",
                            "no-gravity-compensation", "no-placement", "no-day-sheet-1"}) {
@@ -172,12 +173,12 @@ TEST_CASE("the day sheet has what the study needs, each with a deviation code of
   CHECK(sheet.front().text.find("2026-03") != std::string::npos);
   CHECK(sheet.back().text == "The window is shut");
   study.session.masking.wanted = false;
-  study.session.sight = Sight::blindfold;
-  const std::vector<DaySheetItem> blind = session_texts(study).day_sheet;
+  study.session.sight = design::Sight::blindfold;
+  const std::vector<session::DaySheetItem> blind = app::session_texts(study).day_sheet;
   CHECK_FALSE(has(blind, "no-headphones"));
   CHECK_FALSE(has(blind, "no-curtain"));
   CHECK(has(blind, "no-labels-learnt"));
-  CHECK(day_sheet_after(study).size() == 3);
+  CHECK(app::day_sheet_after(study).size() == 3);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@
 namespace touchtrial {
 namespace {
 
-using Kind = ExperimenterRequest::Kind;
+using Kind = session::ExperimenterRequest::Kind;
 
 /// Keys in, text out.
 struct TypedTerminal {
@@ -20,8 +20,8 @@ struct TypedTerminal {
   std::string written;
   bool rewrites = true;
 
-  ExperimenterTerminal terminal() {
-    ExperimenterTerminal terminal;
+  app::ExperimenterTerminal terminal() {
+    app::ExperimenterTerminal terminal;
     terminal.key = [this]() -> std::optional<char> {
       if (keys.empty()) return std::nullopt;
       const char key = keys.front();
@@ -34,8 +34,8 @@ struct TypedTerminal {
   }
 };
 
-SessionStatus exploring() {
-  SessionStatus status;
+session::SessionStatus exploring() {
+  session::SessionStatus status;
   status.participant = "P07";
   status.stage = "exploring";
   status.trial = 3;
@@ -43,15 +43,15 @@ SessionStatus exploring() {
   return status;
 }
 
-std::vector<ExperimenterRequest> all_requests(Experimenter& experimenter) {
-  std::vector<ExperimenterRequest> requests;
+std::vector<session::ExperimenterRequest> all_requests(session::Experimenter& experimenter) {
+  std::vector<session::ExperimenterRequest> requests;
   while (auto request = experimenter.request()) requests.push_back(*request);
   return requests;
 }
 
 TEST_CASE("pause and comfort stop are asked for at their key, the reason follows as a note") {
   TypedTerminal typed;
-  TerminalExperimenter experimenter(typed.terminal());
+  app::TerminalExperimenter experimenter(typed.terminal());
   typed.keys = "c";
   auto requests = all_requests(experimenter);
   REQUIRE(requests.size() == 1);
@@ -68,7 +68,7 @@ TEST_CASE("pause and comfort stop are asked for at their key, the reason follows
 
 TEST_CASE("notes and deviations take umlauts and backspace, Escape leaves them") {
   TypedTerminal typed;
-  TerminalExperimenter experimenter(typed.terminal());
+  app::TerminalExperimenter experimenter(typed.terminal());
   typed.keys =
       "nlaut\xc3\xbc\x7f hier\nnnothing\x1b"
       "dno-curtain\nf\xc3\xbcr P07\nn\n";
@@ -82,7 +82,7 @@ TEST_CASE("notes and deviations take umlauts and backspace, Escape leaves them")
 
 TEST_CASE("a session is ended only after yes and a reason") {
   TypedTerminal typed;
-  TerminalExperimenter experimenter(typed.terminal());
+  app::TerminalExperimenter experimenter(typed.terminal());
   typed.keys = "ay\naunwell\n";
   CHECK(all_requests(experimenter).empty());
   typed.keys =
@@ -96,24 +96,25 @@ TEST_CASE("a session is ended only after yes and a reason") {
 
 TEST_CASE("the day sheet is ticked item by item, and one can go back") {
   TypedTerminal typed;
-  TerminalExperimenter experimenter(typed.terminal());
-  const std::vector<DaySheetItem> items{{"no-a", "A is there"}, {"no-b", "B is there"}};
+  app::TerminalExperimenter experimenter(typed.terminal());
+  const std::vector<session::DaySheetItem> items{{"no-a", "A is there"}, {"no-b", "B is there"}};
   CHECK_FALSE(experimenter.day_sheet(items));
   CHECK(typed.written.find("1/2 A is there\n") != std::string::npos);
   typed.keys = "sb\n";
   CHECK_FALSE(experimenter.day_sheet(items));
   typed.keys = "s";
-  CHECK(experimenter.day_sheet(items).value() == std::vector<Tick>{Tick::done, Tick::skipped});
+  CHECK(experimenter.day_sheet(items).value() ==
+        std::vector<session::Tick>{session::Tick::done, session::Tick::skipped});
 }
 
 TEST_CASE("where nobody types nobody is asked, and lines are those of progress") {
   TypedTerminal typed;
   typed.rewrites = false;
-  ExperimenterTerminal terminal = typed.terminal();
+  app::ExperimenterTerminal terminal = typed.terminal();
   terminal.key = nullptr;
-  TerminalExperimenter experimenter(terminal);
+  app::TerminalExperimenter experimenter(terminal);
   CHECK(experimenter.day_sheet({{"no-a", "A"}}).value().empty());
-  SessionStatus status = exploring();
+  session::SessionStatus status = exploring();
   experimenter.show(status);
   status.elapsed = std::chrono::seconds(1);
   experimenter.show(status);
@@ -125,42 +126,42 @@ TEST_CASE("where nobody types nobody is asked, and lines are those of progress")
 
 TEST_CASE("the status line is written over and never wraps") {
   TypedTerminal typed;
-  TerminalExperimenter experimenter(typed.terminal());
+  app::TerminalExperimenter experimenter(typed.terminal());
   typed.written.clear();
-  SessionStatus status = exploring();
+  session::SessionStatus status = exploring();
   status.device = std::string(100, 'd');
   experimenter.show(status);
   CHECK(typed.written.find('\n') == std::string::npos);
   CHECK(typed.written.front() == '\r');
   CHECK(typed.written.size() == 1 + 79 + 3);
-  CHECK(first_of("\xc3\xa4\xc3\xb6\xc3\xbc", 2) == "\xc3\xa4\xc3\xb6");
-  CHECK(last_of("\xc3\xa4\xc3\xb6\xc3\xbc", 2) == "\xc3\xb6\xc3\xbc");
+  CHECK(app::first_of("\xc3\xa4\xc3\xb6\xc3\xbc", 2) == "\xc3\xa4\xc3\xb6");
+  CHECK(app::last_of("\xc3\xa4\xc3\xb6\xc3\xbc", 2) == "\xc3\xb6\xc3\xbc");
 }
 
 TEST_CASE("force comes on by a key that was pressed when nothing was missing") {
   TypedTerminal typed;
-  TerminalExperimenter experimenter(typed.terminal());
+  app::TerminalExperimenter experimenter(typed.terminal());
   typed.keys = "g";
-  CHECK(experimenter.attend("move the handle") == Attendant::Says::wait);
-  CHECK(experimenter.attend("") == Attendant::Says::wait);
+  CHECK(experimenter.attend("move the handle") == session::Attendant::Says::wait);
+  CHECK(experimenter.attend("") == session::Attendant::Says::wait);
   // The session asks for requests meanwhile, and shows how it stands.
   typed.keys = "g";
   CHECK_FALSE(experimenter.request());
   experimenter.show(exploring());
-  CHECK(experimenter.attend("") == Attendant::Says::arm);
-  CHECK(experimenter.attend("") == Attendant::Says::wait);
+  CHECK(experimenter.attend("") == session::Attendant::Says::arm);
+  CHECK(experimenter.attend("") == session::Attendant::Says::wait);
   typed.keys = "g";
   CHECK_FALSE(experimenter.request());
-  CHECK(experimenter.attend("put it into the inkwell") == Attendant::Says::wait);
-  CHECK(experimenter.attend("") == Attendant::Says::wait);
+  CHECK(experimenter.attend("put it into the inkwell") == session::Attendant::Says::wait);
+  CHECK(experimenter.attend("") == session::Attendant::Says::wait);
   typed.keys = "ayes\nfire alarm\n";
-  CHECK(experimenter.attend("") == Attendant::Says::stop);
+  CHECK(experimenter.attend("") == session::Attendant::Says::stop);
   CHECK(all_requests(experimenter).at(0).text == "fire alarm");
 }
 
 TEST_CASE("requests of others come after those that were typed") {
   TypedTerminal typed;
-  TerminalExperimenter experimenter(typed.terminal());
+  app::TerminalExperimenter experimenter(typed.terminal());
   experimenter.add({Kind::note, "noise", ""});
   typed.keys = "r";
   const auto requests = all_requests(experimenter);
@@ -169,25 +170,25 @@ TEST_CASE("requests of others come after those that were typed") {
   CHECK(requests[1].text == "noise");
 }
 
-class Blindfolded final : public PromptParticipant {
+class Blindfolded final : public session::PromptParticipant {
  public:
   void see_pictures(const std::vector<std::string>&) override {}
-  [[nodiscard]] HapticDevice& begin_exploring(const PlaneGeometry&) override {
+  [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry&) override {
     throw std::logic_error("nobody explores");
   }
-  void feel(const ServoSample&) noexcept override {}
-  [[nodiscard]] ParticipantAnswer answer() override { return {2, {}}; }
+  void feel(const device::ServoSample&) noexcept override {}
+  [[nodiscard]] session::ParticipantAnswer answer() override { return {2, {}}; }
 };
 
 TEST_CASE("a spoken answer is entered by its number in alphabetical order") {
   TypedTerminal typed;
-  TerminalExperimenter experimenter(typed.terminal());
+  app::TerminalExperimenter experimenter(typed.terminal());
   Blindfolded participant;
-  SpokenAnswers spoken(participant, experimenter);
+  app::SpokenAnswers spoken(participant, experimenter);
   spoken.see_pictures({"sand", "bark", "cloth"});
-  AnswerStep step;
+  session::AnswerStep step;
   step.trial = 7;
-  step.sight = Sight::blindfold;
+  step.sight = design::Sight::blindfold;
   step.confidence_levels = 5;
   CHECK_FALSE(spoken.attend(step));
   CHECK(typed.written.find("trial 7: 1 bark 2 cloth 3 sand: ") != std::string::npos);
@@ -208,12 +209,12 @@ TEST_CASE("a spoken answer is entered by its number in alphabetical order") {
 
 TEST_CASE("an answer that was begun does not outlive its exploration") {
   TypedTerminal typed;
-  TerminalExperimenter experimenter(typed.terminal());
+  app::TerminalExperimenter experimenter(typed.terminal());
   Blindfolded participant;
-  SpokenAnswers spoken(participant, experimenter);
+  app::SpokenAnswers spoken(participant, experimenter);
   spoken.see_pictures({"sand", "bark", "cloth"});
-  AnswerStep step;
-  step.sight = Sight::blindfold;
+  session::AnswerStep step;
+  step.sight = design::Sight::blindfold;
   typed.keys = "3\n";
   CHECK_FALSE(spoken.attend(step));
   CHECK_FALSE(spoken.attend(step));
@@ -225,11 +226,11 @@ TEST_CASE("an answer that was begun does not outlive its exploration") {
 
 TEST_CASE("answers of those who see are their own") {
   TypedTerminal typed;
-  TerminalExperimenter experimenter(typed.terminal());
+  app::TerminalExperimenter experimenter(typed.terminal());
   Blindfolded participant;
-  SpokenAnswers spoken(participant, experimenter);
+  app::SpokenAnswers spoken(participant, experimenter);
   spoken.see_pictures({"sand", "bark", "cloth"});
-  const auto reply = spoken.attend(AnswerStep{});
+  const auto reply = spoken.attend(session::AnswerStep{});
   REQUIRE(reply);
   CHECK(reply->position == 2);
 }

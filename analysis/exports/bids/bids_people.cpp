@@ -9,7 +9,7 @@
 #include <array>
 #include <map>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// A column of participants.tsv that is there if anybody has a value.
@@ -61,7 +61,7 @@ const std::vector<std::string>& session_columns() {
 }
 
 std::vector<DataCell> session_cells(const BidsSession& session) {
-  const SessionRow& row = session.row;
+  const store::SessionRow& row = session.row;
   return {std::int64_t{row.session},
           std::int64_t{row.enrolment},
           std::string(text_of(row.state)),
@@ -125,10 +125,10 @@ std::string BidsSession::stem() const {
   return subject + (label.empty() ? "" : "_" + label);
 }
 
-std::vector<BidsSession> bids_sessions(const StudyStore& store) {
-  const StudyState state = store.state();
+std::vector<BidsSession> bids_sessions(const store::StudyStore& store) {
+  const store::StudyState state = store.state();
   std::vector<BidsSession> sessions;
-  for (const SessionRow& row : store.sessions()) {
+  for (const store::SessionRow& row : store.sessions()) {
     if (row.withdrawn || (state.unblinded && !state.shows(row.session))) continue;
     sessions.push_back({row, session_counts(row, store.commitment()),
                         "sub-" + participant_label(row.participant), ""});
@@ -164,4 +164,4 @@ DataTable bids_sessions_of(const std::string& subject, const std::vector<BidsSes
   return table;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

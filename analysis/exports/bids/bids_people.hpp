@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// One session that is in the dataset.
 struct BidsSession {
-  SessionRow row;
+  store::SessionRow row;
   bool counted = false;
   std::string subject;  ///< "sub-P01"
   std::string label;    ///< "ses-1"; empty if nobody has more than one session
@@ -22,7 +22,7 @@ struct BidsSession {
 };
 
 /// All sessions but those of participants who withdrew, or that an interim look does not show.
-[[nodiscard]] std::vector<BidsSession> bids_sessions(const StudyStore& store);
+[[nodiscard]] std::vector<BidsSession> bids_sessions(const store::StudyStore& store);
 
 /// participants.tsv: one row a participant, of the session that stands. Age (in bands), sex and
 /// handedness come from what participants answered in sealed questionnaires, after unblinding, and
@@ -34,4 +34,4 @@ struct BidsSession {
 [[nodiscard]] DataTable bids_sessions_of(const std::string& subject,
                                          const std::vector<BidsSession>& sessions);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -38,7 +38,7 @@ void put_columns(Json& object, const std::vector<std::string>& columns) {
 }
 
 std::string task_description(const DatasetSource& study) {
-  const StudyCommitment& commitment = study.store.commitment();
+  const store::StudyCommitment& commitment = study.store.commitment();
   return fmt::format(
       "Each trial presents a texture through a force-feedback device, without anything to see of "
       "it; the participant explores it and then says which of {} textures it was. Protocol: {}.",
@@ -46,7 +46,7 @@ std::string task_description(const DatasetSource& study) {
 }
 
 /// The study's own, or which of the program's.
-std::string instructions(const Study& study) {
+std::string instructions(const design::Study& study) {
   const auto own = study.session.instructions.find(study.session.language);
   if (own == study.session.instructions.end()) {
     return "Touchtrial's own, in the language \"" + study.session.language + "\"";
@@ -57,7 +57,7 @@ std::string instructions(const Study& study) {
 }  // namespace
 
 std::string dataset_description_json(const DatasetSource& study, const DatasetOptions& options) {
-  const StudyCommitment& commitment = study.store.commitment();
+  const store::StudyCommitment& commitment = study.store.commitment();
   Json object{{"Name", stamped(commitment.study, commitment.simulated)},
               {"BIDSVersion", kBidsVersion},
               {"DatasetType", "raw"}};
@@ -74,7 +74,7 @@ std::string dataset_description_json(const DatasetSource& study, const DatasetOp
 }
 
 std::string derivative_description_json(const DatasetSource& study) {
-  const StudyCommitment& commitment = study.store.commitment();
+  const store::StudyCommitment& commitment = study.store.commitment();
   Json object{{"Name", stamped("Report of " + commitment.study, commitment.simulated)},
               {"BIDSVersion", kBidsVersion},
               {"DatasetType", "derivative"},
@@ -92,7 +92,7 @@ std::string columns_json(const std::vector<std::string>& columns, bool simulated
 
 std::string task_json(const DatasetSource& study, const DatasetOptions& options,
                       const std::vector<std::string>& columns) {
-  const StudyCommitment& commitment = study.store.commitment();
+  const store::StudyCommitment& commitment = study.store.commitment();
   Json object{{"TaskName", commitment.study}, {"TaskDescription", task_description(study)}};
   if (study.key != nullptr) object["Instructions"] = instructions(study.key->study);
   put_if_given(object, "InstitutionName", options.institution);
@@ -101,7 +101,7 @@ std::string task_json(const DatasetSource& study, const DatasetOptions& options,
   return json_text(object);
 }
 
-std::string trace_sidecar_json(const TrialRow& row, bool simulated) {
+std::string trace_sidecar_json(const store::TrialRow& row, bool simulated) {
   Json object{{"SamplingFrequency", row.rate_hz},
               {"StartTime", std::chrono::duration<double>(row.presented_at).count()},
               {"Columns", trace_columns()}};
@@ -110,4 +110,4 @@ std::string trace_sidecar_json(const TrialRow& row, bool simulated) {
   return json_text(object);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

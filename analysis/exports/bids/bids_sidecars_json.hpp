@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// The version of BIDS that datasets keep to.
 inline constexpr const char* kBidsVersion = "1.10.0";
@@ -25,6 +25,6 @@ inline constexpr const char* kBidsVersion = "1.10.0";
                                     const std::vector<std::string>& columns);
 
 /// Of one recording, whose time counts from the session's opening.
-[[nodiscard]] std::string trace_sidecar_json(const TrialRow& row, bool simulated);
+[[nodiscard]] std::string trace_sidecar_json(const store::TrialRow& row, bool simulated);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

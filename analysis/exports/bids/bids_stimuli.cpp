@@ -5,15 +5,15 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
-std::string stimulus_name(const Study& study, int class_index, int exemplar) {
-  const StudyClass& of = study.classes.at(class_index);
+std::string stimulus_name(const design::Study& study, int class_index, int exemplar) {
+  const design::StudyClass& of = study.classes.at(class_index);
   return fmt::format("{:02}-{}-{:02}{}", class_index + 1, plain_label(of.label), exemplar + 1,
                      of.images.at(exemplar).extension().string());
 }
 
-std::vector<ExportFile> stimulus_files(const Study& study) {
+std::vector<ExportFile> stimulus_files(const design::Study& study) {
   std::vector<ExportFile> files;
   for (int i = 0; i < static_cast<int>(study.classes.size()); ++i) {
     for (int k = 0; k < static_cast<int>(study.classes[i].images.size()); ++k) {
@@ -32,4 +32,4 @@ std::vector<ExportFile> stimulus_files(const Study& study) {
   return files;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// What an image is called below stimuli/: its class and image by number, from 1, and the class's
 /// letters and digits: "01-bark-01.png".
-[[nodiscard]] std::string stimulus_name(const Study& study, int class_index, int exemplar);
+[[nodiscard]] std::string stimulus_name(const design::Study& study, int class_index, int exemplar);
 
 /// Copies of every image. \throws FileError if one is missing
-[[nodiscard]] std::vector<ExportFile> stimulus_files(const Study& study);
+[[nodiscard]] std::vector<ExportFile> stimulus_files(const design::Study& study);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

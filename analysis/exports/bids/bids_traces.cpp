@@ -15,7 +15,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// What recordings that are written at the same time share.
@@ -24,14 +24,15 @@ struct SharedReading {
   std::mutex store;               ///< which one thread reads at a time
 };
 
-Trace opened_trace(const DatasetSource& study, const TrialRow& row, SharedReading& shared) {
+store::Trace opened_trace(const DatasetSource& study, const store::TrialRow& row,
+                          SharedReading& shared) {
   const auto box = [&] {
     const std::lock_guard lock(shared.store);
     return study.store.sealed_trace(row.session, row.trial);
   }();
   if (box) {
-    auto trace =
-        unsealed_trace(*box, shared.keys.at(row.session), static_cast<std::size_t>(row.samples));
+    auto trace = store::unsealed_trace(*box, shared.keys.at(row.session),
+                                       static_cast<std::size_t>(row.samples));
     if (trace) return *std::move(trace);
   }
   throw VerificationError(fmt::format(
@@ -67,10 +68,10 @@ const std::vector<std::string>& trace_columns() {
   return kColumns;
 }
 
-std::string trace_text(const Trace& trace) {
+std::string trace_text(const store::Trace& trace) {
   std::string text;
   text.reserve(trace.samples.size() * 50);
-  for (const TraceSample& sample : trace.samples) {
+  for (const store::TraceSample& sample : trace.samples) {
     const Vec3& at = sample.position_mm;
     const Vec3& force = sample.force_n;
     for (const double position_mm : {at.x, at.y, at.z}) put_fixed<3>(text, position_mm, '\t');
@@ -88,7 +89,7 @@ std::vector<ExportFile> trace_files(const DatasetSource& study,
   std::map<int, const BidsSession*> by_number;
   for (const BidsSession& session : sessions) by_number[session.row.session] = &session;
   std::vector<ExportFile> files;
-  for (const TrialRow& row : study.store.trials()) {
+  for (const store::TrialRow& row : study.store.trials()) {
     const auto session = by_number.find(row.session);
     if (session == by_number.end() || row.samples == 0) continue;
     const std::string name =
@@ -96,7 +97,7 @@ std::vector<ExportFile> trace_files(const DatasetSource& study,
                     session->second->stem(), task, row.trial);
     files.push_back({name + ".tsv.gz",
                      [study, row, shared](const std::filesystem::path& path) {
-                       const Trace trace = opened_trace(study, row, *shared);
+                       const store::Trace trace = opened_trace(study, row, *shared);
                        replace_file(path, ByteView(gzip(trace_text(trace))));
                      },
                      true});
@@ -106,4 +107,4 @@ std::vector<ExportFile> trace_files(const DatasetSource& study,
   return files;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

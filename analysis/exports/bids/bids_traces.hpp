@@ -9,14 +9,14 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// The columns of a recording, in order; meaning_of describes them.
 [[nodiscard]] const std::vector<std::string>& trace_columns();
 
 /// Rows without a header: millimetres with three decimals and newtons with four, which tell all
 /// steps that a trace stores apart (1 um and 1/4096 N).
-[[nodiscard]] std::string trace_text(const Trace& trace);
+[[nodiscard]] std::string trace_text(const store::Trace& trace);
 
 /// For every trial with a trace a recording and its JSON. Traces are opened when they are written,
 /// several at a time.
@@ -25,4 +25,4 @@ namespace touchtrial {
                                                   const std::vector<BidsSession>& sessions,
                                                   const std::string& task);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <string_view>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 /// Columns that BIDS has names for; those of the file's name are left out.
@@ -22,13 +22,14 @@ bool is_shown(const TrialColumn& column, bool unblinded) {
 }
 
 DataCell stimulus_file(const TrialView& trial) {
-  if (trial.outcome->kind == PresentationKind::catch_trial) return std::monostate{};
-  const StimulusIndex& shown = trial.outcome->stimulus;
+  if (trial.outcome->kind == design::PresentationKind::catch_trial) return std::monostate{};
+  const design::StimulusIndex& shown = trial.outcome->stimulus;
   return stimulus_name(trial.study->design, shown.class_index, shown.exemplar);
 }
 
 /// Of each row what may be shown; trials that an interim look does not show are left out.
-std::vector<TrialView> views_of(const DatasetSource& study, const std::vector<TrialRow>& rows) {
+std::vector<TrialView> views_of(const DatasetSource& study,
+                                const std::vector<store::TrialRow>& rows) {
   static const std::string kNobody;
   const bool simulated = study.store.commitment().simulated;
   std::map<std::pair<int, int>, const TrialOutcome*> meanings;
@@ -38,7 +39,7 @@ std::vector<TrialView> views_of(const DatasetSource& study, const std::vector<Tr
     }
   }
   std::vector<TrialView> views;
-  for (const TrialRow& row : rows) {
+  for (const store::TrialRow& row : rows) {
     const auto meaning = meanings.find({row.session, row.trial});
     if (meaning != meanings.end()) {
       views.push_back({kNobody, row, simulated, study.outcomes, meaning->second});
@@ -50,8 +51,8 @@ std::vector<TrialView> views_of(const DatasetSource& study, const std::vector<Tr
 }
 
 /// By session, and in it by time.
-void sort_by_presentation(std::vector<TrialRow>& rows) {
-  std::sort(rows.begin(), rows.end(), [](const TrialRow& a, const TrialRow& b) {
+void sort_by_presentation(std::vector<store::TrialRow>& rows) {
+  std::sort(rows.begin(), rows.end(), [](const store::TrialRow& a, const store::TrialRow& b) {
     return std::pair(a.session, a.presented_at) < std::pair(b.session, b.presented_at);
   });
 }
@@ -65,10 +66,10 @@ BidsTrials bids_trials(const DatasetSource& study, bool stimuli) {
     if (is_shown(column, unblinded)) trials.columns.push_back(bids_name(column.name));
   }
   if (stimuli) trials.columns.emplace_back("stim_file");
-  for (const SessionRow& session : study.store.sessions()) {
+  for (const store::SessionRow& session : study.store.sessions()) {
     if (!session.withdrawn) trials.by_session[session.session].columns = trials.columns;
   }
-  std::vector<TrialRow> rows = study.store.trials();
+  std::vector<store::TrialRow> rows = study.store.trials();
   sort_by_presentation(rows);
   for (const TrialView& trial : views_of(study, rows)) {
     const auto table = trials.by_session.find(trial.row.session);
@@ -82,4 +83,4 @@ BidsTrials bids_trials(const DatasetSource& study, bool stimuli) {
   return trials;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

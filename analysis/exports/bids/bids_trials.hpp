@@ -6,7 +6,7 @@
 
 #include <map>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// The columns of trials.csv by BIDS's names, and of every session its trials in the order of
 /// presentation, unscored ones too; sessions without a trial are there with none.
@@ -18,4 +18,4 @@ struct BidsTrials {
 /// \param stimuli  whether the images are in the dataset, so that stim_file can name them
 [[nodiscard]] BidsTrials bids_trials(const DatasetSource& study, bool stimuli);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 constexpr const char* kMissing = "n/a";
@@ -42,4 +42,4 @@ std::string tsv_text(const DataTable& table) {
   return text;
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -6,11 +6,11 @@
 
 #include <string>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// UTF-8 without a byte order mark, line feeds, decimal dots; an empty text is missing too, and a
 /// tab or line end in a text becomes a space.
 /// \throws std::invalid_argument if a row's length is not the header's
 [[nodiscard]] std::string tsv_text(const DataTable& table);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -17,7 +17,7 @@
 #include <mutex>
 #include <set>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 using Files = std::vector<ExportFile>;
@@ -107,7 +107,7 @@ std::vector<std::filesystem::path> export_bids(const DatasetSource& study,
                                                const DatasetOptions& options,
                                                const std::filesystem::path& folder) {
   require_unblinded(study, options);
-  const StudyCommitment& commitment = study.store.commitment();
+  const store::StudyCommitment& commitment = study.store.commitment();
   const std::string task = plain_label(commitment.study);
   const std::vector<BidsSession> sessions = bids_sessions(study.store);
   Files files{text_file("dataset_description.json", dataset_description_json(study, options)),
@@ -120,11 +120,11 @@ std::vector<std::filesystem::path> export_bids(const DatasetSource& study,
   if (!options.database.empty()) {
     files.push_back({"sourcedata/" + options.database.filename().string(),
                      [from = options.database](const std::filesystem::path& path) {
-                       copy_database(from, path);
+                       store::copy_database(from, path);
                      }});
   }
   tell_progress(files, options);
   return write_export(folder, {commitment.study, commitment.study_id, "bids"}, files);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// Before unblinding the trials say no more than the CSV export does then.
 /// \return the files, in the order written
@@ -20,4 +20,4 @@ std::vector<std::filesystem::path> export_bids(const DatasetSource& study,
                                                const DatasetOptions& options,
                                                const std::filesystem::path& folder);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 
 /// One row a trial that counts, in the order of presentation, with what came before it in its block
 /// (a lead-in too; nothing after a catch trial).
@@ -25,8 +25,8 @@ namespace touchtrial {
 /// Writes mixed_model.csv, mixed_model.R and mixed_model.md.
 /// \return the files, in the order written
 /// \throws FileError if the folder or a file cannot be written or holds something else's files
-std::vector<std::filesystem::path> export_mixed_model(const StudyStore& store,
+std::vector<std::filesystem::path> export_mixed_model(const store::StudyStore& store,
                                                       const Outcomes& outcomes,
                                                       const std::filesystem::path& folder);
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::analysis {
 namespace {
 
 constexpr std::string_view kReading = R"R(
@@ -138,4 +138,4 @@ std::string mixed_model_script(const Outcomes& outcomes) {
          std::string(outcomes.methods.size() > 1 ? kSeveralMethods : kOneMethod);
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::analysis

@@ -37,16 +37,16 @@ namespace {
 using nlohmann::json;
 using Figures = std::vector<std::optional<double>>;
 
-Figures both(const Interval& interval) {
+Figures both(const analysis::Interval& interval) {
   return {interval.low, interval.high};
 }
 
-Figures both(const std::optional<Interval>& interval) {
+Figures both(const std::optional<analysis::Interval>& interval) {
   return interval ? both(*interval) : Figures{std::nullopt, std::nullopt};
 }
 
 /// [correct, n]
-Proportion proportion(const json& value) {
+analysis::Proportion proportion(const json& value) {
   return {value.at(1).get<int>(), value.at(0).get<int>()};
 }
 
@@ -55,8 +55,8 @@ std::vector<double> numbers(const json& value) {
 }
 
 /// Rows of counts.
-ConfusionMatrix confusion(const json& rows) {
-  ConfusionMatrix matrix(static_cast<int>(rows.size()));
+analysis::ConfusionMatrix confusion(const json& rows) {
+  analysis::ConfusionMatrix matrix(static_cast<int>(rows.size()));
   for (int i = 0; i < matrix.classes(); ++i) {
     for (int j = 0; j < matrix.classes(); ++j) {
       for (int k = rows[i][j].get<int>(); k > 0; --k) matrix.add({i, j});
@@ -66,89 +66,95 @@ ConfusionMatrix confusion(const json& rows) {
 }
 
 Figures wilson(const json& c) {
-  return both(wilson_interval(proportion(c.at("of")), c.at("level")));
+  return both(analysis::wilson_interval(proportion(c.at("of")), c.at("level")));
 }
 
 Figures clopper_pearson(const json& c) {
-  return both(clopper_pearson_interval(proportion(c.at("of")), c.at("level")));
+  return both(analysis::clopper_pearson_interval(proportion(c.at("of")), c.at("level")));
 }
 
 Figures jeffreys(const json& c) {
-  return both(jeffreys_interval(proportion(c.at("of")), c.at("level")));
+  return both(analysis::jeffreys_interval(proportion(c.at("of")), c.at("level")));
 }
 
 Figures t_interval(const json& c) {
-  const MeanEstimate estimate =
-      participant_mean(numbers(c.at("values")), {-1e9, 1e9}, c.at("level"));
+  const analysis::MeanEstimate estimate =
+      analysis::participant_mean(numbers(c.at("values")), {-1e9, 1e9}, c.at("level"));
   return {estimate.mean, estimate.sd, estimate.interval.low, estimate.interval.high};
 }
 
 Figures sign_flip(const json& c) {
-  return {sign_flip_p(numbers(c.at("values")))};
+  return {analysis::sign_flip_p(numbers(c.at("values")))};
 }
 
 Figures mcnemar(const json& c) {
-  return {mcnemar_mid_p(c.at("first_only"), c.at("second_only"))};
+  return {analysis::mcnemar_mid_p(c.at("first_only"), c.at("second_only"))};
 }
 
 Figures cochran(const json& c) {
-  const std::optional<CochranQ> result =
-      cochran_q(c.at("occasions").get<std::vector<std::vector<bool>>>());
+  const std::optional<analysis::CochranQ> result =
+      analysis::cochran_q(c.at("occasions").get<std::vector<std::vector<bool>>>());
   if (!result) return {std::nullopt, std::nullopt};
   return {result->q, result->p};
 }
 
 Figures holm(const json& c) {
-  const std::vector<double> adjusted = holm_adjusted(numbers(c.at("p")));
+  const std::vector<double> adjusted = analysis::holm_adjusted(numbers(c.at("p")));
   return {adjusted.begin(), adjusted.end()};
 }
 
 Figures odds_ratio(const json& c) {
-  std::vector<std::pair<Proportion, Proportion>> participants;
+  std::vector<std::pair<analysis::Proportion, analysis::Proportion>> participants;
   for (const json& one : c.at("participants")) {
     participants.emplace_back(proportion(one.at(0)), proportion(one.at(1)));
   }
-  const std::optional<OddsRatio> result = mantel_haenszel(participants, c.at("level"));
+  const std::optional<analysis::OddsRatio> result =
+      analysis::mantel_haenszel(participants, c.at("level"));
   if (!result) return {std::nullopt, std::nullopt, std::nullopt};
   return {result->estimate, result->interval.low, result->interval.high};
 }
 
 Figures nominal_d_prime(const json& c) {
-  const DPrime result = d_prime(proportion(c.at("of")), c.at("alternatives"), c.at("level"));
+  const analysis::DPrime result =
+      analysis::d_prime(proportion(c.at("of")), c.at("alternatives"), c.at("level"));
   return {result.estimate, result.low, result.high};
 }
 
 Figures transfer(const json& c) {
-  const ConfusionMatrix matrix = confusion(c.at("counts"));
-  std::vector<std::vector<Choice>> choices(1);
+  const analysis::ConfusionMatrix matrix = confusion(c.at("counts"));
+  std::vector<std::vector<analysis::Choice>> choices(1);
   for (int i = 0; i < matrix.classes(); ++i) {
     for (int j = 0; j < matrix.classes(); ++j) {
-      choices[0].insert(choices[0].end(), matrix.count(i, j), Choice{i, j});
+      choices[0].insert(choices[0].end(), matrix.count(i, j), analysis::Choice{i, j});
     }
   }
-  const InformationTransfer result = information_transfer(matrix.classes(), choices, 0, 1);
+  const analysis::InformationTransfer result =
+      analysis::information_transfer(matrix.classes(), choices, 0, 1);
   return {result.raw, result.corrected};
 }
 
 Figures chance(const json& c) {
-  std::vector<AnsweredBlock> blocks;
+  std::vector<analysis::AnsweredBlock> blocks;
   for (const json& one : c.at("blocks")) {
-    AnsweredBlock& block = blocks.emplace_back();
+    analysis::AnsweredBlock& block = blocks.emplace_back();
     block.presented = one.at("presented").get<std::vector<int>>();
     for (const json& answer : one.at("answered")) {
       block.answered.push_back(answer.is_null() ? std::nullopt : std::optional(answer.get<int>()));
     }
   }
-  const DealtOrder order =
-      c.at("order") == "permuted" ? DealtOrder::permuted : DealtOrder::independent;
-  const std::optional<ChanceTest> test = chance_test(c.at("classes"), blocks, order);
+  const analysis::DealtOrder order = c.at("order") == "permuted"
+                                         ? analysis::DealtOrder::permuted
+                                         : analysis::DealtOrder::independent;
+  const std::optional<analysis::ChanceTest> test =
+      analysis::chance_test(c.at("classes"), blocks, order);
   if (!test) return {std::nullopt, std::nullopt};
   return {test->p, test->expected};
 }
 
 /// Expected counts by row, G squared, degrees of freedom.
 Figures choices(const json& c) {
-  const std::optional<ChoiceModel> model = choice_model(confusion(c.at("counts")));
+  const std::optional<analysis::ChoiceModel> model =
+      analysis::choice_model(confusion(c.at("counts")));
   if (!model) return {};
   Figures figures(model->expected.samples().begin(), model->expected.samples().end());
   figures.emplace_back(model->g_squared);
@@ -157,22 +163,22 @@ Figures choices(const json& c) {
 }
 
 Figures matching(const json& c) {
-  return {best_label_matching(confusion(c.at("counts"))).accuracy.correct};
+  return {analysis::best_label_matching(confusion(c.at("counts"))).accuracy.correct};
 }
 
 Figures three_quartiles(const json& c) {
-  const Quartiles result = quartiles(numbers(c.at("values")));
+  const analysis::Quartiles result = analysis::quartiles(numbers(c.at("values")));
   return {result.lower, result.median, result.upper};
 }
 
 Figures bootstrap(const json& c) {
-  std::vector<Proportion> participants;
+  std::vector<analysis::Proportion> participants;
   for (const json& one : c.at("participants")) participants.push_back(proportion(one));
-  return both(cluster_bootstrap(participants, 0, c.at("draws"), c.at("level")));
+  return both(analysis::cluster_bootstrap(participants, 0, c.at("draws"), c.at("level")));
 }
 
 Figures mean_bootstrap(const json& c) {
-  return both(bootstrap_mean(numbers(c.at("values")), 0, c.at("draws"), c.at("level")));
+  return both(analysis::bootstrap_mean(numbers(c.at("values")), 0, c.at("draws"), c.at("level")));
 }
 
 Figures figures_of(const json& one) {

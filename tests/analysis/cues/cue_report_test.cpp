@@ -18,13 +18,13 @@ namespace touchtrial {
 namespace {
 
 /// The same wave, stronger for each class and a little different in each trial.
-Trace stronger_by_class(const Presentation& shown) {
+store::Trace stronger_by_class(const design::Presentation& shown) {
   const double strength_n = 0.05 * (1 << shown.stimulus.class_index);
   return stroking_over_wave(3.0, strength_n * (1.0 + 0.001 * shown.trial));
 }
 
 /// An octave shorter for each class; of any strength.
-Trace shorter_by_class(const Presentation& shown) {
+store::Trace shorter_by_class(const design::Presentation& shown) {
   RandomStream random(1, "cue_report_test", static_cast<std::uint64_t>(shown.trial));
   return stroking_over_wave(12.0 / (1 << shown.stimulus.class_index), random.uniform(0.1, 0.4));
 }
@@ -34,7 +34,7 @@ class FeltStudy : public FakeStudy {
  public:
   FeltStudy(const FakeTraces& traces, const FakeAnswers& answers, int participants = 3,
             bool with_pack = true)
-      : FakeStudy(Protocol::classification, {.with_pack = with_pack}) {
+      : FakeStudy(design::Protocol::classification, {.with_pack = with_pack}) {
     for (int i = 1; i <= participants; ++i) {
       add({.participant = "P0" + std::to_string(i),
            .enrolment = i,
@@ -45,11 +45,11 @@ class FeltStudy : public FakeStudy {
   }
 };
 
-CueReport cues_of(FakeStudy& study, const CueOptions& options = {}) {
-  CueOptions with_pack = options;
+analysis::CueReport cues_of(FakeStudy& study, const analysis::CueOptions& options = {}) {
+  analysis::CueOptions with_pack = options;
   with_pack.pack = study.pack_folder();
-  return make_cues(study.store(), study.key(), load_outcomes(study.store(), study.key()),
-                   with_pack);
+  return analysis::make_cues(study.store(), study.key(),
+                             analysis::load_outcomes(study.store(), study.key()), with_pack);
 }
 
 /// Changes the file as somebody would who may write to it.
@@ -68,9 +68,9 @@ bool any_holds(const std::vector<std::string>& texts, const std::string& part) {
 
 TEST_CASE("traces of stronger waves are told apart by strength, and not by shape") {
   FeltStudy study(stronger_by_class, FakeStudy::always_right());
-  const CueReport report = cues_of(study);
+  const analysis::CueReport report = cues_of(study);
   REQUIRE(report.methods.size() == 1);
-  const MethodCues& cues = report.methods[0];
+  const analysis::MethodCues& cues = report.methods[0];
   CHECK(cues.trials == 36);
   CHECK(cues.fewest_of_a_class == 4);
   CHECK(cues.participants == std::vector<std::string>{"P01", "P02", "P03"});
@@ -85,19 +85,19 @@ TEST_CASE("traces of stronger waves are told apart by strength, and not by shape
 
 TEST_CASE("traces of shorter waves are told apart by shape, and not by strength") {
   FeltStudy study(shorter_by_class, FakeStudy::always_right());
-  const MethodCues cues = cues_of(study).methods.at(0);
+  const analysis::MethodCues cues = cues_of(study).methods.at(0);
   CHECK(cues.observers.at(1).mean.mean == 1.0);
   CHECK(cues.observers.at(2).mean.mean == 1.0);
   CHECK(cues.observers.at(0).mean.mean.value() < 0.7);
 }
 
 TEST_CASE("participants who swap two labels achieve a third of what is available") {
-  const FakeAnswers swapped = [](const Presentation& shown) {
+  const FakeAnswers swapped = [](const design::Presentation& shown) {
     const int own = shown.stimulus.class_index;
     return own < 2 ? 1 - own : own;
   };
   FeltStudy study(stronger_by_class, swapped);
-  const MethodCues cues = cues_of(study).methods.at(0);
+  const analysis::MethodCues cues = cues_of(study).methods.at(0);
   CHECK(cues.human_mean.mean.value() == Approx(1.0 / 3.0));
   CHECK(cues.observers.at(0).mean.mean == 1.0);
   CHECK(cues.observers.at(0).efficiency.value.value() == Approx(1.0 / 3.0));
@@ -107,10 +107,10 @@ TEST_CASE("participants who swap two labels achieve a third of what is available
 
 TEST_CASE("a trial without its trace is left out, counted and told") {
   FeltStudy study(stronger_by_class, FakeStudy::always_right());
-  const Outcomes outcomes = load_outcomes(study.store(), study.key());
-  CHECK(traces_to_read(outcomes) == 36);
+  const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
+  CHECK(analysis::traces_to_read(outcomes) == 36);
   alter(study, "DELETE FROM traces WHERE session = 2 AND trial IN (3, 4)");
-  const CueReport report = make_cues(study.store(), study.key(), outcomes);
+  const analysis::CueReport report = analysis::make_cues(study.store(), study.key(), outcomes);
   CHECK(report.methods.at(0).without_trace == 2);
   CHECK(report.methods.at(0).trials == 34);
   CHECK(report.methods.at(0).participant_trials == std::vector<int>{12, 10, 12});
@@ -119,30 +119,30 @@ TEST_CASE("a trial without its trace is left out, counted and told") {
 
 TEST_CASE("a trace that was altered is named, and no figure is shown") {
   FeltStudy study(stronger_by_class, FakeStudy::always_right());
-  const Outcomes outcomes = load_outcomes(study.store(), study.key());
+  const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
   alter(study, "UPDATE traces SET box = zeroblob(length(box)) WHERE session = 2 AND trial >= 7");
-  REQUIRE_THROWS_WITH(make_cues(study.store(), study.key(), outcomes),
+  REQUIRE_THROWS_WITH(analysis::make_cues(study.store(), study.key(), outcomes),
                       holds_text("session 2, trial 7: the trace does not open"));
 }
 
 TEST_CASE("without pack and images the plane is as large as hands reached, which is told") {
   FeltStudy study(stronger_by_class, FakeStudy::always_right(), 3, false);
-  const CueReport report = cues_of(study);
-  CHECK(report.plane_source == kPlaneFromTraces);
+  const analysis::CueReport report = cues_of(study);
+  CHECK(report.plane_source == analysis::kPlaneFromTraces);
   CHECK(any_holds(report.warnings, "Neither the study's pack nor its images"));
   CHECK(report.methods.at(0).observers.at(0).mean.mean == 1.0);
 }
 
 TEST_CASE("cues do not depend on the number of threads") {
   FeltStudy study(stronger_by_class, FakeStudy::confusing(0, 2));
-  const std::string one = cues_object(cues_of(study, {.jobs = 1})).dump();
-  CHECK(cues_object(cues_of(study, {.jobs = 2})).dump() == one);
-  CHECK(cues_object(cues_of(study)).dump() == one);
+  const std::string one = analysis::cues_object(cues_of(study, {.jobs = 1})).dump();
+  CHECK(analysis::cues_object(cues_of(study, {.jobs = 2})).dump() == one);
+  CHECK(analysis::cues_object(cues_of(study)).dump() == one);
 }
 
 TEST_CASE("few participants are warned of, and have no intervals if there is but one") {
   FeltStudy study(stronger_by_class, FakeStudy::always_right(), 1);
-  const CueReport report = cues_of(study);
+  const analysis::CueReport report = cues_of(study);
   CHECK(any_holds(report.warnings, "1 participant cannot decide which cue was used"));
   CHECK_FALSE(report.methods.at(0).observers.at(0).efficiency.interval);
   CHECK_FALSE(report.methods.at(0).match.value().told_apart);
@@ -150,8 +150,8 @@ TEST_CASE("few participants are warned of, and have no intervals if there is but
 
 TEST_CASE("touches too short to feel anything leave every observer at chance") {
   FeltStudy study({}, FakeStudy::always_right());
-  const CueReport report = cues_of(study);
-  for (const ObserverFigures& one : report.methods.at(0).observers) {
+  const analysis::CueReport report = cues_of(study);
+  for (const analysis::ObserverFigures& one : report.methods.at(0).observers) {
     CHECK(one.mean.mean.value() == Approx(1.0 / 3.0));
     CHECK_FALSE(one.corrected_efficiency.value);
   }
@@ -160,17 +160,17 @@ TEST_CASE("touches too short to feel anything leave every observer at chance") {
 
 TEST_CASE("a study in which nothing counts has no figures and says so") {
   FeltStudy study(stronger_by_class, FakeStudy::always_right(), 0);
-  const CueReport report = cues_of(study);
+  const analysis::CueReport report = cues_of(study);
   CHECK(report.methods.at(0).trials == 0);
   CHECK(report.methods.at(0).observers.empty());
   CHECK_FALSE(report.methods.at(0).match);
   CHECK(any_holds(report.warnings, "no trial can be judged"));
-  CHECK(cues_object(report)["methods"][0]["match"].is_null());
+  CHECK(analysis::cues_object(report)["methods"][0]["match"].is_null());
 }
 
 TEST_CASE("cues in JSON are stamped, and name how each figure is computed") {
   FeltStudy study(stronger_by_class, FakeStudy::always_right());
-  const auto object = cues_object(cues_of(study));
+  const auto object = analysis::cues_object(cues_of(study));
   CHECK(object["stamp"] == "SIMULATED");
   const auto& method = object["methods"][0];
   CHECK(method["observers"][0]["cue"] == "rms");

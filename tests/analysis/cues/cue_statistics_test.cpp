@@ -10,21 +10,21 @@ namespace {
 
 constexpr int kClasses = 4;
 
-AnswerShares surely(int class_index) {
-  AnswerShares shares(kClasses, 0.0);
+analysis::AnswerShares surely(int class_index) {
+  analysis::AnswerShares shares(kClasses, 0.0);
   shares[class_index] = 1.0;
   return shares;
 }
 
 /// A participant who answers as the observer of strength does, who takes the last class for the one
 /// before; that of everything is always right, that of shape guesses evenly.
-ParticipantAnswers like_strength(int number, int repeats, int slips = 0) {
-  ParticipantAnswers one("P" + std::to_string(number), kClasses);
+analysis::ParticipantAnswers like_strength(int number, int repeats, int slips = 0) {
+  analysis::ParticipantAnswers one("P" + std::to_string(number), kClasses);
   for (int i = 0; i < repeats * kClasses; ++i) {
     const int presented = i % kClasses;
     const int by_strength = presented == kClasses - 1 ? presented - 1 : presented;
     const int answer = i < slips ? (presented + 2) % kClasses : by_strength;
-    const AnswerShares evenly(kClasses, 0.25);
+    const analysis::AnswerShares evenly(kClasses, 0.25);
     one.add({presented,
              answer,
              {surely(by_strength), evenly, surely(presented)},
@@ -34,8 +34,8 @@ ParticipantAnswers like_strength(int number, int repeats, int slips = 0) {
 }
 
 TEST_CASE("efficiency is what was achieved over what was available") {
-  const std::vector<ParticipantAnswers> all{like_strength(1, 5), like_strength(2, 5)};
-  const CueStatistics statistics = cue_statistics(all, 0);
+  const std::vector<analysis::ParticipantAnswers> all{like_strength(1, 5), like_strength(2, 5)};
+  const analysis::CueStatistics statistics = analysis::cue_statistics(all, 0);
   CHECK(statistics.efficiency[0].value.value() == Approx(1.0));
   CHECK(statistics.efficiency[1].value.value() == Approx(3.0));
   CHECK(statistics.efficiency[2].value.value() == Approx(0.75));
@@ -49,11 +49,11 @@ TEST_CASE("efficiency is what was achieved over what was available") {
 }
 
 TEST_CASE("the observer whose confusions are the participants' is found, and told apart") {
-  std::vector<ParticipantAnswers> all;
+  std::vector<analysis::ParticipantAnswers> all;
   for (int i = 0; i < 6; ++i) all.push_back(like_strength(i, 5, i % 3));
-  const CueMatch match = cue_statistics(all, 0).match.value();
-  CHECK(match.best == Cue::rms);
-  CHECK(match.second == Cue::everything);
+  const analysis::CueMatch match = analysis::cue_statistics(all, 0).match.value();
+  CHECK(match.best == analysis::Cue::rms);
+  CHECK(match.second == analysis::Cue::everything);
   CHECK(match.told_apart);
   CHECK(match.difference.interval.value().low > 0.0);
   CHECK(match.difference.interval.value().low <= match.difference.value.value());
@@ -61,75 +61,76 @@ TEST_CASE("the observer whose confusions are the participants' is found, and tol
 }
 
 TEST_CASE("five participants decide nothing, although the interval does not hold 0") {
-  std::vector<ParticipantAnswers> all;
-  for (int i = 0; i < kFewestForVerdict - 1; ++i) all.push_back(like_strength(i, 5, i % 3));
-  const CueMatch match = cue_statistics(all, 0).match.value();
+  std::vector<analysis::ParticipantAnswers> all;
+  for (int i = 0; i < analysis::kFewestForVerdict - 1; ++i)
+    all.push_back(like_strength(i, 5, i % 3));
+  const analysis::CueMatch match = analysis::cue_statistics(all, 0).match.value();
   CHECK(match.difference.interval.value().low > 0.0);
   CHECK_FALSE(match.told_apart);
 }
 
 TEST_CASE("one participant has figures but no intervals, and tells no observers apart") {
-  const std::vector<ParticipantAnswers> alone{like_strength(1, 5)};
-  const CueStatistics statistics = cue_statistics(alone, 0);
+  const std::vector<analysis::ParticipantAnswers> alone{like_strength(1, 5)};
+  const analysis::CueStatistics statistics = analysis::cue_statistics(alone, 0);
   CHECK(statistics.efficiency[2].value.value() == Approx(0.75));
   CHECK_FALSE(statistics.efficiency[2].interval);
-  CHECK(statistics.match.value().best == Cue::rms);
+  CHECK(statistics.match.value().best == analysis::Cue::rms);
   CHECK_FALSE(statistics.match.value().told_apart);
 }
 
 TEST_CASE("observers who answer alike are not told apart") {
-  std::vector<ParticipantAnswers> all;
+  std::vector<analysis::ParticipantAnswers> all;
   for (int i = 0; i < 8; ++i) {
-    ParticipantAnswers& one = all.emplace_back("P" + std::to_string(i), kClasses);
+    analysis::ParticipantAnswers& one = all.emplace_back("P" + std::to_string(i), kClasses);
     for (int k = 0; k < 20; ++k) {
-      const AnswerShares sure = surely(k % kClasses);
-      const AnswerShares evenly(kClasses, 0.25);
+      const analysis::AnswerShares sure = surely(k % kClasses);
+      const analysis::AnswerShares evenly(kClasses, 0.25);
       // Strength and everything answer the same.
       one.add({k % kClasses, k < i ? 0 : k % kClasses, {sure, evenly, sure}, {sure, evenly, sure}});
     }
   }
-  const CueMatch match = cue_statistics(all, 0).match.value();
+  const analysis::CueMatch match = analysis::cue_statistics(all, 0).match.value();
   CHECK(match.difference.value.value() == 0.0);
   CHECK_FALSE(match.told_apart);
 }
 
 TEST_CASE("without a response there is nothing to match, and accuracy is zero") {
-  std::vector<ParticipantAnswers> all;
+  std::vector<analysis::ParticipantAnswers> all;
   for (int i = 0; i < 2; ++i) {
-    ParticipantAnswers& one = all.emplace_back("P" + std::to_string(i), kClasses);
+    analysis::ParticipantAnswers& one = all.emplace_back("P" + std::to_string(i), kClasses);
     for (int k = 0; k < kClasses; ++k) {
       one.add(
           {k, std::nullopt, {surely(k), surely(k), surely(k)}, {surely(k), surely(k), surely(k)}});
     }
     CHECK(one.no_response(0) == 1);
   }
-  const CueStatistics statistics = cue_statistics(all, 0);
+  const analysis::CueStatistics statistics = analysis::cue_statistics(all, 0);
   CHECK(statistics.efficiency[0].value.value() == 0.0);
   CHECK_FALSE(statistics.match);
   CHECK_FALSE(statistics.divergence[0].value);
 }
 
 TEST_CASE("intervals are the same whatever the number of threads, and others for another method") {
-  std::vector<ParticipantAnswers> all;
+  std::vector<analysis::ParticipantAnswers> all;
   for (int i = 0; i < 9; ++i) all.push_back(like_strength(i, 5, i));
-  const Interval one = cue_statistics(all, 0, 1).efficiency[2].interval.value();
-  CHECK(cue_statistics(all, 0, 4).efficiency[2].interval.value() == one);
+  const analysis::Interval one = analysis::cue_statistics(all, 0, 1).efficiency[2].interval.value();
+  CHECK(analysis::cue_statistics(all, 0, 4).efficiency[2].interval.value() == one);
   CHECK(one.low < one.high);
-  const Interval other = cue_statistics(all, 1).divergence[2].interval.value();
-  CHECK_FALSE(cue_statistics(all, 0).divergence[2].interval.value() == other);
+  const analysis::Interval other = analysis::cue_statistics(all, 1).divergence[2].interval.value();
+  CHECK_FALSE(analysis::cue_statistics(all, 0).divergence[2].interval.value() == other);
 }
 
 TEST_CASE("the bootstrap's width is that of the mean's distribution") {
   // Accuracies 0.25 to 0.75 of 16 participants against an observer who is always right.
-  std::vector<ParticipantAnswers> all;
+  std::vector<analysis::ParticipantAnswers> all;
   double mean = 0.0;
   double squares = 0.0;
   for (int i = 0; i < 16; ++i) {
-    ParticipantAnswers one("P" + std::to_string(i), kClasses);
+    analysis::ParticipantAnswers one("P" + std::to_string(i), kClasses);
     const double right = 10.0 + i % 4 * 5.0;
     for (int k = 0; k < 40; ++k) {
       const int presented = k % kClasses;
-      const AnswerShares sure = surely(presented);
+      const analysis::AnswerShares sure = surely(presented);
       const int answer = k < right ? presented : (presented + 1) % kClasses;
       one.add({presented, answer, {sure, sure, sure}, {sure, sure, sure}});
     }
@@ -138,7 +139,8 @@ TEST_CASE("the bootstrap's width is that of the mean's distribution") {
     all.push_back(one);
   }
   const double error = std::sqrt((squares - mean * mean) / 16.0);
-  const Interval interval = cue_statistics(all, 0).efficiency[2].interval.value();
+  const analysis::Interval interval =
+      analysis::cue_statistics(all, 0).efficiency[2].interval.value();
   // Expanded percentiles of 16 participants: t of 15 degrees, 2.1314, times sqrt(16 / 15).
   CHECK(interval.high - interval.low == Approx(2.0 * 2.2013 * error).epsilon(0.05));
   CHECK(0.5 * (interval.high + interval.low) == Approx(mean).margin(0.01));

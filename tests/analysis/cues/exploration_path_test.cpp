@@ -12,12 +12,12 @@ namespace touchtrial {
 namespace {
 
 TEST_CASE("a path is thinned evenly, and each point knows the force until the next") {
-  Trace trace;
+  store::Trace trace;
   for (int i = 0; i < 10; ++i) {
     trace.samples.push_back({{0.1 * i, 1.0, -0.5}, {i % 2 == 0 ? 3.0 : -3.0, 4.0, 0.25}});
   }
   trace.samples[8].force_n.z = 0.0;
-  const std::vector<PathPoint> points = thinned_path(trace, 3);
+  const std::vector<analysis::PathPoint> points = analysis::thinned_path(trace, 3);
   REQUIRE(points.size() == 3);
   CHECK(points[1].at_s == Approx(0.004));
   CHECK(points[1].position_mm.x == Approx(0.4));
@@ -25,44 +25,47 @@ TEST_CASE("a path is thinned evenly, and each point knows the force until the ne
   CHECK(points[1].tangential_rms_n == Approx(5.0));
   CHECK(points[1].in_contact);
   CHECK_FALSE(points[2].in_contact);
-  CHECK(thinned_path(trace, 10).size() == 10);
-  CHECK(thinned_path(Trace{}, 10).empty());
-  REQUIRE_THROWS_AS(thinned_path(trace, 0), std::invalid_argument);
+  CHECK(analysis::thinned_path(trace, 10).size() == 10);
+  CHECK(analysis::thinned_path(store::Trace{}, 10).empty());
+  REQUIRE_THROWS_AS(analysis::thinned_path(trace, 0), std::invalid_argument);
 }
 
 TEST_CASE("a field's picture is lighter where its surface is higher, whatever its units") {
-  Plane<FieldSample> samples(2, 2);
+  Plane<engine::FieldSample> samples(2, 2);
   samples.at(0, 0).surface = 127.9F;
   samples.at(0, 1).surface = 128.1F;
   samples.at(1, 0).surface = 127.9F;
   samples.at(1, 1).surface = 128.1F;
-  const GreyImage picture = field_picture(TextureField({0.2, 2, 2}, samples).view());
+  const GreyImage picture =
+      analysis::field_picture(engine::TextureField({0.2, 2, 2}, samples).view());
   // One standard deviation below and above the mean.
   CHECK(static_cast<int>(picture.at(0, 0)) == Approx(127.5 - 51.0).margin(1.0));
   CHECK(static_cast<int>(picture.at(1, 1)) == Approx(127.5 + 51.0).margin(1.0));
-  const GreyImage flat = field_picture(TextureField({0.2, 2, 2}, Plane<FieldSample>(2, 2)).view());
+  const GreyImage flat = analysis::field_picture(
+      engine::TextureField({0.2, 2, 2}, Plane<engine::FieldSample>(2, 2)).view());
   CHECK(flat.at(0, 0) == flat.at(1, 1));
-  CHECK(field_picture(FieldView{}).empty());
+  CHECK(analysis::field_picture(engine::FieldView{}).empty());
 }
 
 TEST_CASE("a field of spline coefficients has a picture as well") {
   Plane<float> coefficients(8, 8, 0.0F);
   coefficients.at(4, 4) = 6.0F;
-  const GreyImage picture = field_picture(TextureField({0.2, 8, 8}, coefficients).view());
+  const GreyImage picture =
+      analysis::field_picture(engine::TextureField({0.2, 8, 8}, coefficients).view());
   CHECK(picture.at(4, 4) == 255);
   CHECK(picture.at(4, 3) > picture.at(0, 0));
 }
 
 TEST_CASE("a trial's path stands over the field that was felt") {
-  FakeStudy study(Protocol::classification, {.with_pack = true});
+  FakeStudy study(design::Protocol::classification, {.with_pack = true});
   study.add({.participant = "P01",
              .answers = FakeStudy::confusing(0, 1),
-             .traces = [](const Presentation&) { return stroking_over_wave(3.0, 0.2); }});
+             .traces = [](const design::Presentation&) { return stroking_over_wave(3.0, 0.2); }});
   study.close_and_unblind();
-  const Outcomes outcomes = load_outcomes(study.store(), study.key());
-  const ExplorationPath path =
-      exploration_path(study.store(), study.key(), outcomes, 1, 2, study.pack_folder());
-  const TrialOutcome& trial = outcomes.trials.at(1);
+  const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
+  const analysis::ExplorationPath path =
+      analysis::exploration_path(study.store(), study.key(), outcomes, 1, 2, study.pack_folder());
+  const analysis::TrialOutcome& trial = outcomes.trials.at(1);
   CHECK(path.simulated);
   CHECK(path.participant == "P01");
   CHECK(path.class_label == outcomes.classes[trial.stimulus.class_index]);
@@ -74,8 +77,10 @@ TEST_CASE("a trial's path stands over the field that was felt") {
   CHECK(path.points[100].in_contact);
   CHECK(path.texture.source == "the field in the study's pack");
   CHECK(path.texture.grey.width() == 2);
-  REQUIRE_THROWS_AS(exploration_path(study.store(), study.key(), outcomes, 1, 99), StoreError);
-  const ExplorationPath bare = exploration_path(study.store(), study.key(), outcomes, 1, 2);
+  REQUIRE_THROWS_AS(analysis::exploration_path(study.store(), study.key(), outcomes, 1, 99),
+                    StoreError);
+  const analysis::ExplorationPath bare =
+      analysis::exploration_path(study.store(), study.key(), outcomes, 1, 2);
   CHECK(bare.texture.grey.empty());
   CHECK(bare.points.size() == 1500);
 }

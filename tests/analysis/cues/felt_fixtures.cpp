@@ -8,28 +8,28 @@
 namespace touchtrial {
 namespace {
 
-FeltFeatures features_of(Difference difference, int class_index) {
-  FeltFeatures felt{};
+engine::FeltFeatures features_of(Difference difference, int class_index) {
+  engine::FeltFeatures felt{};
   felt.fill(-3.0);
   if (difference == Difference::strength) {
     for (double& feature : felt) feature += 0.5 * class_index;
   }
   if (difference == Difference::shape) {
     // One band of equal strength, another one for each class: all five together stay the same.
-    felt[kLateralBandsAt + class_index % kFeltBands] += 0.5;
-    felt[kNormalBandsAt + class_index % kFeltBands] += 0.5;
+    felt[engine::kLateralBandsAt + class_index % engine::kFeltBands] += 0.5;
+    felt[engine::kNormalBandsAt + class_index % engine::kFeltBands] += 0.5;
   }
   if (difference == Difference::direction)
-    felt[kDirectionsAt + class_index % kFeltDirections] += 0.5;
+    felt[engine::kDirectionsAt + class_index % engine::kFeltDirections] += 0.5;
   return felt;
 }
 
 }  // namespace
 
-std::vector<ObservedTrial> felt_trials(Difference difference, int classes, int repeats,
-                                       double noise, std::uint64_t index) {
+std::vector<analysis::ObservedTrial> felt_trials(Difference difference, int classes, int repeats,
+                                                 double noise, std::uint64_t index) {
   RandomStream random(7, "felt_fixtures", index);
-  std::vector<ObservedTrial> trials;
+  std::vector<analysis::ObservedTrial> trials;
   for (int i = 0; i < classes * repeats; ++i) {
     const int class_index = i % classes;
     trials.push_back({class_index, 0, features_of(difference, class_index)});
@@ -38,11 +38,11 @@ std::vector<ObservedTrial> felt_trials(Difference difference, int classes, int r
   return trials;
 }
 
-Trace stroking_over_wave(double wavelength_mm, double amplitude_n) {
+store::Trace stroking_over_wave(double wavelength_mm, double amplitude_n) {
   constexpr int kSamples = 3000;
   constexpr double kStepMm = 0.1;
   constexpr int kStroke = 400;
-  Trace trace;
+  store::Trace trace;
   for (int i = 0; i < kSamples; ++i) {
     const int along = i % (2 * kStroke);
     const double x_mm = kStepMm * (along < kStroke ? along : 2 * kStroke - along);

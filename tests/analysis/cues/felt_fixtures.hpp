@@ -15,11 +15,11 @@ enum class Difference { none, strength, shape, direction };
 /// drawn from the index. Classes differ in nothing, in the strength of all features alike, in which
 /// band of the lateral and normal force is strongest with the strength kept, or in directions
 /// alone.
-[[nodiscard]] std::vector<ObservedTrial> felt_trials(Difference difference, int classes,
-                                                     int repeats, double noise = 0.02,
-                                                     std::uint64_t index = 0);
+[[nodiscard]] std::vector<analysis::ObservedTrial> felt_trials(Difference difference, int classes,
+                                                               int repeats, double noise = 0.02,
+                                                               std::uint64_t index = 0);
 
 /// 3 s of strokes at 100 mm/s along x over 40 mm, with contact, feeling a lateral wave.
-[[nodiscard]] Trace stroking_over_wave(double wavelength_mm, double amplitude_n);
+[[nodiscard]] store::Trace stroking_over_wave(double wavelength_mm, double amplitude_n);
 
 }  // namespace touchtrial

@@ -15,11 +15,12 @@ namespace {
 constexpr int kClasses = 5;
 constexpr int kRepeats = 40;
 
-double share_of_right(Cue cue, const std::vector<ObservedTrial>& trials, double noise = 0.0) {
-  const Observer observer(cue, trials, kClasses);
+double share_of_right(analysis::Cue cue, const std::vector<analysis::ObservedTrial>& trials,
+                      double noise = 0.0) {
+  const analysis::Observer observer(cue, trials, kClasses);
   double right = 0.0;
   for (std::size_t i = 0; i < trials.size(); ++i) {
-    const AnswerShares shares =
+    const analysis::AnswerShares shares =
         noise > 0.0 ? observer.noisy_answer(i, noise) : observer.ideal_answer(i);
     right += shares[trials[i].class_index];
   }
@@ -28,23 +29,25 @@ double share_of_right(Cue cue, const std::vector<ObservedTrial>& trials, double 
 
 /// Classes of the likeliest stimulus by a classifier that is trained anew without one trial;
 /// stimuli are classes here.
-int answer_by_retraining(Cue cue, const std::vector<ObservedTrial>& trials, std::size_t out,
-                         std::vector<double>& logs) {
-  std::vector<FeltExample> others;
+int answer_by_retraining(analysis::Cue cue, const std::vector<analysis::ObservedTrial>& trials,
+                         std::size_t out, std::vector<double>& logs) {
+  std::vector<engine::FeltExample> others;
   for (std::size_t i = 0; i < trials.size(); ++i) {
-    if (i != out) others.push_back({trials[i].class_index, cue_features(cue, trials[i].felt)});
+    if (i != out)
+      others.push_back({trials[i].class_index, analysis::cue_features(cue, trials[i].felt)});
   }
-  logs = FeltClassifier(others, 0.0).log_likelihoods(cue_features(cue, trials[out].felt));
+  logs = engine::FeltClassifier(others, 0.0)
+             .log_likelihoods(analysis::cue_features(cue, trials[out].felt));
   return static_cast<int>(std::ranges::max_element(logs) - logs.begin());
 }
 
 TEST_CASE(
     "where strength alone differs, the observer of strength is right and that of shape guesses") {
   const auto trials = felt_trials(Difference::strength, kClasses, kRepeats);
-  CHECK(share_of_right(Cue::rms, trials) == 1.0);
-  CHECK(share_of_right(Cue::everything, trials) == 1.0);
+  CHECK(share_of_right(analysis::Cue::rms, trials) == 1.0);
+  CHECK(share_of_right(analysis::Cue::everything, trials) == 1.0);
   // 200 trials: 99.9 % of binomial draws with p = 0.2 lie between 22 and 59.
-  const double by_shape = share_of_right(Cue::spectrum, trials);
+  const double by_shape = share_of_right(analysis::Cue::spectrum, trials);
   CHECK(by_shape > 0.10);
   CHECK(by_shape < 0.30);
 }
@@ -52,40 +55,42 @@ TEST_CASE(
 TEST_CASE(
     "where shape alone differs, the observer of shape is right and that of strength guesses") {
   const auto trials = felt_trials(Difference::shape, kClasses, kRepeats);
-  CHECK(share_of_right(Cue::spectrum, trials) == 1.0);
-  CHECK(share_of_right(Cue::everything, trials) == 1.0);
-  const double by_strength = share_of_right(Cue::rms, trials);
+  CHECK(share_of_right(analysis::Cue::spectrum, trials) == 1.0);
+  CHECK(share_of_right(analysis::Cue::everything, trials) == 1.0);
+  const double by_strength = share_of_right(analysis::Cue::rms, trials);
   CHECK(by_strength > 0.10);
   CHECK(by_strength < 0.30);
 }
 
 TEST_CASE("directions are felt by the observer of everything alone") {
   const auto trials = felt_trials(Difference::direction, 4, kRepeats);
-  CHECK(share_of_right(Cue::everything, trials) == 1.0);
-  CHECK(share_of_right(Cue::rms, trials) < 0.40);
-  CHECK(share_of_right(Cue::spectrum, trials) < 0.40);
+  CHECK(share_of_right(analysis::Cue::everything, trials) == 1.0);
+  CHECK(share_of_right(analysis::Cue::rms, trials) < 0.40);
+  CHECK(share_of_right(analysis::Cue::spectrum, trials) < 0.40);
 }
 
 TEST_CASE("a stronger force changes no shape, and adds its logarithm to the strength") {
-  FeltFeatures felt = felt_trials(Difference::shape, kClasses, 1).back().felt;
-  const auto shape = cue_features(Cue::spectrum, felt);
-  const auto strength = cue_features(Cue::rms, felt);
+  engine::FeltFeatures felt = felt_trials(Difference::shape, kClasses, 1).back().felt;
+  const auto shape = analysis::cue_features(analysis::Cue::spectrum, felt);
+  const auto strength = analysis::cue_features(analysis::Cue::rms, felt);
   for (double& feature : felt) feature += 0.7;
-  const auto shape_of_stronger = cue_features(Cue::spectrum, felt);
+  const auto shape_of_stronger = analysis::cue_features(analysis::Cue::spectrum, felt);
   REQUIRE(shape.size() == 10);
   for (std::size_t i = 0; i < shape.size(); ++i) {
     CHECK(shape_of_stronger[i] == Approx(shape[i]).margin(1e-12));
   }
   REQUIRE(strength.size() == 1);
-  CHECK(cue_features(Cue::rms, felt)[0] == Approx(strength[0] + 0.7).margin(1e-12));
-  CHECK(cue_features(Cue::everything, felt).size() == kFeltFeatures);
+  CHECK(analysis::cue_features(analysis::Cue::rms, felt)[0] ==
+        Approx(strength[0] + 0.7).margin(1e-12));
+  CHECK(analysis::cue_features(analysis::Cue::everything, felt).size() == engine::kFeltFeatures);
 }
 
 TEST_CASE("leaving a trial out by one subtraction answers as training anew does") {
-  const Cue cue = GENERATE(Cue::rms, Cue::spectrum, Cue::everything);
+  const analysis::Cue cue =
+      GENERATE(analysis::Cue::rms, analysis::Cue::spectrum, analysis::Cue::everything);
   // So noisy that many answers are wrong.
   const auto trials = felt_trials(Difference::strength, kClasses, 6, 0.6);
-  const Observer observer(cue, trials, kClasses);
+  const analysis::Observer observer(cue, trials, kClasses);
   int wrong = 0;
   for (std::size_t i = 0; i < trials.size(); ++i) {
     std::vector<double> logs;
@@ -98,8 +103,8 @@ TEST_CASE("leaving a trial out by one subtraction answers as training anew does"
 
 TEST_CASE("trials that all feel the same are even draws") {
   const auto trials = felt_trials(Difference::none, kClasses, 4, 0.0);
-  for (const Cue cue : kCues) {
-    const Observer observer(cue, trials, kClasses);
+  for (const analysis::Cue cue : analysis::kCues) {
+    const analysis::Observer observer(cue, trials, kClasses);
     for (std::size_t i = 0; i < trials.size(); ++i) {
       for (const double share : observer.ideal_answer(i)) CHECK(share == Approx(0.2));
     }
@@ -112,7 +117,7 @@ TEST_CASE("an observer taught swapped labels answers by them") {
   for (std::size_t i = 2; i < trials.size(); ++i) {
     if (trials[i].class_index < 2) trials[i].class_index = 1 - trials[i].class_index;
   }
-  const Observer observer(Cue::rms, trials, kClasses);
+  const analysis::Observer observer(analysis::Cue::rms, trials, kClasses);
   CHECK(observer.ideal_answer(0)[1] == 1.0);
   CHECK(observer.ideal_answer(1)[0] == 1.0);
 }
@@ -121,13 +126,13 @@ TEST_CASE(
     "an exemplar's only trial is judged by its class's others, a class's only one not at all") {
   auto trials = felt_trials(Difference::strength, 3, 4);
   trials[0].exemplar = 1;
-  const Observer by_class(Cue::rms, trials, 3);
+  const analysis::Observer by_class(analysis::Cue::rms, trials, 3);
   CHECK(by_class.ideal_answer(0)[0] == 1.0);
-  std::erase_if(trials, [](const ObservedTrial& trial) {
+  std::erase_if(trials, [](const analysis::ObservedTrial& trial) {
     return trial.class_index == 0 && trial.exemplar == 0;
   });
   REQUIRE(trials[0].class_index == 0);
-  const Observer alone(Cue::rms, trials, 3);
+  const analysis::Observer alone(analysis::Cue::rms, trials, 3);
   CHECK(alone.ideal_answer(0).empty());
   CHECK(alone.noisy_answer(0, 0.1).empty());
   CHECK_FALSE(alone.ideal_answer(1).empty());
@@ -135,9 +140,9 @@ TEST_CASE(
 
 TEST_CASE("the noisier its sense, the less often an observer is right, down to chance") {
   const auto trials = felt_trials(Difference::strength, kClasses, kRepeats);
-  const double little = share_of_right(Cue::rms, trials, 0.1);
-  const double some = share_of_right(Cue::rms, trials, 0.5);
-  const double much = share_of_right(Cue::rms, trials, 50.0);
+  const double little = share_of_right(analysis::Cue::rms, trials, 0.1);
+  const double some = share_of_right(analysis::Cue::rms, trials, 0.5);
+  const double much = share_of_right(analysis::Cue::rms, trials, 50.0);
   CHECK(little > some);
   CHECK(some > much);
   CHECK(much == Approx(0.2).margin(0.05));
@@ -148,20 +153,23 @@ TEST_CASE("the noisier its sense, the less often an observer is right, down to c
 
 TEST_CASE("shares of a noisy answer sum to one, and are the same whenever they are asked for") {
   const auto trials = felt_trials(Difference::shape, kClasses, 4, 0.3);
-  const Observer observer(Cue::everything, trials, kClasses);
-  const AnswerShares shares = observer.noisy_answer(3, 0.3);
+  const analysis::Observer observer(analysis::Cue::everything, trials, kClasses);
+  const analysis::AnswerShares shares = observer.noisy_answer(3, 0.3);
   CHECK(std::accumulate(shares.begin(), shares.end(), 0.0) == Approx(1.0));
   CHECK(observer.noisy_answer(3, 0.3) == shares);
 }
 
 TEST_CASE("an observer refuses trials that cannot be") {
   const auto trials = felt_trials(Difference::none, 3, 2);
-  REQUIRE_THROWS_AS(Observer(Cue::rms, trials, 2), std::invalid_argument);
-  REQUIRE_THROWS_AS(Observer(Cue::rms, trials, 0), std::invalid_argument);
+  REQUIRE_THROWS_AS(analysis::Observer(analysis::Cue::rms, trials, 2), std::invalid_argument);
+  REQUIRE_THROWS_AS(analysis::Observer(analysis::Cue::rms, trials, 0), std::invalid_argument);
   auto undefined = trials;
   undefined[1].felt[0] = std::numeric_limits<double>::quiet_NaN();
-  REQUIRE_THROWS_AS(Observer(Cue::everything, undefined, 3), std::invalid_argument);
-  CHECK(Observer(Cue::rms, std::vector<ObservedTrial>{}, 3).trials() == 0);
+  REQUIRE_THROWS_AS(analysis::Observer(analysis::Cue::everything, undefined, 3),
+                    std::invalid_argument);
+  CHECK(
+      analysis::Observer(analysis::Cue::rms, std::vector<analysis::ObservedTrial>{}, 3).trials() ==
+      0);
 }
 
 }  // namespace

@@ -9,6 +9,8 @@
 #include <nlohmann/json.hpp>
 
 using namespace touchtrial;
+using namespace touchtrial::analysis;
+using namespace touchtrial::engine;
 using nlohmann::json;
 
 namespace {

@@ -8,31 +8,31 @@
 namespace touchtrial {
 namespace {
 
-SessionState session_state_of(const std::string& name) {
-  if (name == "completed") return SessionState::completed;
-  return name == "stopped" ? SessionState::stopped : SessionState::open;
+store::SessionState session_state_of(const std::string& name) {
+  if (name == "completed") return store::SessionState::completed;
+  return name == "stopped" ? store::SessionState::stopped : store::SessionState::open;
 }
 
-std::optional<PracticeRecord> practice_of(const CsvRow& row) {
+std::optional<analysis::PracticeRecord> practice_of(const CsvRow& row) {
   if (row.at("practice_rounds").empty()) return std::nullopt;
-  return PracticeRecord{
+  return analysis::PracticeRecord{
       number_of<int>(row.at("practice_rounds")), number_of<int>(row.at("practice_presentations")),
       number_of<int>(row.at("practice_correct")), is_set(row.at("practice_passed"))};
 }
 
-std::optional<StationRecord> station_of(const CsvRow& row) {
+std::optional<store::StationRecord> station_of(const CsvRow& row) {
   if (row.at("visual").empty()) return std::nullopt;
-  return StationRecord{row.at("device_model"),
-                       row.at("device_firmware"),
-                       number_of<double>(row.at("device_max_force_n")),
-                       is_set(row.at("visual")),
-                       number_of<double>(row.at("servo_hz")),
-                       row.at("scheduling"),
-                       row.at("certificate")};
+  return store::StationRecord{row.at("device_model"),
+                              row.at("device_firmware"),
+                              number_of<double>(row.at("device_max_force_n")),
+                              is_set(row.at("visual")),
+                              number_of<double>(row.at("servo_hz")),
+                              row.at("scheduling"),
+                              row.at("certificate")};
 }
 
-SessionRecord record_of(const CsvRow& row) {
-  SessionRecord record;
+analysis::SessionRecord record_of(const CsvRow& row) {
+  analysis::SessionRecord record;
   if (is_set(row.at("withdrawn"))) {
     record.row.session = number_of<int>(row.at("session"));
     record.row.state = session_state_of(row.at("state"));
@@ -50,7 +50,7 @@ SessionRecord record_of(const CsvRow& row) {
   return record;
 }
 
-Prescription prescription_of(const std::filesystem::path& study) {
+analysis::Prescription prescription_of(const std::filesystem::path& study) {
   CsvRow single;
   for (const CsvRow& row : rows_of(study)) single[row.at("key")] = row.at("value");
   return {number_of<double>(single.at("explore_limit_s")),
@@ -63,18 +63,19 @@ Prescription prescription_of(const std::filesystem::path& study) {
           number_of<double>(single.at("masking_dbfs"))};
 }
 
-void add_deviations(Collection& collection, const std::filesystem::path& file) {
+void add_deviations(analysis::Collection& collection, const std::filesystem::path& file) {
   for (const CsvRow& row : rows_of(file)) {
     const int session = number_of<int>(row.at("session"));
-    const auto record = std::ranges::find(collection.sessions, session,
-                                          [](const SessionRecord& one) { return one.row.session; });
+    const auto record =
+        std::ranges::find(collection.sessions, session,
+                          [](const analysis::SessionRecord& one) { return one.row.session; });
     REQUIRE(record != collection.sessions.end());
     CHECK(record->row.participant == row.at("participant"));
     record->deviations.push_back({row.at("code"), row.at("text")});
   }
 }
 
-ServoTrial servo_trial_of(const CsvRow& row) {
+analysis::ServoTrial servo_trial_of(const CsvRow& row) {
   return {
       number_of<int>(row.at("session")),
       number_of<int>(row.at("trial")),
@@ -86,8 +87,8 @@ ServoTrial servo_trial_of(const CsvRow& row) {
 }
 
 /// What decides which sessions count.
-StudyCommitment commitment_of(const std::filesystem::path& study) {
-  StudyCommitment commitment;
+store::StudyCommitment commitment_of(const std::filesystem::path& study) {
+  store::StudyCommitment commitment;
   for (const CsvRow& row : rows_of(study)) {
     if (row.at("key") == "simulated") commitment.simulated = is_set(row.at("value"));
     if (row.at("key") == "pilot") commitment.pilot = is_set(row.at("value"));
@@ -97,8 +98,8 @@ StudyCommitment commitment_of(const std::filesystem::path& study) {
 
 }  // namespace
 
-SessionRow session_row_of(const CsvRow& row) {
-  SessionRow session;
+store::SessionRow session_row_of(const CsvRow& row) {
+  store::SessionRow session;
   session.session = number_of<int>(row.at("session"));
   session.own_session = session.session;  // exports do not tell where it was collected
   session.participant = row.at("participant");
@@ -113,10 +114,11 @@ SessionRow session_row_of(const CsvRow& row) {
   return session;
 }
 
-Collection collection_from_csv(const std::filesystem::path& folder, const StudyState& state) {
-  Collection collection;
+analysis::Collection collection_from_csv(const std::filesystem::path& folder,
+                                         const store::StudyState& state) {
+  analysis::Collection collection;
   collection.prescription = prescription_of(folder / "study.csv");
-  std::vector<SessionRow> rows;
+  std::vector<store::SessionRow> rows;
   for (const CsvRow& row : rows_of(folder / "participants.csv")) {
     rows.push_back(session_row_of(row));
     collection.sessions.push_back(record_of(row));
@@ -126,8 +128,8 @@ Collection collection_from_csv(const std::filesystem::path& folder, const StudyS
   for (const CsvRow& row : rows_of(folder / "servo.csv")) {
     collection.servo_trials.push_back(servo_trial_of(row));
   }
-  collection.flow =
-      participant_flow(rows, collection.sessions, commitment_of(folder / "study.csv"), state);
+  collection.flow = analysis::participant_flow(rows, collection.sessions,
+                                               commitment_of(folder / "study.csv"), state);
   return collection;
 }
 

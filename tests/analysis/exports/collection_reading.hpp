@@ -9,10 +9,10 @@
 namespace touchtrial {
 
 /// A row of participants.csv.
-[[nodiscard]] SessionRow session_row_of(const CsvRow& row);
+[[nodiscard]] store::SessionRow session_row_of(const CsvRow& row);
 
 /// \param state  which the flow of participants depends on
-[[nodiscard]] Collection collection_from_csv(const std::filesystem::path& folder,
-                                             const StudyState& state);
+[[nodiscard]] analysis::Collection collection_from_csv(const std::filesystem::path& folder,
+                                                       const store::StudyState& state);
 
 }  // namespace touchtrial

@@ -25,7 +25,7 @@ int index_of(const std::vector<std::string>& labels, const std::string& label) {
   return static_cast<int>(found - labels.begin());
 }
 
-void read_study(Outcomes& outcomes, const std::filesystem::path& folder) {
+void read_study(analysis::Outcomes& outcomes, const std::filesystem::path& folder) {
   std::map<std::string, std::string> single;
   for (const CsvRow& row : rows_of(folder / "study.csv")) {
     const std::string& value = row.at("value");
@@ -41,9 +41,9 @@ void read_study(Outcomes& outcomes, const std::filesystem::path& folder) {
     }
   }
   outcomes.study = single.at("study");
-  outcomes.protocol = single.at("protocol") == name_of(Protocol::comparison)
-                          ? Protocol::comparison
-                          : Protocol::classification;
+  outcomes.protocol = single.at("protocol") == name_of(design::Protocol::comparison)
+                          ? design::Protocol::comparison
+                          : design::Protocol::classification;
   outcomes.simulated = is_set(single.at("simulated"));
   outcomes.pilot = is_set(single.at("pilot"));
   outcomes.visual = is_set(single.at("visual"));
@@ -51,32 +51,34 @@ void read_study(Outcomes& outcomes, const std::filesystem::path& folder) {
   outcomes.state.unblinded = is_set(single.at("unblinded"));
   outcomes.state.unblinding_reason = single.at("unblinding_reason");
   if (is_set(single.at("interim"))) outcomes.state.interim.emplace();
-  outcomes.design = parse_study(text_of_file(folder / "study_file.json"), ".", "study_file.json");
+  outcomes.design =
+      design::parse_study(text_of_file(folder / "study_file.json"), ".", "study_file.json");
 }
 
-TrialState trial_state_of(const std::string& name) {
-  const std::map<std::string, TrialState> states{{"presented", TrialState::presented},
-                                                 {"answered", TrialState::answered},
-                                                 {"timed-out", TrialState::timed_out},
-                                                 {"interrupted", TrialState::interrupted},
-                                                 {"voided", TrialState::voided}};
+store::TrialState trial_state_of(const std::string& name) {
+  const std::map<std::string, store::TrialState> states{
+      {"presented", store::TrialState::presented},
+      {"answered", store::TrialState::answered},
+      {"timed-out", store::TrialState::timed_out},
+      {"interrupted", store::TrialState::interrupted},
+      {"voided", store::TrialState::voided}};
   return states.at(name);
 }
 
-void read_sessions(Outcomes& outcomes, const std::filesystem::path& folder) {
+void read_sessions(analysis::Outcomes& outcomes, const std::filesystem::path& folder) {
   for (const CsvRow& row : rows_of(folder / "participants.csv")) {
     if (!is_set(row.at("shown"))) {
       ++outcomes.sessions_unseen;
       continue;
     }
-    const SessionRow session = session_row_of(row);
+    const store::SessionRow session = session_row_of(row);
     if (outcomes.state.interim) outcomes.state.interim->insert(session.session);
     outcomes.sessions.push_back({session, is_set(row.at("counted"))});
   }
 }
 
-TrialRow trial_row_of(const CsvRow& row) {
-  TrialRow trial;
+store::TrialRow trial_row_of(const CsvRow& row) {
+  store::TrialRow trial;
   trial.session = number_of<int>(row.at("session"));
   trial.trial = number_of<int>(row.at("trial"));
   trial.block = number_of<int>(row.at("block"));
@@ -99,30 +101,30 @@ TrialRow trial_row_of(const CsvRow& row) {
   return trial;
 }
 
-std::optional<TrialMeasures> measures_of(const CsvRow& row) {
+std::optional<store::TrialMeasures> measures_of(const CsvRow& row) {
   if (row.at("within_limits").empty()) return std::nullopt;
-  return TrialMeasures{
+  return store::TrialMeasures{
       number_of<double>(row.at("contact_s")),   number_of<double>(row.at("path_mm")),
       number_of<double>(row.at("force_rms_n")), number_of<double>(row.at("saturated_share")),
       is_set(row.at("within_limits")),          maybe<std::int64_t>(row.at("limited_ticks"))};
 }
 
-StimulusIndex stimulus_of(const Outcomes& outcomes, const CsvRow& row) {
-  StimulusIndex stimulus;
+design::StimulusIndex stimulus_of(const analysis::Outcomes& outcomes, const CsvRow& row) {
+  design::StimulusIndex stimulus;
   stimulus.class_index = index_of(outcomes.classes, row.at("class"));
   stimulus.exemplar = index_of(outcomes.exemplars[stimulus.class_index], row.at("exemplar"));
   stimulus.method = index_of(outcomes.methods, row.at("method"));
   return stimulus;
 }
 
-void read_trials(Outcomes& outcomes, const std::filesystem::path& file) {
+void read_trials(analysis::Outcomes& outcomes, const std::filesystem::path& file) {
   for (const CsvRow& row : rows_of(file)) {
-    TrialOutcome& trial = outcomes.trials.emplace_back();
+    analysis::TrialOutcome& trial = outcomes.trials.emplace_back();
     trial.participant = row.at("participant");
     trial.row = trial_row_of(row);
     const std::string& kind = row.at("kind");
-    if (kind == "lead-in") trial.kind = PresentationKind::lead_in;
-    if (kind == "catch") trial.kind = PresentationKind::catch_trial;
+    if (kind == "lead-in") trial.kind = design::PresentationKind::lead_in;
+    if (kind == "catch") trial.kind = design::PresentationKind::catch_trial;
     trial.scored = kind == "scored";
     trial.counted = is_set(row.at("counted"));
     if (kind != "catch") trial.stimulus = stimulus_of(outcomes, row);
@@ -171,15 +173,15 @@ std::vector<CsvRow> rows_of(const std::filesystem::path& path) {
   return rows;
 }
 
-Outcomes outcomes_from_csv(const std::filesystem::path& folder) {
-  Outcomes outcomes;
+analysis::Outcomes outcomes_from_csv(const std::filesystem::path& folder) {
+  analysis::Outcomes outcomes;
   read_study(outcomes, folder);
   read_sessions(outcomes, folder);
   outcomes.collection = collection_from_csv(folder, outcomes.state);
   read_trials(outcomes, folder / "trials.csv");
   read_trials(outcomes, folder / "unscored_trials.csv");
   std::sort(outcomes.trials.begin(), outcomes.trials.end(),
-            [](const TrialOutcome& a, const TrialOutcome& b) {
+            [](const analysis::TrialOutcome& a, const analysis::TrialOutcome& b) {
               return std::pair(a.row.session, a.row.trial) < std::pair(b.row.session, b.row.trial);
             });
   return outcomes;

@@ -19,6 +19,6 @@ namespace touchtrial {
 [[nodiscard]] std::vector<CsvRow> rows_of(const std::filesystem::path& path);
 
 /// What an export after unblinding was made from, as far as its CSV files tell.
-[[nodiscard]] Outcomes outcomes_from_csv(const std::filesystem::path& folder);
+[[nodiscard]] analysis::Outcomes outcomes_from_csv(const std::filesystem::path& folder);
 
 }  // namespace touchtrial

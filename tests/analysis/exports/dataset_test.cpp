@@ -29,9 +29,10 @@ const std::vector<std::string> kNoFaults;
 
 void fill(FakeStudy& study) {
   study.add({.participant = "P-01", .enrolment = 1, .answers = FakeStudy::confusing(0, 1)});
-  study.add({.participant = "Z_2+", .enrolment = 2, .answers = [](const Presentation& shown) {
-               return shown.trial == 7 ? std::nullopt : std::optional(shown.stimulus.class_index);
-             }});
+  study.add(
+      {.participant = "Z_2+", .enrolment = 2, .answers = [](const design::Presentation& shown) {
+         return shown.trial == 7 ? std::nullopt : std::optional(shown.stimulus.class_index);
+       }});
   study.add({.participant = "P03",
              .enrolment = 3,
              .answers = FakeStudy::always_right(),
@@ -42,11 +43,11 @@ void fill(FakeStudy& study) {
 /// An unblinded study, and what exporting it takes.
 struct OpenStudy {
   explicit OpenStudy(FakeStudy& study)
-      : outcomes(load_outcomes(study.store(), study.key())),
+      : outcomes(analysis::load_outcomes(study.store(), study.key())),
         source{study.store(), &outcomes, &study.key()} {}
 
-  Outcomes outcomes;
-  DatasetSource source;
+  analysis::Outcomes outcomes;
+  analysis::DatasetSource source;
 };
 
 std::map<std::string, std::string> contents(const fs::path& folder) {
@@ -62,42 +63,44 @@ std::map<std::string, std::string> contents(const fs::path& folder) {
 }  // namespace
 
 TEST_CASE("participant_label gives different ids different labels of letters and digits") {
-  CHECK(participant_label("P07") == "P07");
-  CHECK(participant_label("P-07") == "PZd07");
-  CHECK(participant_label("P_07") == "PZu07");
-  CHECK(participant_label("P+07") == "PZp07");
-  CHECK(participant_label("PZd07") == "PZZd07");
-  CHECK(plain_label("comparison-textures") == "comparisontextures");
-  CHECK(plain_label("--") == "study");
+  CHECK(analysis::participant_label("P07") == "P07");
+  CHECK(analysis::participant_label("P-07") == "PZd07");
+  CHECK(analysis::participant_label("P_07") == "PZu07");
+  CHECK(analysis::participant_label("P+07") == "PZp07");
+  CHECK(analysis::participant_label("PZd07") == "PZZd07");
+  CHECK(analysis::plain_label("comparison-textures") == "comparisontextures");
+  CHECK(analysis::plain_label("--") == "study");
 }
 
 TEST_CASE("A study as BIDS keeps to the specification, with traces, database and without") {
-  FakeStudy study(Protocol::comparison, {.label = "bark \"old\""});
+  FakeStudy study(design::Protocol::comparison, {.label = "bark \"old\""});
   fill(study);
   study.close_and_unblind();
   const OpenStudy open(study);
   const fs::path out = study.folder() / "bids";
-  DatasetOptions options{.authors = {"A. Author"}, .license = "CC0", .institution = "A lab"};
-  export_bids(open.source, options, out);
+  analysis::DatasetOptions options{
+      .authors = {"A. Author"}, .license = "CC0", .institution = "A lab"};
+  analysis::export_bids(open.source, options, out);
   CHECK(bids_faults(out) == kNoFaults);
   options.traces = true;
   options.database = study.database();
-  export_bids(open.source, options, out);
+  analysis::export_bids(open.source, options, out);
   CHECK(bids_faults(out) == kNoFaults);
   const fs::path copy = out / "sourcedata" / "study.db";
-  CHECK(StudyStore::open(copy, StudyStore::Access::read_only).trials() == study.store().trials());
+  CHECK(store::StudyStore::open(copy, store::StudyStore::Access::read_only).trials() ==
+        study.store().trials());
   CHECK_FALSE(is_there(copy.string() + ".key"));
   const std::string report = text_of_file(out / "derivatives/touchtrial/results.json");
-  CHECK(report == report_json(make_report(open.outcomes)));
+  CHECK(report == analysis::report_json(analysis::make_report(open.outcomes)));
 }
 
 TEST_CASE("A BIDS recording holds the trace and its beginning") {
-  FakeStudy study(Protocol::classification);
+  FakeStudy study(design::Protocol::classification);
   fill(study);
   study.close_and_unblind();
   const OpenStudy open(study);
   const fs::path out = study.folder() / "bids";
-  export_bids(open.source, {.traces = true}, out);
+  analysis::export_bids(open.source, {.traces = true}, out);
   const fs::path stem = out / "sub-PZd01/beh/sub-PZd01_task-single_recording-trial002_stim";
   const std::string rows = gunzip(read_file(stem.string() + ".tsv.gz"));
   CHECK(rows.starts_with("0.000\t0.000\t-0.500\t0.0000\t0.0000\t0.2500\n0.100\t"));
@@ -109,11 +112,11 @@ TEST_CASE("A BIDS recording holds the trace and its beginning") {
 }
 
 TEST_CASE("A BIDS recording tells a trace's steps apart, and writes no zero with a sign") {
-  Trace trace;
+  store::Trace trace;
   for (int i = -9000; i <= 9000; i += 7) {
     trace.samples.push_back({{i / 1000.0, -0.0004, 0.0}, {i / 4096.0, 1 / 4096.0, -0.00004}});
   }
-  const std::string text = trace_text(trace);
+  const std::string text = analysis::trace_text(trace);
   CHECK(text.starts_with("-9.000\t0.000\t0.000\t-2.1973\t0.0002\t0.0000\n-8.993\t"));
   std::istringstream lines(text);
   for (int i = -9000; i <= 9000; i += 7) {
@@ -125,14 +128,14 @@ TEST_CASE("A BIDS recording tells a trace's steps apart, and writes no zero with
 }
 
 TEST_CASE("A BIDS dataset loses its traces and withdrawn participants when it is exported again") {
-  FakeStudy study(Protocol::classification);
+  FakeStudy study(design::Protocol::classification);
   fill(study);
   study.close_and_unblind();
   const fs::path out = study.folder() / "bids";
-  export_bids(OpenStudy(study).source, {.traces = true}, out);
+  analysis::export_bids(OpenStudy(study).source, {.traces = true}, out);
   CHECK(is_there(out / "sub-PZd01"));
   study.store().withdraw(1, milliseconds(2000), "asked to");
-  export_bids(OpenStudy(study).source, {}, out);
+  analysis::export_bids(OpenStudy(study).source, {}, out);
   CHECK(bids_faults(out) == kNoFaults);
   CHECK_FALSE(is_there(out / "sub-PZd01"));
   for (const auto& [name, text] : contents(out)) {
@@ -143,7 +146,7 @@ TEST_CASE("A BIDS dataset loses its traces and withdrawn participants when it is
 }
 
 TEST_CASE("Participants with several sessions have folders for them") {
-  FakeStudy study(Protocol::classification, {.simulated = false});
+  FakeStudy study(design::Protocol::classification, {.simulated = false});
   study.add({.participant = "P01",
              .enrolment = 1,
              .answers = FakeStudy::always_right(),
@@ -154,7 +157,7 @@ TEST_CASE("Participants with several sessions have folders for them") {
   study.add({.participant = "P02", .enrolment = 2, .answers = FakeStudy::always_right()});
   study.close_and_unblind();
   const fs::path out = study.folder() / "bids";
-  export_bids(OpenStudy(study).source, {}, out);
+  analysis::export_bids(OpenStudy(study).source, {}, out);
   CHECK(bids_faults(out) == kNoFaults);
   CHECK(is_there(out / "sub-P01/ses-2/beh/sub-P01_ses-2_task-single_beh.tsv"));
   CHECK(is_there(out / "sub-P02/ses-1/beh/sub-P02_ses-1_task-single_beh.tsv"));
@@ -162,13 +165,13 @@ TEST_CASE("Participants with several sessions have folders for them") {
 }
 
 TEST_CASE("Before unblinding datasets have no word of what was presented or answered") {
-  FakeStudy study(Protocol::comparison, {.label = "petrified wood"});
+  FakeStudy study(design::Protocol::comparison, {.label = "petrified wood"});
   fill(study);
-  const DatasetSource source{study.store()};
+  const analysis::DatasetSource source{study.store()};
   const fs::path bids = study.folder() / "bids";
   const fs::path psych = study.folder() / "psych";
-  export_bids(source, {.database = study.database()}, bids);
-  export_psych_ds(source, {}, psych);
+  analysis::export_bids(source, {.database = study.database()}, bids);
+  analysis::export_psych_ds(source, {}, psych);
   CHECK(bids_faults(bids) == kNoFaults);
   CHECK(psych_ds_faults(psych) == kNoFaults);
   for (const fs::path& folder : {bids, psych}) {
@@ -180,18 +183,19 @@ TEST_CASE("Before unblinding datasets have no word of what was presented or answ
       }
     }
   }
-  CHECK_THROWS_AS(export_bids(source, {.traces = true}, bids), UsageError);
-  CHECK_THROWS_AS(export_bids(source, {.stimuli = true}, bids), UsageError);
+  CHECK_THROWS_AS(analysis::export_bids(source, {.traces = true}, bids), UsageError);
+  CHECK_THROWS_AS(analysis::export_bids(source, {.stimuli = true}, bids), UsageError);
 }
 
 TEST_CASE("A study as Psych-DS keeps to the schema") {
-  FakeStudy study(Protocol::comparison,
+  FakeStudy study(design::Protocol::comparison,
                   {.label = "bark, \"old\"", .trials = R"({"lead_in": 1, "catch": 1})"});
   fill(study);
   study.store().withdraw(3, milliseconds(900), "asked to");
   study.close_and_unblind();
   const fs::path out = study.folder() / "psych";
-  export_psych_ds(OpenStudy(study).source, {.authors = {"A. Author"}, .license = "CC0"}, out);
+  analysis::export_psych_ds(OpenStudy(study).source, {.authors = {"A. Author"}, .license = "CC0"},
+                            out);
   CHECK(psych_ds_faults(out) == kNoFaults);
   for (const auto& [name, text] : contents(out)) CHECK_FALSE(contains(text, "P03"));
   const std::string description = text_of_file(out / "dataset_description.json");
@@ -199,14 +203,14 @@ TEST_CASE("A study as Psych-DS keeps to the schema") {
 }
 
 TEST_CASE("The checkers of datasets find what is wrong") {
-  FakeStudy study(Protocol::classification);
+  FakeStudy study(design::Protocol::classification);
   fill(study);
   study.close_and_unblind();
   const OpenStudy open(study);
   const fs::path bids = study.folder() / "bids";
   const fs::path psych = study.folder() / "psych";
-  export_bids(open.source, {.traces = true}, bids);
-  export_psych_ds(open.source, {}, psych);
+  analysis::export_bids(open.source, {.traces = true}, bids);
+  analysis::export_psych_ds(open.source, {}, psych);
   const auto spoilt = [](const fs::path& file, const std::string& text, const auto& faults_of) {
     const std::string before = text_of_file(file);
     replace_file(file, text);

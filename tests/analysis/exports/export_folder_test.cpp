@@ -10,19 +10,20 @@
 namespace touchtrial {
 namespace {
 
-const ExportMark kOurs{"pair", "aa11", "csv"};
+const analysis::ExportMark kOurs{"pair", "aa11", "csv"};
 
-ExportFile file(const std::string& name, const std::string& content) {
-  return text_file(name, content);
+analysis::ExportFile file(const std::string& name, const std::string& content) {
+  return analysis::text_file(name, content);
 }
 
 }  // namespace
 
 TEST_CASE("A second export removes what the first wrote and it does not hold, with its folders") {
   const TempFolder folder;
-  write_export(folder.path(), kOurs, {file("sub-1/a.txt", "1"), file("sub-2/beh/b.txt", "2")});
+  analysis::write_export(folder.path(), kOurs,
+                         {file("sub-1/a.txt", "1"), file("sub-2/beh/b.txt", "2")});
   replace_file(folder.path() / "mine.txt", "mine");
-  write_export(folder.path(), kOurs, {file("sub-1/a.txt", "3")});
+  analysis::write_export(folder.path(), kOurs, {file("sub-1/a.txt", "3")});
   CHECK(text_of_file(folder.path() / "sub-1/a.txt") == "3");
   CHECK_FALSE(is_there(folder.path() / "sub-2"));
   CHECK(text_of_file(folder.path() / "mine.txt") == "mine");
@@ -30,9 +31,10 @@ TEST_CASE("A second export removes what the first wrote and it does not hold, wi
 
 TEST_CASE("A folder with another study's export is refused untouched") {
   const TempFolder folder;
-  write_export(folder.path(), {"single", "bb22", "csv"}, {file("trials.csv", "theirs")});
+  analysis::write_export(folder.path(), {"single", "bb22", "csv"}, {file("trials.csv", "theirs")});
   const std::string complaint = complaint_of<FileError>([&] {
-    write_export(folder.path(), kOurs, {file("other.csv", "ours"), file("trials.csv", "ours")});
+    analysis::write_export(folder.path(), kOurs,
+                           {file("other.csv", "ours"), file("trials.csv", "ours")});
   });
   CHECK(contains(complaint, "single"));
   CHECK(text_of_file(folder.path() / "trials.csv") == "theirs");
@@ -43,7 +45,8 @@ TEST_CASE("A file that no export wrote is not overwritten") {
   const TempFolder folder;
   replace_file(folder.path() / "trials.csv", "mine");
   const std::string complaint = complaint_of<FileError>([&] {
-    write_export(folder.path(), kOurs, {file("other.csv", "ours"), file("trials.csv", "ours")});
+    analysis::write_export(folder.path(), kOurs,
+                           {file("other.csv", "ours"), file("trials.csv", "ours")});
   });
   CHECK(contains(complaint, "trials.csv"));
   CHECK(text_of_file(folder.path() / "trials.csv") == "mine");
@@ -53,22 +56,22 @@ TEST_CASE("A file that no export wrote is not overwritten") {
 TEST_CASE("An export that was broken off can be repeated") {
   const TempFolder folder;
   const auto fail = [](const std::filesystem::path&) { throw FileError("disk full"); };
-  CHECK_THROWS_AS(
-      write_export(folder.path(), kOurs, {file("a.csv", "1"), {"b.csv", fail}, file("c.csv", "1")}),
-      FileError);
+  CHECK_THROWS_AS(analysis::write_export(folder.path(), kOurs,
+                                         {file("a.csv", "1"), {"b.csv", fail}, file("c.csv", "1")}),
+                  FileError);
   CHECK(text_of_file(folder.path() / "a.csv") == "1");
-  write_export(folder.path(), kOurs, {file("b.csv", "2")});
+  analysis::write_export(folder.path(), kOurs, {file("b.csv", "2")});
   CHECK(text_of_file(folder.path() / "b.csv") == "2");
   CHECK_FALSE(is_there(folder.path() / "a.csv"));
 }
 
 TEST_CASE("Tables of one study share a folder, and a dataset has one of its own") {
   const TempFolder folder;
-  write_export(folder.path(), kOurs, {file("trials.csv", "1")});
-  write_export(folder.path(), {"pair", "aa11", "json"}, {file("study.json", "{}")});
+  analysis::write_export(folder.path(), kOurs, {file("trials.csv", "1")});
+  analysis::write_export(folder.path(), {"pair", "aa11", "json"}, {file("study.json", "{}")});
   CHECK(is_there(folder.path() / "trials.csv"));
   CHECK_THROWS_AS(
-      write_export(folder.path(), {"pair", "aa11", "bids"}, {file("README", "dataset")}),
+      analysis::write_export(folder.path(), {"pair", "aa11", "bids"}, {file("README", "dataset")}),
       FileError);
 }
 
@@ -77,18 +80,18 @@ TEST_CASE("A mark that was tampered with removes nothing outside of its folder")
   const std::filesystem::path out = folder.path() / "out";
   replace_file(folder.path() / "precious.txt", "mine");
   make_folder(out);
-  replace_file(out / kExportMark,
+  replace_file(out / analysis::kExportMark,
                R"({"study":"pair","study_id":"aa11","files":{"csv":["../precious.txt"]}})");
-  write_export(out, kOurs, {file("a.csv", "1")});
+  analysis::write_export(out, kOurs, {file("a.csv", "1")});
   CHECK(is_there(folder.path() / "precious.txt"));
 }
 
 TEST_CASE("A mark that is none is named") {
   const TempFolder folder;
-  replace_file(folder.path() / kExportMark, "{");
-  const std::string complaint =
-      complaint_of<FileError>([&] { write_export(folder.path(), kOurs, {file("a.csv", "1")}); });
-  CHECK(contains(complaint, kExportMark));
+  replace_file(folder.path() / analysis::kExportMark, "{");
+  const std::string complaint = complaint_of<FileError>(
+      [&] { analysis::write_export(folder.path(), kOurs, {file("a.csv", "1")}); });
+  CHECK(contains(complaint, analysis::kExportMark));
 }
 
 }  // namespace touchtrial

@@ -18,9 +18,10 @@ namespace {
 
 void fill(FakeStudy& study) {
   study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::confusing(0, 1)});
-  study.add({.participant = "P02", .enrolment = 2, .answers = [](const Presentation& shown) {
-               return shown.trial == 7 ? std::nullopt : std::optional(shown.stimulus.class_index);
-             }});
+  study.add(
+      {.participant = "P02", .enrolment = 2, .answers = [](const design::Presentation& shown) {
+         return shown.trial == 7 ? std::nullopt : std::optional(shown.stimulus.class_index);
+       }});
 }
 
 constexpr const char* kHeader =
@@ -32,13 +33,13 @@ constexpr const char* kHeader =
 }  // namespace
 
 TEST_CASE("Exported trials count up to the report") {
-  FakeStudy study(Protocol::comparison, {.label = "bark, \"old\""});
+  FakeStudy study(design::Protocol::comparison, {.label = "bark, \"old\""});
   fill(study);
   study.close_and_unblind();
-  const Outcomes outcomes = load_outcomes(study.store(), study.key());
-  const StudyReport report = make_report(outcomes);
+  const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
+  const analysis::StudyReport report = analysis::make_report(outcomes);
   const std::filesystem::path out = study.folder() / "new" / "out";
-  const auto files = export_csv(study.store(), outcomes, out);
+  const auto files = analysis::export_csv(study.store(), outcomes, out);
   REQUIRE(files.size() == 10);
 
   std::map<std::string, std::map<std::string, std::map<std::string, int>>> counts;
@@ -48,7 +49,7 @@ TEST_CASE("Exported trials count up to the report") {
     correct += row.at("correct") == "1" ? 1 : 0;
   }
   int expected_correct = 0;
-  for (const MethodReport& method : report.methods) {
+  for (const analysis::MethodReport& method : report.methods) {
     expected_correct += method.overall.correct;
     const auto confusion = rows_of(out / ("confusion_" + method.method + ".csv"));
     REQUIRE(confusion.size() == 3);
@@ -67,11 +68,11 @@ TEST_CASE("Exported trials count up to the report") {
 }
 
 TEST_CASE("trials.csv has the published columns, exact times and figures") {
-  FakeStudy study(Protocol::classification);
+  FakeStudy study(design::Protocol::classification);
   fill(study);
   study.close_and_unblind();
-  const Outcomes outcomes = load_outcomes(study.store(), study.key());
-  export_csv(study.store(), outcomes, study.folder());
+  const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
+  analysis::export_csv(study.store(), outcomes, study.folder());
   const std::string text = text_of_file(study.folder() / "trials.csv");
   CHECK(text.substr(0, text.find('\n')) == kHeader);
   const std::vector<CsvRow> rows = rows_of(study.folder() / "trials.csv");
@@ -96,7 +97,7 @@ TEST_CASE("trials.csv has the published columns, exact times and figures") {
 }
 
 TEST_CASE("An exported trial is valid by the rule's part in clear, then by its sealed part too") {
-  FakeStudy study(Protocol::classification);
+  FakeStudy study(design::Protocol::classification);
   study.add({.participant = "P01",
              .enrolment = 1,
              .answers = FakeStudy::always_right(),
@@ -109,21 +110,22 @@ TEST_CASE("An exported trial is valid by the rule's part in clear, then by its s
     REQUIRE(rows.size() == 36);
     for (const CsvRow& row : rows) CHECK(row.at("valid") == expected.at(row.at("participant")));
   };
-  export_csv(study.store(), std::nullopt, study.folder());
+  analysis::export_csv(study.store(), std::nullopt, study.folder());
   check({{"P01", "1"}, {"P02", "0"}, {"P03", "1"}});
   study.close_and_unblind();
-  export_csv(study.store(), load_outcomes(study.store(), study.key()), study.folder());
+  analysis::export_csv(study.store(), analysis::load_outcomes(study.store(), study.key()),
+                       study.folder());
   check({{"P01", "0"}, {"P02", "0"}, {"P03", "1"}});
 }
 
 TEST_CASE("Before unblinding an export has no word of what was presented or answered") {
-  FakeStudy study(Protocol::comparison, {.label = "petrified wood"});
+  FakeStudy study(design::Protocol::comparison, {.label = "petrified wood"});
   fill(study);
   const std::filesystem::path out = study.folder() / "out";
-  const auto files = export_csv(study.store(), std::nullopt, out);
+  const auto files = analysis::export_csv(study.store(), std::nullopt, out);
   CHECK(files.size() == 6);
   CHECK_FALSE(std::filesystem::exists(out / "confusion_adaptive.csv"));
-  const std::string json = text_of_file(export_json(study.store(), std::nullopt, out));
+  const std::string json = text_of_file(analysis::export_json(study.store(), std::nullopt, out));
   const std::string csv = text_of_file(out / "trials.csv");
   const std::string people = text_of_file(out / "participants.csv");
   CHECK(csv.starts_with("participant,session,trial,block,confidence,reaction_time_s,"));
@@ -147,14 +149,14 @@ TEST_CASE("Before unblinding an export has no word of what was presented or answ
 }
 
 TEST_CASE("participants.csv tells whose sessions count and that they are simulated") {
-  FakeStudy study(Protocol::classification);
+  FakeStudy study(design::Protocol::classification);
   fill(study);
   study.add({.participant = "P03",
              .enrolment = 3,
              .answers = FakeStudy::always_right(),
              .complete = false,
              .stop_after = 2});
-  export_csv(study.store(), std::nullopt, study.folder());
+  analysis::export_csv(study.store(), std::nullopt, study.folder());
   const std::vector<CsvRow> rows = rows_of(study.folder() / "participants.csv");
   REQUIRE(rows.size() == 3);
   CHECK(rows[0].at("counted") == "1");
@@ -170,15 +172,16 @@ TEST_CASE("participants.csv tells whose sessions count and that they are simulat
 }
 
 TEST_CASE("The JSON export holds the report and the same trials") {
-  FakeStudy study(Protocol::classification);
+  FakeStudy study(design::Protocol::classification);
   fill(study);
   study.close_and_unblind();
-  const Outcomes outcomes = load_outcomes(study.store(), study.key());
-  export_csv(study.store(), outcomes, study.folder());
-  const auto json =
-      nlohmann::json::parse(text_of_file(export_json(study.store(), outcomes, study.folder())));
+  const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
+  analysis::export_csv(study.store(), outcomes, study.folder());
+  const auto json = nlohmann::json::parse(
+      text_of_file(analysis::export_json(study.store(), outcomes, study.folder())));
   CHECK(json["stamp"] == "SIMULATED");
-  CHECK(json["report"] == nlohmann::json::parse(report_json(make_report(outcomes))));
+  CHECK(json["report"] ==
+        nlohmann::json::parse(analysis::report_json(analysis::make_report(outcomes))));
   CHECK(json["participants"].size() == 2);
   const std::vector<CsvRow> rows = rows_of(study.folder() / "trials.csv");
   REQUIRE(json["trials"].size() == rows.size());
@@ -192,29 +195,29 @@ TEST_CASE("The JSON export holds the report and the same trials") {
 }
 
 TEST_CASE("Exporting twice gives the same bytes and leaves other files alone") {
-  FakeStudy study(Protocol::classification);
+  FakeStudy study(design::Protocol::classification);
   fill(study);
   study.close_and_unblind();
-  const Outcomes outcomes = load_outcomes(study.store(), study.key());
+  const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
   const std::filesystem::path out = study.folder() / "out";
   std::filesystem::create_directory(out);
   replace_file(out / "notes.txt", "mine");
   std::map<std::filesystem::path, std::string> before;
-  for (const auto& file : export_csv(study.store(), outcomes, out)) {
+  for (const auto& file : analysis::export_csv(study.store(), outcomes, out)) {
     before[file] = text_of_file(file);
   }
-  const std::string json = text_of_file(export_json(study.store(), outcomes, out));
-  for (const auto& file : export_csv(study.store(), outcomes, out)) {
+  const std::string json = text_of_file(analysis::export_json(study.store(), outcomes, out));
+  for (const auto& file : analysis::export_csv(study.store(), outcomes, out)) {
     CHECK(before.at(file) == text_of_file(file));
   }
-  CHECK(json == text_of_file(export_json(study.store(), outcomes, out)));
+  CHECK(json == text_of_file(analysis::export_json(study.store(), outcomes, out)));
   CHECK(text_of_file(out / "notes.txt") == "mine");
 }
 
 TEST_CASE("An export into a file instead of a folder is refused") {
-  FakeStudy study(Protocol::classification);
-  const std::string complaint =
-      complaint_of<FileError>([&] { export_csv(study.store(), std::nullopt, study.database()); });
+  FakeStudy study(design::Protocol::classification);
+  const std::string complaint = complaint_of<FileError>(
+      [&] { analysis::export_csv(study.store(), std::nullopt, study.database()); });
   CHECK(contains(complaint, study.database().string()));
 }
 

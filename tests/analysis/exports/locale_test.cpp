@@ -43,19 +43,19 @@ class CommaLocale {
 };
 
 void export_everything(FakeStudy& study, const fs::path& out) {
-  const Outcomes outcomes = load_outcomes(study.store(), study.key());
-  const DatasetSource source{study.store(), &outcomes, &study.key()};
-  export_csv(study.store(), outcomes, out / "csv");
-  export_json(study.store(), outcomes, out / "json");
-  export_bids(source, {.traces = true}, out / "bids");
-  export_psych_ds(source, {}, out / "psych");
-  export_mixed_model(study.store(), outcomes, out / "r");
+  const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
+  const analysis::DatasetSource source{study.store(), &outcomes, &study.key()};
+  analysis::export_csv(study.store(), outcomes, out / "csv");
+  analysis::export_json(study.store(), outcomes, out / "json");
+  analysis::export_bids(source, {.traces = true}, out / "bids");
+  analysis::export_psych_ds(source, {}, out / "psych");
+  analysis::export_mixed_model(study.store(), outcomes, out / "r");
 }
 
 }  // namespace
 
 TEST_CASE("Exports are the same bytes under a locale with a decimal comma") {
-  FakeStudy study(Protocol::comparison);
+  FakeStudy study(design::Protocol::comparison);
   for (int i = 1; i <= 3; ++i) {
     study.add({.participant = "P0" + std::to_string(i),
                .enrolment = i,

@@ -25,11 +25,11 @@ void fill(FakeStudy& study) {
 }  // namespace
 
 TEST_CASE("The table for a mixed model has the trials of the report and what came before them") {
-  FakeStudy study(Protocol::comparison, {.trials = R"({"lead_in": 1})"});
+  FakeStudy study(design::Protocol::comparison, {.trials = R"({"lead_in": 1})"});
   fill(study);
-  const Outcomes outcomes = load_outcomes(study.store(), study.key());
-  const StudyReport report = make_report(outcomes);
-  export_mixed_model(study.store(), outcomes, study.folder() / "r");
+  const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
+  const analysis::StudyReport report = analysis::make_report(outcomes);
+  analysis::export_mixed_model(study.store(), outcomes, study.folder() / "r");
   const std::vector<CsvRow> rows = rows_of(study.folder() / "r" / "mixed_model.csv");
   REQUIRE(static_cast<int>(rows.size()) == report.trials);
   int correct = 0;
@@ -48,16 +48,16 @@ TEST_CASE("The table for a mixed model has the trials of the report and what cam
 }
 
 TEST_CASE("The mixed model compares methods, or asks for the level of one") {
-  FakeStudy pair(Protocol::comparison);
+  FakeStudy pair(design::Protocol::comparison);
   fill(pair);
-  const Outcomes two = load_outcomes(pair.store(), pair.key());
-  CHECK(mixed_model_formula(two) == "correct ~ method + (1 | participant) + (1 | image)");
-  CHECK(contains(mixed_model_script(two), "methods <- c(\"adaptive\", \"tv-gabor\")"));
-  FakeStudy single(Protocol::classification);
+  const analysis::Outcomes two = analysis::load_outcomes(pair.store(), pair.key());
+  CHECK(analysis::mixed_model_formula(two) == "correct ~ method + (1 | participant) + (1 | image)");
+  CHECK(contains(analysis::mixed_model_script(two), "methods <- c(\"adaptive\", \"tv-gabor\")"));
+  FakeStudy single(design::Protocol::classification);
   fill(single);
-  const Outcomes one = load_outcomes(single.store(), single.key());
-  CHECK(mixed_model_formula(one) == "correct ~ 1 + (1 | participant) + (1 | image)");
-  CHECK(contains(mixed_model_script(one), "SIMULATED"));
+  const analysis::Outcomes one = analysis::load_outcomes(single.store(), single.key());
+  CHECK(analysis::mixed_model_formula(one) == "correct ~ 1 + (1 | participant) + (1 | image)");
+  CHECK(contains(analysis::mixed_model_script(one), "SIMULATED"));
 }
 
 }  // namespace touchtrial

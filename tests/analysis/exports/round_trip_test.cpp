@@ -12,11 +12,12 @@ namespace {
 using std::chrono::milliseconds;
 
 /// Figures of the servo and the page's list of devices are in no JSON.
-void check_same_station(const Collection& read_back, const Collection& collection) {
+void check_same_station(const analysis::Collection& read_back,
+                        const analysis::Collection& collection) {
   REQUIRE(read_back.servo_trials.size() == collection.servo_trials.size());
   for (std::size_t i = 0; i < collection.servo_trials.size(); ++i) {
-    const ServoTrial& one = collection.servo_trials[i];
-    const ServoTrial& same = read_back.servo_trials[i];
+    const analysis::ServoTrial& one = collection.servo_trials[i];
+    const analysis::ServoTrial& same = read_back.servo_trials[i];
     CHECK(std::pair(same.session, same.trial) == std::pair(one.session, one.trial));
     CHECK(same.health == one.health);
     CHECK(same.overruns == one.overruns);
@@ -30,10 +31,10 @@ void check_same_station(const Collection& read_back, const Collection& collectio
 
 /// What the report of a study says, and what it says of its CSV files.
 void check_round_trip(FakeStudy& study) {
-  const Outcomes outcomes = load_outcomes(study.store(), study.key());
+  const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
   const std::filesystem::path out = study.folder() / "out";
-  export_csv(study.store(), outcomes, out);
-  const Outcomes read_back = outcomes_from_csv(out);
+  analysis::export_csv(study.store(), outcomes, out);
+  const analysis::Outcomes read_back = outcomes_from_csv(out);
   REQUIRE(read_back.trials.size() == outcomes.trials.size());
   for (std::size_t i = 0; i < outcomes.trials.size(); ++i) {
     CHECK(read_back.trials[i].row == outcomes.trials[i].row);
@@ -44,12 +45,13 @@ void check_round_trip(FakeStudy& study) {
     CHECK(read_back.sessions[i].row == outcomes.sessions[i].row);
   }
   check_same_station(read_back.collection, outcomes.collection);
-  CHECK(report_json(make_report(read_back)) == report_json(make_report(outcomes)));
+  CHECK(analysis::report_json(analysis::make_report(read_back)) ==
+        analysis::report_json(analysis::make_report(outcomes)));
 }
 
 /// Wrong now and then, in a way that depends on who answers.
 FakeAnswers imperfect(int participant) {
-  return [=](const Presentation& shown) -> std::optional<int> {
+  return [=](const design::Presentation& shown) -> std::optional<int> {
     if ((shown.trial + participant) % 7 == 0) return std::nullopt;
     if ((shown.trial * participant) % 3 == 0) return (shown.stimulus.class_index + 1) % 3;
     return shown.stimulus.class_index;
@@ -75,7 +77,7 @@ void fill(FakeStudy& study) {
 }  // namespace
 
 TEST_CASE("A classification study reports the same from its CSV files, to the last digit") {
-  FakeStudy study(Protocol::classification, {.label = "bark, \"old\" (two, three)"});
+  FakeStudy study(design::Protocol::classification, {.label = "bark, \"old\" (two, three)"});
   fill(study);
   study.store().exclude(1, milliseconds(900), "fell asleep, \"twice\"");
   study.close_and_unblind();
@@ -83,7 +85,7 @@ TEST_CASE("A classification study reports the same from its CSV files, to the la
 }
 
 TEST_CASE("A comparison of methods reports the same from its CSV files, to the last digit") {
-  FakeStudy study(Protocol::comparison);
+  FakeStudy study(design::Protocol::comparison);
   fill(study);
   study.store().withdraw(2, milliseconds(900), "asked to");
   study.close_and_unblind();
@@ -91,7 +93,7 @@ TEST_CASE("A comparison of methods reports the same from its CSV files, to the l
 }
 
 TEST_CASE("A study with lead-ins and catch trials reports the same from its CSV files") {
-  FakeStudy study(Protocol::classification, {.trials = R"({"lead_in": 1, "catch": 2})"});
+  FakeStudy study(design::Protocol::classification, {.trials = R"({"lead_in": 1, "catch": 2})"});
   fill(study);
   study.close_and_unblind();
   check_round_trip(study);
@@ -99,13 +101,13 @@ TEST_CASE("A study with lead-ins and catch trials reports the same from its CSV 
 }
 
 TEST_CASE("How a study was collected is the same from its CSV files, in words and figures") {
-  FakeStudy study(Protocol::classification, {.simulated = false});
+  FakeStudy study(design::Protocol::classification, {.simulated = false});
   fill(study);
   FakeSession felt{.participant = "P07", .enrolment = 7, .answers = imperfect(7)};
   felt.station =
-      StationRecord{"Falcon", "1.2, beta", 8.9, false, 1000.0, "SCHED_FIFO 80", "c0ffee"};
-  felt.servo = ServoHealth{999.75, 1.5, 40.25, 80.125, 1e3 / 3.0, 2, 17};
-  felt.before_trials = [](SessionRecorder& recorder) {
+      store::StationRecord{"Falcon", "1.2, beta", 8.9, false, 1000.0, "SCHED_FIFO 80", "c0ffee"};
+  felt.servo = store::ServoHealth{999.75, 1.5, 40.25, 80.125, 1e3 / 3.0, 2, 17};
+  felt.before_trials = [](store::SessionRecorder& recorder) {
     recorder.practised(milliseconds(10), {.round = 1, .presentation = 1, .correct = false});
     recorder.practised(milliseconds(20), {.round = 2, .presentation = 1, .correct = true});
     recorder.deviated(milliseconds(40), {"no-masking-noise", "no \"sound\" card,\nnone"});
@@ -131,7 +133,7 @@ TEST_CASE("How a study was collected is the same from its CSV files, in words an
 }
 
 TEST_CASE("An interim look reports the same from its CSV files") {
-  FakeStudy study(Protocol::classification);
+  FakeStudy study(design::Protocol::classification);
   fill(study);
   study.store().unblind(milliseconds(1000), "safety", true);
   study.add({.participant = "P07", .enrolment = 7, .answers = imperfect(7)});
@@ -139,7 +141,7 @@ TEST_CASE("An interim look reports the same from its CSV files") {
 }
 
 TEST_CASE("Participants who are no simulation are not stamped, and report the same") {
-  FakeStudy study(Protocol::classification, {.simulated = false});
+  FakeStudy study(design::Protocol::classification, {.simulated = false});
   fill(study);
   study.close_and_unblind();
   check_round_trip(study);

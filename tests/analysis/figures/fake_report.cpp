@@ -7,29 +7,29 @@
 namespace touchtrial {
 namespace {
 
-MethodReport fake_method(const FakeReportOptions& options, std::size_t number) {
+analysis::MethodReport fake_method(const FakeReportOptions& options, std::size_t number) {
   const auto classes = static_cast<int>(options.classes.size());
   RandomStream random(7, "fake report", number);
-  MethodReport method;
+  analysis::MethodReport method;
   method.method = options.methods[number];
-  method.confusion = ConfusionMatrix(classes);
+  method.confusion = analysis::ConfusionMatrix(classes);
   const int places = classes * options.repeats;
-  std::vector<Proportion> by_place(static_cast<std::size_t>(places));
-  std::vector<ReactionTimes> reaction(static_cast<std::size_t>(classes) + 1);
+  std::vector<analysis::Proportion> by_place(static_cast<std::size_t>(places));
+  std::vector<analysis::ReactionTimes> reaction(static_cast<std::size_t>(classes) + 1);
   std::vector<double> accuracies;
   for (int p = 0; p < options.participants; ++p) {
     const double skill = 0.55 + 0.4 * random.uniform() - 0.1 * static_cast<double>(number);
-    ConfusionMatrix own(classes);
+    analysis::ConfusionMatrix own(classes);
     for (int place = 0; place < places; ++place) {
       const int presented = (place * 7 + p) % classes;
-      Choice choice{presented, presented};
+      analysis::Choice choice{presented, presented};
       const double fate = random.uniform();
       if (fate > skill)
         choice.answered = static_cast<int>(random.below(static_cast<unsigned>(classes)));
       if (fate > 0.99) choice.answered.reset();
       own.add(choice);
       method.confusion.add(choice);
-      Proportion& at = by_place[static_cast<std::size_t>(place)];
+      analysis::Proportion& at = by_place[static_cast<std::size_t>(place)];
       ++at.n;
       if (choice.answered == presented) ++at.correct;
       if (choice.answered) {
@@ -37,51 +37,52 @@ MethodReport fake_method(const FakeReportOptions& options, std::size_t number) {
             3.0 + presented + 9.0 * random.uniform() * random.uniform());
       }
     }
-    ParticipantAccuracy one;
+    analysis::ParticipantAccuracy one;
     one.participant = "P" + std::to_string(p + 1);
     one.accuracy = own.accuracy();
     accuracies.push_back(one.accuracy.share().value_or(0.0));
     method.per_participant.push_back(one);
   }
   for (int c = 0; c < classes; ++c) {
-    const Proportion accuracy = method.confusion.accuracy(c);
-    method.accuracy.push_back({accuracy, wilson_interval(accuracy),
-                               clopper_pearson_interval(accuracy), jeffreys_interval(accuracy)});
+    const analysis::Proportion accuracy = method.confusion.accuracy(c);
+    method.accuracy.push_back({accuracy, analysis::wilson_interval(accuracy),
+                               analysis::clopper_pearson_interval(accuracy),
+                               analysis::jeffreys_interval(accuracy)});
   }
   method.overall = method.confusion.accuracy();
-  method.mean = participant_mean(accuracies);
-  for (ReactionTimes& times : reaction) {
+  method.mean = analysis::participant_mean(accuracies);
+  for (analysis::ReactionTimes& times : reaction) {
     std::sort(times.seconds.begin(), times.seconds.end());
-    times.from_plane_on = quartiles(times.seconds);
+    times.from_plane_on = analysis::quartiles(times.seconds);
   }
   method.reaction = std::move(reaction);
-  Breakdown trials{BreakdownKind::trial, {}};
+  analysis::Breakdown trials{analysis::BreakdownKind::trial, {}};
   for (int place = 0; place < places && options.participants > 0; ++place) {
-    const Proportion at = by_place[static_cast<std::size_t>(place)];
-    trials.groups.push_back({std::to_string(place + 1), at, wilson_interval(at)});
+    const analysis::Proportion at = by_place[static_cast<std::size_t>(place)];
+    trials.groups.push_back({std::to_string(place + 1), at, analysis::wilson_interval(at)});
   }
   method.breakdowns.push_back(std::move(trials));
   return method;
 }
 
-MethodPair fake_pair(const StudyReport& report, int first, int second) {
+analysis::MethodPair fake_pair(const analysis::StudyReport& report, int first, int second) {
   const auto& a = report.methods[static_cast<std::size_t>(first)].per_participant;
   const auto& b = report.methods[static_cast<std::size_t>(second)].per_participant;
-  std::vector<PairedAccuracy> paired;
+  std::vector<analysis::PairedAccuracy> paired;
   for (std::size_t i = 0; i < a.size(); ++i) {
     paired.push_back({a[i].accuracy.share().value_or(0.0), b[i].accuracy.share().value_or(0.0)});
   }
-  MethodPair pair;
+  analysis::MethodPair pair;
   pair.first = first;
   pair.second = second;
-  pair.overall = compare_methods(paired);
+  pair.overall = analysis::compare_methods(paired);
   return pair;
 }
 
 }  // namespace
 
-StudyReport fake_report(const FakeReportOptions& options) {
-  StudyReport report;
+analysis::StudyReport fake_report(const FakeReportOptions& options) {
+  analysis::StudyReport report;
   report.study = "fake";
   report.simulated = true;
   report.participants = options.participants;
@@ -98,7 +99,7 @@ StudyReport fake_report(const FakeReportOptions& options) {
   report.collection.flow.enrolled = options.participants;
   report.collection.flow.analysed = options.participants;
   for (int i = 0; i < options.servo_trials; ++i) {
-    ServoTrial trial{1 + i / 25, 1 + i % 25, {}, 0};
+    analysis::ServoTrial trial{1 + i / 25, 1 + i % 25, {}, 0};
     trial.health.rate_hz = 1000.0;
     trial.health.lateness_p50_us = 4.0 + i % 3;
     trial.health.lateness_p99_us = 30.0 + i % 17;
@@ -108,29 +109,29 @@ StudyReport fake_report(const FakeReportOptions& options) {
   return report;
 }
 
-CueReport fake_cues(const FakeReportOptions& options) {
-  CueReport cues;
+analysis::CueReport fake_cues(const FakeReportOptions& options) {
+  analysis::CueReport cues;
   cues.simulated = true;
   cues.classes = options.classes;
   cues.chance = 1.0 / static_cast<double>(options.classes.size());
   for (std::size_t m = 0; m < options.methods.size(); ++m) {
     RandomStream random(8, "fake cues", m);
-    MethodCues method;
+    analysis::MethodCues method;
     method.method = options.methods[m];
-    for (std::size_t c = 0; c < kCues.size(); ++c) {
-      ObserverFigures observer;
-      observer.cue = kCues[c];
+    for (std::size_t c = 0; c < analysis::kCues.size(); ++c) {
+      analysis::ObserverFigures observer;
+      observer.cue = analysis::kCues[c];
       for (int p = 0; p < options.participants; ++p) {
         observer.accuracy.push_back(
             std::min(1.0, 0.5 + 0.2 * static_cast<double>(c) + 0.2 * random.uniform()));
       }
-      observer.mean = participant_mean(observer.accuracy);
+      observer.mean = analysis::participant_mean(observer.accuracy);
       method.observers.push_back(observer);
     }
     for (int p = 0; p < options.participants; ++p) {
       method.human_accuracy.push_back(0.5 + 0.4 * random.uniform());
     }
-    method.human_mean = participant_mean(method.human_accuracy);
+    method.human_mean = analysis::participant_mean(method.human_accuracy);
     cues.methods.push_back(std::move(method));
   }
   return cues;

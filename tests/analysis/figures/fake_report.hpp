@@ -17,9 +17,9 @@ struct FakeReportOptions {
   int servo_trials = 0;
 };
 
-[[nodiscard]] StudyReport fake_report(const FakeReportOptions& options = {});
+[[nodiscard]] analysis::StudyReport fake_report(const FakeReportOptions& options = {});
 
 /// Of the same classes, methods and participants.
-[[nodiscard]] CueReport fake_cues(const FakeReportOptions& options = {});
+[[nodiscard]] analysis::CueReport fake_cues(const FakeReportOptions& options = {});
 
 }  // namespace touchtrial

@@ -12,6 +12,7 @@
 #include <set>
 
 using namespace touchtrial;
+using namespace touchtrial::analysis;
 
 namespace {
 

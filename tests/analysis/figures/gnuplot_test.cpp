@@ -8,6 +8,7 @@
 #include <string>
 
 using namespace touchtrial;
+using namespace touchtrial::analysis;
 
 TEST_CASE("gnuplot draws what a script prints") {
   const TempFolder folder;

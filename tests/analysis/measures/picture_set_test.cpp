@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 
 using namespace touchtrial;
+using namespace touchtrial::analysis;
+using namespace touchtrial::engine;
 
 namespace {
 

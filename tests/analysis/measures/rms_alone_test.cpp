@@ -7,6 +7,8 @@
 #include <vector>
 
 using namespace touchtrial;
+using namespace touchtrial::analysis;
+using namespace touchtrial::engine;
 
 namespace {
 

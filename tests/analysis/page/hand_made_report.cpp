@@ -5,8 +5,8 @@
 namespace touchtrial {
 namespace {
 
-ConfusionMatrix confusion_of(const std::vector<std::vector<int>>& counts) {
-  ConfusionMatrix confusion(static_cast<int>(counts.size()));
+analysis::ConfusionMatrix confusion_of(const std::vector<std::vector<int>>& counts) {
+  analysis::ConfusionMatrix confusion(static_cast<int>(counts.size()));
   for (int i = 0; i < confusion.classes(); ++i) {
     for (int j = 0; j < confusion.classes(); ++j) {
       for (int k = 0; k < counts[i][j]; ++k) confusion.add({i, j});
@@ -16,26 +16,26 @@ ConfusionMatrix confusion_of(const std::vector<std::vector<int>>& counts) {
   return confusion;
 }
 
-ReactionTimes times_of(double median) {
-  ReactionTimes times;
+analysis::ReactionTimes times_of(double median) {
+  analysis::ReactionTimes times;
   times.from_plane_on = {12, median - 1.0, median, median + 2.0};
   times.from_contact = {12, median - 1.5, median - 0.5, median + 1.5};
   return times;
 }
 
-void add_participants(MethodReport& method) {
+void add_participants(analysis::MethodReport& method) {
   for (int i = 1; i <= 6; ++i) {
-    ParticipantAccuracy one{"P0" + std::to_string(i), {12, 6 + i}};
+    analysis::ParticipantAccuracy one{"P0" + std::to_string(i), {12, 6 + i}};
     one.matching = {{12, 12}, {1, 0, 2}};
     one.consistency = 0.5;
     method.per_participant.push_back(one);
   }
   method.mean = {6, 0.79, {0.63, 0.95}, 0.155};
-  method.bootstrap = Interval{0.68, 0.9};
+  method.bootstrap = analysis::Interval{0.68, 0.9};
 }
 
-ChoiceModel choice_of() {
-  ChoiceModel model;
+analysis::ChoiceModel choice_of() {
+  analysis::ChoiceModel model;
   model.similarity = Plane<double>(3, 3, 0.25);
   for (int i = 0; i < 3; ++i) model.similarity.at(i, i) = 1.0;
   model.bias = {0.5, 0.3, 0.2};
@@ -47,83 +47,89 @@ ChoiceModel choice_of() {
   return model;
 }
 
-MethodReport method_of(const std::string& name, const std::vector<std::vector<int>>& counts) {
-  MethodReport method;
+analysis::MethodReport method_of(const std::string& name,
+                                 const std::vector<std::vector<int>>& counts) {
+  analysis::MethodReport method;
   method.method = name;
   method.confusion = confusion_of(counts);
   method.overall = method.confusion.accuracy();
   for (int i = 0; i < 3; ++i) {
-    const Proportion accuracy = method.confusion.accuracy(i);
-    method.accuracy.push_back({accuracy, wilson_interval(accuracy),
-                               clopper_pearson_interval(accuracy), Interval{0.6, 0.9}});
+    const analysis::Proportion accuracy = method.confusion.accuracy(i);
+    method.accuracy.push_back({accuracy, analysis::wilson_interval(accuracy),
+                               analysis::clopper_pearson_interval(accuracy),
+                               analysis::Interval{0.6, 0.9}});
   }
   method.information = {0.91, 0.83, 0.05};
-  method.chance = ChanceTest{57, 75, 25.0, 0.00002, true, 0};
+  method.chance = analysis::ChanceTest{57, 75, 25.0, 0.00002, true, 0};
   method.d_prime = {1.7, 1.4, 2.1};
   method.choice = choice_of();
   add_participants(method);
   for (const double median : {4.0, 5.5, 6.25, 5.0}) method.reaction.push_back(times_of(median));
-  method.breakdowns = {{BreakdownKind::trial, {{"1", {6, 4}, {0.3, 0.9}}, {"2", {6, 5}, {0.4, 1}}}},
-                       {BreakdownKind::previous_response, {{"cloth", {9, 6}, {0.35, 0.88}}}}};
-  method.robustness = {{TrialSubset::counted, {75, 57}, method.mean},
-                       {TrialSubset::answered, {72, 57}, method.mean}};
+  method.breakdowns = {
+      {analysis::BreakdownKind::trial, {{"1", {6, 4}, {0.3, 0.9}}, {"2", {6, 5}, {0.4, 1}}}},
+      {analysis::BreakdownKind::previous_response, {{"cloth", {9, 6}, {0.35, 0.88}}}}};
+  method.robustness = {{analysis::TrialSubset::counted, {75, 57}, method.mean},
+                       {analysis::TrialSubset::answered, {72, 57}, method.mean}};
   return method;
 }
 
-MethodPair pair_of() {
-  MethodPair pair;
-  pair.overall = {6, -0.083, {-0.2, 0.034}, 0.125, -0.42, Interval{-0.16, -0.01}};
-  pair.odds_ratio = OddsRatio{0.66, {0.31, 1.4}};
+analysis::MethodPair pair_of() {
+  analysis::MethodPair pair;
+  pair.overall = {6, -0.083, {-0.2, 0.034}, 0.125, -0.42, analysis::Interval{-0.16, -0.01}};
+  pair.odds_ratio = analysis::OddsRatio{0.66, {0.31, 1.4}};
   for (int i = 0; i < 3; ++i) {
     pair.classes.push_back({{25, 18}, {25, 20}, {6, -0.08, {-0.3, 0.14}, 0.5, -0.46}, {}});
   }
   return pair;
 }
 
-CueReport cues_of(const std::vector<std::string>& classes) {
-  CueReport cues;
+analysis::CueReport cues_of(const std::vector<std::string>& classes) {
+  analysis::CueReport cues;
   cues.chance = 1.0 / 3.0;
   cues.classes = classes;
-  MethodCues method;
+  analysis::MethodCues method;
   method.method = "adaptive";
   method.trials = 70;
   method.without_trace = 5;
   method.participants = {"P01", "P02"};
   method.human_mean = {2, 0.7, {0.5, 0.9}};
-  for (const Cue cue : kCues) {
-    ObserverFigures observer;
+  for (const analysis::Cue cue : analysis::kCues) {
+    analysis::ObserverFigures observer;
     observer.cue = cue;
     observer.mean = {2, 0.9, {0.8, 1.0}};
-    observer.efficiency = {0.78, Interval{0.6, 0.95}};
-    observer.divergence = {0.123, Interval{0.1, 0.2}};
+    observer.efficiency = {0.78, analysis::Interval{0.6, 0.95}};
+    observer.divergence = {0.123, analysis::Interval{0.1, 0.2}};
     observer.matched_noise = 0.25;
-    observer.matched_divergence = {0.045, Interval{0.03, 0.06}};
+    observer.matched_divergence = {0.045, analysis::Interval{0.03, 0.06}};
     method.observers.push_back(observer);
   }
-  method.match = CueMatch{Cue::spectrum, Cue::everything, {0.02, Interval{-0.01, 0.05}}, false};
+  method.match = analysis::CueMatch{analysis::Cue::spectrum,
+                                    analysis::Cue::everything,
+                                    {0.02, analysis::Interval{-0.01, 0.05}},
+                                    false};
   cues.methods.push_back(method);
   return cues;
 }
 
-Collection collection_of() {
-  Collection collection;
+analysis::Collection collection_of() {
+  analysis::Collection collection;
   collection.prescription = {60.0, "fade", "shuffled", 5, 1, "curtain", true, -20.0};
   for (int i = 1; i <= 8; ++i) {
-    SessionRecord record;
+    analysis::SessionRecord record;
     record.row.session = record.row.enrolment = i;
     record.row.participant = "P0" + std::to_string(i);
-    record.row.state = SessionState::completed;
+    record.row.state = store::SessionState::completed;
     record.row.device = "falcon";
     record.deviations = {{"no-masking-noise", kHostile}};
     collection.sessions.push_back(record);
   }
   collection.sessions[6].row.excluded = true;
   collection.sessions[6].exclusion_reason = kHostile;
-  collection.sessions[7].row = SessionRow{};
+  collection.sessions[7].row = store::SessionRow{};
   collection.sessions[7].row.session = 8;
   collection.sessions[7].row.withdrawn = true;
   collection.sessions[7].deviations.clear();
-  ServoTrial trial{1, 1, {}, 2};
+  analysis::ServoTrial trial{1, 1, {}, 2};
   trial.health.rate_hz = 999.5;
   trial.health.lateness_p99_us = 40.0;
   trial.health.lateness_worst_us = 180.0;
@@ -138,8 +144,8 @@ Collection collection_of() {
 
 }  // namespace
 
-StudyReport hand_made_report(const std::string& label) {
-  StudyReport report;
+analysis::StudyReport hand_made_report(const std::string& label) {
+  analysis::StudyReport report;
   report.study = "hand-made";
   report.protocol = "comparison";
   report.simulated = true;
@@ -157,8 +163,8 @@ StudyReport hand_made_report(const std::string& label) {
   return report;
 }
 
-Provenance hand_made_provenance() {
-  Provenance provenance{"hand.db", "0.1.0", std::string(64, 'a'), {}, {}};
+analysis::Provenance hand_made_provenance() {
+  analysis::Provenance provenance{"hand.db", "0.1.0", std::string(64, 'a'), {}, {}};
   provenance.head.length = 12;
   provenance.head.hash.fill(0xbc);
   provenance.state.closed = true;
@@ -166,7 +172,7 @@ Provenance hand_made_provenance() {
   return provenance;
 }
 
-Picture hand_made_picture(const std::string& id) {
+analysis::Picture hand_made_picture(const std::string& id) {
   return {id, "A picture.", "Three bars: 80, 76 and 72%.",
           "<?xml version=\"1.0\"?>\n<!DOCTYPE svg>\n<svg viewBox=\"0 0 9 9\" "
           "xmlns=\"http://www.w3.org/2000/svg\" aria-labelledby=\"t d\"><title id=\"t\">bars"

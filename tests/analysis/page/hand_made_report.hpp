@@ -9,11 +9,11 @@ namespace touchtrial {
 inline constexpr const char* kHostile = "<script>alert('x')</script> & \"b|rk\" \\_$%#{~^}";
 
 /// Two methods and three classes, six participants. \param label  of the first class
-[[nodiscard]] StudyReport hand_made_report(const std::string& label = "bark");
+[[nodiscard]] analysis::StudyReport hand_made_report(const std::string& label = "bark");
 
-[[nodiscard]] Provenance hand_made_provenance();
+[[nodiscard]] analysis::Provenance hand_made_provenance();
 
 /// An SVG file with ids, as a drawing program writes it.
-[[nodiscard]] Picture hand_made_picture(const std::string& id);
+[[nodiscard]] analysis::Picture hand_made_picture(const std::string& id);
 
 }  // namespace touchtrial

@@ -5,6 +5,7 @@
 #include "support/catch.hpp"
 
 using namespace touchtrial;
+using namespace touchtrial::analysis;
 
 namespace {
 

@@ -8,6 +8,7 @@
 #include "support/temp_folder.hpp"
 
 using namespace touchtrial;
+using namespace touchtrial::analysis;
 namespace fs = std::filesystem;
 
 namespace {

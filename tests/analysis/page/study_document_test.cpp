@@ -9,6 +9,7 @@
 #include <set>
 
 using namespace touchtrial;
+using namespace touchtrial::analysis;
 
 namespace {
 

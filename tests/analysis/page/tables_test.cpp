@@ -7,6 +7,7 @@
 #include <algorithm>
 
 using namespace touchtrial;
+using namespace touchtrial::analysis;
 
 namespace {
 

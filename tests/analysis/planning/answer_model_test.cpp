@@ -8,11 +8,11 @@
 namespace touchtrial {
 namespace {
 
-const std::vector<PictureLayout> kLayouts = {{2, 0, 1, 4, 3}, {4, 3, 2, 1, 0}};
+const std::vector<planning::PictureLayout> kLayouts = {{2, 0, 1, 4, 3}, {4, 3, 2, 1, 0}};
 
 /// Every kind of error that everybody makes alike.
-SubjectModel erring_subject() {
-  SubjectModel subject = planned_subject();
+session::SubjectModel erring_subject() {
+  session::SubjectModel subject = planned_subject();
   subject.weber = 1.0;
   subject.lapse = 0.15;
   subject.position_bias = 0.8;
@@ -23,13 +23,14 @@ SubjectModel erring_subject() {
 
 /// Shares of answers, counted one by one, against the model's probabilities, in standard errors of
 /// the counts. Participants' answers to one stimulus are summed over layouts with their weights.
-void require_alike(const PlannedStudy& planned, const SubjectModel& subject, double errors) {
+void require_alike(const PlannedStudy& planned, const session::SubjectModel& subject,
+                   double errors) {
   constexpr int kParticipants = 600;
   constexpr int kRepeats = 20;
-  const FitCounts counts = simulated_counts(planned, subject, kParticipants, kRepeats, 5);
-  const AnswerTable table = planned.model(32).answers(subject, counts.layouts);
-  const Confusions observed = observed_confusions(counts, counts.people);
-  const Confusions expected = expected_confusions(counts, table);
+  const planning::FitCounts counts = simulated_counts(planned, subject, kParticipants, kRepeats, 5);
+  const planning::AnswerTable table = planned.model(32).answers(subject, counts.layouts);
+  const planning::Confusions observed = planning::observed_confusions(counts, counts.people);
+  const planning::Confusions expected = planning::expected_confusions(counts, table);
   for (std::size_t m = 0; m < observed.size(); ++m) {
     for (std::size_t c = 0; c < 5; ++c) {
       double presented = 0.0;
@@ -54,7 +55,7 @@ TEST_CASE("probabilities of answers are the shares of answers given one by one")
 
 TEST_CASE("differences between people are integrated over, not added up") {
   const PlannedStudy planned(60);
-  SubjectModel subject = erring_subject();
+  session::SubjectModel subject = erring_subject();
   subject.weber_spread = 0.5;
   subject.lapse_spread = 1.0;
   subject.position_bias_spread = 0.7;
@@ -70,10 +71,10 @@ TEST_CASE("several images and methods have probabilities of their own") {
 
 TEST_CASE("probabilities add up to one, and do not depend on jobs or on codes") {
   const PlannedStudy planned(24);
-  SubjectModel subject = erring_subject();
+  session::SubjectModel subject = erring_subject();
   subject.weber_spread = 0.3;
-  const AnswerTable alone = planned.model(2, 1).answers(subject, kLayouts, true);
-  const AnswerTable crowd = planned.model(2, 4).answers(subject, kLayouts, true);
+  const planning::AnswerTable alone = planned.model(2, 1).answers(subject, kLayouts, true);
+  const planning::AnswerTable crowd = planned.model(2, 4).answers(subject, kLayouts, true);
   for (int layout = 0; layout < 2; ++layout) {
     for (int place = 0; place < 5; ++place) {
       double sum = 0.0;
@@ -89,17 +90,17 @@ TEST_CASE("probabilities add up to one, and do not depend on jobs or on codes") 
 
 TEST_CASE("slopes by a picture's bias are those of differences") {
   const PlannedStudy planned(80);
-  const AnswerModel model = planned.model(4);
-  const SubjectModel subject = erring_subject();
-  const AnswerTable here = model.answers(subject, kLayouts, true);
+  const planning::AnswerModel model = planned.model(4);
+  const session::SubjectModel subject = erring_subject();
+  const planning::AnswerTable here = model.answers(subject, kLayouts, true);
   constexpr double kStep = 1e-3;
   for (int picture = 0; picture < 5; ++picture) {
-    SubjectModel more = subject;
+    session::SubjectModel more = subject;
     more.class_bias.push_back({planned.labels[picture], kStep});
-    SubjectModel less = subject;
+    session::SubjectModel less = subject;
     less.class_bias.push_back({planned.labels[picture], -kStep});
-    const AnswerTable above = model.answers(more, kLayouts);
-    const AnswerTable below = model.answers(less, kLayouts);
+    const planning::AnswerTable above = model.answers(more, kLayouts);
+    const planning::AnswerTable below = model.answers(less, kLayouts);
     for (int place = 0; place < 5; ++place) {
       for (int c = 0; c < 5; ++c) {
         const double slope =
@@ -113,9 +114,9 @@ TEST_CASE("slopes by a picture's bias are those of differences") {
 
 TEST_CASE("stimuli that feel the same share their answers evenly, whatever the noise") {
   const PlannedStudy planned(8, {.smooth = true});
-  SubjectModel subject = planned_subject();
+  session::SubjectModel subject = planned_subject();
   subject.weber = GENERATE(1e-3, 0.5);
-  const AnswerTable table = planned.model().answers(subject, kLayouts);
+  const planning::AnswerTable table = planned.model().answers(subject, kLayouts);
   for (int place = 0; place < 5; ++place) {
     for (int c = 0; c < 5; ++c) CHECK(table.answers(0, place)[c] == Approx(0.2).margin(1e-9));
   }
@@ -123,22 +124,22 @@ TEST_CASE("stimuli that feel the same share their answers evenly, whatever the n
 
 TEST_CASE("lapses alone are chance, and noise without end is chance but for bias") {
   const PlannedStudy planned(8);
-  SubjectModel subject = planned_subject();
+  session::SubjectModel subject = planned_subject();
   subject.weber = 0.3;
   subject.lapse = 1.0;
-  const AnswerTable lapsing = planned.model().answers(subject, kLayouts);
+  const planning::AnswerTable lapsing = planned.model().answers(subject, kLayouts);
   for (int c = 0; c < 5; ++c) CHECK(lapsing.answers(0, 3)[c] == Approx(0.2).margin(1e-12));
 }
 
 TEST_CASE("the mean lapse of a population lies beyond its median lapse") {
-  SubjectModel subject;
+  session::SubjectModel subject;
   subject.lapse = 0.05;
-  CHECK(mean_lapse(subject) == 0.05);
+  CHECK(planning::mean_lapse(subject) == 0.05);
   subject.lapse_spread = 1.0;
-  CHECK(mean_lapse(subject) > 0.06);
-  CHECK(mean_lapse(subject) < 0.09);
+  CHECK(planning::mean_lapse(subject) > 0.06);
+  CHECK(planning::mean_lapse(subject) < 0.09);
   subject.lapse = 0.0;
-  CHECK(mean_lapse(subject) == 0.0);
+  CHECK(planning::mean_lapse(subject) == 0.0);
 }
 
 }  // namespace

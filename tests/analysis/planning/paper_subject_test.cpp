@@ -13,21 +13,23 @@ const std::filesystem::path kConfig = std::filesystem::path(TOUCHTRIAL_SOURCE_DI
 TEST_CASE("the paper's subject has the paper's accuracies, nearly, and so has quite another") {
   const TempFolder folder;
   SeededEntropy entropy(1);
-  const StudyKey key = make_study_key(load_study(kConfig / "classification.json"), entropy, true);
-  prepare_pack(key, folder.path() / "pack");
-  const SubjectModel paper = load_subject_model(kConfig / "subjects/paper.json");
-  SubjectModel other = paper;
+  const design::StudyKey key =
+      design::make_study_key(design::load_study(kConfig / "classification.json"), entropy, true);
+  design::prepare_pack(key, folder.path() / "pack");
+  const session::SubjectModel paper = session::load_subject_model(kConfig / "subjects/paper.json");
+  session::SubjectModel other = paper;
   other.weber = 0.157;
   other.lapse = 0.08;
   other.class_bias = {
       {"bark", -2.05}, {"cloth", -3.06}, {"pebbles", 0.57}, {"straw", 2.83}, {"brick", 1.71}};
-  const AnswerModel model = answer_model_of(key, Pack(folder.path() / "pack"), paper,
-                                            {.explorations = 250, .directions = 4, .jobs = 2});
-  const std::vector<PictureLayout> layouts = layouts_of(key.study, 20);
+  const planning::AnswerModel model =
+      planning::answer_model_of(key, engine::Pack(folder.path() / "pack"), paper,
+                                {.explorations = 250, .directions = 4, .jobs = 2});
+  const std::vector<planning::PictureLayout> layouts = planning::layouts_of(key.study, 20);
   const std::vector<double> published = {0.87, 0.72, 0.81, 0.91, 0.83};
   std::vector<double> cloth_for_bark;
-  for (const SubjectModel& subject : {paper, other}) {
-    const AnswerTable table = model.answers(subject, layouts);
+  for (const session::SubjectModel& subject : {paper, other}) {
+    const planning::AnswerTable table = model.answers(subject, layouts);
     cloth_for_bark.push_back(0.0);
     for (int c = 0; c < 5; ++c) {
       double right = 0.0;

@@ -9,21 +9,23 @@ namespace touchtrial {
 namespace {
 
 /// One participant's answers.
-CountedPerson answers_of(const PlannedStudy& planned, const SubjectModel& subject, int number,
-                         int repeats, const PictureLayout& layout, std::uint64_t seed) {
+planning::CountedPerson answers_of(const PlannedStudy& planned,
+                                   const session::SubjectModel& subject, int number, int repeats,
+                                   const planning::PictureLayout& layout, std::uint64_t seed) {
   std::vector<std::string> shown;
   for (const int picture : layout) shown.push_back(planned.labels[picture]);
-  const Individual individual(subject, seed, number);
-  const SeenPictures pictures = see(shown, subject, individual, planned.knowledge);
-  const FeltDecision decision(individual, planned.knowledge);
+  const session::Individual individual(subject, seed, number);
+  const session::SeenPictures pictures =
+      session::see(shown, subject, individual, planned.knowledge);
+  const session::FeltDecision decision(individual, planned.knowledge);
   const auto classes = planned.labels.size();
-  CountedPerson person{0, std::vector<double>(planned.bank.stimuli() * classes, 0.0)};
+  planning::CountedPerson person{0, std::vector<double>(planned.bank.stimuli() * classes, 0.0)};
   RandomStream paths(seed, "planned study: explorations", static_cast<std::uint64_t>(number));
   std::uint64_t nth = 0;
   for (int place = 0; place < planned.bank.stimuli(); ++place) {
     for (int repeat = 0; repeat < repeats; ++repeat) {
       const auto felt = planned.bank.felt(place)[paths.below(planned.bank.explorations())];
-      RandomStream random = stream_of_trial(seed, kAnswerPurpose, number, ++nth);
+      RandomStream random = session::stream_of_trial(seed, session::kAnswerPurpose, number, ++nth);
       const int position = decision.answer(felt, pictures, random).position;
       person.counts[place * classes + layout[position]] += 1.0;
     }
@@ -33,17 +35,19 @@ CountedPerson answers_of(const PlannedStudy& planned, const SubjectModel& subjec
 
 }  // namespace
 
-FitCounts simulated_counts(const PlannedStudy& planned, const SubjectModel& subject,
-                           int participants, int repeats, std::uint64_t seed) {
-  FitCounts counts;
+planning::FitCounts simulated_counts(const PlannedStudy& planned,
+                                     const session::SubjectModel& subject, int participants,
+                                     int repeats, std::uint64_t seed) {
+  planning::FitCounts counts;
   counts.classes = planned.labels;
   for (int m = 0; m < planned.study.key().study.presented_methods(); ++m) {
     counts.methods.push_back(planned.study.key().study.methods[m].label);
   }
-  counts.stimuli = stimuli_of(planned.study.key());
+  counts.stimuli = planning::stimuli_of(planned.study.key());
   for (int number = 1; number <= participants; ++number) {
-    const PictureLayout layout = make_schedule(planned.study.key().study, number).layout;
-    CountedPerson person = answers_of(planned, subject, number, repeats, layout, seed);
+    const planning::PictureLayout layout =
+        design::make_schedule(planned.study.key().study, number).layout;
+    planning::CountedPerson person = answers_of(planned, subject, number, repeats, layout, seed);
     const auto known = std::ranges::find(counts.layouts, layout);
     person.layout = static_cast<int>(known - counts.layouts.begin());
     if (known == counts.layouts.end()) counts.layouts.push_back(layout);

@@ -9,31 +9,32 @@
 namespace touchtrial {
 namespace {
 
-PowerPlan plan_of(const std::vector<int>& sizes, int runs = 1000) {
-  PowerPlan plan;
+planning::PowerPlan plan_of(const std::vector<int>& sizes, int runs = 1000) {
+  planning::PowerPlan plan;
   plan.participants = sizes;
   plan.runs = runs;
   return plan;
 }
 
-std::string refusal(PowerPlan plan) {
+std::string refusal(planning::PowerPlan plan) {
   try {
-    settle(plan);
+    planning::settle(plan);
   } catch (const UsageError& error) {
     return error.what();
   }
   return "";
 }
 
-std::vector<PowerRun> runs_with(int significant, int of) {
-  std::vector<PowerRun> runs(static_cast<std::size_t>(of), PowerRun{1.0, 0.0, 0.0, 0.0, 0.0});
+std::vector<planning::PowerRun> runs_with(int significant, int of) {
+  std::vector<planning::PowerRun> runs(static_cast<std::size_t>(of),
+                                       planning::PowerRun{1.0, 0.0, 0.0, 0.0, 0.0});
   for (int i = 0; i < significant; ++i) runs[static_cast<std::size_t>(i)].p = 0.01;
   return runs;
 }
 
 TEST_CASE("sizes may come in any order, but each once") {
-  PowerPlan plan = plan_of({20, 8, 12});
-  settle(plan);
+  planning::PowerPlan plan = plan_of({20, 8, 12});
+  planning::settle(plan);
   CHECK(plan.participants == std::vector<int>{8, 12, 20});
   CHECK_THAT(refusal(plan_of({8, 12, 8})), Catch::Contains("8 is given twice"));
 }
@@ -56,7 +57,7 @@ TEST_CASE("shards share out the runs: each run is in one of them") {
     for (const int runs : {1, 5, 16, 100}) {
       std::multiset<int> made;
       for (int number = 1; number <= count; ++number) {
-        const Shard shard{number, count};
+        const planning::Shard shard{number, count};
         for (int i = 0; i < shard.own_runs(runs); ++i) made.insert(shard.run(i));
       }
       CHECK(static_cast<int>(made.size()) == runs);
@@ -68,10 +69,11 @@ TEST_CASE("shards share out the runs: each run is in one of them") {
 TEST_CASE("every simulated study has a seed of its own") {
   std::set<std::uint64_t> seeds;
   for (const int size : {8, 12}) {
-    for (const Hypothesis hypothesis : {Hypothesis::population, Hypothesis::null}) {
+    for (const planning::Hypothesis hypothesis :
+         {planning::Hypothesis::population, planning::Hypothesis::null}) {
       for (int run = 0; run < 100; ++run) {
-        seeds.insert(study_seed(1, size, hypothesis, run));
-        seeds.insert(study_seed(2, size, hypothesis, run));
+        seeds.insert(planning::study_seed(1, size, hypothesis, run));
+        seeds.insert(planning::study_seed(2, size, hypothesis, run));
       }
     }
   }
@@ -79,47 +81,47 @@ TEST_CASE("every simulated study has a seed of its own") {
 }
 
 TEST_CASE("looks double, and the last is at the plan's end") {
-  CHECK(looks_of(plan_of({8}, 1000)) == std::vector<int>{100, 200, 400, 800, 1000});
-  CHECK(looks_of(plan_of({8}, 100)) == std::vector<int>{100});
-  CHECK(looks_of(plan_of({8}, 7)) == std::vector<int>{7});
-  PowerPlan patient = plan_of({8}, 1000);
+  CHECK(planning::looks_of(plan_of({8}, 1000)) == std::vector<int>{100, 200, 400, 800, 1000});
+  CHECK(planning::looks_of(plan_of({8}, 100)) == std::vector<int>{100});
+  CHECK(planning::looks_of(plan_of({8}, 7)) == std::vector<int>{7});
+  planning::PowerPlan patient = plan_of({8}, 1000);
   patient.stop_early = false;
-  CHECK(looks_of(patient) == std::vector<int>{1000});
+  CHECK(planning::looks_of(patient) == std::vector<int>{1000});
 }
 
 TEST_CASE("a size stops where its power is beyond all targets, or below, and not in between") {
-  const PowerPlan plan = plan_of({8}, 1000);
-  CHECK(certain_after(plan, runs_with(100, 100)) == 100);
-  CHECK(certain_after(plan, runs_with(10, 150)) == 100);
-  CHECK_FALSE(certain_after(plan, runs_with(99, 99)).has_value());
-  CHECK_FALSE(certain_after(plan, runs_with(85, 100)).has_value());
-  PowerPlan patient = plan;
+  const planning::PowerPlan plan = plan_of({8}, 1000);
+  CHECK(planning::certain_after(plan, runs_with(100, 100)) == 100);
+  CHECK(planning::certain_after(plan, runs_with(10, 150)) == 100);
+  CHECK_FALSE(planning::certain_after(plan, runs_with(99, 99)).has_value());
+  CHECK_FALSE(planning::certain_after(plan, runs_with(85, 100)).has_value());
+  planning::PowerPlan patient = plan;
   patient.stop_early = false;
-  CHECK_FALSE(certain_after(patient, runs_with(100, 100)).has_value());
+  CHECK_FALSE(planning::certain_after(patient, runs_with(100, 100)).has_value());
 }
 
 TEST_CASE("an answer that was certain stays: more runs do not move the place where it was") {
-  const PowerPlan plan = plan_of({8}, 1000);
+  const planning::PowerPlan plan = plan_of({8}, 1000);
   auto runs = runs_with(100, 100);
   const auto more = runs_with(0, 300);
   runs.insert(runs.end(), more.begin(), more.end());
-  CHECK(certain_after(plan, runs) == 100);
+  CHECK(planning::certain_after(plan, runs) == 100);
 }
 
 TEST_CASE("stopping early is seldom wrong about its targets, also where they are nearest") {
   // True powers a little beside each target: where a stop tells the wrong side.
-  PowerPlan plan = plan_of({8}, 1000);
+  planning::PowerPlan plan = plan_of({8}, 1000);
   RandomStream random(4, "stopping early");
   constexpr int kStudies = 600;
   for (const double power : {0.79, 0.81, 0.89, 0.91}) {
     int wrong = 0;
     for (int study = 0; study < kStudies; ++study) {
-      std::vector<PowerRun> runs(1000);
-      for (PowerRun& run : runs) run.p = random.uniform() < power ? 0.01 : 1.0;
-      const int made = certain_after(plan, runs).value_or(plan.runs);
+      std::vector<planning::PowerRun> runs(1000);
+      for (planning::PowerRun& run : runs) run.p = random.uniform() < power ? 0.01 : 1.0;
+      const int made = planning::certain_after(plan, runs).value_or(plan.runs);
       int significant = 0;
-      for (int i = 0; i < made; ++i) significant += is_significant(runs[i]) ? 1 : 0;
-      const Interval interval = power_interval(plan, {made, significant});
+      for (int i = 0; i < made; ++i) significant += planning::is_significant(runs[i]) ? 1 : 0;
+      const analysis::Interval interval = planning::power_interval(plan, {made, significant});
       if (power < interval.low || power > interval.high) ++wrong;
     }
     // 5 % of 600 is 30, and four standard errors are 21 more.

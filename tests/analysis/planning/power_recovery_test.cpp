@@ -7,20 +7,21 @@
 namespace touchtrial {
 namespace {
 
-PowerReport report_of(const RehearsedTinyStudy& study, std::vector<int> sizes, int runs) {
-  const BankedFeelings bank = study.bank(30, 4);
-  PowerPlan plan;
+planning::PowerReport report_of(const RehearsedTinyStudy& study, std::vector<int> sizes, int runs) {
+  const planning::BankedFeelings bank = study.bank(30, 4);
+  planning::PowerPlan plan;
   plan.participants = std::move(sizes);
   plan.runs = runs;
   plan.stop_early = false;
-  PowerProgress progress = new_progress({}, plan, {});
-  make_runs(study.planned(bank, plan.participants.back()), study.test, {.jobs = 2}, progress);
-  return make_power_report(progress);
+  planning::PowerProgress progress = planning::new_progress({}, plan, {});
+  planning::make_runs(study.planned(bank, plan.participants.back()), study.test, {.jobs = 2},
+                      progress);
+  return planning::make_power_report(progress);
 }
 
 /// Within four Monte-Carlo standard errors of what the test can reach, which is at most its level.
-void check_type_one(const PowerReport& report) {
-  for (const PowerRow& row : report.rows) {
+void check_type_one(const planning::PowerReport& report) {
+  for (const planning::PowerRow& row : report.rows) {
     const double error = *row.false_alarms.share();
     const double n = row.false_alarms.n;
     CHECK(row.attainable > 0.0);
@@ -38,19 +39,19 @@ TinyStudyOptions briefly(const char* trials) {
 }
 
 /// Who feels hardly anything: power that grows with the number of participants.
-SubjectModel dull_subject() {
-  SubjectModel subject = hasty_subject();
+session::SubjectModel dull_subject() {
+  session::SubjectModel subject = hasty_subject();
   subject.weber = 6.0;
   return subject;
 }
 
 TEST_CASE("the test against chance has its type-I error, and more power with more participants") {
   const RehearsedTinyStudy study(briefly(R"({"repeats":3})"), dull_subject());
-  const PowerReport report = report_of(study, {3, 24}, 500);
+  const planning::PowerReport report = report_of(study, {3, 24}, 500);
   check_type_one(report);
-  const PowerRow& few = report.rows[0];
-  const PowerRow& many = report.rows[1];
-  INFO(power_text(report));
+  const planning::PowerRow& few = report.rows[0];
+  const planning::PowerRow& many = report.rows[1];
+  INFO(planning::power_text(report));
   CHECK(few.power.low < many.power.low);
   CHECK(*many.significant.share() > *few.significant.share() + 0.1);
   // Eight times the participants: the interval is a third as wide, and less for Student's t.

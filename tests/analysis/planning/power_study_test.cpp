@@ -14,14 +14,14 @@
 namespace touchtrial {
 namespace {
 
-PowerPlan small_plan(int runs = 130) {
-  PowerPlan plan;
+planning::PowerPlan small_plan(int runs = 130) {
+  planning::PowerPlan plan;
   plan.participants = {3, 5};
   plan.runs = runs;
   return plan;
 }
 
-PowerSetting setting(const std::string& subject = "somebody") {
+planning::PowerSetting setting(const std::string& subject = "somebody") {
   return {"tiny", "classification", "a test", "accuracy", "5ea1", "f1e1d5", subject, "0"};
 }
 
@@ -36,20 +36,21 @@ const RehearsedTinyStudy& tiny() {
   return study;
 }
 
-const BankedFeelings& bank() {
-  static const BankedFeelings feelings = tiny().bank();
+const planning::BankedFeelings& bank() {
+  static const planning::BankedFeelings feelings = tiny().bank();
   return feelings;
 }
 
-PowerProgress made(const PowerPlan& plan, const Shard& shard = {}, int jobs = 2) {
-  PowerProgress progress = new_progress(setting(), plan, shard);
-  make_runs(tiny().planned(bank()), tiny().test, {.jobs = jobs}, progress);
+planning::PowerProgress made(const planning::PowerPlan& plan, const planning::Shard& shard = {},
+                             int jobs = 2) {
+  planning::PowerProgress progress = planning::new_progress(setting(), plan, shard);
+  planning::make_runs(tiny().planned(bank()), tiny().test, {.jobs = jobs}, progress);
   return progress;
 }
 
-using Files = std::vector<std::pair<std::filesystem::path, PowerProgress>>;
+using Files = std::vector<std::pair<std::filesystem::path, planning::PowerProgress>>;
 
-Files shards(const PowerPlan& plan, int count) {
+Files shards(const planning::PowerPlan& plan, int count) {
   Files files;
   for (int number = 1; number <= count; ++number) {
     files.emplace_back("shard-" + std::to_string(number), made(plan, {number, count}));
@@ -58,15 +59,16 @@ Files shards(const PowerPlan& plan, int count) {
 }
 
 TEST_CASE("a power run is the same with any number of threads") {
-  const PowerProgress one = made(small_plan(), {}, 1);
-  CHECK(is_complete(one));
+  const planning::PowerProgress one = made(small_plan(), {}, 1);
+  CHECK(planning::is_complete(one));
   CHECK(one == made(small_plan(), {}, 3));
-  CHECK(power_json(make_power_report(one)) == power_json(make_power_report(made(small_plan()))));
+  CHECK(planning::power_json(planning::make_power_report(one)) ==
+        planning::power_json(planning::make_power_report(made(small_plan()))));
 }
 
 TEST_CASE("a bank of feelings is the same with any number of threads") {
-  const BankedFeelings one = tiny().bank(3, 2, 1, 1);
-  const BankedFeelings other = tiny().bank(3, 2, 1, 3);
+  const planning::BankedFeelings one = tiny().bank(3, 2, 1, 1);
+  const planning::BankedFeelings other = tiny().bank(3, 2, 1, 3);
   for (std::uint64_t draw = 0; draw < 3; ++draw) {
     CHECK(one.felt({1, 0, 0}, {5, 1, 1, draw}) == other.felt({1, 0, 0}, {5, 1, 1, draw}));
   }
@@ -76,63 +78,64 @@ TEST_CASE("a bank of feelings is the same with any number of threads") {
 }
 
 TEST_CASE("a power run's shards make the whole, to the last digit, in any number and order") {
-  const PowerProgress whole = made(small_plan());
+  const planning::PowerProgress whole = made(small_plan());
   for (const int count : {2, 5}) {
     Files files = shards(small_plan(), count);
     std::reverse(files.begin(), files.end());
-    const CombinedPower all = combined(files);
+    const planning::CombinedPower all = planning::combined(files);
     CHECK(all.remarks.empty());
     CHECK(all.progress == whole);
-    CHECK(power_json(make_power_report(all.progress)) == power_json(make_power_report(whole)));
+    CHECK(planning::power_json(planning::make_power_report(all.progress)) ==
+          planning::power_json(planning::make_power_report(whole)));
   }
 }
 
 TEST_CASE("shards make all their runs, and the whole stops where one machine would have") {
-  PowerPlan plan = small_plan(150);
-  const PowerProgress whole = made(plan);
+  planning::PowerPlan plan = small_plan(150);
+  const planning::PowerProgress whole = made(plan);
   // The tiny study is easy: both sizes are certain at the first look.
   REQUIRE(whole.cells.front().runs.size() == 100);
   const Files files = shards(plan, 3);
   for (const auto& [path, shard] : files) CHECK(shard.cells.front().runs.size() == 50);
-  CHECK(combined(files).progress == whole);
+  CHECK(planning::combined(files).progress == whole);
   plan.stop_early = false;
   CHECK(made(plan).cells.front().runs.size() == 150);
 }
 
 TEST_CASE("an only shard is the whole run, also where it stopped early") {
-  const PowerPlan plan = small_plan(150);
-  const PowerProgress whole = made(plan);
+  const planning::PowerPlan plan = small_plan(150);
+  const planning::PowerProgress whole = made(plan);
   REQUIRE(whole.cells.front().runs.size() == 100);
-  CHECK(combined({{"shard", whole}}).progress == whole);
+  CHECK(planning::combined({{"shard", whole}}).progress == whole);
 }
 
 TEST_CASE("shards without runs of their own are needed as the others are") {
-  const PowerPlan plan = small_plan(3);
+  const planning::PowerPlan plan = small_plan(3);
   Files files = shards(plan, 5);
   CHECK(files.back().second.cells.front().runs.empty());
-  CHECK(combined(files).progress == made(plan));
+  CHECK(planning::combined(files).progress == made(plan));
   files.pop_back();
-  CHECK_THROWS_WITH(combined(files), Catch::Contains("missing: 5"));
+  CHECK_THROWS_WITH(planning::combined(files), Catch::Contains("missing: 5"));
 }
 
 TEST_CASE("lost shards are named") {
   Files files = shards(small_plan(10), 5);
   files.erase(files.begin() + 3);
   files.erase(files.begin() + 1);
-  CHECK_THROWS_WITH(combined(files), Catch::Contains("missing: 2, 4"));
-  CHECK_THROWS_AS(combined({}), FileError);
+  CHECK_THROWS_WITH(planning::combined(files), Catch::Contains("missing: 2, 4"));
+  CHECK_THROWS_AS(planning::combined({}), FileError);
 }
 
 TEST_CASE("a repeated shard is taken once and told of, a differing one is refused") {
   Files files = shards(small_plan(10), 3);
   files.emplace_back("again", files[1].second);
-  const CombinedPower all = combined(files);
+  const planning::CombinedPower all = planning::combined(files);
   REQUIRE(all.remarks.size() == 1);
   CHECK_THAT(all.remarks.front(), Catch::Contains("2/3") && Catch::Contains("again"));
   CHECK(all.progress == made(small_plan(10)));
   files.back().second.cells[0].runs[0].p *= 0.5;
-  CHECK_THROWS_AS(combined(files), VerificationError);
-  CHECK_THROWS_WITH(combined(files), Catch::Contains("again"));
+  CHECK_THROWS_AS(planning::combined(files), VerificationError);
+  CHECK_THROWS_WITH(planning::combined(files), Catch::Contains("again"));
 }
 
 TEST_CASE("a shard of another study, plan or number of shards is refused by name") {
@@ -142,49 +145,53 @@ TEST_CASE("a shard of another study, plan or number of shards is refused by name
     change(changed[2].second);
     return changed;
   };
-  CHECK_THROWS_WITH(combined(with([](PowerProgress& p) { p.setting.seal = "other"; })),
-                    Catch::Contains("shard-3") && Catch::Contains("the study file"));
-  CHECK_THROWS_WITH(combined(with([](PowerProgress& p) { p.setting.subject = "other"; })),
-                    Catch::Contains("the subject model"));
-  CHECK_THROWS_WITH(combined(with([](PowerProgress& p) { p.plan.seed = 9; })),
+  CHECK_THROWS_WITH(
+      planning::combined(with([](planning::PowerProgress& p) { p.setting.seal = "other"; })),
+      Catch::Contains("shard-3") && Catch::Contains("the study file"));
+  CHECK_THROWS_WITH(
+      planning::combined(with([](planning::PowerProgress& p) { p.setting.subject = "other"; })),
+      Catch::Contains("the subject model"));
+  CHECK_THROWS_WITH(planning::combined(with([](planning::PowerProgress& p) { p.plan.seed = 9; })),
                     Catch::Contains("--seed"));
-  CHECK_THROWS_WITH(combined(with([](PowerProgress& p) { p.plan.runs = 9; })),
+  CHECK_THROWS_WITH(planning::combined(with([](planning::PowerProgress& p) { p.plan.runs = 9; })),
                     Catch::Contains("--runs"));
-  CHECK_THROWS_WITH(combined(with([](PowerProgress& p) { p.shard.count = 4; })),
+  CHECK_THROWS_WITH(planning::combined(with([](planning::PowerProgress& p) { p.shard.count = 4; })),
                     Catch::Contains("shard 3/4"));
-  CHECK_THROWS_WITH(combined(with([](PowerProgress& p) { p.cells[1].runs.pop_back(); })),
-                    Catch::Contains("not complete"));
+  CHECK_THROWS_WITH(
+      planning::combined(with([](planning::PowerProgress& p) { p.cells[1].runs.pop_back(); })),
+      Catch::Contains("not complete"));
 }
 
 TEST_CASE("progress is the same after it was written and read") {
   const TempFolder folder;
   const auto file = folder.path() / "progress.json";
-  PowerProgress progress = made(small_plan(20), {2, 3});
+  planning::PowerProgress progress = made(small_plan(20), {2, 3});
   progress.cells[0].runs[0] = {1e-280, 0.05, 0.1 + 0.2, -1.0 / 3.0, 5e-324};
   progress.plan.seed = ~std::uint64_t{0};
-  replace_file(file, progress_json(progress));
-  CHECK(load_progress(file) == progress);
+  replace_file(file, planning::progress_json(progress));
+  CHECK(planning::load_progress(file) == progress);
 }
 
 /// A program that is killed: whatever was kept last is all that is left.
 struct Killed {};
 
 TEST_CASE("a power run that was killed at any time goes on to the same result") {
-  const PowerProgress whole = made(small_plan());
+  const planning::PowerProgress whole = made(small_plan());
   const TempFolder folder;
   const auto file = folder.path() / "progress.json";
   for (int blocks = 0; blocks < 7; ++blocks) {
-    PowerProgress progress = new_progress(setting(), small_plan(), {});
+    planning::PowerProgress progress = planning::new_progress(setting(), small_plan(), {});
     int kept = 0;
-    PowerWork work{.jobs = 2};
-    work.keep = [&](const PowerProgress& so_far) {
-      replace_file(file, progress_json(so_far));
+    planning::PowerWork work{.jobs = 2};
+    work.keep = [&](const planning::PowerProgress& so_far) {
+      replace_file(file, planning::progress_json(so_far));
       if (++kept > blocks) throw Killed();
     };
-    CHECK_THROWS_AS(make_runs(tiny().planned(bank()), tiny().test, work, progress), Killed);
-    PowerProgress taken_up = load_progress(file);
+    CHECK_THROWS_AS(planning::make_runs(tiny().planned(bank()), tiny().test, work, progress),
+                    Killed);
+    planning::PowerProgress taken_up = planning::load_progress(file);
     REQUIRE_FALSE(taken_up.cells == whole.cells);
-    make_runs(tiny().planned(bank()), tiny().test, {.jobs = 1}, taken_up);
+    planning::make_runs(tiny().planned(bank()), tiny().test, {.jobs = 1}, taken_up);
     CHECK(taken_up == whole);
   }
 }
@@ -192,11 +199,11 @@ TEST_CASE("a power run that was killed at any time goes on to the same result") 
 TEST_CASE("a file of progress that is truncated, altered or hostile is refused in one line") {
   const TempFolder folder;
   const auto file = folder.path() / "progress.json";
-  const std::string text = progress_json(made(small_plan(10)));
+  const std::string text = planning::progress_json(made(small_plan(10)));
   const auto refused = [&](const std::string& content) {
     replace_file(file, content);
     try {
-      static_cast<void>(load_progress(file));
+      static_cast<void>(planning::load_progress(file));
     } catch (const FileError& error) {
       const std::string what = error.what();
       return what.find('\n') == std::string::npos &&
@@ -221,51 +228,54 @@ TEST_CASE("a file of progress that is truncated, altered or hostile is refused i
 }
 
 TEST_CASE("the report of a power run says what its runs were") {
-  PowerProgress progress = new_progress(setting(), small_plan(4), {});
-  for (PowerCell& cell : progress.cells) {
+  planning::PowerProgress progress = planning::new_progress(setting(), small_plan(4), {});
+  for (planning::PowerCell& cell : progress.cells) {
     const double width = cell.participants == 3 ? 0.4 : 0.2;
-    const bool null = cell.hypothesis == Hypothesis::null;
+    const bool null = cell.hypothesis == planning::Hypothesis::null;
     for (int run = 0; run < 4; ++run) {
       const double p = null ? 0.5 : run == 0 && cell.participants == 3 ? 0.06 : 0.01;
       cell.runs.push_back({p, null ? 0.04 : 0.0, 0.5, 0.5 - width / 2, 0.5 + width / 2});
     }
   }
-  const PowerReport report = make_power_report(progress);
+  const planning::PowerReport report = planning::make_power_report(progress);
   REQUIRE(report.rows.size() == 2);
-  CHECK(report.rows[0].significant == (Proportion{4, 3}));
-  CHECK(report.rows[1].significant == (Proportion{4, 4}));
+  CHECK(report.rows[0].significant == (analysis::Proportion{4, 3}));
+  CHECK(report.rows[1].significant == (analysis::Proportion{4, 4}));
   CHECK(report.rows[0].width.mean == Approx(0.4));
   CHECK(report.rows[1].width.median == Approx(0.2));
-  CHECK(report.rows[0].false_alarms == (Proportion{4, 0}));
+  CHECK(report.rows[0].false_alarms == (analysis::Proportion{4, 0}));
   CHECK(report.rows[0].attainable == Approx(0.04));
   CHECK(report.targets[0].smallest == 5);
   CHECK_FALSE(report.targets[0].surely.has_value());
-  const auto json = nlohmann::json::parse(power_json(report));
+  const auto json = nlohmann::json::parse(planning::power_json(report));
   CHECK(json.at("simulated") == true);
   CHECK(json.at("sizes").at(1).at("power").at("p") == 1.0);
   CHECK(json.at("targets").at(1).at("smallest") == 5);
-  for (const std::string& text :
-       {power_text(report), power_markdown(report), power_csv(report), power_json(report)}) {
+  for (const std::string& text : {planning::power_text(report), planning::power_markdown(report),
+                                  planning::power_csv(report), planning::power_json(report)}) {
     CHECK_THAT(text, Catch::Contains("SIMULATED"));
   }
-  CHECK_THAT(power_text(report), Catch::Contains("power given the assumed sensitivity"));
+  CHECK_THAT(planning::power_text(report), Catch::Contains("power given the assumed sensitivity"));
 }
 
 TEST_CASE("orders that do not present classes equally often have no verdict on the test's error") {
-  PowerProgress progress = new_progress(setting(), small_plan(100), {});
-  for (PowerCell& cell : progress.cells) cell.runs.assign(100, {0.01, 0.04, 0.5, 0.4, 0.6});
-  CHECK(verdict_of(make_power_report(progress).rows[0]) == ErrorVerdict::excessive);
-  CHECK_THAT(power_text(make_power_report(progress)), Catch::Contains("does not hold"));
+  planning::PowerProgress progress = planning::new_progress(setting(), small_plan(100), {});
+  for (planning::PowerCell& cell : progress.cells)
+    cell.runs.assign(100, {0.01, 0.04, 0.5, 0.4, 0.6});
+  CHECK(planning::verdict_of(planning::make_power_report(progress).rows[0]) ==
+        planning::ErrorVerdict::excessive);
+  CHECK_THAT(planning::power_text(planning::make_power_report(progress)),
+             Catch::Contains("does not hold"));
   progress.setting.has_fixed_counts = false;
-  const PowerReport report = make_power_report(progress);
-  CHECK(verdict_of(report.rows[0]) == ErrorVerdict::conditional);
-  CHECK_THAT(power_json(report), !Catch::Contains("not hold what it promises") &&
-                                     !Catch::Contains("excessive") &&
-                                     Catch::Contains("orders that this study's seed draws"));
+  const planning::PowerReport report = planning::make_power_report(progress);
+  CHECK(planning::verdict_of(report.rows[0]) == planning::ErrorVerdict::conditional);
+  CHECK_THAT(planning::power_json(report),
+             !Catch::Contains("not hold what it promises") && !Catch::Contains("excessive") &&
+                 Catch::Contains("orders that this study's seed draws"));
 }
 
 TEST_CASE("a run that is not complete has no report") {
-  CHECK_THROWS_AS(make_power_report(new_progress(setting(), small_plan(), {})),
+  CHECK_THROWS_AS(planning::make_power_report(planning::new_progress(setting(), small_plan(), {})),
                   std::invalid_argument);
 }
 

@@ -17,26 +17,26 @@ namespace {
 using namespace std::chrono_literals;
 
 /// What `simulate` and `report` make of the same participants: sessions, events, database and all.
-Outcomes simulated_and_loaded(TinyStudy& tiny, const SubjectModel& subject, int participants,
-                              std::uint64_t seed) {
-  StudyStore store = StudyStore::create(tiny.next_database(),
-                                        commitment_of(tiny.key(), tiny.pack(), true, false), 0ns);
-  simulate_study(tiny.key(), tiny.pack(), subject, {participants, seed, 2}, store);
+analysis::Outcomes simulated_and_loaded(TinyStudy& tiny, const session::SubjectModel& subject,
+                                        int participants, std::uint64_t seed) {
+  store::StudyStore store = store::StudyStore::create(
+      tiny.next_database(), session::commitment_of(tiny.key(), tiny.pack(), true, false), 0ns);
+  session::simulate_study(tiny.key(), tiny.pack(), subject, {participants, seed, 2}, store);
   store.close_study(0ns);
   store.unblind(0ns, "test", false);
-  return load_outcomes(store, tiny.key());
+  return analysis::load_outcomes(store, tiny.key());
 }
 
-std::vector<TrialOutcome> scored(const Outcomes& outcomes) {
-  std::vector<TrialOutcome> trials;
-  for (const TrialOutcome& trial : outcomes.trials) {
+std::vector<analysis::TrialOutcome> scored(const analysis::Outcomes& outcomes) {
+  std::vector<analysis::TrialOutcome> trials;
+  for (const analysis::TrialOutcome& trial : outcomes.trials) {
     if (trial.scored) trials.push_back(trial);
   }
   return trials;
 }
 
 /// Presentations and answers, in the same order.
-void check_same_answers(const Outcomes& one, const Outcomes& other) {
+void check_same_answers(const analysis::Outcomes& one, const analysis::Outcomes& other) {
   const auto a = scored(one);
   const auto b = scored(other);
   REQUIRE(a.size() == b.size());
@@ -50,8 +50,8 @@ void check_same_answers(const Outcomes& one, const Outcomes& other) {
   CHECK(same == static_cast<int>(a.size()));
 }
 
-void check_same_figures(const PowerRun& run, const StudyReport& report) {
-  const MethodReport& method = report.methods.front();
+void check_same_figures(const planning::PowerRun& run, const analysis::StudyReport& report) {
+  const analysis::MethodReport& method = report.methods.front();
   CHECK(run.p == method.chance->p);
   CHECK(run.estimate == method.mean.mean);
   CHECK(run.low == method.mean.interval.low);
@@ -60,12 +60,12 @@ void check_same_figures(const PowerRun& run, const StudyReport& report) {
 
 TEST_CASE("a power run on the servo path gives the answers and figures of simulate and report") {
   RehearsedTinyStudy study;
-  const RehearsedStudy planned = study.planned(study.servo);
-  const std::uint64_t seed = study_seed(1, 3, Hypothesis::population, 0);
-  const Outcomes fast = planned.outcomes(3, Hypothesis::population, seed);
-  const Outcomes whole = simulated_and_loaded(study.tiny, study.subject, 3, seed);
+  const planning::RehearsedStudy planned = study.planned(study.servo);
+  const std::uint64_t seed = planning::study_seed(1, 3, planning::Hypothesis::population, 0);
+  const analysis::Outcomes fast = planned.outcomes(3, planning::Hypothesis::population, seed);
+  const analysis::Outcomes whole = simulated_and_loaded(study.tiny, study.subject, 3, seed);
   check_same_answers(fast, whole);
-  check_same_figures(judged(study.test, fast, false), make_report(whole));
+  check_same_figures(planning::judged(study.test, fast, false), analysis::make_report(whole));
 }
 
 TEST_CASE("so it does with several exemplars, catch trials, lead-ins and breaks") {
@@ -74,12 +74,12 @@ TEST_CASE("so it does with several exemplars, catch trials, lead-ins and breaks"
   options.side_px = 60;
   options.trials = R"({"repeats":2,"catch":3,"lead_in":2,"break_every":4,"max_run":2})";
   RehearsedTinyStudy study(options);
-  const RehearsedStudy planned = study.planned(study.servo);
-  const Outcomes fast = planned.outcomes(2, Hypothesis::population, 5);
-  const Outcomes whole = simulated_and_loaded(study.tiny, study.subject, 2, 5);
+  const planning::RehearsedStudy planned = study.planned(study.servo);
+  const analysis::Outcomes fast = planned.outcomes(2, planning::Hypothesis::population, 5);
+  const analysis::Outcomes whole = simulated_and_loaded(study.tiny, study.subject, 2, 5);
   check_same_answers(fast, whole);
-  const PowerRun run = judged(study.test, fast, false);
-  const StudyReport report = make_report(whole);
+  const planning::PowerRun run = planning::judged(study.test, fast, false);
+  const analysis::StudyReport report = analysis::make_report(whole);
   CHECK(run.estimate == report.methods.front().mean.mean);
   // Orders without long runs are drawn: 999 in place of 9,999 times.
   CHECK(std::abs(run.p - report.methods.front().chance->p) < 0.06);
@@ -91,12 +91,12 @@ TEST_CASE("so it does when two methods are compared") {
   options.side_px = 60;
   options.trials = R"({"repeats":1})";
   RehearsedTinyStudy study(options);
-  const RehearsedStudy planned = study.planned(study.servo);
-  const Outcomes fast = planned.outcomes(3, Hypothesis::population, 8);
-  const Outcomes whole = simulated_and_loaded(study.tiny, study.subject, 3, 8);
+  const planning::RehearsedStudy planned = study.planned(study.servo);
+  const analysis::Outcomes fast = planned.outcomes(3, planning::Hypothesis::population, 8);
+  const analysis::Outcomes whole = simulated_and_loaded(study.tiny, study.subject, 3, 8);
   check_same_answers(fast, whole);
-  const PowerRun run = judged(study.test, fast, true);
-  const MethodComparison overall = *make_report(whole).comparison;
+  const planning::PowerRun run = planning::judged(study.test, fast, true);
+  const analysis::MethodComparison overall = *analysis::make_report(whole).comparison;
   CHECK(run.p == overall.p);
   CHECK(run.estimate == overall.difference);
   CHECK(run.low == overall.interval.low);
@@ -104,36 +104,40 @@ TEST_CASE("so it does when two methods are compared") {
 }
 
 /// Remembers what the servo path felt, and gives it back without a servo.
-class RememberedFeelings final : public Feelings {
+class RememberedFeelings final : public planning::Feelings {
  public:
   RememberedFeelings(const RehearsedTinyStudy& study, int participants, std::uint64_t seed)
       : knowledge_(study.servo.knowledge(seed)) {
     for (int number = 1; number <= participants; ++number) {
-      const Schedule schedule = make_schedule(study.tiny.key().study, number);
+      const design::Schedule schedule = design::make_schedule(study.tiny.key().study, number);
       for (std::size_t i = 0; i < schedule.presentations.size(); ++i) {
-        const FeltTrial trial{seed, number, i + 1, 0};
+        const planning::FeltTrial trial{seed, number, i + 1, 0};
         felt_[{number, i + 1}] = study.servo.felt(schedule.presentations[i].stimulus, trial);
       }
     }
   }
-  [[nodiscard]] std::shared_ptr<const FeltKnowledge> knowledge(std::uint64_t) const override {
+  [[nodiscard]] std::shared_ptr<const session::FeltKnowledge> knowledge(
+      std::uint64_t) const override {
     return knowledge_;
   }
-  [[nodiscard]] FeltFeatures felt(const StimulusIndex&, const FeltTrial& trial) const override {
+  [[nodiscard]] engine::FeltFeatures felt(const design::StimulusIndex&,
+                                          const planning::FeltTrial& trial) const override {
     return felt_.at({trial.participant, trial.nth});
   }
 
  private:
-  std::shared_ptr<const FeltKnowledge> knowledge_;
-  std::map<std::pair<int, std::uint64_t>, FeltFeatures> felt_;
+  std::shared_ptr<const session::FeltKnowledge> knowledge_;
+  std::map<std::pair<int, std::uint64_t>, engine::FeltFeatures> felt_;
 };
 
 TEST_CASE(
     "the fast path answers as the servo path does when the bank holds its very explorations") {
   const RehearsedTinyStudy study;
   const RememberedFeelings remembered(study, 2, 9);
-  const Outcomes fast = study.planned(remembered).outcomes(2, Hypothesis::population, 9);
-  const Outcomes slow = study.planned(study.servo).outcomes(2, Hypothesis::population, 9);
+  const analysis::Outcomes fast =
+      study.planned(remembered).outcomes(2, planning::Hypothesis::population, 9);
+  const analysis::Outcomes slow =
+      study.planned(study.servo).outcomes(2, planning::Hypothesis::population, 9);
   check_same_answers(fast, slow);
 }
 
@@ -144,12 +148,13 @@ struct Answers {
   std::map<std::pair<int, int>, double> confusion;
 };
 
-Answers answers_of(const RehearsedStudy& planned, int studies, std::uint64_t seed) {
+Answers answers_of(const planning::RehearsedStudy& planned, int studies, std::uint64_t seed) {
   Answers answers;
   for (int i = 0; i < studies; ++i) {
-    const Outcomes outcomes =
-        planned.outcomes(4, Hypothesis::population, study_seed(seed, 4, Hypothesis::population, i));
-    for (const TrialOutcome& trial : outcomes.trials) {
+    const analysis::Outcomes outcomes =
+        planned.outcomes(4, planning::Hypothesis::population,
+                         planning::study_seed(seed, 4, planning::Hypothesis::population, i));
+    for (const analysis::TrialOutcome& trial : outcomes.trials) {
       ++answers.trials;
       if (trial.correct()) ++answers.correct;
       ++answers.confusion[{trial.stimulus.class_index, *trial.response}];
@@ -162,7 +167,7 @@ TEST_CASE("a bank of independent explorations gives the accuracies and confusion
   TinyStudyOptions options;
   options.side_px = 60;
   const RehearsedTinyStudy study(options);
-  const BankedFeelings bank = study.bank(60, 12);
+  const planning::BankedFeelings bank = study.bank(60, 12);
   constexpr int kStudies = 12;
   const Answers fast = answers_of(study.planned(bank), kStudies, 1);
   const Answers slow = answers_of(study.planned(study.servo), kStudies, 2);
@@ -188,17 +193,18 @@ TEST_CASE("a bank of independent explorations gives the accuracies and confusion
 
 TEST_CASE("under the null nobody feels what is presented, and methods feel alike") {
   const RehearsedTinyStudy study({}, [] {
-    SubjectModel sure = hasty_subject();
+    session::SubjectModel sure = hasty_subject();
     sure.weber = 0.05;
     sure.lapse = 0.0;
     return sure;
   }());
-  const BankedFeelings bank = study.bank();
-  const RehearsedStudy planned = study.planned(bank);
+  const planning::BankedFeelings bank = study.bank();
+  const planning::RehearsedStudy planned = study.planned(bank);
   int correct = 0;
   int trials = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-    for (const TrialOutcome& trial : planned.outcomes(5, Hypothesis::null, seed).trials) {
+    for (const analysis::TrialOutcome& trial :
+         planned.outcomes(5, planning::Hypothesis::null, seed).trials) {
       correct += trial.correct() ? 1 : 0;
       ++trials;
     }
@@ -218,21 +224,24 @@ TEST_CASE("a study whose participants could never answer is refused") {
 }
 
 TEST_CASE("the two methods of a primary test are named where there are three") {
-  Study study;
-  study.protocol = Protocol::comparison;
+  design::Study study;
+  study.protocol = design::Protocol::comparison;
   for (const char* label : {"adaptive", "edge", "luminance"}) {
     study.methods.emplace_back();
     study.methods.back().label = label;
   }
-  CHECK_THROWS_WITH(primary_test_of(study, {}), Catch::Contains("--methods"));
-  CHECK_THROWS_WITH(primary_test_of(study, MethodLabels{"edge", "edge"}), Catch::Contains("twice"));
-  CHECK_THROWS_WITH(primary_test_of(study, MethodLabels{"edge", "adaptiv"}),
+  CHECK_THROWS_WITH(planning::primary_test_of(study, {}), Catch::Contains("--methods"));
+  CHECK_THROWS_WITH(planning::primary_test_of(study, planning::MethodLabels{"edge", "edge"}),
+                    Catch::Contains("twice"));
+  CHECK_THROWS_WITH(planning::primary_test_of(study, planning::MethodLabels{"edge", "adaptiv"}),
                     Catch::Contains("adaptiv") && Catch::Contains("luminance"));
-  const PrimaryTest test = primary_test_of(study, MethodLabels{"luminance", "adaptive"});
+  const planning::PrimaryTest test =
+      planning::primary_test_of(study, planning::MethodLabels{"luminance", "adaptive"});
   CHECK(test.first == 2);
   CHECK(test.second == 0);
-  study.protocol = Protocol::classification;
-  CHECK_THROWS_AS(primary_test_of(study, MethodLabels{"edge", "adaptive"}), UsageError);
+  study.protocol = design::Protocol::classification;
+  CHECK_THROWS_AS(planning::primary_test_of(study, planning::MethodLabels{"edge", "adaptive"}),
+                  UsageError);
 }
 
 }  // namespace

@@ -11,8 +11,8 @@
 namespace touchtrial {
 
 /// Explores briefly: the tests need many explorations, and not good ones.
-[[nodiscard]] inline SubjectModel hasty_subject() {
-  SubjectModel subject;
+[[nodiscard]] inline session::SubjectModel hasty_subject() {
+  session::SubjectModel subject;
   subject.weber = 0.5;
   subject.weber_spread = 0.3;
   subject.lapse = 0.05;
@@ -28,28 +28,29 @@ namespace touchtrial {
 /// A tiny study and all that its simulated studies refer to.
 struct RehearsedTinyStudy {
   explicit RehearsedTinyStudy(const TinyStudyOptions& options = {},
-                              const SubjectModel& model = hasty_subject())
+                              const session::SubjectModel& model = hasty_subject())
       : tiny(options),
         subject(model),
-        test(primary_test_of(tiny.key().study, {})),
+        test(planning::primary_test_of(tiny.key().study, {})),
         source(tiny.pack(), tiny.key().study.rendering),
         fields(tiny.key(), source),
         servo(fields, tiny.key().study, subject) {}
 
-  [[nodiscard]] BankedFeelings bank(int explorations = 20, int trainings = 3,
-                                    std::uint64_t seed = 1, int jobs = 2) const {
+  [[nodiscard]] planning::BankedFeelings bank(int explorations = 20, int trainings = 3,
+                                              std::uint64_t seed = 1, int jobs = 2) const {
     return {fields, tiny.key().study, subject, {explorations, trainings, seed, jobs}};
   }
-  [[nodiscard]] RehearsedStudy planned(const Feelings& feelings, int most = 12) const {
+  [[nodiscard]] planning::RehearsedStudy planned(const planning::Feelings& feelings,
+                                                 int most = 12) const {
     return {tiny.key().study, subject, test, feelings, most};
   }
 
   TinyStudy tiny;
-  SubjectModel subject;
-  PrimaryTest test;
-  StimulusSource source;
-  LabelledFields fields;
-  ServoFeelings servo;
+  session::SubjectModel subject;
+  planning::PrimaryTest test;
+  session::StimulusSource source;
+  session::LabelledFields fields;
+  planning::ServoFeelings servo;
 };
 
 }  // namespace touchtrial

@@ -14,45 +14,47 @@ const PlannedStudy& planned_study() {
   return planned;
 }
 
-SubjectModel start() {
-  SubjectModel subject = planned_subject();
+session::SubjectModel start() {
+  session::SubjectModel subject = planned_subject();
   subject.weber = 0.3;
   subject.lapse = 0.05;
   return subject;
 }
 
-SubjectFit fitted(const FitCounts& counts, const FitOptions& options = {.bootstraps = 99}) {
-  return fit_subject(planned_study().model(1), counts, start(), options);
+planning::SubjectFit fitted(const planning::FitCounts& counts,
+                            const planning::FitOptions& options = {.bootstraps = 99}) {
+  return planning::fit_subject(planned_study().model(1), counts, start(), options);
 }
 
-const ParameterEstimate& named(const SubjectFit& fit, const std::string& name,
-                               const std::string& label = "") {
-  const auto found = std::ranges::find_if(fit.estimates, [&](const ParameterEstimate& one) {
-    return one.name == name && one.label == label;
-  });
+const planning::ParameterEstimate& named(const planning::SubjectFit& fit, const std::string& name,
+                                         const std::string& label = "") {
+  const auto found =
+      std::ranges::find_if(fit.estimates, [&](const planning::ParameterEstimate& one) {
+        return one.name == name && one.label == label;
+      });
   REQUIRE(found != fit.estimates.end());
   return *found;
 }
 
-bool holds(const OpenInterval& interval, double value) {
+bool holds(const planning::OpenInterval& interval, double value) {
   return (!interval.lower || *interval.lower <= value) &&
          (!interval.upper || *interval.upper >= value);
 }
 
-bool warns_of(const SubjectFit& fit, const std::string& words) {
+bool warns_of(const planning::SubjectFit& fit, const std::string& words) {
   return std::ranges::any_of(fit.warnings, [&](const std::string& warning) {
     return warning.find(words) != std::string::npos;
   });
 }
 
 TEST_CASE("noise, lapses, biases and a swap are found again within their intervals") {
-  SubjectModel truth = planned_subject();
+  session::SubjectModel truth = planned_subject();
   truth.weber = 0.9;
   truth.lapse = 0.08;
   truth.position_bias = 1.5;
   truth.class_bias = {{"bark", 1.2}, {"straw", -1.2}};
   truth.label_swap = {{"pebbles", "brick"}};
-  const SubjectFit fit = fitted(simulated_counts(planned_study(), truth, 24, 8, 3));
+  const planning::SubjectFit fit = fitted(simulated_counts(planned_study(), truth, 24, 8, 3));
   CHECK(fit.subject.label_swap ==
         std::vector<std::pair<std::string, std::string>>{{"pebbles", "brick"}});
   CHECK(holds(named(fit, "weber").profile, truth.weber));
@@ -68,19 +70,19 @@ TEST_CASE("noise, lapses, biases and a swap are found again within their interva
   CHECK(named(fit, "lapse").profile.upper.value() < 0.25);
   CHECK(fit.p.value() > 0.01);
   double sum = 0.0;
-  for (const ClassBias& bias : fit.subject.class_bias) sum += bias.log_odds;
+  for (const session::ClassBias& bias : fit.subject.class_bias) sum += bias.log_odds;
   CHECK(sum == Approx(0.0).margin(1e-9));
 }
 
 TEST_CASE("intervals of the profile and of simulated studies are of one size") {
-  SubjectModel truth = planned_subject();
+  session::SubjectModel truth = planned_subject();
   truth.weber = 0.9;
   truth.lapse = 0.1;
-  const SubjectFit fit =
+  const planning::SubjectFit fit =
       fitted(simulated_counts(planned_study(), truth, 20, 5, 8),
              {.free = {.position = false, .classes = false, .swaps = false}, .bootstraps = 199});
   REQUIRE(fit.estimates.size() == 2);
-  const ParameterEstimate& weber = named(fit, "weber");
+  const planning::ParameterEstimate& weber = named(fit, "weber");
   const double profile = weber.profile.upper.value() - weber.profile.lower.value();
   const double simulated = weber.bootstrap->high - weber.bootstrap->low;
   CHECK(simulated / profile > 0.6);
@@ -90,15 +92,15 @@ TEST_CASE("intervals of the profile and of simulated studies are of one size") {
 }
 
 TEST_CASE("a fit is a function of its arguments, for any number of jobs") {
-  SubjectModel truth = planned_subject();
+  session::SubjectModel truth = planned_subject();
   truth.weber = 0.7;
-  const FitCounts counts = simulated_counts(planned_study(), truth, 6, 3, 4);
+  const planning::FitCounts counts = simulated_counts(planned_study(), truth, 6, 3, 4);
   const auto fit = [&](int jobs) {
-    return fit_subject(planned_study().model(1, jobs), counts, start(),
-                       {.bootstraps = 20, .seed = 3, .jobs = jobs});
+    return planning::fit_subject(planned_study().model(1, jobs), counts, start(),
+                                 {.bootstraps = 20, .seed = 3, .jobs = jobs});
   };
-  const SubjectFit alone = fit(1);
-  const SubjectFit crowd = fit(4);
+  const planning::SubjectFit alone = fit(1);
+  const planning::SubjectFit crowd = fit(4);
   CHECK(alone.subject.weber == crowd.subject.weber);
   CHECK(alone.log_likelihood == crowd.log_likelihood);
   CHECK(alone.p == crowd.p);
@@ -106,26 +108,26 @@ TEST_CASE("a fit is a function of its arguments, for any number of jobs") {
 }
 
 TEST_CASE("no swap is taken where the answers call for none, and a fixed one stays") {
-  SubjectModel truth = planned_subject();
+  session::SubjectModel truth = planned_subject();
   truth.weber = 1.5;
-  const FitCounts counts = simulated_counts(planned_study(), truth, 10, 5, 2);
-  const SubjectFit fit = fitted(counts, {.bootstraps = 0});
+  const planning::FitCounts counts = simulated_counts(planned_study(), truth, 10, 5, 2);
+  const planning::SubjectFit fit = fitted(counts, {.bootstraps = 0});
   CHECK(fit.subject.label_swap.empty());
   REQUIRE_FALSE(fit.swaps.empty());
   CHECK(fit.swaps.front().gain < fit.swap_threshold);
   CHECK_FALSE(fit.p);
-  SubjectModel swapped = start();
+  session::SubjectModel swapped = start();
   swapped.label_swap = {{"bark", "straw"}};
-  const SubjectFit kept = fit_subject(planned_study().model(1), counts, swapped,
-                                      {.free = {.swaps = false}, .bootstraps = 0});
+  const planning::SubjectFit kept = planning::fit_subject(
+      planned_study().model(1), counts, swapped, {.free = {.swaps = false}, .bootstraps = 0});
   CHECK(kept.subject.label_swap == swapped.label_swap);
   CHECK(kept.log_likelihood < fit.log_likelihood - 10.0);
 }
 
 /// Counts that somebody could have had: answers by presented class.
-FitCounts made_up(const std::vector<std::vector<double>>& rows, int people) {
-  FitCounts counts = simulated_counts(planned_study(), start(), people, 0, 1);
-  for (CountedPerson& person : counts.people) {
+planning::FitCounts made_up(const std::vector<std::vector<double>>& rows, int people) {
+  planning::FitCounts counts = simulated_counts(planned_study(), start(), people, 0, 1);
+  for (planning::CountedPerson& person : counts.people) {
     for (std::size_t i = 0; i < person.counts.size(); ++i) {
       person.counts[i] = rows[i / 5][i % 5];
       counts.trials += static_cast<int>(person.counts[i]);
@@ -138,18 +140,18 @@ const std::vector<std::vector<double>> kAllRight = {
     {5, 0, 0, 0, 0}, {0, 5, 0, 0, 0}, {0, 0, 5, 0, 0}, {0, 0, 0, 5, 0}, {0, 0, 0, 0, 5}};
 
 TEST_CASE("if all is right there is no lower limit to noise, and an upper one") {
-  const SubjectFit fit = fitted(made_up(kAllRight, 8));
+  const planning::SubjectFit fit = fitted(made_up(kAllRight, 8));
   CHECK(warns_of(fit, "every answer is right"));
   CHECK_FALSE(named(fit, "weber").profile.lower);
   CHECK(named(fit, "weber").profile.upper.value() > fit.subject.weber);
   CHECK(named(fit, "lapse").profile.lower == 0.0);
   CHECK(named(fit, "lapse").profile.upper.value() < 0.1);
   // Short explorations leave some errors to who has no noise; the fit is right at least as often.
-  const FitCounts counts = made_up(kAllRight, 8);
-  SubjectModel still = planned_subject();
+  const planning::FitCounts counts = made_up(kAllRight, 8);
+  session::SubjectModel still = planned_subject();
   still.weber = 1e-3;
-  const Confusions best =
-      expected_confusions(counts, planned_study().model(1).answers(still, counts.layouts));
+  const planning::Confusions best = planning::expected_confusions(
+      counts, planned_study().model(1).answers(still, counts.layouts));
   double right = 0.0;
   double best_right = 0.0;
   for (int c = 0; c < 5; ++c) {
@@ -163,7 +165,7 @@ TEST_CASE("if all is right there is no lower limit to noise, and an upper one") 
 TEST_CASE("if all is wrong the fit ends, says so, and does not pretend to fit") {
   auto wrong = kAllRight;
   std::ranges::rotate(wrong, wrong.begin() + 1);
-  const SubjectFit fit = fitted(made_up(wrong, 4));
+  const planning::SubjectFit fit = fitted(made_up(wrong, 4));
   CHECK(warns_of(fit, "no answer is right"));
   CHECK(warns_of(fit, "does not fit"));
   CHECK(std::isfinite(fit.log_likelihood));
@@ -174,19 +176,19 @@ TEST_CASE("one participant, a class never presented and one never answered are t
   some[1] = {0, 0, 0, 0, 0};
   some[0] = {3, 0, 1, 1, 0};
   some[2] = {2, 0, 3, 0, 0};
-  const SubjectFit fit = fitted(made_up(some, 1), {.bootstraps = 20});
+  const planning::SubjectFit fit = fitted(made_up(some, 1), {.bootstraps = 20});
   CHECK(warns_of(fit, "one participant"));
   CHECK(warns_of(fit, "\"cloth\" was never presented"));
   CHECK(warns_of(fit, "\"cloth\" was never answered"));
   // One order of pictures: the position's preference is that of some classes.
   CHECK(warns_of(fit, "one order"));
   CHECK(fit.subject.position_bias == 0.0);
-  for (const ParameterEstimate& one : fit.estimates) CHECK(one.name != "position");
+  for (const planning::ParameterEstimate& one : fit.estimates) CHECK(one.name != "position");
 }
 
 TEST_CASE("nothing but chance is fitted with much noise or many lapses, which are not told apart") {
   const std::vector<std::vector<double>> chance(5, std::vector<double>(5, 2.0));
-  const SubjectFit fit = fitted(made_up(chance, 6), {.bootstraps = 20});
+  const planning::SubjectFit fit = fitted(made_up(chance, 6), {.bootstraps = 20});
   const double right = fit.expected[0][0][0] / 60.0;
   CHECK(right == Approx(0.2).margin(0.05));
   const bool open = !named(fit, "weber").profile.lower || !named(fit, "weber").profile.upper;

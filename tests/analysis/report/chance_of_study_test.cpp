@@ -12,22 +12,23 @@ namespace {
 /// Whether a participant answers right, or has an answer that knows nothing of what was felt.
 enum class Sense { everything, nothing };
 
-Study study_with(const std::string& trials) {
-  auto text = nlohmann::json::parse(fake_study_text(Protocol::classification, "bark"));
+design::Study study_with(const std::string& trials) {
+  auto text = nlohmann::json::parse(fake_study_text(design::Protocol::classification, "bark"));
   text["trials"].update(nlohmann::json::parse(trials));
-  return parse_study(text.dump(), ".", "fake.json");
+  return design::parse_study(text.dump(), ".", "fake.json");
 }
 
-void add_session(Outcomes& outcomes, int session, Sense sense, RandomStream& random) {
-  for (const Presentation& shown : make_schedule(outcomes.design, session).presentations) {
-    TrialOutcome trial;
+void add_session(analysis::Outcomes& outcomes, int session, Sense sense, RandomStream& random) {
+  for (const design::Presentation& shown :
+       design::make_schedule(outcomes.design, session).presentations) {
+    analysis::TrialOutcome trial;
     trial.row.session = session;
     trial.row.trial = shown.trial;
     trial.row.block = shown.block;
-    trial.row.state = TrialState::answered;
+    trial.row.state = store::TrialState::answered;
     trial.stimulus = shown.stimulus;
     trial.kind = shown.kind;
-    trial.scored = shown.kind == PresentationKind::scored;
+    trial.scored = shown.kind == design::PresentationKind::scored;
     trial.counted = trial.scored;
     const auto guess = static_cast<int>(random.below(outcomes.classes.size()));
     trial.response = sense == Sense::everything ? shown.stimulus.class_index : guess;
@@ -35,8 +36,9 @@ void add_session(Outcomes& outcomes, int session, Sense sense, RandomStream& ran
   }
 }
 
-Outcomes outcomes_of(const Study& study, Sense sense, int participants, std::uint64_t index) {
-  Outcomes outcomes;
+analysis::Outcomes outcomes_of(const design::Study& study, Sense sense, int participants,
+                               std::uint64_t index) {
+  analysis::Outcomes outcomes;
   outcomes.design = study;
   outcomes.classes = {"bark", "cloth", "straw"};
   outcomes.methods = {"adaptive"};
@@ -52,20 +54,22 @@ constexpr const char* kRules[] = {R"({"order": "de-bruijn", "repeats": 3})",
 }  // namespace
 
 TEST_CASE("The order of a study says how chance is dealt") {
-  CHECK(dealt_order(study_with("{}")) == DealtOrder::permuted);
-  CHECK(dealt_order(study_with(R"({"order": "uniform"})")) == DealtOrder::independent);
-  for (const char* rule : kRules) CHECK(dealt_order(study_with(rule)) == DealtOrder::redrawn);
+  CHECK(analysis::dealt_order(study_with("{}")) == analysis::DealtOrder::permuted);
+  CHECK(analysis::dealt_order(study_with(R"({"order": "uniform"})")) ==
+        analysis::DealtOrder::independent);
+  for (const char* rule : kRules)
+    CHECK(analysis::dealt_order(study_with(rule)) == analysis::DealtOrder::redrawn);
 }
 
 TEST_CASE("Guesses are above chance no more often than p says, whatever the order") {
   constexpr int kStudies = 30;
   for (const char* rule : kRules) {
     CAPTURE(rule);
-    const Study study = study_with(rule);
+    const design::Study study = study_with(rule);
     int significant = 0;
     double sum = 0.0;
     for (int i = 0; i < kStudies; ++i) {
-      const auto test = chance_of(outcomes_of(study, Sense::nothing, 2, i), 0);
+      const auto test = analysis::chance_of(outcomes_of(study, Sense::nothing, 2, i), 0);
       REQUIRE(test);
       CHECK_FALSE(test->exact);
       significant += test->p <= 0.05 ? 1 : 0;
@@ -80,8 +84,8 @@ TEST_CASE("Guesses are above chance no more often than p says, whatever the orde
 TEST_CASE("Everything right is as far above chance as deals can tell") {
   for (const char* rule : kRules) {
     CAPTURE(rule);
-    const Outcomes outcomes = outcomes_of(study_with(rule), Sense::everything, 4, 0);
-    const auto test = chance_of(outcomes, 0);
+    const analysis::Outcomes outcomes = outcomes_of(study_with(rule), Sense::everything, 4, 0);
+    const auto test = analysis::chance_of(outcomes, 0);
     REQUIRE(test);
     CHECK(test->correct == test->trials);
     CHECK(test->p == Approx(1.0 / (test->deals + 1.0)));
@@ -90,12 +94,12 @@ TEST_CASE("Everything right is as far above chance as deals can tell") {
 }
 
 TEST_CASE("Trials that do not count leave the places of the others as they are") {
-  Outcomes outcomes = outcomes_of(study_with(kRules[0]), Sense::everything, 3, 0);
-  const int all = chance_of(outcomes, 0)->trials;
-  for (TrialOutcome& trial : outcomes.trials) {
+  analysis::Outcomes outcomes = outcomes_of(study_with(kRules[0]), Sense::everything, 3, 0);
+  const int all = analysis::chance_of(outcomes, 0)->trials;
+  for (analysis::TrialOutcome& trial : outcomes.trials) {
     if (trial.scored && trial.row.trial % 3 == 0) trial.counted = false;
   }
-  const auto test = chance_of(outcomes, 0);
+  const auto test = analysis::chance_of(outcomes, 0);
   REQUIRE(test);
   CHECK(test->trials < all);
   CHECK(test->correct == test->trials);
@@ -103,32 +107,32 @@ TEST_CASE("Trials that do not count leave the places of the others as they are")
 }
 
 TEST_CASE("A block that began anew is dealt as one, without what is void") {
-  Outcomes outcomes = outcomes_of(study_with(kRules[1]), Sense::everything, 2, 0);
-  const int all = chance_of(outcomes, 0)->trials;
-  std::vector<TrialOutcome> again = outcomes.trials;
-  for (TrialOutcome& trial : again) {
-    trial.row.state = TrialState::voided;
+  analysis::Outcomes outcomes = outcomes_of(study_with(kRules[1]), Sense::everything, 2, 0);
+  const int all = analysis::chance_of(outcomes, 0)->trials;
+  std::vector<analysis::TrialOutcome> again = outcomes.trials;
+  for (analysis::TrialOutcome& trial : again) {
+    trial.row.state = store::TrialState::voided;
     trial.counted = false;
   }
   outcomes.trials.insert(outcomes.trials.begin(), again.begin(), again.end());
-  const auto test = chance_of(outcomes, 0);
+  const auto test = analysis::chance_of(outcomes, 0);
   REQUIRE(test);
   CHECK(test->trials == all);
   CHECK_FALSE(test->exact);
 }
 
 TEST_CASE("A longer course than the study's is dealt without its rule") {
-  Outcomes outcomes = outcomes_of(study_with(kRules[0]), Sense::everything, 2, 0);
-  const std::vector<TrialOutcome> again = outcomes.trials;
+  analysis::Outcomes outcomes = outcomes_of(study_with(kRules[0]), Sense::everything, 2, 0);
+  const std::vector<analysis::TrialOutcome> again = outcomes.trials;
   outcomes.trials.insert(outcomes.trials.end(), again.begin(), again.end());
-  const auto test = chance_of(outcomes, 0);
+  const auto test = analysis::chance_of(outcomes, 0);
   REQUIRE(test);
   CHECK(test->exact);
 }
 
 TEST_CASE("The chance test of the same outcomes is the same") {
-  const Outcomes outcomes = outcomes_of(study_with(kRules[0]), Sense::nothing, 2, 9);
-  CHECK(chance_of(outcomes, 0)->p == chance_of(outcomes, 0)->p);
+  const analysis::Outcomes outcomes = outcomes_of(study_with(kRules[0]), Sense::nothing, 2, 9);
+  CHECK(analysis::chance_of(outcomes, 0)->p == analysis::chance_of(outcomes, 0)->p);
 }
 
 }  // namespace touchtrial

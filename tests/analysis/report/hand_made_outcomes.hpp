@@ -18,7 +18,7 @@ struct HandMadeTrial {
   int method = 0;
   int answered_after_s = 1;  ///< from plane-on; first contact after 0.5 s
   bool within_limits = true;
-  PresentationKind kind = PresentationKind::scored;
+  design::PresentationKind kind = design::PresentationKind::scored;
 };
 
 /// Classes bark and cloth, methods as named; sessions are of P1, P2 and so on, enrolled in order.
@@ -32,13 +32,13 @@ class HandMadeOutcomes {
     outcomes.state.unblinded = true;
   }
 
-  SessionOutcome& session(bool counted = true) {
+  analysis::SessionOutcome& session(bool counted = true) {
     const int number = static_cast<int>(outcomes.sessions.size()) + 1;
-    SessionOutcome& added = outcomes.sessions.emplace_back();
+    analysis::SessionOutcome& added = outcomes.sessions.emplace_back();
     added.row.session = number;
     added.row.participant = "P" + std::to_string(number);
     added.row.enrolment = number;
-    added.row.state = SessionState::completed;
+    added.row.state = store::SessionState::completed;
     added.counted = counted;
     return added;
   }
@@ -46,12 +46,12 @@ class HandMadeOutcomes {
   /// Each method is a block of its own.
   void trial(const HandMadeTrial& of) {
     const auto place = static_cast<int>(outcomes.trials.size()) + 1;
-    TrialOutcome trial;
+    analysis::TrialOutcome trial;
     trial.participant = "P" + std::to_string(of.session);
     trial.row.session = of.session;
     trial.row.trial = place;
     trial.row.block = of.method;
-    trial.row.state = of.answered ? TrialState::answered : TrialState::timed_out;
+    trial.row.state = of.answered ? store::TrialState::answered : store::TrialState::timed_out;
     trial.row.presented_at = std::chrono::seconds(100 * place);
     trial.row.contact_at = trial.row.presented_at + std::chrono::milliseconds(500);
     if (of.answered) {
@@ -60,13 +60,13 @@ class HandMadeOutcomes {
     trial.row.valid = of.within_limits;
     trial.stimulus = {of.felt, 0, of.method};
     trial.kind = of.kind;
-    trial.scored = of.kind == PresentationKind::scored;
+    trial.scored = of.kind == design::PresentationKind::scored;
     trial.counted = trial.scored && outcomes.sessions.at(of.session - 1).counted;
     trial.response = of.answered;
     outcomes.trials.push_back(trial);
   }
 
-  Outcomes outcomes;
+  analysis::Outcomes outcomes;
 };
 
 }  // namespace touchtrial

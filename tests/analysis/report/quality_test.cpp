@@ -15,9 +15,10 @@ namespace {
 
 /// Three sessions: one right but for a time-out, one not valid, one stopped after four trials.
 void fill(FakeStudy& study) {
-  study.add({.participant = "P01", .enrolment = 1, .answers = [](const Presentation& shown) {
-               return shown.trial == 3 ? std::nullopt : std::optional(shown.stimulus.class_index);
-             }});
+  study.add(
+      {.participant = "P01", .enrolment = 1, .answers = [](const design::Presentation& shown) {
+         return shown.trial == 3 ? std::nullopt : std::optional(shown.stimulus.class_index);
+       }});
   study.add({.participant = "P02",
              .enrolment = 2,
              .answers = FakeStudy::always_right(),
@@ -33,15 +34,15 @@ void fill(FakeStudy& study) {
 }  // namespace
 
 TEST_CASE("make_quality counts sessions, answers and validity without a key") {
-  FakeStudy study(Protocol::classification);
+  FakeStudy study(design::Protocol::classification);
   fill(study);
-  const QualityReport report = make_quality(study.store());
+  const analysis::QualityReport report = analysis::make_quality(study.store());
   CHECK(report.participants == 2);
   CHECK(report.trials == 24);
   CHECK(report.sessions.completed == 2);
   CHECK(report.sessions.stopped == 1);
   CHECK(report.sessions.withdrawn == 0);
-  const TrialQuality& quality = report.quality;
+  const analysis::TrialQuality& quality = report.quality;
   CHECK(quality.presented == 28);
   CHECK(quality.answered == 27);
   CHECK(quality.no_response == 1);
@@ -54,29 +55,30 @@ TEST_CASE("make_quality counts sessions, answers and validity without a key") {
 }
 
 TEST_CASE("make_quality counts every session once, and replaced ones apart") {
-  FakeStudy study(Protocol::classification);
+  FakeStudy study(design::Protocol::classification);
   fill(study);
   using std::chrono::milliseconds;
   study.store().replace(3, "P04", milliseconds(10), "went home");
   study.add({.participant = "P04", .enrolment = 3, .answers = FakeStudy::always_right()});
   study.store().exclude(1, milliseconds(20), "fell asleep");
   study.store().replace(1, "P05", milliseconds(30), "place is wanted");
-  const SessionCounts counts = make_quality(study.store()).sessions;
+  const analysis::SessionCounts counts = analysis::make_quality(study.store()).sessions;
   CHECK(counts.completed == 2);
   CHECK(counts.stopped == 0);
   CHECK(counts.excluded == 0);
   CHECK(counts.replaced == 2);
   study.store().withdraw(1, milliseconds(40), "");
-  CHECK(make_quality(study.store()).sessions.replaced == 1);
-  CHECK(make_quality(study.store()).sessions.withdrawn == 1);
-  CHECK(quality_text(make_quality(study.store())).find("replaced") != std::string::npos);
+  CHECK(analysis::make_quality(study.store()).sessions.replaced == 1);
+  CHECK(analysis::make_quality(study.store()).sessions.withdrawn == 1);
+  CHECK(analysis::quality_text(analysis::make_quality(study.store())).find("replaced") !=
+        std::string::npos);
 }
 
 TEST_CASE("A quality report names no class, no image and no method") {
-  FakeStudy study(Protocol::comparison, {.label = "petrified wood"});
+  FakeStudy study(design::Protocol::comparison, {.label = "petrified wood"});
   study.add({.participant = "P01", .answers = FakeStudy::always_right()});
-  const QualityReport report = make_quality(study.store());
-  for (const std::string& text : {quality_json(report), quality_text(report)}) {
+  const analysis::QualityReport report = analysis::make_quality(study.store());
+  for (const std::string& text : {analysis::quality_json(report), analysis::quality_text(report)}) {
     for (const char* secret : {"petrified", "cloth", "straw", ".png", "adaptive", "tv-gabor"}) {
       CHECK_FALSE(contains(text, secret));
     }
@@ -84,9 +86,10 @@ TEST_CASE("A quality report names no class, no image and no method") {
 }
 
 TEST_CASE("A quality report says how the study stands") {
-  FakeStudy study(Protocol::classification);
-  CHECK(make_quality(study.store()).state.closed == false);
-  const auto open = nlohmann::json::parse(quality_json(make_quality(study.store())));
+  FakeStudy study(design::Protocol::classification);
+  CHECK(analysis::make_quality(study.store()).state.closed == false);
+  const auto open =
+      nlohmann::json::parse(analysis::quality_json(analysis::make_quality(study.store())));
   CHECK(open["state"] == "collecting");
   CHECK(open["blinded"] == true);
   CHECK(open["interim"] == false);
@@ -94,68 +97,72 @@ TEST_CASE("A quality report says how the study stands") {
   CHECK(open["stamp"] == "SIMULATED");
   CHECK(open["validity"]["share"].is_null());
   study.store().close_study(std::chrono::seconds(1));
-  CHECK(nlohmann::json::parse(quality_json(make_quality(study.store())))["state"] == "closed");
+  CHECK(nlohmann::json::parse(
+            analysis::quality_json(analysis::make_quality(study.store())))["state"] == "closed");
   study.store().unblind(std::chrono::seconds(2), "planned", false);
-  const auto done = nlohmann::json::parse(quality_json(make_quality(study.store())));
+  const auto done =
+      nlohmann::json::parse(analysis::quality_json(analysis::make_quality(study.store())));
   CHECK(done["state"] == "unblinded");
   CHECK(done["blinded"] == false);
 }
 
 TEST_CASE("A quality report shows how the servo kept its time, where that was recorded") {
-  FakeStudy study(Protocol::classification, {.simulated = false});
+  FakeStudy study(design::Protocol::classification, {.simulated = false});
   study.add({.participant = "P01", .answers = FakeStudy::always_right()});
-  CHECK_FALSE(make_quality(study.store()).servo);
-  CHECK_FALSE(contains(quality_text(make_quality(study.store())), "servo in real time"));
+  CHECK_FALSE(analysis::make_quality(study.store()).servo);
+  CHECK_FALSE(contains(analysis::quality_text(analysis::make_quality(study.store())),
+                       "servo in real time"));
 
   FakeSession session{.participant = "P02", .enrolment = 2, .answers = FakeStudy::always_right()};
-  session.station = StationRecord();
+  session.station = store::StationRecord();
   session.station->scheduling = "fifo 80, memory locked";
-  session.servo = ServoHealth{.rate_hz = 999.5,
-                              .lateness_p50_us = 3.0,
-                              .lateness_p99_us = 63.0,
-                              .lateness_p999_us = 210.0,
-                              .lateness_worst_us = 1700.0,
-                              .lost = 2,
-                              .held = 3};
+  session.servo = store::ServoHealth{.rate_hz = 999.5,
+                                     .lateness_p50_us = 3.0,
+                                     .lateness_p99_us = 63.0,
+                                     .lateness_p999_us = 210.0,
+                                     .lateness_worst_us = 1700.0,
+                                     .lost = 2,
+                                     .held = 3};
   study.add(session);
-  const QualityReport report = make_quality(study.store());
+  const analysis::QualityReport report = analysis::make_quality(study.store());
   REQUIRE(report.servo);
   CHECK(report.servo->trials == 12);
   CHECK(report.servo->median_p99_us == 63.0);
   CHECK(report.servo->worst_us == 1700.0);
   CHECK(report.servo->lost == 24);
-  const std::string text = quality_text(report);
+  const std::string text = analysis::quality_text(report);
   for (const char* figure : {"63 us", "1700 us", "999.5 Hz", "fifo 80, memory locked"}) {
     CHECK(contains(text, figure));
   }
-  const auto json = nlohmann::json::parse(quality_json(report));
+  const auto json = nlohmann::json::parse(analysis::quality_json(report));
   CHECK(json["servo"]["lateness_us"]["highest_p99"] == 63.0);
   CHECK(json["servo"]["scheduling"].size() == 1);
 }
 
 TEST_CASE("What was seen on a screen says so in every report") {
-  FakeStudy study(Protocol::classification, {.simulated = false, .pilot = true});
+  FakeStudy study(design::Protocol::classification, {.simulated = false, .pilot = true});
   FakeSession session{.participant = "P01", .answers = FakeStudy::always_right()};
-  session.station = StationRecord();
+  session.station = store::StationRecord();
   session.station->visual = true;
   study.add(session);
-  CHECK(contains(quality_text(make_quality(study.store())), "Seen on a screen, not felt"));
+  CHECK(contains(analysis::quality_text(analysis::make_quality(study.store())),
+                 "Seen on a screen, not felt"));
   study.close_and_unblind();
-  const Outcomes outcomes = load_outcomes(study.store(), study.key());
+  const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
   CHECK(outcomes.visual);
-  const std::vector<std::string> warnings = make_report(outcomes).warnings;
+  const std::vector<std::string> warnings = analysis::make_report(outcomes).warnings;
   CHECK(std::ranges::any_of(warnings, [](const std::string& warning) {
     return contains(warning, "Seen on a screen, not felt");
   }));
 }
 
 TEST_CASE("A quality report of real participants carries no stamp") {
-  FakeStudy study(Protocol::classification, {.simulated = false});
-  const QualityReport report = make_quality(study.store());
-  const auto json = nlohmann::json::parse(quality_json(report));
+  FakeStudy study(design::Protocol::classification, {.simulated = false});
+  const analysis::QualityReport report = analysis::make_quality(study.store());
+  const auto json = nlohmann::json::parse(analysis::quality_json(report));
   CHECK(json["simulated"] == false);
   CHECK_FALSE(json.contains("stamp"));
-  CHECK_FALSE(contains(quality_text(report), "SIMULATED"));
+  CHECK_FALSE(contains(analysis::quality_text(report), "SIMULATED"));
 }
 
 }  // namespace touchtrial

@@ -27,14 +27,14 @@ HandMadeOutcomes five_trials() {
   return made;
 }
 
-using Groups = std::vector<std::pair<std::string, Proportion>>;
+using Groups = std::vector<std::pair<std::string, analysis::Proportion>>;
 
-Groups groups_of(const Outcomes& outcomes, BreakdownKind kind, int method = 0) {
+Groups groups_of(const analysis::Outcomes& outcomes, analysis::BreakdownKind kind, int method = 0) {
   Groups groups;
-  for (const Breakdown& one : breakdowns(outcomes, method)) {
+  for (const analysis::Breakdown& one : analysis::breakdowns(outcomes, method)) {
     if (one.kind != kind) continue;
-    for (const GroupAccuracy& group : one.groups) {
-      CHECK(group.wilson == wilson_interval(group.accuracy));
+    for (const analysis::GroupAccuracy& group : one.groups) {
+      CHECK(group.wilson == analysis::wilson_interval(group.accuracy));
       groups.emplace_back(group.group, group.accuracy);
     }
   }
@@ -42,7 +42,7 @@ Groups groups_of(const Outcomes& outcomes, BreakdownKind kind, int method = 0) {
 }
 
 /// Three participants; the first method always right, the second with bark alone, the third never.
-StudyReport three_methods() {
+analysis::StudyReport three_methods() {
   HandMadeOutcomes made({"a", "b", "c"});
   for (int session = 1; session <= 3; ++session) {
     made.session();
@@ -56,42 +56,43 @@ StudyReport three_methods() {
       }
     }
   }
-  return make_report(made.outcomes);
+  return analysis::make_report(made.outcomes);
 }
 
 }  // namespace
 
 TEST_CASE("Accuracy is broken down by a trial's place and by what came before") {
-  const Outcomes outcomes = five_trials().outcomes;
-  CHECK(groups_of(outcomes, BreakdownKind::trial) ==
+  const analysis::Outcomes outcomes = five_trials().outcomes;
+  CHECK(groups_of(outcomes, analysis::BreakdownKind::trial) ==
         Groups{{"1", {1, 1}}, {"2", {1, 0}}, {"3", {1, 0}}, {"4", {1, 1}}});
-  CHECK(groups_of(outcomes, BreakdownKind::previous_stimulus) ==
+  CHECK(groups_of(outcomes, analysis::BreakdownKind::previous_stimulus) ==
         Groups{{"bark", {2, 1}}, {"cloth", {1, 0}}, {"first of its block", {1, 1}}});
-  CHECK(groups_of(outcomes, BreakdownKind::previous_response) ==
+  CHECK(groups_of(outcomes, analysis::BreakdownKind::previous_response) ==
         Groups{{"bark", {2, 0}}, {"no response", {1, 1}}, {"first of its block", {1, 1}}});
-  CHECK(groups_of(outcomes, BreakdownKind::exemplar).empty());
-  CHECK(groups_of(outcomes, BreakdownKind::order_group).empty());
+  CHECK(groups_of(outcomes, analysis::BreakdownKind::exemplar).empty());
+  CHECK(groups_of(outcomes, analysis::BreakdownKind::order_group).empty());
 }
 
 TEST_CASE("A catch trial and a lead-in come before, but have no accuracy") {
   HandMadeOutcomes made;
   made.session();
-  made.trial({.felt = kCloth, .answered = kCloth, .kind = PresentationKind::lead_in});
+  made.trial({.felt = kCloth, .answered = kCloth, .kind = design::PresentationKind::lead_in});
   made.trial({.felt = kBark, .answered = kBark});
-  made.trial({.answered = kBark, .kind = PresentationKind::catch_trial});
+  made.trial({.answered = kBark, .kind = design::PresentationKind::catch_trial});
   made.trial({.felt = kCloth, .answered = kBark});
-  CHECK(groups_of(made.outcomes, BreakdownKind::previous_stimulus) ==
+  CHECK(groups_of(made.outcomes, analysis::BreakdownKind::previous_stimulus) ==
         Groups{{"cloth", {1, 1}}, {"no texture", {1, 0}}});
-  CHECK(groups_of(made.outcomes, BreakdownKind::trial) == Groups{{"1", {1, 1}}, {"2", {1, 0}}});
+  CHECK(groups_of(made.outcomes, analysis::BreakdownKind::trial) ==
+        Groups{{"1", {1, 1}}, {"2", {1, 0}}});
 }
 
 TEST_CASE("Images of a class are groups where a class has several") {
   HandMadeOutcomes made = five_trials();
   made.outcomes.exemplars[kBark] = {"oak.png", "pine.png"};
   made.outcomes.trials[2].stimulus.exemplar = 1;
-  CHECK(groups_of(made.outcomes, BreakdownKind::exemplar) == Groups{{"bark: oak.png", {1, 1}},
-                                                                    {"bark: pine.png", {1, 0}},
-                                                                    {"cloth: cloth.png", {2, 1}}});
+  CHECK(
+      groups_of(made.outcomes, analysis::BreakdownKind::exemplar) ==
+      Groups{{"bark: oak.png", {1, 1}}, {"bark: pine.png", {1, 0}}, {"cloth: cloth.png", {2, 1}}});
 }
 
 TEST_CASE("Order groups are the orders in which methods came") {
@@ -100,20 +101,21 @@ TEST_CASE("Order groups are the orders in which methods came") {
     made.session();
     made.trial({.session = session, .felt = kBark, .answered = session == 2 ? kCloth : kBark});
   }
-  std::map<std::string, Proportion> groups;
-  for (const auto& [group, accuracy] : groups_of(made.outcomes, BreakdownKind::order_group)) {
+  std::map<std::string, analysis::Proportion> groups;
+  for (const auto& [group, accuracy] :
+       groups_of(made.outcomes, analysis::BreakdownKind::order_group)) {
     groups[group] = accuracy;
   }
   const auto name = [](int enrolment) {
-    return williams_row(2, enrolment)[0] == 0 ? "a, then b" : "b, then a";
+    return design::williams_row(2, enrolment)[0] == 0 ? "a, then b" : "b, then a";
   };
   REQUIRE(groups.size() == 2);
-  CHECK(groups[name(1)] == Proportion{2, 2});  // the first and third enrolled
-  CHECK(groups[name(2)] == Proportion{1, 0});
+  CHECK(groups[name(1)] == analysis::Proportion{2, 2});  // the first and third enrolled
+  CHECK(groups[name(2)] == analysis::Proportion{1, 0});
 }
 
 TEST_CASE("Reaction times are of answered trials, by class and all together") {
-  const auto times = reaction_times(five_trials().outcomes, 0);
+  const auto times = analysis::reaction_times(five_trials().outcomes, 0);
   REQUIRE(times.size() == 3);
   CHECK(times[kBark].from_plane_on.n == 1);
   CHECK(times[kBark].from_plane_on.median == 1.0);
@@ -128,27 +130,27 @@ TEST_CASE("Reaction times are of answered trials, by class and all together") {
 }
 
 TEST_CASE("Robustness leaves out and puts back what its subsets say") {
-  const auto subsets = robustness(five_trials().outcomes, 0);
+  const auto subsets = analysis::robustness(five_trials().outcomes, 0);
   REQUIRE(subsets.size() == 4);
-  CHECK(subsets[0].subset == TrialSubset::counted);
-  CHECK(subsets[0].pooled == Proportion{4, 2});
-  CHECK(subsets[1].subset == TrialSubset::answered);
-  CHECK(subsets[1].pooled == Proportion{3, 2});
-  CHECK(subsets[2].subset == TrialSubset::valid);
-  CHECK(subsets[2].pooled == Proportion{3, 1});
-  CHECK(subsets[3].subset == TrialSubset::with_excluded_sessions);
-  CHECK(subsets[3].pooled == Proportion{5, 3});
+  CHECK(subsets[0].subset == analysis::TrialSubset::counted);
+  CHECK(subsets[0].pooled == analysis::Proportion{4, 2});
+  CHECK(subsets[1].subset == analysis::TrialSubset::answered);
+  CHECK(subsets[1].pooled == analysis::Proportion{3, 2});
+  CHECK(subsets[2].subset == analysis::TrialSubset::valid);
+  CHECK(subsets[2].pooled == analysis::Proportion{3, 1});
+  CHECK(subsets[3].subset == analysis::TrialSubset::with_excluded_sessions);
+  CHECK(subsets[3].pooled == analysis::Proportion{5, 3});
   CHECK(subsets[3].mean.mean.value() == Approx(0.75));
 }
 
 TEST_CASE("An excluded participant who began anew is not put back twice") {
   HandMadeOutcomes made = five_trials();
   made.outcomes.sessions[1].row.replaced_by = "P2";
-  CHECK(robustness(made.outcomes, 0)[3].pooled == Proportion{4, 2});
+  CHECK(analysis::robustness(made.outcomes, 0)[3].pooled == analysis::Proportion{4, 2});
 }
 
 TEST_CASE("Of three methods every two are compared, adjusted, and all at once") {
-  const StudyReport report = three_methods();
+  const analysis::StudyReport report = three_methods();
   CHECK_FALSE(report.comparison.has_value());
   REQUIRE(report.pairs.size() == 3);
   const double differences[] = {0.5, 1.0, 0.5};
@@ -158,9 +160,9 @@ TEST_CASE("Of three methods every two are compared, adjusted, and all at once") 
     CHECK(report.pairs[i].p_holm == 0.75);
     CHECK_FALSE(report.pairs[i].mcnemar_mid_p.has_value());  // two pairs a participant
   }
-  const ClassComparison& bark = report.pairs[1].classes[kBark];
-  CHECK(bark.first == Proportion{3, 3});
-  CHECK(bark.second == Proportion{3, 0});
+  const analysis::ClassComparison& bark = report.pairs[1].classes[kBark];
+  CHECK(bark.first == analysis::Proportion{3, 3});
+  CHECK(bark.second == analysis::Proportion{3, 0});
   CHECK(bark.mcnemar_mid_p.value() == Approx(0.125));  // 2 / 8 less half of that
   CHECK(report.pairs[0].classes[kBark].paired.difference.value() == Approx(0.0));
   REQUIRE(report.together.has_value());
@@ -169,8 +171,8 @@ TEST_CASE("Of three methods every two are compared, adjusted, and all at once") 
 }
 
 TEST_CASE("Three methods stand in JSON and at the terminal") {
-  const StudyReport report = three_methods();
-  const auto json = nlohmann::json::parse(report_json(report));
+  const analysis::StudyReport report = three_methods();
+  const auto json = nlohmann::json::parse(analysis::report_json(report));
   CHECK_FALSE(json.contains("comparison"));
   CHECK(json["pairs"][1]["first"] == "a");
   CHECK(json["pairs"][1]["second"] == "c");
@@ -179,7 +181,7 @@ TEST_CASE("Three methods stand in JSON and at the terminal") {
   for (const auto& key : json["pairs"][0]["references"]) {
     CHECK(json["references"].contains(key.get<std::string>()));
   }
-  const std::string text = report_text(report);
+  const std::string text = analysis::report_text(report);
   CHECK(contains(text, "a - c"));
   CHECK(contains(text, "Cochran's Q = 9.00, 2 degrees of freedom"));
 }
@@ -187,7 +189,7 @@ TEST_CASE("Three methods stand in JSON and at the terminal") {
 TEST_CASE("Figures do not depend on the order in which trials are read") {
   HandMadeOutcomes made = five_trials();
   const auto figures = [&] {
-    auto json = nlohmann::json::parse(report_json(make_report(made.outcomes)));
+    auto json = nlohmann::json::parse(analysis::report_json(analysis::make_report(made.outcomes)));
     // A mean over random deals, which are dealt to trials as they come.
     json["methods"][0]["information_transfer"].erase("null_mean");
     return json;

@@ -13,7 +13,7 @@ namespace touchtrial {
 namespace {
 
 /// The figures of all n^n ways to draw five participants, sorted.
-std::vector<double> every_draw(const std::vector<Proportion>& five) {
+std::vector<double> every_draw(const std::vector<analysis::Proportion>& five) {
   std::vector<double> shares;
   for (int draw = 0; draw < 3125; ++draw) {
     double n = 0.0;
@@ -31,9 +31,9 @@ std::vector<double> every_draw(const std::vector<Proportion>& five) {
 }  // namespace
 
 TEST_CASE("cluster_bootstrap finds the quantiles of all possible draws") {
-  const std::vector<Proportion> five{{25, 12}, {24, 20}, {25, 25}, {20, 13}, {25, 18}};
+  const std::vector<analysis::Proportion> five{{25, 12}, {24, 20}, {25, 25}, {20, 13}, {25, 18}};
   const std::vector<double> shares = every_draw(five);
-  const Interval interval = *cluster_bootstrap(five, 0, 99'999);
+  const analysis::Interval interval = *analysis::cluster_bootstrap(five, 0, 99'999);
   // Five participants: t of 4 degrees is 2.7764, times sqrt(5 / 4) 3.1041; below minus that lie
   // .000954. Four standard errors of that share in 99,999 draws are .0004.
   CHECK(interval.low >= shares[static_cast<std::size_t>(0.0005 * 3125)]);
@@ -43,16 +43,16 @@ TEST_CASE("cluster_bootstrap finds the quantiles of all possible draws") {
 }
 
 TEST_CASE("Of two participants a bootstrap gives the two") {
-  const std::vector<Proportion> two{{25, 10}, {25, 20}};
-  CHECK(cluster_bootstrap(two) == Interval{0.4, 0.8});
+  const std::vector<analysis::Proportion> two{{25, 10}, {25, 20}};
+  CHECK(analysis::cluster_bootstrap(two) == analysis::Interval{0.4, 0.8});
   const std::vector<double> values{-0.25, 0.5};
-  CHECK(bootstrap_mean(values) == Interval{-0.25, 0.5});
+  CHECK(analysis::bootstrap_mean(values) == analysis::Interval{-0.25, 0.5});
 }
 
 TEST_CASE("cluster_bootstrap weighs participants by their trials") {
   // All draws of one participant only are a quarter each; the mixed one is 10/110, not the mean.
-  const std::vector<Proportion> two{{100, 0}, {10, 10}};
-  CHECK(cluster_bootstrap(two, 0, 9999, 0.2)->low == Approx(10.0 / 110.0));
+  const std::vector<analysis::Proportion> two{{100, 0}, {10, 10}};
+  CHECK(analysis::cluster_bootstrap(two, 0, 9999, 0.2)->low == Approx(10.0 / 110.0));
 }
 
 TEST_CASE("bootstrap_mean of many values nears the normal interval of their mean") {
@@ -64,30 +64,30 @@ TEST_CASE("bootstrap_mean of many values nears the normal interval of their mean
   double squares = 0.0;
   for (const double value : values) squares += (value - mean) * (value - mean);
   const double error = std::sqrt(squares) / 400.0;
-  const Interval interval = *bootstrap_mean(values);
+  const analysis::Interval interval = *analysis::bootstrap_mean(values);
   // The Monte-Carlo error of a 2.5 % quantile of 9,999 is .027 standard errors of the mean.
   CHECK(std::abs(interval.low - (mean - 1.96 * error)) < 0.15 * error);
   CHECK(std::abs(interval.high - (mean + 1.96 * error)) < 0.15 * error);
 }
 
 TEST_CASE("A bootstrap repeats itself, and another index draws anew") {
-  std::vector<Proportion> participants;
+  std::vector<analysis::Proportion> participants;
   std::vector<double> values;
   for (int i = 0; i < 30; ++i) {
     participants.push_back({25, (7 * i) % 26});
     values.push_back(std::sin(i));
   }
-  CHECK(cluster_bootstrap(participants) == cluster_bootstrap(participants));
-  CHECK(bootstrap_mean(values) == bootstrap_mean(values));
-  CHECK_FALSE(bootstrap_mean(values, 1) == bootstrap_mean(values, 2));
+  CHECK(analysis::cluster_bootstrap(participants) == analysis::cluster_bootstrap(participants));
+  CHECK(analysis::bootstrap_mean(values) == analysis::bootstrap_mean(values));
+  CHECK_FALSE(analysis::bootstrap_mean(values, 1) == analysis::bootstrap_mean(values, 2));
 }
 
 TEST_CASE("A bootstrap moves and stretches with its values") {
   const std::vector<double> values{0.1, 0.4, -0.3, 0.25, 0.9, 0.0, -0.6};
   std::vector<double> other;
   for (const double value : values) other.push_back(3.0 - 2.0 * value);
-  const Interval interval = *bootstrap_mean(values, 5);
-  const Interval moved = *bootstrap_mean(other, 5);
+  const analysis::Interval interval = *analysis::bootstrap_mean(values, 5);
+  const analysis::Interval moved = *analysis::bootstrap_mean(other, 5);
   CHECK(moved.low == Approx(3.0 - 2.0 * interval.high).margin(1e-12));
   CHECK(moved.high == Approx(3.0 - 2.0 * interval.low).margin(1e-12));
 }
@@ -95,42 +95,42 @@ TEST_CASE("A bootstrap moves and stretches with its values") {
 TEST_CASE("A higher level makes a bootstrap's interval wider") {
   std::vector<double> values(20);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(i * i);
-  const Interval narrow = *bootstrap_mean(values, 0, 999, 0.5);
-  const Interval wide = *bootstrap_mean(values, 0, 999, 0.99);
+  const analysis::Interval narrow = *analysis::bootstrap_mean(values, 0, 999, 0.5);
+  const analysis::Interval wide = *analysis::bootstrap_mean(values, 0, 999, 0.99);
   CHECK(wide.low < narrow.low);
   CHECK(narrow.low < narrow.high);
   CHECK(narrow.high < wide.high);
 }
 
 TEST_CASE("Where all participants are alike a bootstrap knows no spread") {
-  const std::vector<Proportion> alike(10, Proportion{25, 25});
-  CHECK(cluster_bootstrap(alike) == Interval{1.0, 1.0});
-  CHECK(bootstrap_mean(std::vector<double>(10, 0.5)) == Interval{0.5, 0.5});
+  const std::vector<analysis::Proportion> alike(10, analysis::Proportion{25, 25});
+  CHECK(analysis::cluster_bootstrap(alike) == analysis::Interval{1.0, 1.0});
+  CHECK(analysis::bootstrap_mean(std::vector<double>(10, 0.5)) == analysis::Interval{0.5, 0.5});
 }
 
 TEST_CASE("A bootstrap needs two participants and says nothing of fewer") {
-  const std::vector<Proportion> one{{25, 20}};
-  CHECK_FALSE(cluster_bootstrap(one).has_value());
-  CHECK_FALSE(cluster_bootstrap({}).has_value());
-  CHECK_FALSE(bootstrap_mean(std::vector<double>{0.3}).has_value());
+  const std::vector<analysis::Proportion> one{{25, 20}};
+  CHECK_FALSE(analysis::cluster_bootstrap(one).has_value());
+  CHECK_FALSE(analysis::cluster_bootstrap({}).has_value());
+  CHECK_FALSE(analysis::bootstrap_mean(std::vector<double>{0.3}).has_value());
 }
 
 TEST_CASE("A single draw is its own interval") {
   const std::vector<double> values{1.0, 2.0, 4.0};
-  const Interval interval = *bootstrap_mean(values, 0, 1);
+  const analysis::Interval interval = *analysis::bootstrap_mean(values, 0, 1);
   CHECK(interval.low == interval.high);
 }
 
 TEST_CASE("A bootstrap refuses what cannot be") {
-  const std::vector<Proportion> empty{{25, 20}, {0, 0}};
-  CHECK_THROWS_AS(cluster_bootstrap(empty), std::invalid_argument);
-  const std::vector<Proportion> impossible{{25, 20}, {5, 6}};
-  CHECK_THROWS_AS(cluster_bootstrap(impossible), std::invalid_argument);
-  const std::vector<Proportion> two{{25, 20}, {25, 10}};
-  CHECK_THROWS_AS(cluster_bootstrap(two, 0, 0), std::invalid_argument);
-  CHECK_THROWS_AS(cluster_bootstrap(two, 0, 99, 1.0), std::invalid_argument);
+  const std::vector<analysis::Proportion> empty{{25, 20}, {0, 0}};
+  CHECK_THROWS_AS(analysis::cluster_bootstrap(empty), std::invalid_argument);
+  const std::vector<analysis::Proportion> impossible{{25, 20}, {5, 6}};
+  CHECK_THROWS_AS(analysis::cluster_bootstrap(impossible), std::invalid_argument);
+  const std::vector<analysis::Proportion> two{{25, 20}, {25, 10}};
+  CHECK_THROWS_AS(analysis::cluster_bootstrap(two, 0, 0), std::invalid_argument);
+  CHECK_THROWS_AS(analysis::cluster_bootstrap(two, 0, 99, 1.0), std::invalid_argument);
   const std::vector<double> infinite{1.0, std::numeric_limits<double>::infinity()};
-  CHECK_THROWS_AS(bootstrap_mean(infinite), std::invalid_argument);
+  CHECK_THROWS_AS(analysis::bootstrap_mean(infinite), std::invalid_argument);
 }
 
 }  // namespace touchtrial

@@ -21,7 +21,7 @@ double p_by_listing(const std::vector<Occasions>& participants) {
   const auto together = [](const std::vector<Occasions>& all) {
     Occasions flat;
     for (const Occasions& mine : all) flat.insert(flat.end(), mine.begin(), mine.end());
-    return cochran_q(flat)->q;
+    return analysis::cochran_q(flat)->q;
   };
   const double observed = together(participants);
   int as_far = 0;
@@ -47,7 +47,7 @@ double p_by_listing(const std::vector<Occasions>& participants) {
 
 // Expected values: statsmodels 0.13, cochrans_q.
 TEST_CASE("cochran_q gives the values of an independent implementation") {
-  const CochranQ result = *cochran_q(kEight);
+  const analysis::CochranQ result = *analysis::cochran_q(kEight);
   CHECK(result.q == Approx(7.0).epsilon(1e-12));
   CHECK(result.degrees_of_freedom == 2);
   CHECK(result.p == Approx(0.0301973834223185).epsilon(1e-12));
@@ -58,7 +58,7 @@ TEST_CASE("Of two methods cochran_q is McNemar's chi-square") {
   for (int i = 0; i < 9; ++i) occasions.push_back({true, false});
   for (int i = 0; i < 4; ++i) occasions.push_back({false, true});
   for (int i = 0; i < 7; ++i) occasions.push_back({true, true});
-  const CochranQ result = *cochran_q(occasions);
+  const analysis::CochranQ result = *analysis::cochran_q(occasions);
   CHECK(result.q == Approx(25.0 / 13.0));
   CHECK(result.p == Approx(std::erfc(std::sqrt(25.0 / 13.0 / 2.0))));
 }
@@ -68,15 +68,15 @@ TEST_CASE("cochran_q takes no notice of occasions that tell nothing, nor of the 
   for (std::vector<bool>& occasion : occasions) std::reverse(occasion.begin(), occasion.end());
   occasions.push_back({true, true, true});
   occasions.push_back({false, false, false});
-  CHECK(cochran_q(occasions)->q == Approx(cochran_q(kEight)->q));
+  CHECK(analysis::cochran_q(occasions)->q == Approx(analysis::cochran_q(kEight)->q));
 }
 
 TEST_CASE("cochran_q is 0 with p 1 where methods differ and balance, and nothing where none does") {
-  CHECK(cochran_q(Occasions{{true, false}, {false, true}})->q == 0.0);
-  CHECK(cochran_q(Occasions{{true, false}, {false, true}})->p == 1.0);
-  CHECK_FALSE(cochran_q({}).has_value());
-  CHECK_FALSE(cochran_q(Occasions{{true, true}, {false, false}}).has_value());
-  CHECK_FALSE(cochran_q(Occasions{{true}, {false}}).has_value());
+  CHECK(analysis::cochran_q(Occasions{{true, false}, {false, true}})->q == 0.0);
+  CHECK(analysis::cochran_q(Occasions{{true, false}, {false, true}})->p == 1.0);
+  CHECK_FALSE(analysis::cochran_q({}).has_value());
+  CHECK_FALSE(analysis::cochran_q(Occasions{{true, true}, {false, false}}).has_value());
+  CHECK_FALSE(analysis::cochran_q(Occasions{{true}, {false}}).has_value());
 }
 
 TEST_CASE("cochran_q_permuted_p nears the p of all exchanges") {
@@ -88,29 +88,32 @@ TEST_CASE("cochran_q_permuted_p nears the p of all exchanges") {
   const double exact = p_by_listing(participants);
   const double error = std::sqrt(exact * (1.0 - exact) / 9999.0);
   CHECK(exact < 0.2);
-  CHECK(std::abs(*cochran_q_permuted_p(participants) - exact) < 4.0 * error + 1e-4);
+  CHECK(std::abs(*analysis::cochran_q_permuted_p(participants) - exact) < 4.0 * error + 1e-4);
 }
 
 TEST_CASE("cochran_q_permuted_p treats a participant as one, however many occasions repeat") {
   const std::vector<Occasions> once{{{true, false, false}}, {{true, false, false}}};
   const std::vector<Occasions> often{Occasions(50, {true, false, false}),
                                      Occasions(50, {true, false, false})};
-  CHECK(cochran_q_permuted_p(once) == cochran_q_permuted_p(often));
-  CHECK(*cochran_q_permuted_p(often) == Approx(1.0 / 3.0).margin(0.02));
+  CHECK(analysis::cochran_q_permuted_p(once) == analysis::cochran_q_permuted_p(often));
+  CHECK(*analysis::cochran_q_permuted_p(often) == Approx(1.0 / 3.0).margin(0.02));
 }
 
 TEST_CASE("cochran_q_permuted_p is nothing where no method differs, and repeats itself") {
-  CHECK_FALSE(cochran_q_permuted_p({}).has_value());
-  CHECK_FALSE(cochran_q_permuted_p(std::vector<Occasions>{{}, {{true, true}}}).has_value());
+  CHECK_FALSE(analysis::cochran_q_permuted_p({}).has_value());
+  CHECK_FALSE(
+      analysis::cochran_q_permuted_p(std::vector<Occasions>{{}, {{true, true}}}).has_value());
   const std::vector<Occasions> one{kEight};
-  CHECK(cochran_q_permuted_p(one, 99) == cochran_q_permuted_p(one, 99));
+  CHECK(analysis::cochran_q_permuted_p(one, 99) == analysis::cochran_q_permuted_p(one, 99));
 }
 
 TEST_CASE("cochran_q refuses occasions of unequal length") {
   const Occasions ragged{{true, false}, {true}};
-  CHECK_THROWS_AS(cochran_q(ragged), std::invalid_argument);
-  CHECK_THROWS_AS(cochran_q_permuted_p(std::vector<Occasions>{ragged}), std::invalid_argument);
-  CHECK_THROWS_AS(cochran_q_permuted_p(std::vector<Occasions>{kEight}, 0), std::invalid_argument);
+  CHECK_THROWS_AS(analysis::cochran_q(ragged), std::invalid_argument);
+  CHECK_THROWS_AS(analysis::cochran_q_permuted_p(std::vector<Occasions>{ragged}),
+                  std::invalid_argument);
+  CHECK_THROWS_AS(analysis::cochran_q_permuted_p(std::vector<Occasions>{kEight}, 0),
+                  std::invalid_argument);
 }
 
 }  // namespace touchtrial

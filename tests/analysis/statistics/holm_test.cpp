@@ -13,7 +13,7 @@ namespace touchtrial {
 TEST_CASE("holm_adjusted gives the values of an independent implementation") {
   const std::vector<double> p{0.01, 0.04, 0.03, 0.005, 0.5};
   const std::vector<double> expected{0.04, 0.09, 0.09, 0.025, 0.5};
-  const std::vector<double> adjusted = holm_adjusted(p);
+  const std::vector<double> adjusted = analysis::holm_adjusted(p);
   REQUIRE(adjusted.size() == expected.size());
   for (std::size_t i = 0; i < p.size(); ++i) {
     CHECK(adjusted[i] == Approx(expected[i]).epsilon(1e-14));
@@ -22,7 +22,7 @@ TEST_CASE("holm_adjusted gives the values of an independent implementation") {
 
 TEST_CASE("holm_adjusted lies between p and Bonferroni's, keeps the order and ends at 1") {
   const std::vector<double> p{0.6, 0.012, 0.012, 0.9, 0.0, 1.0};
-  const std::vector<double> adjusted = holm_adjusted(p);
+  const std::vector<double> adjusted = analysis::holm_adjusted(p);
   for (std::size_t i = 0; i < p.size(); ++i) {
     CHECK(adjusted[i] >= p[i]);
     CHECK(adjusted[i] <= std::min(1.0, 6.0 * p[i]));
@@ -33,14 +33,15 @@ TEST_CASE("holm_adjusted lies between p and Bonferroni's, keeps the order and en
 }
 
 TEST_CASE("holm_adjusted leaves a single p as it is, and nothing as nothing") {
-  CHECK(holm_adjusted(std::vector<double>{0.03}) == std::vector<double>{0.03});
-  CHECK(holm_adjusted({}).empty());
+  CHECK(analysis::holm_adjusted(std::vector<double>{0.03}) == std::vector<double>{0.03});
+  CHECK(analysis::holm_adjusted({}).empty());
 }
 
 TEST_CASE("holm_adjusted refuses what is no p") {
-  CHECK_THROWS_AS(holm_adjusted(std::vector<double>{0.1, 1.1}), std::invalid_argument);
-  CHECK_THROWS_AS(holm_adjusted(std::vector<double>{-0.1}), std::invalid_argument);
-  CHECK_THROWS_AS(holm_adjusted(std::vector<double>{std::nan("")}), std::invalid_argument);
+  CHECK_THROWS_AS(analysis::holm_adjusted(std::vector<double>{0.1, 1.1}), std::invalid_argument);
+  CHECK_THROWS_AS(analysis::holm_adjusted(std::vector<double>{-0.1}), std::invalid_argument);
+  CHECK_THROWS_AS(analysis::holm_adjusted(std::vector<double>{std::nan("")}),
+                  std::invalid_argument);
 }
 
 }  // namespace touchtrial

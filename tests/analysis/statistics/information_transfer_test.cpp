@@ -9,19 +9,19 @@
 namespace touchtrial {
 namespace {
 
-std::vector<Choice> choices(const std::vector<std::vector<int>>& counts) {
-  std::vector<Choice> all;
+std::vector<analysis::Choice> choices(const std::vector<std::vector<int>>& counts) {
+  std::vector<analysis::Choice> all;
   for (int i = 0; i < static_cast<int>(counts.size()); ++i) {
     for (int j = 0; j < static_cast<int>(counts.size()); ++j) {
-      all.insert(all.end(), static_cast<std::size_t>(counts[i][j]), Choice{i, j});
+      all.insert(all.end(), static_cast<std::size_t>(counts[i][j]), analysis::Choice{i, j});
     }
   }
   return all;
 }
 
-InformationTransfer of(const std::vector<std::vector<int>>& counts) {
-  const std::vector<std::vector<Choice>> one{choices(counts)};
-  return information_transfer(static_cast<int>(counts.size()), one);
+analysis::InformationTransfer of(const std::vector<std::vector<int>>& counts) {
+  const std::vector<std::vector<analysis::Choice>> one{choices(counts)};
+  return analysis::information_transfer(static_cast<int>(counts.size()), one);
 }
 
 }  // namespace
@@ -41,18 +41,18 @@ TEST_CASE("Answers that do not depend on the class carry nothing") {
 
 // Expected values: sum of p log2(p / (p_row p_column)) and (K - 1)^2 / (2 n ln 2) in NumPy.
 TEST_CASE("information_transfer gives hand-made examples") {
-  const InformationTransfer two = of({{8, 2}, {3, 7}});
+  const analysis::InformationTransfer two = of({{8, 2}, {3, 7}});
   CHECK(two.raw.value() == Approx(0.19116495692878083).margin(1e-12).epsilon(0));
   CHECK(two.corrected.value() == Approx(0.15509758090655673).margin(1e-12).epsilon(0));
-  const InformationTransfer three = of({{5, 0, 0}, {1, 3, 1}, {0, 2, 3}});
+  const analysis::InformationTransfer three = of({{5, 0, 0}, {1, 3, 1}, {0, 2, 3}});
   CHECK(three.raw.value() == Approx(0.7849625007211563).margin(1e-12).epsilon(0));
   CHECK(three.corrected.value() == Approx(0.5926031619359611).margin(1e-12).epsilon(0));
 }
 
 TEST_CASE("The null mean approaches the mean over all deals of the answers") {
   // Two and two among two classes: of six deals two carry a bit, the others nothing.
-  const std::vector<std::vector<Choice>> one{choices({{2, 0}, {0, 2}})};
-  const double mean = information_transfer(2, one, 0, 20000).null_mean.value();
+  const std::vector<std::vector<analysis::Choice>> one{choices({{2, 0}, {0, 2}})};
+  const double mean = analysis::information_transfer(2, one, 0, 20000).null_mean.value();
   CHECK(mean == Approx(1.0 / 3.0).margin(4.0 * std::sqrt(2.0 / 9.0 / 20000.0)));
 }
 
@@ -66,31 +66,31 @@ TEST_CASE("The null mean of 25 balanced trials of five classes is the known bias
 
 TEST_CASE("Answers are dealt within a participant only") {
   // Each always gives the same answer, so no deal of one's own answers changes anything.
-  const std::vector<std::vector<Choice>> two{{{0, 0}, {0, 0}}, {{1, 1}, {1, 1}}};
-  const InformationTransfer transfer = information_transfer(2, two);
+  const std::vector<std::vector<analysis::Choice>> two{{{0, 0}, {0, 0}}, {{1, 1}, {1, 1}}};
+  const analysis::InformationTransfer transfer = analysis::information_transfer(2, two);
   CHECK(transfer.raw.value() == Approx(1.0).margin(1e-12));
   CHECK(transfer.null_mean.value() == Approx(1.0).margin(1e-12));
 }
 
 TEST_CASE("Trials without a response do not enter information transfer") {
-  const std::vector<std::vector<Choice>> with{
+  const std::vector<std::vector<analysis::Choice>> with{
       {{0, 0}, {1, 1}, {0, std::nullopt}, {1, std::nullopt}}};
-  CHECK(information_transfer(2, with).raw.value() == Approx(1.0).margin(1e-12));
-  const std::vector<std::vector<Choice>> none{{{0, std::nullopt}}};
-  CHECK_FALSE(information_transfer(2, none).raw.has_value());
-  CHECK_FALSE(information_transfer(2, none).null_mean.has_value());
+  CHECK(analysis::information_transfer(2, with).raw.value() == Approx(1.0).margin(1e-12));
+  const std::vector<std::vector<analysis::Choice>> none{{{0, std::nullopt}}};
+  CHECK_FALSE(analysis::information_transfer(2, none).raw.has_value());
+  CHECK_FALSE(analysis::information_transfer(2, none).null_mean.has_value());
 }
 
 TEST_CASE("information_transfer gives the same figures every time") {
-  const InformationTransfer first = of({{8, 2}, {3, 7}});
-  const InformationTransfer again = of({{8, 2}, {3, 7}});
+  const analysis::InformationTransfer first = of({{8, 2}, {3, 7}});
+  const analysis::InformationTransfer again = of({{8, 2}, {3, 7}});
   CHECK(first.null_mean == again.null_mean);
 }
 
 TEST_CASE("information_transfer refuses impossible arguments") {
-  const std::vector<std::vector<Choice>> bad{{{0, 5}}};
-  CHECK_THROWS_AS(information_transfer(2, bad), std::invalid_argument);
-  CHECK_THROWS_AS(information_transfer(2, {}, 0, 0), std::invalid_argument);
+  const std::vector<std::vector<analysis::Choice>> bad{{{0, 5}}};
+  CHECK_THROWS_AS(analysis::information_transfer(2, bad), std::invalid_argument);
+  CHECK_THROWS_AS(analysis::information_transfer(2, {}, 0, 0), std::invalid_argument);
 }
 
 }  // namespace touchtrial

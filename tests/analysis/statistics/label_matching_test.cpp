@@ -11,8 +11,8 @@
 namespace touchtrial {
 namespace {
 
-ConfusionMatrix matrix(std::initializer_list<std::initializer_list<int>> rows) {
-  ConfusionMatrix confusion(static_cast<int>(rows.size()));
+analysis::ConfusionMatrix matrix(std::initializer_list<std::initializer_list<int>> rows) {
+  analysis::ConfusionMatrix confusion(static_cast<int>(rows.size()));
   int i = 0;
   for (const auto& row : rows) {
     int j = 0;
@@ -25,8 +25,8 @@ ConfusionMatrix matrix(std::initializer_list<std::initializer_list<int>> rows) {
   return confusion;
 }
 
-ConfusionMatrix random_matrix(int classes, int trials, RandomStream& random) {
-  ConfusionMatrix confusion(classes);
+analysis::ConfusionMatrix random_matrix(int classes, int trials, RandomStream& random) {
+  analysis::ConfusionMatrix confusion(classes);
   for (int i = 0; i < trials; ++i) {
     confusion.add(
         {static_cast<int>(random.below(classes)), static_cast<int>(random.below(classes))});
@@ -34,7 +34,7 @@ ConfusionMatrix random_matrix(int classes, int trials, RandomStream& random) {
   return confusion;
 }
 
-int trials_of(const ConfusionMatrix& confusion, const std::vector<int>& answer_of) {
+int trials_of(const analysis::ConfusionMatrix& confusion, const std::vector<int>& answer_of) {
   int trials = 0;
   for (int i = 0; i < confusion.classes(); ++i) trials += confusion.count(i, answer_of[i]);
   return trials;
@@ -49,9 +49,9 @@ int kept(const std::vector<int>& answer_of) {
 }  // namespace
 
 TEST_CASE("Somebody who swaps two labels is right in everything after the best exchange") {
-  const LabelMatching best = best_label_matching(matrix(
+  const analysis::LabelMatching best = analysis::best_label_matching(matrix(
       {{5, 0, 0, 0, 0}, {0, 0, 0, 5, 0}, {0, 0, 5, 0, 0}, {0, 5, 0, 0, 0}, {0, 0, 0, 0, 5}}));
-  CHECK(best.accuracy == Proportion{25, 25});
+  CHECK(best.accuracy == analysis::Proportion{25, 25});
   CHECK(best.answer_of == std::vector<int>{0, 3, 2, 1, 4});
 }
 
@@ -59,8 +59,8 @@ TEST_CASE("best_label_matching finds the most trials of all K! matchings, labels
   RandomStream random(1, "label matching test");
   for (int round = 0; round < 120; ++round) {
     const int classes = 2 + round % 5;
-    const ConfusionMatrix confusion = random_matrix(classes, 3 * classes, random);
-    const LabelMatching best = best_label_matching(confusion);
+    const analysis::ConfusionMatrix confusion = random_matrix(classes, 3 * classes, random);
+    const analysis::LabelMatching best = analysis::best_label_matching(confusion);
     REQUIRE(best.accuracy.correct == trials_of(confusion, best.answer_of));
     std::vector<int> any(classes);
     std::iota(any.begin(), any.end(), 0);
@@ -74,19 +74,20 @@ TEST_CASE("best_label_matching finds the most trials of all K! matchings, labels
 }
 
 TEST_CASE("Without anything to tell labels apart best_label_matching keeps them") {
-  const LabelMatching best = best_label_matching(ConfusionMatrix(4));
+  const analysis::LabelMatching best = analysis::best_label_matching(analysis::ConfusionMatrix(4));
   CHECK(best.answer_of == std::vector<int>{0, 1, 2, 3});
-  CHECK(best.accuracy == Proportion{0, 0});
-  CHECK(best_label_matching(ConfusionMatrix(1)).answer_of == std::vector<int>{0});
+  CHECK(best.accuracy == analysis::Proportion{0, 0});
+  CHECK(analysis::best_label_matching(analysis::ConfusionMatrix(1)).answer_of ==
+        std::vector<int>{0});
 }
 
 TEST_CASE("best_label_matching counts trials without a response as wrong") {
-  ConfusionMatrix confusion(2);
+  analysis::ConfusionMatrix confusion(2);
   confusion.add({0, 1});
   confusion.add({1, 0});
   confusion.add({1, {}});
-  const LabelMatching best = best_label_matching(confusion);
-  CHECK(best.accuracy == Proportion{3, 2});
+  const analysis::LabelMatching best = analysis::best_label_matching(confusion);
+  CHECK(best.accuracy == analysis::Proportion{3, 2});
   CHECK(best.answer_of == std::vector<int>{1, 0});
 }
 
@@ -95,13 +96,13 @@ TEST_CASE("best_label_matching of twelve classes undoes any exchange") {
   std::vector<int> exchange(12);
   std::iota(exchange.begin(), exchange.end(), 0);
   shuffle(std::span(exchange), random);
-  ConfusionMatrix confusion(12);
+  analysis::ConfusionMatrix confusion(12);
   for (int i = 0; i < 12; ++i) {
     for (int k = 0; k < 3; ++k) confusion.add({i, exchange[i]});
   }
-  const LabelMatching best = best_label_matching(confusion);
+  const analysis::LabelMatching best = analysis::best_label_matching(confusion);
   CHECK(best.answer_of == exchange);
-  CHECK(best.accuracy == Proportion{36, 36});
+  CHECK(best.accuracy == analysis::Proportion{36, 36});
 }
 
 }  // namespace touchtrial

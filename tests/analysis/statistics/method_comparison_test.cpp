@@ -9,9 +9,9 @@
 namespace touchtrial {
 
 TEST_CASE("compare_methods takes the second method from the first") {
-  const std::vector<PairedAccuracy> participants{
+  const std::vector<analysis::PairedAccuracy> participants{
       {0.9, 0.7}, {0.8, 0.7}, {0.75, 0.8}, {0.85, 0.7}, {1.0, 0.7}};
-  const MethodComparison comparison = compare_methods(participants);
+  const analysis::MethodComparison comparison = analysis::compare_methods(participants);
   CHECK(comparison.participants == 5);
   CHECK(comparison.difference.value() == Approx(0.14).margin(1e-12));
   // SciPy 1.10: mean -+ t.ppf(0.975, 4) * std(ddof=1) / sqrt(5) of .2 .1 -.05 .15 .3
@@ -26,43 +26,44 @@ TEST_CASE("compare_methods takes the second method from the first") {
 }
 
 TEST_CASE("Decibels are ten times the logarithm of a ratio of accuracies") {
-  CHECK(decibels(1.0, 0.1).value() == Approx(10.0).margin(1e-12));
-  CHECK(decibels(0.9, 0.9) == 0.0);
+  CHECK(analysis::decibels(1.0, 0.1).value() == Approx(10.0).margin(1e-12));
+  CHECK(analysis::decibels(0.9, 0.9) == 0.0);
   // The published improvement of 0.4 dB is a factor of about 1.096.
-  CHECK(decibels(1.0964781961431851, 1.0).value() == Approx(0.4).margin(1e-12));
+  CHECK(analysis::decibels(1.0964781961431851, 1.0).value() == Approx(0.4).margin(1e-12));
 }
 
 TEST_CASE("Decibels do not exist where an accuracy is zero") {
-  CHECK_FALSE(decibels(0.5, 0.0).has_value());
-  CHECK_FALSE(decibels(0.0, 0.5).has_value());
+  CHECK_FALSE(analysis::decibels(0.5, 0.0).has_value());
+  CHECK_FALSE(analysis::decibels(0.0, 0.5).has_value());
 }
 
 TEST_CASE("compare_methods says how little one participant or none can tell") {
-  const MethodComparison none = compare_methods({});
+  const analysis::MethodComparison none = analysis::compare_methods({});
   CHECK_FALSE(none.difference.has_value());
   CHECK_FALSE(none.p.has_value());
   CHECK_FALSE(none.db.has_value());
-  const std::vector<PairedAccuracy> one{{1.0, 0.5}};
-  CHECK(compare_methods(one).difference == 0.5);
-  CHECK(compare_methods(one).interval == Interval{-1.0, 1.0});
-  CHECK_FALSE(compare_methods(one).known_interval());
-  CHECK(compare_methods(one).p == 1.0);
-  CHECK_FALSE(compare_methods(one).bootstrap.has_value());
+  const std::vector<analysis::PairedAccuracy> one{{1.0, 0.5}};
+  CHECK(analysis::compare_methods(one).difference == 0.5);
+  CHECK(analysis::compare_methods(one).interval == analysis::Interval{-1.0, 1.0});
+  CHECK_FALSE(analysis::compare_methods(one).known_interval());
+  CHECK(analysis::compare_methods(one).p == 1.0);
+  CHECK_FALSE(analysis::compare_methods(one).bootstrap.has_value());
 }
 
 TEST_CASE("compare_methods refuses values that are no numbers") {
-  const std::vector<PairedAccuracy> bad{{std::nan(""), 0.5}};
-  CHECK_THROWS_AS(compare_methods(bad), std::invalid_argument);
+  const std::vector<analysis::PairedAccuracy> bad{{std::nan(""), 0.5}};
+  CHECK_THROWS_AS(analysis::compare_methods(bad), std::invalid_argument);
 }
 
 TEST_CASE("rounding leaves no difference where there is none") {
   // 0.1 + 0.2 is no 0.3 in binary, and so are the differences.
-  const std::vector<PairedAccuracy> same{{0.1 + 0.2, 0.3}, {0.7, 0.1 + 0.6}, {0.8, 0.1 + 0.7}};
-  const MethodComparison comparison = compare_methods(same);
+  const std::vector<analysis::PairedAccuracy> same{
+      {0.1 + 0.2, 0.3}, {0.7, 0.1 + 0.6}, {0.8, 0.1 + 0.7}};
+  const analysis::MethodComparison comparison = analysis::compare_methods(same);
   CHECK(comparison.difference == 0.0);
   CHECK(comparison.db == 0.0);
-  CHECK(comparison.known_interval() == Interval{0.0, 0.0});
-  CHECK(comparison.bootstrap == Interval{0.0, 0.0});
+  CHECK(comparison.known_interval() == analysis::Interval{0.0, 0.0});
+  CHECK(comparison.bootstrap == analysis::Interval{0.0, 0.0});
 }
 
 }  // namespace touchtrial

@@ -12,7 +12,7 @@ namespace touchtrial {
 // Expected values: SciPy 1.10, mean -+ t.ppf(0.975, n - 1) * std(ddof=1) / sqrt(n).
 TEST_CASE("participant_mean gives Student's interval") {
   const std::vector<double> shares{0.8, 0.6, 0.92, 0.76, 0.88};
-  const MeanEstimate estimate = participant_mean(shares);
+  const analysis::MeanEstimate estimate = analysis::participant_mean(shares);
   CHECK(estimate.participants == 5);
   CHECK(estimate.mean.value() == Approx(0.792).margin(1e-12));
   CHECK(estimate.interval.low == Approx(0.637314378178071).margin(1e-12).epsilon(0));
@@ -21,22 +21,22 @@ TEST_CASE("participant_mean gives Student's interval") {
 }
 
 TEST_CASE("participant_mean knows nothing without participants and little from one") {
-  const MeanEstimate none = participant_mean({});
+  const analysis::MeanEstimate none = analysis::participant_mean({});
   CHECK_FALSE(none.mean.has_value());
-  CHECK(none.interval == Interval{0.0, 1.0});
+  CHECK(none.interval == analysis::Interval{0.0, 1.0});
   const std::vector<double> one{0.8};
-  CHECK(participant_mean(one).mean == 0.8);
-  CHECK(participant_mean(one).interval == Interval{0.0, 1.0});
+  CHECK(analysis::participant_mean(one).mean == 0.8);
+  CHECK(analysis::participant_mean(one).interval == analysis::Interval{0.0, 1.0});
   CHECK_FALSE(none.known_interval());
-  CHECK_FALSE(participant_mean(one).known_interval());
-  CHECK_FALSE(participant_mean(one).sd.has_value());
+  CHECK_FALSE(analysis::participant_mean(one).known_interval());
+  CHECK_FALSE(analysis::participant_mean(one).sd.has_value());
 }
 
 TEST_CASE("participant_mean keeps its interval within what is possible") {
   const std::vector<double> wide{0.0, 1.0};
-  CHECK(participant_mean(wide).interval == Interval{0.0, 1.0});
+  CHECK(analysis::participant_mean(wide).interval == analysis::Interval{0.0, 1.0});
   const std::vector<double> perfect{1.0, 1.0, 1.0};
-  CHECK(participant_mean(perfect).interval == Interval{1.0, 1.0});
+  CHECK(analysis::participant_mean(perfect).interval == analysis::Interval{1.0, 1.0});
 }
 
 TEST_CASE("participant_mean covers the true mean as often as it says") {
@@ -46,7 +46,7 @@ TEST_CASE("participant_mean covers the true mean as often as it says") {
   for (int study = 0; study < studies; ++study) {
     std::vector<double> shares(20);
     for (double& share : shares) share = 0.5 + 0.1 * random.normal();
-    const Interval interval = participant_mean(shares).interval;
+    const analysis::Interval interval = analysis::participant_mean(shares).interval;
     if (interval.low <= 0.5 && 0.5 <= interval.high) ++covered;
   }
   // Four standard errors of a proportion of .95 in 2000.
@@ -55,8 +55,8 @@ TEST_CASE("participant_mean covers the true mean as often as it says") {
 
 TEST_CASE("participant_mean refuses values that are no numbers") {
   const std::vector<double> values{0.5, std::nan("")};
-  CHECK_THROWS_AS(participant_mean(values), std::invalid_argument);
-  CHECK_THROWS_AS(participant_mean({}, {}, 0.0), std::invalid_argument);
+  CHECK_THROWS_AS(analysis::participant_mean(values), std::invalid_argument);
+  CHECK_THROWS_AS(analysis::participant_mean({}, {}, 0.0), std::invalid_argument);
 }
 
 }  // namespace touchtrial

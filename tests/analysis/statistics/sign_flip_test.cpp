@@ -34,15 +34,15 @@ double p_by_listing(const std::vector<double>& differences) {
 // patterns.
 TEST_CASE("sign_flip_p gives the values of an independent implementation") {
   const std::vector<double> five{0.2, 0.1, -0.05, 0.15, 0.3};
-  CHECK(sign_flip_p(five) == 0.125);
+  CHECK(analysis::sign_flip_p(five) == 0.125);
   const std::vector<double> eight{1, -2, 3, 4, -5, 6, 7, 8};
-  CHECK(sign_flip_p(eight) == 0.1484375);
+  CHECK(analysis::sign_flip_p(eight) == 0.1484375);
 }
 
 TEST_CASE("sign_flip_p cannot go below two patterns of all") {
-  for (int n = 1; n <= kExactSignFlips; ++n) {
+  for (int n = 1; n <= analysis::kExactSignFlips; ++n) {
     const std::vector<double> same_sign(static_cast<std::size_t>(n), 0.04);
-    CHECK(sign_flip_p(same_sign) == std::ldexp(2.0, -n));
+    CHECK(analysis::sign_flip_p(same_sign) == std::ldexp(2.0, -n));
   }
 }
 
@@ -54,7 +54,7 @@ TEST_CASE("sign_flip_p agrees with listing every pattern, ties included") {
       for (int i = 0; i < n; ++i) {
         differences.push_back((static_cast<double>(random.below(9)) - 4.0) / 25.0);
       }
-      REQUIRE(sign_flip_p(differences).value() == p_by_listing(differences));
+      REQUIRE(analysis::sign_flip_p(differences).value() == p_by_listing(differences));
     }
   }
 }
@@ -63,15 +63,15 @@ TEST_CASE("sign_flip_p does not care which method came first") {
   const std::vector<double> one_way{0.2, 0.1, -0.05, 0.15, 0.3, 0.12};
   std::vector<double> other_way;
   for (const double d : one_way) other_way.push_back(-d);
-  CHECK(sign_flip_p(one_way) == sign_flip_p(other_way));
+  CHECK(analysis::sign_flip_p(one_way) == analysis::sign_flip_p(other_way));
 }
 
 TEST_CASE("sign_flip_p is 1 where nothing differs") {
   const std::vector<double> zeros(10, 0.0);
-  CHECK(sign_flip_p(zeros) == 1.0);
+  CHECK(analysis::sign_flip_p(zeros) == 1.0);
   const std::vector<double> balanced{0.2, -0.2};
-  CHECK(sign_flip_p(balanced) == 1.0);
-  CHECK_FALSE(sign_flip_p({}).has_value());
+  CHECK(analysis::sign_flip_p(balanced) == 1.0);
+  CHECK_FALSE(analysis::sign_flip_p({}).has_value());
 }
 
 TEST_CASE("Beyond the exact range sign_flip_p samples, the same way every time") {
@@ -82,16 +82,16 @@ TEST_CASE("Beyond the exact range sign_flip_p samples, the same way every time")
   for (int x = 27; x <= 40; ++x) {
     tail += std::exp(std::lgamma(41) - std::lgamma(x + 1) - std::lgamma(41 - x)) * 0x1p-40;
   }
-  const double p = sign_flip_p(differences).value();
+  const double p = analysis::sign_flip_p(differences).value();
   CHECK(p == Approx(2.0 * tail).margin(5.0 * std::sqrt(2.0 * tail / 1e5)).epsilon(0));
-  CHECK(sign_flip_p(differences) == p);
+  CHECK(analysis::sign_flip_p(differences) == p);
   const std::vector<double> extreme(40, 0.1);
-  CHECK(sign_flip_p(extreme) == 1e-5);
+  CHECK(analysis::sign_flip_p(extreme) == 1e-5);
 }
 
 TEST_CASE("sign_flip_p refuses values that are no numbers") {
   const std::vector<double> bad{0.1, std::numeric_limits<double>::infinity()};
-  CHECK_THROWS_AS(sign_flip_p(bad), std::invalid_argument);
+  CHECK_THROWS_AS(analysis::sign_flip_p(bad), std::invalid_argument);
 }
 
 TEST_CASE("what sign flips can reach is the largest p of any pattern of signs within the level") {
@@ -105,10 +105,10 @@ TEST_CASE("what sign flips can reach is the largest p of any pattern of signs wi
       for (std::size_t i = 0; i < flipped.size(); ++i) {
         if ((pattern >> i & 1U) != 0) flipped[i] = -flipped[i];
       }
-      const double p = *sign_flip_p(flipped);
+      const double p = *analysis::sign_flip_p(flipped);
       if (p <= 0.05) largest = std::max(largest, p);
     }
-    CHECK(sign_flip_attainable(differences, 0.05) == largest);
+    CHECK(analysis::sign_flip_attainable(differences, 0.05) == largest);
   }
 }
 
@@ -116,23 +116,23 @@ TEST_CASE("beyond the exact range what sign flips can reach is just below the le
   // Differences of two kinds alone: sums are coarse, and many tie.
   std::vector<double> differences(40, 0.5);
   for (std::size_t i = 0; i < 20; ++i) differences[i] = 0.25;
-  const double reached = sign_flip_attainable(differences, 0.05);
+  const double reached = analysis::sign_flip_attainable(differences, 0.05);
   CHECK(reached <= 0.05);
   CHECK(reached > 0.03);
   double largest = 0.0;
   for (int flipped = 0; flipped <= 40; ++flipped) {
     std::vector<double> some = differences;
     for (int i = 0; i < flipped; ++i) some[i] = -some[i];
-    const double p = *sign_flip_p(some);
+    const double p = *analysis::sign_flip_p(some);
     if (p <= 0.05) largest = std::max(largest, p);
   }
   CHECK(largest <= reached);
 }
 
 TEST_CASE("five participants, or any number that do not differ, can reach nothing at 5 %") {
-  CHECK(sign_flip_attainable(std::vector<double>(5, 0.2), 0.05) == 0.0);
-  CHECK(sign_flip_attainable(std::vector<double>(12, 0.0), 0.05) == 0.0);
-  CHECK(sign_flip_attainable(std::vector<double>(6, 0.2), 0.05) == 2.0 / 64.0);
+  CHECK(analysis::sign_flip_attainable(std::vector<double>(5, 0.2), 0.05) == 0.0);
+  CHECK(analysis::sign_flip_attainable(std::vector<double>(12, 0.0), 0.05) == 0.0);
+  CHECK(analysis::sign_flip_attainable(std::vector<double>(6, 0.2), 0.05) == 2.0 / 64.0);
 }
 
 }  // namespace touchtrial

@@ -12,9 +12,9 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-const Check& schedule_check(const Verification& verification) {
+const analysis::Check& schedule_check(const analysis::Verification& verification) {
   return *std::find_if(verification.checks.begin(), verification.checks.end(),
-                       [](const Check& check) { return check.name == "schedule"; });
+                       [](const analysis::Check& check) { return check.name == "schedule"; });
 }
 
 const FakeOptions kRestarting{.trials = R"({"on_interruption": "restart-block"})"};
@@ -23,28 +23,31 @@ const FakeOptions kRestarting{.trials = R"({"on_interruption": "restart-block"})
 class RestartedSession {
  public:
   explicit RestartedSession(FakeStudy& study)
-      : key_(study.key()), recorder_(1, own_, events_), begun_(make_schedule(key_.study, 1)) {}
+      : key_(study.key()),
+        recorder_(1, own_, events_),
+        begun_(design::make_schedule(key_.study, 1)) {}
 
   /// \param restarts_before  0 for the order that the design gives
   void record(FakeStudy& study, int restarts_before, bool old_number_again = false) {
-    SessionOpening opening;
+    store::SessionOpening opening;
     opening.participant = "P01";
     opening.enrolment = 1;
     opening.study_id = key_.study_id;
-    opening.seal = study_seal(key_);
+    opening.seal = design::study_seal(key_);
     opening.device = "simulated";
     opening.simulated = true;
-    recorder_.opened(milliseconds(0), opening, schedule_to_json(begun_, key_));
+    recorder_.opened(milliseconds(0), opening, design::schedule_to_json(begun_, key_));
     answer(1);
     recorder_.presented(at_ += seconds(1), 2, 0);
     recorder_.interrupted(at_, 2, "comfort stop");
     const int first = static_cast<int>(begun_.presentations.size()) + 1;
-    const auto again = restarted_block(key_.study, 1, 0, restarts_before, first);
-    recorder_.block_restarted(at_, 0, first, block_to_json(again, key_));
-    for (const Presentation& one : again) answer(one.trial);
+    const auto again = design::restarted_block(key_.study, 1, 0, restarts_before, first);
+    recorder_.block_restarted(at_, 0, first, design::block_to_json(again, key_));
+    for (const design::Presentation& one : again) answer(one.trial);
     if (old_number_again) answer(3);
     recorder_.closed(at_, true);
-    study.store().add_session(events_, wrap_participant_key(key_.master, 1, own_), milliseconds(1));
+    study.store().add_session(events_, store::wrap_participant_key(key_.master, 1, own_),
+                              milliseconds(1));
   }
 
  private:
@@ -54,61 +57,65 @@ class RestartedSession {
     recorder_.answered(at_, {trial, 0, std::nullopt, std::nullopt});
   }
 
-  const StudyKey& key_;
+  const design::StudyKey& key_;
   SecretKey own_ = sha256(bytes_of("participant"));
-  BufferedEvents events_;
-  SessionRecorder recorder_;
-  Schedule begun_;
+  store::BufferedEvents events_;
+  store::SessionRecorder recorder_;
+  design::Schedule begun_;
   milliseconds at_{0};
 };
 
 }  // namespace
 
 TEST_CASE("verify_study holds a restarted block against the order that the design gives it") {
-  FakeStudy study(Protocol::classification, kRestarting);
+  FakeStudy study(design::Protocol::classification, kRestarting);
   RestartedSession(study).record(study, 0);
-  const Verification verification = verify_study(study.store(), &study.key(), nullptr);
+  const analysis::Verification verification =
+      analysis::verify_study(study.store(), &study.key(), nullptr);
   INFO(schedule_check(verification).detail);
-  CHECK(schedule_check(verification).state == CheckState::passed);
+  CHECK(schedule_check(verification).state == analysis::CheckState::passed);
   CHECK(verification.holds());
 }
 
 TEST_CASE("verify_study finds another order of a restarted block") {
-  FakeStudy study(Protocol::classification, kRestarting);
+  FakeStudy study(design::Protocol::classification, kRestarting);
   RestartedSession(study).record(study, 1);
-  const Verification verification = verify_study(study.store(), &study.key(), nullptr);
-  CHECK(schedule_check(verification).state == CheckState::failed);
+  const analysis::Verification verification =
+      analysis::verify_study(study.store(), &study.key(), nullptr);
+  CHECK(schedule_check(verification).state == analysis::CheckState::failed);
 }
 
 TEST_CASE("verify_study finds an old number that came after its block was restarted") {
-  FakeStudy study(Protocol::classification, kRestarting);
+  FakeStudy study(design::Protocol::classification, kRestarting);
   RestartedSession(study).record(study, 0, true);
-  const Verification verification = verify_study(study.store(), &study.key(), nullptr);
+  const analysis::Verification verification =
+      analysis::verify_study(study.store(), &study.key(), nullptr);
   CHECK(contains(schedule_check(verification).detail,
                  "session 1, trial 3: was presented under its old number"));
 }
 
 TEST_CASE("outcomes hold a restarted block's trials and count no voided one") {
-  FakeStudy study(Protocol::classification, kRestarting);
+  FakeStudy study(design::Protocol::classification, kRestarting);
   RestartedSession(study).record(study, 0);
   study.close_and_unblind();
-  const Outcomes outcomes = load_outcomes(study.store(), study.key());
-  const auto counted = std::count_if(outcomes.trials.begin(), outcomes.trials.end(),
-                                     [](const TrialOutcome& trial) { return trial.counted; });
+  const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
+  const auto counted =
+      std::count_if(outcomes.trials.begin(), outcomes.trials.end(),
+                    [](const analysis::TrialOutcome& trial) { return trial.counted; });
   CHECK(counted == study.store().commitment().scored_trials);
-  CHECK(outcomes.trials.front().row.state == TrialState::voided);
+  CHECK(outcomes.trials.front().row.state == store::TrialState::voided);
   CHECK_FALSE(outcomes.trials.front().counted);
 }
 
 TEST_CASE("a participant who was replaced enters no outcomes, but stays in the list") {
-  FakeStudy study(Protocol::classification);
+  FakeStudy study(design::Protocol::classification);
   study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()});
   study.store().exclude(1, milliseconds(2), "did not follow the instructions");
   study.store().replace(1, "P02", milliseconds(3), "place is wanted");
   study.add({.participant = "P02", .enrolment = 1, .answers = FakeStudy::always_right()});
-  CHECK(verify_study(study.store(), &study.key(), nullptr).holds());
+  CHECK(analysis::verify_study(study.store(), &study.key(), nullptr).holds());
   study.close_and_unblind();
-  const Outcomes outcomes = load_outcomes(study.store(), study.key());
+  const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
   REQUIRE(outcomes.sessions.size() == 2);
   CHECK_FALSE(outcomes.sessions[0].counted);
   CHECK(outcomes.sessions[1].counted);

@@ -20,18 +20,18 @@ class ToldSession {
   explicit ToldSession(FakeStudy& study)
       : study_(study),
         recorder_(1, own_, events_),
-        schedule_(make_schedule(study.key().study, 1)) {}
+        schedule_(design::make_schedule(study.key().study, 1)) {}
 
   /// Opens with a schedule that may have been tampered with.
-  void open(const Schedule& schedule) {
-    SessionOpening opening;
+  void open(const design::Schedule& schedule) {
+    store::SessionOpening opening;
     opening.participant = "P01";
     opening.enrolment = 1;
     opening.study_id = study_.key().study_id;
-    opening.seal = study_seal(study_.key());
+    opening.seal = design::study_seal(study_.key());
     opening.device = "simulated";
     opening.simulated = true;
-    recorder_.opened(at_, opening, schedule_to_json(schedule, study_.key()));
+    recorder_.opened(at_, opening, design::schedule_to_json(schedule, study_.key()));
   }
   void open() { open(schedule_); }
   void present(int trial) { recorder_.presented(later(), trial, 0); }
@@ -50,41 +50,44 @@ class ToldSession {
   void resume(const std::string& after, double away_s) {
     recorder_.resumed(later(), {.after = after, .away_s = away_s});
   }
-  void pause() { recorder_.remarked(later(), EventKind::paused, ""); }
+  void pause() { recorder_.remarked(later(), store::EventKind::paused, ""); }
 
   void restart_block() {
-    const StudyKey& key = study_.key();
-    const auto again = restarted_block(key.study, 1, 0, 0, count() + 1);
-    recorder_.block_restarted(later(), 0, count() + 1, block_to_json(again, key));
+    const design::StudyKey& key = study_.key();
+    const auto again = design::restarted_block(key.study, 1, 0, 0, count() + 1);
+    recorder_.block_restarted(later(), 0, count() + 1, design::block_to_json(again, key));
   }
 
   /// Closes it as complete. \return the check of the schedule; all others pass
-  Check verified() {
+  analysis::Check verified() {
     recorder_.closed(later(), true);
-    study_.store().add_session(events_, wrap_participant_key(study_.key().master, 1, own_), at_);
-    const Verification verification = verify_study(study_.store(), &study_.key(), nullptr);
-    Check schedule;
-    for (const Check& check : verification.checks) {
+    study_.store().add_session(events_, store::wrap_participant_key(study_.key().master, 1, own_),
+                               at_);
+    const analysis::Verification verification =
+        analysis::verify_study(study_.store(), &study_.key(), nullptr);
+    analysis::Check schedule;
+    for (const analysis::Check& check : verification.checks) {
       if (check.name == "schedule") schedule = check;
       INFO(check.name << ": " << check.detail);
-      if (check.name != "schedule") CHECK(check.state != CheckState::failed);
+      if (check.name != "schedule") CHECK(check.state != analysis::CheckState::failed);
     }
     return schedule;
   }
   /// The line with which the schedule fails.
   std::string fault() {
-    const Check check = verified();
-    CHECK(check.state == CheckState::failed);
+    const analysis::Check check = verified();
+    CHECK(check.state == analysis::CheckState::failed);
     return check.detail;
   }
 
-  [[nodiscard]] Schedule schedule() const { return schedule_; }
+  [[nodiscard]] design::Schedule schedule() const { return schedule_; }
   [[nodiscard]] int count() const { return static_cast<int>(schedule_.presentations.size()); }
   [[nodiscard]] int catch_trial() const {
     const auto& all = schedule_.presentations;
-    return std::find_if(
-               all.begin(), all.end(),
-               [](const Presentation& one) { return one.kind == PresentationKind::catch_trial; })
+    return std::find_if(all.begin(), all.end(),
+                        [](const design::Presentation& one) {
+                          return one.kind == design::PresentationKind::catch_trial;
+                        })
         ->trial;
   }
 
@@ -93,9 +96,9 @@ class ToldSession {
 
   FakeStudy& study_;
   SecretKey own_ = sha256(bytes_of("participant"));
-  BufferedEvents events_;
-  SessionRecorder recorder_;
-  Schedule schedule_;
+  store::BufferedEvents events_;
+  store::SessionRecorder recorder_;
+  design::Schedule schedule_;
   milliseconds at_{0};
 };
 
@@ -104,7 +107,8 @@ const FakeOptions kLeavingOut{.trials = R"({"on_interruption": "leave-out"})"};
 
 /// A told session of a study with these options, opened as it should be.
 struct Told {
-  explicit Told(const FakeOptions& options = {}) : study(Protocol::classification, options) {}
+  explicit Told(const FakeOptions& options = {})
+      : study(design::Protocol::classification, options) {}
   FakeStudy study;
   ToldSession session{study};
 };
@@ -116,9 +120,9 @@ TEST_CASE("verify_study passes catch trials in their places, and nothing else th
     Told told(kCatching);
     told.session.open();
     told.session.show_from(1);
-    const Check check = told.session.verified();
+    const analysis::Check check = told.session.verified();
     INFO(check.detail);
-    CHECK(check.state == CheckState::passed);
+    CHECK(check.state == analysis::CheckState::passed);
     CHECK(contains(check.detail, "14 presentations where they were due"));
   }
   {
@@ -131,10 +135,10 @@ TEST_CASE("verify_study passes catch trials in their places, and nothing else th
   }
   {
     Told told(kCatching);
-    Schedule tampered = told.session.schedule();
-    for (Presentation& one : tampered.presentations) {
+    design::Schedule tampered = told.session.schedule();
+    for (design::Presentation& one : tampered.presentations) {
       if (one.trial != told.session.catch_trial()) continue;
-      one.kind = PresentationKind::scored;
+      one.kind = design::PresentationKind::scored;
       one.stimulus = tampered.presentations.front().stimulus;
     }
     told.session.open(tampered);
@@ -152,7 +156,7 @@ TEST_CASE("verify_study holds what was interrupted against the study's policy to
     told.session.interrupt(2);
     told.session.show_from(3);
     told.session.show(2);
-    CHECK(told.session.verified().state == CheckState::passed);
+    CHECK(told.session.verified().state == analysis::CheckState::passed);
   }
   {
     Told told;
@@ -182,7 +186,7 @@ TEST_CASE("verify_study holds what was interrupted against the study's policy to
     told.session.present(1);
     told.session.interrupt(1);
     told.session.show_from(2);
-    CHECK(told.session.verified().state == CheckState::passed);
+    CHECK(told.session.verified().state == analysis::CheckState::passed);
   }
   {
     Told told(kLeavingOut);
@@ -215,9 +219,9 @@ TEST_CASE("verify_study passes sessions that were taken up again, and names what
     told.session.resume("pause", 1.0);
     told.session.show_from(3);
     told.session.show(2);
-    const Check check = told.session.verified();
+    const analysis::Check check = told.session.verified();
     INFO(check.detail);
-    CHECK(check.state == CheckState::passed);
+    CHECK(check.state == analysis::CheckState::passed);
   }
   {
     Told told;

@@ -15,16 +15,16 @@ using fakes::eventually;
 using fakes::LoadedDhd;
 using Stepping = fakes::SteppingClock<fakes::FakeDhdExports>;
 
-DhdSettings settings_of_fake() {
-  DhdSettings settings;
+device::DhdSettings settings_of_fake() {
+  device::DhdSettings settings;
   settings.library = TOUCHTRIAL_FAKE_DHD;
   return settings;
 }
 
 /// A sample that was read wholly after this call.
-DeviceSample next_sample(DhdDevice& device) {
-  DeviceSample before;
-  DeviceSample after;
+device::DeviceSample next_sample(device::DhdDevice& device) {
+  device::DeviceSample before;
+  device::DeviceSample after;
   (void)device.read(before);
   REQUIRE(eventually([&] {
     (void)device.read(after);
@@ -35,7 +35,7 @@ DeviceSample next_sample(DhdDevice& device) {
 
 /// Writes as a servo would until the fake says so.
 template <typename Predicate>
-[[nodiscard]] bool write_until(DhdDevice& device, Vec3 force_n, Predicate holds) {
+[[nodiscard]] bool write_until(device::DhdDevice& device, Vec3 force_n, Predicate holds) {
   return eventually([&] {
     (void)device.write(force_n);
     return holds();
@@ -46,8 +46,8 @@ TEST_CASE("dhd: position, velocity and buttons arrive in the device frame, in mi
   LoadedDhd fake;
   fake->hand.rest_at({30.0, 10.0, -20.0});  // towards the person, to the right, up
   fake->buttons = 5;
-  DhdDevice device(settings_of_fake());
-  const DeviceSample sample = next_sample(device);
+  device::DhdDevice device(settings_of_fake());
+  const device::DeviceSample sample = next_sample(device);
   CHECK(norm(sample.position_mm - Vec3{10.0, -20.0, 30.0}) < 1e-12);
   CHECK(sample.velocity_mm_s == Vec3{});
   CHECK(sample.buttons == 5);
@@ -56,7 +56,7 @@ TEST_CASE("dhd: position, velocity and buttons arrive in the device frame, in mi
 
 TEST_CASE("dhd: a force in the device frame reaches the library in its own") {
   LoadedDhd fake;
-  DhdDevice device(settings_of_fake());
+  device::DhdDevice device(settings_of_fake());
   CHECK(write_until(device, {1.0, 2.0, 3.0}, [&] {
     return fake->force_n.get() == Vec3{3.0, 1.0, 2.0};
   }));
@@ -65,7 +65,7 @@ TEST_CASE("dhd: a force in the device frame reaches the library in its own") {
 TEST_CASE("dhd: velocity is the hand's, in the device frame") {
   LoadedDhd fake;
   fake->hand.push_n.set({0.008, 0.0, -0.016});  // through oil: 1 mm/s and -2 mm/s
-  DhdDevice device(settings_of_fake());
+  device::DhdDevice device(settings_of_fake());
   CHECK(norm(next_sample(device).velocity_mm_s - Vec3{0.0, -2.0, 1.0}) < 1e-9);
 }
 
@@ -73,16 +73,17 @@ TEST_CASE("dhd: a wall bears the hand that is pushed against it") {
   LoadedDhd fake;
   fake->hand.position_mm.set({0.0, 5.0, 3.0});
   fake->hand.push_n.set({0.0, 0.0, -0.7});
-  DhdDevice device(settings_of_fake());
-  PlacedDevice placed(device, {});
+  device::DhdDevice device(settings_of_fake());
+  device::PlacedDevice placed(device, {});
   FlatWall wall;
   KeptSamples kept;
   Stepping clock(fake.exports());
-  const ServoReport report = run_servo(placed, wall, kept, {.limit_ticks = 1000}, clock);
-  CHECK(report.end == ServoEnd::time_limit);
+  const device::ServoReport report =
+      device::run_servo(placed, wall, kept, {.limit_ticks = 1000}, clock);
+  CHECK(report.end == device::ServoEnd::time_limit);
   CHECK_FALSE(clock.hung());
   REQUIRE(kept.samples.size() > 999);
-  const ServoSample& settled = kept.samples[999];
+  const device::ServoSample& settled = kept.samples[999];
   // Where the wall bears the push, or deeper: a stall of the machine lets forces lapse, see
   // DeviceLink::kForceLifetime.
   CHECK(settled.position_mm.z < -1.5);
@@ -92,10 +93,10 @@ TEST_CASE("dhd: a wall bears the hand that is pushed against it") {
 
 TEST_CASE("dhd: gravity compensation, mass and time guard are set as the settings say") {
   LoadedDhd fake;
-  DhdSettings settings = settings_of_fake();
+  device::DhdSettings settings = settings_of_fake();
   settings.gravity_compensation = GENERATE(true, false);
   settings.effector_mass_kg = GENERATE(0.0, 0.125);
-  DhdDevice device(settings);
+  device::DhdDevice device(settings);
   CHECK(fake->gravity_compensation == (settings.gravity_compensation ? 1 : 0));
   CHECK(fake->effector_mass_kg == (settings.effector_mass_kg > 0.0 ? 0.125 : -1.0));
   CHECK(fake->time_guard_us == -1);
@@ -104,20 +105,20 @@ TEST_CASE("dhd: gravity compensation, mass and time guard are set as the setting
 TEST_CASE("dhd: a setting that the device refuses is named, and the device closed") {
   LoadedDhd fake;
   fake->refuses_mass = true;
-  DhdSettings settings = settings_of_fake();
+  device::DhdSettings settings = settings_of_fake();
   settings.effector_mass_kg = 50.0;
-  CHECK_THROWS_AS(DhdDevice(settings), DeviceError);
-  CHECK_THROWS_WITH(DhdDevice(settings),
+  CHECK_THROWS_AS(device::DhdDevice(settings), DeviceError);
+  CHECK_THROWS_WITH(device::DhdDevice(settings),
                     holds_text("dhd.effector_mass_kg was refused: fake words"));
   CHECK(fake.calls() == "open force_off close open force_off close ");
 }
 
 TEST_CASE("dhd: the device says what it is") {
   LoadedDhd fake;
-  DhdSettings settings = settings_of_fake();
+  device::DhdSettings settings = settings_of_fake();
   settings.max_force_n = 12.0;
   settings.continuous_force_n = 5.0;
-  const DeviceInfo info = DhdDevice(settings).info();
+  const device::DeviceInfo info = device::DhdDevice(settings).info();
   CHECK(info.name == "dhd");
   CHECK(info.model == "omega.3");
   CHECK(info.serial == "4242");
@@ -128,27 +129,27 @@ TEST_CASE("dhd: the device says what it is") {
 }
 
 TEST_CASE("dhd: a library without names and expert mode serves, one without a function does not") {
-  DhdSettings settings;
+  device::DhdSettings settings;
   settings.library = TOUCHTRIAL_OLD_DHD;
-  CHECK(DhdDevice(settings).info().model == "Force Dimension device");
+  CHECK(device::DhdDevice(settings).info().model == "Force Dimension device");
   settings.library = TOUCHTRIAL_PARTIAL_DHD;
-  CHECK_THROWS_WITH(DhdDevice(settings), holds_text("has no function dhdEnableForce"));
+  CHECK_THROWS_WITH(device::DhdDevice(settings), holds_text("has no function dhdEnableForce"));
   settings.library = "/nowhere/libdhd.so";
-  CHECK_THROWS_WITH(DhdDevice(settings),
+  CHECK_THROWS_WITH(device::DhdDevice(settings),
                     holds_text("/nowhere/libdhd.so") && holds_text("dhd.library"));
 }
 
 TEST_CASE("dhd: a device that is not there, or does not open, is told with the remedy") {
   LoadedDhd fake;
-  DhdSettings settings = settings_of_fake();
+  device::DhdSettings settings = settings_of_fake();
   SECTION("fewer devices") {
     settings.index = 1;
-    CHECK_THROWS_WITH(DhdDevice(settings), holds_text("no device 1, of 1 connected"));
+    CHECK_THROWS_WITH(device::DhdDevice(settings), holds_text("no device 1, of 1 connected"));
     CHECK(fake.calls().empty());
   }
   SECTION("none that opens") {
     fake->opens = false;
-    CHECK_THROWS_WITH(DhdDevice(settings), holds_text("does not open: fake words"));
+    CHECK_THROWS_WITH(device::DhdDevice(settings), holds_text("does not open: fake words"));
     CHECK(fake.calls() == "open ");
   }
 }
@@ -156,49 +157,51 @@ TEST_CASE("dhd: a device that is not there, or does not open, is told with the r
 TEST_CASE("dhd: without calibration the force stays zero") {
   LoadedDhd fake;
   fake->calibrated = false;
-  DhdDevice device(settings_of_fake());
+  device::DhdDevice device(settings_of_fake());
   CHECK_FALSE(next_sample(device).ready);
-  CHECK(device.readiness() == DeviceReadiness::needs_calibration);
+  CHECK(device.readiness() == device::DeviceReadiness::needs_calibration);
   const long begun = fake->polls;
   REQUIRE(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->polls > begun + 50; }));
   CHECK(fake->zero_forces_last >= 50);
   fake->calibrated = true;
   CHECK(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->force_n.get().z == 1.0; }));
-  CHECK(device.readiness() == DeviceReadiness::ready);
+  CHECK(device.readiness() == device::DeviceReadiness::ready);
 }
 
 TEST_CASE("dhd: force that a person switches off at the device is not ready, and no fault") {
   LoadedDhd fake;
-  DhdDevice device(settings_of_fake());
+  device::DhdDevice device(settings_of_fake());
   REQUIRE(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->force_n.get().z == 1.0; }));
   fake->force_off_cause = GENERATE(1, 4, 6);
-  DeviceSample sample;
+  device::DeviceSample sample;
   REQUIRE(eventually([&] {
     (void)device.read(sample);
     return !sample.ready;
   }));
-  CHECK(device.fault() == DeviceFault::none);
+  CHECK(device.fault() == device::DeviceFault::none);
   REQUIRE(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->zero_forces_last > 10; }));
   fake->force_off_cause = 0;
   CHECK(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->force_n.get().z == 1.0; }));
 }
 
 TEST_CASE("dhd: force that the device itself switches off is the fault that it means") {
-  const auto [cause, fault] = GENERATE(table<int, DeviceFault>(
-      {{2, DeviceFault::limit_passed}, {3, DeviceFault::driver}, {5, DeviceFault::link_lost}}));
+  const auto [cause, fault] =
+      GENERATE(table<int, device::DeviceFault>({{2, device::DeviceFault::limit_passed},
+                                                {3, device::DeviceFault::driver},
+                                                {5, device::DeviceFault::link_lost}}));
   LoadedDhd fake;
-  DhdDevice device(settings_of_fake());
+  device::DhdDevice device(settings_of_fake());
   (void)next_sample(device);
   fake->force_off_cause = cause;
-  CHECK(eventually([&] { return device.fault() != DeviceFault::none; }));
+  CHECK(eventually([&] { return device.fault() != device::DeviceFault::none; }));
   CHECK(device.fault() == fault);
 }
 
 TEST_CASE("dhd: what fails while the device is there is the driver, what takes it away the link") {
   LoadedDhd fake;
-  DhdDevice device(settings_of_fake());
+  device::DhdDevice device(settings_of_fake());
   REQUIRE(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->force_n.get().z == 1.0; }));
-  DeviceFault expected = DeviceFault::driver;
+  device::DeviceFault expected = device::DeviceFault::driver;
   SECTION("a position that cannot be read") {
     fake->position_fails = true;
   }
@@ -207,47 +210,49 @@ TEST_CASE("dhd: what fails while the device is there is the driver, what takes i
   }
   SECTION("unplugged") {
     fake->connected = false;
-    expected = DeviceFault::link_lost;
+    expected = device::DeviceFault::link_lost;
   }
   SECTION("a position that is no number") {
     fake->hand.rest_at({0.0, std::numeric_limits<double>::infinity(), 0.0});
-    expected = DeviceFault::bad_data;
+    expected = device::DeviceFault::bad_data;
   }
   REQUIRE(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->zero_forces_last > 10; }));
   CHECK(device.fault() == expected);
-  DeviceSample sample;
-  CHECK(device.read(sample) == DeviceStatus::fault);
+  device::DeviceSample sample;
+  CHECK(device.read(sample) == device::DeviceStatus::fault);
   CHECK(is_finite(sample.position_mm));
-  CHECK(device.write({}) == DeviceStatus::fault);
+  CHECK(device.write({}) == device::DeviceStatus::fault);
 }
 
 TEST_CASE("dhd: a device that is lost in the middle of a run ends it as a fault") {
   LoadedDhd fake;
   fake->hand.push_n.set({0.0, 0.0, -0.7});
-  DhdDevice device(settings_of_fake());
-  PlacedDevice placed(device, {});
+  device::DhdDevice device(settings_of_fake());
+  device::PlacedDevice placed(device, {});
   FlatWall wall;
   KeptSamples kept;
   Stepping clock(fake.exports());
-  REQUIRE(run_servo(placed, wall, kept, {.limit_ticks = 50}, clock).end == ServoEnd::time_limit);
+  REQUIRE(device::run_servo(placed, wall, kept, {.limit_ticks = 50}, clock).end ==
+          device::ServoEnd::time_limit);
   fake->connected = false;
-  const ServoReport report = run_servo(placed, wall, kept, {.limit_ticks = 50}, clock);
-  CHECK(report.end == ServoEnd::fault);
-  CHECK(device.fault() == DeviceFault::link_lost);
+  const device::ServoReport report =
+      device::run_servo(placed, wall, kept, {.limit_ticks = 50}, clock);
+  CHECK(report.end == device::ServoEnd::fault);
+  CHECK(device.fault() == device::DeviceFault::link_lost);
 }
 
 TEST_CASE("dhd: the time guard's answer is no new reading, and no fault") {
   LoadedDhd fake;
-  DhdDevice device(settings_of_fake());
+  device::DhdDevice device(settings_of_fake());
   (void)next_sample(device);
   fake->too_soon = true;
   const long begun = fake->polls;
   REQUIRE(eventually([&] { return fake->polls > begun + 10; }));
-  DeviceSample sample;
-  REQUIRE(device.read(sample) == DeviceStatus::ok);
+  device::DeviceSample sample;
+  REQUIRE(device.read(sample) == device::DeviceStatus::ok);
   const std::uint64_t last = sample.sequence;
   REQUIRE(eventually([&] { return fake->polls > begun + 60; }));
-  CHECK(device.read(sample) == DeviceStatus::ok);
+  CHECK(device.read(sample) == device::DeviceStatus::ok);
   CHECK(sample.sequence == last);
   fake->too_soon = false;
   CHECK(next_sample(device).sequence > last);
@@ -256,14 +261,14 @@ TEST_CASE("dhd: the time guard's answer is no new reading, and no fault") {
 TEST_CASE("dhd: saturated motors are no fault") {
   LoadedDhd fake;
   fake->saturated = true;
-  DhdDevice device(settings_of_fake());
+  device::DhdDevice device(settings_of_fake());
   REQUIRE(eventually([&] { return fake->polls > 100; }));
-  CHECK(device.fault() == DeviceFault::none);
+  CHECK(device.fault() == device::DeviceFault::none);
 }
 
 TEST_CASE("dhd: halting sends zero until it is re-armed") {
   LoadedDhd fake;
-  DhdDevice device(settings_of_fake());
+  device::DhdDevice device(settings_of_fake());
   REQUIRE(write_until(device, {1.0, 0.0, 0.0}, [&] { return fake->force_n.get().y == 1.0; }));
   device.halt();
   REQUIRE(write_until(device, {1.0, 0.0, 0.0}, [&] { return fake->zero_forces_last > 20; }));
@@ -274,7 +279,7 @@ TEST_CASE("dhd: halting sends zero until it is re-armed") {
 TEST_CASE("dhd: closing sends zeros, switches force off, and closes the device") {
   LoadedDhd fake;
   {
-    DhdDevice device(settings_of_fake());
+    device::DhdDevice device(settings_of_fake());
     REQUIRE(write_until(device, {1.0, 0.0, 0.0}, [&] { return fake->force_n.get().y == 1.0; }));
   }
   CHECK(fake->zero_forces_last >= 5);

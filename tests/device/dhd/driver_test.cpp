@@ -6,18 +6,18 @@
 namespace touchtrial {
 namespace {
 
-std::vector<DeviceListing> listings_with(const std::filesystem::path& library) {
-  DeviceSettings settings;
+std::vector<device::DeviceListing> listings_with(const std::filesystem::path& library) {
+  device::DeviceSettings settings;
   settings.dhd.library = library;
-  return dhd_driver().list(settings);
+  return device::dhd_driver().list(settings);
 }
 
 TEST_CASE("the list of dhd names every device that is there, and closes it") {
   fakes::LoadedDhd fake;
   fake->devices = 2;
-  const std::vector<DeviceListing> listings = listings_with(TOUCHTRIAL_FAKE_DHD);
+  const std::vector<device::DeviceListing> listings = listings_with(TOUCHTRIAL_FAKE_DHD);
   REQUIRE(listings.size() == 2);
-  for (const DeviceListing& listing : listings) {
+  for (const device::DeviceListing& listing : listings) {
     CHECK(listing.driver == "dhd");
     CHECK(listing.present);
     CHECK(listing.model == "omega.3");
@@ -37,7 +37,7 @@ TEST_CASE("the list of dhd says what is missing: device, library, function, or w
         {{TOUCHTRIAL_FAKE_DHD, "no device is connected"},
          {"/nowhere/libdhd.so", "install Force Dimension's SDK"},
          {TOUCHTRIAL_PARTIAL_DHD, "has no function dhdEnableForce"}}));
-    const std::vector<DeviceListing> listings = listings_with(library);
+    const std::vector<device::DeviceListing> listings = listings_with(library);
     REQUIRE(listings.size() == 1);
     CHECK_FALSE(listings[0].present);
     REQUIRE(listings[0].missing.size() == 1);
@@ -45,7 +45,7 @@ TEST_CASE("the list of dhd says what is missing: device, library, function, or w
   }
   SECTION("a device that does not open") {
     fake->opens = false;
-    const std::vector<DeviceListing> listings = listings_with(TOUCHTRIAL_FAKE_DHD);
+    const std::vector<device::DeviceListing> listings = listings_with(TOUCHTRIAL_FAKE_DHD);
     REQUIRE(listings.size() == 1);
     CHECK(listings[0].present);
     REQUIRE(listings[0].missing.size() == 1);
@@ -55,9 +55,9 @@ TEST_CASE("the list of dhd says what is missing: device, library, function, or w
 
 TEST_CASE("dhd is opened through the registry by its name") {
   fakes::LoadedDhd fake;
-  DeviceSettings settings;
+  device::DeviceSettings settings;
   settings.dhd.library = TOUCHTRIAL_FAKE_DHD;
-  CHECK(open_device("dhd", settings)->info().name == "dhd");
+  CHECK(device::open_device("dhd", settings)->info().name == "dhd");
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ template <typename Exports>
 class LoadedFake {
  public:
   LoadedFake(const char* file, const char* entry)
-      : library_(file, Unload::never, "build the tests"),
+      : library_(file, device::Unload::never, "build the tests"),
         exports_(*library_.function<Exports*()>(entry)()) {
     exports_.reset();
     exports_.run_freely();
@@ -38,14 +38,14 @@ class LoadedFake {
   [[nodiscard]] std::string calls() const { return exports_.calls(); }
 
  private:
-  DynamicLibrary library_;
+  device::DynamicLibrary library_;
   Exports& exports_;
 };
 
 /// The servo's time is the fake's: a tick of the servo is one of the fake, and nobody else's clock
 /// matters. Until it is gone the fake moves in these steps alone.
 template <typename Exports>
-class SteppingClock final : public ServoClock {
+class SteppingClock final : public device::ServoClock {
  public:
   explicit SteppingClock(const Exports& fake) : fake_(fake) { REQUIRE(fake_.step(1)); }
   ~SteppingClock() override { fake_.run_freely(); }

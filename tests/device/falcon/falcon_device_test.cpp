@@ -10,7 +10,7 @@
 
 #include <cmath>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 constexpr std::array<std::int16_t, 3> kNoMotors{};
@@ -19,20 +19,20 @@ constexpr unsigned kRed = 1, kBlue = 4;
 FalconOptions in_lockstep(Lockstep& lockstep) {
   FalconOptions options;
   options.pace = lockstep.pace();
-  options.scheduling.policy = SchedulingPolicy::other;
+  options.scheduling.policy = device::SchedulingPolicy::other;
   options.scheduling.lock_memory = false;
   return options;
 }
 
 /// A Falcon whose firmware runs, and its driver.
 struct Rig {
-  explicit Rig(bool homed, const FalconSettings& settings = {})
+  explicit Rig(bool homed, const device::FalconSettings& settings = {})
       : emulator({.firmware_runs = true, .homed = homed}),
         device(std::make_unique<FalconDevice>(std::make_unique<EmulatorTransport>(emulator),
                                               settings, in_lockstep(lockstep))) {}
 
-  DeviceSample sample() {
-    DeviceSample newest;
+  device::DeviceSample sample() {
+    device::DeviceSample newest;
     status = device->read(newest);
     return newest;
   }
@@ -45,7 +45,7 @@ struct Rig {
   FalconEmulator emulator;
   Lockstep lockstep;
   std::unique_ptr<FalconDevice> device;
-  DeviceStatus status = DeviceStatus::ok;
+  device::DeviceStatus status = device::DeviceStatus::ok;
 };
 
 /// Carries the grip to and fro along the device's axis.
@@ -62,7 +62,7 @@ double error_n(Vec3 a, Vec3 b) {
 TEST_CASE("a Falcon that is not homed is not ready, shows red and gets no force") {
   Rig rig(false);
   for (int i = 0; i < 20; ++i) rig.push({0.0, 0.0, 2.0});
-  CHECK(rig.device->readiness() == DeviceReadiness::needs_homing);
+  CHECK(rig.device->readiness() == device::DeviceReadiness::needs_homing);
   CHECK_FALSE(rig.sample().ready);
   CHECK(rig.sample().sequence == 20);
   CHECK(rig.emulator.motors() == kNoMotors);
@@ -79,7 +79,7 @@ TEST_CASE("moved through its range it homes, shows blue, and its forces pass") {
   }
   REQUIRE(rig.emulator.all_homed());
   for (int i = 0; i < 3; ++i) rig.push({0.0, 0.0, 1.0});
-  CHECK(rig.device->readiness() == DeviceReadiness::ready);
+  CHECK(rig.device->readiness() == device::DeviceReadiness::ready);
   CHECK(rig.sample().ready);
   CHECK(rig.emulator.leds() == kBlue);
   CHECK(error_n(rig.emulator.force_n(), {0.0, 0.0, 1.0}) < 0.01);
@@ -93,7 +93,7 @@ TEST_CASE("the jump of the origin on homing is no motion of the hand") {
   int ready = 0;
   for (int i = 0; i < 1000; ++i) {
     rig.push({});
-    const DeviceSample sample = rig.sample();
+    const device::DeviceSample sample = rig.sample();
     if (!sample.ready) continue;
     ++ready;
     fastest_mm_s = std::max(fastest_mm_s, norm(sample.velocity_mm_s));
@@ -104,7 +104,7 @@ TEST_CASE("the jump of the origin on homing is no motion of the hand") {
 }
 
 TEST_CASE("the lights go where the settings say") {
-  FalconSettings settings;
+  device::FalconSettings settings;
   settings.led_order = {2, 1, 0};
   Rig rig(true, settings);
   rig.lockstep.steps(3);
@@ -144,7 +144,7 @@ TEST_CASE("a force that is not finite is sent as none") {
 }
 
 TEST_CASE("the gravity bias is there while a servo runs, and not otherwise") {
-  FalconSettings settings;
+  device::FalconSettings settings;
   settings.gravity_bias_n = {0.0, 0.5, 0.0};
   Rig rig(true, settings);
   rig.lockstep.steps(3);
@@ -156,7 +156,7 @@ TEST_CASE("the gravity bias is there while a servo runs, and not otherwise") {
 }
 
 TEST_CASE("the gravity bias comes slowly, each time that a servo begins") {
-  FalconSettings settings;
+  device::FalconSettings settings;
   settings.gravity_bias_n = {0.0, 1.0, 0.0};
   Rig rig(true, settings);
   rig.lockstep.steps(3);
@@ -178,7 +178,7 @@ TEST_CASE("the gravity bias comes slowly, each time that a servo begins") {
 }
 
 TEST_CASE("a halted Falcon gets no force, bias or other, until it is re-armed") {
-  FalconSettings settings;
+  device::FalconSettings settings;
   settings.gravity_bias_n = {0.0, 0.5, 0.0};
   Rig rig(true, settings);
   rig.lockstep.steps(2);
@@ -197,7 +197,7 @@ TEST_CASE("the velocity is that of the hand") {
   rig.emulator.set_hand([tick = 0](Vec3) mutable { return Vec3{0.1 * ++tick - 10.0, 0.0, 0.0}; });
   // From where the grip was to where this hand begins, in jumps that are believed at last.
   rig.lockstep.steps(50);
-  const DeviceSample sample = rig.sample();
+  const device::DeviceSample sample = rig.sample();
   CHECK(sample.velocity_mm_s.x == Approx(100.0).margin(12.0));
   CHECK(std::abs(sample.velocity_mm_s.y) < 12.0);
 }
@@ -219,7 +219,7 @@ TEST_CASE("a few lost replies leave out samples and nothing else") {
   CHECK(rig.sample().sequence == 10);
   rig.lockstep.steps(3);
   CHECK(rig.sample().sequence == 13);
-  CHECK(rig.status == DeviceStatus::ok);
+  CHECK(rig.status == device::DeviceStatus::ok);
 }
 
 TEST_CASE("while replies stay away no force is sent, as nobody knows where the hand is") {
@@ -232,7 +232,7 @@ TEST_CASE("while replies stay away no force is sent, as nobody knows where the h
   }
   rig.push({0.0, 0.0, 1.0});
   CHECK(rig.emulator.motors() == kNoMotors);
-  CHECK(rig.status == DeviceStatus::ok);
+  CHECK(rig.status == device::DeviceStatus::ok);
 }
 
 TEST_CASE("a Falcon that falls silent is a lost link") {
@@ -240,10 +240,10 @@ TEST_CASE("a Falcon that falls silent is a lost link") {
   rig.lockstep.steps(2);
   rig.emulator.drop_replies(1'000'000);
   rig.lockstep.steps(FalconExchange::kLostAfter);
-  CHECK(rig.device->fault() == DeviceFault::link_lost);
-  CHECK(rig.device->write({}) == DeviceStatus::fault);
+  CHECK(rig.device->fault() == device::DeviceFault::link_lost);
+  CHECK(rig.device->write({}) == device::DeviceStatus::fault);
   rig.sample();
-  CHECK(rig.status == DeviceStatus::fault);
+  CHECK(rig.status == device::DeviceStatus::fault);
   CHECK(rig.emulator.motors() == kNoMotors);
 }
 
@@ -252,7 +252,7 @@ TEST_CASE("a Falcon that answers without sense is bad data") {
   rig.lockstep.steps(2);
   rig.emulator.shorten_replies(1'000'000, 9);
   rig.lockstep.steps(FalconExchange::kLostAfter);
-  CHECK(rig.device->fault() == DeviceFault::bad_data);
+  CHECK(rig.device->fault() == device::DeviceFault::bad_data);
 }
 
 TEST_CASE("a little garbage between replies does no harm") {
@@ -262,7 +262,7 @@ TEST_CASE("a little garbage between replies does no harm") {
     rig.emulator.send_garbage(std::vector<std::uint8_t>{'<', 0x41, i, '>'});
     rig.lockstep.step();
   }
-  CHECK(rig.status == DeviceStatus::ok);
+  CHECK(rig.status == device::DeviceStatus::ok);
   CHECK(rig.sample().sequence == 102);
   CHECK(norm(rig.sample().position_mm) < 0.06);
 }
@@ -288,7 +288,7 @@ TEST_CASE("homing that is forgotten takes the force away") {
   rig.lockstep.steps(2);
   rig.emulator.forget_homing();
   for (int i = 0; i < 3; ++i) rig.push({0.0, 0.0, 1.0});
-  CHECK(rig.device->readiness() == DeviceReadiness::needs_homing);
+  CHECK(rig.device->readiness() == device::DeviceReadiness::needs_homing);
   CHECK_FALSE(rig.sample().ready);
   CHECK(rig.emulator.motors() == kNoMotors);
 }
@@ -298,7 +298,7 @@ TEST_CASE("unplugging is a lost link, and the driver closes on it without a word
   rig.push({0.0, 0.0, 1.0});
   rig.emulator.unplug();
   rig.lockstep.steps(2);
-  CHECK(rig.device->fault() == DeviceFault::link_lost);
+  CHECK(rig.device->fault() == device::DeviceFault::link_lost);
   rig.device.reset();
   CHECK(rig.emulator.motors() == kNoMotors);
 }
@@ -320,12 +320,12 @@ TEST_CASE("a Falcon without firmware is loaded from the user's file when it is o
   const TempFolder folder;
   FalconEmulator emulator;
   Lockstep lockstep;
-  FalconSettings settings;
+  device::FalconSettings settings;
   settings.firmware = write_dummy_firmware(folder.path());
   const FalconDevice device(std::make_unique<EmulatorTransport>(emulator), settings,
                             in_lockstep(lockstep));
   CHECK(emulator.image() == dummy_firmware());
-  CHECK(device.readiness() == DeviceReadiness::needs_homing);
+  CHECK(device.readiness() == device::DeviceReadiness::needs_homing);
 }
 
 TEST_CASE("a Falcon without firmware and without a file says what to set") {
@@ -337,7 +337,7 @@ TEST_CASE("a Falcon without firmware and without a file says what to set") {
 TEST_CASE("a firmware that does not run is told as one") {
   const TempFolder folder;
   FalconEmulator emulator({.boot_loader = {.image = {1, 2, 3}}});
-  FalconSettings settings;
+  device::FalconSettings settings;
   settings.firmware = write_dummy_firmware(folder.path());
   CHECK_THROWS_WITH(FalconDevice(std::make_unique<EmulatorTransport>(emulator), settings),
                     holds_text("may not be a Falcon's firmware"));
@@ -345,13 +345,13 @@ TEST_CASE("a firmware that does not run is told as one") {
 
 TEST_CASE("a Falcon tells who it is") {
   Rig rig(true);
-  const DeviceInfo info = rig.device->info();
+  const device::DeviceInfo info = rig.device->info();
   CHECK(info.name == "falcon");
   CHECK(info.serial == "EMULATED");
   CHECK(info.max_force_n == 8.0);
   CHECK_FALSE(info.simulated);
   REQUIRE(info.workspace);
-  REQUIRE(info.workspace->shape == WorkspaceShape::ellipsoid);
+  REQUIRE(info.workspace->shape == device::WorkspaceShape::ellipsoid);
   CHECK(info.workspace->least_mm == Vec3{-40.0, -40.0, -40.0});
   // Every place on the ball is in reach.
   for (double turn = 0.0; turn < 6.3; turn += 0.1) {
@@ -364,4 +364,4 @@ TEST_CASE("a Falcon tells who it is") {
 }
 
 }  // namespace
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -9,7 +9,7 @@
 
 #include <functional>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 using std::chrono::milliseconds;
@@ -197,4 +197,4 @@ TEST_CASE("a firmware file that is not named, not there or of no image's size is
 }
 
 }  // namespace
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

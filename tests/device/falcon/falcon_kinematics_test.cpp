@@ -9,7 +9,7 @@
 #include <limits>
 #include <vector>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 constexpr int kPoses = 5000;
@@ -365,4 +365,4 @@ TEST_CASE("falcon inverse kinematics refuses what is out of reach, and what is n
 }
 
 }  // namespace
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -352,4 +352,4 @@ TEST_CASE("ftdi status bytes are taken out, and what does not fit is left out") 
 }
 
 }  // namespace
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 using std::chrono::microseconds;
@@ -62,4 +62,4 @@ TEST_CASE("readings at one moment have no velocity, rather than an infinite one"
 }
 
 }  // namespace
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -31,22 +31,23 @@ TEST_CASE("the mouse is there where a display is, and says what is missing elsew
   const Variable wayland("WAYLAND_DISPLAY", nullptr);
   {
     const Variable display("DISPLAY", ":7");
-    const DeviceListing listing = mouse_driver().list({}).at(0);
+    const device::DeviceListing listing = device::mouse_driver().list({}).at(0);
     CHECK(listing.present);
     CHECK(listing.where == ":7");
     CHECK(listing.missing.empty());
   }
   const Variable no_display("DISPLAY", nullptr);
-  const DeviceListing listing = mouse_driver().list({}).at(0);
+  const device::DeviceListing listing = device::mouse_driver().list({}).at(0);
   CHECK_FALSE(listing.present);
   REQUIRE(listing.missing.size() == 1);
   CHECK_THAT(listing.missing[0], holds_text("graphical session"));
 }
 
 TEST_CASE("the registry knows the mouse, and says that only a window can open it") {
-  CHECK_THROWS_AS(open_device("mouse", {}), DeviceError);
+  CHECK_THROWS_AS(device::open_device("mouse", {}), DeviceError);
   bool listed = false;
-  for (const DeviceListing& listing : list_devices({})) listed |= listing.driver == "mouse";
+  for (const device::DeviceListing& listing : device::list_devices({}))
+    listed |= listing.driver == "mouse";
   CHECK(listed);
 }
 

@@ -15,33 +15,35 @@ namespace {
 
 using namespace std::chrono_literals;
 
-class ConstantForce final : public ForceSource {
+class ConstantForce final : public device::ForceSource {
  public:
   explicit ConstantForce(Vec3 force_n) : force_n_(force_n) {}
-  [[nodiscard]] Vec3 force_n(const DeviceSample&) noexcept override { return force_n_; }
+  [[nodiscard]] Vec3 force_n(const device::DeviceSample&) noexcept override { return force_n_; }
 
  private:
   Vec3 force_n_;
 };
 
 /// One run of a script, tick by tick. There is no safety chain between: the device's own laws.
-std::vector<ServoSample> run(const ScriptedPointer::Script& script, ForceSource& force,
-                             std::int64_t ticks, double rate_hz = 1000.0) {
-  VirtualClock clock;
+std::vector<device::ServoSample> run(const ScriptedPointer::Script& script,
+                                     device::ForceSource& force, std::int64_t ticks,
+                                     double rate_hz = 1000.0) {
+  device::VirtualClock clock;
   ScriptedPointer pointer(clock, script);
-  MouseDevice mouse(pointer, clock);
-  std::vector<ServoSample> samples;
+  device::MouseDevice mouse(pointer, clock);
+  std::vector<device::ServoSample> samples;
   for (std::int64_t tick = 0; tick < ticks; ++tick) {
-    clock.wait_until(ServoClock::Time(std::llround(static_cast<double>(tick) * 1e9 / rate_hz)));
-    DeviceSample sample;
-    REQUIRE(mouse.read(sample) == DeviceStatus::ok);
+    clock.wait_until(
+        device::ServoClock::Time(std::llround(static_cast<double>(tick) * 1e9 / rate_hz)));
+    device::DeviceSample sample;
+    REQUIRE(mouse.read(sample) == device::DeviceStatus::ok);
     samples.push_back({sample.position_mm, force.force_n(sample), tick});
-    REQUIRE(mouse.write(samples.back().force_n) == DeviceStatus::ok);
+    REQUIRE(mouse.write(samples.back().force_n) == device::DeviceStatus::ok);
   }
   return samples;
 }
 
-PointerState at(double x_mm, double y_mm, bool pressed = false) {
+device::PointerState at(double x_mm, double y_mm, bool pressed = false) {
   return {{x_mm, y_mm}, pressed, false, 0};
 }
 
@@ -61,7 +63,7 @@ TEST_CASE("on a flat plane the moving stylus trails its pointer by no more than 
   FlatWall wall;
   const double speed_mm_s = 100.0;
   const auto script = [=](double time_s) { return at(speed_mm_s * time_s, 0.0, true); };
-  for (const ServoSample& sample : run(script, wall, 2000)) {
+  for (const device::ServoSample& sample : run(script, wall, 2000)) {
     const double hand_mm = speed_mm_s * static_cast<double>(sample.tick) * 1e-3;
     CHECK(sample.position_mm.x <= hand_mm + 1e-12);
     CHECK(sample.position_mm.x >= hand_mm - 0.025 * speed_mm_s);
@@ -76,18 +78,18 @@ TEST_CASE("a steady tangential force displaces the stylus by four millimetres fo
 }
 
 TEST_CASE("no force displaces the stylus beyond its bound, however it alternates") {
-  class Hostile final : public ForceSource {
+  class Hostile final : public device::ForceSource {
    public:
-    [[nodiscard]] Vec3 force_n(const DeviceSample&) noexcept override {
+    [[nodiscard]] Vec3 force_n(const device::DeviceSample&) noexcept override {
       const bool back = ++tick_ / 37 % 2 == 0;
       return {back ? -3.0 : 3.0, 1.0, 0.0};
     }
     int tick_ = 0;
   } force;
-  const MouseOptions defaults;
+  const device::MouseOptions defaults;
   const double bound_mm = defaults.greatest_pull_n / defaults.pull_n_per_mm;
   double farthest_mm = 0.0;
-  for (const ServoSample& sample : run([](double) { return at(0.0, 0.0); }, force, 5000)) {
+  for (const device::ServoSample& sample : run([](double) { return at(0.0, 0.0); }, force, 5000)) {
     farthest_mm = std::max(farthest_mm, norm(Vec2{sample.position_mm.x, sample.position_mm.y}));
   }
   CHECK(farthest_mm <= bound_mm + 1e-9);
@@ -95,26 +97,26 @@ TEST_CASE("no force displaces the stylus beyond its bound, however it alternates
 }
 
 TEST_CASE("the stylus returns to the pointer when the force is gone, without passing it") {
-  class Pulse final : public ForceSource {
+  class Pulse final : public device::ForceSource {
    public:
-    [[nodiscard]] Vec3 force_n(const DeviceSample&) noexcept override {
+    [[nodiscard]] Vec3 force_n(const device::DeviceSample&) noexcept override {
       return {++tick_ < 300 ? 0.1 : 0.0, 0.0, 0.0};
     }
     int tick_ = 0;
   } force;
   const auto samples = run([](double) { return at(5.0, 5.0); }, force, 1000);
   CHECK(samples[299].position_mm.x > 8.9);
-  for (const ServoSample& sample : samples) CHECK(sample.position_mm.x >= 5.0);
+  for (const device::ServoSample& sample : samples) CHECK(sample.position_mm.x >= 5.0);
   CHECK(std::abs(samples.back().position_mm.x - 5.0) < 1e-9);
 }
 
 TEST_CASE(
     "a force that grows against the motion slows the stylus, one that grows with it speeds it") {
   // Uphill or downhill from 20 mm on: the force along x changes by 0.02 N/mm.
-  class Slope final : public ForceSource {
+  class Slope final : public device::ForceSource {
    public:
     explicit Slope(double rise_n_per_mm) : rise_n_per_mm_(rise_n_per_mm) {}
-    [[nodiscard]] Vec3 force_n(const DeviceSample& sample) noexcept override {
+    [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override {
       return {-rise_n_per_mm_ * std::clamp(sample.position_mm.x - 20.0, 0.0, 15.0), 0.0, 0.0};
     }
     double rise_n_per_mm_;
@@ -152,13 +154,13 @@ TEST_CASE("pressing lands smoothly on the wall and holds 0.7 N, letting go lifts
 TEST_CASE("where there is no wall a pressing hand goes only as deep as it reaches") {
   ConstantForce none({});
   const auto samples = run([](double) { return at(0.0, 0.0, true); }, none, 2000);
-  CHECK(samples.back().position_mm.z == -MouseDevice::kReachMm);
+  CHECK(samples.back().position_mm.z == -device::MouseDevice::kReachMm);
 }
 
 TEST_CASE("the stylus is stable on stiff walls and textures at every rate of the servo") {
-  class Stiff final : public ForceSource {
+  class Stiff final : public device::ForceSource {
    public:
-    [[nodiscard]] Vec3 force_n(const DeviceSample& sample) noexcept override {
+    [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override {
       const Vec3 p = sample.position_mm;
       if (p.z >= 0.0) return {};
       const auto valley = [](double x) { return -10.0 * (x - std::round(x)) / 5.0; };
@@ -176,38 +178,38 @@ TEST_CASE("the stylus is stable on stiff walls and textures at every rate of the
 
 TEST_CASE("no pointer and no force moves the stylus faster than the servo lets a hand move") {
   RandomStream random(7, "hostile pointer");
-  class Noise final : public ForceSource {
+  class Noise final : public device::ForceSource {
    public:
     explicit Noise(RandomStream& random) : random_(random) {}
-    [[nodiscard]] Vec3 force_n(const DeviceSample&) noexcept override {
+    [[nodiscard]] Vec3 force_n(const device::DeviceSample&) noexcept override {
       return {random_.uniform() < 0.5 ? -3.0 : 3.0, random_.uniform() < 0.5 ? -3.0 : 3.0, 0.0};
     }
     RandomStream& random_;
   } force(random);
-  VirtualClock clock;
+  device::VirtualClock clock;
   ScriptedPointer pointer(clock, [](double time_s) {
     return at(std::fmod(time_s, 0.4) < 0.2 ? -500.0 : 500.0, 0.0, true);
   });
-  MouseDevice mouse(pointer, clock);
-  DeviceSample sample;
+  device::MouseDevice mouse(pointer, clock);
+  device::DeviceSample sample;
   double fastest_mm_s = 0.0;
   for (int tick = 0; tick < 20'000; ++tick) {
     clock.wait_until(tick * 1ms);
-    REQUIRE(mouse.read(sample) == DeviceStatus::ok);
+    REQUIRE(mouse.read(sample) == device::DeviceStatus::ok);
     fastest_mm_s = std::max(fastest_mm_s, norm(sample.velocity_mm_s));
-    REQUIRE(mouse.write(force.force_n(sample)) == DeviceStatus::ok);
+    REQUIRE(mouse.write(force.force_n(sample)) == device::DeviceStatus::ok);
   }
   CHECK(fastest_mm_s < 1700.0);
   CHECK(fastest_mm_s > 400.0);
 }
 
 TEST_CASE("readings are numbered anew even while the pointer rests, and the window is shown them") {
-  VirtualClock clock;
+  device::VirtualClock clock;
   ScriptedPointer pointer(clock, [](double) { return at(3.0, 4.0, true); });
-  MouseDevice mouse(pointer, clock);
-  DeviceSample sample;
+  device::MouseDevice mouse(pointer, clock);
+  device::DeviceSample sample;
   for (std::uint64_t reading = 1; reading <= 3; ++reading) {
-    REQUIRE(mouse.read(sample) == DeviceStatus::ok);
+    REQUIRE(mouse.read(sample) == device::DeviceStatus::ok);
     CHECK(sample.sequence == reading);
     CHECK(sample.buttons == 1U);
     CHECK(pointer.shown.sequence == reading);
@@ -216,45 +218,47 @@ TEST_CASE("readings are numbered anew even while the pointer rests, and the wind
 }
 
 TEST_CASE("a window that hangs is a hand that lets go, and the stylus stays where it was") {
-  VirtualClock clock;
+  device::VirtualClock clock;
   ScriptedPointer pointer(clock, [](double) { return at(3.0, 4.0, true); });
   pointer.hangs_after = 100;
-  MouseDevice mouse(pointer, clock);
+  device::MouseDevice mouse(pointer, clock);
   FlatWall wall;
   KeptSamples kept;
-  CHECK(run_servo(mouse, wall, kept, {.limit_ticks = 2500}, clock).end == ServoEnd::time_limit);
+  CHECK(device::run_servo(mouse, wall, kept, {.limit_ticks = 2500}, clock).end ==
+        device::ServoEnd::time_limit);
   CHECK(kept.samples[1400].force_n.z > 0.69);
   CHECK(kept.samples[2400].force_n.z == 0.0);
   CHECK(kept.samples[2400].position_mm.x == 3.0);
 }
 
 TEST_CASE("a window that closes is a lost link, and the last force is zero") {
-  VirtualClock clock;
+  device::VirtualClock clock;
   ScriptedPointer pointer(clock, [](double time_s) {
-    PointerState state = at(0.0, 0.0, true);
+    device::PointerState state = at(0.0, 0.0, true);
     state.closed = time_s >= 0.5;
     return state;
   });
-  MouseDevice mouse(pointer, clock);
+  device::MouseDevice mouse(pointer, clock);
   FlatWall wall;
   KeptSamples kept;
-  const ServoReport report = run_servo(mouse, wall, kept, {.limit_ticks = 1000}, clock);
-  CHECK(report.end == ServoEnd::fault);
-  CHECK(report.device_fault == DeviceFault::link_lost);
+  const device::ServoReport report =
+      device::run_servo(mouse, wall, kept, {.limit_ticks = 1000}, clock);
+  CHECK(report.end == device::ServoEnd::fault);
+  CHECK(report.device_fault == device::DeviceFault::link_lost);
   CHECK(report.ticks == 500);
 }
 
 TEST_CASE("halt makes the hand let go and takes the force from the stylus until rearmed") {
-  VirtualClock clock;
+  device::VirtualClock clock;
   ScriptedPointer pointer(clock, [](double) { return at(0.0, 0.0, true); });
-  MouseDevice mouse(pointer, clock);
-  DeviceSample sample;
-  const auto tick_for = [&](ServoClock::Time time) {
+  device::MouseDevice mouse(pointer, clock);
+  device::DeviceSample sample;
+  const auto tick_for = [&](device::ServoClock::Time time) {
     for (const auto end = clock.now() + time; clock.now() < end;
          clock.wait_until(clock.now() + 1ms)) {
-      REQUIRE(mouse.read(sample) == DeviceStatus::ok);
+      REQUIRE(mouse.read(sample) == device::DeviceStatus::ok);
       REQUIRE(mouse.write({0.1, 0.0, std::max(0.0, -0.4 * sample.position_mm.z)}) ==
-              DeviceStatus::ok);
+              device::DeviceStatus::ok);
     }
   };
   tick_for(1s);
@@ -271,31 +275,33 @@ TEST_CASE("halt makes the hand let go and takes the force from the stylus until 
 
 TEST_CASE(
     "a mouse is not ready before its window has begun, and a force that is no number is none") {
-  VirtualClock clock;
-  PointerExchange exchange;
-  MouseDevice mouse(exchange, clock);
-  DeviceSample sample;
-  REQUIRE(mouse.read(sample) == DeviceStatus::ok);
+  device::VirtualClock clock;
+  device::PointerExchange exchange;
+  device::MouseDevice mouse(exchange, clock);
+  device::DeviceSample sample;
+  REQUIRE(mouse.read(sample) == device::DeviceStatus::ok);
   CHECK_FALSE(sample.ready);
   exchange.publish(at(7.0, 8.0));
-  REQUIRE(mouse.write({std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0}) == DeviceStatus::ok);
+  REQUIRE(mouse.write({std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0}) ==
+          device::DeviceStatus::ok);
   clock.wait_until(1ms);
-  REQUIRE(mouse.read(sample) == DeviceStatus::ok);
+  REQUIRE(mouse.read(sample) == device::DeviceStatus::ok);
   CHECK(sample.ready);
   CHECK(sample.position_mm.x == 7.0);
   CHECK(exchange.stylus().sequence == 2);
 }
 
 TEST_CASE("the mouse says that it is visual, and refuses options out of range") {
-  VirtualClock clock;
-  PointerExchange exchange;
-  CHECK(MouseDevice(exchange, clock).info().visual);
-  CHECK(MouseDevice(exchange, clock).info().name == "mouse");
-  CHECK_THROWS_AS(MouseDevice(exchange, clock, {.pull_n_per_mm = 0.0}), std::invalid_argument);
+  device::VirtualClock clock;
+  device::PointerExchange exchange;
+  CHECK(device::MouseDevice(exchange, clock).info().visual);
+  CHECK(device::MouseDevice(exchange, clock).info().name == "mouse");
+  CHECK_THROWS_AS(device::MouseDevice(exchange, clock, {.pull_n_per_mm = 0.0}),
+                  std::invalid_argument);
 }
 
 TEST_CASE("a hand drawn smoothly never leaves what it was given, whatever the steps") {
-  SmoothPull pull(0.01);
+  device::SmoothPull pull(0.01);
   const double step_s = GENERATE(0.0, 1e-4, 1e-3, 0.5, 1e6);
   for (int i = 0; i < 500; ++i) {
     pull.step({i % 3 == 0 ? -2.0 : 1.0, 0.5}, step_s);

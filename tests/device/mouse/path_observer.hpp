@@ -64,21 +64,21 @@ struct SeenFrame {
 
 /// Strokes a texture with a pressed pointer: the stylus as a screen draws it, 60 times a second in
 /// whole pixels of 0.265 mm, once it has landed.
-inline std::vector<SeenFrame> seen_frames(ForceSource& texture, std::uint64_t stroke_seed,
-                                          const MouseOptions& options) {
+inline std::vector<SeenFrame> seen_frames(device::ForceSource& texture, std::uint64_t stroke_seed,
+                                          const device::MouseOptions& options) {
   constexpr double kPixelMm = 0.265;
   const UnsteadyStroke stroke(stroke_seed);
-  VirtualClock clock;
+  device::VirtualClock clock;
   ScriptedPointer pointer(clock, [&](double time_s) {
-    return PointerState{stroke.at(time_s), true, false, 0};
+    return device::PointerState{stroke.at(time_s), true, false, 0};
   });
-  MouseDevice mouse(pointer, clock, options);
+  device::MouseDevice mouse(pointer, clock, options);
   std::vector<SeenFrame> frames;
-  DeviceSample sample;
+  device::DeviceSample sample;
   for (int tick = 0; tick < UnsteadyStroke::kDurationS * 1000; ++tick) {
     clock.wait_until(std::chrono::milliseconds(tick));
-    if (mouse.read(sample) != DeviceStatus::ok) return {};
-    if (mouse.write(texture.force_n(sample)) != DeviceStatus::ok) return {};
+    if (mouse.read(sample) != device::DeviceStatus::ok) return {};
+    if (mouse.write(texture.force_n(sample)) != device::DeviceStatus::ok) return {};
     if (tick < 500 || tick * 60 / 1000 == (tick - 1) * 60 / 1000) continue;
     const double hand_mm = stroke.at(tick * 1e-3).x;
     const double drawn_mm = kPixelMm * std::round(pointer.shown.position_mm.x / kPixelMm);
@@ -120,8 +120,8 @@ inline PathFeatures features_of(std::span<const SeenFrame> frames) {
 }
 
 /// What the observer has of one stroke over a texture.
-inline PathFeatures seen_features(ForceSource& texture, std::uint64_t stroke_seed,
-                                  const MouseOptions& options = {}) {
+inline PathFeatures seen_features(device::ForceSource& texture, std::uint64_t stroke_seed,
+                                  const device::MouseOptions& options = {}) {
   return features_of(seen_frames(texture, stroke_seed, options));
 }
 
@@ -175,7 +175,7 @@ class PathObserver {
 };
 
 /// Makes a fresh force source for a presentation of texture `index`.
-using TextureMaker = std::function<std::unique_ptr<ForceSource>(std::size_t index)>;
+using TextureMaker = std::function<std::unique_ptr<device::ForceSource>(std::size_t index)>;
 
 /// What an observer strokes: textures, and the seed of the first stroke over each.
 struct Presentations {
@@ -186,7 +186,8 @@ struct Presentations {
 /// The share of strokes that an observer names rightly, who has learned from as many others. The
 /// same strokes go over each texture.
 inline double share_named_rightly(std::size_t textures, int strokes, const Presentations& to_learn,
-                                  const Presentations& to_name, const MouseOptions& options = {}) {
+                                  const Presentations& to_name,
+                                  const device::MouseOptions& options = {}) {
   const auto features_over = [&](const Presentations& shown, std::size_t texture, int stroke) {
     return seen_features(*shown.make(texture),
                          shown.first_stroke + static_cast<std::uint64_t>(stroke), options);
@@ -209,7 +210,7 @@ inline double share_named_rightly(std::size_t textures, int strokes, const Prese
 
 /// The same with the strokes over which the device's settings were chosen.
 inline double share_named_rightly(std::size_t textures, int strokes, const TextureMaker& make,
-                                  const MouseOptions& options = {}) {
+                                  const device::MouseOptions& options = {}) {
   return share_named_rightly(textures, strokes, {make, 1000}, {make, 9000}, options);
 }
 

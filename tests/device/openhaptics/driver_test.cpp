@@ -6,10 +6,10 @@
 namespace touchtrial {
 namespace {
 
-DeviceListing listing_with(const std::filesystem::path& library) {
-  DeviceSettings settings;
+device::DeviceListing listing_with(const std::filesystem::path& library) {
+  device::DeviceSettings settings;
   settings.openhaptics.library = library;
-  const std::vector<DeviceListing> listings = openhaptics_driver().list(settings);
+  const std::vector<device::DeviceListing> listings = device::openhaptics_driver().list(settings);
   REQUIRE(listings.size() == 1);
   CHECK(listings[0].driver == "openhaptics");
   CHECK(listings[0].where == library.string());
@@ -18,7 +18,7 @@ DeviceListing listing_with(const std::filesystem::path& library) {
 
 TEST_CASE("the list of openhaptics names the device that is there, and lets go of it") {
   fakes::LoadedHd fake;
-  const DeviceListing listing = listing_with(TOUCHTRIAL_FAKE_HD);
+  const device::DeviceListing listing = listing_with(TOUCHTRIAL_FAKE_HD);
   CHECK(listing.present);
   CHECK(listing.model == "3D Systems Touch");
   CHECK(listing.serial == "SN-4711");
@@ -33,7 +33,7 @@ TEST_CASE("the list of openhaptics says what is missing: device, library, functi
       table<const char*, const char*>({{TOUCHTRIAL_FAKE_HD, "plug it in"},
                                        {"/nowhere/libHD.so", "install the vendor's OpenHaptics"},
                                        {TOUCHTRIAL_PARTIAL_HD, "has no function hdUnschedule"}}));
-  const DeviceListing listing = listing_with(library);
+  const device::DeviceListing listing = listing_with(library);
   CHECK_FALSE(listing.present);
   REQUIRE(listing.missing.size() == 1);
   CHECK_THAT(listing.missing[0], holds_text(missing));
@@ -41,9 +41,9 @@ TEST_CASE("the list of openhaptics says what is missing: device, library, functi
 
 TEST_CASE("openhaptics is opened through the registry by its name") {
   fakes::LoadedHd fake;
-  DeviceSettings settings;
+  device::DeviceSettings settings;
   settings.openhaptics.library = TOUCHTRIAL_FAKE_HD;
-  CHECK(open_device("openhaptics", settings)->info().name == "openhaptics");
+  CHECK(device::open_device("openhaptics", settings)->info().name == "openhaptics");
 }
 
 }  // namespace

@@ -17,16 +17,16 @@ using fakes::eventually;
 using fakes::LoadedHd;
 using Stepping = fakes::SteppingClock<fakes::FakeHdExports>;
 
-OpenHapticsSettings settings_of_fake() {
-  OpenHapticsSettings settings;
+device::OpenHapticsSettings settings_of_fake() {
+  device::OpenHapticsSettings settings;
   settings.library = TOUCHTRIAL_FAKE_HD;
   return settings;
 }
 
 /// The newest sample after the next tick of the fake.
-DeviceSample next_sample(OpenHapticsDevice& device) {
-  DeviceSample before;
-  DeviceSample after;
+device::DeviceSample next_sample(device::OpenHapticsDevice& device) {
+  device::DeviceSample before;
+  device::DeviceSample after;
   (void)device.read(before);
   REQUIRE(eventually([&] {
     (void)device.read(after);
@@ -37,7 +37,7 @@ DeviceSample next_sample(OpenHapticsDevice& device) {
 
 /// Writes as a servo would until the fake says so.
 template <typename Predicate>
-[[nodiscard]] bool write_until(OpenHapticsDevice& device, Vec3 force_n, Predicate holds) {
+[[nodiscard]] bool write_until(device::OpenHapticsDevice& device, Vec3 force_n, Predicate holds) {
   return eventually([&] {
     (void)device.write(force_n);
     return holds();
@@ -47,45 +47,46 @@ template <typename Predicate>
 TEST_CASE("openhaptics: the device is opened by the first of its default names that answers") {
   LoadedHd fake;
   fake->opens_by = GENERATE(fakes::kHdNull, fakes::kHdDefaultDevice, fakes::kHdDefaultPhantom);
-  OpenHapticsDevice device(settings_of_fake());
+  device::OpenHapticsDevice device(settings_of_fake());
   CHECK(next_sample(device).ready);
-  CHECK(device.fault() == DeviceFault::none);
+  CHECK(device.fault() == device::DeviceFault::none);
 }
 
 TEST_CASE("openhaptics: a device that is named is opened by that name alone") {
   LoadedHd fake;
-  OpenHapticsSettings settings = settings_of_fake();
+  device::OpenHapticsSettings settings = settings_of_fake();
   settings.device = "Lab Touch";
   fake->opens_by = fakes::kHdLabTouch;
-  { OpenHapticsDevice device(settings); }
+  { device::OpenHapticsDevice device(settings); }
   fake->opens_by = fakes::kHdNull | fakes::kHdDefaultDevice | fakes::kHdDefaultPhantom;
-  CHECK_THROWS_WITH(OpenHapticsDevice(settings), holds_text("Lab Touch does not open"));
+  CHECK_THROWS_WITH(device::OpenHapticsDevice(settings), holds_text("Lab Touch does not open"));
 }
 
 TEST_CASE("openhaptics: a device that does not answer is told in the library's words") {
   LoadedHd fake;
   fake->opens_by = 0;
-  CHECK_THROWS_AS(OpenHapticsDevice(settings_of_fake()), DeviceError);
-  CHECK_THROWS_WITH(OpenHapticsDevice(settings_of_fake()),
+  CHECK_THROWS_AS(device::OpenHapticsDevice(settings_of_fake()), DeviceError);
+  CHECK_THROWS_WITH(device::OpenHapticsDevice(settings_of_fake()),
                     holds_text("no such device (0x301)") && holds_text("plug it in"));
 }
 
 TEST_CASE("openhaptics: a library without one of the functions is refused by the function's name") {
-  OpenHapticsSettings settings = settings_of_fake();
+  device::OpenHapticsSettings settings = settings_of_fake();
   settings.library = TOUCHTRIAL_PARTIAL_HD;
-  CHECK_THROWS_WITH(OpenHapticsDevice(settings), holds_text("has no function hdUnschedule"));
+  CHECK_THROWS_WITH(device::OpenHapticsDevice(settings),
+                    holds_text("has no function hdUnschedule"));
 }
 
 TEST_CASE("openhaptics: a library that is not there is refused with the setting that names it") {
-  OpenHapticsSettings settings = settings_of_fake();
+  device::OpenHapticsSettings settings = settings_of_fake();
   settings.library = "/nowhere/libHD.so";
-  CHECK_THROWS_WITH(OpenHapticsDevice(settings),
+  CHECK_THROWS_WITH(device::OpenHapticsDevice(settings),
                     holds_text("/nowhere/libHD.so") && holds_text("openhaptics.library"));
 }
 
 TEST_CASE("openhaptics: the device says what it is") {
   LoadedHd fake;
-  const DeviceInfo info = OpenHapticsDevice(settings_of_fake()).info();
+  const device::DeviceInfo info = device::OpenHapticsDevice(settings_of_fake()).info();
   CHECK(info.name == "openhaptics");
   CHECK(info.model == "3D Systems Touch");
   CHECK(info.serial == "SN-4711");
@@ -103,7 +104,7 @@ TEST_CASE("openhaptics: the device says what it is") {
 TEST_CASE("openhaptics: a device that does not tell where it is usable has the room it reaches") {
   LoadedHd fake;
   fake->tells_usable_workspace = false;
-  const auto workspace = OpenHapticsDevice(settings_of_fake()).info().workspace;
+  const auto workspace = device::OpenHapticsDevice(settings_of_fake()).info().workspace;
   REQUIRE(workspace);
   CHECK(workspace->least_mm == Vec3{-210.0, -110.0, -85.0});
   CHECK(workspace->greatest_mm == Vec3{210.0, 205.0, 130.0});
@@ -113,7 +114,7 @@ TEST_CASE("openhaptics: a device that tells no room at all still has a frame of 
   LoadedHd fake;
   fake->tells_usable_workspace = false;
   fake->tells_max_workspace = false;
-  const auto workspace = OpenHapticsDevice(settings_of_fake()).info().workspace;
+  const auto workspace = device::OpenHapticsDevice(settings_of_fake()).info().workspace;
   REQUIRE(workspace);
   CHECK(workspace->greatest_mm - workspace->least_mm == Vec3{160.0, 120.0, 70.0});
 }
@@ -122,8 +123,8 @@ TEST_CASE("openhaptics: position and buttons arrive as the library gives them") 
   LoadedHd fake;
   fake->hand.rest_at({10.0, -20.0, 30.5});
   fake->buttons = 2;
-  OpenHapticsDevice device(settings_of_fake());
-  const DeviceSample sample = next_sample(device);
+  device::OpenHapticsDevice device(settings_of_fake());
+  const device::DeviceSample sample = next_sample(device);
   CHECK(sample.position_mm == Vec3{10.0, -20.0, 30.5});
   CHECK(sample.buttons == 2);
 }
@@ -132,16 +133,17 @@ TEST_CASE("openhaptics: a wall bears the hand that is pushed against it") {
   LoadedHd fake;
   fake->hand.position_mm.set({5.0, 3.0, 0.0});
   fake->hand.push_n.set({0.0, -0.7, 0.0});
-  OpenHapticsDevice device(settings_of_fake());
-  PlacedDevice placed(device, {});
+  device::OpenHapticsDevice device(settings_of_fake());
+  device::PlacedDevice placed(device, {});
   FlatWall wall;
   KeptSamples kept;
   Stepping clock(fake.exports());
-  const ServoReport report = run_servo(placed, wall, kept, {.limit_ticks = 1000}, clock);
-  CHECK(report.end == ServoEnd::time_limit);
+  const device::ServoReport report =
+      device::run_servo(placed, wall, kept, {.limit_ticks = 1000}, clock);
+  CHECK(report.end == device::ServoEnd::time_limit);
   CHECK_FALSE(clock.hung());
   REQUIRE(kept.samples.size() > 999);
-  const ServoSample& settled = kept.samples[999];
+  const device::ServoSample& settled = kept.samples[999];
   // Where the wall bears the push, or deeper: a stall of the machine lets forces lapse, see
   // DeviceLink::kForceLifetime.
   CHECK(settled.position_mm.z < -1.5);
@@ -152,15 +154,15 @@ TEST_CASE("openhaptics: a wall bears the hand that is pushed against it") {
 TEST_CASE("openhaptics: without calibration the force stays zero, and the person is told why") {
   LoadedHd fake;
   fake->calibration = 0x5002;
-  OpenHapticsDevice device(settings_of_fake());
+  device::OpenHapticsDevice device(settings_of_fake());
   CHECK_FALSE(next_sample(device).ready);
-  CHECK(device.readiness() == DeviceReadiness::needs_inkwell);
+  CHECK(device.readiness() == device::DeviceReadiness::needs_inkwell);
   const long begun = fake->frames;
   REQUIRE(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->frames > begun + 50; }));
   CHECK(fake->zero_forces_last >= 50);
 
   fake->calibration = 0x5001;
-  REQUIRE(eventually([&] { return device.readiness() == DeviceReadiness::ready; }));
+  REQUIRE(eventually([&] { return device.readiness() == device::DeviceReadiness::ready; }));
   CHECK(next_sample(device).ready);
   CHECK(fake->calibration_updates == 1);
   CHECK(fake->last_style == 4);
@@ -172,91 +174,93 @@ TEST_CASE("openhaptics: calibration is only done by a style that the device offe
   fake->calibration = 0x5001;
   SECTION("automatic") {
     fake->calibration_styles = 2;
-    OpenHapticsDevice device(settings_of_fake());
-    REQUIRE(eventually([&] { return device.readiness() == DeviceReadiness::ready; }));
+    device::OpenHapticsDevice device(settings_of_fake());
+    REQUIRE(eventually([&] { return device.readiness() == device::DeviceReadiness::ready; }));
     CHECK(fake->last_style == 2);
   }
   SECTION("none that can be done from here") {
     fake->calibration_styles = 1;
-    OpenHapticsDevice device(settings_of_fake());
+    device::OpenHapticsDevice device(settings_of_fake());
     REQUIRE(eventually([&] { return fake->frames > 200; }));
-    CHECK(device.readiness() == DeviceReadiness::needs_calibration);
+    CHECK(device.readiness() == device::DeviceReadiness::needs_calibration);
     CHECK(fake->calibration_updates == 0);
   }
 }
 
 TEST_CASE("openhaptics: each of the library's errors is the fault that it means") {
-  const auto [code, fault] =
-      GENERATE(table<std::uint32_t, DeviceFault>({{0x200, DeviceFault::warm_motors},
-                                                  {0x201, DeviceFault::limit_passed},
-                                                  {0x202, DeviceFault::limit_passed},
-                                                  {0x203, DeviceFault::limit_passed},
-                                                  {0x204, DeviceFault::driver},
-                                                  {0x300, DeviceFault::driver},
-                                                  {0x302, DeviceFault::link_lost},
-                                                  {0x304, DeviceFault::driver},
-                                                  {0x400, DeviceFault::driver},
-                                                  {0x402, DeviceFault::driver}}));
+  const auto [code, fault] = GENERATE(
+      table<std::uint32_t, device::DeviceFault>({{0x200, device::DeviceFault::warm_motors},
+                                                 {0x201, device::DeviceFault::limit_passed},
+                                                 {0x202, device::DeviceFault::limit_passed},
+                                                 {0x203, device::DeviceFault::limit_passed},
+                                                 {0x204, device::DeviceFault::driver},
+                                                 {0x300, device::DeviceFault::driver},
+                                                 {0x302, device::DeviceFault::link_lost},
+                                                 {0x304, device::DeviceFault::driver},
+                                                 {0x400, device::DeviceFault::driver},
+                                                 {0x402, device::DeviceFault::driver}}));
   LoadedHd fake;
-  OpenHapticsDevice device(settings_of_fake());
+  device::OpenHapticsDevice device(settings_of_fake());
   REQUIRE(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->force_n.get().y == 1.0; }));
   fake->next_error = code;
   REQUIRE(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->zero_forces_last > 10; }));
   CHECK(device.fault() == fault);
-  DeviceSample sample;
-  CHECK(device.read(sample) == DeviceStatus::fault);
-  CHECK(device.write({0.0, 1.0, 0.0}) == DeviceStatus::fault);
+  device::DeviceSample sample;
+  CHECK(device.read(sample) == device::DeviceStatus::fault);
+  CHECK(device.write({0.0, 1.0, 0.0}) == device::DeviceStatus::fault);
 }
 
 TEST_CASE("openhaptics: a motor that gets too warm is a fault before the library says so") {
   LoadedHd fake;
-  OpenHapticsDevice device(settings_of_fake());
+  device::OpenHapticsDevice device(settings_of_fake());
   fake->warmth[4] = 0.94;
   REQUIRE(eventually([&] { return fake->frames > 300; }));
-  CHECK(device.fault() == DeviceFault::none);
+  CHECK(device.fault() == device::DeviceFault::none);
   fake->warmth[4] = 0.96;
-  CHECK(eventually([&] { return device.fault() == DeviceFault::warm_motors; }));
+  CHECK(eventually([&] { return device.fault() == device::DeviceFault::warm_motors; }));
 }
 
 TEST_CASE("openhaptics: a device that tells no temperature works without") {
   LoadedHd fake;
   fake->tells_temperature = false;
-  OpenHapticsDevice device(settings_of_fake());
+  device::OpenHapticsDevice device(settings_of_fake());
   REQUIRE(eventually([&] { return fake->frames > 300; }));
-  CHECK(device.fault() == DeviceFault::none);
+  CHECK(device.fault() == device::DeviceFault::none);
 }
 
 TEST_CASE("openhaptics: a position that is no number is a fault, and never reaches the servo") {
   LoadedHd fake;
-  OpenHapticsDevice device(settings_of_fake());
+  device::OpenHapticsDevice device(settings_of_fake());
   (void)next_sample(device);
   fake->hand.rest_at({std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0});
-  REQUIRE(eventually([&] { return device.fault() == DeviceFault::bad_data; }));
-  DeviceSample sample;
-  CHECK(device.read(sample) == DeviceStatus::fault);
+  REQUIRE(eventually([&] { return device.fault() == device::DeviceFault::bad_data; }));
+  device::DeviceSample sample;
+  CHECK(device.read(sample) == device::DeviceStatus::fault);
   CHECK(is_finite(sample.position_mm));
 }
 
 TEST_CASE("openhaptics: a device that is lost in the middle of a run ends it as a fault") {
   LoadedHd fake;
   fake->hand.push_n.set({0.0, -0.7, 0.0});
-  OpenHapticsDevice device(settings_of_fake());
-  PlacedDevice placed(device, {});
+  device::OpenHapticsDevice device(settings_of_fake());
+  device::PlacedDevice placed(device, {});
   FlatWall wall;
   KeptSamples kept;
   Stepping clock(fake.exports());
-  REQUIRE(run_servo(placed, wall, kept, {.limit_ticks = 50}, clock).end == ServoEnd::time_limit);
+  REQUIRE(device::run_servo(placed, wall, kept, {.limit_ticks = 50}, clock).end ==
+          device::ServoEnd::time_limit);
   fake->lost = true;
-  const ServoReport report = run_servo(placed, wall, kept, {.limit_ticks = 50}, clock);
-  CHECK(report.end == ServoEnd::fault);
-  CHECK(device.fault() == DeviceFault::link_lost);
+  const device::ServoReport report =
+      device::run_servo(placed, wall, kept, {.limit_ticks = 50}, clock);
+  CHECK(report.end == device::ServoEnd::fault);
+  CHECK(device.fault() == device::DeviceFault::link_lost);
   CHECK(fake.exports().step(2));
   CHECK(fake->force_n.get() == Vec3{});
 }
 
 TEST_CASE("openhaptics: halting sends zero until it is re-armed") {
   LoadedHd fake;
-  OpenHapticsDevice device(settings_of_fake());
+  device::OpenHapticsDevice device(settings_of_fake());
   REQUIRE(write_until(device, {1.0, 0.0, 0.0}, [&] { return fake->force_n.get().x == 1.0; }));
   device.halt();
   REQUIRE(write_until(device, {1.0, 0.0, 0.0}, [&] { return fake->zero_forces_last > 20; }));
@@ -267,7 +271,7 @@ TEST_CASE("openhaptics: halting sends zero until it is re-armed") {
 TEST_CASE("openhaptics: closing sends zeros, stops the scheduler first, and disables the device") {
   LoadedHd fake;
   {
-    OpenHapticsDevice device(settings_of_fake());
+    device::OpenHapticsDevice device(settings_of_fake());
     REQUIRE(write_until(device, {1.0, 0.0, 0.0}, [&] { return fake->force_n.get().x == 1.0; }));
   }
   CHECK(fake->zero_forces_last >= 5);
@@ -280,7 +284,7 @@ TEST_CASE("openhaptics: closing sends zeros, stops the scheduler first, and disa
 TEST_CASE("openhaptics: a callback that is still running at the stop is waited for") {
   LoadedHd fake;
   fake->lazy_stop = true;
-  std::optional<OpenHapticsDevice> device(std::in_place, settings_of_fake());
+  std::optional<device::OpenHapticsDevice> device(std::in_place, settings_of_fake());
   fake->hold_callback = true;
   REQUIRE(eventually([&] { return fake->callback_held.load(); }));
   std::thread closing([&] { device.reset(); });
@@ -294,22 +298,22 @@ TEST_CASE("openhaptics: a callback that is still running at the stop is waited f
 TEST_CASE("openhaptics: a second device in the same program is refused until the first is closed") {
   LoadedHd fake;
   {
-    OpenHapticsDevice device(settings_of_fake());
-    CHECK_THROWS_WITH(OpenHapticsDevice(settings_of_fake()), holds_text("open already"));
+    device::OpenHapticsDevice device(settings_of_fake());
+    CHECK_THROWS_WITH(device::OpenHapticsDevice(settings_of_fake()), holds_text("open already"));
     CHECK(next_sample(device).ready);
   }
-  OpenHapticsDevice again(settings_of_fake());
+  device::OpenHapticsDevice again(settings_of_fake());
   CHECK(next_sample(again).ready);
 }
 
 TEST_CASE("openhaptics: a rate that the scheduler refuses is told, and the device let go of") {
   LoadedHd fake;
-  OpenHapticsSettings settings = settings_of_fake();
+  device::OpenHapticsSettings settings = settings_of_fake();
   settings.rate_hz = 1234;
-  CHECK_THROWS_WITH(OpenHapticsDevice(settings), holds_text("openhaptics.rate_hz = 1234"));
+  CHECK_THROWS_WITH(device::OpenHapticsDevice(settings), holds_text("openhaptics.rate_hz = 1234"));
   CHECK(fake.calls().ends_with("disable_device "));
   settings.rate_hz = 500;
-  CHECK(OpenHapticsDevice(settings).info().max_rate_hz == 500.0);
+  CHECK(device::OpenHapticsDevice(settings).info().max_rate_hz == 500.0);
 }
 
 }  // namespace

@@ -10,7 +10,9 @@ namespace touchtrial {
 namespace {
 
 TEST_CASE("a library that is not there is named with the remedy, on one line") {
-  const auto load = [] { DynamicLibrary("/nowhere/lib\nHD.so", Unload::when_closed, "do this"); };
+  const auto load = [] {
+    device::DynamicLibrary("/nowhere/lib\nHD.so", device::Unload::when_closed, "do this");
+  };
   CHECK_THROWS_AS(load(), DeviceError);
   CHECK_THROWS_WITH(load(), holds_text("/nowhere/lib HD.so: cannot be loaded") &&
                                 holds_text("; do this") && !holds_text("\n"));
@@ -22,18 +24,18 @@ TEST_CASE("a file that is no library is refused with the linker's reason") {
                                                  "ELF and nothing more"));
   const auto file = std::filesystem::temp_directory_path() / "touchtrial-no-library.so";
   replace_file(file, content);
-  CHECK_THROWS_WITH(DynamicLibrary(file, Unload::when_closed, "do this"),
+  CHECK_THROWS_WITH(device::DynamicLibrary(file, device::Unload::when_closed, "do this"),
                     holds_text(file.string() + ": cannot be loaded") && holds_text("do this"));
   std::filesystem::remove(file);
 }
 
 TEST_CASE("an empty name is no library, and not the program itself") {
-  CHECK_THROWS_WITH(DynamicLibrary("", Unload::when_closed, "do this"),
+  CHECK_THROWS_WITH(device::DynamicLibrary("", device::Unload::when_closed, "do this"),
                     holds_text("no library is named"));
 }
 
 TEST_CASE("functions are found by name, and a missing one is named") {
-  const DynamicLibrary library(TOUCHTRIAL_FAKE_HD, Unload::when_closed, "do this");
+  const device::DynamicLibrary library(TOUCHTRIAL_FAKE_HD, device::Unload::when_closed, "do this");
   CHECK(library.function<void()>("fake_hd_exports") != nullptr);
   CHECK(library.function_if_any<void()>("hdNoSuchThing") == nullptr);
   CHECK_THROWS_WITH(library.function<void()>("hdNoSuchThing"),
@@ -44,11 +46,11 @@ TEST_CASE("a library that was cut off is told apart from a whole one without loa
   const Bytes whole = read_file(TOUCHTRIAL_FAKE_HD);
   const auto file = std::filesystem::temp_directory_path() / "touchtrial-cut-library.so";
   replace_file(file, ByteView(whole).first(whole.size() / 4));
-  CHECK_THROWS_WITH(expect_loading_survived(file, "do this"),
+  CHECK_THROWS_WITH(device::expect_loading_survived(file, "do this"),
                     holds_text("crashes while it is loaded") && holds_text("; do this"));
   std::filesystem::remove(file);
-  CHECK_NOTHROW(expect_loading_survived(TOUCHTRIAL_FAKE_HD, "do this"));
-  CHECK_NOTHROW(expect_loading_survived(file, "do this"));
+  CHECK_NOTHROW(device::expect_loading_survived(TOUCHTRIAL_FAKE_HD, "do this"));
+  CHECK_NOTHROW(device::expect_loading_survived(file, "do this"));
 }
 
 }  // namespace

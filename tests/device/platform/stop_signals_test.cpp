@@ -20,7 +20,7 @@ namespace touchtrial {
 namespace {
 
 /// Sends from a thread of its own: into a pipe, 'F' for force and 'z' for zero.
-class PipeDevice final : public HapticDevice {
+class PipeDevice final : public device::HapticDevice {
  public:
   explicit PipeDevice(int pipe) : sender_([this, pipe] { send_to(pipe); }) {
     while (!sends_.load()) std::this_thread::yield();
@@ -29,9 +29,13 @@ class PipeDevice final : public HapticDevice {
     ends_.store(true);
     sender_.join();
   }
-  [[nodiscard]] DeviceInfo info() const override { return {"pipe", "", 3.3, true}; }
-  [[nodiscard]] DeviceStatus read(DeviceSample&) noexcept override { return DeviceStatus::ok; }
-  [[nodiscard]] DeviceStatus write(Vec3) noexcept override { return DeviceStatus::ok; }
+  [[nodiscard]] device::DeviceInfo info() const override { return {"pipe", "", 3.3, true}; }
+  [[nodiscard]] device::DeviceStatus read(device::DeviceSample&) noexcept override {
+    return device::DeviceStatus::ok;
+  }
+  [[nodiscard]] device::DeviceStatus write(Vec3) noexcept override {
+    return device::DeviceStatus::ok;
+  }
   void halt() noexcept override { halted_.store(true); }
   void rearm() noexcept override { halted_.store(false); }
 
@@ -63,16 +67,16 @@ const std::map<std::string, int>& asking_signals() {
   return signals;
 }
 
-void put_things_in_order(const ServoControl& control) {
+void put_things_in_order(const device::ServoControl& control) {
   while (!control.emergency_stop_asked()) std::this_thread::yield();
 }
 
-void leave_by(const std::string& way, const ServoControl& control) {
+void leave_by(const std::string& way, const device::ServoControl& control) {
   if (const auto asked = asking_signals().find(way); asked != asking_signals().end()) {
     std::raise(asked->second);
     put_things_in_order(control);
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    ::_exit(StopOnSignals::exit_code());
+    ::_exit(device::StopOnSignals::exit_code());
   }
   if (way == "SIGTERM twice") {
     std::raise(SIGTERM);
@@ -97,10 +101,10 @@ int pipe_to_tell = -1;  ///< of the child, for what it does last
   for (const int signal : {SIGABRT, SIGSEGV, SIGFPE, SIGQUIT}) std::signal(signal, SIG_DFL);
   std::set_terminate(nullptr);
   PipeDevice device(pipe);
-  ServoControl control;
-  const StopOnSignals stop(device, control);
+  device::ServoControl control;
+  const device::StopOnSignals stop(device, control);
   pipe_to_tell = pipe;
-  StopOnSignals::before_dying([]() noexcept {
+  device::StopOnSignals::before_dying([]() noexcept {
     const char last = 'L';
     [[maybe_unused]] const ssize_t written = ::write(pipe_to_tell, &last, 1);
   });
@@ -163,21 +167,21 @@ TEST_CASE("a crash sends zero before the program dies of it") {
 
 TEST_CASE("without being asked there is nothing to leave for, and signals are handled once") {
   RestingDevice device;
-  ServoControl control;
-  const StopOnSignals stop(device, control);
-  CHECK_FALSE(StopOnSignals::asked());
-  CHECK(StopOnSignals::exit_code() == 0);
-  CHECK(StopOnSignals::message().empty());
-  CHECK_THROWS_AS(StopOnSignals(device, control), std::logic_error);
+  device::ServoControl control;
+  const device::StopOnSignals stop(device, control);
+  CHECK_FALSE(device::StopOnSignals::asked());
+  CHECK(device::StopOnSignals::exit_code() == 0);
+  CHECK(device::StopOnSignals::message().empty());
+  CHECK_THROWS_AS(device::StopOnSignals(device, control), std::logic_error);
 }
 
 TEST_CASE("after it was asked to end, the program knows by what") {
   RestingDevice device;
-  ServoControl control;
-  const StopOnSignals stop(device, control);
+  device::ServoControl control;
+  const device::StopOnSignals stop(device, control);
   std::raise(SIGTERM);
-  CHECK(StopOnSignals::asked());
-  CHECK(StopOnSignals::message() == "stopped by SIGTERM; the force is zero");
+  CHECK(device::StopOnSignals::asked());
+  CHECK(device::StopOnSignals::message() == "stopped by SIGTERM; the force is zero");
   CHECK(control.emergency_stop_asked());
   CHECK(device.halts == 1);
 }

@@ -8,24 +8,24 @@ namespace touchtrial {
 namespace {
 
 TEST_CASE("replay without a recording says where to name one") {
-  const std::vector<DeviceListing> listings = replay_driver().list({});
+  const std::vector<device::DeviceListing> listings = device::replay_driver().list({});
   REQUIRE(listings.size() == 1);
   CHECK_FALSE(listings[0].present);
   REQUIRE(listings[0].missing.size() == 1);
   CHECK_THAT(listings[0].missing[0], holds_text("replay.trace"));
-  CHECK_THROWS_AS(open_device("replay", {}), DeviceError);
+  CHECK_THROWS_AS(device::open_device("replay", {}), DeviceError);
 }
 
 TEST_CASE("replay is opened through the registry with the recording of the settings") {
   const auto file = std::filesystem::temp_directory_path() / "touchtrial-replay.csv";
   replace_file(file, "time_s,x_mm,y_mm,z_mm\n0,1,2,3\n0.001,1,2,3\n");
-  DeviceSettings settings;
+  device::DeviceSettings settings;
   settings.replay.trace = file;
-  CHECK(replay_driver().list(settings).at(0).present);
-  const std::unique_ptr<HapticDevice> device = open_device("replay", settings);
+  CHECK(device::replay_driver().list(settings).at(0).present);
+  const std::unique_ptr<device::HapticDevice> device = device::open_device("replay", settings);
   std::filesystem::remove(file);
-  DeviceSample sample;
-  CHECK(device->read(sample) == DeviceStatus::ok);
+  device::DeviceSample sample;
+  CHECK(device->read(sample) == device::DeviceStatus::ok);
   CHECK(sample.position_mm == Vec3{1, 2, 3});
 }
 

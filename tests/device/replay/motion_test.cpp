@@ -16,7 +16,7 @@ class CsvFile {
   ~CsvFile() { std::filesystem::remove(path_); }
   CsvFile(const CsvFile&) = delete;
   CsvFile& operator=(const CsvFile&) = delete;
-  [[nodiscard]] RecordedMotion read() const { return read_motion_csv(path_); }
+  [[nodiscard]] device::RecordedMotion read() const { return device::read_motion_csv(path_); }
 
  private:
   std::filesystem::path path_ = std::filesystem::temp_directory_path() / "touchtrial-motion.csv";
@@ -25,7 +25,7 @@ class CsvFile {
 constexpr const char* kHeader = "time_s,x_mm,y_mm,z_mm\n";
 
 TEST_CASE("a motion's rate and positions come from its rows") {
-  const RecordedMotion motion =
+  const device::RecordedMotion motion =
       CsvFile(std::string(kHeader) + "0.5,1,2,3\n0.5005,4,5,6\n0.501,7e0,-8,9.25\n").read();
   CHECK(motion.rate_hz() == 2000.0);
   REQUIRE(motion.ticks() == 3);
@@ -34,10 +34,11 @@ TEST_CASE("a motion's rate and positions come from its rows") {
 }
 
 TEST_CASE("columns are found by name, in quotation marks too, with either line end") {
-  const RecordedMotion motion = CsvFile(
-                                    "\xEF\xBB\xBFz_mm,\"force, \"\"n\"\"\",time_s,\"x_mm\",y_mm\r\n"
-                                    "3,\"a\nb\",0,1,2\r\n6,,\"0.001\",4,5")
-                                    .read();
+  const device::RecordedMotion motion =
+      CsvFile(
+          "\xEF\xBB\xBFz_mm,\"force, \"\"n\"\"\",time_s,\"x_mm\",y_mm\r\n"
+          "3,\"a\nb\",0,1,2\r\n6,,\"0.001\",4,5")
+          .read();
   CHECK(motion.rate_hz() == 1000.0);
   REQUIRE(motion.ticks() == 2);
   CHECK(motion.position_mm(0) == Vec3{1, 2, 3});
@@ -45,7 +46,7 @@ TEST_CASE("columns are found by name, in quotation marks too, with either line e
 }
 
 TEST_CASE("where rows are missing the hand moves straight on") {
-  const RecordedMotion motion =
+  const device::RecordedMotion motion =
       CsvFile(std::string(kHeader) + "0,0,0,0\n0.001,1,0,0\n0.002,2,0,0\n0.006,6,8,0\n").read();
   CHECK(motion.rate_hz() == 1000.0);
   REQUIRE(motion.ticks() == 7);
@@ -59,7 +60,7 @@ TEST_CASE("times that were rounded when written do not add up to a wrong rate") 
     const std::string micros = std::to_string(1'000'000 + (i * 1'000'000 + 1500) / 3000);
     text += micros.substr(0, 1) + '.' + micros.substr(1) + ",0,0,0\n";
   }
-  const RecordedMotion motion = CsvFile(text).read();
+  const device::RecordedMotion motion = CsvFile(text).read();
   CHECK(motion.ticks() == 3001);
   CHECK(motion.rate_hz() == 3000.0);
 }
@@ -91,7 +92,7 @@ TEST_CASE("a hostile motion file is refused in one line that names the place") {
 }
 
 TEST_CASE("a motion file that is not there is refused") {
-  CHECK_THROWS_AS(read_motion_csv("/nowhere/motion.csv"), FileError);
+  CHECK_THROWS_AS(device::read_motion_csv("/nowhere/motion.csv"), FileError);
 }
 
 }  // namespace

@@ -10,39 +10,41 @@
 namespace touchtrial {
 namespace {
 
-std::unique_ptr<const MotionSource> motion(std::vector<Vec3> positions_mm, double rate_hz) {
-  return std::make_unique<RecordedMotion>(std::move(positions_mm), rate_hz);
+std::unique_ptr<const device::MotionSource> motion(std::vector<Vec3> positions_mm, double rate_hz) {
+  return std::make_unique<device::RecordedMotion>(std::move(positions_mm), rate_hz);
 }
 
 /// A wall with a damper, so that velocity matters too.
-class DampedWall final : public ForceSource {
+class DampedWall final : public device::ForceSource {
  public:
-  [[nodiscard]] Vec3 force_n(const DeviceSample& sample) noexcept override {
+  [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override {
     if (sample.position_mm.z >= 0.0) return {};
     const Vec3& v = sample.velocity_mm_s;
     return {-0.001 * v.x, -0.001 * v.y, -0.4 * sample.position_mm.z - 0.0005 * v.z};
   }
 };
 
-std::vector<ServoSample> stroke_damped_wall() {
+std::vector<device::ServoSample> stroke_damped_wall() {
   RandomStream random(3, "replay_device_test");
-  const HandOptions options{.explore_s = 4.0};
-  SimulatedHand hand(options, ExplorationPath({0.2, 500, 500}, {.duration_s = 4.0}, random));
+  const device::HandOptions options{.explore_s = 4.0};
+  device::SimulatedHand hand(options,
+                             device::ExplorationPath({0.2, 500, 500}, {.duration_s = 4.0}, random));
   DampedWall wall;
   KeptSamples kept;
-  REQUIRE(run_servo_in_virtual_time(hand, wall, kept, {}).end == ServoEnd::hand_stopped);
+  REQUIRE(device::run_servo_in_virtual_time(hand, wall, kept, {}).end ==
+          device::ServoEnd::hand_stopped);
   return kept.samples;
 }
 
 TEST_CASE("a recorded session replayed through the servo gives the same forces") {
-  const std::vector<ServoSample> original = stroke_damped_wall();
+  const std::vector<device::ServoSample> original = stroke_damped_wall();
   std::vector<Vec3> positions_mm;
-  for (const ServoSample& sample : original) positions_mm.push_back(sample.position_mm);
-  ReplayDevice replay(motion(positions_mm, kServoRateHz));
+  for (const device::ServoSample& sample : original) positions_mm.push_back(sample.position_mm);
+  device::ReplayDevice replay(motion(positions_mm, device::kServoRateHz));
   DampedWall wall;
   KeptSamples kept;
-  const ServoReport report = run_servo_in_virtual_time(replay, wall, kept, {});
-  CHECK(report.end == ServoEnd::hand_stopped);
+  const device::ServoReport report = device::run_servo_in_virtual_time(replay, wall, kept, {});
+  CHECK(report.end == device::ServoEnd::hand_stopped);
   CHECK(report.contact_ticks > 3000);
   REQUIRE(kept.samples.size() == original.size());
   REQUIRE(replay.forces_n().size() == original.size());
@@ -54,22 +56,22 @@ TEST_CASE("a recorded session replayed through the servo gives the same forces")
 }
 
 TEST_CASE("a replay goes through its positions once, with the velocity of each step") {
-  ReplayDevice replay(motion({{0, 0, 1}, {2, 0, 1}, {2, -3, 1}}, 2000.0));
+  device::ReplayDevice replay(motion({{0, 0, 1}, {2, 0, 1}, {2, -3, 1}}, 2000.0));
   CHECK(replay.info().max_rate_hz == 2000.0);
   CHECK(replay.info().simulated);
   std::vector<Vec3> velocities;
-  DeviceSample sample;
-  while (replay.read(sample) == DeviceStatus::ok) {
+  device::DeviceSample sample;
+  while (replay.read(sample) == device::DeviceStatus::ok) {
     velocities.push_back(sample.velocity_mm_s);
     CHECK(sample.sequence == velocities.size());
-    CHECK(replay.write({1.0, 0.0, 0.0}) == DeviceStatus::ok);
+    CHECK(replay.write({1.0, 0.0, 0.0}) == device::DeviceStatus::ok);
   }
   CHECK(velocities == std::vector<Vec3>{{0, 0, 0}, {4000, 0, 0}, {0, -6000, 0}});
   CHECK(sample.position_mm == Vec3{2, -3, 1});
 }
 
 TEST_CASE("a replay keeps the forces of its motion and none after it") {
-  ReplayDevice replay(motion({{}, {}}, 1000.0));
+  device::ReplayDevice replay(motion({{}, {}}, 1000.0));
   for (const double force_n : {1.0, 2.0, 3.0}) (void)replay.write({force_n, 0.0, 0.0});
   REQUIRE(replay.forces_n().size() == 2);
   CHECK(replay.forces_n()[1].x == 2.0);
@@ -78,8 +80,8 @@ TEST_CASE("a replay keeps the forces of its motion and none after it") {
 TEST_CASE("a replay of nothing, or with no force, is refused") {
   CHECK_THROWS_AS(motion({}, 1000.0), std::invalid_argument);
   CHECK_THROWS_AS(motion({{}}, 0.0), std::invalid_argument);
-  CHECK_THROWS_AS(ReplayDevice(nullptr), std::invalid_argument);
-  CHECK_THROWS_AS(ReplayDevice(motion({{}}, 1000.0), 0.0), std::invalid_argument);
+  CHECK_THROWS_AS(device::ReplayDevice(nullptr), std::invalid_argument);
+  CHECK_THROWS_AS(device::ReplayDevice(motion({{}}, 1000.0), 0.0), std::invalid_argument);
 }
 
 }  // namespace

@@ -8,7 +8,7 @@ namespace touchtrial {
 namespace {
 
 TEST_CASE("a gate opens at the first small force, and stays open") {
-  EngageGate gate(0.5);
+  device::EngageGate gate(0.5);
   CHECK_FALSE(gate.try_open(0.26));
   CHECK_FALSE(gate.is_open());
   CHECK(gate.try_open(0.25));
@@ -16,15 +16,15 @@ TEST_CASE("a gate opens at the first small force, and stays open") {
 }
 
 TEST_CASE("a gate that was closed has to be opened anew") {
-  EngageGate gate(0.5);
+  device::EngageGate gate(0.5);
   REQUIRE(gate.try_open(0.0));
   gate.close();
   CHECK_FALSE(gate.try_open(1.0));
 }
 
 TEST_CASE("a gate without a limit opens at once, one that is not a number never") {
-  CHECK(EngageGate(std::numeric_limits<double>::infinity()).try_open(1e9));
-  CHECK_FALSE(EngageGate(std::numeric_limits<double>::quiet_NaN()).try_open(0.0));
+  CHECK(device::EngageGate(std::numeric_limits<double>::infinity()).try_open(1e9));
+  CHECK_FALSE(device::EngageGate(std::numeric_limits<double>::quiet_NaN()).try_open(0.0));
 }
 
 }  // namespace

@@ -48,14 +48,14 @@ class HostileReadings {
  public:
   explicit HostileReadings(RandomStream& random) : random_(random) {}
 
-  DeviceSample next() {
+  device::DeviceSample next() {
     mood_ = random_.below(60) == 0 ? random_.below(6) : mood_;
     const bool is_stuck = mood_ == 1;
     if (!is_stuck) {
       ++good_.sequence;
       good_.position_mm.x += random_.uniform(-0.2, 0.2);
     }
-    DeviceSample sample = good_;
+    device::DeviceSample sample = good_;
     if (mood_ == 2) sample.ready = random_.below(2) == 0;
     if (mood_ == 3 && random_.below(10) == 0) sample.position_mm.y = hostile_number(random_, 100.0);
     if (mood_ == 4 && random_.below(10) == 0) sample.velocity_mm_s.z = hostile_number(random_, 3e3);
@@ -65,23 +65,23 @@ class HostileReadings {
 
  private:
   RandomStream& random_;
-  DeviceSample good_;
+  device::DeviceSample good_;
   std::uint64_t mood_ = 0;
 };
 
-SafetyLimits hostile_limits(RandomStream& random) {
-  SafetyLimits limits;
+device::SafetyLimits hostile_limits(RandomStream& random) {
+  device::SafetyLimits limits;
   limits.max_force_n = random.uniform(0.5, 8.0);
   limits.max_slew_n_per_s = limits.max_force_n * random.uniform(21.0, 2000.0);
   limits.continuous_force_n = random.below(2) == 0 ? 0.0 : random.uniform(0.1, 2.0);
   limits.thermal_budget_s = random.uniform(0.01, 20.0);
   limits.ramp_up_s = random.uniform(0.0, 0.05);
   if (random.below(10) != 0) return limits;
-  double SafetyLimits::*const members[] = {
-      &SafetyLimits::max_force_n,      &SafetyLimits::continuous_force_n,
-      &SafetyLimits::thermal_budget_s, &SafetyLimits::max_slew_n_per_s,
-      &SafetyLimits::max_speed_mm_s,   &SafetyLimits::engage_force_n,
-      &SafetyLimits::ramp_up_s,        &SafetyLimits::stale_s};
+  double device::SafetyLimits::*const members[] = {
+      &device::SafetyLimits::max_force_n,      &device::SafetyLimits::continuous_force_n,
+      &device::SafetyLimits::thermal_budget_s, &device::SafetyLimits::max_slew_n_per_s,
+      &device::SafetyLimits::max_speed_mm_s,   &device::SafetyLimits::engage_force_n,
+      &device::SafetyLimits::ramp_up_s,        &device::SafetyLimits::stale_s};
   limits.*members[random.below(8)] = random.below(2) == 0 ? kNaN : -1.0;
   return limits;
 }
@@ -89,16 +89,18 @@ SafetyLimits hostile_limits(RandomStream& random) {
 /// Holds every force against what was promised, and says what was broken first.
 class Judge {
  public:
-  Judge(const SafetyLimits& limits, double tick_s) : limits_(limits), tick_s_(tick_s) {}
+  Judge(const device::SafetyLimits& limits, double tick_s) : limits_(limits), tick_s_(tick_s) {}
 
   void see(Vec3 force_n, bool is_fault) {
     const double slew_n = limits_.max_slew_n_per_s * tick_s_;
     if (!is_finite(force_n)) broken("not finite");
-    if (!is_sound(limits_) && force_n != Vec3{}) broken("force under unsound limits");
-    if (is_sound(limits_) && norm(force_n) > limits_.max_force_n * kRounding) broken("norm");
+    if (!device::is_sound(limits_) && force_n != Vec3{}) broken("force under unsound limits");
+    if (device::is_sound(limits_) && norm(force_n) > limits_.max_force_n * kRounding)
+      broken("norm");
     if (is_fault && force_n != Vec3{}) broken("force under a fault");
     const bool drops = is_fault && force_n == Vec3{};
-    if (!drops && norm(force_n - last_n_) > slew_n * kRounding && is_sound(limits_)) broken("slew");
+    if (!drops && norm(force_n - last_n_) > slew_n * kRounding && device::is_sound(limits_))
+      broken("slew");
     last_n_ = force_n;
     forces_ += force_n == Vec3{} ? 0 : 1;
   }
@@ -111,13 +113,13 @@ class Judge {
 
  private:
   static constexpr double kRounding = 1.0 + 1e-9;
-  const SafetyLimits limits_;
+  const device::SafetyLimits limits_;
   double tick_s_;
   Vec3 last_n_;
   std::int64_t forces_ = 0;
 };
 
-bool must_fault(Vec3 force_n, const DeviceSample& sample) {
+bool must_fault(Vec3 force_n, const device::DeviceSample& sample) {
   return !is_finite(force_n) || !is_finite(sample.position_mm) || !is_finite(sample.velocity_mm_s);
 }
 
@@ -147,16 +149,16 @@ class ChainRun {
       may_pass_ = false;
     }
     const Vec3 force_n = hostile_force_n(random_);
-    const DeviceSample sample = readings_.next();
+    const device::DeviceSample sample = readings_.next();
     const std::int64_t ticks = random_.below(30) == 0 ? 46 : 1;
     const bool was_faulted = chain_.faulted();
-    const SafeForce safe = chain_.check(force_n, sample, ticks);
-    const bool is_fault = safe.verdict == SafetyVerdict::fault;
+    const device::SafeForce safe = chain_.check(force_n, sample, ticks);
+    const bool is_fault = safe.verdict == device::SafetyVerdict::fault;
     judge_.see(safe.force_n, is_fault);
     hold(force_n, sample, safe.force_n, is_fault, was_faulted);
   }
 
-  void hold(Vec3 force_n, const DeviceSample& sample, Vec3 sent_n, bool is_fault,
+  void hold(Vec3 force_n, const device::DeviceSample& sample, Vec3 sent_n, bool is_fault,
             bool was_faulted) {
     const bool passes = sent_n != Vec3{};
     if (norm(force_n) <= limits_.engage_force_n && sample.ready && !is_fault) may_pass_ = true;
@@ -175,9 +177,9 @@ class ChainRun {
   }
 
   RandomStream random_;
-  SafetyLimits limits_;
+  device::SafetyLimits limits_;
   Judge judge_;
-  SafetyChain chain_;
+  device::SafetyChain chain_;
   HostileReadings readings_;
   double stale_ticks_;
   bool may_pass_ = false;
@@ -198,19 +200,21 @@ TEST_CASE(
   CHECK(forces > 50'000);
 }
 
-class HostileDevice final : public HapticDevice {
+class HostileDevice final : public device::HapticDevice {
  public:
   HostileDevice(RandomStream& random, double max_force_n)
       : random_(random), readings_(random), max_force_n_(max_force_n) {}
 
-  [[nodiscard]] DeviceInfo info() const override { return {"hostile", "", max_force_n_, true}; }
-  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override {
-    sample = readings_.next();
-    return random_.below(500) == 0 ? DeviceStatus::fault : DeviceStatus::ok;
+  [[nodiscard]] device::DeviceInfo info() const override {
+    return {"hostile", "", max_force_n_, true};
   }
-  [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override {
+  [[nodiscard]] device::DeviceStatus read(device::DeviceSample& sample) noexcept override {
+    sample = readings_.next();
+    return random_.below(500) == 0 ? device::DeviceStatus::fault : device::DeviceStatus::ok;
+  }
+  [[nodiscard]] device::DeviceStatus write(Vec3 force_n) noexcept override {
     written.push_back(force_n);
-    return random_.below(1000) == 0 ? DeviceStatus::fault : DeviceStatus::ok;
+    return random_.below(1000) == 0 ? device::DeviceStatus::fault : device::DeviceStatus::ok;
   }
   void halt() noexcept override {}
   void rearm() noexcept override {}
@@ -224,11 +228,12 @@ class HostileDevice final : public HapticDevice {
 };
 
 /// Small at first, so that runs come to force; then hostile, and with requests to the servo.
-class HostileForce final : public ForceSource {
+class HostileForce final : public device::ForceSource {
  public:
-  HostileForce(RandomStream& random, ServoControl& control) : random_(random), control_(control) {}
+  HostileForce(RandomStream& random, device::ServoControl& control)
+      : random_(random), control_(control) {}
 
-  [[nodiscard]] Vec3 force_n(const DeviceSample&) noexcept override {
+  [[nodiscard]] Vec3 force_n(const device::DeviceSample&) noexcept override {
     if (++calls_ < 20) return {0.1, 0.0, 0.0};
     switch (random_.below(2000)) {
       case 0:
@@ -249,12 +254,12 @@ class HostileForce final : public ForceSource {
 
  private:
   RandomStream& random_;
-  ServoControl& control_;
+  device::ServoControl& control_;
   int calls_ = 0;
 };
 
 /// Stands still now and then.
-class HostileClock final : public ServoClock {
+class HostileClock final : public device::ServoClock {
  public:
   explicit HostileClock(RandomStream& random) : random_(random) {}
   [[nodiscard]] Time now() noexcept override { return now_; }
@@ -268,9 +273,9 @@ class HostileClock final : public ServoClock {
   Time now_{};
 };
 
-class CountedSamples final : public SampleSink {
+class CountedSamples final : public device::SampleSink {
  public:
-  void record(const ServoSample&) noexcept override { ++count; }
+  void record(const device::ServoSample&) noexcept override { ++count; }
   std::int64_t count = 0;
 };
 
@@ -279,23 +284,25 @@ TEST_CASE("whatever comes, what the servo writes is finite, limited and smooth, 
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
     CAPTURE(seed);
     RandomStream random(seed, "hostile servo");
-    ServoOptions options{.limit_ticks = 600, .fade_ticks = 100, .limits = hostile_limits(random)};
+    device::ServoOptions options{
+        .limit_ticks = 600, .fade_ticks = 100, .limits = hostile_limits(random)};
     options.rate_hz = random.uniform(1000.0, 10'000.0);
     HostileDevice device(random, random.uniform(0.5, 8.0));
-    ServoControl control;
+    device::ServoControl control;
     HostileForce force(random, control);
     CountedSamples sink;
     HostileClock clock(random);
-    ServoHooks hooks;
+    device::ServoHooks hooks;
     hooks.control = &control;
-    const ServoReport report = run_servo(device, force, sink, options, clock, hooks);
-    Judge judge(limits_on(device.info(), options.limits), 1.0 / options.rate_hz);
+    const device::ServoReport report =
+        device::run_servo(device, force, sink, options, clock, hooks);
+    Judge judge(device::limits_on(device.info(), options.limits), 1.0 / options.rate_hz);
     for (std::size_t i = 0; i + 1 < device.written.size(); ++i) judge.see(device.written[i], false);
     forces += judge.forces();
     INFO(judge.first_broken);
     CHECK(judge.first_broken.empty());
     CHECK(device.written.back() == Vec3{});
-    CHECK((report.end == ServoEnd::fault) == (report.fault != SafetyFault::none));
+    CHECK((report.end == device::ServoEnd::fault) == (report.fault != device::SafetyFault::none));
     CHECK(report.ticks == sink.count);
   }
   CHECK(forces > 20'000);

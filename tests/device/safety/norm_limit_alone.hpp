@@ -8,8 +8,8 @@
 
 namespace touchtrial {
 
-[[nodiscard]] inline SafetyLimits norm_limit_alone(double max_force_n = 3.3) {
-  SafetyLimits limits;
+[[nodiscard]] inline device::SafetyLimits norm_limit_alone(double max_force_n = 3.3) {
+  device::SafetyLimits limits;
   limits.max_force_n = max_force_n;
   limits.max_slew_n_per_s = std::numeric_limits<double>::infinity();
   limits.max_speed_mm_s = std::numeric_limits<double>::infinity();

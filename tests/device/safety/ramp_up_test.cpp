@@ -6,7 +6,7 @@ namespace touchtrial {
 namespace {
 
 TEST_CASE("forces grow evenly from nothing to their full size") {
-  RampUp ramp(0.1, 0.001);
+  device::RampUp ramp(0.1, 0.001);
   ramp.start();
   for (int tick = 0; tick < 100; ++tick) {
     REQUIRE(ramp.of({2.0, 0.0, -1.0}).x == Approx(2.0 * tick / 100.0).margin(1e-12));
@@ -16,13 +16,13 @@ TEST_CASE("forces grow evenly from nothing to their full size") {
 }
 
 TEST_CASE("a ramp of no length lets the first force pass whole") {
-  RampUp ramp(0.0, 0.001);
+  device::RampUp ramp(0.0, 0.001);
   ramp.start();
   CHECK(ramp.of({0.0, 1.0, 0.0}) == Vec3{0.0, 1.0, 0.0});
 }
 
 TEST_CASE("a ramp that is started anew begins at nothing") {
-  RampUp ramp(0.002, 0.001);
+  device::RampUp ramp(0.002, 0.001);
   ramp.start();
   for (int tick = 0; tick < 5; ++tick) static_cast<void>(ramp.of({1.0, 0.0, 0.0}));
   ramp.start();

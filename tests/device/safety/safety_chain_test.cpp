@@ -9,16 +9,16 @@ namespace touchtrial {
 namespace {
 
 TEST_CASE("a force within the limit passes unchanged") {
-  SafetyChain safety(norm_limit_alone());
-  const SafeForce safe = safety.check({1.0, -2.0, 2.0}, {});
-  CHECK(safe.verdict == SafetyVerdict::passed);
+  device::SafetyChain safety(norm_limit_alone());
+  const device::SafeForce safe = safety.check({1.0, -2.0, 2.0}, {});
+  CHECK(safe.verdict == device::SafetyVerdict::passed);
   CHECK(safe.force_n == Vec3{1.0, -2.0, 2.0});
 }
 
 TEST_CASE("a force past the limit is shortened in its direction") {
-  SafetyChain safety(norm_limit_alone(2.5));
-  const SafeForce safe = safety.check({3.0, 0.0, 4.0}, {});
-  CHECK(safe.verdict == SafetyVerdict::limited);
+  device::SafetyChain safety(norm_limit_alone(2.5));
+  const device::SafeForce safe = safety.check({3.0, 0.0, 4.0}, {});
+  CHECK(safe.verdict == device::SafetyVerdict::limited);
   CHECK(safe.force_n == Vec3{1.5, 0.0, 2.0});
   CHECK_FALSE(safety.faulted());
 }
@@ -26,8 +26,8 @@ TEST_CASE("a force past the limit is shortened in its direction") {
 TEST_CASE("a force that is not finite sends zero and latches until it is re-armed") {
   const double bad = GENERATE(std::numeric_limits<double>::quiet_NaN(),
                               -std::numeric_limits<double>::infinity(), 1e300);
-  SafetyChain safety(norm_limit_alone());
-  CHECK(safety.check({bad, 0.0, 0.0}, {}).verdict == SafetyVerdict::fault);
+  device::SafetyChain safety(norm_limit_alone());
+  CHECK(safety.check({bad, 0.0, 0.0}, {}).verdict == device::SafetyVerdict::fault);
   CHECK(safety.check({0.0, 0.0, 1.0}, {}).force_n == Vec3{});
   CHECK(safety.faulted());
   safety.rearm();
@@ -36,35 +36,36 @@ TEST_CASE("a force that is not finite sends zero and latches until it is re-arme
 
 TEST_CASE("a limit that is no positive number lets no force pass") {
   const double limit_n = GENERATE(0.0, -1.0, std::numeric_limits<double>::quiet_NaN());
-  CHECK(SafetyChain(norm_limit_alone(limit_n)).check({0.0, 0.1, 0.0}, {}).force_n == Vec3{});
+  CHECK(device::SafetyChain(norm_limit_alone(limit_n)).check({0.0, 0.1, 0.0}, {}).force_n ==
+        Vec3{});
 }
 
 /// A device in which nothing is wrong: it rests, and numbers its readings.
 class Readings {
  public:
-  DeviceSample next() {
+  device::DeviceSample next() {
     ++sample.sequence;
     return sample;
   }
-  DeviceSample sample{{1.0, 2.0, -1.0}, {}};
+  device::DeviceSample sample{{1.0, 2.0, -1.0}, {}};
 };
 
 /// Past gate and ramp, under a force. \return the force that is sent
-Vec3 engage(SafetyChain& safety, Readings& device, Vec3 force_n) {
+Vec3 engage(device::SafetyChain& safety, Readings& device, Vec3 force_n) {
   static_cast<void>(safety.check({}, device.next()));
   for (int tick = 0; tick < 200; ++tick) {
-    REQUIRE_FALSE(safety.check(force_n, device.next()).verdict == SafetyVerdict::fault);
+    REQUIRE_FALSE(safety.check(force_n, device.next()).verdict == device::SafetyVerdict::fault);
   }
   return safety.sent_n();
 }
 
 TEST_CASE("no force passes before the computed one was small, and then it grows from nothing") {
-  SafetyChain safety({});
+  device::SafetyChain safety({});
   Readings device;
   for (int tick = 0; tick < 50; ++tick) {
-    const SafeForce held = safety.check({0.0, 0.0, 0.6}, device.next());
+    const device::SafeForce held = safety.check({0.0, 0.0, 0.6}, device.next());
     REQUIRE(held.force_n == Vec3{});
-    REQUIRE(held.verdict == SafetyVerdict::limited);
+    REQUIRE(held.verdict == device::SafetyVerdict::limited);
   }
   CHECK(safety.check({0.0, 0.0, 0.4}, device.next()).force_n == Vec3{});
   for (int tick = 1; tick < 100; ++tick) {
@@ -73,7 +74,7 @@ TEST_CASE("no force passes before the computed one was small, and then it grows 
 }
 
 TEST_CASE("a device that is not ready yet gets zero, without a fault and however it jumps") {
-  SafetyChain safety({});
+  device::SafetyChain safety({});
   Readings device;
   device.sample.ready = false;
   for (int tick = 0; tick < 50; ++tick) {
@@ -85,55 +86,55 @@ TEST_CASE("a device that is not ready yet gets zero, without a fault and however
 }
 
 TEST_CASE("while force is on, each of these is a fault: zero at once, latched") {
-  SafetyChain safety({});
+  device::SafetyChain safety({});
   Readings device;
   REQUIRE(engage(safety, device, {0.0, 0.0, 3.0}) == Vec3{0.0, 0.0, 3.0});
-  DeviceSample bad = device.next();
-  SafetyFault fault = SafetyFault::none;
+  device::DeviceSample bad = device.next();
+  device::SafetyFault fault = device::SafetyFault::none;
   SECTION("losing readiness") {
     bad.ready = false;
-    fault = SafetyFault::not_ready;
+    fault = device::SafetyFault::not_ready;
   }
   SECTION("a jump of the position") {
     bad.position_mm.y += 3.0;
-    fault = SafetyFault::overspeed;
+    fault = device::SafetyFault::overspeed;
   }
   SECTION("a speed that no hand has") {
     bad.velocity_mm_s.z = -2500.0;
-    fault = SafetyFault::overspeed;
+    fault = device::SafetyFault::overspeed;
   }
   SECTION("a velocity that is no number") {
     bad.velocity_mm_s.z = std::numeric_limits<double>::quiet_NaN();
-    fault = SafetyFault::not_finite;
+    fault = device::SafetyFault::not_finite;
   }
   SECTION("a position that is no number") {
     bad.position_mm.x = std::numeric_limits<double>::infinity();
-    fault = SafetyFault::not_finite;
+    fault = device::SafetyFault::not_finite;
   }
   SECTION("a reading that never changes") {
     for (int tick = 0; tick < 10; ++tick) {
-      REQUIRE(safety.check({0.0, 0.0, 3.0}, bad).verdict == SafetyVerdict::passed);
+      REQUIRE(safety.check({0.0, 0.0, 3.0}, bad).verdict == device::SafetyVerdict::passed);
     }
-    fault = SafetyFault::stale_sample;
+    fault = device::SafetyFault::stale_sample;
   }
   SECTION("one that was seen elsewhere") {
-    safety.trip(SafetyFault::emergency_stop);
-    fault = SafetyFault::emergency_stop;
+    safety.trip(device::SafetyFault::emergency_stop);
+    fault = device::SafetyFault::emergency_stop;
   }
-  const SafeForce safe = safety.check({0.0, 0.0, 3.0}, bad);
+  const device::SafeForce safe = safety.check({0.0, 0.0, 3.0}, bad);
   CHECK(safe.force_n == Vec3{});
-  CHECK(safe.verdict == SafetyVerdict::fault);
+  CHECK(safe.verdict == device::SafetyVerdict::fault);
   CHECK(safety.fault() == fault);
-  safety.trip(SafetyFault::device);
+  safety.trip(device::SafetyFault::device);
   CHECK(safety.fault() == fault);
   CHECK(safety.check({0.0, 0.0, 0.1}, device.next()).force_n == Vec3{});
 }
 
 TEST_CASE("after re-arming gate and ramp begin anew, from where the hand is now") {
-  SafetyChain safety({});
+  device::SafetyChain safety({});
   Readings device;
   REQUIRE(engage(safety, device, {0.0, 0.0, 3.0}) == Vec3{0.0, 0.0, 3.0});
-  safety.trip(SafetyFault::emergency_stop);
+  safety.trip(device::SafetyFault::emergency_stop);
   REQUIRE(safety.check({0.0, 0.0, 3.0}, device.next()).force_n == Vec3{});
   device.sample.position_mm.x += 100.0;
   safety.rearm();
@@ -144,7 +145,8 @@ TEST_CASE("after re-arming gate and ramp begin anew, from where the hand is now"
 }
 
 TEST_CASE("motors that are warm get less than the norm limit") {
-  SafetyChain safety({.max_force_n = 3.0, .continuous_force_n = 1.0, .thermal_budget_s = 1.0});
+  device::SafetyChain safety(
+      {.max_force_n = 3.0, .continuous_force_n = 1.0, .thermal_budget_s = 1.0});
   Readings device;
   REQUIRE(engage(safety, device, {0.0, 0.0, 3.0}) == Vec3{0.0, 0.0, 3.0});
   for (int tick = 0; tick < 60'000; ++tick) {
@@ -155,7 +157,7 @@ TEST_CASE("motors that are warm get less than the norm limit") {
 }
 
 TEST_CASE("the force changes by at most the slew limit, also after an overrun") {
-  SafetyChain safety({.max_slew_n_per_s = 200.0});
+  device::SafetyChain safety({.max_slew_n_per_s = 200.0});
   Readings device;
   static_cast<void>(engage(safety, device, {0.0, 0.0, 1.0}));
   CHECK(safety.check({0.0, 0.0, 2.0}, device.next()).force_n.z == Approx(1.2));
@@ -163,17 +165,17 @@ TEST_CASE("the force changes by at most the slew limit, also after an overrun") 
 }
 
 TEST_CASE("an overrun counts as the time that it took") {
-  SafetyChain safety({});
+  device::SafetyChain safety({});
   Readings device;
   static_cast<void>(engage(safety, device, {}));
   device.sample.position_mm.x += 10.0;
-  CHECK(safety.check({}, device.next(), 20).verdict == SafetyVerdict::passed);
+  CHECK(safety.check({}, device.next(), 20).verdict == device::SafetyVerdict::passed);
   device.sample.position_mm.x += 10.0;
-  CHECK(safety.check({}, device.next()).verdict == SafetyVerdict::fault);
+  CHECK(safety.check({}, device.next()).verdict == device::SafetyVerdict::fault);
 }
 
 TEST_CASE("limits or a tick that make no sense let no force pass") {
-  SafetyLimits limits;
+  device::SafetyLimits limits;
   double tick_s = 0.001;
   SECTION("a slew that is no number") {
     limits.max_slew_n_per_s = std::numeric_limits<double>::quiet_NaN();
@@ -187,12 +189,12 @@ TEST_CASE("limits or a tick that make no sense let no force pass") {
   SECTION("a tick that is no number") {
     tick_s = std::numeric_limits<double>::quiet_NaN();
   }
-  SafetyChain safety(limits, tick_s);
+  device::SafetyChain safety(limits, tick_s);
   Readings device;
   for (int tick = 0; tick < 300; ++tick) {
-    const SafeForce safe = safety.check({0.0, 0.0, 0.2}, device.next());
+    const device::SafeForce safe = safety.check({0.0, 0.0, 0.2}, device.next());
     REQUIRE(safe.force_n == Vec3{});
-    REQUIRE(safe.verdict == SafetyVerdict::limited);
+    REQUIRE(safe.verdict == device::SafetyVerdict::limited);
   }
 }
 

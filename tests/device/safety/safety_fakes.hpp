@@ -10,16 +10,16 @@ namespace touchtrial {
 
 /// Rests on the plane, numbers its readings, keeps what it was sent, and counts how often it was
 /// halted.
-class RestingDevice final : public HapticDevice {
+class RestingDevice final : public device::HapticDevice {
  public:
-  [[nodiscard]] DeviceInfo info() const override { return {"resting", "", 3.3, true}; }
-  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override {
+  [[nodiscard]] device::DeviceInfo info() const override { return {"resting", "", 3.3, true}; }
+  [[nodiscard]] device::DeviceStatus read(device::DeviceSample& sample) noexcept override {
     sample = {{10.0, 10.0, -1.0}, {}, ++readings_};
-    return DeviceStatus::ok;
+    return device::DeviceStatus::ok;
   }
-  [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override {
+  [[nodiscard]] device::DeviceStatus write(Vec3 force_n) noexcept override {
     written.push_back(force_n);
-    return DeviceStatus::ok;
+    return device::DeviceStatus::ok;
   }
   void halt() noexcept override { halts.fetch_add(1); }
   void rearm() noexcept override {}
@@ -31,9 +31,9 @@ class RestingDevice final : public HapticDevice {
   std::uint64_t readings_ = 0;
 };
 
-class NoSamples final : public SampleSink {
+class NoSamples final : public device::SampleSink {
  public:
-  void record(const ServoSample&) noexcept override {}
+  void record(const device::ServoSample&) noexcept override {}
 };
 
 }  // namespace touchtrial

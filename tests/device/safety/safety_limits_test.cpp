@@ -11,58 +11,60 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-DeviceInfo device_of(double max_force_n, double continuous_force_n) {
-  DeviceInfo info;
+device::DeviceInfo device_of(double max_force_n, double continuous_force_n) {
+  device::DeviceInfo info;
   info.max_force_n = max_force_n;
   info.continuous_force_n = continuous_force_n;
   return info;
 }
 
 TEST_CASE("the default limits are sound") {
-  CHECK(is_sound({}));
+  CHECK(device::is_sound({}));
 }
 
 TEST_CASE("a limit that makes no sense is not sound, whichever it is") {
-  double SafetyLimits::*limit =
-      GENERATE(&SafetyLimits::max_force_n, &SafetyLimits::continuous_force_n,
-               &SafetyLimits::thermal_budget_s, &SafetyLimits::max_slew_n_per_s,
-               &SafetyLimits::max_speed_mm_s, &SafetyLimits::engage_force_n,
-               &SafetyLimits::ramp_up_s, &SafetyLimits::stale_s);
+  double device::SafetyLimits::*limit =
+      GENERATE(&device::SafetyLimits::max_force_n, &device::SafetyLimits::continuous_force_n,
+               &device::SafetyLimits::thermal_budget_s, &device::SafetyLimits::max_slew_n_per_s,
+               &device::SafetyLimits::max_speed_mm_s, &device::SafetyLimits::engage_force_n,
+               &device::SafetyLimits::ramp_up_s, &device::SafetyLimits::stale_s);
   const double value = GENERATE(-1.0, kNaN, -kInfinity);
-  SafetyLimits limits;
+  device::SafetyLimits limits;
   limits.*limit = value;
-  CHECK_FALSE(is_sound(limits));
+  CHECK_FALSE(device::is_sound(limits));
 }
 
 TEST_CASE("force and ramp have to be finite, what switches a link off need not") {
-  CHECK_FALSE(is_sound({.max_force_n = kInfinity, .max_slew_n_per_s = kInfinity}));
-  CHECK_FALSE(is_sound({.ramp_up_s = kInfinity}));
-  CHECK(is_sound({.max_slew_n_per_s = kInfinity,
-                  .max_speed_mm_s = kInfinity,
-                  .engage_force_n = kInfinity,
-                  .stale_s = kInfinity}));
+  CHECK_FALSE(device::is_sound({.max_force_n = kInfinity, .max_slew_n_per_s = kInfinity}));
+  CHECK_FALSE(device::is_sound({.ramp_up_s = kInfinity}));
+  CHECK(device::is_sound({.max_slew_n_per_s = kInfinity,
+                          .max_speed_mm_s = kInfinity,
+                          .engage_force_n = kInfinity,
+                          .stale_s = kInfinity}));
 }
 
 TEST_CASE("a slew limit that could not let go in time is not sound") {
-  CHECK(is_sound({.max_force_n = 3.3, .max_slew_n_per_s = 66.1}));
-  CHECK_FALSE(is_sound({.max_force_n = 3.3, .max_slew_n_per_s = 65.9}));
+  CHECK(device::is_sound({.max_force_n = 3.3, .max_slew_n_per_s = 66.1}));
+  CHECK_FALSE(device::is_sound({.max_force_n = 3.3, .max_slew_n_per_s = 65.9}));
 }
 
 TEST_CASE("on a device the smaller limits hold") {
-  SafetyLimits limits = limits_on(device_of(8.0, 0.0), {.max_force_n = 3.3});
+  device::SafetyLimits limits = device::limits_on(device_of(8.0, 0.0), {.max_force_n = 3.3});
   CHECK(limits.max_force_n == 3.3);
   CHECK(limits.continuous_force_n == 0.0);
-  limits = limits_on(device_of(2.0, 0.88), {.max_force_n = 3.3});
+  limits = device::limits_on(device_of(2.0, 0.88), {.max_force_n = 3.3});
   CHECK(limits.max_force_n == 2.0);
   CHECK(limits.continuous_force_n == 0.88);
-  CHECK(limits_on(device_of(8.0, 0.88), {.continuous_force_n = 0.5}).continuous_force_n == 0.5);
-  CHECK(limits_on(device_of(8.0, 0.0), {.continuous_force_n = 0.5}).continuous_force_n == 0.5);
+  CHECK(device::limits_on(device_of(8.0, 0.88), {.continuous_force_n = 0.5}).continuous_force_n ==
+        0.5);
+  CHECK(device::limits_on(device_of(8.0, 0.0), {.continuous_force_n = 0.5}).continuous_force_n ==
+        0.5);
 }
 
 TEST_CASE("a device that does not know its own force gets none") {
-  CHECK_FALSE(is_sound(limits_on(device_of(kNaN, 0.0), {})));
-  CHECK_FALSE(is_sound(limits_on(device_of(3.3, kNaN), {})));
-  CHECK_FALSE(is_sound(limits_on(device_of(0.0, 0.0), {})));
+  CHECK_FALSE(device::is_sound(device::limits_on(device_of(kNaN, 0.0), {})));
+  CHECK_FALSE(device::is_sound(device::limits_on(device_of(3.3, kNaN), {})));
+  CHECK_FALSE(device::is_sound(device::limits_on(device_of(0.0, 0.0), {})));
 }
 
 }  // namespace

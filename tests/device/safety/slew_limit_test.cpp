@@ -8,7 +8,7 @@ namespace touchtrial {
 namespace {
 
 TEST_CASE("a force follows by one step a tick, straight towards where it shall be") {
-  SlewLimit slew(1000.0, 0.001);
+  device::SlewLimit slew(1000.0, 0.001);
   CHECK(slew.towards({3.0, 4.0, 0.0}).x == Approx(0.6));
   CHECK(slew.towards({3.0, 4.0, 0.0}).y == Approx(1.6));
   for (int tick = 0; tick < 2; ++tick) static_cast<void>(slew.towards({3.0, 4.0, 0.0}));
@@ -17,13 +17,13 @@ TEST_CASE("a force follows by one step a tick, straight towards where it shall b
 }
 
 TEST_CASE("a small change passes to the last bit") {
-  SlewLimit slew(1000.0, 0.001);
+  device::SlewLimit slew(1000.0, 0.001);
   CHECK(slew.towards({0.1, 0.2, 0.3}) == Vec3{0.1, 0.2, 0.3});
   CHECK(slew.towards({0.3, 0.1, 0.7}) == Vec3{0.3, 0.1, 0.7});
 }
 
 TEST_CASE("the way of a fault is no slope") {
-  SlewLimit slew(1000.0, 0.001);
+  device::SlewLimit slew(1000.0, 0.001);
   for (int tick = 0; tick < 5; ++tick) static_cast<void>(slew.towards({0.0, 0.0, 3.0}));
   slew.drop();
   CHECK(slew.sent_n() == Vec3{});
@@ -31,7 +31,7 @@ TEST_CASE("the way of a fault is no slope") {
 }
 
 TEST_CASE("without a limit every force passes") {
-  SlewLimit slew(std::numeric_limits<double>::infinity(), 0.001);
+  device::SlewLimit slew(std::numeric_limits<double>::infinity(), 0.001);
   CHECK(slew.towards({0.0, -50.0, 0.0}) == Vec3{0.0, -50.0, 0.0});
 }
 

@@ -15,11 +15,11 @@ namespace {
 constexpr double kTexturePeakN = 0.4;
 
 /// Presses and fluctuates like a texture under a stroke, and calls somebody at one tick.
-class TextureForce final : public ForceSource {
+class TextureForce final : public device::ForceSource {
  public:
   TextureForce(double rate_hz, double texture_n) : rate_hz_(rate_hz), texture_n_(texture_n) {}
 
-  [[nodiscard]] Vec3 force_n(const DeviceSample& sample) noexcept override {
+  [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override {
     const auto tick = static_cast<std::int64_t>(sample.sequence) - 1;
     if (tick == calls_at && call) call();
     if (tick < 10) return {};
@@ -44,23 +44,23 @@ double largest_change_n(const std::vector<Vec3>& forces, std::size_t from) {
 }
 
 struct Stopped {
-  ServoReport report;
+  device::ServoReport report;
   std::vector<Vec3> written;
   std::size_t asked_at = 0;
 };
 
-Stopped stop_by(void (ServoControl::*request)() noexcept, ServoOptions options, double texture_n,
-                double at_s = 0.5) {
+Stopped stop_by(void (device::ServoControl::*request)() noexcept, device::ServoOptions options,
+                double texture_n, double at_s = 0.5) {
   RestingDevice device;
-  ServoControl control;
+  device::ServoControl control;
   TextureForce force(options.rate_hz, texture_n);
   force.calls_at = std::llround(at_s * options.rate_hz);
   force.call = [&] { (control.*request)(); };
   NoSamples sink;
-  VirtualClock clock;
-  ServoHooks hooks;
+  device::VirtualClock clock;
+  device::ServoHooks hooks;
   hooks.control = &control;
-  const ServoReport report = run_servo(device, force, sink, options, clock, hooks);
+  const device::ServoReport report = device::run_servo(device, force, sink, options, clock, hooks);
   return {report, device.written, static_cast<std::size_t>(force.calls_at)};
 }
 
@@ -74,10 +74,10 @@ TEST_CASE("a comfort stop brings the force to zero within 100 ms and without a s
   const std::int64_t fade_ticks = GENERATE(0, 100, 1'000'000);
   const double texture_n = GENERATE(0.0, kTexturePeakN);
   const double slew_n_per_s = GENERATE(66.0, 1000.0);
-  ServoOptions options{.fade_ticks = fade_ticks, .rate_hz = rate_hz};
+  device::ServoOptions options{.fade_ticks = fade_ticks, .rate_hz = rate_hz};
   options.limits.max_slew_n_per_s = slew_n_per_s;
-  const Stopped stopped = stop_by(&ServoControl::comfort_stop, options, texture_n);
-  CHECK(stopped.report.end == ServoEnd::comfort_stop);
+  const Stopped stopped = stop_by(&device::ServoControl::comfort_stop, options, texture_n);
+  CHECK(stopped.report.end == device::ServoEnd::comfort_stop);
   REQUIRE(stopped.written.size() > stopped.asked_at);
   // The tick that asked, those of 100 ms, and the zero that ends every run.
   CHECK(static_cast<double>(stopped.written.size() - stopped.asked_at) <= 0.1 * rate_hz + 2.0);
@@ -89,49 +89,51 @@ TEST_CASE("a comfort stop brings the force to zero within 100 ms and without a s
 }
 
 TEST_CASE("a comfort stop takes over from a longer fade where that is") {
-  const ServoOptions options{.limit_ticks = 400, .fade_ticks = 1000};
-  const Stopped stopped = stop_by(&ServoControl::comfort_stop, options, 0.0, 0.9);
-  CHECK(stopped.report.end == ServoEnd::comfort_stop);
+  const device::ServoOptions options{.limit_ticks = 400, .fade_ticks = 1000};
+  const Stopped stopped = stop_by(&device::ServoControl::comfort_stop, options, 0.0, 0.9);
+  CHECK(stopped.report.end == device::ServoEnd::comfort_stop);
   CHECK(stopped.written.size() <= 900 + 102);
   CHECK(stopped.written[900].z == Approx(0.75).margin(0.01));
   CHECK(largest_change_n(stopped.written, 300) < 0.02);
 }
 
 TEST_CASE("a comfort stop leaves alone a fade that is over sooner") {
-  const ServoOptions options{.limit_ticks = 400, .fade_ticks = 50};
-  const Stopped stopped = stop_by(&ServoControl::comfort_stop, options, 0.0, 0.42);
-  CHECK(stopped.report.end == ServoEnd::time_limit);
+  const device::ServoOptions options{.limit_ticks = 400, .fade_ticks = 50};
+  const Stopped stopped = stop_by(&device::ServoControl::comfort_stop, options, 0.0, 0.42);
+  CHECK(stopped.report.end == device::ServoEnd::time_limit);
   CHECK(stopped.written.size() == 451);
 }
 
 TEST_CASE("an emergency stop, or a stall, sends zero at the very next tick and latches") {
   const double rate_hz = GENERATE(1000.0, 10'000.0);
   const bool is_stall = GENERATE(false, true);
-  const Stopped stopped = stop_by(is_stall ? &ServoControl::stall : &ServoControl::emergency_stop,
-                                  {.rate_hz = rate_hz}, kTexturePeakN);
-  CHECK(stopped.report.end == ServoEnd::fault);
-  CHECK(stopped.report.fault == (is_stall ? SafetyFault::stalled : SafetyFault::emergency_stop));
+  const Stopped stopped =
+      stop_by(is_stall ? &device::ServoControl::stall : &device::ServoControl::emergency_stop,
+              {.rate_hz = rate_hz}, kTexturePeakN);
+  CHECK(stopped.report.end == device::ServoEnd::fault);
+  CHECK(stopped.report.fault ==
+        (is_stall ? device::SafetyFault::stalled : device::SafetyFault::emergency_stop));
   REQUIRE(stopped.written.size() == stopped.asked_at + 2);
   CHECK(norm(stopped.written[stopped.asked_at]) > 1.0);
   CHECK(stopped.written.back() == Vec3{});
 }
 
 /// Keeps no list: it may be written to for as long as another thread takes.
-class MeasuringDevice final : public HapticDevice {
+class MeasuringDevice final : public device::HapticDevice {
  public:
-  [[nodiscard]] DeviceInfo info() const override { return {"measuring", "", 3.3, true}; }
-  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override {
+  [[nodiscard]] device::DeviceInfo info() const override { return {"measuring", "", 3.3, true}; }
+  [[nodiscard]] device::DeviceStatus read(device::DeviceSample& sample) noexcept override {
     sample.sequence = ++readings_;
     if (readings_ == 1000) {
       largest_change_n = 0.0;
       under_force.store(true);
     }
-    return DeviceStatus::ok;
+    return device::DeviceStatus::ok;
   }
-  [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override {
+  [[nodiscard]] device::DeviceStatus write(Vec3 force_n) noexcept override {
     largest_change_n = std::max(largest_change_n, norm(force_n - sent_n));
     sent_n = force_n;
-    return DeviceStatus::ok;
+    return device::DeviceStatus::ok;
   }
   void halt() noexcept override {}
   void rearm() noexcept override {}
@@ -146,20 +148,20 @@ class MeasuringDevice final : public HapticDevice {
 
 TEST_CASE("a comfort stop between two threads ends the run without a step") {
   MeasuringDevice device;
-  ServoControl control;
+  device::ServoControl control;
   TextureForce force(1000.0, 0.0);
   NoSamples sink;
-  VirtualClock clock;
-  ServoHooks hooks;
+  device::VirtualClock clock;
+  device::ServoHooks hooks;
   hooks.control = &control;
   std::thread person([&] {
     while (!device.under_force.load()) std::this_thread::yield();
     control.comfort_stop();
   });
-  const ServoOptions options{.limit_ticks = std::int64_t{1} << 60};
-  const ServoReport report = run_servo(device, force, sink, options, clock, hooks);
+  const device::ServoOptions options{.limit_ticks = std::int64_t{1} << 60};
+  const device::ServoReport report = device::run_servo(device, force, sink, options, clock, hooks);
   person.join();
-  CHECK(report.end == ServoEnd::comfort_stop);
+  CHECK(report.end == device::ServoEnd::comfort_stop);
   CHECK(device.sent_n == Vec3{});
   CHECK(device.largest_change_n < 0.02);
 }

@@ -9,11 +9,11 @@ namespace touchtrial {
 namespace {
 
 constexpr double kTickS = 0.001;
-constexpr SafetyLimits kOmni{
+constexpr device::SafetyLimits kOmni{
     .max_force_n = 3.3, .continuous_force_n = 0.88, .thermal_budget_s = 20.0};
 
 /// Sends as much of a force as the budget allows. \return the force of the last tick
-double push(ThermalBudget& budget, double force_n, double time_s) {
+double push(device::ThermalBudget& budget, double force_n, double time_s) {
   double sent_n = 0.0;
   double hottest = 0.0;
   for (int tick = 0; tick < std::lround(time_s / kTickS); ++tick) {
@@ -26,26 +26,26 @@ double push(ThermalBudget& budget, double force_n, double time_s) {
 }
 
 TEST_CASE("a cold motor gives its peak force for the time of the budget, then less") {
-  ThermalBudget budget(kOmni, kTickS);
+  device::ThermalBudget budget(kOmni, kTickS);
   CHECK(push(budget, 3.3, 19.9) == 3.3);
   CHECK(push(budget, 3.3, 0.2) < 3.3);
 }
 
 TEST_CASE("in the long run a motor gives no more than its continuous force, and never less") {
-  ThermalBudget budget(kOmni, kTickS);
+  device::ThermalBudget budget(kOmni, kTickS);
   const double at_last_n = push(budget, 3.3, 2000.0);
   CHECK(at_last_n == Approx(0.88).epsilon(0.02));
   CHECK(at_last_n >= 0.88);
 }
 
 TEST_CASE("what a hand presses a texture with is never limited") {
-  ThermalBudget budget(kOmni, kTickS);
+  device::ThermalBudget budget(kOmni, kTickS);
   CHECK(push(budget, 0.7, 3600.0) == 0.7);
   CHECK(budget.limit_n() == 3.3);
 }
 
 TEST_CASE("the limit falls without a step") {
-  ThermalBudget budget(kOmni, kTickS);
+  device::ThermalBudget budget(kOmni, kTickS);
   double last_n = 3.3;
   double largest_step_n = 0.0;
   for (int tick = 0; tick < 100'000; ++tick) {
@@ -59,31 +59,31 @@ TEST_CASE("the limit falls without a step") {
 
 TEST_CASE(
     "a motor that worked before a run is warm when it begins, the less the longer it rested") {
-  ThermalBudget earlier(kOmni, kTickS);
+  device::ThermalBudget earlier(kOmni, kTickS);
   push(earlier, 3.3, 15.0);
-  ThermalBudget at_once(kOmni, kTickS);
+  device::ThermalBudget at_once(kOmni, kTickS);
   at_once.begin_warm(earlier.heat_n2(), 0.0);
   CHECK(at_once.share_of_heat() == earlier.share_of_heat());
   CHECK(push(at_once, 3.3, 10.0) < 3.3);
-  ThermalBudget rested(kOmni, kTickS);
+  device::ThermalBudget rested(kOmni, kTickS);
   rested.begin_warm(earlier.heat_n2(), 3600.0);
   CHECK(push(rested, 3.3, 19.0) == 3.3);
-  ThermalBudget no_clock(kOmni, kTickS);
+  device::ThermalBudget no_clock(kOmni, kTickS);
   no_clock.begin_warm(earlier.heat_n2(), -5.0);
   CHECK(no_clock.share_of_heat() == earlier.share_of_heat());
 }
 
 TEST_CASE("heat that is no number, and a device without a budget, begin cold") {
-  ThermalBudget budget(kOmni, kTickS);
+  device::ThermalBudget budget(kOmni, kTickS);
   budget.begin_warm(std::nan(""), 0.0);
   CHECK(budget.share_of_heat() == 0.0);
-  ThermalBudget none({.max_force_n = 3.3}, kTickS);
+  device::ThermalBudget none({.max_force_n = 3.3}, kTickS);
   none.begin_warm(5.0, 0.0);
   CHECK(none.limit_n() == 3.3);
 }
 
 TEST_CASE("a motor that rests gets its peak force back") {
-  ThermalBudget budget(kOmni, kTickS);
+  device::ThermalBudget budget(kOmni, kTickS);
   static_cast<void>(push(budget, 3.3, 60.0));
   REQUIRE(budget.limit_n() < 3.0);
   static_cast<void>(push(budget, 0.0, 60.0));
@@ -91,8 +91,8 @@ TEST_CASE("a motor that rests gets its peak force back") {
 }
 
 TEST_CASE("late ticks warm a motor for as long as they lasted") {
-  ThermalBudget every(kOmni, kTickS);
-  ThermalBudget late(kOmni, kTickS);
+  device::ThermalBudget every(kOmni, kTickS);
+  device::ThermalBudget late(kOmni, kTickS);
   for (int tick = 0; tick < 10'000; ++tick) every.heat(4.0, 1.0);
   for (int tick = 0; tick < 1000; ++tick) late.heat(4.0, 10.0);
   CHECK(late.share_of_heat() == Approx(every.share_of_heat()).epsilon(1e-3));
@@ -101,9 +101,9 @@ TEST_CASE("late ticks warm a motor for as long as they lasted") {
 }
 
 TEST_CASE("without a continuous force, or with one above the peak, there is no budget") {
-  SafetyLimits limits = kOmni;
+  device::SafetyLimits limits = kOmni;
   limits.continuous_force_n = GENERATE(0.0, 3.3, 8.0);
-  ThermalBudget budget(limits, kTickS);
+  device::ThermalBudget budget(limits, kTickS);
   CHECK(push(budget, 3.3, 300.0) == 3.3);
   CHECK(budget.share_of_heat() == 0.0);
 }

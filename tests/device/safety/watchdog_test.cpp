@@ -13,7 +13,7 @@ namespace {
 using std::chrono::milliseconds;
 
 /// Time that goes on by steps of the test: each lets the watchdog look once.
-class SteppedTime final : public WatchdogTime {
+class SteppedTime final : public device::WatchdogTime {
  public:
   [[nodiscard]] Time now() noexcept override {
     const std::lock_guard lock(mutex_);
@@ -72,11 +72,11 @@ struct Watched {
   [[nodiscard]] bool is_stopped() const { return device.halts > 0 && control.stall_seen(); }
 
   RestingDevice device;
-  ServoControl control;
+  device::ServoControl control;
   std::atomic<std::int64_t> heartbeat{0};
   SteppedTime time;
-  std::optional<Watchdog> watchdog{std::in_place, device,           control,
-                                   heartbeat,     milliseconds(10), time};
+  std::optional<device::Watchdog> watchdog{std::in_place, device,           control,
+                                           heartbeat,     milliseconds(10), time};
 };
 
 TEST_CASE("a watchdog halts the device of a servo that has been silent for 10 ms") {
@@ -109,7 +109,7 @@ TEST_CASE("a watchdog waits for the first beat, and knows the end of a run") {
   watched.pass(milliseconds(100), false);
   CHECK_FALSE(watched.is_stopped());
   watched.pass(milliseconds(10), true);
-  watched.heartbeat.store(kServoAtRest);
+  watched.heartbeat.store(device::kServoAtRest);
   watched.pass(milliseconds(100), false);
   CHECK_FALSE(watched.is_stopped());
 }
@@ -141,72 +141,73 @@ TEST_CASE("a machine that stood still as a whole is no silence of the servo") {
 }
 
 /// Stands still at a tick until the watchdog has seen it.
-class StallingForce final : public ForceSource {
+class StallingForce final : public device::ForceSource {
  public:
-  explicit StallingForce(const ServoControl& control) : control_(control) {}
-  [[nodiscard]] Vec3 force_n(const DeviceSample& sample) noexcept override {
+  explicit StallingForce(const device::ServoControl& control) : control_(control) {}
+  [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override {
     while (sample.sequence == 200 && !control_.stall_seen()) std::this_thread::yield();
     return {0.0, 0.0, 0.4};
   }
 
  private:
-  const ServoControl& control_;
+  const device::ServoControl& control_;
 };
 
 TEST_CASE("a run whose callback stands still ends as stalled, on the system's clock") {
   RestingDevice device;
-  ServoControl control;
+  device::ServoControl control;
   std::atomic<std::int64_t> heartbeat{0};
-  Watchdog watchdog(device, control, heartbeat, milliseconds(50));
+  device::Watchdog watchdog(device, control, heartbeat, milliseconds(50));
   StallingForce force(control);
   NoSamples sink;
-  VirtualClock clock;
-  ServoHooks hooks;
+  device::VirtualClock clock;
+  device::ServoHooks hooks;
   hooks.control = &control;
   hooks.heartbeat = &heartbeat;
   watchdog.arm();
   // The watchdog needs a beat between arming and the stall, which it sees at its next look.
-  const ServoReport report =
-      run_servo(device, force, sink, {.limit_ticks = 1'000'000}, clock, hooks);
-  CHECK(report.end == ServoEnd::fault);
-  CHECK(report.fault == SafetyFault::stalled);
+  const device::ServoReport report =
+      device::run_servo(device, force, sink, {.limit_ticks = 1'000'000}, clock, hooks);
+  CHECK(report.end == device::ServoEnd::fault);
+  CHECK(report.fault == device::SafetyFault::stalled);
   CHECK(device.halts == 1);
   CHECK(device.written.back() == Vec3{});
-  CHECK(heartbeat == kServoAtRest);
+  CHECK(heartbeat == device::kServoAtRest);
   CHECK(watchdog.disarm());
 }
 
 TEST_CASE("watchdogs come and go, armed and disarmed, between two threads") {
   RestingDevice device;
-  ServoControl control;
+  device::ServoControl control;
   std::atomic<std::int64_t> heartbeat{0};
   for (int i = 0; i < 20; ++i) {
-    Watchdog watchdog(device, control, heartbeat);
+    device::Watchdog watchdog(device, control, heartbeat);
     std::thread servo([&] {
       for (int beat = 0; beat < 1000; ++beat) heartbeat.fetch_add(1);
-      heartbeat.store(kServoAtRest);
+      heartbeat.store(device::kServoAtRest);
     });
-    { const WatchdogGuard guard(watchdog); }
+    { const device::WatchdogGuard guard(watchdog); }
     servo.join();
   }
   CHECK(device.halts == 0);
 }
 
 TEST_CASE("a watchdog is patient where no hand feels a force, and nowhere else") {
-  DeviceInfo device;
-  CHECK(Watchdog::silence_for(device) == Watchdog::kSilence);
+  device::DeviceInfo device;
+  CHECK(device::Watchdog::silence_for(device) == device::Watchdog::kSilence);
   device.visual = true;
-  CHECK(Watchdog::silence_for(device) == Watchdog::kForcelessSilence);
+  CHECK(device::Watchdog::silence_for(device) == device::Watchdog::kForcelessSilence);
   device.visual = false;
   device.simulated = true;
-  CHECK(Watchdog::silence_for(device) == Watchdog::kForcelessSilence);
+  CHECK(device::Watchdog::silence_for(device) == device::Watchdog::kForcelessSilence);
 }
 
 TEST_CASE("a watchdog refuses a silence of no length") {
   RestingDevice device;
-  ServoControl control;
+  device::ServoControl control;
   const std::atomic<std::int64_t> heartbeat{0};
-  CHECK_THROWS_AS(Watchdog(device, control, heartbeat, milliseconds(0)), std::invalid_argument);
+  CHECK_THROWS_AS(device::Watchdog(device, control, heartbeat, milliseconds(0)),
+                  std::invalid_argument);
 }
 
 }  // namespace

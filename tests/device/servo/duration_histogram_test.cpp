@@ -13,9 +13,9 @@ namespace {
 using std::chrono::nanoseconds;
 
 TEST_CASE("the bins of a histogram follow one another and are at most 5 percent wide") {
-  const DurationHistogram histogram;
+  const device::DurationHistogram histogram;
   CHECK(histogram.bin(0).least_ns == 0);
-  for (std::size_t i = 0; i + 1 < DurationHistogram::kBins; ++i) {
+  for (std::size_t i = 0; i + 1 < device::DurationHistogram::kBins; ++i) {
     const auto bin = histogram.bin(i);
     INFO(bin.least_ns);
     REQUIRE(histogram.bin(i + 1).least_ns == bin.end_ns);
@@ -26,9 +26,9 @@ TEST_CASE("the bins of a histogram follow one another and are at most 5 percent 
 
 TEST_CASE("a duration is counted in the bin that holds it") {
   for (std::int64_t ns = 0; ns < 1'000'000'000; ns = ns + 1 + ns / 7) {
-    DurationHistogram histogram;
+    device::DurationHistogram histogram;
     histogram.add(nanoseconds(ns));
-    for (std::size_t i = 0; i < DurationHistogram::kBins; ++i) {
+    for (std::size_t i = 0; i < device::DurationHistogram::kBins; ++i) {
       const auto bin = histogram.bin(i);
       if (bin.count == 0) continue;
       INFO(ns);
@@ -42,7 +42,7 @@ TEST_CASE("a duration is counted in the bin that holds it") {
 TEST_CASE("percentiles of a histogram are those of the sorted durations, at most 5 percent above") {
   RandomStream random(7, "histogram test");
   std::vector<double> all_us;
-  DurationHistogram histogram;
+  device::DurationHistogram histogram;
   for (int i = 0; i < 20'000; ++i) {
     const auto ns = static_cast<std::int64_t>(std::exp(9.0 + 2.0 * random.normal()));
     histogram.add(nanoseconds(ns));
@@ -59,22 +59,22 @@ TEST_CASE("percentiles of a histogram are those of the sorted durations, at most
 }
 
 TEST_CASE("a histogram without durations has percentiles of zero") {
-  CHECK(DurationHistogram().percentile_us(0.99) == 0.0);
-  CHECK(DurationHistogram().worst() == nanoseconds(0));
+  CHECK(device::DurationHistogram().percentile_us(0.99) == 0.0);
+  CHECK(device::DurationHistogram().worst() == nanoseconds(0));
 }
 
 TEST_CASE("a histogram takes what is below and beyond its bins") {
-  DurationHistogram histogram;
+  device::DurationHistogram histogram;
   histogram.add(nanoseconds(-5));
   histogram.add(std::chrono::hours(1));
   CHECK(histogram.bin(0).count == 1);
-  CHECK(histogram.bin(DurationHistogram::kBins - 1).count == 1);
+  CHECK(histogram.bin(device::DurationHistogram::kBins - 1).count == 1);
   CHECK(histogram.percentile_us(1.0) == 3.6e9);
 }
 
 TEST_CASE("histograms add up as if all durations had gone into one") {
-  DurationHistogram one;
-  DurationHistogram other;
+  device::DurationHistogram one;
+  device::DurationHistogram other;
   one.add(nanoseconds(100));
   other.add(nanoseconds(100));
   other.add(nanoseconds(9000));

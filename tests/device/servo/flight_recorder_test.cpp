@@ -14,24 +14,26 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-std::vector<FlightTick> fly(ScriptedDevice& device, Vec3 force_n, FlightRecorder& recorder,
-                            ServoOptions options = {.limit_ticks = 10, .fade_ticks = 0}) {
+std::vector<device::FlightTick> fly(ScriptedDevice& device, Vec3 force_n,
+                                    device::FlightRecorder& recorder,
+                                    device::ServoOptions options = {.limit_ticks = 10,
+                                                                    .fade_ticks = 0}) {
   ConstantForce force(force_n);
   KeptSamples kept;
   LateClock clock({microseconds(0), microseconds(20)});
-  ServoHooks hooks;
+  device::ServoHooks hooks;
   hooks.recorder = &recorder;
-  static_cast<void>(run_servo(device, force, kept, options, clock, hooks));
+  static_cast<void>(device::run_servo(device, force, kept, options, clock, hooks));
   return recorder.ticks();
 }
 
 TEST_CASE("a flight recorder holds the last seconds, oldest tick first") {
   ScriptedDevice device;
-  FlightRecorder recorder(0.004, 1000.0);
-  const std::vector<FlightTick> ticks = fly(device, {0.0, 0.0, 0.5}, recorder);
+  device::FlightRecorder recorder(0.004, 1000.0);
+  const std::vector<device::FlightTick> ticks = fly(device, {0.0, 0.0, 0.5}, recorder);
   REQUIRE(ticks.size() == 4);
   for (int i = 0; i < 4; ++i) {
-    const FlightTick& tick = ticks[static_cast<std::size_t>(i)];
+    const device::FlightTick& tick = ticks[static_cast<std::size_t>(i)];
     CHECK(tick.tick == 6 + i);
     CHECK(tick.time == milliseconds(6 + i));
     CHECK(tick.sample.position_mm.x == 6.0 + i);
@@ -41,70 +43,70 @@ TEST_CASE("a flight recorder holds the last seconds, oldest tick first") {
 
 TEST_CASE("a flight recorder shows what was asked for beside what was sent") {
   ScriptedDevice device;
-  FlightRecorder recorder(1.0, 1000.0);
-  const std::vector<FlightTick> ticks = fly(device, {0.0, 0.0, 5.0}, recorder);
+  device::FlightRecorder recorder(1.0, 1000.0);
+  const std::vector<device::FlightTick> ticks = fly(device, {0.0, 0.0, 5.0}, recorder);
   REQUIRE(ticks.size() == 10);
   CHECK(ticks[1].requested_n == Vec3{0.0, 0.0, 5.0});
   CHECK(ticks[1].sent_n == device.written[1]);
-  CHECK(ticks[1].verdict == SafetyVerdict::limited);
+  CHECK(ticks[1].verdict == device::SafetyVerdict::limited);
   CHECK(ticks[1].lateness_us == 20.0);
   CHECK(ticks[1].time == microseconds(1020));
 }
 
 TEST_CASE("the tick of a fault is the last one in a flight recorder") {
   ScriptedDevice device;
-  FlightRecorder recorder(1.0, 1000.0);
+  device::FlightRecorder recorder(1.0, 1000.0);
   SECTION("of the device while reading") {
     device.ticks = 3;
-    device.end = DeviceStatus::fault;
-    device.device_fault = DeviceFault::link_lost;
-    const FlightTick last = fly(device, {0.0, 0.0, 0.5}, recorder).back();
+    device.end = device::DeviceStatus::fault;
+    device.device_fault = device::DeviceFault::link_lost;
+    const device::FlightTick last = fly(device, {0.0, 0.0, 0.5}, recorder).back();
     CHECK(last.tick == 3);
-    CHECK(last.fault == SafetyFault::device);
-    CHECK(last.device_fault == DeviceFault::link_lost);
+    CHECK(last.fault == device::SafetyFault::device);
+    CHECK(last.device_fault == device::DeviceFault::link_lost);
   }
   SECTION("of the device while writing") {
     device.fails_at_write = 3;
-    const FlightTick last = fly(device, {0.0, 0.0, 0.5}, recorder).back();
+    const device::FlightTick last = fly(device, {0.0, 0.0, 0.5}, recorder).back();
     CHECK(last.tick == 2);
-    CHECK(last.verdict == SafetyVerdict::fault);
+    CHECK(last.verdict == device::SafetyVerdict::fault);
     CHECK(last.sent_n == Vec3{});
   }
   SECTION("of the force") {
     const Vec3 nothing{std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0};
-    const FlightTick last = fly(device, nothing, recorder).back();
+    const device::FlightTick last = fly(device, nothing, recorder).back();
     CHECK(last.tick == 0);
-    CHECK(last.fault == SafetyFault::not_finite);
-    CHECK(last.device_fault == DeviceFault::none);
+    CHECK(last.fault == device::SafetyFault::not_finite);
+    CHECK(last.device_fault == device::DeviceFault::none);
   }
 }
 
 TEST_CASE("a cleared flight recorder holds nothing of the trial before") {
   ScriptedDevice device;
-  FlightRecorder recorder(1.0, 1000.0);
+  device::FlightRecorder recorder(1.0, 1000.0);
   REQUIRE_FALSE(fly(device, {}, recorder).empty());
   recorder.clear();
   CHECK(recorder.ticks().empty());
 }
 
 TEST_CASE("a flight recorder of no length, or of more than it could hold, is refused") {
-  CHECK_THROWS_AS(FlightRecorder(0.0, 1000.0), std::invalid_argument);
-  CHECK_THROWS_AS(FlightRecorder(1.0, -1.0), std::invalid_argument);
-  CHECK_THROWS_AS(FlightRecorder(1e9, 1000.0), std::invalid_argument);
-  CHECK_THROWS_AS(FlightRecorder(std::numeric_limits<double>::quiet_NaN(), 1.0),
+  CHECK_THROWS_AS(device::FlightRecorder(0.0, 1000.0), std::invalid_argument);
+  CHECK_THROWS_AS(device::FlightRecorder(1.0, -1.0), std::invalid_argument);
+  CHECK_THROWS_AS(device::FlightRecorder(1e9, 1000.0), std::invalid_argument);
+  CHECK_THROWS_AS(device::FlightRecorder(std::numeric_limits<double>::quiet_NaN(), 1.0),
                   std::invalid_argument);
 }
 
 TEST_CASE("a flight as CSV has a name for every column and one row a tick") {
-  FlightTick tick;
+  device::FlightTick tick;
   tick.tick = 12;
   tick.time = microseconds(12'500);
   tick.sample = {{0.1, -2.0, 3.5}, {1.0, 2.0, 3.0}, 77, 5, true};
   tick.requested_n = {0.0, 0.25, 4.0};
   tick.sent_n = {0.0, 0.2, 3.2};
-  tick.verdict = SafetyVerdict::limited;
+  tick.verdict = device::SafetyVerdict::limited;
   tick.lateness_us = 1.25;
-  const std::string text = flight_csv(std::vector{tick});
+  const std::string text = device::flight_csv(std::vector{tick});
   const std::string header = text.substr(0, text.find("\r\n"));
   CHECK(header.starts_with("tick,time_s,x_mm,"));
   CHECK(text.substr(header.size()) ==
@@ -114,11 +116,11 @@ TEST_CASE("a flight as CSV has a name for every column and one row a tick") {
 }
 
 TEST_CASE("the names of faults and ends are those that files promise") {
-  FlightTick tick;
-  tick.verdict = SafetyVerdict::fault;
-  tick.fault = SafetyFault::stale_sample;
-  tick.device_fault = DeviceFault::warm_motors;
-  const std::string text = flight_csv(std::vector{tick});
+  device::FlightTick tick;
+  tick.verdict = device::SafetyVerdict::fault;
+  tick.fault = device::SafetyFault::stale_sample;
+  tick.device_fault = device::DeviceFault::warm_motors;
+  const std::string text = device::flight_csv(std::vector{tick});
   CHECK(text.find(",fault,stale_sample,warm_motors,") != std::string::npos);
 }
 

@@ -9,10 +9,10 @@
 namespace touchtrial {
 namespace {
 
-class SteadyForce final : public ForceSource {
+class SteadyForce final : public device::ForceSource {
  public:
   explicit SteadyForce(double z_n) : z_n_(z_n) {}
-  [[nodiscard]] Vec3 force_n(const DeviceSample&) noexcept override {
+  [[nodiscard]] Vec3 force_n(const device::DeviceSample&) noexcept override {
     ++asked;
     return {0.0, 0.0, z_n_};
   }
@@ -23,7 +23,7 @@ class SteadyForce final : public ForceSource {
 };
 
 /// What a sequence gives tick by tick, sent as it is.
-std::vector<double> forces_of(ForceSequence& sequence, std::int64_t ticks) {
+std::vector<double> forces_of(device::ForceSequence& sequence, std::int64_t ticks) {
   std::vector<double> forces;
   for (std::int64_t tick = 0; tick < ticks; ++tick) {
     forces.push_back(sequence.force_n({}).z);
@@ -35,7 +35,7 @@ std::vector<double> forces_of(ForceSequence& sequence, std::int64_t ticks) {
 TEST_CASE("a sequence of forces goes from one to the other smoothly and asks only who is needed") {
   SteadyForce first(1.0);
   SteadyForce second(3.0);
-  ForceSequence sequence(first, second, 100, 200);
+  device::ForceSequence sequence(first, second, 100, 200);
   const std::vector<double> forces = forces_of(sequence, 400);
   CHECK(forces[99] == 1.0);
   CHECK(forces[100] == 1.0);
@@ -54,7 +54,7 @@ TEST_CASE("a sequence of forces goes from one to the other smoothly and asks onl
 TEST_CASE("a sequence of forces tells what the hand met of each") {
   SteadyForce first(0.0);
   SteadyForce second(2.0);
-  ForceSequence sequence(first, second, 30, 1);
+  device::ForceSequence sequence(first, second, 30, 1);
   (void)forces_of(sequence, 50);
   CHECK(sequence.first().ticks == 30);
   CHECK(sequence.first().contact_ticks == 0);
@@ -66,20 +66,21 @@ TEST_CASE("a sequence of forces tells what the hand met of each") {
 TEST_CASE("ticks that an overrun left out count for the change from one force to the other") {
   SteadyForce first(1.0);
   SteadyForce second(3.0);
-  ForceSequence sequence(first, second, 10, 10);
+  device::ForceSequence sequence(first, second, 10, 10);
   sequence.record({{}, {}, 50});
   CHECK(sequence.force_n({}).z == 3.0);
 }
 
 TEST_CASE("a hand that rests on one plane of a sequence rests on the next") {
-  const auto hand = open_device("simulated", {});
+  const auto hand = device::open_device("simulated", {});
   FlatWall first;
   FlatWall second;
-  ForceSequence sequence(first, second, 1000, 200);
-  ServoOptions options;
+  device::ForceSequence sequence(first, second, 1000, 200);
+  device::ServoOptions options;
   options.limit_ticks = 2000;
-  const ServoReport report = run_servo_in_virtual_time(*hand, sequence, sequence, options);
-  CHECK(report.end == ServoEnd::time_limit);
+  const device::ServoReport report =
+      device::run_servo_in_virtual_time(*hand, sequence, sequence, options);
+  CHECK(report.end == device::ServoEnd::time_limit);
   CHECK(report.limited_ticks < 100);
   CHECK(sequence.first().contact_ticks > 500);
   CHECK(sequence.second().contact_ticks > 1000);

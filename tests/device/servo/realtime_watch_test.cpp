@@ -23,16 +23,17 @@
 namespace touchtrial {
 namespace {
 
-SimulatedHand stroking_hand() {
+device::SimulatedHand stroking_hand() {
   RandomStream random(1, "realtime watch");
-  return SimulatedHand({}, ExplorationPath(PlaneGeometry{0.2, 200, 200}, {}, random));
+  return device::SimulatedHand({},
+                               device::ExplorationPath(PlaneGeometry{0.2, 200, 200}, {}, random));
 }
 
 /// A wall that does something else besides.
-class BusyWall final : public ForceSource {
+class BusyWall final : public device::ForceSource {
  public:
   explicit BusyWall(std::function<void()> work) : work_(std::move(work)) {}
-  [[nodiscard]] Vec3 force_n(const DeviceSample& sample) noexcept override {
+  [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override {
     work_();
     return FlatWall().force_n(sample);
   }
@@ -41,59 +42,60 @@ class BusyWall final : public ForceSource {
   std::function<void()> work_;
 };
 
-RealtimeOffences offences_of(HapticDevice& device, ForceSource& force, ServoClock& clock,
-                             std::int64_t ticks) {
-  SampleRing ring(20'000);
-  RingSink sink(ring);
-  ServoControl control;
-  LatestValue<ServoState> state;
+RealtimeOffences offences_of(device::HapticDevice& device, device::ForceSource& force,
+                             device::ServoClock& clock, std::int64_t ticks) {
+  device::SampleRing ring(20'000);
+  device::RingSink sink(ring);
+  device::ServoControl control;
+  device::LatestValue<device::ServoState> state;
   std::atomic<std::int64_t> heartbeat{0};
-  FlightRecorder recorder(0.5, kServoRateHz);
-  DurationHistogram lateness;
-  const ServoHooks hooks{&control, &state, &heartbeat, &recorder, &lateness};
+  device::FlightRecorder recorder(0.5, device::kServoRateHz);
+  device::DurationHistogram lateness;
+  const device::ServoHooks hooks{&control, &state, &heartbeat, &recorder, &lateness};
   static_cast<void>(take_realtime_offences());
-  const ServoReport report = run_servo(device, force, sink, {.limit_ticks = ticks}, clock, hooks);
+  const device::ServoReport report =
+      device::run_servo(device, force, sink, {.limit_ticks = ticks}, clock, hooks);
   const RealtimeOffences offences = take_realtime_offences();
   CHECK(report.ticks > 0);
   return offences;
 }
 
 TEST_CASE("the loop with every hook and a simulated hand asks for no memory and no lock") {
-  SimulatedHand hand = stroking_hand();
+  device::SimulatedHand hand = stroking_hand();
   FlatWall wall;
   SECTION("in virtual time") {
-    VirtualClock clock;
+    device::VirtualClock clock;
     CHECK(offences_of(hand, wall, clock, 5000) == RealtimeOffences{});
   }
   SECTION("in real time") {
-    PacedClock clock(std::chrono::microseconds(50));
+    device::PacedClock clock(std::chrono::microseconds(50));
     CHECK(offences_of(hand, wall, clock, 100) == RealtimeOffences{});
   }
   SECTION("placed in the frame of a device") {
-    PlacedDevice placed(hand, {});
-    VirtualClock clock;
+    device::PlacedDevice placed(hand, {});
+    device::VirtualClock clock;
     CHECK(offences_of(placed, wall, clock, 100) == RealtimeOffences{});
   }
 }
 
 TEST_CASE("a driver's link asks for no memory and no lock") {
-  DeviceLink link;
-  DeviceSample sample;
+  device::DeviceLink link;
+  device::DeviceSample sample;
   static_cast<void>(take_realtime_offences());
   {
-    const RealtimeRegion region;
+    const device::RealtimeRegion region;
     link.publish({});
     static_cast<void>(link.read(sample));
     static_cast<void>(link.write({}, {}));
     static_cast<void>(link.force_to_send({}));
-    link.fail(DeviceFault::link_lost);
+    link.fail(device::DeviceFault::link_lost);
   }
   CHECK(take_realtime_offences() == RealtimeOffences{});
 }
 
 TEST_CASE("a force source that asks for memory in the loop is caught") {
-  SimulatedHand hand = stroking_hand();
-  VirtualClock clock;
+  device::SimulatedHand hand = stroking_hand();
+  device::VirtualClock clock;
   SECTION("by growing") {
     std::vector<std::string> grown;
     BusyWall wall([&] { grown.emplace_back(100, 'x'); });
@@ -117,8 +119,8 @@ TEST_CASE("a force source that asks for memory in the loop is caught") {
 
 TEST_CASE("a force source that locks in the loop is caught") {
   if (!locks_are_watched()) return;
-  SimulatedHand hand = stroking_hand();
-  VirtualClock clock;
+  device::SimulatedHand hand = stroking_hand();
+  device::VirtualClock clock;
   SECTION("a mutex") {
     std::mutex mutex;
     BusyWall wall([&] { const std::lock_guard lock(mutex); });

@@ -11,22 +11,22 @@
 namespace touchtrial {
 namespace {
 
-constexpr SchedulingRequest kOrdinary{SchedulingPolicy::other, 0, false};
+constexpr device::SchedulingRequest kOrdinary{device::SchedulingPolicy::other, 0, false};
 
 TEST_CASE("whoever attends to a running servo and fails leaves the hand without force") {
-  ServoThread thread(kOrdinary);
-  ServoControl control;
+  device::ServoThread thread(kOrdinary);
+  device::ServoControl control;
   ScriptedDevice device;
-  ServoReport report;
+  device::ServoReport report;
   const auto attend = [&] {
     ConstantForce force({0.0, 0.0, 0.4});
     KeptSamples kept;
     std::atomic<std::int64_t> beats{0};
-    PacedClock clock(PacedClock::usual_spin(SchedulingPolicy::other));
+    device::PacedClock clock(device::PacedClock::usual_spin(device::SchedulingPolicy::other));
     // An hour, if nobody ended it.
-    RunningServo running(thread, control, [&] {
-      report = run_servo(device, force, kept, {.limit_ticks = 3'600'000}, clock,
-                         {.control = &control, .heartbeat = &beats});
+    device::RunningServo running(thread, control, [&] {
+      report = device::run_servo(device, force, kept, {.limit_ticks = 3'600'000}, clock,
+                                 {.control = &control, .heartbeat = &beats});
     });
     while (beats.load() < 200 && running.runs(std::chrono::milliseconds(1))) {
     }
@@ -34,17 +34,17 @@ TEST_CASE("whoever attends to a running servo and fails leaves the hand without 
   };
   CHECK_THROWS_WITH(attend(), "the window is gone");
   CHECK_FALSE(thread.running());
-  CHECK(report.fault == SafetyFault::emergency_stop);
+  CHECK(report.fault == device::SafetyFault::emergency_stop);
   REQUIRE_FALSE(device.written.empty());
   CHECK(device.written.back() == Vec3{});
   CHECK(device.written[device.written.size() - 2].z > 0.0);
 }
 
 TEST_CASE("a servo that ran to its end throws what it threw, once, and asks for no stop") {
-  ServoThread thread(kOrdinary);
-  ServoControl control;
+  device::ServoThread thread(kOrdinary);
+  device::ServoControl control;
   {
-    RunningServo running(thread, control, [] { throw std::runtime_error("no field"); });
+    device::RunningServo running(thread, control, [] { throw std::runtime_error("no field"); });
     while (running.runs(std::chrono::milliseconds(1))) {
     }
     CHECK_THROWS_WITH(running.finish(), "no field");
@@ -53,7 +53,7 @@ TEST_CASE("a servo that ran to its end throws what it threw, once, and asks for 
 }
 
 TEST_CASE("wishes are forgotten before a run, but stops hold until they are taken back") {
-  ServoControl control;
+  device::ServoControl control;
   control.finish();
   control.comfort_stop();
   control.emergency_stop();

@@ -11,16 +11,16 @@
 namespace touchtrial {
 namespace {
 
-ServoSample sample_of(std::int64_t tick) {
+device::ServoSample sample_of(std::int64_t tick) {
   const auto x = static_cast<double>(tick);
   return {{x, 2.0 * x, 3.0 * x}, {-x, 0.0, 0.5 * x}, tick};
 }
 
 TEST_CASE("a ring gives samples back in their order, in batches") {
-  SampleRing ring(8);
+  device::SampleRing ring(8);
   for (int i = 0; i < 5; ++i) CHECK(ring.push(sample_of(i)));
   CHECK(ring.waiting() == 5);
-  std::array<ServoSample, 3> read;
+  std::array<device::ServoSample, 3> read;
   CHECK(ring.pop(read) == 3);
   CHECK(read[2].position_mm == sample_of(2).position_mm);
   CHECK(read[2].force_n == sample_of(2).force_n);
@@ -31,7 +31,7 @@ TEST_CASE("a ring gives samples back in their order, in batches") {
 
 TEST_CASE("a ring holds its capacity and refuses what is beyond") {
   const std::size_t capacity = GENERATE(1U, 7U, 1000U);
-  SampleRing ring(capacity);
+  device::SampleRing ring(capacity);
   CHECK(ring.capacity() == capacity);
   for (std::size_t i = 0; i < capacity; ++i) REQUIRE(ring.push({}));
   CHECK_FALSE(ring.push({}));
@@ -39,30 +39,30 @@ TEST_CASE("a ring holds its capacity and refuses what is beyond") {
 }
 
 TEST_CASE("a ring without room for a sample is refused") {
-  CHECK_THROWS_AS(SampleRing(0), std::invalid_argument);
+  CHECK_THROWS_AS(device::SampleRing(0), std::invalid_argument);
 }
 
 TEST_CASE("a full ring costs the newest samples, and each is counted") {
-  SampleRing ring(4);
-  RingSink sink(ring);
+  device::SampleRing ring(4);
+  device::RingSink sink(ring);
   for (int i = 0; i < 7; ++i) sink.record(sample_of(i));
   CHECK(sink.dropped() == 3);
-  std::array<ServoSample, 8> read;
+  std::array<device::ServoSample, 8> read;
   REQUIRE(ring.pop(read) == 4);
   CHECK(read[3].tick == 3);
 }
 
 TEST_CASE("between two threads a ring loses nothing, doubles nothing and keeps the order") {
   constexpr std::int64_t kSamples = 200'000;
-  SampleRing ring(64);
+  device::SampleRing ring(64);
   std::int64_t expected = 0;
   std::atomic<bool> wrong{false};
   std::thread reader([&] {
-    std::array<ServoSample, 48> read;
+    std::array<device::ServoSample, 48> read;
     while (expected < kSamples) {
       const std::size_t got = ring.pop(read);
       for (std::size_t i = 0; i < got; ++i) {
-        const ServoSample sample = sample_of(expected++);
+        const device::ServoSample sample = sample_of(expected++);
         if (read[i].tick != sample.tick || read[i].force_n != sample.force_n) wrong = true;
       }
       if (got == 0) std::this_thread::yield();

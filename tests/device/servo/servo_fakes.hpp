@@ -9,43 +9,45 @@
 namespace touchtrial {
 
 /// Stays where it is, keeps what it was sent, and ends or fails at a chosen tick.
-class ScriptedDevice final : public HapticDevice {
+class ScriptedDevice final : public device::HapticDevice {
  public:
-  [[nodiscard]] DeviceInfo info() const override { return {"scripted", "", max_force_n, true}; }
-  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override {
+  [[nodiscard]] device::DeviceInfo info() const override {
+    return {"scripted", "", max_force_n, true};
+  }
+  [[nodiscard]] device::DeviceStatus read(device::DeviceSample& sample) noexcept override {
     sample.sequence = static_cast<std::uint64_t>(reads) + 1;
     sample.position_mm = {static_cast<double>(reads), 0.0, -1.0};
-    return reads++ < ticks ? DeviceStatus::ok : end;
+    return reads++ < ticks ? device::DeviceStatus::ok : end;
   }
-  [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override {
+  [[nodiscard]] device::DeviceStatus write(Vec3 force_n) noexcept override {
     written.push_back(force_n);
-    return static_cast<int>(written.size()) == fails_at_write ? DeviceStatus::fault
-                                                              : DeviceStatus::ok;
+    return static_cast<int>(written.size()) == fails_at_write ? device::DeviceStatus::fault
+                                                              : device::DeviceStatus::ok;
   }
   void halt() noexcept override {}
   void rearm() noexcept override {}
-  [[nodiscard]] DeviceFault fault() const noexcept override { return device_fault; }
+  [[nodiscard]] device::DeviceFault fault() const noexcept override { return device_fault; }
 
   double max_force_n = 3.3;
   int ticks = 1'000'000;
   int fails_at_write = 0;
-  DeviceStatus end = DeviceStatus::stopped;
-  DeviceFault device_fault = DeviceFault::none;
+  device::DeviceStatus end = device::DeviceStatus::stopped;
+  device::DeviceFault device_fault = device::DeviceFault::none;
   int reads = 0;
   std::vector<Vec3> written;
 };
 
-class ConstantForce final : public ForceSource {
+class ConstantForce final : public device::ForceSource {
  public:
   explicit ConstantForce(Vec3 force_n) : force_n_(force_n) {}
-  [[nodiscard]] Vec3 force_n(const DeviceSample&) noexcept override { return force_n_; }
+  [[nodiscard]] Vec3 force_n(const device::DeviceSample&) noexcept override { return force_n_; }
 
  private:
   Vec3 force_n_;
 };
 
 /// Wakes the servo late by script: the first wait by the first delay, and so on; then on time.
-class LateClock final : public ServoClock {
+class LateClock final : public device::ServoClock {
  public:
   explicit LateClock(std::deque<Time> delays) : delays_(std::move(delays)) {}
 

@@ -19,17 +19,17 @@ using std::chrono::milliseconds;
 constexpr microseconds kOnTime{0};
 
 struct PacedRun {
-  ServoReport report;
+  device::ServoReport report;
   std::vector<std::int64_t> ticks;
 };
 
-PacedRun run(LateClock clock, ServoOptions options, const ServoHooks& hooks = {}) {
+PacedRun run(LateClock clock, device::ServoOptions options, const device::ServoHooks& hooks = {}) {
   ScriptedDevice device;
   ConstantForce force({0.0, 0.0, 0.5});
   KeptSamples kept;
   options.limits = norm_limit_alone();
-  PacedRun run{run_servo(device, force, kept, options, clock, hooks), {}};
-  for (const ServoSample& sample : kept.samples) run.ticks.push_back(sample.tick);
+  PacedRun run{device::run_servo(device, force, kept, options, clock, hooks), {}};
+  for (const device::ServoSample& sample : kept.samples) run.ticks.push_back(sample.tick);
   return run;
 }
 
@@ -75,19 +75,20 @@ TEST_CASE("a loop that stood still until time was up sends no more than the zero
   ConstantForce force({0.0, 0.0, 0.5});
   KeptSamples kept;
   LateClock clock({kOnTime, std::chrono::seconds(2)});
-  const ServoOptions options{.limit_ticks = 1000, .fade_ticks = 100, .limits = norm_limit_alone()};
-  const ServoReport report = run_servo(device, force, kept, options, clock);
-  CHECK(report.end == ServoEnd::time_limit);
+  const device::ServoOptions options{
+      .limit_ticks = 1000, .fade_ticks = 100, .limits = norm_limit_alone()};
+  const device::ServoReport report = device::run_servo(device, force, kept, options, clock);
+  CHECK(report.end == device::ServoEnd::time_limit);
   CHECK(report.ticks == 1);
   CHECK(report.overruns == 1099);
   CHECK(device.written == std::vector<Vec3>{{0.0, 0.0, 0.5}, {}});
 }
 
 TEST_CASE("lateness is measured from the tick that was due first") {
-  DurationHistogram lateness;
-  ServoHooks hooks;
+  device::DurationHistogram lateness;
+  device::ServoHooks hooks;
   hooks.lateness = &lateness;
-  const ServoOptions options{.limit_ticks = 10, .fade_ticks = 0};
+  const device::ServoOptions options{.limit_ticks = 10, .fade_ticks = 0};
   static_cast<void>(run(LateClock({kOnTime, milliseconds(4)}), options, hooks));
   CHECK(lateness.worst() == milliseconds(4));
   CHECK(lateness.count() == 6);
@@ -99,8 +100,8 @@ TEST_CASE("lateness is measured from the tick that was due first") {
 }
 
 TEST_CASE("a watcher sees how late the newest tick was") {
-  LatestValue<ServoState> state;
-  ServoHooks hooks;
+  device::LatestValue<device::ServoState> state;
+  device::ServoHooks hooks;
   hooks.state = &state;
   static_cast<void>(run(LateClock({kOnTime, kOnTime, microseconds(250)}),
                         {.limit_ticks = 3, .fade_ticks = 0}, hooks));
@@ -112,8 +113,8 @@ TEST_CASE("virtual time is never late and has the options' rate") {
   ScriptedDevice device;
   ConstantForce force({});
   KeptSamples kept;
-  const ServoReport report =
-      run_servo_in_virtual_time(device, force, kept, {.limit_ticks = 3, .rate_hz = 4000.0});
+  const device::ServoReport report =
+      device::run_servo_in_virtual_time(device, force, kept, {.limit_ticks = 3, .rate_hz = 4000.0});
   CHECK(report.rate_hz == 4000.0);
   CHECK(report.lateness.worst_us == 0.0);
 }
@@ -122,11 +123,12 @@ TEST_CASE("a rate or a number of ticks out of range is refused before the first 
   ScriptedDevice device;
   ConstantForce force({});
   KeptSamples kept;
-  const ServoOptions options =
-      GENERATE(ServoOptions{.rate_hz = 999.0}, ServoOptions{.rate_hz = 10'001.0},
-               ServoOptions{.rate_hz = std::numeric_limits<double>::quiet_NaN()},
-               ServoOptions{.limit_ticks = -1}, ServoOptions{.fade_ticks = -1});
-  CHECK_THROWS_AS(run_servo_in_virtual_time(device, force, kept, options), std::invalid_argument);
+  const device::ServoOptions options =
+      GENERATE(device::ServoOptions{.rate_hz = 999.0}, device::ServoOptions{.rate_hz = 10'001.0},
+               device::ServoOptions{.rate_hz = std::numeric_limits<double>::quiet_NaN()},
+               device::ServoOptions{.limit_ticks = -1}, device::ServoOptions{.fade_ticks = -1});
+  CHECK_THROWS_AS(device::run_servo_in_virtual_time(device, force, kept, options),
+                  std::invalid_argument);
   CHECK(device.reads == 0);
 }
 
@@ -134,13 +136,14 @@ TEST_CASE("somebody who is done before a fade of no length ends the run without 
   ScriptedDevice device;
   ConstantForce force({0.0, 0.0, 0.5});
   KeptSamples kept;
-  ServoControl control;
+  device::ServoControl control;
   control.finish();
-  ServoHooks hooks;
+  device::ServoHooks hooks;
   hooks.control = &control;
-  VirtualClock clock;
-  const ServoReport report = run_servo(device, force, kept, {.fade_ticks = 0}, clock, hooks);
-  CHECK(report.end == ServoEnd::hand_stopped);
+  device::VirtualClock clock;
+  const device::ServoReport report =
+      device::run_servo(device, force, kept, {.fade_ticks = 0}, clock, hooks);
+  CHECK(report.end == device::ServoEnd::hand_stopped);
   CHECK(device.written == std::vector<Vec3>{{}});
 }
 

@@ -16,8 +16,8 @@ TEST_CASE("the servo runs until the hand stops and records what it sent where") 
   device.ticks = 5;
   ConstantForce force({0.0, 0.0, 0.5});
   KeptSamples kept;
-  const ServoReport report = run_servo_in_virtual_time(device, force, kept, {});
-  CHECK(report.end == ServoEnd::hand_stopped);
+  const device::ServoReport report = device::run_servo_in_virtual_time(device, force, kept, {});
+  CHECK(report.end == device::ServoEnd::hand_stopped);
   CHECK(report.ticks == 5);
   REQUIRE(kept.samples.size() == 5);
   CHECK(kept.samples[3].position_mm == Vec3{3.0, 0.0, -1.0});
@@ -28,9 +28,9 @@ TEST_CASE("when time is up the force fades to nothing, and zero is written last"
   ScriptedDevice device;
   ConstantForce force({0.0, 0.0, 1.0});
   KeptSamples kept;
-  const ServoReport report = run_servo_in_virtual_time(
+  const device::ServoReport report = device::run_servo_in_virtual_time(
       device, force, kept, {.limit_ticks = 3, .fade_ticks = 4, .limits = norm_limit_alone()});
-  CHECK(report.end == ServoEnd::time_limit);
+  CHECK(report.end == device::ServoEnd::time_limit);
   CHECK(report.ticks == 7);
   const std::vector<Vec3> expected = {{0, 0, 1},   {0, 0, 1},    {0, 0, 1}, {0, 0, 0.75},
                                       {0, 0, 0.5}, {0, 0, 0.25}, {0, 0, 0}, {0, 0, 0}};
@@ -44,8 +44,8 @@ TEST_CASE("the smaller of the device's and the study's force limits holds") {
   const double limit_n = std::min(device.max_force_n, 2.0);
   ConstantForce force({0.0, 3.0, 0.0});
   KeptSamples kept;
-  const ServoReport report =
-      run_servo_in_virtual_time(device, force, kept, {.limits = norm_limit_alone(2.0)});
+  const device::ServoReport report =
+      device::run_servo_in_virtual_time(device, force, kept, {.limits = norm_limit_alone(2.0)});
   CHECK(report.limited_ticks == 2);
   CHECK(report.force_limit_n == limit_n);
   CHECK(device.written[0] == Vec3{0.0, limit_n, 0.0});
@@ -55,21 +55,21 @@ TEST_CASE("a share of the force that changes while the servo runs is followed wi
   ScriptedDevice device;
   ConstantForce force({0.0, 0.0, 1.0});
   KeptSamples kept;
-  LatestValue<ServoParameters> parameters({0.5});
-  class Asks final : public ForceSource {
+  device::LatestValue<device::ServoParameters> parameters({0.5});
+  class Asks final : public device::ForceSource {
    public:
-    explicit Asks(LatestValue<ServoParameters>& set) : set_(set) {}
-    [[nodiscard]] Vec3 force_n(const DeviceSample&) noexcept override {
+    explicit Asks(device::LatestValue<device::ServoParameters>& set) : set_(set) {}
+    [[nodiscard]] Vec3 force_n(const device::DeviceSample&) noexcept override {
       if (++tick_ == 10) set_.set({.force_share = 7.0});
       return {0.0, 0.0, 1.0};
     }
 
    private:
-    LatestValue<ServoParameters>& set_;
+    device::LatestValue<device::ServoParameters>& set_;
     int tick_ = 0;
   } asks(parameters);
-  VirtualClock clock;
-  const ServoReport report = run_servo(
+  device::VirtualClock clock;
+  const device::ServoReport report = device::run_servo(
       device, asks, kept, {.limit_ticks = 200, .fade_ticks = 0, .limits = norm_limit_alone()},
       clock, {.parameters = &parameters});
   REQUIRE(report.ticks == 200);
@@ -85,28 +85,29 @@ TEST_CASE("a share of the force that is no number is none of it") {
   ScriptedDevice device;
   ConstantForce force({0.0, 0.0, 0.4});
   KeptSamples kept;
-  LatestValue<ServoParameters> parameters({std::numeric_limits<double>::quiet_NaN()});
-  VirtualClock clock;
-  const ServoReport report = run_servo(device, force, kept, {.limit_ticks = 5, .fade_ticks = 0},
-                                       clock, {.parameters = &parameters});
-  CHECK(report.fault == SafetyFault::none);
+  device::LatestValue<device::ServoParameters> parameters(
+      {std::numeric_limits<double>::quiet_NaN()});
+  device::VirtualClock clock;
+  const device::ServoReport report = device::run_servo(
+      device, force, kept, {.limit_ticks = 5, .fade_ticks = 0}, clock, {.parameters = &parameters});
+  CHECK(report.fault == device::SafetyFault::none);
   CHECK(kept.samples.back().force_n == Vec3{});
 }
 
 TEST_CASE("motors that are warm from one run are warm in the next") {
-  MotorHeat heat;
+  device::MotorHeat heat;
   ConstantForce force({0.0, 0.0, 3.0});
-  SafetyLimits limits = norm_limit_alone(3.3);
+  device::SafetyLimits limits = norm_limit_alone(3.3);
   limits.continuous_force_n = 0.88;
   limits.thermal_budget_s = 2.0;
   limits.max_slew_n_per_s = 1e6;
-  VirtualClock clock;
+  device::VirtualClock clock;
   const auto last_force_n = [&] {
     ScriptedDevice device;
     KeptSamples kept;
-    const ServoReport report =
-        run_servo(device, force, kept, {.limit_ticks = 1900, .fade_ticks = 0, .limits = limits},
-                  clock, {.heat = &heat});
+    const device::ServoReport report = device::run_servo(
+        device, force, kept, {.limit_ticks = 1900, .fade_ticks = 0, .limits = limits}, clock,
+        {.heat = &heat});
     REQUIRE(report.ticks == 1900);
     return kept.samples.back().force_n.z;
   };
@@ -121,8 +122,8 @@ TEST_CASE("a force that is not a number ends the loop without reaching the devic
   ScriptedDevice device;
   ConstantForce force({std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0});
   KeptSamples kept;
-  const ServoReport report = run_servo_in_virtual_time(device, force, kept, {});
-  CHECK(report.end == ServoEnd::fault);
+  const device::ServoReport report = device::run_servo_in_virtual_time(device, force, kept, {});
+  CHECK(report.end == device::ServoEnd::fault);
   CHECK(report.ticks == 0);
   CHECK(device.written == std::vector<Vec3>{{}});
 }
@@ -133,13 +134,15 @@ TEST_CASE("a device that is lost ends the loop with a fault") {
   KeptSamples kept;
   SECTION("while reading") {
     device.ticks = 4;
-    device.end = DeviceStatus::fault;
-    CHECK(run_servo_in_virtual_time(device, force, kept, {}).end == ServoEnd::fault);
+    device.end = device::DeviceStatus::fault;
+    CHECK(device::run_servo_in_virtual_time(device, force, kept, {}).end ==
+          device::ServoEnd::fault);
     CHECK(kept.samples.size() == 4);
   }
   SECTION("while writing: the tick is not recorded") {
     device.fails_at_write = 3;
-    CHECK(run_servo_in_virtual_time(device, force, kept, {}).end == ServoEnd::fault);
+    CHECK(device::run_servo_in_virtual_time(device, force, kept, {}).end ==
+          device::ServoEnd::fault);
     CHECK(kept.samples.size() == 2);
   }
 }

@@ -7,17 +7,17 @@ namespace touchtrial {
 namespace {
 
 TEST_CASE("the simulated device is always there, strokes a whole minute and has not stopped then") {
-  CHECK(simulated_driver().list({}).at(0).present);
-  const std::unique_ptr<HapticDevice> device = open_device("simulated", {});
+  CHECK(device::simulated_driver().list({}).at(0).present);
+  const std::unique_ptr<device::HapticDevice> device = device::open_device("simulated", {});
   CHECK(device->info().simulated);
   FlatWall wall;
   KeptSamples kept;
-  const ServoReport report = run_servo_in_virtual_time(*device, wall, kept, {});
-  CHECK(report.end == ServoEnd::time_limit);
+  const device::ServoReport report = device::run_servo_in_virtual_time(*device, wall, kept, {});
+  CHECK(report.end == device::ServoEnd::time_limit);
   CHECK(report.contact_ticks > 50'000);
-  for (const ServoSample& sample : kept.samples) {
+  for (const device::ServoSample& sample : kept.samples) {
     REQUIRE(sample.position_mm.x > 0.0);
-    REQUIRE(sample.position_mm.x < kSimulatedPlaneMm);
+    REQUIRE(sample.position_mm.x < device::kSimulatedPlaneMm);
   }
 }
 

@@ -12,11 +12,12 @@ constexpr PlaneGeometry kPlane{0.2, 500, 500};
 constexpr PlaneGeometry kOblong{0.2, 120, 300};
 constexpr double kTickS = 0.001;
 
-std::vector<PathPoint> points_of(const PlaneGeometry& plane, const ExplorationOptions& options,
-                                 std::uint64_t seed) {
+std::vector<device::PathPoint> points_of(const PlaneGeometry& plane,
+                                         const device::ExplorationOptions& options,
+                                         std::uint64_t seed) {
   RandomStream random(seed, "exploration_path_test");
-  const ExplorationPath path(plane, options, random);
-  std::vector<PathPoint> points;
+  const device::ExplorationPath path(plane, options, random);
+  std::vector<device::PathPoint> points;
   std::size_t stroke = 0;
   const int ticks = static_cast<int>(options.duration_s / kTickS);
   for (int i = 0; i < ticks; ++i) points.push_back(path.at(i * kTickS, stroke));
@@ -26,11 +27,11 @@ std::vector<PathPoint> points_of(const PlaneGeometry& plane, const ExplorationOp
 TEST_CASE("an exploration path stays within its margin") {
   const PlaneGeometry plane =
       GENERATE(as<PlaneGeometry>{}, kPlane, kOblong, PlaneGeometry{0.2, 1, 7});
-  const ExplorationOptions options;
+  const device::ExplorationOptions options;
   const double x_mm = std::min(options.margin_mm, plane.width_mm() / 5.0);
   const double y_mm = std::min(options.margin_mm, plane.height_mm() / 5.0);
   constexpr double kRounding = 1e-9;
-  for (const PathPoint& point : points_of(plane, options, 3)) {
+  for (const device::PathPoint& point : points_of(plane, options, 3)) {
     REQUIRE(point.position_mm.x >= x_mm - kRounding);
     REQUIRE(point.position_mm.x <= plane.width_mm() - x_mm + kRounding);
     REQUIRE(point.position_mm.y >= y_mm - kRounding);
@@ -40,9 +41,9 @@ TEST_CASE("an exploration path stays within its margin") {
 
 TEST_CASE("strokes are between 50 and 150 mm/s fast, and mostly at speed") {
   const PlaneGeometry plane = GENERATE(as<PlaneGeometry>{}, kPlane, kOblong);
-  const std::vector<PathPoint> points = points_of(plane, {}, GENERATE(1U, 2U, 3U));
+  const std::vector<device::PathPoint> points = points_of(plane, {}, GENERATE(1U, 2U, 3U));
   int at_speed = 0;
-  for (const PathPoint& point : points) {
+  for (const device::PathPoint& point : points) {
     const double speed_mm_s = norm(point.velocity_mm_s);
     REQUIRE(speed_mm_s <= 150.0);
     at_speed += speed_mm_s >= 50.0 ? 1 : 0;
@@ -51,16 +52,17 @@ TEST_CASE("strokes are between 50 and 150 mm/s fast, and mostly at speed") {
 }
 
 TEST_CASE("the speeds of strokes fill the range that was asked for") {
-  const std::vector<PathPoint> points =
+  const std::vector<device::PathPoint> points =
       points_of(kPlane, {.slowest_mm_s = 80.0, .fastest_mm_s = 120.0, .duration_s = 60.0}, 5);
   double fastest_mm_s = 0.0;
-  for (const PathPoint& p : points) fastest_mm_s = std::max(fastest_mm_s, norm(p.velocity_mm_s));
+  for (const device::PathPoint& p : points)
+    fastest_mm_s = std::max(fastest_mm_s, norm(p.velocity_mm_s));
   CHECK(fastest_mm_s > 115.0);
   CHECK(fastest_mm_s <= 120.0);
 }
 
 TEST_CASE("position and velocity of a path belong to each other and never jump") {
-  const std::vector<PathPoint> points = points_of(kPlane, {}, 11);
+  const std::vector<device::PathPoint> points = points_of(kPlane, {}, 11);
   for (std::size_t i = 1; i < points.size(); ++i) {
     const Vec2 step_mm = points[i].position_mm - points[i - 1].position_mm;
     const Vec2 mean_mm_s = 0.5 * (points[i].velocity_mm_s + points[i - 1].velocity_mm_s);
@@ -83,20 +85,24 @@ TEST_CASE("a path is a function of its seed, and other seeds give other paths") 
 
 TEST_CASE("a path rests at its end") {
   RandomStream random(1, "exploration_path_test");
-  const ExplorationPath path(kPlane, {.duration_s = 1.0}, random);
+  const device::ExplorationPath path(kPlane, {.duration_s = 1.0}, random);
   std::size_t stroke = 0;
-  const PathPoint late = path.at(100.0, stroke);
+  const device::PathPoint late = path.at(100.0, stroke);
   CHECK(norm(late.velocity_mm_s) == 0.0);
   CHECK(late.position_mm == path.at(200.0, stroke).position_mm);
 }
 
 TEST_CASE("a path refuses a plane without area and options out of range") {
   RandomStream random(1, "exploration_path_test");
-  CHECK_THROWS_AS(ExplorationPath({0.2, 0, 5}, {}, random), std::invalid_argument);
-  CHECK_THROWS_AS(ExplorationPath(kPlane, {.slowest_mm_s = 0.0}, random), std::invalid_argument);
-  CHECK_THROWS_AS(ExplorationPath(kPlane, {.fastest_mm_s = 10.0}, random), std::invalid_argument);
-  CHECK_THROWS_AS(ExplorationPath(kPlane, {.margin_mm = -1.0}, random), std::invalid_argument);
-  CHECK_THROWS_AS(ExplorationPath(kPlane, {.duration_s = 0.0}, random), std::invalid_argument);
+  CHECK_THROWS_AS(device::ExplorationPath({0.2, 0, 5}, {}, random), std::invalid_argument);
+  CHECK_THROWS_AS(device::ExplorationPath(kPlane, {.slowest_mm_s = 0.0}, random),
+                  std::invalid_argument);
+  CHECK_THROWS_AS(device::ExplorationPath(kPlane, {.fastest_mm_s = 10.0}, random),
+                  std::invalid_argument);
+  CHECK_THROWS_AS(device::ExplorationPath(kPlane, {.margin_mm = -1.0}, random),
+                  std::invalid_argument);
+  CHECK_THROWS_AS(device::ExplorationPath(kPlane, {.duration_s = 0.0}, random),
+                  std::invalid_argument);
 }
 
 }  // namespace

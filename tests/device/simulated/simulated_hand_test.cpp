@@ -11,33 +11,33 @@ namespace {
 
 constexpr PlaneGeometry kPlane{0.2, 500, 500};
 
-SimulatedHand hand_with(const HandOptions& options, std::uint64_t seed = 1) {
+device::SimulatedHand hand_with(const device::HandOptions& options, std::uint64_t seed = 1) {
   RandomStream random(seed, "simulated_hand_test");
-  return {options, ExplorationPath(kPlane, {.duration_s = options.explore_s}, random)};
+  return {options, device::ExplorationPath(kPlane, {.duration_s = options.explore_s}, random)};
 }
 
-std::vector<ServoSample> touch_flat_wall(SimulatedHand& hand) {
+std::vector<device::ServoSample> touch_flat_wall(device::SimulatedHand& hand) {
   FlatWall wall;
   KeptSamples kept;
-  const ServoReport report = run_servo_in_virtual_time(hand, wall, kept, {});
-  REQUIRE(report.end == ServoEnd::hand_stopped);
+  const device::ServoReport report = device::run_servo_in_virtual_time(hand, wall, kept, {});
+  REQUIRE(report.end == device::ServoEnd::hand_stopped);
   return kept.samples;
 }
 
-std::size_t landing_of(const std::vector<ServoSample>& samples) {
+std::size_t landing_of(const std::vector<device::ServoSample>& samples) {
   const auto landed = std::ranges::find_if(
-      samples, [](const ServoSample& sample) { return sample.force_n.z > 0.0; });
+      samples, [](const device::ServoSample& sample) { return sample.force_n.z > 0.0; });
   REQUIRE(landed != samples.end());
   return static_cast<std::size_t>(landed - samples.begin());
 }
 
 TEST_CASE(
     "a hand that pushes on a flat wall keeps contact, steady to 0.02 N, 0.5 s after landing") {
-  HandOptions options;
+  device::HandOptions options;
   options.push_n = GENERATE(0.3, 0.7, 1.3, 2.0);
   options.explore_s = 3.0;
-  SimulatedHand hand = hand_with(options);
-  const std::vector<ServoSample> samples = touch_flat_wall(hand);
+  device::SimulatedHand hand = hand_with(options);
+  const std::vector<device::ServoSample> samples = touch_flat_wall(hand);
   const std::size_t settled = landing_of(samples) + 500;
   REQUIRE(settled + 1000 < samples.size());
   for (std::size_t i = settled; i < samples.size(); ++i) {
@@ -46,50 +46,52 @@ TEST_CASE(
 }
 
 TEST_CASE("a hand lands from above, gently, within half a second") {
-  HandOptions options;
+  device::HandOptions options;
   options.start_height_mm = GENERATE(8.0, 20.0);
   options.explore_s = 2.0;
-  SimulatedHand hand = hand_with(options);
-  const std::vector<ServoSample> samples = touch_flat_wall(hand);
+  device::SimulatedHand hand = hand_with(options);
+  const std::vector<device::ServoSample> samples = touch_flat_wall(hand);
   CHECK(samples.front().position_mm.z == options.start_height_mm);
   CHECK(landing_of(samples) < 500);
-  for (const ServoSample& sample : samples) REQUIRE(sample.force_n.z < 2.0 * options.push_n);
+  for (const device::ServoSample& sample : samples)
+    REQUIRE(sample.force_n.z < 2.0 * options.push_n);
 }
 
 TEST_CASE("a hand on a flat wall follows its path") {
-  HandOptions options;
+  device::HandOptions options;
   options.explore_s = 4.0;
-  SimulatedHand hand = hand_with(options, 8);
+  device::SimulatedHand hand = hand_with(options, 8);
   RandomStream random(8, "simulated_hand_test");
-  const ExplorationPath path(kPlane, {.duration_s = options.explore_s}, random);
+  const device::ExplorationPath path(kPlane, {.duration_s = options.explore_s}, random);
   std::size_t stroke = 0;
-  const std::vector<ServoSample> samples = touch_flat_wall(hand);
+  const std::vector<device::ServoSample> samples = touch_flat_wall(hand);
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const Vec2 target_mm = path.at(static_cast<double>(i) * kServoTickS, stroke).position_mm;
+    const Vec2 target_mm =
+        path.at(static_cast<double>(i) * device::kServoTickS, stroke).position_mm;
     const Vec3 at_mm = samples[i].position_mm;
     REQUIRE(norm(Vec2{at_mm.x, at_mm.y} - target_mm) < 2.0);
   }
 }
 
 TEST_CASE("a hand that only bounces on a spring loses energy and never gains any") {
-  HandOptions options;
+  device::HandOptions options;
   options.push_n = 0.0;
   options.push_damping_n_s_per_mm = 0.0005;
   options.arm_stiffness_n_per_mm = 0.0;
-  SimulatedHand hand = hand_with(options);
+  device::SimulatedHand hand = hand_with(options);
   constexpr double kStiffness = 0.4;
-  const auto energy_mj = [&](const DeviceSample& s) {
+  const auto energy_mj = [&](const device::DeviceSample& s) {
     const double speed_m_s = s.velocity_mm_s.z / 1000.0;
     return 0.5 * options.mass_kg * speed_m_s * speed_m_s * 1000.0 +
            0.5 * kStiffness * s.position_mm.z * s.position_mm.z;
   };
-  DeviceSample sample;
-  REQUIRE(hand.read(sample) == DeviceStatus::ok);
+  device::DeviceSample sample;
+  REQUIRE(hand.read(sample) == device::DeviceStatus::ok);
   const double at_start = energy_mj(sample);
   double highest_late = 0.0;
   for (int tick = 0; tick < 4000; ++tick) {
-    REQUIRE(hand.write({0.0, 0.0, -kStiffness * sample.position_mm.z}) == DeviceStatus::ok);
-    REQUIRE(hand.read(sample) == DeviceStatus::ok);
+    REQUIRE(hand.write({0.0, 0.0, -kStiffness * sample.position_mm.z}) == device::DeviceStatus::ok);
+    REQUIRE(hand.read(sample) == device::DeviceStatus::ok);
     // The symplectic step makes the energy swing by omega * dt / 2, 3 %, about its mean.
     REQUIRE(energy_mj(sample) < 1.05 * at_start);
     if (tick > 2000) highest_late = std::max(highest_late, energy_mj(sample));
@@ -98,26 +100,26 @@ TEST_CASE("a hand that only bounces on a spring loses energy and never gains any
 }
 
 TEST_CASE("forces move a hand as far as its arm's spring lets them") {
-  HandOptions options;
+  device::HandOptions options;
   options.explore_s = 3.0;
-  SimulatedHand pushed = hand_with(options);
-  SimulatedHand free = hand_with(options);
+  device::SimulatedHand pushed = hand_with(options);
+  device::SimulatedHand free = hand_with(options);
   for (int tick = 0; tick < 2500; ++tick) {
-    REQUIRE(pushed.write({0.5, 0.0, 0.0}) == DeviceStatus::ok);
-    REQUIRE(free.write({}) == DeviceStatus::ok);
+    REQUIRE(pushed.write({0.5, 0.0, 0.0}) == device::DeviceStatus::ok);
+    REQUIRE(free.write({}) == device::DeviceStatus::ok);
   }
-  DeviceSample at;
-  DeviceSample otherwise;
-  REQUIRE(pushed.read(at) == DeviceStatus::ok);
-  REQUIRE(free.read(otherwise) == DeviceStatus::ok);
+  device::DeviceSample at;
+  device::DeviceSample otherwise;
+  REQUIRE(pushed.read(at) == device::DeviceStatus::ok);
+  REQUIRE(free.read(otherwise) == device::DeviceStatus::ok);
   const double deflection_mm = at.position_mm.x - otherwise.position_mm.x;
   CHECK(deflection_mm == Approx(0.5 / options.arm_stiffness_n_per_mm).epsilon(1e-6));
 }
 
 TEST_CASE("a hand's virtual clock counts ticks, and the hand stops at its time") {
-  HandOptions options;
+  device::HandOptions options;
   options.explore_s = 0.25;
-  SimulatedHand hand = hand_with(options);
+  device::SimulatedHand hand = hand_with(options);
   CHECK(hand.now() == std::chrono::nanoseconds{0});
   CHECK(touch_flat_wall(hand).size() == 250);
   CHECK(hand.info().name == "simulated");
@@ -125,12 +127,12 @@ TEST_CASE("a hand's virtual clock counts ticks, and the hand stops at its time")
 }
 
 TEST_CASE("a hand's motion is a function of its seed") {
-  HandOptions options;
+  device::HandOptions options;
   options.explore_s = 0.5;
-  SimulatedHand first = hand_with(options, 4);
-  SimulatedHand again = hand_with(options, 4);
-  const std::vector<ServoSample> a = touch_flat_wall(first);
-  const std::vector<ServoSample> b = touch_flat_wall(again);
+  device::SimulatedHand first = hand_with(options, 4);
+  device::SimulatedHand again = hand_with(options, 4);
+  const std::vector<device::ServoSample> a = touch_flat_wall(first);
+  const std::vector<device::ServoSample> b = touch_flat_wall(again);
   REQUIRE(a.size() == b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
     REQUIRE(a[i].position_mm == b[i].position_mm);
@@ -139,10 +141,10 @@ TEST_CASE("a hand's motion is a function of its seed") {
 }
 
 TEST_CASE("a hand refuses options that no hand has") {
-  HandOptions weightless;
+  device::HandOptions weightless;
   weightless.mass_kg = 0.0;
   CHECK_THROWS_AS(hand_with(weightless), std::invalid_argument);
-  HandOptions pulling;
+  device::HandOptions pulling;
   pulling.push_n = -0.1;
   CHECK_THROWS_AS(hand_with(pulling), std::invalid_argument);
 }

@@ -17,7 +17,7 @@ namespace touchtrial {
 namespace {
 
 Plane<double> texture_of(Size size) {
-  return extract_texture<double>(cloth_image(size), {}).texture;
+  return engine::extract_texture<double>(cloth_image(size), {}).texture;
 }
 
 double mean_of(const Plane<double>& plane) {
@@ -63,10 +63,10 @@ GreyImage marked_image() {
   return image;
 }
 
-ExtractionOptions scrambled_by(Method method, std::uint64_t seed) {
-  ExtractionOptions options;
+engine::ExtractionOptions scrambled_by(engine::Method method, std::uint64_t seed) {
+  engine::ExtractionOptions options;
   options.method = method;
-  options.control = Control::phase_scrambled;
+  options.control = engine::Control::phase_scrambled;
   options.control_seed = seed;
   return options;
 }
@@ -78,7 +78,7 @@ TEST_CASE("phase-scrambled keeps every amplitude, whatever the size") {
        {Size{1, 2}, Size{2, 1}, Size{3, 3}, Size{4, 6}, Size{7, 10}, Size{12, 5}}) {
     INFO(size.height << " x " << size.width);
     const Plane<double> texture = converted<double>(noise_image(size));
-    const Plane<double> scrambled = phase_scrambled(texture, 5);
+    const Plane<double> scrambled = engine::phase_scrambled(texture, 5);
     double worst = 0.0;
     for (int row = 0; row < size.height; ++row) {
       for (int column = 0; column < size.width; ++column) {
@@ -95,15 +95,15 @@ TEST_CASE("phase-scrambled keeps mean and rms to rounding") {
   for (const Size size : {Size{1, 17}, Size{31, 1}, Size{40, 50}, Size{51, 63}}) {
     INFO(size.height << " x " << size.width);
     const Plane<double> texture = converted<double>(noise_image(size));
-    const Plane<double> scrambled = phase_scrambled(texture, 9);
+    const Plane<double> scrambled = engine::phase_scrambled(texture, 9);
     CHECK(mean_of(scrambled) == Approx(mean_of(texture)).epsilon(1e-13));
     CHECK(moment(scrambled, 2) == Approx(moment(texture, 2)).epsilon(1e-12));
   }
 }
 
 TEST_CASE("phase-scrambled leaves nothing of the structure") {
-  const Plane<double> texture = extract_texture<double>(marked_image(), {}).texture;
-  const Plane<double> scrambled = phase_scrambled(texture, 3);
+  const Plane<double> texture = engine::extract_texture<double>(marked_image(), {}).texture;
+  const Plane<double> scrambled = engine::phase_scrambled(texture, 3);
   CHECK(std::abs(correlation(texture, scrambled)) < 0.1);
   CHECK(moment(texture, 4) / std::pow(moment(texture, 2), 2) > 20.0);
   CHECK(moment(scrambled, 4) / std::pow(moment(scrambled, 2), 2) == Approx(3.0).margin(0.5));
@@ -112,48 +112,50 @@ TEST_CASE("phase-scrambled leaves nothing of the structure") {
 TEST_CASE("phase-scrambled leaves a flat texture exactly as it is") {
   for (const double level : {0.0, -0.1, 55.0}) {
     const Plane<double> flat(6, 9, level);
-    CHECK(phase_scrambled(flat, 1) == flat);
+    CHECK(engine::phase_scrambled(flat, 1) == flat);
   }
   const Plane<float> pixel(1, 1, 3.5F);
-  CHECK(phase_scrambled(pixel, 1) == pixel);
+  CHECK(engine::phase_scrambled(pixel, 1) == pixel);
 }
 
 TEST_CASE("phase-scrambled is decided by its seed") {
   const Plane<double> texture = texture_of({24, 33});
-  CHECK(phase_scrambled(texture, 1) == phase_scrambled(texture, 1));
+  CHECK(engine::phase_scrambled(texture, 1) == engine::phase_scrambled(texture, 1));
   const Plane<double> noise = converted<double>(noise_image({40, 50}));
-  CHECK(std::abs(correlation(phase_scrambled(noise, 1), phase_scrambled(noise, 2))) < 0.1);
+  CHECK(std::abs(correlation(engine::phase_scrambled(noise, 1),
+                             engine::phase_scrambled(noise, 2))) < 0.1);
 }
 
 TEST_CASE("phase-scrambled in single precision is the same to its digits") {
   const Plane<double> texture = texture_of({40, 31});
-  const Plane<float> single = phase_scrambled(converted<float>(texture), 7);
-  CHECK(largest_difference(single, phase_scrambled(texture, 7)) < 1e-4);
+  const Plane<float> single = engine::phase_scrambled(converted<float>(texture), 7);
+  CHECK(largest_difference(single, engine::phase_scrambled(texture, 7)) < 1e-4);
 }
 
 TEST_CASE("an extraction's control is made of the method's texture, by any method") {
   const GreyImage image = cloth_image({30, 42});
-  for (const std::string& name : method_names()) {
+  for (const std::string& name : engine::method_names()) {
     INFO(name);
-    const Method method = *method_from_name(name);
-    ExtractionOptions plain;
+    const engine::Method method = *engine::method_from_name(name);
+    engine::ExtractionOptions plain;
     plain.method = method;
-    const Plane<double> texture = extract_texture<double>(image, plain).texture;
-    const auto control = extract_texture<double>(image, scrambled_by(method, 11));
-    CHECK(control.texture == phase_scrambled(texture, 11));
-    const auto single = extract_texture<float>(image, scrambled_by(method, 11));
+    const Plane<double> texture = engine::extract_texture<double>(image, plain).texture;
+    const auto control = engine::extract_texture<double>(image, scrambled_by(method, 11));
+    CHECK(control.texture == engine::phase_scrambled(texture, 11));
+    const auto single = engine::extract_texture<float>(image, scrambled_by(method, 11));
     CHECK(largest_difference(single.texture, control.texture) < 0.05);
   }
 }
 
 TEST_CASE("picture, force and enhanced image of an extraction are those of its control") {
   const GreyImage image = cloth_image({30, 42});
-  const ExtractionOptions options = scrambled_by(Method::adaptive, 2);
-  Extraction<float> result = extract_texture<float>(image, {}, WantedPlanes::all());
+  const engine::ExtractionOptions options = scrambled_by(engine::Method::adaptive, 2);
+  engine::Extraction<float> result =
+      engine::extract_texture<float>(image, {}, engine::WantedPlanes::all());
   const Plane<float> order = result.order;
-  extract_texture_into(image, options, WantedPlanes::all(), result);
-  CHECK(result.picture == texture_picture(result.texture));
-  CHECK(result.force.x == tangential_force(result.texture, 3).x);
+  engine::extract_texture_into(image, options, engine::WantedPlanes::all(), result);
+  CHECK(result.picture == engine::texture_picture(result.texture));
+  CHECK(result.force.x == engine::tangential_force(result.texture, 3).x);
   CHECK(result.enhanced.at(4, 5) == static_cast<float>(image.at(4, 5)) + result.texture.at(4, 5));
   CHECK(result.order == order);
 }

@@ -11,23 +11,24 @@ namespace touchtrial {
 namespace {
 
 GreyImage fixed_picture(const GreyImage& image, double order) {
-  ExtractionOptions options;
-  options.method = Method::fixed;
+  engine::ExtractionOptions options;
+  options.method = engine::Method::fixed;
   options.order = order;
-  return texture_picture(extract_texture<double>(image, options).texture);
+  return engine::texture_picture(engine::extract_texture<double>(image, options).texture);
 }
 
 TEST_CASE("an evaluation holds the figures of the image and of its adaptive texture") {
   const GreyImage image = cloth_image({20, 31});
-  const Evaluation evaluation = evaluate_image(image, false);
-  const GreyImage texture = texture_picture(extract_texture<double>(image, {}).texture);
+  const engine::Evaluation evaluation = engine::evaluate_image(image, false);
+  const GreyImage texture =
+      engine::texture_picture(engine::extract_texture<double>(image, {}).texture);
   CHECK(evaluation.height == 20);
   CHECK(evaluation.width == 31);
-  CHECK(evaluation.original.entropy == entropy(image));
-  CHECK(evaluation.adaptive.entropy == entropy(texture));
-  const GlcmTable original = glcm_statistics(image);
-  const GlcmTable adaptive = glcm_statistics(texture);
-  for (std::size_t i = 0; i < kGlcmOffsets.size(); ++i) {
+  CHECK(evaluation.original.entropy == engine::entropy(image));
+  CHECK(evaluation.adaptive.entropy == engine::entropy(texture));
+  const engine::GlcmTable original = engine::glcm_statistics(image);
+  const engine::GlcmTable adaptive = engine::glcm_statistics(texture);
+  for (std::size_t i = 0; i < engine::kGlcmOffsets.size(); ++i) {
     CHECK(evaluation.original.glcm[i].contrast == original[i].contrast);
     CHECK(evaluation.adaptive.glcm[i].contrast == adaptive[i].contrast);
   }
@@ -37,41 +38,42 @@ TEST_CASE("an evaluation holds the figures of the image and of its adaptive text
 TEST_CASE("a sweep compares the adaptive texture with every fixed order") {
   const GreyImage image = cloth_image({170, 163});
   int calls = 0;
-  const Evaluation evaluation = evaluate_image(image, true, [&] { ++calls; });
-  CHECK(calls == kSweptOrders);
-  REQUIRE(evaluation.orders.size() == kSweptOrders);
+  const engine::Evaluation evaluation = engine::evaluate_image(image, true, [&] { ++calls; });
+  CHECK(calls == engine::kSweptOrders);
+  REQUIRE(evaluation.orders.size() == engine::kSweptOrders);
   CHECK(evaluation.orders.front().order == 0.05);
   CHECK(evaluation.orders[2].order == 0.15);
   CHECK(evaluation.orders.back().order == 0.95);
-  const GreyImage adaptive = texture_picture(extract_texture<double>(image, {}).texture);
+  const GreyImage adaptive =
+      engine::texture_picture(engine::extract_texture<double>(image, {}).texture);
   for (const std::size_t i : {std::size_t{0}, std::size_t{12}}) {
-    const OrderFigures& figures = evaluation.orders[i];
+    const engine::OrderFigures& figures = evaluation.orders[i];
     const GreyImage fixed = fixed_picture(image, figures.order);
-    CHECK(figures.entropy == entropy(fixed));
-    CHECK(figures.ms_ssim == ms_ssim<double>(adaptive, fixed).unit);
-    CHECK(figures.ms_ssim_wang == ms_ssim<double>(adaptive, fixed).wang);
+    CHECK(figures.entropy == engine::entropy(fixed));
+    CHECK(figures.ms_ssim == engine::ms_ssim<double>(adaptive, fixed).unit);
+    CHECK(figures.ms_ssim_wang == engine::ms_ssim<double>(adaptive, fixed).wang);
   }
-  for (const OrderFigures& figures : evaluation.orders) {
-    CHECK(closest_order(evaluation).ms_ssim >= figures.ms_ssim);
+  for (const engine::OrderFigures& figures : evaluation.orders) {
+    CHECK(engine::closest_order(evaluation).ms_ssim >= figures.ms_ssim);
   }
 }
 
 TEST_CASE("of a flat image every fixed order gives the adaptive texture") {
-  const Evaluation evaluation = evaluate_image(flat_image({161, 161}, 77), true);
-  for (const OrderFigures& figures : evaluation.orders) {
+  const engine::Evaluation evaluation = engine::evaluate_image(flat_image({161, 161}, 77), true);
+  for (const engine::OrderFigures& figures : evaluation.orders) {
     CHECK(figures.ms_ssim == 1.0);
     CHECK(figures.entropy == 0.0);
   }
-  CHECK(closest_order(evaluation).order == 0.05);
+  CHECK(engine::closest_order(evaluation).order == 0.05);
 }
 
 TEST_CASE("an image too small to be evaluated is refused with its size and the one needed") {
   CHECK(refusal_of([] {
-          (void)evaluate_image(noise_image({160, 500}), true);
+          (void)engine::evaluate_image(noise_image({160, 500}), true);
         }) == "has 500 x 160 px; MS-SSIM needs at least 161 px on each side");
-  CHECK(refusal_of([] { (void)evaluate_image(noise_image({160, 500}), false); }).empty());
+  CHECK(refusal_of([] { (void)engine::evaluate_image(noise_image({160, 500}), false); }).empty());
   CHECK(refusal_of([] {
-          (void)evaluate_image(noise_image({1, 9}), false);
+          (void)engine::evaluate_image(noise_image({1, 9}), false);
         }) == "has 9 x 1 px; co-occurrence statistics need at least 2 px on each side");
 }
 

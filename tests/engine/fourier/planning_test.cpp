@@ -24,15 +24,15 @@ namespace fs = std::filesystem;
 class MeasuredPlans {
  public:
   explicit MeasuredPlans(const fs::path& folder, std::size_t fewest_samples = 1) {
-    use_measured_plans(folder, fewest_samples);
+    engine::use_measured_plans(folder, fewest_samples);
   }
-  ~MeasuredPlans() { use_estimated_plans(); }
+  ~MeasuredPlans() { engine::use_estimated_plans(); }
   MeasuredPlans(const MeasuredPlans&) = delete;
   MeasuredPlans& operator=(const MeasuredPlans&) = delete;
 };
 
 std::vector<std::complex<double>> spectrum_of_noise() {
-  RealFft<double> fft(30, 28, FftPlan::measured);
+  engine::RealFft<double> fft(30, 28, engine::FftPlan::measured);
   RandomStream random(5, "planning test");
   for (double& sample : fft.plane()) sample = random.uniform(-1.0, 1.0);
   fft.forward();
@@ -134,19 +134,19 @@ class Variable {
 TEST_CASE("the cache folder is the user's, or none") {
   const Variable home("HOME", "/somebody");
   const Variable cache("XDG_CACHE_HOME", "/elsewhere");
-  CHECK(user_cache_folder() == "/elsewhere/touchtrial");
+  CHECK(engine::user_cache_folder() == "/elsewhere/touchtrial");
   const Variable relative("XDG_CACHE_HOME", "here");
-  CHECK(user_cache_folder() == "/somebody/.cache/touchtrial");
+  CHECK(engine::user_cache_folder() == "/somebody/.cache/touchtrial");
   const Variable homeless("HOME", nullptr);
-  CHECK(user_cache_folder().empty());
+  CHECK(engine::user_cache_folder().empty());
 }
 
 TEST_CASE("small transforms are not measured, and measured ones leave the estimated alone") {
   const TempFolder folder;
   const auto estimated = spectrum_of_noise();
   const MeasuredPlans measured(folder.path(), 2000);
-  const RealFft<double> larger(60, 56, FftPlan::measured);
-  const RealFft<double> once(64, 70);
+  const engine::RealFft<double> larger(60, 56, engine::FftPlan::measured);
+  const engine::RealFft<double> once(64, 70);
   CHECK(wisdom_in(folder.path()).size() == 1);
   CHECK(spectrum_of_noise() == estimated);
   CHECK(wisdom_in(folder.path()).size() == 1);

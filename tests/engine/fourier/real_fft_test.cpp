@@ -26,7 +26,7 @@ void fill_with_noise(std::span<Real> plane, std::uint64_t seed) {
 TEMPLATE_TEST_CASE("a transform agrees with the sum that defines it", "", float, double) {
   constexpr int kHeight = 6;
   constexpr int kWidth = 10;
-  RealFft<TestType> fft(kHeight, kWidth);
+  engine::RealFft<TestType> fft(kHeight, kWidth);
   fill_with_noise(fft.plane(), 1);
   const std::vector<TestType> plane(fft.plane().begin(), fft.plane().end());
   fft.forward();
@@ -51,7 +51,7 @@ TEMPLATE_TEST_CASE("a transform agrees with the sum that defines it", "", float,
 
 TEMPLATE_TEST_CASE("a transform and its inverse multiply by the number of samples", "", float,
                    double) {
-  RealFft<TestType> fft(36, 42);
+  engine::RealFft<TestType> fft(36, 42);
   fill_with_noise(fft.plane(), 2);
   const std::vector<TestType> plane(fft.plane().begin(), fft.plane().end());
   fft.forward();
@@ -64,7 +64,7 @@ TEMPLATE_TEST_CASE("a transform and its inverse multiply by the number of sample
 TEST_CASE("transforms can be made and used by several threads at once") {
   const auto transformed = [](std::vector<double>& result) {
     for (int round = 0; round < 20; ++round) {
-      RealFft<double> fft(40, 36);
+      engine::RealFft<double> fft(40, 36);
       fill_with_noise(fft.plane(), 3);
       fft.forward();
       fft.inverse();

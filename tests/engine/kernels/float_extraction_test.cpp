@@ -19,8 +19,8 @@ namespace {
 constexpr double kAnyTolerance = 4e-5;
 constexpr double kPhotographTolerance = 2e-5;
 
-ExtractionOptions adaptive_options(int radius) {
-  ExtractionOptions options;
+engine::ExtractionOptions adaptive_options(int radius) {
+  engine::ExtractionOptions options;
   options.radius = radius;
   return options;
 }
@@ -31,7 +31,7 @@ bool is_at_branch_point(double csgv) {
 }
 
 /// The largest difference away from the branch points.
-double texture_error(const Plane<float>& texture, const Extraction<double>& truth) {
+double texture_error(const Plane<float>& texture, const engine::Extraction<double>& truth) {
   double largest = 0.0;
   for (std::size_t i = 0; i < texture.size(); ++i) {
     if (is_at_branch_point(truth.csgv.samples()[i])) continue;
@@ -41,10 +41,10 @@ double texture_error(const Plane<float>& texture, const Extraction<double>& trut
 }
 
 void check_on_every_target(const GreyImage& image, int radius, double tolerance) {
-  const ExtractionOptions options = adaptive_options(radius);
-  const auto truth = extract_texture<double>(image, options, WantedPlanes::all());
+  const engine::ExtractionOptions options = adaptive_options(radius);
+  const auto truth = engine::extract_texture<double>(image, options, engine::WantedPlanes::all());
   on_every_simd_target([&] {
-    CHECK(texture_error(extract_texture<float>(image, options).texture, truth) < tolerance);
+    CHECK(texture_error(engine::extract_texture<float>(image, options).texture, truth) < tolerance);
   });
 }
 
@@ -93,13 +93,13 @@ TEST_CASE(
     "the adaptive kernels see a ramp's CSGV exactly, even on the branch "
     "point") {
   on_every_simd_target([] {
-    WantedPlanes wanted;
+    engine::WantedPlanes wanted;
     wanted.csgv = true;
     GreyImage image(40, 60);
     for (int y = 0; y < 40; ++y) {
       for (int x = 0; x < 60; ++x) image.at(y, x) = static_cast<std::uint8_t>(4 * x + 3);
     }
-    const auto result = extract_texture<float>(image, adaptive_options(2), wanted);
+    const auto result = engine::extract_texture<float>(image, adaptive_options(2), wanted);
     for (int x = 4; x < 52; ++x) REQUIRE(result.csgv.at(20, x) == 128.0F);
   });
 }
@@ -107,8 +107,8 @@ TEST_CASE(
 TEST_CASE("the adaptive kernels keep a flat image exactly flat on every target") {
   on_every_simd_target([] {
     for (const int level : {0, 1, 127, 255}) {
-      const auto result = extract_texture<float>(flat_image({7, 37}, level), adaptive_options(2),
-                                                 WantedPlanes::all());
+      const auto result = engine::extract_texture<float>(
+          flat_image({7, 37}, level), adaptive_options(2), engine::WantedPlanes::all());
       for (const Plane<float>* plane :
            {&result.texture, &result.csgv, &result.order, &result.force.x, &result.force.y}) {
         CHECK(plane->size() == 7 * 37);
@@ -122,9 +122,10 @@ TEST_CASE("the adaptive kernels keep a flat image exactly flat on every target")
 TEST_CASE("the adaptive kernels give exactly the negative texture of a negative") {
   on_every_simd_target([] {
     const GreyImage image = cloth_image({64, 63});
-    Plane<float> texture = extract_texture<float>(image, adaptive_options(2)).texture;
+    Plane<float> texture = engine::extract_texture<float>(image, adaptive_options(2)).texture;
     for (float& sample : texture.samples()) sample = -sample;
-    CHECK(extract_texture<float>(negative_of(image), adaptive_options(2)).texture == texture);
+    CHECK(engine::extract_texture<float>(negative_of(image), adaptive_options(2)).texture ==
+          texture);
   });
 }
 
@@ -134,21 +135,23 @@ TEST_CASE("the adaptive kernels do not see brightness") {
     for (std::uint8_t& sample : dark.samples()) sample = static_cast<std::uint8_t>(sample / 2);
     GreyImage bright = dark;
     for (std::uint8_t& sample : bright.samples()) sample = static_cast<std::uint8_t>(sample + 100);
-    CHECK(extract_texture<float>(bright, adaptive_options(2)).texture ==
-          extract_texture<float>(dark, adaptive_options(2)).texture);
+    CHECK(engine::extract_texture<float>(bright, adaptive_options(2)).texture ==
+          engine::extract_texture<float>(dark, adaptive_options(2)).texture);
   });
 }
 
 void check_by_products(const GreyImage& image) {
-  const auto truth = extract_texture<double>(image, adaptive_options(2), WantedPlanes::all());
-  const auto result = extract_texture<float>(image, adaptive_options(2), WantedPlanes::all());
+  const auto truth =
+      engine::extract_texture<double>(image, adaptive_options(2), engine::WantedPlanes::all());
+  const auto result =
+      engine::extract_texture<float>(image, adaptive_options(2), engine::WantedPlanes::all());
   CHECK(largest_relative_difference(result.csgv, truth.csgv) < 5e-7);
   CHECK(largest_difference(result.sub_band_ll, truth.sub_band_ll) < 5e-5);
   CHECK(largest_difference(result.sub_band_lh, truth.sub_band_lh) < 5e-5);
   CHECK(largest_difference(result.sub_band_hl, truth.sub_band_hl) < 5e-5);
   CHECK(largest_difference(result.sub_band_hh, truth.sub_band_hh) < 5e-5);
-  CHECK(result.picture == texture_picture(converted<double>(result.texture)));
-  const auto force = tangential_force(converted<double>(result.texture), 3);
+  CHECK(result.picture == engine::texture_picture(converted<double>(result.texture)));
+  const auto force = engine::tangential_force(converted<double>(result.texture), 3);
   CHECK(largest_difference(result.force.x, force.x) < 2e-4);
   CHECK(largest_difference(result.force.y, force.y) < 2e-4);
   for (std::size_t i = 0; i < image.size(); ++i) {
@@ -172,15 +175,15 @@ TEST_CASE(
     "an image whose planes are written past the caches has the same texture, "
     "picture and force on every target") {
   const GreyImage image = cloth_image({301, 299});
-  const Plane<double> truth = extract_texture<double>(image, adaptive_options(2)).texture;
+  const Plane<double> truth = engine::extract_texture<double>(image, adaptive_options(2)).texture;
   on_every_simd_target([&] {
-    WantedPlanes wanted;
+    engine::WantedPlanes wanted;
     wanted.picture = wanted.force = true;
-    const auto result = extract_texture<float>(image, adaptive_options(2), wanted);
-    CHECK(result.texture == extract_texture<float>(image, adaptive_options(2)).texture);
+    const auto result = engine::extract_texture<float>(image, adaptive_options(2), wanted);
+    CHECK(result.texture == engine::extract_texture<float>(image, adaptive_options(2)).texture);
     CHECK(largest_difference(result.texture, truth) < kPhotographTolerance);
-    CHECK(result.picture == texture_picture(result.texture));
-    const auto force = tangential_force(result.texture, 3);
+    CHECK(result.picture == engine::texture_picture(result.texture));
+    const auto force = engine::tangential_force(result.texture, 3);
     CHECK(result.force.x == force.x);
     CHECK(result.force.y == force.y);
   });
@@ -188,23 +191,23 @@ TEST_CASE(
 
 TEST_CASE("an image that is worked on in several strips has the CSGV of double") {
   const GreyImage image = noise_image({5, 2100});
-  WantedPlanes wanted;
+  engine::WantedPlanes wanted;
   wanted.csgv = true;
-  const auto truth = extract_texture<double>(image, adaptive_options(1), wanted);
+  const auto truth = engine::extract_texture<double>(image, adaptive_options(1), wanted);
   on_every_simd_target([&] {
-    const auto result = extract_texture<float>(image, adaptive_options(1), wanted);
+    const auto result = engine::extract_texture<float>(image, adaptive_options(1), wanted);
     CHECK(largest_relative_difference(result.csgv, truth.csgv) < 5e-7);
   });
 }
 
 TEST_CASE("filter_adaptive gives the texture that an extraction gives for its orders") {
-  WantedPlanes wanted;
+  engine::WantedPlanes wanted;
   wanted.order = true;
   Plane<float> texture(2, 2);
   for (const Size size : {Size{1, 1}, Size{3, 5}, Size{64, 63}, Size{270, 281}}) {
     const GreyImage image = cloth_image(size);
-    const auto expected = extract_texture<float>(image, adaptive_options(3), wanted);
-    filter_adaptive(image, 3, expected.order, texture);
+    const auto expected = engine::extract_texture<float>(image, adaptive_options(3), wanted);
+    engine::filter_adaptive(image, 3, expected.order, texture);
     CHECK(texture == expected.texture);
   }
 }
@@ -212,13 +215,14 @@ TEST_CASE("filter_adaptive gives the texture that an extraction gives for its or
 TEST_CASE(
     "an extraction that is used again holds what the last image and "
     "wishes gave") {
-  Extraction<float> result;
-  extract_texture_into(noise_image({20, 30}), adaptive_options(3), WantedPlanes::all(), result);
+  engine::Extraction<float> result;
+  engine::extract_texture_into(noise_image({20, 30}), adaptive_options(3),
+                               engine::WantedPlanes::all(), result);
   const GreyImage image = cloth_image({20, 30});
   const float* const texture = result.texture.samples().data();
-  extract_texture_into(image, adaptive_options(2), {}, result);
+  engine::extract_texture_into(image, adaptive_options(2), {}, result);
   CHECK(result.texture.samples().data() == texture);
-  CHECK(result.texture == extract_texture<float>(image, adaptive_options(2)).texture);
+  CHECK(result.texture == engine::extract_texture<float>(image, adaptive_options(2)).texture);
   CHECK(result.sub_band_ll.empty());
   CHECK(result.order.empty());
   CHECK(result.picture.empty());
@@ -228,11 +232,11 @@ TEST_CASE(
 
 TEST_CASE("extract_sub_bands gives the sub-bands that an extraction gives") {
   const GreyImage image = noise_image({21, 36});
-  WantedPlanes wanted;
+  engine::WantedPlanes wanted;
   wanted.sub_bands = true;
-  const auto expected = extract_texture<float>(image, adaptive_options(2), wanted);
-  Extraction<float> result;
-  extract_sub_bands(image, result);
+  const auto expected = engine::extract_texture<float>(image, adaptive_options(2), wanted);
+  engine::Extraction<float> result;
+  engine::extract_sub_bands(image, result);
   CHECK(result.sub_band_ll == expected.sub_band_ll);
   CHECK(result.sub_band_lh == expected.sub_band_lh);
   CHECK(result.sub_band_hl == expected.sub_band_hl);

@@ -22,11 +22,11 @@ Plane<double> mixed_orders(const GreyImage& image) {
 
 void check_against_double(const GreyImage& image, int radius) {
   const Plane<double> orders = mixed_orders(image);
-  CHECK(largest_difference(gl_texture<float>(image, radius, orders),
-                           gl_texture<double>(image, radius, orders)) < kTolerance);
+  CHECK(largest_difference(engine::gl_texture<float>(image, radius, orders),
+                           engine::gl_texture<double>(image, radius, orders)) < kTolerance);
   for (const double order : {0.05, 0.55, 0.999}) {
-    CHECK(largest_difference(gl_texture<float>(image, radius, order),
-                             gl_texture<double>(image, radius, order)) < kTolerance);
+    CHECK(largest_difference(engine::gl_texture<float>(image, radius, order),
+                             engine::gl_texture<double>(image, radius, order)) < kTolerance);
   }
 }
 
@@ -62,8 +62,9 @@ TEST_CASE("gl_row keeps a flat image exactly flat on every target") {
     for (const int level : {0, 1, 127, 128, 255}) {
       const GreyImage image = flat_image({5, 37}, level);
       for (const int radius : {1, 2, 5, 63}) {
-        CHECK(largest_magnitude(gl_texture<float>(image, radius, mixed_orders(image))) == 0.0);
-        CHECK(largest_magnitude(gl_texture<float>(image, radius, 0.999)) == 0.0);
+        CHECK(largest_magnitude(engine::gl_texture<float>(image, radius, mixed_orders(image))) ==
+              0.0);
+        CHECK(largest_magnitude(engine::gl_texture<float>(image, radius, 0.999)) == 0.0);
       }
     }
   });
@@ -73,16 +74,16 @@ TEST_CASE("gl_row of a negative is exactly the negative texture on every target"
   const GreyImage image = noise_image({31, 45});
   on_every_simd_target([&] {
     for (const int radius : {1, 2, 7, 63}) {
-      Plane<float> texture = gl_texture<float>(image, radius, mixed_orders(image));
+      Plane<float> texture = engine::gl_texture<float>(image, radius, mixed_orders(image));
       for (float& sample : texture.samples()) sample = -sample;
-      CHECK(gl_texture<float>(negative_of(image), radius, mixed_orders(image)) == texture);
+      CHECK(engine::gl_texture<float>(negative_of(image), radius, mixed_orders(image)) == texture);
     }
   });
 }
 
 TEST_CASE("gl_row of order zero finds no texture on any target") {
   on_every_simd_target([] {
-    CHECK(largest_magnitude(gl_texture<float>(noise_image({20, 45}), 3, 0.0)) == 0.0);
+    CHECK(largest_magnitude(engine::gl_texture<float>(noise_image({20, 45}), 3, 0.0)) == 0.0);
   });
 }
 

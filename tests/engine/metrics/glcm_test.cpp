@@ -38,7 +38,8 @@ GreyImage mirrored_left_right(const GreyImage& image) {
   return result;
 }
 
-void check_same(const GlcmStatistics& a, const GlcmStatistics& b, double tolerance) {
+void check_same(const engine::GlcmStatistics& a, const engine::GlcmStatistics& b,
+                double tolerance) {
   CHECK(std::abs(a.angular_second_moment - b.angular_second_moment) <= tolerance);
   CHECK(std::abs(a.energy - b.energy) <= tolerance);
   CHECK(std::abs(a.entropy - b.entropy) <= tolerance * 10);
@@ -47,8 +48,8 @@ void check_same(const GlcmStatistics& a, const GlcmStatistics& b, double toleran
 }
 
 TEST_CASE("glcm_statistics of Haralick's example are the published counts") {
-  const GlcmTable table =
-      glcm_statistics(image_of({{0, 0, 1, 1}, {0, 0, 1, 1}, {0, 2, 2, 2}, {2, 2, 3, 3}}));
+  const engine::GlcmTable table =
+      engine::glcm_statistics(image_of({{0, 0, 1, 1}, {0, 0, 1, 1}, {0, 2, 2, 2}, {2, 2, 3, 3}}));
   CHECK(table[kAt0].angular_second_moment == Approx(84.0 / 576).epsilon(1e-15));
   CHECK(table[kAt0].contrast == Approx(14.0 / 24).epsilon(1e-15));
   CHECK(table[kAt45].angular_second_moment == Approx(48.0 / 324).epsilon(1e-15));
@@ -60,7 +61,7 @@ TEST_CASE("glcm_statistics of Haralick's example are the published counts") {
 }
 
 TEST_CASE("glcm_statistics of the smallest image can be counted on one's fingers") {
-  const GlcmTable table = glcm_statistics(image_of({{0, 1}, {2, 3}}));
+  const engine::GlcmTable table = engine::glcm_statistics(image_of({{0, 1}, {2, 3}}));
   CHECK(table[kAt0].angular_second_moment == 0.25);
   CHECK(table[kAt0].energy == 0.5);
   CHECK(table[kAt0].entropy == Approx(std::log(4.0)).epsilon(1e-15));
@@ -76,7 +77,8 @@ TEST_CASE("glcm_statistics of the smallest image can be counted on one's fingers
 TEST_CASE("glcm_statistics of a flat image are exact") {
   for (const int level : {0, 128, 255}) {
     for (const Size size : {Size{2, 2}, Size{3, 50}, Size{257, 255}}) {
-      for (const GlcmStatistics& direction : glcm_statistics(flat_image(size, level))) {
+      for (const engine::GlcmStatistics& direction :
+           engine::glcm_statistics(flat_image(size, level))) {
         CHECK(direction.angular_second_moment == 1.0);
         CHECK(direction.energy == 1.0);
         CHECK(direction.entropy == 0.0);
@@ -88,7 +90,7 @@ TEST_CASE("glcm_statistics of a flat image are exact") {
 }
 
 TEST_CASE("glcm_statistics of a checkerboard tell the straight directions from the diagonal ones") {
-  const GlcmTable table = glcm_statistics(checkerboard({20, 21}));
+  const engine::GlcmTable table = engine::glcm_statistics(checkerboard({20, 21}));
   for (const std::size_t straight : {kAt0, kAt90}) {
     CHECK(table[straight].contrast == 65025.0);
     CHECK(table[straight].correlation == -1.0);
@@ -104,10 +106,10 @@ TEST_CASE("glcm_statistics agree with their definition on every image and size")
   for (const Size size : {Size{2, 2}, Size{2, 17}, Size{17, 2}, Size{7, 4}, Size{64, 63}}) {
     for (const auto& [name, image] : example_images(size)) {
       INFO(name << ", " << size.height << " x " << size.width);
-      const GlcmTable table = glcm_statistics(image);
+      const engine::GlcmTable table = engine::glcm_statistics(image);
       for (std::size_t d = 0; d < table.size(); ++d) {
-        INFO(kGlcmOffsets[d].degrees << " degrees");
-        const GlcmOffset& offset = kGlcmOffsets[d];
+        INFO(engine::kGlcmOffsets[d].degrees << " degrees");
+        const engine::GlcmOffset& offset = engine::kGlcmOffsets[d];
         check_same(table[d], reference::glcm_statistics(image, offset.dy, offset.dx), 1e-13);
       }
     }
@@ -118,28 +120,28 @@ TEST_CASE(
     "glcm_statistics agree with their definition where counts outgrow the table of logarithms") {
   GreyImage image = step_image({300, 301});
   image.at(150, 30) = 41;
-  const GlcmTable table = glcm_statistics(image);
+  const engine::GlcmTable table = engine::glcm_statistics(image);
   for (std::size_t d = 0; d < table.size(); ++d) {
-    const GlcmOffset& offset = kGlcmOffsets[d];
+    const engine::GlcmOffset& offset = engine::kGlcmOffsets[d];
     check_same(table[d], reference::glcm_statistics(image, offset.dy, offset.dx), 1e-12);
   }
 }
 
 TEST_CASE("glcm_statistics of a negative are those of the image") {
   const GreyImage image = cloth_image({61, 50});
-  const GlcmTable table = glcm_statistics(image);
-  const GlcmTable negative = glcm_statistics(negative_of(image));
+  const engine::GlcmTable table = engine::glcm_statistics(image);
+  const engine::GlcmTable negative = engine::glcm_statistics(negative_of(image));
   for (std::size_t d = 0; d < table.size(); ++d) check_same(table[d], negative[d], 1e-14);
 }
 
 TEST_CASE("glcm_statistics turn with the image") {
   const GreyImage image = cloth_image({61, 50});
-  const GlcmTable table = glcm_statistics(image);
-  const GlcmTable turned = glcm_statistics(transposed(image));
+  const engine::GlcmTable table = engine::glcm_statistics(image);
+  const engine::GlcmTable turned = engine::glcm_statistics(transposed(image));
   check_same(turned[kAt0], table[kAt90], 1e-14);
   check_same(turned[kAt45], table[kAt45], 1e-14);
   check_same(turned[kAt135], table[kAt135], 1e-14);
-  const GlcmTable mirrored = glcm_statistics(mirrored_left_right(image));
+  const engine::GlcmTable mirrored = engine::glcm_statistics(mirrored_left_right(image));
   check_same(mirrored[kAt0], table[kAt0], 1e-14);
   check_same(mirrored[kAt45], table[kAt135], 1e-14);
   check_same(mirrored[kAt135], table[kAt45], 1e-14);
@@ -148,7 +150,7 @@ TEST_CASE("glcm_statistics turn with the image") {
 TEST_CASE("glcm_statistics stay in their ranges") {
   for (const auto& [name, image] : example_images({40, 41})) {
     INFO(name);
-    for (const GlcmStatistics& direction : glcm_statistics(image)) {
+    for (const engine::GlcmStatistics& direction : engine::glcm_statistics(image)) {
       CHECK(direction.angular_second_moment > 0.0);
       CHECK(direction.angular_second_moment <= 1.0);
       CHECK(direction.entropy >= 0.0);
@@ -161,10 +163,10 @@ TEST_CASE("glcm_statistics stay in their ranges") {
 }
 
 TEST_CASE("glcm_statistics refuse an image in which a direction has no pair") {
-  CHECK(refusal_of([] { (void)glcm_statistics(GreyImage(1, 9)); }) ==
+  CHECK(refusal_of([] { (void)engine::glcm_statistics(GreyImage(1, 9)); }) ==
         "glcm_statistics: the image is 1 x 9 pixels, and both sides must be at least 2");
-  CHECK_FALSE(refusal_of([] { (void)glcm_statistics(GreyImage(9, 1)); }).empty());
-  CHECK_FALSE(refusal_of([] { (void)glcm_statistics(GreyImage()); }).empty());
+  CHECK_FALSE(refusal_of([] { (void)engine::glcm_statistics(GreyImage(9, 1)); }).empty());
+  CHECK_FALSE(refusal_of([] { (void)engine::glcm_statistics(GreyImage()); }).empty());
 }
 
 }  // namespace

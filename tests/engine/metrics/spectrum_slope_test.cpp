@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 using namespace touchtrial;
+using namespace touchtrial::engine;
 
 namespace {
 

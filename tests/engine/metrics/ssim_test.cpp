@@ -51,7 +51,7 @@ TEMPLATE_TEST_CASE("ssim of an image and itself is exactly 1", "", float, double
     for (const Size size : kSizes) {
       for (const auto& [name, image] : example_images(size)) {
         INFO(name);
-        CHECK(ssim<TestType>(image, image) == 1.0);
+        CHECK(engine::ssim<TestType>(image, image) == 1.0);
       }
     }
   });
@@ -63,22 +63,22 @@ TEMPLATE_TEST_CASE("ssim of different images is below 1, however little they dif
     const GreyImage image = cloth_image({120, 150});
     GreyImage other = image;
     ++other.at(60, 60);
-    CHECK(ssim<TestType>(image, other) < 1.0);
-    CHECK(ssim<TestType>(image, other) > 1.0 - 1e-5);
+    CHECK(engine::ssim<TestType>(image, other) < 1.0);
+    CHECK(engine::ssim<TestType>(image, other) > 1.0 - 1e-5);
   });
 }
 
 TEMPLATE_TEST_CASE("ssim does not care which image comes first", "", float, double) {
   on_every_simd_target([] {
     for_each_pair({23, 143}, [](const GreyImage& a, const GreyImage& b) {
-      CHECK(ssim<TestType>(a, b) == ssim<TestType>(b, a));
+      CHECK(engine::ssim<TestType>(a, b) == engine::ssim<TestType>(b, a));
     });
   });
 }
 
 TEMPLATE_TEST_CASE("ssim stays within -1 and 1", "", float, double) {
   for_each_pair({40, 41}, [](const GreyImage& a, const GreyImage& b) {
-    CHECK(std::abs(ssim<TestType>(a, b)) <= 1.0);
+    CHECK(std::abs(engine::ssim<TestType>(a, b)) <= 1.0);
   });
 }
 
@@ -87,7 +87,7 @@ TEMPLATE_TEST_CASE("ssim of two flat images is their l", "", float, double) {
     for (const auto& [a, b] : {std::pair{0, 255}, {100, 101}, {7, 200}}) {
       const double l = (2.0 * a * b + kC1) / (a * a + b * b + kC1);
       const double tolerance = sizeof(TestType) == sizeof(float) ? 3e-7 : 1e-14;
-      CHECK(std::abs(ssim<TestType>(flat_image({30, 31}, a), flat_image({30, 31}, b)) - l) <
+      CHECK(std::abs(engine::ssim<TestType>(flat_image({30, 31}, a), flat_image({30, 31}, b)) - l) <
             tolerance);
     }
   });
@@ -107,8 +107,8 @@ TEST_CASE("ssim of a checkerboard and its negative follows from its window") {
   const double cs = (-2 * power * (1 - shift) + kC2) / (2 * power * (1 - shift) + kC2);
   on_every_simd_target([&] {
     const GreyImage board = checkerboard({40, 150});
-    CHECK(ssim<double>(board, negative_of(board)) == Approx(l * cs).epsilon(1e-12));
-    CHECK(std::abs(ssim<float>(board, negative_of(board)) - l * cs) < 1e-5);
+    CHECK(engine::ssim<double>(board, negative_of(board)) == Approx(l * cs).epsilon(1e-12));
+    CHECK(std::abs(engine::ssim<float>(board, negative_of(board)) - l * cs) < 1e-5);
   });
 }
 
@@ -117,19 +117,19 @@ TEST_CASE("ssim agrees with its definition on every pair, size and target") {
     for_each_pair(size, [](const GreyImage& a, const GreyImage& b) {
       const double expected = reference::similarity(converted<double>(a), converted<double>(b)).lcs;
       on_every_simd_target([&] {
-        CHECK(std::abs(ssim<double>(a, b) - expected) < kDoubleTolerance);
-        CHECK(std::abs(ssim<float>(a, b) - expected) < kAnyTolerance);
+        CHECK(std::abs(engine::ssim<double>(a, b) - expected) < kDoubleTolerance);
+        CHECK(std::abs(engine::ssim<float>(a, b) - expected) < kAnyTolerance);
       });
     });
   }
 }
 
 TEST_CASE("ssim refuses images of different or too small sizes") {
-  CHECK(refusal_of([] { (void)ssim<float>(GreyImage(20, 21), GreyImage(20, 20)); }) ==
+  CHECK(refusal_of([] { (void)engine::ssim<float>(GreyImage(20, 21), GreyImage(20, 20)); }) ==
         "ssim: the images differ in size, 20 x 21 and 20 x 20 pixels");
-  CHECK(refusal_of([] { (void)ssim<float>(GreyImage(10, 21), GreyImage(10, 21)); }) ==
+  CHECK(refusal_of([] { (void)engine::ssim<float>(GreyImage(10, 21), GreyImage(10, 21)); }) ==
         "ssim: the images are 10 x 21 pixels, and both sides must be at least 11");
-  CHECK_FALSE(refusal_of([] { (void)ssim<double>(GreyImage(), GreyImage()); }).empty());
+  CHECK_FALSE(refusal_of([] { (void)engine::ssim<double>(GreyImage(), GreyImage()); }).empty());
 }
 
 TEMPLATE_TEST_CASE("ms_ssim of an image and itself is exactly 1", "", float, double) {
@@ -137,7 +137,7 @@ TEMPLATE_TEST_CASE("ms_ssim of an image and itself is exactly 1", "", float, dou
     for (const Size size : {Size{161, 161}, Size{161, 300}, Size{175, 163}}) {
       for (const auto& [name, image] : example_images(size)) {
         INFO(name);
-        const MsSsim same = ms_ssim<TestType>(image, image);
+        const engine::MsSsim same = engine::ms_ssim<TestType>(image, image);
         CHECK(same.unit == 1.0);
         CHECK(same.wang == 1.0);
       }
@@ -148,8 +148,8 @@ TEMPLATE_TEST_CASE("ms_ssim of an image and itself is exactly 1", "", float, dou
 TEMPLATE_TEST_CASE("ms_ssim does not care which image comes first", "", float, double) {
   on_every_simd_target([] {
     for_each_pair({163, 170}, [](const GreyImage& a, const GreyImage& b) {
-      const MsSsim forwards = ms_ssim<TestType>(a, b);
-      const MsSsim backwards = ms_ssim<TestType>(b, a);
+      const engine::MsSsim forwards = engine::ms_ssim<TestType>(a, b);
+      const engine::MsSsim backwards = engine::ms_ssim<TestType>(b, a);
       CHECK(forwards.unit == backwards.unit);
       CHECK(forwards.wang == backwards.wang);
       CHECK(std::abs(forwards.unit) <= 1.0);
@@ -162,7 +162,8 @@ TEMPLATE_TEST_CASE("ms_ssim does not care which image comes first", "", float, d
 TEST_CASE("ms_ssim of two flat images is l of the last scale") {
   const double l = (2.0 * 90 * 120 + kC1) / (90 * 90 + 120 * 120 + kC1);
   on_every_simd_target([&] {
-    const MsSsim result = ms_ssim<double>(flat_image({161, 162}, 90), flat_image({161, 162}, 120));
+    const engine::MsSsim result =
+        engine::ms_ssim<double>(flat_image({161, 162}, 90), flat_image({161, 162}, 120));
     CHECK(result.unit == Approx(l).epsilon(1e-14));
     CHECK(result.wang == Approx(std::pow(l, 0.1333)).epsilon(1e-14));
   });
@@ -170,7 +171,7 @@ TEST_CASE("ms_ssim of two flat images is l of the last scale") {
 
 TEST_CASE("ms_ssim counts a negative mean as it is with unit exponents, as 0 with Wang's") {
   const GreyImage board = checkerboard({162, 176});  // flat from the second scale on
-  const MsSsim result = ms_ssim<double>(board, negative_of(board));
+  const engine::MsSsim result = engine::ms_ssim<double>(board, negative_of(board));
   CHECK(result.unit < -0.99);
   CHECK(result.wang == 0.0);
 }
@@ -179,11 +180,11 @@ TEST_CASE("ms_ssim agrees with its definition on every pair and target") {
   for_each_pair({161, 171}, [](const GreyImage& a, const GreyImage& b) {
     const reference::MsSsim expected = reference::ms_ssim(a, b);
     on_every_simd_target([&] {
-      const MsSsim exact = ms_ssim<double>(a, b);
+      const engine::MsSsim exact = engine::ms_ssim<double>(a, b);
       CHECK(std::abs(exact.unit - expected.unit) < kDoubleTolerance);
       CHECK(std::abs(exact.wang - expected.wang) < kDoubleTolerance);
-      CHECK(std::abs(ms_ssim<float>(a, b).unit - expected.unit) < kAnyTolerance);
-      CHECK(std::abs(ms_ssim<float>(a, b).wang - expected.wang) < kAnyTolerance);
+      CHECK(std::abs(engine::ms_ssim<float>(a, b).unit - expected.unit) < kAnyTolerance);
+      CHECK(std::abs(engine::ms_ssim<float>(a, b).wang - expected.wang) < kAnyTolerance);
     });
   });
 }
@@ -193,8 +194,8 @@ TEST_CASE("ms_ssim in floats keeps its precision on textures") {
     const GreyImage texture = cloth_image({500, 499}, seed);
     for (const GreyImage& other : {worn(texture), cloth_image({500, 499}, seed + 1)}) {
       on_every_simd_target([&] {
-        const MsSsim exact = ms_ssim<double>(texture, other);
-        const MsSsim quick = ms_ssim<float>(texture, other);
+        const engine::MsSsim exact = engine::ms_ssim<double>(texture, other);
+        const engine::MsSsim quick = engine::ms_ssim<float>(texture, other);
         CHECK(std::abs(quick.unit - exact.unit) < kTextureTolerance);
         CHECK(std::abs(quick.wang - exact.wang) < kTextureTolerance);
       });
@@ -203,10 +204,12 @@ TEST_CASE("ms_ssim in floats keeps its precision on textures") {
 }
 
 TEST_CASE("ms_ssim refuses images of different or too small sizes") {
-  CHECK(refusal_of([] { (void)ms_ssim<float>(GreyImage(200, 210), GreyImage(210, 200)); }) ==
-        "ms_ssim: the images differ in size, 200 x 210 and 210 x 200 pixels");
-  CHECK(refusal_of([] { (void)ms_ssim<float>(GreyImage(500, 160), GreyImage(500, 160)); }) ==
-        "ms_ssim: the images are 500 x 160 pixels, and both sides must be at least 161");
+  CHECK(refusal_of([] {
+          (void)engine::ms_ssim<float>(GreyImage(200, 210), GreyImage(210, 200));
+        }) == "ms_ssim: the images differ in size, 200 x 210 and 210 x 200 pixels");
+  CHECK(refusal_of([] {
+          (void)engine::ms_ssim<float>(GreyImage(500, 160), GreyImage(500, 160));
+        }) == "ms_ssim: the images are 500 x 160 pixels, and both sides must be at least 161");
 }
 
 }  // namespace

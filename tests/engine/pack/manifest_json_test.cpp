@@ -13,8 +13,8 @@ namespace {
 
 const std::filesystem::path kName = "study.pack/pack.json";
 
-PackEntry entry(const std::string& code, std::uint8_t byte, Gains gains) {
-  PackEntry made;
+engine::PackEntry entry(const std::string& code, std::uint8_t byte, engine::Gains gains) {
+  engine::PackEntry made;
   made.code = code;
   made.checksum.fill(byte);
   made.input_tag.fill(static_cast<std::uint8_t>(byte + 1));
@@ -22,7 +22,7 @@ PackEntry entry(const std::string& code, std::uint8_t byte, Gains gains) {
   return made;
 }
 
-PackManifest two_entries() {
+engine::PackManifest two_entries() {
   return {"00ff",
           {entry("aaaaaaaaaaaaaaaa", 1, {0.1, 1.0 / 3.0}),
            entry("bbbbbbbbbbbbbbb2", 3, {1e-300, 0.0})}};
@@ -30,7 +30,7 @@ PackManifest two_entries() {
 
 /// A manifest's text with the first occurrence of one part replaced.
 std::string with(const std::string& part, const std::string& other) {
-  std::string text = manifest_to_json(two_entries());
+  std::string text = engine::manifest_to_json(two_entries());
   const std::size_t at = text.find(part);
   REQUIRE(at != std::string::npos);
   return text.replace(at, part.size(), other);
@@ -38,7 +38,7 @@ std::string with(const std::string& part, const std::string& other) {
 
 std::string refusal_of(const std::string& text) {
   try {
-    static_cast<void>(manifest_from_json(text, kName));
+    static_cast<void>(engine::manifest_from_json(text, kName));
   } catch (const FileError& error) {
     return error.what();
   }
@@ -53,43 +53,44 @@ bool is_refused(const std::string& text, const std::string& words) {
 }
 
 TEST_CASE("a manifest's text has sorted keys and says everything once") {
-  const PackManifest manifest{"00ff", {entry("aaaaaaaaaaaaaaaa", 1, {0.1, 0.5})}};
-  CHECK(manifest_to_json({"00ff", {}}) ==
+  const engine::PackManifest manifest{"00ff", {entry("aaaaaaaaaaaaaaaa", 1, {0.1, 0.5})}};
+  CHECK(engine::manifest_to_json({"00ff", {}}) ==
         "{\n  \"fields\": [],\n  \"format\": \"touchtrial-pack\",\n  \"study_id\": \"00ff\",\n"
         "  \"version\": 2\n}\n");
-  CHECK(manifest_to_json(manifest).find("\"normal_n\": 0.5,\n        \"tangential_n\": 0.1\n") !=
-        std::string::npos);
+  CHECK(engine::manifest_to_json(manifest).find(
+            "\"normal_n\": 0.5,\n        \"tangential_n\": 0.1\n") != std::string::npos);
 }
 
 TEST_CASE("manifest_from_json gives back what manifest_to_json was given, to the last bit") {
-  const PackManifest manifest = two_entries();
-  CHECK(manifest_from_json(manifest_to_json(manifest), kName) == manifest);
+  const engine::PackManifest manifest = two_entries();
+  CHECK(engine::manifest_from_json(engine::manifest_to_json(manifest), kName) == manifest);
 }
 
 TEST_CASE("a manifest has the same bytes and reading whatever the order of its entries") {
-  PackManifest reversed = two_entries();
+  engine::PackManifest reversed = two_entries();
   std::ranges::reverse(reversed.entries);
-  CHECK(manifest_to_json(reversed) == manifest_to_json(two_entries()));
+  CHECK(engine::manifest_to_json(reversed) == engine::manifest_to_json(two_entries()));
 }
 
 TEST_CASE("manifest_to_json refuses what it could not read back") {
   const double infinity = std::numeric_limits<double>::infinity();
   const std::string code(16, 'a');
-  CHECK_THROWS_AS(manifest_to_json({"", {}}), std::invalid_argument);
-  CHECK_THROWS_AS(manifest_to_json({"bark", {}}), std::invalid_argument);
-  CHECK_THROWS_AS(manifest_to_json({"00", {entry("../../etc/passw", 1, {})}}),
+  CHECK_THROWS_AS(engine::manifest_to_json({"", {}}), std::invalid_argument);
+  CHECK_THROWS_AS(engine::manifest_to_json({"bark", {}}), std::invalid_argument);
+  CHECK_THROWS_AS(engine::manifest_to_json({"00", {entry("../../etc/passw", 1, {})}}),
                   std::invalid_argument);
-  CHECK_THROWS_AS(manifest_to_json({"00", {entry(code, 1, {infinity, 0.0})}}),
+  CHECK_THROWS_AS(engine::manifest_to_json({"00", {entry(code, 1, {infinity, 0.0})}}),
                   std::invalid_argument);
-  CHECK_THROWS_AS(manifest_to_json({"00", {entry(code, 1, {0.0, -1.0})}}), std::invalid_argument);
-  CHECK_THROWS_AS(manifest_to_json({"00", {entry(code, 1, {}), entry(code, 2, {})}}),
+  CHECK_THROWS_AS(engine::manifest_to_json({"00", {entry(code, 1, {0.0, -1.0})}}),
+                  std::invalid_argument);
+  CHECK_THROWS_AS(engine::manifest_to_json({"00", {entry(code, 1, {}), entry(code, 2, {})}}),
                   std::invalid_argument);
 }
 
 TEST_CASE("manifest_from_json refuses a text cut anywhere") {
-  const std::string text = manifest_to_json(two_entries());
+  const std::string text = engine::manifest_to_json(two_entries());
   for (std::size_t size = 0; size + 2 < text.size(); ++size) {
-    REQUIRE_THROWS_AS(manifest_from_json(text.substr(0, size), kName), FileError);
+    REQUIRE_THROWS_AS(engine::manifest_from_json(text.substr(0, size), kName), FileError);
   }
 }
 

@@ -23,13 +23,13 @@ struct SmallPack {
     manifest.study_id = "0badcafe";
     add(kSecond, random_field(12, 9, 2));
     add(kFirst, random_field(12, 9, 1));
-    write_manifest(folder.path(), manifest);
+    engine::write_manifest(folder.path(), manifest);
   }
 
-  void add(const std::string& code, const TextureField& field) {
-    PackEntry entry;
+  void add(const std::string& code, const engine::TextureField& field) {
+    engine::PackEntry entry;
     entry.code = code;
-    entry.checksum = write_field(folder.path(), code, field.view());
+    entry.checksum = engine::write_field(folder.path(), code, field.view());
     entry.input_tag.fill(7);
     entry.gains = {0.011, 0.023};
     manifest.entries.push_back(entry);
@@ -40,25 +40,25 @@ struct SmallPack {
   }
 
   TempFolder folder;
-  PackManifest manifest;
+  engine::PackManifest manifest;
 };
 
 TEST_CASE("is_pack_code accepts 16 lower-case letters and digits alone") {
-  CHECK(is_pack_code(kFirst));
-  CHECK(is_pack_code(kSecond));
-  CHECK_FALSE(is_pack_code(""));
-  CHECK_FALSE(is_pack_code("abcdefgh234567a"));
-  CHECK_FALSE(is_pack_code("abcdefgh234567aaa"));
-  CHECK_FALSE(is_pack_code("ABCDEFGH234567AA"));
-  CHECK_FALSE(is_pack_code("../abcdefgh23456"));
+  CHECK(engine::is_pack_code(kFirst));
+  CHECK(engine::is_pack_code(kSecond));
+  CHECK_FALSE(engine::is_pack_code(""));
+  CHECK_FALSE(engine::is_pack_code("abcdefgh234567a"));
+  CHECK_FALSE(engine::is_pack_code("abcdefgh234567aaa"));
+  CHECK_FALSE(engine::is_pack_code("ABCDEFGH234567AA"));
+  CHECK_FALSE(engine::is_pack_code("../abcdefgh23456"));
   CHECK_FALSE(
-      is_pack_code("abcdefgh2345\xc3\xa4"
-                   "aa"));
+      engine::is_pack_code("abcdefgh2345\xc3\xa4"
+                           "aa"));
 }
 
 TEST_CASE("a pack read back has the manifest that was written") {
   const SmallPack made;
-  const Pack pack(made.folder.path());
+  const engine::Pack pack(made.folder.path());
   CHECK(pack.manifest() == made.manifest);
   CHECK(pack.folder() == made.folder.path());
   CHECK(pack.entry(kFirst).code == kFirst);
@@ -66,9 +66,9 @@ TEST_CASE("a pack read back has the manifest that was written") {
 
 TEST_CASE("a mapped field has the samples that were written, aligned for any processor") {
   const SmallPack made;
-  const Pack pack(made.folder.path());
-  const TextureField original = random_field(12, 9, 1);
-  const MappedField mapped = pack.map(kFirst);
+  const engine::Pack pack(made.folder.path());
+  const engine::TextureField original = random_field(12, 9, 1);
+  const engine::MappedField mapped = pack.map(kFirst);
   const auto samples = mapped.view().samples;
   REQUIRE(samples.size() == original.view().samples.size());
   CHECK(std::memcmp(samples.data(), original.view().samples.data(), samples.size_bytes()) == 0);
@@ -77,23 +77,23 @@ TEST_CASE("a mapped field has the samples that were written, aligned for any pro
 
 TEST_CASE("a mapped field keeps its samples when it is moved") {
   const SmallPack made;
-  const Pack pack(made.folder.path());
-  MappedField mapped = pack.map(kFirst);
+  const engine::Pack pack(made.folder.path());
+  engine::MappedField mapped = pack.map(kFirst);
   const float surface = mapped.view().samples[5].surface;
-  const MappedField moved = std::move(mapped);
+  const engine::MappedField moved = std::move(mapped);
   CHECK(moved.view().samples[5].surface == surface);
 }
 
 TEST_CASE("write_field returns the checksum of the file") {
   const SmallPack made;
-  for (const PackEntry& entry : made.manifest.entries) {
+  for (const engine::PackEntry& entry : made.manifest.entries) {
     CHECK(entry.checksum == sha256_of_file(made.field(entry.code)));
   }
 }
 
 TEST_CASE("a pack knows which of its fields were changed") {
   const SmallPack made;
-  const Pack pack(made.folder.path());
+  const engine::Pack pack(made.folder.path());
   CHECK(pack.is_intact(kFirst));
   Bytes content = read_file(made.field(kFirst));
   content.back() ^= 1U;
@@ -104,51 +104,53 @@ TEST_CASE("a pack knows which of its fields were changed") {
 
 TEST_CASE("a pack's digest depends on everything that pack.json says") {
   const SmallPack made;
-  const Digest original = Pack(made.folder.path()).digest();
+  const Digest original = engine::Pack(made.folder.path()).digest();
   const auto digest_with = [&](auto change) {
-    PackManifest manifest = made.manifest;
+    engine::PackManifest manifest = made.manifest;
     change(manifest);
-    write_manifest(made.folder.path(), manifest);
-    return Pack(made.folder.path()).digest();
+    engine::write_manifest(made.folder.path(), manifest);
+    return engine::Pack(made.folder.path()).digest();
   };
-  CHECK(digest_with([](PackManifest&) {}) == original);
-  CHECK(digest_with([](PackManifest& m) { m.study_id = "0badcaff"; }) != original);
-  CHECK(digest_with([](PackManifest& m) { m.entries[0].checksum[31] ^= 1U; }) != original);
-  CHECK(digest_with([](PackManifest& m) { m.entries[1].input_tag[0] ^= 1U; }) != original);
-  CHECK(digest_with([](PackManifest& m) { m.entries[1].code[15] = 'b'; }) != original);
-  CHECK(digest_with([](PackManifest& m) { m.entries.pop_back(); }) != original);
-  CHECK(digest_with([](PackManifest& m) {
+  CHECK(digest_with([](engine::PackManifest&) {}) == original);
+  CHECK(digest_with([](engine::PackManifest& m) { m.study_id = "0badcaff"; }) != original);
+  CHECK(digest_with([](engine::PackManifest& m) { m.entries[0].checksum[31] ^= 1U; }) != original);
+  CHECK(digest_with([](engine::PackManifest& m) { m.entries[1].input_tag[0] ^= 1U; }) != original);
+  CHECK(digest_with([](engine::PackManifest& m) { m.entries[1].code[15] = 'b'; }) != original);
+  CHECK(digest_with([](engine::PackManifest& m) { m.entries.pop_back(); }) != original);
+  CHECK(digest_with([](engine::PackManifest& m) {
           m.entries[0].gains.tangential_n = std::nextafter(0.011, 1.0);
         }) != original);
-  CHECK(digest_with([](PackManifest& m) {
+  CHECK(digest_with([](engine::PackManifest& m) {
           m.entries[0].gains.normal_n = std::nextafter(0.023, 1.0);
         }) != original);
-  CHECK(digest_with([](PackManifest& m) { m.entries[0].gains.height_mm = 1e-300; }) != original);
+  CHECK(digest_with([](engine::PackManifest& m) { m.entries[0].gains.height_mm = 1e-300; }) !=
+        original);
 }
 
 TEST_CASE("a pack's digest does not depend on the layout of pack.json") {
   const SmallPack made;
-  const Digest original = Pack(made.folder.path()).digest();
+  const Digest original = engine::Pack(made.folder.path()).digest();
   const std::filesystem::path path = made.folder.path() / "pack.json";
   std::string text = text_of(ByteView(read_file(path)));
   std::erase(text, '\n');
   replace_file(path, std::string_view(text));
-  CHECK(Pack(made.folder.path()).digest() == original);
+  CHECK(engine::Pack(made.folder.path()).digest() == original);
 }
 
 TEST_CASE("a pack refuses codes that it does not have, and paths in their place") {
   const SmallPack made;
-  const Pack pack(made.folder.path());
+  const engine::Pack pack(made.folder.path());
   CHECK_THROWS_AS(pack.entry("aaaaaaaaaaaaaaaa"), FileError);
   CHECK_THROWS_AS(pack.map("../" + kFirst), FileError);
   CHECK_THROWS_AS(pack.is_intact(""), FileError);
-  CHECK_THROWS_AS(write_field(made.folder.path(), "../escape", random_field(3, 3, 1).view()),
-                  std::invalid_argument);
+  CHECK_THROWS_AS(
+      engine::write_field(made.folder.path(), "../escape", random_field(3, 3, 1).view()),
+      std::invalid_argument);
 }
 
 TEST_CASE("a pack refuses a field that is missing, cut or something else") {
   const SmallPack made;
-  const Pack pack(made.folder.path());
+  const engine::Pack pack(made.folder.path());
   std::filesystem::resize_file(made.field(kFirst), 100);
   CHECK_THROWS_AS(pack.map(kFirst), FileError);
   CHECK_FALSE(pack.is_intact(kFirst));
@@ -161,17 +163,17 @@ TEST_CASE("a pack refuses a field that is missing, cut or something else") {
 
 TEST_CASE("a pack that is not there is refused") {
   const TempFolder folder;
-  CHECK_THROWS_AS(Pack(folder.path()), FileError);
-  CHECK_THROWS_AS(Pack(folder.path() / "nowhere"), FileError);
+  CHECK_THROWS_AS(engine::Pack(folder.path()), FileError);
+  CHECK_THROWS_AS(engine::Pack(folder.path() / "nowhere"), FileError);
   std::filesystem::create_directory(folder.path() / "pack.json");
-  CHECK_THROWS_AS(Pack(folder.path()), FileError);
+  CHECK_THROWS_AS(engine::Pack(folder.path()), FileError);
 }
 
 TEST_CASE("write_field and write_manifest report a folder that is not there") {
   const TempFolder folder;
   const std::filesystem::path nowhere = folder.path() / "nowhere";
-  CHECK_THROWS_AS(write_field(nowhere, kFirst, random_field(3, 3, 1).view()), FileError);
-  CHECK_THROWS_AS(write_manifest(nowhere, {"00", {}}), FileError);
+  CHECK_THROWS_AS(engine::write_field(nowhere, kFirst, random_field(3, 3, 1).view()), FileError);
+  CHECK_THROWS_AS(engine::write_manifest(nowhere, {"00", {}}), FileError);
 }
 
 }  // namespace

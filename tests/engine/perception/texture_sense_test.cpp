@@ -33,8 +33,8 @@ std::vector<Felt> stroke(double speed_mm_s, int samples, ForceAt force_at) {
   return felt;
 }
 
-FeltFeatures features_of(const std::vector<Felt>& samples, double threshold_n = 0.0) {
-  TextureSense sense({.rate_hz = kRateHz, .threshold_n = threshold_n});
+engine::FeltFeatures features_of(const std::vector<Felt>& samples, double threshold_n = 0.0) {
+  engine::TextureSense sense({.rate_hz = kRateHz, .threshold_n = threshold_n});
   for (const Felt& sample : samples) sense.feel(sample.position_mm, sample.force_n);
   return sense.features();
 }
@@ -50,19 +50,20 @@ std::vector<Felt> noisy_stroke(std::uint64_t seed, double scale) {
 TEST_CASE("a sine is felt in the band of its wavelength, with its root mean square") {
   const int band = GENERATE(0, 1, 2, 3, 4);
   const double speed_mm_s = GENERATE(80.0, 100.0);
-  const double wavelength_mm = kLongestFeltMm / std::exp2(band + 0.5);
+  const double wavelength_mm = engine::kLongestFeltMm / std::exp2(band + 0.5);
   constexpr double kAmplitudeN = 0.1;
   const auto felt = stroke(speed_mm_s, 4096, [&](double x_mm) {
     const double wave = kAmplitudeN * std::sin(2.0 * kPi * x_mm / wavelength_mm);
     return Vec3{wave, 0.0, 0.5 * wave};
   });
-  const FeltFeatures features = features_of(felt, 1e-6);
+  const engine::FeltFeatures features = features_of(felt, 1e-6);
   const double log_rms = std::log(kAmplitudeN / std::sqrt(2.0));
   // The longest waves are few to a window, and some of their power leaks over the band's edge.
   const double tolerance = band == 0 ? 0.25 : 0.03;
   CHECK(features[band] == Approx(log_rms).margin(tolerance));
-  CHECK(features[kNormalBandsAt + band] == Approx(log_rms - std::log(2.0)).margin(tolerance));
-  for (int other = 0; other < kFeltBands; ++other) {
+  CHECK(features[engine::kNormalBandsAt + band] ==
+        Approx(log_rms - std::log(2.0)).margin(tolerance));
+  for (int other = 0; other < engine::kFeltBands; ++other) {
     if (std::abs(other - band) > 1) CHECK(features[other] < log_rms - 3.0);
   }
 }
@@ -74,9 +75,11 @@ TEST_CASE("a lateral force is felt along its own direction") {
     const double wave = 0.1 * std::sin(2.0 * kPi * x_mm / 1.5);
     return Vec3{wave * std::cos(angle), wave * std::sin(angle), 0.0};
   });
-  const FeltFeatures features = features_of(felt, 1e-6);
+  const engine::FeltFeatures features = features_of(felt, 1e-6);
   const double log_rms = std::log(0.1 / std::sqrt(2.0));
-  const auto direction = [&](int i) { return features[kDirectionsAt + i % kFeltDirections]; };
+  const auto direction = [&](int i) {
+    return features[engine::kDirectionsAt + i % engine::kFeltDirections];
+  };
   CHECK(direction(along) == Approx(log_rms).margin(0.03));
   CHECK(direction(along + 1) == Approx(log_rms - 0.5 * std::log(2.0)).margin(0.03));
   CHECK(direction(along + 2) < log_rms - 5.0);
@@ -84,7 +87,7 @@ TEST_CASE("a lateral force is felt along its own direction") {
 
 TEST_CASE("a texture is felt on the part of the plane where it lies") {
   constexpr PlaneGeometry kPlane{0.2, 300, 450};  // thirds of 30 mm across, 20 mm down
-  TextureSense sense({.threshold_n = 1e-6, .plane = kPlane});
+  engine::TextureSense sense({.threshold_n = 1e-6, .plane = kPlane});
   for (int i = 0; i < kSettling + 60'000; ++i) {
     // Strokes to and fro along x, stepping slowly down; waves on the right third of the plane.
     const double phase = std::fmod(0.1 * i, 180.0);
@@ -92,9 +95,9 @@ TEST_CASE("a texture is felt on the part of the plane where it lies") {
     const double wave = x_mm > 60.0 ? 0.1 * std::sin(2.0 * kPi * x_mm / 1.5) : 0.0;
     sense.feel({x_mm, 0.001 * i, -1.0}, {wave, 0.0, kPushN});
   }
-  const FeltFeatures features = sense.features();
+  const engine::FeltFeatures features = sense.features();
   for (int row = 0; row < 3; ++row) {
-    const int part = kPartsAt + 3 * row;
+    const int part = engine::kPartsAt + 3 * row;
     CHECK(features[part + 2] == Approx(std::log(0.1 / std::sqrt(2.0))).margin(0.2));
     CHECK(features[part + 1] < features[part + 2] - 1.0);
     CHECK(features[part] < features[part + 2] - 5.0);
@@ -102,16 +105,16 @@ TEST_CASE("a texture is felt on the part of the plane where it lies") {
 }
 
 TEST_CASE("a part of the plane where nobody went is felt like the whole") {
-  const FeltFeatures features = features_of(noisy_stroke(2, 1.0));
-  CHECK(features[kPartsAt + kFeltParts - 1] ==
-        Approx(0.5 * std::log(std::exp(2.0 * features[kDirectionsAt]) +
-                              std::exp(2.0 * features[kDirectionsAt + 2]))));
+  const engine::FeltFeatures features = features_of(noisy_stroke(2, 1.0));
+  CHECK(features[engine::kPartsAt + engine::kFeltParts - 1] ==
+        Approx(0.5 * std::log(std::exp(2.0 * features[engine::kDirectionsAt]) +
+                              std::exp(2.0 * features[engine::kDirectionsAt + 2]))));
 }
 
 TEST_CASE("forces twice as strong add ln 2 to every feature") {
-  const FeltFeatures once = features_of(noisy_stroke(1, 1.0));
-  const FeltFeatures twice = features_of(noisy_stroke(1, 2.0));
-  for (int i = 0; i < kFeltFeatures; ++i) {
+  const engine::FeltFeatures once = features_of(noisy_stroke(1, 1.0));
+  const engine::FeltFeatures twice = features_of(noisy_stroke(1, 2.0));
+  for (int i = 0; i < engine::kFeltFeatures; ++i) {
     CHECK(twice[i] - once[i] == Approx(std::log(2.0)).margin(1e-5));
   }
 }
@@ -146,27 +149,27 @@ double power_between(const std::vector<double>& power, double low, double high) 
 
 TEST_CASE("felt bands agree with a slow Welch estimate") {
   const std::vector<Felt> felt = noisy_stroke(7, 1.0);
-  const FeltFeatures features = features_of(felt);
-  std::vector<double> expected(kFeltBands, 0.0);
+  const engine::FeltFeatures features = features_of(felt);
+  std::vector<double> expected(engine::kFeltBands, 0.0);
   int windows = 0;
   for (std::size_t first = kSettling; first + 256 <= felt.size(); first += 128) {
     std::vector<double> window;
     for (std::size_t i = 0; i < 256; ++i) window.push_back(felt[first + i].force_n.z);
     const std::vector<double> power = slow_periodogram(window);
-    for (int band = 0; band < kFeltBands; ++band) {
-      const double low = 110.0 / kLongestFeltMm * std::exp2(band) * 256.0 / kRateHz;
+    for (int band = 0; band < engine::kFeltBands; ++band) {
+      const double low = 110.0 / engine::kLongestFeltMm * std::exp2(band) * 256.0 / kRateHz;
       expected[band] += power_between(power, low, 2.0 * low);
     }
     ++windows;
   }
-  for (int band = 0; band < kFeltBands; ++band) {
+  for (int band = 0; band < engine::kFeltBands; ++band) {
     const double log_rms = 0.5 * std::log(expected[band] / windows);
-    CHECK(features[kNormalBandsAt + band] == Approx(log_rms).margin(1e-4));
+    CHECK(features[engine::kNormalBandsAt + band] == Approx(log_rms).margin(1e-4));
   }
 }
 
 TEST_CASE("what is felt without contact, at rest or while landing does not count") {
-  TextureSense sense;
+  engine::TextureSense sense;
   for (int i = 0; i < 2000; ++i) sense.feel({0.1 * i, 0.0, 3.0}, {});
   CHECK(sense.windows() == 0);
   for (int i = 0; i < 500; ++i) sense.feel({0.1 * i, 0.0, -1.0}, {0.0, 0.0, 0.7});
@@ -183,24 +186,24 @@ TEST_CASE("a smooth plane and nothing felt at all leave every feature at the thr
   for (const double feature : features_of(smooth, kThresholdN)) {
     CHECK(feature == Approx(std::log(kThresholdN)).margin(1e-9));
   }
-  for (const double feature : TextureSense().features()) {
+  for (const double feature : engine::TextureSense().features()) {
     CHECK(feature == Approx(std::log(kThresholdN)).margin(1e-12));
   }
 }
 
 TEST_CASE("a sense that was reset feels as a new one does") {
-  TextureSense used;
+  engine::TextureSense used;
   for (const Felt& sample : noisy_stroke(3, 2.0)) used.feel(sample.position_mm, sample.force_n);
-  used.reset(SenseOptions{}.plane);
+  used.reset(engine::SenseOptions{}.plane);
   CHECK(used.windows() == 0);
   for (const Felt& sample : noisy_stroke(4, 1.0)) used.feel(sample.position_mm, sample.force_n);
-  CHECK(used.features() == features_of(noisy_stroke(4, 1.0), SenseOptions{}.threshold_n));
+  CHECK(used.features() == features_of(noisy_stroke(4, 1.0), engine::SenseOptions{}.threshold_n));
 }
 
 TEST_CASE("a sense refuses options that cannot be") {
-  CHECK_THROWS_AS(TextureSense({.rate_hz = 0.0}), std::invalid_argument);
-  CHECK_THROWS_AS(TextureSense({.threshold_n = -0.1}), std::invalid_argument);
-  CHECK_THROWS_AS(TextureSense({.plane = {0.2, 0, 10}}), std::invalid_argument);
+  CHECK_THROWS_AS(engine::TextureSense({.rate_hz = 0.0}), std::invalid_argument);
+  CHECK_THROWS_AS(engine::TextureSense({.threshold_n = -0.1}), std::invalid_argument);
+  CHECK_THROWS_AS(engine::TextureSense({.plane = {0.2, 0, 10}}), std::invalid_argument);
 }
 
 }  // namespace

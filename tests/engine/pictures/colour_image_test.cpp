@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 using namespace touchtrial;
+using namespace touchtrial::engine;
 
 TEST_CASE("a picture in memory is the PNG that would be written, in grey and in colour") {
   const TempFolder folder;

@@ -12,8 +12,8 @@
 namespace touchtrial {
 namespace {
 
-ForceField<double> force_of(const GreyImage& image) {
-  return tangential_force(converted<double>(image), 3);
+engine::ForceField<double> force_of(const GreyImage& image) {
+  return engine::tangential_force(converted<double>(image), 3);
 }
 
 /// Flat but for one square.
@@ -26,9 +26,10 @@ GreyImage square_in_flat(Size size, int top, int left, int side) {
 }
 
 TEST_CASE("the patch is where the force is strongest") {
-  const ArrowPatch patch = strongest_patch(force_of(square_in_flat({90, 120}, 60, 20, 10)));
-  CHECK(patch.height == kArrowPatchSide_px);
-  CHECK(patch.width == kArrowPatchSide_px);
+  const engine::ArrowPatch patch =
+      engine::strongest_patch(force_of(square_in_flat({90, 120}, 60, 20, 10)));
+  CHECK(patch.height == engine::kArrowPatchSide_px);
+  CHECK(patch.width == engine::kArrowPatchSide_px);
   CHECK(patch.y <= 59);
   CHECK(patch.y + patch.height >= 71);
   CHECK(patch.x <= 19);
@@ -37,25 +38,25 @@ TEST_CASE("the patch is where the force is strongest") {
 }
 
 TEST_CASE("the patch of a flat texture is its middle, without arrows") {
-  const ArrowPatch patch = strongest_patch(force_of(flat_image({100, 60}, 7)));
+  const engine::ArrowPatch patch = engine::strongest_patch(force_of(flat_image({100, 60}, 7)));
   CHECK(patch.y == 38);
   CHECK(patch.x == 18);
   CHECK(patch.force_of_unit_arrow == 0.0);
 }
 
 TEST_CASE("a texture smaller than a patch is the patch") {
-  const ArrowPatch patch = strongest_patch(force_of(noise_image({5, 30})));
+  const engine::ArrowPatch patch = engine::strongest_patch(force_of(noise_image({5, 30})));
   CHECK(patch.y == 0);
   CHECK(patch.height == 5);
-  CHECK(patch.width == kArrowPatchSide_px);
+  CHECK(patch.width == engine::kArrowPatchSide_px);
 }
 
 TEST_CASE("arrows point from bright to dark and stand where their pixels are") {
   const TempFolder folder;
   const auto path = folder.path() / "arrows.png";
   const GreyImage step = step_image({24, 24}, 40, 200);  // brighter on the right
-  (void)write_force_arrows(path, step, force_of(step));
-  const GreyImage drawn = read_grey_image(path);
+  (void)engine::write_force_arrows(path, step, force_of(step));
+  const GreyImage drawn = engine::read_grey_image(path);
   CHECK(drawn.height() == 720);
   CHECK(drawn.width() == 2 * 720 + 24);
   // Of the close-up's 30 x 30 squares, those beside the step hold arrows and all others none.
@@ -76,35 +77,38 @@ TEST_CASE("force arrows are drawn of any size of texture") {
   const TempFolder folder;
   for (const Size size : {Size{1, 1}, Size{1, 3000}, Size{3000, 2}, Size{25, 7}}) {
     const GreyImage image = noise_image(size);
-    CHECK_NOTHROW(write_force_arrows(folder.path() / "arrows.png", image, force_of(image)));
+    CHECK_NOTHROW(engine::write_force_arrows(folder.path() / "arrows.png", image, force_of(image)));
   }
 }
 
 TEST_CASE("force arrows refuse a field of another size and a folder that is not there") {
   const GreyImage image = noise_image({6, 7});
   CHECK_FALSE(refusal_of([&] {
-                (void)write_force_arrows("x.png", image, force_of(noise_image({7, 6})));
+                (void)engine::write_force_arrows("x.png", image, force_of(noise_image({7, 6})));
               }).empty());
-  CHECK_FALSE(refusal_of([] { (void)strongest_patch({}); }).empty());
-  CHECK_THROWS_AS(write_force_arrows("/no/such/folder/x.png", image, force_of(image)), FileError);
+  CHECK_FALSE(refusal_of([] { (void)engine::strongest_patch({}); }).empty());
+  CHECK_THROWS_AS(engine::write_force_arrows("/no/such/folder/x.png", image, force_of(image)),
+                  FileError);
 }
 
 TEST_CASE("arrows are drawn over a patch that fills the square") {
   const GreyImage texture(30, 40, 100);
-  ForceField<double> force{Plane<double>(30, 40), Plane<double>(30, 40)};
+  engine::ForceField<double> force{Plane<double>(30, 40), Plane<double>(30, 40)};
   force.x.at(12, 12) = 5.0;
-  const ArrowPatch patch = strongest_patch(force);
-  const ColourImage picture = force_arrows(texture, force, patch, 120);
+  const engine::ArrowPatch patch = engine::strongest_patch(force);
+  const engine::ColourImage picture = engine::force_arrows(texture, force, patch, 120);
   REQUIRE(picture.height() == 120);
   REQUIRE(picture.width() == 120);
-  const auto coloured = std::ranges::count_if(picture.samples(), [](const Rgb& pixel) {
+  const auto coloured = std::ranges::count_if(picture.samples(), [](const engine::Rgb& pixel) {
     return pixel.red != pixel.green || pixel.green != pixel.blue;
   });
   CHECK(coloured > 0);
   CHECK(coloured < 300);
-  CHECK_THROWS_AS((void)force_arrows(GreyImage(3, 3), force, patch, 120), std::invalid_argument);
-  CHECK_THROWS_AS((void)force_arrows(texture, force, ArrowPatch{20, 0, 24, 24, 1.0}, 120),
+  CHECK_THROWS_AS((void)engine::force_arrows(GreyImage(3, 3), force, patch, 120),
                   std::invalid_argument);
+  CHECK_THROWS_AS(
+      (void)engine::force_arrows(texture, force, engine::ArrowPatch{20, 0, 24, 24, 1.0}, 120),
+      std::invalid_argument);
 }
 
 }  // namespace

@@ -21,10 +21,10 @@ Vec2 pair_force(double here, double there, int dy, int dx) {
 
 }  // namespace
 
-ForceField<double> tangential_force(const Plane<double>& surface, int neighbourhood) {
+engine::ForceField<double> tangential_force(const Plane<double>& surface, int neighbourhood) {
   const int reach = (neighbourhood - 1) / 2;
-  ForceField<double> force{Plane<double>(surface.height(), surface.width()),
-                           Plane<double>(surface.height(), surface.width())};
+  engine::ForceField<double> force{Plane<double>(surface.height(), surface.width()),
+                                   Plane<double>(surface.height(), surface.width())};
   for (int y = 0; y < surface.height(); ++y) {
     for (int x = 0; x < surface.width(); ++x) {
       Vec2 sum;

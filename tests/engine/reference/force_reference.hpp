@@ -7,6 +7,7 @@
 
 namespace touchtrial::reference {
 
-[[nodiscard]] ForceField<double> tangential_force(const Plane<double>& surface, int neighbourhood);
+[[nodiscard]] engine::ForceField<double> tangential_force(const Plane<double>& surface,
+                                                          int neighbourhood);
 
 }  // namespace touchtrial::reference

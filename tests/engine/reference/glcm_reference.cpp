@@ -51,9 +51,9 @@ double correlation(const Plane<double>& p) {
 
 }  // namespace
 
-GlcmStatistics glcm_statistics(const GreyImage& image, int dy, int dx) {
+engine::GlcmStatistics glcm_statistics(const GreyImage& image, int dy, int dx) {
   const Plane<double> p = probabilities(image, dy, dx);
-  GlcmStatistics result{};
+  engine::GlcmStatistics result{};
   result.angular_second_moment = sum_over(p, [](int, int, double q) { return q * q; });
   result.energy = std::sqrt(result.angular_second_moment);
   result.entropy = sum_over(p, [](int, int, double q) { return -q * std::log(q); });

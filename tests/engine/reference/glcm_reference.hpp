@@ -7,6 +7,6 @@
 
 namespace touchtrial::reference {
 
-[[nodiscard]] GlcmStatistics glcm_statistics(const GreyImage& image, int dy, int dx);
+[[nodiscard]] engine::GlcmStatistics glcm_statistics(const GreyImage& image, int dy, int dx);
 
 }  // namespace touchtrial::reference

@@ -22,7 +22,7 @@ int torus_length(int n) {
   }
 }
 
-Plane<double> gabor_patch(const GaborComponent& component) {
+Plane<double> gabor_patch(const engine::GaborComponent& component) {
   Plane<double> patch(2 * kRadius + 1, 2 * kRadius + 1);
   const double theta = component.direction_deg * std::numbers::pi / 180;
   double sum = 0.0;
@@ -66,10 +66,11 @@ void add_autocorrelation(const Plane<double>& patch, Plane<double>& kernel) {
   }
 }
 
-Plane<double> kernel_of_m(const std::vector<GaborComponent>& components, int height, int width) {
+Plane<double> kernel_of_m(const std::vector<engine::GaborComponent>& components, int height,
+                          int width) {
   Plane<double> kernel(4 * kRadius + 1, 4 * kRadius + 1);
   Plane<double> spectrum(height, width);
-  for (const GaborComponent& component : components) {
+  for (const engine::GaborComponent& component : components) {
     const Plane<double> patch = gabor_patch(component);
     add_autocorrelation(patch, kernel);
     for (int y = 0; y < height; ++y) {
@@ -132,7 +133,7 @@ void project(double& x, double& y) {
 
 }  // namespace
 
-TvGabor::TvGabor(const GreyImage& image, const TvGaborOptions& options)
+TvGabor::TvGabor(const GreyImage& image, const engine::TvGaborOptions& options)
     : height_(image.height()),
       width_(image.width()),
       lambda_(options.lambda),

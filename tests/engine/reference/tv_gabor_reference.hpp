@@ -18,7 +18,7 @@ struct Dual {
 /// J(u) + (lambda / 2) <f - u, K (f - u)> and all that its dual needs, by definition.
 class TvGabor {
  public:
-  TvGabor(const GreyImage& image, const TvGaborOptions& options);
+  TvGabor(const GreyImage& image, const engine::TvGaborOptions& options);
 
   [[nodiscard]] const Plane<double>& torus() const { return f_; }
   [[nodiscard]] Plane<double> apply_m(const Plane<double>& plane) const;

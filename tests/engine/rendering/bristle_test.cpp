@@ -15,7 +15,7 @@ namespace {
 constexpr double kStiffness = 0.28;
 
 TEST_CASE("a bristle holds like a spring and slips at its limit") {
-  Bristle bristle;
+  engine::Bristle bristle;
   CHECK(bristle.friction_n({3.0, 4.0}, 0.1, kStiffness) == Vec2{});
   const Vec2 held = bristle.friction_n({3.1, 4.0}, 0.1, kStiffness);
   CHECK(held.x == Approx(-0.028));
@@ -28,7 +28,7 @@ TEST_CASE("a bristle holds like a spring and slips at its limit") {
 }
 
 TEST_CASE("a bristle lets go when the load goes, and takes hold anew after a release") {
-  Bristle bristle;
+  engine::Bristle bristle;
   static_cast<void>(bristle.friction_n({0.0, 0.0}, 1.0, kStiffness));
   CHECK(bristle.friction_n({1.0, 0.0}, 1.0, kStiffness).x == Approx(-0.28));
   CHECK(bristle.friction_n({1.0, 0.0}, 0.05, kStiffness).x == Approx(-0.05));
@@ -41,7 +41,7 @@ TEST_CASE("a bristle lets go when the load goes, and takes hold anew after a rel
 
 TEST_CASE("a bristle gives no more energy than it got, whatever the path and the load") {
   RandomStream random(GENERATE(1, 2, 3), "strokes");
-  Bristle bristle;
+  engine::Bristle bristle;
   Vec2 at_mm;
   double given_mj = 0.0;  // by the hand, so far
   static_cast<void>(bristle.friction_n(at_mm, 1.0, kStiffness));
@@ -60,7 +60,7 @@ TEST_CASE("a bristle gives no more energy than it got, whatever the path and the
 
 TEST_CASE("friction depends on the path and not on how it is cut into ticks") {
   const auto last_force_n = [](int steps) {
-    Bristle bristle;
+    engine::Bristle bristle;
     Vec2 force_n;
     for (int i = 0; i <= steps; ++i) {
       const double t = static_cast<double>(i) / steps;
@@ -74,11 +74,11 @@ TEST_CASE("friction depends on the path and not on how it is cut into ticks") {
 }
 
 TEST_CASE("SurfaceModel without friction is the same to the bit whatever the bristle remembers") {
-  const TextureField field = random_surface(20, 20, 1);
-  const SurfaceModel model(field.view(), surface_options(), {.height_mm = 0.004});
-  Bristle used;
+  const engine::TextureField field = random_surface(20, 20, 1);
+  const engine::SurfaceModel model(field.view(), surface_options(), {.height_mm = 0.004});
+  engine::Bristle used;
   static_cast<void>(used.friction_n({50.0, 50.0}, 10.0, kStiffness));
-  Bristle fresh;
+  engine::Bristle fresh;
   RandomStream random(2, "points");
   for (int i = 0; i < 300; ++i) {
     const Vec3 at_mm{random.uniform(0.0, 4.0), random.uniform(0.0, 4.0), random.uniform(-2.0, 0.1)};
@@ -87,11 +87,11 @@ TEST_CASE("SurfaceModel without friction is the same to the bit whatever the bri
 }
 
 TEST_CASE("SurfaceModel's friction holds a still hand, and pulls mu F_N on a sliding one") {
-  RenderingOptions options = surface_options();
+  engine::RenderingOptions options = surface_options();
   options.friction = 0.3;
-  const TextureField field = flat_surface(200, 200);
-  const SurfaceModel model(field.view(), options, {});
-  Bristle bristle;
+  const engine::TextureField field = flat_surface(200, 200);
+  const engine::SurfaceModel model(field.view(), options, {});
+  engine::Bristle bristle;
   static_cast<void>(model.force_n({10.0, 10.0, -2.0}, {}, bristle));
   const Vec3 held_n = model.force_n({10.3, 10.0, -2.0}, {}, bristle);
   CHECK(held_n.x == Approx(-0.3 * 0.4 / std::numbers::sqrt2));

@@ -28,8 +28,8 @@ double value_slowly(const Plane<double>& coefficients, double x, double y) {
   double sum = 0.0;
   for (int j = static_cast<int>(std::floor(y)) - 3; j <= std::floor(y) + 4; ++j) {
     for (int i = static_cast<int>(std::floor(x)) - 3; i <= std::floor(x) + 4; ++i) {
-      const double c = coefficients.at(symmetric_index(j, coefficients.height()),
-                                       symmetric_index(i, coefficients.width()));
+      const double c = coefficients.at(engine::symmetric_index(j, coefficients.height()),
+                                       engine::symmetric_index(i, coefficients.width()));
       sum += c * bspline(x - i) * bspline(y - j);
     }
   }
@@ -39,10 +39,10 @@ double value_slowly(const Plane<double>& coefficients, double x, double y) {
 /// A spline, in single precision as fields have it.
 struct Spline {
   explicit Spline(const Plane<double>& samples)
-      : exact(cubic_spline_coefficients(samples)), coefficients(rounded(exact)) {}
+      : exact(engine::cubic_spline_coefficients(samples)), coefficients(rounded(exact)) {}
 
-  [[nodiscard]] SplinePoint at(double x, double y) const {
-    return spline_at(coefficients, exact.height(), exact.width(), x, y);
+  [[nodiscard]] engine::SplinePoint at(double x, double y) const {
+    return engine::spline_at(coefficients, exact.height(), exact.width(), x, y);
   }
   Plane<double> exact;
   std::vector<float> coefficients;
@@ -64,7 +64,7 @@ TEST_CASE("the spline goes through every sample") {
 
 TEST_CASE("the spline of a constant plane is that constant, exactly") {
   const double level = GENERATE(0.0, -37.25, 1e-3, 255.0);
-  const Plane<double> coefficients = cubic_spline_coefficients(Plane<double>(7, 90, level));
+  const Plane<double> coefficients = engine::cubic_spline_coefficients(Plane<double>(7, 90, level));
   CHECK(std::ranges::all_of(coefficients.samples(), [&](double c) { return c == level; }));
 }
 
@@ -91,7 +91,7 @@ TEST_CASE("the spline's gradient is the slope of its values") {
   for (int i = 0; i < 500; ++i) {
     const double x = random.uniform(-4.0, 19.0);
     const double y = random.uniform(-4.0, 16.0);
-    const SplinePoint point = spline.at(x, y);
+    const engine::SplinePoint point = spline.at(x, y);
     const double along_x = spline.at(x + kStep, y).value - spline.at(x - kStep, y).value;
     const double along_y = spline.at(x, y + kStep).value - spline.at(x, y - kStep).value;
     REQUIRE(point.along_x == Approx(along_x / (2.0 * kStep)).margin(1e-5));

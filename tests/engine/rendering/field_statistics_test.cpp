@@ -26,8 +26,8 @@ struct Wave {
 };
 
 /// Samples whose force along x is a sum of waves on a 100 x 100 plane of 20 mm.
-std::vector<FieldSample> waves(std::initializer_list<Wave> parts, double mean = 0.0) {
-  std::vector<FieldSample> samples(100 * 100);
+std::vector<engine::FieldSample> waves(std::initializer_list<Wave> parts, double mean = 0.0) {
+  std::vector<engine::FieldSample> samples(100 * 100);
   for (int y = 0; y < 100; ++y) {
     for (int x = 0; x < 100; ++x) {
       double force = mean;
@@ -40,7 +40,7 @@ std::vector<FieldSample> waves(std::initializer_list<Wave> parts, double mean = 
   return samples;
 }
 
-FieldView view_of(const std::vector<FieldSample>& samples) {
+engine::FieldView view_of(const std::vector<engine::FieldSample>& samples) {
   return {{0.2, 100, 100}, samples};
 }
 
@@ -78,7 +78,7 @@ TEST_CASE("power_shares_above agrees with the transform written out, on even and
   const Plane<double> x = random_texture(height, width, 1);
   const Plane<double> y = random_texture(height, width, 2, 15.0);
   const std::vector<double> limits = {0.0, 0.19, 0.31, 0.45, 0.6};
-  const std::vector<double> shares = power_shares_above(x, y, limits);
+  const std::vector<double> shares = engine::power_shares_above(x, y, limits);
   for (std::size_t i = 0; i < limits.size(); ++i) {
     CAPTURE(height, width, limits[i]);
     CHECK(shares[i] == Approx(share_slowly({&x, &y}, limits[i])).margin(1e-12));
@@ -88,71 +88,75 @@ TEST_CASE("power_shares_above agrees with the transform written out, on even and
 
 TEST_CASE("power_shares_above is zero for a constant field") {
   const Plane<double> constant(8, 9, 3.25);
-  CHECK(power_shares_above(constant, constant, std::vector<double>{0.0}) ==
+  CHECK(engine::power_shares_above(constant, constant, std::vector<double>{0.0}) ==
         std::vector<double>{0.0});
 }
 
 TEST_CASE("field_statistics gives the rms of a wave and of the surface in newtons") {
-  std::vector<FieldSample> samples = waves({{2.0, 5, 0}});
+  std::vector<engine::FieldSample> samples = waves({{2.0, 5, 0}});
   for (std::size_t i = 0; i < samples.size(); ++i) samples[i].surface = i % 2 == 0 ? 131.F : 125.F;
-  const FieldStatistics statistics = field_statistics(view_of(samples), {0.01, 0.02});
+  const engine::FieldStatistics statistics =
+      engine::field_statistics(view_of(samples), {0.01, 0.02});
   CHECK(statistics.tangential_rms_n == Approx(0.01 * 2.0 / std::sqrt(2.0)).epsilon(1e-6));
   CHECK(statistics.normal_rms_n == Approx(0.02 * 3.0).epsilon(1e-12));
 }
 
 TEST_CASE("field_statistics counts the power of waves shorter than a millimetre") {
   // 20 cycles across 20 mm are exactly 1 mm, which is not below it.
-  CHECK(field_statistics(view_of(waves({{1.0, 20, 0}})), {1.0, 0.0}).share_below_1_mm ==
+  CHECK(engine::field_statistics(view_of(waves({{1.0, 20, 0}})), {1.0, 0.0}).share_below_1_mm ==
         Approx(0.0).margin(1e-9));
-  CHECK(field_statistics(view_of(waves({{1.0, 0, 21}})), {1.0, 0.0}).share_below_1_mm ==
+  CHECK(engine::field_statistics(view_of(waves({{1.0, 0, 21}})), {1.0, 0.0}).share_below_1_mm ==
         Approx(1.0).epsilon(1e-9));
   // 15 and 15 cycles make a wave of 21.2 cycles along the diagonal.
-  CHECK(field_statistics(view_of(waves({{1.0, 15, 15}})), {1.0, 0.0}).share_below_1_mm ==
+  CHECK(engine::field_statistics(view_of(waves({{1.0, 15, 15}})), {1.0, 0.0}).share_below_1_mm ==
         Approx(1.0).epsilon(1e-9));
   const auto mixed = waves({{std::sqrt(3.0), 10, 3}, {1.0, 30, 7}}, 5.0);
-  CHECK(field_statistics(view_of(mixed), {1.0, 0.0}).share_below_1_mm ==
+  CHECK(engine::field_statistics(view_of(mixed), {1.0, 0.0}).share_below_1_mm ==
         Approx(0.25).epsilon(1e-6));
 }
 
 TEST_CASE("field_statistics counts the power over 250 Hz at each stroke speed") {
   // 1.5 cycles/mm are felt at 75, 150 and 300 Hz; 3 cycles/mm at 150, 300 and 600 Hz.
-  const auto slow = field_statistics(view_of(waves({{1.0, 30, 0}})), {1.0, 0.0});
+  const auto slow = engine::field_statistics(view_of(waves({{1.0, 30, 0}})), {1.0, 0.0});
   CHECK(slow.share_above_250_hz[0] == Approx(0.0).margin(1e-9));
   CHECK(slow.share_above_250_hz[1] == Approx(0.0).margin(1e-9));
   CHECK(slow.share_above_250_hz[2] == Approx(1.0).epsilon(1e-9));
-  const auto both = field_statistics(view_of(waves({{1.0, 30, 0}, {1.0, 35, 49}})), {1.0, 0.0});
+  const auto both =
+      engine::field_statistics(view_of(waves({{1.0, 30, 0}, {1.0, 35, 49}})), {1.0, 0.0});
   CHECK(both.share_above_250_hz[0] == Approx(0.0).margin(1e-9));
   CHECK(both.share_above_250_hz[1] == Approx(0.5).epsilon(1e-6));
   CHECK(both.share_above_250_hz[2] == Approx(1.0).epsilon(1e-9));
 }
 
 TEST_CASE("field_statistics does not change its shares with the gain") {
-  const TextureField field = random_field(31, 44, 3);
-  const FieldStatistics weak = field_statistics(field.view(), {0.001, 0.0});
-  const FieldStatistics strong = field_statistics(field.view(), {0.1, 0.0});
+  const engine::TextureField field = random_field(31, 44, 3);
+  const engine::FieldStatistics weak = engine::field_statistics(field.view(), {0.001, 0.0});
+  const engine::FieldStatistics strong = engine::field_statistics(field.view(), {0.1, 0.0});
   CHECK(weak.share_below_1_mm > 0.0);
   CHECK(weak.share_below_1_mm == strong.share_below_1_mm);
   CHECK(strong.tangential_rms_n == Approx(100.0 * weak.tangential_rms_n).epsilon(1e-12));
 }
 
 TEST_CASE("field_statistics finds the 99.9th percentile of the force") {
-  std::vector<FieldSample> samples(2001);
+  std::vector<engine::FieldSample> samples(2001);
   for (int i = 0; i <= 2000; ++i) samples[i].force_y = static_cast<float>((i * 7) % 2001);
-  const FieldStatistics statistics = field_statistics({{0.2, 3, 667}, samples}, {0.5, 0.0});
+  const engine::FieldStatistics statistics =
+      engine::field_statistics({{0.2, 3, 667}, samples}, {0.5, 0.0});
   CHECK(statistics.tangential_p999_n == Approx(0.5 * 1998.0).epsilon(1e-12));
 }
 
 TEST_CASE("field_statistics finds the budget in the stiffness of a field that has it alone") {
-  const TextureField field = random_field(50, 60, 4);
-  const FieldView view = field.view();
-  const StudyGains gains = choose_gains({&view, 1}, {});
-  CHECK(field_statistics(view, gains.of_field[0]).stiffness_p99_n_per_mm ==
+  const engine::TextureField field = random_field(50, 60, 4);
+  const engine::FieldView view = field.view();
+  const engine::StudyGains gains = engine::choose_gains({&view, 1}, {});
+  CHECK(engine::field_statistics(view, gains.of_field[0]).stiffness_p99_n_per_mm ==
         Approx(0.4).epsilon(1e-9));
 }
 
 TEST_CASE("field_statistics is zero throughout for a flat field of any size") {
   const int side = GENERATE(1, 2, 16);
-  const FieldStatistics statistics = field_statistics(flat_field(side, side).view(), {1.0, 1.0});
+  const engine::FieldStatistics statistics =
+      engine::field_statistics(flat_field(side, side).view(), {1.0, 1.0});
   CHECK(statistics.tangential_rms_n == 0.0);
   CHECK(statistics.tangential_p999_n == 0.0);
   CHECK(statistics.normal_rms_n == 0.0);
@@ -162,10 +166,10 @@ TEST_CASE("field_statistics is zero throughout for a flat field of any size") {
 }
 
 TEST_CASE("field_statistics refuses an empty field and samples that are not finite") {
-  CHECK_THROWS_AS(field_statistics({}, {}), std::invalid_argument);
-  std::vector<FieldSample> samples(9);
+  CHECK_THROWS_AS(engine::field_statistics({}, {}), std::invalid_argument);
+  std::vector<engine::FieldSample> samples(9);
   samples[4].surface = std::numeric_limits<float>::infinity();
-  CHECK_THROWS_AS(field_statistics({{0.2, 3, 3}, samples}, {}), std::invalid_argument);
+  CHECK_THROWS_AS(engine::field_statistics({{0.2, 3, 3}, samples}, {}), std::invalid_argument);
 }
 
 }  // namespace

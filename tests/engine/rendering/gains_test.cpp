@@ -14,11 +14,12 @@ namespace {
 
 /// The stiffness of every interior pixel, from the definition: a finite difference of each
 /// component of a vector field in each direction.
-std::vector<double> stiffness_slowly(FieldView field, std::vector<float FieldSample::*> components,
+std::vector<double> stiffness_slowly(engine::FieldView field,
+                                     std::vector<float engine::FieldSample::*> components,
                                      double gain) {
   const int height = field.geometry.height_px;
   const int width = field.geometry.width_px;
-  const auto at = [&](int y, int x) -> const FieldSample& {
+  const auto at = [&](int y, int x) -> const engine::FieldSample& {
     return field.samples[static_cast<std::size_t>(y) * width + x];
   };
   std::vector<double> norms;
@@ -51,78 +52,80 @@ struct Stiffness {
   double normal_n_per_mm;
 };
 
-Stiffness pooled_p99(const std::vector<TextureField>& fields, const StudyGains& gains) {
+Stiffness pooled_p99(const std::vector<engine::TextureField>& fields,
+                     const engine::StudyGains& gains) {
   std::vector<double> tangential;
   std::vector<double> normal;
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    const FieldView view = fields[i].view();
-    const Gains gain = gains.of_field[i];
-    const auto along =
-        stiffness_slowly(view, {&FieldSample::force_x, &FieldSample::force_y}, gain.tangential_n);
-    const auto across = stiffness_slowly(view, {&FieldSample::surface}, gain.normal_n);
+    const engine::FieldView view = fields[i].view();
+    const engine::Gains gain = gains.of_field[i];
+    const auto along = stiffness_slowly(
+        view, {&engine::FieldSample::force_x, &engine::FieldSample::force_y}, gain.tangential_n);
+    const auto across = stiffness_slowly(view, {&engine::FieldSample::surface}, gain.normal_n);
     tangential.insert(tangential.end(), along.begin(), along.end());
     normal.insert(normal.end(), across.begin(), across.end());
   }
   return {percentile_slowly(tangential, 0.99), percentile_slowly(normal, 0.99)};
 }
 
-std::vector<TextureField> three_fields() {
-  std::vector<TextureField> fields;
+std::vector<engine::TextureField> three_fields() {
+  std::vector<engine::TextureField> fields;
   fields.push_back(random_field(40, 50, 1, 20.0));
   fields.push_back(random_field(33, 21, 2, 60.0));
   fields.push_back(random_field(25, 60, 3, 5.0));
   return fields;
 }
 
-RenderingOptions equalised() {
-  RenderingOptions options;
-  options.equalise = Equalise::rms;
+engine::RenderingOptions equalised() {
+  engine::RenderingOptions options;
+  options.equalise = engine::Equalise::rms;
   return options;
 }
 
 /// A field from a function of the pixel, without filter.
 template <typename Texture>
-TextureField unfiltered(int height, int width, Texture texture) {
+engine::TextureField unfiltered(int height, int width, Texture texture) {
   Plane<double> plane(height, width);
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) plane.at(y, x) = texture(y, x);
   }
-  RenderingOptions options;
+  engine::RenderingOptions options;
   options.filter_mm = 0.0;
-  return make_texture_field(plane, options);
+  return engine::make_texture_field(plane, options);
 }
 
 TEST_CASE("percentile interpolates linearly between order statistics") {
   std::vector<float> hundred;
   for (int i = 100; i >= 0; --i) hundred.push_back(static_cast<float>(i));
-  CHECK(percentile(hundred, 0.99) == 99.0);
-  CHECK(percentile(hundred, 0.0) == 0.0);
-  CHECK(percentile(hundred, 1.0) == 100.0);
+  CHECK(engine::percentile(hundred, 0.99) == 99.0);
+  CHECK(engine::percentile(hundred, 0.0) == 0.0);
+  CHECK(engine::percentile(hundred, 1.0) == 100.0);
   std::vector<float> four = {40.0F, 10.0F, 30.0F, 20.0F};
-  CHECK(percentile(four, 0.5) == 25.0);
-  CHECK(percentile(four, 0.99) == Approx(39.7).epsilon(1e-12));
+  CHECK(engine::percentile(four, 0.5) == 25.0);
+  CHECK(engine::percentile(four, 0.99) == Approx(39.7).epsilon(1e-12));
   std::vector<float> one = {7.0F};
-  CHECK(percentile(one, 0.99) == 7.0);
+  CHECK(engine::percentile(one, 0.99) == 7.0);
   std::vector<float> none;
-  CHECK(percentile(none, 0.99) == 0.0);
+  CHECK(engine::percentile(none, 0.99) == 0.0);
 }
 
 TEST_CASE("choose_gains finds the gains of a parabola and of a ramp by hand") {
   // F_x of x^2 / 2 is -4x per pixel, so it changes by 4 / 0.2 mm; under 1 % of pixels see a border.
-  const std::vector<TextureField> parabola = {
+  const std::vector<engine::TextureField> parabola = {
       unfiltered(600, 1000, [](int, int x) { return 0.5 * x * x; })};
-  const Gains along = choose_gains(views_of(parabola), {}).of_field[0];
+  const engine::Gains along = engine::choose_gains(views_of(parabola), {}).of_field[0];
   CHECK(along.tangential_n == Approx(0.4 / (4.0 / 0.2)).epsilon(1e-6));
-  const std::vector<TextureField> ramp = {unfiltered(30, 40, [](int y, int) { return 3.0 * y; })};
-  const Gains across = choose_gains(views_of(ramp), {}).of_field[0];
+  const std::vector<engine::TextureField> ramp = {
+      unfiltered(30, 40, [](int y, int) { return 3.0 * y; })};
+  const engine::Gains across = engine::choose_gains(views_of(ramp), {}).of_field[0];
   CHECK(across.normal_n == Approx(0.4 / (3.0 / 0.2)).epsilon(1e-6));
 }
 
 TEST_CASE("choose_gains meets the stiffness budget exactly over all fields together") {
-  const std::vector<TextureField> fields = three_fields();
-  RenderingOptions options = GENERATE(RenderingOptions{}, equalised());
+  const std::vector<engine::TextureField> fields = three_fields();
+  engine::RenderingOptions options = GENERATE(engine::RenderingOptions{}, equalised());
   options.texture_stiffness_n_per_mm = GENERATE(0.1, 0.4, 2.0);
-  const StudyGains gains = choose_gains(views_of(fields), options);
+  const engine::StudyGains gains = engine::choose_gains(views_of(fields), options);
   const Stiffness stiffness = pooled_p99(fields, gains);
   const double budget = options.texture_stiffness_n_per_mm;
   CHECK(stiffness.tangential_n_per_mm == Approx(budget).epsilon(1e-6));
@@ -131,128 +134,132 @@ TEST_CASE("choose_gains meets the stiffness budget exactly over all fields toget
 }
 
 TEST_CASE("choose_gains gives all fields one pair of gains unless they are equalised") {
-  const std::vector<TextureField> fields = three_fields();
-  const StudyGains gains = choose_gains(views_of(fields), {});
+  const std::vector<engine::TextureField> fields = three_fields();
+  const engine::StudyGains gains = engine::choose_gains(views_of(fields), {});
   REQUIRE(gains.of_field.size() == 3);
   CHECK(gains.of_field[1] == gains.of_field[0]);
   CHECK(gains.of_field[2] == gains.of_field[0]);
 }
 
 TEST_CASE("choose_gains equalises the rms force of all fields") {
-  const std::vector<TextureField> fields = three_fields();
-  const StudyGains gains = choose_gains(views_of(fields), equalised());
-  const double tangential_n = gains.of_field[0].tangential_n * tangential_rms(fields[0].view());
-  const double normal_n = gains.of_field[0].normal_n * normal_rms(fields[0].view());
+  const std::vector<engine::TextureField> fields = three_fields();
+  const engine::StudyGains gains = engine::choose_gains(views_of(fields), equalised());
+  const double tangential_n =
+      gains.of_field[0].tangential_n * engine::tangential_rms(fields[0].view());
+  const double normal_n = gains.of_field[0].normal_n * engine::normal_rms(fields[0].view());
   CHECK(tangential_n > 0.0);
   CHECK(normal_n > 0.0);
   for (std::size_t i = 1; i < fields.size(); ++i) {
-    const FieldView view = fields[i].view();
-    const Gains gain = gains.of_field[i];
-    CHECK(gain.tangential_n * tangential_rms(view) == Approx(tangential_n).epsilon(1e-12));
-    CHECK(gain.normal_n * normal_rms(view) == Approx(normal_n).epsilon(1e-12));
+    const engine::FieldView view = fields[i].view();
+    const engine::Gains gain = gains.of_field[i];
+    CHECK(gain.tangential_n * engine::tangential_rms(view) == Approx(tangential_n).epsilon(1e-12));
+    CHECK(gain.normal_n * engine::normal_rms(view) == Approx(normal_n).epsilon(1e-12));
   }
 }
 
 TEST_CASE("choose_gains scales with the budget and against the texture") {
-  const std::vector<TextureField> fields = three_fields();
-  const Gains plain = choose_gains(views_of(fields), {}).of_field[0];
-  RenderingOptions doubled;
+  const std::vector<engine::TextureField> fields = three_fields();
+  const engine::Gains plain = engine::choose_gains(views_of(fields), {}).of_field[0];
+  engine::RenderingOptions doubled;
   doubled.texture_stiffness_n_per_mm = 0.8;
-  const Gains strong = choose_gains(views_of(fields), doubled).of_field[0];
+  const engine::Gains strong = engine::choose_gains(views_of(fields), doubled).of_field[0];
   CHECK(strong.tangential_n == Approx(2.0 * plain.tangential_n).epsilon(1e-12));
   CHECK(strong.normal_n == Approx(2.0 * plain.normal_n).epsilon(1e-12));
-  const std::vector<TextureField> once = {random_field(30, 30, 4, 10.0)};
-  const std::vector<TextureField> thrice = {random_field(30, 30, 4, 30.0)};
-  const Gains of_once = choose_gains(views_of(once), {}).of_field[0];
-  const Gains of_thrice = choose_gains(views_of(thrice), {}).of_field[0];
+  const std::vector<engine::TextureField> once = {random_field(30, 30, 4, 10.0)};
+  const std::vector<engine::TextureField> thrice = {random_field(30, 30, 4, 30.0)};
+  const engine::Gains of_once = engine::choose_gains(views_of(once), {}).of_field[0];
+  const engine::Gains of_thrice = engine::choose_gains(views_of(thrice), {}).of_field[0];
   CHECK(of_once.tangential_n == Approx(3.0 * of_thrice.tangential_n).epsilon(1e-5));
   CHECK(of_once.normal_n == Approx(3.0 * of_thrice.normal_n).epsilon(1e-5));
 }
 
 TEST_CASE("choose_gains gives zero where all fields are flat") {
-  const std::vector<TextureField> fields = {flat_field(10, 10), flat_field(5, 5)};
-  const RenderingOptions options = GENERATE(RenderingOptions{}, equalised());
-  const StudyGains gains = choose_gains(views_of(fields), options);
-  CHECK(gains.of_field == std::vector<Gains>{{}, {}});
+  const std::vector<engine::TextureField> fields = {flat_field(10, 10), flat_field(5, 5)};
+  const engine::RenderingOptions options = GENERATE(engine::RenderingOptions{}, equalised());
+  const engine::StudyGains gains = engine::choose_gains(views_of(fields), options);
+  CHECK(gains.of_field == std::vector<engine::Gains>{{}, {}});
   CHECK_FALSE(gains.over_budget);
 }
 
 TEST_CASE("choose_gains leaves flat fields out of the budget") {
-  std::vector<TextureField> fields = {random_field(40, 40, 5)};
-  const Gains alone = choose_gains(views_of(fields), {}).of_field[0];
-  const Gains alone_equalised = choose_gains(views_of(fields), equalised()).of_field[0];
+  std::vector<engine::TextureField> fields = {random_field(40, 40, 5)};
+  const engine::Gains alone = engine::choose_gains(views_of(fields), {}).of_field[0];
+  const engine::Gains alone_equalised =
+      engine::choose_gains(views_of(fields), equalised()).of_field[0];
   fields.push_back(flat_field(400, 400));
-  const StudyGains gains = choose_gains(views_of(fields), {});
-  CHECK(gains.of_field == std::vector<Gains>{alone, alone});
-  const StudyGains equal = choose_gains(views_of(fields), equalised());
-  CHECK(equal.of_field == std::vector<Gains>{alone_equalised, Gains{}});
+  const engine::StudyGains gains = engine::choose_gains(views_of(fields), {});
+  CHECK(gains.of_field == std::vector<engine::Gains>{alone, alone});
+  const engine::StudyGains equal = engine::choose_gains(views_of(fields), equalised());
+  CHECK(equal.of_field == std::vector<engine::Gains>{alone_equalised, engine::Gains{}});
 }
 
 TEST_CASE("choose_gains goes by the maximum where almost all of a field is flat") {
-  const std::vector<TextureField> fields = {
+  const std::vector<engine::TextureField> fields = {
       unfiltered(60, 60, [](int y, int x) { return y == 30 && x == 30 ? 50.0 : 0.0; })};
-  const StudyGains gains = choose_gains(views_of(fields), {});
-  const auto norms =
-      stiffness_slowly(fields[0].view(), {&FieldSample::force_x, &FieldSample::force_y},
-                       gains.of_field[0].tangential_n);
+  const engine::StudyGains gains = engine::choose_gains(views_of(fields), {});
+  const auto norms = stiffness_slowly(
+      fields[0].view(), {&engine::FieldSample::force_x, &engine::FieldSample::force_y},
+      gains.of_field[0].tangential_n);
   CHECK(percentile_slowly(norms, 0.99) == 0.0);
   CHECK(*std::ranges::max_element(norms) == Approx(0.4).epsilon(1e-6));
 }
 
 TEST_CASE("choose_gains cannot judge fields without interior pixels") {
-  const std::vector<TextureField> thin = {random_field(2, 50, 6)};
-  CHECK(choose_gains(views_of(thin), {}).of_field[0] == Gains{});
-  std::vector<TextureField> both = {random_field(40, 40, 5)};
-  const Gains alone = choose_gains(views_of(both), {}).of_field[0];
+  const std::vector<engine::TextureField> thin = {random_field(2, 50, 6)};
+  CHECK(engine::choose_gains(views_of(thin), {}).of_field[0] == engine::Gains{});
+  std::vector<engine::TextureField> both = {random_field(40, 40, 5)};
+  const engine::Gains alone = engine::choose_gains(views_of(both), {}).of_field[0];
   both.push_back(random_field(2, 50, 6));
-  CHECK(choose_gains(views_of(both), {}).of_field == std::vector<Gains>{alone, alone});
+  CHECK(engine::choose_gains(views_of(both), {}).of_field ==
+        std::vector<engine::Gains>{alone, alone});
 }
 
 TEST_CASE("choose_gains takes explicit gains as they are and says when they exceed the budget") {
-  const std::vector<TextureField> fields = three_fields();
-  const Gains allowed = choose_gains(views_of(fields), {}).of_field[0];
-  RenderingOptions options;
+  const std::vector<engine::TextureField> fields = three_fields();
+  const engine::Gains allowed = engine::choose_gains(views_of(fields), {}).of_field[0];
+  engine::RenderingOptions options;
   options.gains = allowed;
-  const StudyGains same = choose_gains(views_of(fields), options);
-  CHECK(same.of_field == std::vector<Gains>(3, allowed));
+  const engine::StudyGains same = engine::choose_gains(views_of(fields), options);
+  CHECK(same.of_field == std::vector<engine::Gains>(3, allowed));
   CHECK_FALSE(same.over_budget);
-  options.gains = Gains{1.001 * allowed.tangential_n, 0.0};
-  const StudyGains over = choose_gains(views_of(fields), options);
-  CHECK(over.of_field == std::vector<Gains>(3, *options.gains));
+  options.gains = engine::Gains{1.001 * allowed.tangential_n, 0.0};
+  const engine::StudyGains over = engine::choose_gains(views_of(fields), options);
+  CHECK(over.of_field == std::vector<engine::Gains>(3, *options.gains));
   CHECK(over.over_budget);
-  options.gains = Gains{0.0, 1.001 * allowed.normal_n};
-  CHECK(choose_gains(views_of(fields), options).over_budget);
+  options.gains = engine::Gains{0.0, 1.001 * allowed.normal_n};
+  CHECK(engine::choose_gains(views_of(fields), options).over_budget);
 }
 
 TEST_CASE("choose_gains equalises explicit gains round their mean rms") {
-  const std::vector<TextureField> fields = three_fields();
-  RenderingOptions options = equalised();
-  options.gains = Gains{0.003, 0.002};
-  const StudyGains gains = choose_gains(views_of(fields), options);
+  const std::vector<engine::TextureField> fields = three_fields();
+  engine::RenderingOptions options = equalised();
+  options.gains = engine::Gains{0.003, 0.002};
+  const engine::StudyGains gains = engine::choose_gains(views_of(fields), options);
   double mean_tangential_n = 0.0;
   double mean_normal_n = 0.0;
-  for (const TextureField& field : fields) {
-    mean_tangential_n += 0.003 * tangential_rms(field.view()) / 3.0;
-    mean_normal_n += 0.002 * normal_rms(field.view()) / 3.0;
+  for (const engine::TextureField& field : fields) {
+    mean_tangential_n += 0.003 * engine::tangential_rms(field.view()) / 3.0;
+    mean_normal_n += 0.002 * engine::normal_rms(field.view()) / 3.0;
   }
   for (std::size_t i = 0; i < fields.size(); ++i) {
-    const FieldView view = fields[i].view();
-    CHECK(gains.of_field[i].tangential_n * tangential_rms(view) ==
+    const engine::FieldView view = fields[i].view();
+    CHECK(gains.of_field[i].tangential_n * engine::tangential_rms(view) ==
           Approx(mean_tangential_n).epsilon(1e-12));
-    CHECK(gains.of_field[i].normal_n * normal_rms(view) == Approx(mean_normal_n).epsilon(1e-12));
+    CHECK(gains.of_field[i].normal_n * engine::normal_rms(view) ==
+          Approx(mean_normal_n).epsilon(1e-12));
   }
 }
 
 TEST_CASE("choose_gains refuses no fields, broken samples and an impossible budget") {
-  const std::vector<TextureField> fields = three_fields();
-  CHECK_THROWS_AS(choose_gains({}, {}), std::invalid_argument);
-  RenderingOptions options;
+  const std::vector<engine::TextureField> fields = three_fields();
+  CHECK_THROWS_AS(engine::choose_gains({}, {}), std::invalid_argument);
+  engine::RenderingOptions options;
   options.texture_stiffness_n_per_mm = GENERATE(0.0, -1.0, std::nan(""));
-  CHECK_THROWS_AS(choose_gains(views_of(fields), options), std::invalid_argument);
-  std::vector<FieldSample> samples(25);
+  CHECK_THROWS_AS(engine::choose_gains(views_of(fields), options), std::invalid_argument);
+  std::vector<engine::FieldSample> samples(25);
   samples[7].force_x = std::numeric_limits<float>::quiet_NaN();
-  const FieldView broken{{0.2, 5, 5}, samples};
-  CHECK_THROWS_AS(choose_gains({&broken, 1}, {}), std::invalid_argument);
+  const engine::FieldView broken{{0.2, 5, 5}, samples};
+  CHECK_THROWS_AS(engine::choose_gains({&broken, 1}, {}), std::invalid_argument);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 using namespace touchtrial;
+using namespace touchtrial::engine;
 
 TEST_CASE("the lateral field of either model has the rms that its figures have") {
   RandomStream random(1, "lateral field test");

@@ -26,8 +26,9 @@ Plane<double> hostile_texture(int which) {
   return texture;
 }
 
-RenderingModel model_at_budget(FieldView field, const RenderingOptions& options) {
-  return {field, options, choose_gains({&field, 1}, options).of_field[0]};
+engine::RenderingModel model_at_budget(engine::FieldView field,
+                                       const engine::RenderingOptions& options) {
+  return {field, options, engine::choose_gains({&field, 1}, options).of_field[0]};
 }
 
 /// A closed path of random corners over, beside and above the plane, as deep as the stated load.
@@ -41,39 +42,40 @@ std::vector<Vec3> random_loop(std::uint64_t seed) {
   return corners;
 }
 
-double largest_loop_mj(const RenderingModel& model) {
+double largest_loop_mj(const engine::RenderingModel& model) {
   double largest_mj = 0.0;
   for (std::uint64_t seed = 0; seed < 15; ++seed) {
-    largest_mj = std::max(largest_mj, std::abs(loop_work_mj(model, random_loop(seed))));
+    largest_mj = std::max(largest_mj, std::abs(engine::loop_work_mj(model, random_loop(seed))));
     RandomStream random(seed, "planar and pressing loops");
     const Vec3 centre_mm{random.uniform(0.0, 10.0), random.uniform(0.0, 8.0), -1.75};
     const double radius_mm = random.uniform(0.1, 4.0);
     const Vec2 from_mm{centre_mm.x, centre_mm.y};
     const Vec2 to_mm{random.uniform(0.0, 10.0), random.uniform(0.0, 8.0)};
-    for (const auto& loop :
-         {circle_path(centre_mm, radius_mm), press_slide_lift_path(from_mm, to_mm, 2.0, -1.75)}) {
-      largest_mj = std::max(largest_mj, std::abs(loop_work_mj(model, loop)));
+    for (const auto& loop : {engine::circle_path(centre_mm, radius_mm),
+                             engine::press_slide_lift_path(from_mm, to_mm, 2.0, -1.75)}) {
+      largest_mj = std::max(largest_mj, std::abs(engine::loop_work_mj(model, loop)));
     }
   }
   return largest_mj;
 }
 
 TEST_CASE("surface does no work round closed loops, also across the plane's edge") {
-  RenderingOptions options = surface_options();
+  engine::RenderingOptions options = surface_options();
   options.filter_mm = GENERATE(0.0, 0.4);
-  const TextureField field = make_texture_field(hostile_texture(GENERATE(0, 1, 2, 3)), options);
+  const engine::TextureField field =
+      engine::make_texture_field(hostile_texture(GENERATE(0, 1, 2, 3)), options);
   CHECK(largest_loop_mj(model_at_budget(field.view(), options)) < 1e-6);
 }
 
 TEST_CASE("what is left of surface's work is the quadrature's, and goes with the step") {
-  const TextureField field = random_surface(40, 50, 2, 80.0);
-  const RenderingModel model = model_at_budget(field.view(), surface_options());
-  const std::vector<Vec3> loop = circle_path({5.0, 4.0, -1.75}, 3.0);
-  CHECK(std::abs(loop_work_mj(model, loop, 0.001)) < 1e-11);
+  const engine::TextureField field = random_surface(40, 50, 2, 80.0);
+  const engine::RenderingModel model = model_at_budget(field.view(), surface_options());
+  const std::vector<Vec3> loop = engine::circle_path({5.0, 4.0, -1.75}, 3.0);
+  CHECK(std::abs(engine::loop_work_mj(model, loop, 0.001)) < 1e-11);
 }
 
 TEST_CASE("paper does work round the same loops, which is why there is a second model") {
-  const TextureField field = random_field(40, 50, 1, 127.0);
+  const engine::TextureField field = random_field(40, 50, 1, 127.0);
   const double largest_mj = largest_loop_mj(model_at_budget(field.view(), {}));
   CHECK(largest_mj > 1e-3);
   CHECK(largest_mj < 1.0);
@@ -81,36 +83,36 @@ TEST_CASE("paper does work round the same loops, which is why there is a second 
 
 TEST_CASE("loop_work of a constant force is zero, and of a known curl is its flux") {
   // Force planes of a vortex: F = (-y, x) grey levels per pixel has a curl of 2 per pixel.
-  std::vector<FieldSample> samples(50 * 50);
+  std::vector<engine::FieldSample> samples(50 * 50);
   for (int y = 0; y < 50; ++y) {
     for (int x = 0; x < 50; ++x) {
       samples[static_cast<std::size_t>(y) * 50 + x] = {128.0F, static_cast<float>(-y),
                                                        static_cast<float>(x)};
     }
   }
-  RenderingOptions options;
+  engine::RenderingOptions options;
   options.max_force_n = 1e6;
-  const RenderingModel model({{0.2, 50, 50}, samples}, options, {0.01, 0.0});
+  const engine::RenderingModel model({{0.2, 50, 50}, samples}, options, {0.01, 0.0});
   const double curl_n_per_mm = 0.01 * 2.0 / 0.2;
   const std::vector<Vec3> square = {
       {2.0, 3.0, -1.0}, {6.0, 3.0, -1.0}, {6.0, 8.0, -1.0}, {2.0, 8.0, -1.0}};
-  CHECK(loop_work_mj(model, square) == Approx(curl_n_per_mm * 20.0).epsilon(1e-9));
+  CHECK(engine::loop_work_mj(model, square) == Approx(curl_n_per_mm * 20.0).epsilon(1e-9));
   const std::vector<Vec3> back(square.rbegin(), square.rend());
-  CHECK(loop_work_mj(model, back) == Approx(-curl_n_per_mm * 20.0).epsilon(1e-9));
-  const RenderingModel wall({{0.2, 50, 50}, samples}, options, {});
-  CHECK(loop_work_mj(wall, random_loop(3)) == Approx(0.0).margin(1e-7));
+  CHECK(engine::loop_work_mj(model, back) == Approx(-curl_n_per_mm * 20.0).epsilon(1e-9));
+  const engine::RenderingModel wall({{0.2, 50, 50}, samples}, options, {});
+  CHECK(engine::loop_work_mj(wall, random_loop(3)) == Approx(0.0).margin(1e-7));
 }
 
 TEST_CASE("with friction a hand loses energy round every loop, and never gains") {
-  RenderingOptions options = surface_options();
+  engine::RenderingOptions options = surface_options();
   options.friction = GENERATE(0.01, 0.3);
-  const TextureField field = random_surface(40, 50, 3, 80.0);
-  const RenderingModel model = model_at_budget(field.view(), options);
+  const engine::TextureField field = random_surface(40, 50, 3, 80.0);
+  const engine::RenderingModel model = model_at_budget(field.view(), options);
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
-    CHECK(loop_work_mj(model, random_loop(seed)) < 1e-6);
+    CHECK(engine::loop_work_mj(model, random_loop(seed)) < 1e-6);
   }
   // Kinetic friction over a long circle: about mu * load * way.
-  const double lost_mj = -loop_work_mj(model, circle_path({5.0, 4.0, -1.75}, 3.0));
+  const double lost_mj = -engine::loop_work_mj(model, engine::circle_path({5.0, 4.0, -1.75}, 3.0));
   CHECK(lost_mj == Approx(options.friction * 0.7 * 6.0 * 3.14159).epsilon(0.15));
 }
 

@@ -10,17 +10,18 @@
 namespace touchtrial {
 namespace {
 
-constexpr Gains kGains{0.012, 0.01};
+constexpr engine::Gains kGains{0.012, 0.01};
 constexpr Vec3 kStill{};
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-Vec3 centre_of(FieldView field, int y, int x, double z_mm) {
+Vec3 centre_of(engine::FieldView field, int y, int x, double z_mm) {
   const Vec2 at = field.geometry.to_mm(x, y);
   return {at.x, at.y, z_mm};
 }
 
 /// Bilinear interpolation written out as four weighted corners.
-double mixed_slowly(FieldView field, double x_mm, double y_mm, float FieldSample::*value) {
+double mixed_slowly(engine::FieldView field, double x_mm, double y_mm,
+                    float engine::FieldSample::*value) {
   const int height = field.geometry.height_px;
   const int width = field.geometry.width_px;
   const Vec2 px = field.geometry.to_px(x_mm, y_mm);
@@ -38,41 +39,41 @@ double mixed_slowly(FieldView field, double x_mm, double y_mm, float FieldSample
 }
 
 TEST_CASE("PaperModel is a Hooke wall on a flat texture") {
-  const TextureField field = flat_field(20, 20);
-  const PaperModel model(field.view(), {}, kGains);
+  const engine::TextureField field = flat_field(20, 20);
+  const engine::PaperModel model(field.view(), {}, kGains);
   CHECK(model.force_n({2.0, 2.0, -1.5}, kStill) == Vec3{0.0, 0.0, 0.4 * 1.5});
   CHECK(model.force_n({2.0, 2.0, 0.0}, kStill) == Vec3{});
   CHECK(model.force_n({2.0, 2.0, 3.0}, kStill) == Vec3{});
 }
 
 TEST_CASE("PaperModel raises the surface by c (G - G_ref) / k") {
-  RenderingOptions options;
+  engine::RenderingOptions options;
   options.filter_mm = 0.0;
-  const TextureField field = make_texture_field(Plane<double>(9, 9, 20.0), options);
-  const PaperModel model(field.view(), options, kGains);
+  const engine::TextureField field = engine::make_texture_field(Plane<double>(9, 9, 20.0), options);
+  const engine::PaperModel model(field.view(), options, kGains);
   const double height_mm = 0.01 * 20.0 / 0.4;
   CHECK(model.force_n({0.9, 0.9, height_mm + 1e-9}, kStill) == Vec3{});
   CHECK(model.force_n({0.9, 0.9, height_mm - 0.1}, kStill).z == Approx(0.4 * 0.1));
   options.reference_grey = 140.0;
-  const PaperModel lower(field.view(), options, kGains);
+  const engine::PaperModel lower(field.view(), options, kGains);
   CHECK(lower.force_n({0.9, 0.9, -0.1}, kStill).z == Approx(0.4 * 0.1 + 0.01 * 8.0));
 }
 
 TEST_CASE("PaperModel read literally steps at the surface and is nothing above it") {
-  const TextureField field = flat_field(9, 9);
-  RenderingOptions options;
+  const engine::TextureField field = flat_field(9, 9);
+  engine::RenderingOptions options;
   options.reference_grey = 0.0;
-  const PaperModel model(field.view(), options, kGains);
+  const engine::PaperModel model(field.view(), options, kGains);
   CHECK(model.force_n({0.9, 0.9, -1e-9}, kStill).z == Approx(1.28));
   CHECK(model.force_n({0.9, 0.9, 0.0}, kStill) == Vec3{});
   CHECK(model.force_n({0.9, 0.9, 0.1}, kStill) == Vec3{});
 }
 
 TEST_CASE("PaperModel damps in contact, never pulls and does not act in the air") {
-  const TextureField field = random_field(20, 20, 1);
-  RenderingOptions options;
+  const engine::TextureField field = random_field(20, 20, 1);
+  engine::RenderingOptions options;
   options.damping_n_s_per_mm = 0.002;
-  const PaperModel model(field.view(), options, {0.012, 0.0});
+  const engine::PaperModel model(field.view(), options, {0.012, 0.0});
   CHECK(model.force_n({2.0, 2.0, -1.0}, {0.0, 0.0, 50.0}).z == Approx(0.4 - 0.1));
   CHECK(model.force_n({2.0, 2.0, -1.0}, {0.0, 0.0, -50.0}).z == Approx(0.4 + 0.1));
   CHECK(model.force_n({2.0, 2.0, -1.0}, {0.0, 0.0, 200.0}) == Vec3{});
@@ -83,12 +84,12 @@ TEST_CASE("PaperModel damps in contact, never pulls and does not act in the air"
 }
 
 TEST_CASE("PaperModel gives the field's own samples at pixel centres") {
-  const TextureField field = random_field(6, 9, 2);
-  const FieldView view = field.view();
-  const PaperModel model(view, {}, kGains);
+  const engine::TextureField field = random_field(6, 9, 2);
+  const engine::FieldView view = field.view();
+  const engine::PaperModel model(view, {}, kGains);
   for (int y = 0; y < 6; ++y) {
     for (int x = 0; x < 9; ++x) {
-      const FieldSample sample = view.samples[static_cast<std::size_t>(y) * 9 + x];
+      const engine::FieldSample sample = view.samples[static_cast<std::size_t>(y) * 9 + x];
       const Vec3 force_n = model.force_n(centre_of(view, y, x, -2.0), kStill);
       REQUIRE(force_n.x == Approx(0.012 * sample.force_x).margin(1e-12));
       REQUIRE(force_n.y == Approx(0.012 * sample.force_y).margin(1e-12));
@@ -100,17 +101,17 @@ TEST_CASE("PaperModel gives the field's own samples at pixel centres") {
 TEST_CASE("PaperModel is bilinear between pixel centres and constant in the outer half pixel") {
   const int height = GENERATE(1, 2, 7);
   const int width = GENERATE(1, 2, 11);
-  const TextureField field = random_field(height, width, 3);
-  const FieldView view = field.view();
-  const PaperModel model(view, {}, kGains);
+  const engine::TextureField field = random_field(height, width, 3);
+  const engine::FieldView view = field.view();
+  const engine::PaperModel model(view, {}, kGains);
   RandomStream random(4, "points");
   for (int i = 0; i < 200; ++i) {
     const double x_mm = random.uniform(0.0, view.geometry.width_mm());
     const double y_mm = random.uniform(0.0, view.geometry.height_mm());
     const Vec3 force_n = model.force_n({x_mm, y_mm, -2.0}, kStill);
-    const double fx = mixed_slowly(view, x_mm, y_mm, &FieldSample::force_x);
-    const double fy = mixed_slowly(view, x_mm, y_mm, &FieldSample::force_y);
-    const double g = mixed_slowly(view, x_mm, y_mm, &FieldSample::surface);
+    const double fx = mixed_slowly(view, x_mm, y_mm, &engine::FieldSample::force_x);
+    const double fy = mixed_slowly(view, x_mm, y_mm, &engine::FieldSample::force_y);
+    const double g = mixed_slowly(view, x_mm, y_mm, &engine::FieldSample::surface);
     REQUIRE(force_n.x == Approx(0.012 * fx).margin(1e-9));
     REQUIRE(force_n.y == Approx(0.012 * fy).margin(1e-9));
     REQUIRE(force_n.z == Approx(0.8 + 0.01 * (g - 128.0)).margin(1e-9));
@@ -118,8 +119,8 @@ TEST_CASE("PaperModel is bilinear between pixel centres and constant in the oute
 }
 
 TEST_CASE("PaperModel's force is continuous along any path on the texture") {
-  const TextureField field = random_field(30, 30, 5);
-  const PaperModel model(field.view(), {}, kGains);
+  const engine::TextureField field = random_field(30, 30, 5);
+  const engine::PaperModel model(field.view(), {}, kGains);
   // No wave of the filtered field is steeper than this; a jump would show at any step.
   constexpr double kSteepestNPerMm = 8.0;
   constexpr double kStepMm = 1e-4;
@@ -135,8 +136,8 @@ TEST_CASE("PaperModel's force is continuous along any path on the texture") {
 }
 
 TEST_CASE("PaperModel is the flat wall beyond the plane's edge") {
-  const TextureField field = random_field(10, 10, 6);
-  const PaperModel model(field.view(), {}, kGains);
+  const engine::TextureField field = random_field(10, 10, 6);
+  const engine::PaperModel model(field.view(), {}, kGains);
   const double outside_mm = GENERATE(-1e-9, 2.0 + 1e-9, -50.0, 1e9);
   CHECK(model.force_n({outside_mm, 1.0, -1.0}, kStill) == Vec3{0.0, 0.0, 0.4});
   CHECK(model.force_n({1.0, outside_mm, -1.0}, kStill) == Vec3{0.0, 0.0, 0.4});
@@ -144,8 +145,8 @@ TEST_CASE("PaperModel is the flat wall beyond the plane's edge") {
 }
 
 TEST_CASE("PaperModel without contact has no force of any kind") {
-  const TextureField field = random_field(10, 10, 7, 200.0);
-  const PaperModel model(field.view(), {}, kGains);
+  const engine::TextureField field = random_field(10, 10, 7, 200.0);
+  const engine::PaperModel model(field.view(), {}, kGains);
   RandomStream random(8, "points");
   int free = 0;
   for (int i = 0; i < 2000; ++i) {
@@ -162,17 +163,17 @@ TEST_CASE("PaperModel without contact has no force of any kind") {
 }
 
 TEST_CASE("PaperModel does not read the field above the reach of any surface") {
-  std::vector<FieldSample> samples(100);
-  const FieldView view{.geometry = {0.2, 10, 10}, .samples = samples, .highest = 128.0};
-  const PaperModel model(view, {}, kGains);
-  for (FieldSample& sample : samples) sample.surface = 1e6F;
+  std::vector<engine::FieldSample> samples(100);
+  const engine::FieldView view{.geometry = {0.2, 10, 10}, .samples = samples, .highest = 128.0};
+  const engine::PaperModel model(view, {}, kGains);
+  for (engine::FieldSample& sample : samples) sample.surface = 1e6F;
   CHECK(model.force_n({1.0, 1.0, 0.1}, kStill) == Vec3{});
   CHECK(model.force_n({1.0, 1.0, -0.1}, kStill).z == Approx(3.3));
 }
 
 TEST_CASE("PaperModel with texture gains at zero is the wall alone") {
-  const TextureField field = random_field(10, 10, 9, 200.0);
-  const PaperModel model(field.view(), {}, {});
+  const engine::TextureField field = random_field(10, 10, 9, 200.0);
+  const engine::PaperModel model(field.view(), {}, {});
   RandomStream random(10, "points");
   for (int i = 0; i < 500; ++i) {
     const double z_mm = random.uniform(-2.0, 2.0);
@@ -183,9 +184,9 @@ TEST_CASE("PaperModel with texture gains at zero is the wall alone") {
 }
 
 TEST_CASE("PaperModel's tangential force is proportional to its gain") {
-  const TextureField field = random_field(10, 10, 11);
-  const PaperModel once(field.view(), {}, {0.01, 0.005});
-  const PaperModel twice(field.view(), {}, {0.02, 0.005});
+  const engine::TextureField field = random_field(10, 10, 11);
+  const engine::PaperModel once(field.view(), {}, {0.01, 0.005});
+  const engine::PaperModel twice(field.view(), {}, {0.02, 0.005});
   const Vec3 weak_n = once.force_n({0.77, 1.31, -1.0}, kStill);
   const Vec3 strong_n = twice.force_n({0.77, 1.31, -1.0}, kStill);
   CHECK(std::abs(weak_n.x) > 0.0);
@@ -195,12 +196,12 @@ TEST_CASE("PaperModel's tangential force is proportional to its gain") {
 }
 
 TEST_CASE("PaperModel limits the norm of the force and keeps its direction") {
-  const TextureField field = random_field(10, 10, 12, 100.0);
-  RenderingOptions unlimited;
+  const engine::TextureField field = random_field(10, 10, 12, 100.0);
+  engine::RenderingOptions unlimited;
   unlimited.max_force_n = 1e9;
-  const Gains strong{0.2, 0.01};
-  const PaperModel limited(field.view(), {}, strong);
-  const PaperModel free(field.view(), unlimited, strong);
+  const engine::Gains strong{0.2, 0.01};
+  const engine::PaperModel limited(field.view(), {}, strong);
+  const engine::PaperModel free(field.view(), unlimited, strong);
   const double depth_mm = GENERATE(2.0, 8.0, 20.0, 1e6);
   RandomStream random(13, "points");
   for (int i = 0; i < 200; ++i) {
@@ -214,8 +215,8 @@ TEST_CASE("PaperModel limits the norm of the force and keeps its direction") {
 }
 
 TEST_CASE("PaperModel gives zero force for positions and velocities that are not finite") {
-  const TextureField field = random_field(10, 10, 14);
-  const PaperModel model(field.view(), {}, kGains);
+  const engine::TextureField field = random_field(10, 10, 14);
+  const engine::PaperModel model(field.view(), {}, kGains);
   const double bad = GENERATE(std::nan(""), kInfinity, -kInfinity);
   CHECK(model.force_n({bad, 1.0, -1.0}, kStill) == Vec3{});
   CHECK(model.force_n({1.0, bad, -1.0}, kStill) == Vec3{});
@@ -226,8 +227,8 @@ TEST_CASE("PaperModel gives zero force for positions and velocities that are not
 }
 
 TEST_CASE("PaperModel stays within its limit at depths whose squares overflow") {
-  const TextureField field = random_field(10, 10, 15);
-  const PaperModel model(field.view(), {}, kGains);
+  const engine::TextureField field = random_field(10, 10, 15);
+  const engine::PaperModel model(field.view(), {}, kGains);
   CHECK(norm(model.force_n({1.0, 1.0, -1e200}, kStill)) == Approx(3.3));
 }
 
@@ -235,13 +236,13 @@ TEST_CASE("PaperModel never passes on samples that are not finite") {
   const float bad =
       GENERATE(std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
                -std::numeric_limits<float>::infinity());
-  const std::vector<FieldSample> samples(9, FieldSample{bad, bad, bad});
-  const PaperModel model({{0.2, 3, 3}, samples}, {}, kGains);
+  const std::vector<engine::FieldSample> samples(9, engine::FieldSample{bad, bad, bad});
+  const engine::PaperModel model({{0.2, 3, 3}, samples}, {}, kGains);
   CHECK(model.force_n({0.3, 0.3, -1.0}, kStill) == Vec3{});
 }
 
 TEST_CASE("PaperModel of an empty field is the flat wall") {
-  const PaperModel model({}, {}, kGains);
+  const engine::PaperModel model({}, {}, kGains);
   CHECK(model.force_n({0.0, 0.0, -1.0}, kStill) == Vec3{0.0, 0.0, 0.4});
 }
 

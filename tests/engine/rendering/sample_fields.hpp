@@ -18,33 +18,34 @@ inline Plane<double> random_texture(int height, int width, std::uint64_t seed,
   return texture;
 }
 
-inline TextureField random_field(int height, int width, std::uint64_t seed,
-                                 double amplitude = 40.0) {
-  return make_texture_field(random_texture(height, width, seed, amplitude), {});
+inline engine::TextureField random_field(int height, int width, std::uint64_t seed,
+                                         double amplitude = 40.0) {
+  return engine::make_texture_field(random_texture(height, width, seed, amplitude), {});
 }
 
-inline TextureField flat_field(int height, int width) {
-  return make_texture_field(Plane<double>(height, width, 0.0), {});
+inline engine::TextureField flat_field(int height, int width) {
+  return engine::make_texture_field(Plane<double>(height, width, 0.0), {});
 }
 
-inline RenderingOptions surface_options() {
-  RenderingOptions options;
-  options.model = ModelKind::surface;
+inline engine::RenderingOptions surface_options() {
+  engine::RenderingOptions options;
+  options.model = engine::ModelKind::surface;
   return options;
 }
 
-inline TextureField random_surface(int height, int width, std::uint64_t seed,
-                                   double amplitude = 40.0) {
-  return make_texture_field(random_texture(height, width, seed, amplitude), surface_options());
+inline engine::TextureField random_surface(int height, int width, std::uint64_t seed,
+                                           double amplitude = 40.0) {
+  return engine::make_texture_field(random_texture(height, width, seed, amplitude),
+                                    surface_options());
 }
 
-inline TextureField flat_surface(int height, int width) {
-  return make_texture_field(Plane<double>(height, width, 0.0), surface_options());
+inline engine::TextureField flat_surface(int height, int width) {
+  return engine::make_texture_field(Plane<double>(height, width, 0.0), surface_options());
 }
 
-inline std::vector<FieldView> views_of(const std::vector<TextureField>& fields) {
-  std::vector<FieldView> views;
-  for (const TextureField& field : fields) views.push_back(field.view());
+inline std::vector<engine::FieldView> views_of(const std::vector<engine::TextureField>& fields) {
+  std::vector<engine::FieldView> views;
+  for (const engine::TextureField& field : fields) views.push_back(field.view());
   return views;
 }
 

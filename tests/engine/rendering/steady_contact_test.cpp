@@ -41,11 +41,11 @@ struct Contact {
 };
 
 /// Lands, and watches the force from 0.5 s after first contact for a second.
-Contact land(const RenderingModel& model, double push_n, double stiffness_n_per_mm) {
+Contact land(const engine::RenderingModel& model, double push_n, double stiffness_n_per_mm) {
   Hand hand;
   hand.push(push_n, stiffness_n_per_mm);
   Contact contact;
-  Bristle bristle;
+  engine::Bristle bristle;
   bool touching = false;
   int since_landing = -1;
   while (since_landing < 1500) {
@@ -64,11 +64,11 @@ Contact land(const RenderingModel& model, double push_n, double stiffness_n_per_
 
 TEST_CASE("a hand that pushes on a flat texture keeps contact with a steady force") {
   const double push_n = GENERATE(0.3, 0.7, 2.0);
-  RenderingOptions options;
-  options.model = GENERATE(ModelKind::paper, ModelKind::surface);
-  options.friction = options.model == ModelKind::surface ? GENERATE(0.0, 0.3) : 0.0;
-  const TextureField field = make_texture_field(Plane<double>(500, 1000), options);
-  const RenderingModel model(field.view(), options, {0.012, 0.01, 0.01});
+  engine::RenderingOptions options;
+  options.model = GENERATE(engine::ModelKind::paper, engine::ModelKind::surface);
+  options.friction = options.model == engine::ModelKind::surface ? GENERATE(0.0, 0.3) : 0.0;
+  const engine::TextureField field = engine::make_texture_field(Plane<double>(500, 1000), options);
+  const engine::RenderingModel model(field.view(), options, {0.012, 0.01, 0.01});
   const Contact contact = land(model, push_n, options.stiffness_n_per_mm);
   CAPTURE(push_n, contact.worst_deviation_n);
   CHECK(contact.kept);
@@ -76,10 +76,10 @@ TEST_CASE("a hand that pushes on a flat texture keeps contact with a steady forc
 }
 
 TEST_CASE("the same hand bounces on the literal reading, which is why it is not the default") {
-  const TextureField field = flat_field(500, 1000);
-  RenderingOptions options;
+  const engine::TextureField field = flat_field(500, 1000);
+  engine::RenderingOptions options;
   options.reference_grey = 0.0;
-  const RenderingModel model(field.view(), options, {0.012, 0.01});
+  const engine::RenderingModel model(field.view(), options, {0.012, 0.01});
   const Contact contact = land(model, 1.0, options.stiffness_n_per_mm);
   CHECK_FALSE(contact.kept);
   CHECK(contact.landings > 20);

@@ -11,17 +11,17 @@
 namespace touchtrial {
 namespace {
 
-constexpr Gains kGains{.height_mm = 0.004};
+constexpr engine::Gains kGains{.height_mm = 0.004};
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// Force on a hand at rest, from a presentation of its own.
-Vec3 still_force_n(const SurfaceModel& model, Vec3 position_mm) {
-  Bristle bristle;
+Vec3 still_force_n(const engine::SurfaceModel& model, Vec3 position_mm) {
+  engine::Bristle bristle;
   return model.force_n(position_mm, {}, bristle);
 }
 
-RenderingOptions unlimited() {
-  RenderingOptions options = surface_options();
+engine::RenderingOptions unlimited() {
+  engine::RenderingOptions options = surface_options();
   options.max_force_n = 1e30;
   return options;
 }
@@ -35,8 +35,8 @@ Vec3 random_point(RandomStream& random, const PlaneGeometry& plane) {
 TEST_CASE("SurfaceModel's force is minus the gradient of its potential, everywhere") {
   const int height = GENERATE(1, 3, 30);
   const int width = GENERATE(1, 40);
-  const TextureField field = random_surface(height, width, 1, 60.0);
-  const SurfaceModel model(field.view(), unlimited(), kGains);
+  const engine::TextureField field = random_surface(height, width, 1, 60.0);
+  const engine::SurfaceModel model(field.view(), unlimited(), kGains);
   RandomStream random(2, "points");
   constexpr double kStepMm = 1e-5;
   double strongest_n = 0.0;
@@ -58,8 +58,8 @@ TEST_CASE("SurfaceModel's force is minus the gradient of its potential, everywhe
 }
 
 TEST_CASE("SurfaceModel's lateral force grows in proportion to the load") {
-  const TextureField field = random_surface(20, 20, 3);
-  const SurfaceModel model(field.view(), unlimited(), kGains);
+  const engine::TextureField field = random_surface(20, 20, 3);
+  const engine::SurfaceModel model(field.view(), unlimited(), kGains);
   const Vec3 light_n = still_force_n(model, {1.77, 2.31, -1.0});
   const Vec3 heavy_n = still_force_n(model, {1.77, 2.31, -4.0});
   REQUIRE(std::abs(light_n.x) > 1e-4);
@@ -68,11 +68,11 @@ TEST_CASE("SurfaceModel's lateral force grows in proportion to the load") {
 }
 
 TEST_CASE("SurfaceModel's surface goes through the texture at pixel centres") {
-  RenderingOptions options = unlimited();
+  engine::RenderingOptions options = unlimited();
   options.filter_mm = 0.0;
   const Plane<double> texture = random_texture(8, 11, 4);
-  const TextureField field = make_texture_field(texture, options);
-  const SurfaceModel model(field.view(), options, kGains);
+  const engine::TextureField field = engine::make_texture_field(texture, options);
+  const engine::SurfaceModel model(field.view(), options, kGains);
   for (int y = 0; y < 8; ++y) {
     for (int x = 0; x < 11; ++x) {
       const Vec2 at_mm = field.view().geometry.to_mm(x, y);
@@ -83,13 +83,13 @@ TEST_CASE("SurfaceModel's surface goes through the texture at pixel centres") {
 }
 
 TEST_CASE("SurfaceModel is a Hooke wall on a flat texture, without gain and without a field") {
-  const TextureField flat = flat_surface(20, 20);
-  const TextureField rough = random_surface(20, 20, 5);
-  for (const SurfaceModel& model :
-       {SurfaceModel(flat.view(), surface_options(), kGains),
-        SurfaceModel(rough.view(), surface_options(), {}),
-        SurfaceModel(random_field(20, 20, 5).view(), surface_options(), kGains),
-        SurfaceModel({}, surface_options(), kGains)}) {
+  const engine::TextureField flat = flat_surface(20, 20);
+  const engine::TextureField rough = random_surface(20, 20, 5);
+  for (const engine::SurfaceModel& model :
+       {engine::SurfaceModel(flat.view(), surface_options(), kGains),
+        engine::SurfaceModel(rough.view(), surface_options(), {}),
+        engine::SurfaceModel(random_field(20, 20, 5).view(), surface_options(), kGains),
+        engine::SurfaceModel({}, surface_options(), kGains)}) {
     CHECK(still_force_n(model, {2.0, 2.0, -1.5}) == Vec3{0.0, 0.0, 0.4 * 1.5});
     CHECK(still_force_n(model, {2.0, 2.0, 0.0}) == Vec3{});
     CHECK(still_force_n(model, {2.0, 2.0, 3.0}) == Vec3{});
@@ -97,9 +97,9 @@ TEST_CASE("SurfaceModel is a Hooke wall on a flat texture, without gain and with
 }
 
 TEST_CASE("SurfaceModel fades beyond the edge and is the flat wall beyond its rim") {
-  const TextureField field = random_surface(20, 30, 6);
-  const SurfaceModel model(field.view(), surface_options(), kGains);
-  for (const double beyond_mm : {-kRimMm, -50.0, 6.0 + kRimMm, 1e9, 1e300}) {
+  const engine::TextureField field = random_surface(20, 30, 6);
+  const engine::SurfaceModel model(field.view(), surface_options(), kGains);
+  for (const double beyond_mm : {-engine::kRimMm, -50.0, 6.0 + engine::kRimMm, 1e9, 1e300}) {
     CHECK(still_force_n(model, {beyond_mm, 1.0, -1.0}) == Vec3{0.0, 0.0, 0.4});
     CHECK(still_force_n(model, {beyond_mm, beyond_mm, -1.0}) == Vec3{0.0, 0.0, 0.4});
   }
@@ -107,8 +107,8 @@ TEST_CASE("SurfaceModel fades beyond the edge and is the flat wall beyond its ri
 }
 
 TEST_CASE("SurfaceModel's force is continuous across the plane's edges and the rim's") {
-  const TextureField field = random_surface(10, 10, 7, 60.0);
-  const SurfaceModel model(field.view(), unlimited(), kGains);
+  const engine::TextureField field = random_surface(10, 10, 7, 60.0);
+  const engine::SurfaceModel model(field.view(), unlimited(), kGains);
   constexpr double kStepMm = 1e-4;
   constexpr double kSteepestNPerMm = 10.0;
   double steepest = 0.0;
@@ -123,13 +123,13 @@ TEST_CASE("SurfaceModel's force is continuous across the plane's edges and the r
 }
 
 TEST_CASE("SurfaceModel's damping slows a hand, never pulls it and leaves the lateral force") {
-  const TextureField field = random_surface(20, 20, 8);
-  RenderingOptions options = unlimited();
+  const engine::TextureField field = random_surface(20, 20, 8);
+  engine::RenderingOptions options = unlimited();
   options.damping_n_s_per_mm = 0.002;
-  const SurfaceModel model(field.view(), options, kGains);
+  const engine::SurfaceModel model(field.view(), options, kGains);
   const Vec3 at_mm{1.77, 2.31, -1.0};
   const Vec3 elastic_n = still_force_n(model, at_mm);
-  Bristle bristle;
+  engine::Bristle bristle;
   const auto moving_n = [&](double up_mm_s) {
     return model.force_n(at_mm, {30.0, -20.0, up_mm_s}, bristle);
   };
@@ -143,18 +143,18 @@ TEST_CASE("SurfaceModel's damping slows a hand, never pulls it and leaves the la
 
 TEST_CASE("SurfaceModel does not read the field above the reach of any surface") {
   std::vector<float> coefficients(100, 0.0F);
-  const FieldView view{{0.2, 10, 10}, {}, coefficients, 10.0};
-  const SurfaceModel model(view, surface_options(), {.height_mm = 0.01});
+  const engine::FieldView view{{0.2, 10, 10}, {}, coefficients, 10.0};
+  const engine::SurfaceModel model(view, surface_options(), {.height_mm = 0.01});
   std::ranges::fill(coefficients, 1e6F);
   CHECK(still_force_n(model, {1.0, 1.0, 0.1}) == Vec3{});
   CHECK(still_force_n(model, {1.0, 1.0, 0.0999}).z == Approx(3.3));
 }
 
 TEST_CASE("SurfaceModel limits the norm of the force and keeps its direction") {
-  const TextureField field = random_surface(10, 10, 9, 100.0);
-  const Gains strong{.height_mm = 0.02};
-  const SurfaceModel limited(field.view(), surface_options(), strong);
-  const SurfaceModel free(field.view(), unlimited(), strong);
+  const engine::TextureField field = random_surface(10, 10, 9, 100.0);
+  const engine::Gains strong{.height_mm = 0.02};
+  const engine::SurfaceModel limited(field.view(), surface_options(), strong);
+  const engine::SurfaceModel free(field.view(), unlimited(), strong);
   const double depth_mm = GENERATE(2.0, 8.0, 20.0, 1e6);
   RandomStream random(10, "points");
   for (int i = 0; i < 200; ++i) {
@@ -167,12 +167,12 @@ TEST_CASE("SurfaceModel limits the norm of the force and keeps its direction") {
 }
 
 TEST_CASE("SurfaceModel gives zero force for positions and velocities that are not finite") {
-  const TextureField field = random_surface(10, 10, 11);
-  RenderingOptions options = surface_options();
+  const engine::TextureField field = random_surface(10, 10, 11);
+  engine::RenderingOptions options = surface_options();
   options.friction = GENERATE(0.0, 0.5);
-  const SurfaceModel model(field.view(), options, kGains);
+  const engine::SurfaceModel model(field.view(), options, kGains);
   const double bad = GENERATE(std::nan(""), kInfinity, -kInfinity);
-  Bristle bristle;
+  engine::Bristle bristle;
   for (const Vec3 where : {Vec3{bad, 1.0, -1.0}, Vec3{1.0, bad, -1.0}, Vec3{1.0, 1.0, bad}}) {
     CHECK(model.force_n(where, {}, bristle) == Vec3{});
   }
@@ -187,15 +187,15 @@ TEST_CASE("SurfaceModel stays finite and within its limit whatever the gain, fie
   const float odd = GENERATE(1e-30F, 1.0F, 1e30F, std::numeric_limits<float>::quiet_NaN(),
                              std::numeric_limits<float>::infinity());
   const double gain = GENERATE(0.0, 1e-12, 1.0, 1e12);
-  RenderingOptions options = surface_options();
+  engine::RenderingOptions options = surface_options();
   options.friction = GENERATE(0.0, 10.0);
   std::vector<float> coefficients(12, 1.0F);
   coefficients[5] = odd;
   const int height = GENERATE(1, 3, 12);
-  const FieldView view{{0.2, height, 12 / height}, {}, coefficients};
-  const SurfaceModel model(view, options, {.height_mm = gain});
+  const engine::FieldView view{{0.2, height, 12 / height}, {}, coefficients};
+  const engine::SurfaceModel model(view, options, {.height_mm = gain});
   RandomStream random(12, "points");
-  Bristle bristle;
+  engine::Bristle bristle;
   for (int i = 0; i < 100; ++i) {
     Vec3 at_mm = random_point(random, view.geometry);
     if (i % 10 == 0) at_mm = 1e200 * at_mm;

@@ -13,9 +13,9 @@ namespace touchtrial {
 namespace {
 
 TEST_CASE("make_texture_field is flat at 128 without force where the texture is zero") {
-  const TextureField field = flat_field(5, 8);
+  const engine::TextureField field = flat_field(5, 8);
   REQUIRE(field.view().samples.size() == 40);
-  for (const FieldSample& sample : field.view().samples) {
+  for (const engine::FieldSample& sample : field.view().samples) {
     REQUIRE(sample.surface == 128.0F);
     REQUIRE(sample.force_x == 0.0F);
     REQUIRE(sample.force_y == 0.0F);
@@ -23,23 +23,23 @@ TEST_CASE("make_texture_field is flat at 128 without force where the texture is 
 }
 
 TEST_CASE("make_texture_field carries the texture's shape and the options' pitch") {
-  RenderingOptions options;
+  engine::RenderingOptions options;
   options.pitch_mm = 0.25;
-  const TextureField field = make_texture_field(random_texture(3, 7, 1), options);
+  const engine::TextureField field = engine::make_texture_field(random_texture(3, 7, 1), options);
   CHECK(field.view().geometry.height_px == 3);
   CHECK(field.view().geometry.width_px == 7);
   CHECK(field.view().geometry.pitch_mm == 0.25);
 }
 
 TEST_CASE("make_texture_field without filter pushes from bright to dark by the slope") {
-  RenderingOptions options;
+  engine::RenderingOptions options;
   options.filter_mm = 0.0;
   Plane<double> ramp(6, 6);
   for (int y = 0; y < 6; ++y) {
     for (int x = 0; x < 6; ++x) ramp.at(y, x) = x;
   }
-  const TextureField field = make_texture_field(ramp, options);
-  const FieldSample inside = field.view().samples[2 * 6 + 3];
+  const engine::TextureField field = engine::make_texture_field(ramp, options);
+  const engine::FieldSample inside = field.view().samples[2 * 6 + 3];
   CHECK(inside.surface == 131.0F);
   CHECK(inside.force_x == Approx(-4.0));
   CHECK(inside.force_y == Approx(0.0).margin(1e-6));
@@ -47,18 +47,18 @@ TEST_CASE("make_texture_field without filter pushes from bright to dark by the s
 }
 
 TEST_CASE("make_texture_field is the force of the filtered surface") {
-  RenderingOptions options;
+  engine::RenderingOptions options;
   options.pitch_mm = 0.1;
   options.filter_mm = 0.15;
   options.neighbourhood = 5;
   const Plane<double> texture = random_texture(17, 12, 2);
   Plane<double> surface = texture;
   for (double& value : surface.samples()) value += 128.0;
-  surface = gaussian_filtered(surface, 1.5);
-  const ForceField<double> force = tangential_force(surface, 5);
-  const TextureField field = make_texture_field(texture, options);
+  surface = engine::gaussian_filtered(surface, 1.5);
+  const engine::ForceField<double> force = engine::tangential_force(surface, 5);
+  const engine::TextureField field = engine::make_texture_field(texture, options);
   for (std::size_t i = 0; i < surface.size(); ++i) {
-    const FieldSample sample = field.view().samples[i];
+    const engine::FieldSample sample = field.view().samples[i];
     REQUIRE(sample.surface == Approx(surface.samples()[i]).epsilon(1e-6));
     REQUIRE(sample.force_x == Approx(force.x.samples()[i]).epsilon(1e-6).margin(1e-6));
     REQUIRE(sample.force_y == Approx(force.y.samples()[i]).epsilon(1e-6).margin(1e-6));
@@ -66,27 +66,29 @@ TEST_CASE("make_texture_field is the force of the filtered surface") {
 }
 
 TEST_CASE("make_texture_field takes the smallest images") {
-  CHECK(make_texture_field(random_texture(1, 1, 3), {}).view().samples[0].force_x == 0.0F);
-  CHECK(make_texture_field(random_texture(1, 9, 3), {}).view().samples.size() == 9);
+  CHECK(engine::make_texture_field(random_texture(1, 1, 3), {}).view().samples[0].force_x == 0.0F);
+  CHECK(engine::make_texture_field(random_texture(1, 9, 3), {}).view().samples.size() == 9);
 }
 
 TEST_CASE("make_texture_field refuses an empty texture and impossible options") {
   const Plane<double> texture = random_texture(4, 4, 4);
-  CHECK_THROWS_AS(make_texture_field(Plane<double>(), {}), std::invalid_argument);
+  CHECK_THROWS_AS(engine::make_texture_field(Plane<double>(), {}), std::invalid_argument);
   const auto with = [](double pitch_mm, double filter_mm, int neighbourhood) {
-    RenderingOptions options;
+    engine::RenderingOptions options;
     options.pitch_mm = pitch_mm;
     options.filter_mm = filter_mm;
     options.neighbourhood = neighbourhood;
     return options;
   };
   const double infinity = std::numeric_limits<double>::infinity();
-  CHECK_THROWS_AS(make_texture_field(texture, with(0.0, 0.4, 3)), std::invalid_argument);
-  CHECK_THROWS_AS(make_texture_field(texture, with(infinity, 0.4, 3)), std::invalid_argument);
-  CHECK_THROWS_AS(make_texture_field(texture, with(0.2, -0.1, 3)), std::invalid_argument);
-  CHECK_THROWS_AS(make_texture_field(texture, with(0.2, infinity, 3)), std::invalid_argument);
-  CHECK_THROWS_AS(make_texture_field(texture, with(0.2, 0.4, 4)), std::invalid_argument);
-  CHECK_THROWS_AS(make_texture_field(texture, with(0.2, 0.4, 1)), std::invalid_argument);
+  CHECK_THROWS_AS(engine::make_texture_field(texture, with(0.0, 0.4, 3)), std::invalid_argument);
+  CHECK_THROWS_AS(engine::make_texture_field(texture, with(infinity, 0.4, 3)),
+                  std::invalid_argument);
+  CHECK_THROWS_AS(engine::make_texture_field(texture, with(0.2, -0.1, 3)), std::invalid_argument);
+  CHECK_THROWS_AS(engine::make_texture_field(texture, with(0.2, infinity, 3)),
+                  std::invalid_argument);
+  CHECK_THROWS_AS(engine::make_texture_field(texture, with(0.2, 0.4, 4)), std::invalid_argument);
+  CHECK_THROWS_AS(engine::make_texture_field(texture, with(0.2, 0.4, 1)), std::invalid_argument);
 }
 
 }  // namespace

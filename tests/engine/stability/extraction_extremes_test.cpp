@@ -15,29 +15,30 @@ namespace touchtrial {
 namespace {
 
 template <typename Real>
-Plane<Real> texture_of(const GreyImage& image, const ExtractionOptions& options) {
-  return extract_texture<Real>(image, options).texture;
+Plane<Real> texture_of(const GreyImage& image, const engine::ExtractionOptions& options) {
+  return engine::extract_texture<Real>(image, options).texture;
 }
 
 TEST_CASE("every texture of every extreme image is finite, bounded and the same each time") {
   for_every_extreme([]<typename Real>(const ExtractionCase& extraction, const GreyImage& image) {
-    const auto result = extract_texture<Real>(image, extraction.options, WantedPlanes::all());
-    REQUIRE(all_finite(result.texture));
+    const auto result =
+        engine::extract_texture<Real>(image, extraction.options, engine::WantedPlanes::all());
+    REQUIRE(engine::all_finite(result.texture));
     REQUIRE(largest_magnitude(result.texture) <= extraction.largest_texture);
-    REQUIRE(all_finite(result.force.x));
-    REQUIRE(all_finite(result.force.y));
+    REQUIRE(engine::all_finite(result.force.x));
+    REQUIRE(engine::all_finite(result.force.y));
     REQUIRE(texture_of<Real>(image, extraction.options) == result.texture);
   });
 }
 
 /// The largest that |T| - 255 (1 - S_K) gets; infinite if an order is none.
 template <typename Real>
-double excess_over_bound(const Extraction<Real>& result, int radius) {
+double excess_over_bound(const engine::Extraction<Real>& result, int radius) {
   double excess = -255.0;
   for (std::size_t i = 0; i < result.order.size(); ++i) {
     const auto order = static_cast<double>(result.order.samples()[i]);
     if (!(order >= 0.0 && order < 1.0)) return std::numeric_limits<double>::infinity();
-    const double bound = 255.0 * (1.0 - gl_weight_sum(order, radius));
+    const double bound = 255.0 * (1.0 - engine::gl_weight_sum(order, radius));
     const auto texture = static_cast<double>(result.texture.samples()[i]);
     excess = std::max(excess, std::abs(texture) - bound);
   }
@@ -45,12 +46,13 @@ double excess_over_bound(const Extraction<Real>& result, int radius) {
 }
 
 TEST_CASE("every order of an extreme image lies in 0 to 1, and its texture within 255 (1 - S_K)") {
-  WantedPlanes wanted;
+  engine::WantedPlanes wanted;
   wanted.order = true;
   for_every_extreme([&]<typename Real>(const ExtractionCase& extraction, const GreyImage& image) {
-    const ExtractionOptions& options = extraction.options;
-    if (options.method != Method::adaptive || options.norm != Norm::additive) return;
-    const auto result = extract_texture<Real>(image, options, wanted);
+    const engine::ExtractionOptions& options = extraction.options;
+    if (options.method != engine::Method::adaptive || options.norm != engine::Norm::additive)
+      return;
+    const auto result = engine::extract_texture<Real>(image, options, wanted);
     REQUIRE(excess_over_bound(result, options.radius) <= 4e-5);
   });
 }
@@ -58,7 +60,7 @@ TEST_CASE("every order of an extreme image lies in 0 to 1, and its texture withi
 TEST_CASE("every extractor but luminance keeps a flat image exactly flat") {
   in_both_precisions([]<typename Real>() {
     for (const ExtractionCase& extraction : extraction_cases()) {
-      if (extraction.options.method == Method::luminance) continue;
+      if (extraction.options.method == engine::Method::luminance) continue;
       for (const int level : {0, 128, 255}) {
         INFO(extraction.name << ", level " << level);
         const GreyImage image = flat_image({7, 21}, level);
@@ -77,16 +79,16 @@ double tolerance(const ExtractionCase& extraction) {
 
 /// Edge sees no sign; luminance is reflected at 127.5 instead of 128.
 bool is_odd(const ExtractionCase& extraction) {
-  return extraction.options.method != Method::edge &&
-         extraction.options.method != Method::luminance;
+  return extraction.options.method != engine::Method::edge &&
+         extraction.options.method != engine::Method::luminance;
 }
 
 /// Orders are the same on both sides only away from the branch points of the order map.
-bool has_clear_branches(const GreyImage& image, const ExtractionOptions& options) {
-  if (options.method != Method::adaptive) return true;
-  WantedPlanes wanted;
+bool has_clear_branches(const GreyImage& image, const engine::ExtractionOptions& options) {
+  if (options.method != engine::Method::adaptive) return true;
+  engine::WantedPlanes wanted;
   wanted.csgv = true;
-  const auto csgv = extract_texture<double>(image, options, wanted).csgv;
+  const auto csgv = engine::extract_texture<double>(image, options, wanted).csgv;
   return std::none_of(csgv.samples().begin(), csgv.samples().end(), [](double value) {
     return std::abs(value - 2.0) < 1e-3 || std::abs(value - 128.0) < 1e-3;
   });
@@ -106,10 +108,10 @@ TEST_CASE("the negative of an extreme image has the negative texture") {
 }
 
 TEST_CASE("edge and luminance answer a negative as their formulas say") {
-  ExtractionOptions edge;
-  edge.method = Method::edge;
-  ExtractionOptions luminance;
-  luminance.method = Method::luminance;
+  engine::ExtractionOptions edge;
+  edge.method = engine::Method::edge;
+  engine::ExtractionOptions luminance;
+  luminance.method = engine::Method::luminance;
   in_both_precisions([&]<typename Real>() {
     const GreyImage image = noise_image({9, 14});
     CHECK(texture_of<Real>(negative_of(image), edge) == texture_of<Real>(image, edge));
@@ -121,7 +123,7 @@ TEST_CASE("edge and luminance answer a negative as their formulas say") {
 
 TEST_CASE("no extractor but luminance sees how bright an extreme image is") {
   for_every_extreme([]<typename Real>(const ExtractionCase& extraction, const GreyImage& image) {
-    if (extraction.options.method == Method::luminance) return;
+    if (extraction.options.method == engine::Method::luminance) return;
     const GreyImage dark = rescaled(image, 2, 0);
     if (!has_clear_branches(dark, extraction.options)) return;
     REQUIRE(largest_difference(texture_of<Real>(rescaled(image, 2, 100), extraction.options),
@@ -131,15 +133,15 @@ TEST_CASE("no extractor but luminance sees how bright an extreme image is") {
 }
 
 TEST_CASE("detail sub-bands and gradients do not see how bright an image is") {
-  WantedPlanes wanted;
+  engine::WantedPlanes wanted;
   wanted.sub_bands = wanted.csgv = true;
   in_both_precisions([&]<typename Real>() {
     const double rounding = std::is_same_v<Real, float> ? 1e-4 : 1e-11;
     for (const Size size : extreme_sizes()) {
       for (const auto& [name, image] : extreme_images(size)) {
         INFO(name << ", " << size.height << " x " << size.width);
-        const auto dark = extract_texture<Real>(rescaled(image, 2, 0), {}, wanted);
-        const auto bright = extract_texture<Real>(rescaled(image, 2, 120), {}, wanted);
+        const auto dark = engine::extract_texture<Real>(rescaled(image, 2, 0), {}, wanted);
+        const auto bright = engine::extract_texture<Real>(rescaled(image, 2, 120), {}, wanted);
         CHECK(largest_difference(bright.sub_band_lh, dark.sub_band_lh) < rounding);
         CHECK(largest_difference(bright.sub_band_hl, dark.sub_band_hl) < rounding);
         CHECK(largest_difference(bright.sub_band_hh, dark.sub_band_hh) < rounding);
@@ -152,7 +154,7 @@ TEST_CASE("detail sub-bands and gradients do not see how bright an image is") {
 TEST_CASE("a fixed order is linear: textures of two images add up to that of their sum") {
   in_both_precisions([]<typename Real>() {
     for (const ExtractionCase& extraction : extraction_cases()) {
-      if (extraction.options.method != Method::fixed) continue;
+      if (extraction.options.method != engine::Method::fixed) continue;
       INFO(extraction.name);
       const GreyImage a = rescaled(noise_image({21, 34}, 1), 2, 0);
       const GreyImage b = rescaled(noise_image({21, 34}, 2), 2, 0);
@@ -172,8 +174,8 @@ TEST_CASE("a fixed order is linear: textures of two images add up to that of the
 TEST_CASE("order 0 and an order that is next to nothing leave no texture but rounding") {
   in_both_precisions([]<typename Real>() {
     for (const ExtractionCase& extraction : extraction_cases()) {
-      const ExtractionOptions& options = extraction.options;
-      if (options.method != Method::fixed || options.norm == Norm::none) continue;
+      const engine::ExtractionOptions& options = extraction.options;
+      if (options.method != engine::Method::fixed || options.norm == engine::Norm::none) continue;
       if (options.order > 1e-100) continue;
       INFO(extraction.name);
       const double largest = largest_magnitude(texture_of<Real>(noise_image({9, 20}), options));

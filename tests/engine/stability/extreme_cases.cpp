@@ -21,54 +21,58 @@ double with_rounding(double bound) {
   return bound * (1.0 + 1e-6);
 }
 
-ExtractionCase adaptive_case(int radius, Gradient gradient, Combine combine, int levels) {
-  ExtractionOptions options;
+ExtractionCase adaptive_case(int radius, engine::Gradient gradient, engine::Combine combine,
+                             int levels) {
+  engine::ExtractionOptions options;
   options.radius = radius;
   options.gradient = gradient;
   options.combine = combine;
   options.levels = levels;
   return {"adaptive, radius " + std::to_string(radius) + ", levels " + std::to_string(levels) +
-              ", " + std::string(name_among(kGradientNames, gradient)) + ", " +
-              std::string(name_among(kCombineNames, combine)),
+              ", " + std::string(engine::name_among(engine::kGradientNames, gradient)) + ", " +
+              std::string(engine::name_among(engine::kCombineNames, combine)),
           options, kGreyRange};
 }
 
-ExtractionCase fixed_case(double order, int radius, Norm norm) {
-  ExtractionOptions options;
-  options.method = Method::fixed;
+ExtractionCase fixed_case(double order, int radius, engine::Norm norm) {
+  engine::ExtractionOptions options;
+  options.method = engine::Method::fixed;
   options.order = order;
   options.radius = radius;
   options.norm = norm;
-  const double sum = gl_weight_sum(order, radius);
+  const double sum = engine::gl_weight_sum(order, radius);
   const double additive = kGreyRange * (1.0 - sum);
-  const double bound = norm == Norm::additive ? additive
-                       : norm == Norm::sum    ? additive / sum
-                                              : additive + kGreyRange * sum;
+  const double bound = norm == engine::Norm::additive ? additive
+                       : norm == engine::Norm::sum    ? additive / sum
+                                                      : additive + kGreyRange * sum;
   return {"fixed, order " + std::to_string(order) + ", radius " + std::to_string(radius) + ", " +
-              std::string(name_among(kNormNames, norm)),
+              std::string(engine::name_among(engine::kNormNames, norm)),
           options, with_rounding(bound) + 1e-6};
 }
 
 void add_adaptive(std::vector<ExtractionCase>& cases) {
-  for (const int radius : {1, 2, 7, ExtractionOptions::kMaxRadius}) {
-    cases.push_back(adaptive_case(radius, Gradient::sobel, Combine::sum, 1));
+  for (const int radius : {1, 2, 7, engine::ExtractionOptions::kMaxRadius}) {
+    cases.push_back(adaptive_case(radius, engine::Gradient::sobel, engine::Combine::sum, 1));
   }
-  for (const Gradient gradient : {Gradient::sobel, Gradient::prewitt, Gradient::central}) {
-    for (const Combine combine : {Combine::sum, Combine::l2, Combine::max}) {
+  for (const engine::Gradient gradient :
+       {engine::Gradient::sobel, engine::Gradient::prewitt, engine::Gradient::central}) {
+    for (const engine::Combine combine :
+         {engine::Combine::sum, engine::Combine::l2, engine::Combine::max}) {
       cases.push_back(adaptive_case(2, gradient, combine, 3));
     }
   }
-  ExtractionCase unnormed = adaptive_case(2, Gradient::sobel, Combine::sum, 1);
+  ExtractionCase unnormed = adaptive_case(2, engine::Gradient::sobel, engine::Combine::sum, 1);
   unnormed.name += ", none";
-  unnormed.options.norm = Norm::none;
+  unnormed.options.norm = engine::Norm::none;
   unnormed.largest_texture = with_rounding(2.0 * kGreyRange);
   cases.push_back(std::move(unnormed));
 }
 
 void add_fixed(std::vector<ExtractionCase>& cases) {
   for (const double order : {0.0, 1e-300, 0.5, 0.999, std::nextafter(1.0, 0.0)}) {
-    for (const int radius : {1, 2, ExtractionOptions::kMaxRadius}) {
-      for (const Norm norm : {Norm::additive, Norm::sum, Norm::none}) {
+    for (const int radius : {1, 2, engine::ExtractionOptions::kMaxRadius}) {
+      for (const engine::Norm norm :
+           {engine::Norm::additive, engine::Norm::sum, engine::Norm::none}) {
         cases.push_back(fixed_case(order, radius, norm));
       }
     }
@@ -76,29 +80,29 @@ void add_fixed(std::vector<ExtractionCase>& cases) {
 }
 
 void add_cited(std::vector<ExtractionCase>& cases) {
-  for (const double sigma_px : {1e-9, 2.0, ExtractionOptions::kMaxSigma_px}) {
-    ExtractionOptions options;
-    options.method = Method::gaussian;
+  for (const double sigma_px : {1e-9, 2.0, engine::ExtractionOptions::kMaxSigma_px}) {
+    engine::ExtractionOptions options;
+    options.method = engine::Method::gaussian;
     options.sigma_px = sigma_px;
     cases.push_back(
         {"gaussian, sigma " + std::to_string(sigma_px), options, with_rounding(kGreyRange)});
   }
   for (const double threshold_grey : {0.0, 4.0, 255.0}) {
-    ExtractionOptions options;
-    options.method = Method::median;
+    engine::ExtractionOptions options;
+    options.method = engine::Method::median;
     options.threshold_grey = threshold_grey;
-    options.radius = threshold_grey == 0.0 ? ExtractionOptions::kMaxRadius : 2;
+    options.radius = threshold_grey == 0.0 ? engine::ExtractionOptions::kMaxRadius : 2;
     cases.push_back({"median, threshold " + std::to_string(threshold_grey), options, kGreyRange});
   }
   for (const double divisor :
-       {ExtractionOptions::kMinDivisor, 4.0, ExtractionOptions::kMaxDivisor}) {
-    ExtractionOptions options;
-    options.method = Method::edge;
+       {engine::ExtractionOptions::kMinDivisor, 4.0, engine::ExtractionOptions::kMaxDivisor}) {
+    engine::ExtractionOptions options;
+    options.method = engine::Method::edge;
     options.divisor = divisor;
     cases.push_back({"edge, divisor " + std::to_string(divisor), options, 127.0});
   }
-  ExtractionOptions options;
-  options.method = Method::luminance;
+  engine::ExtractionOptions options;
+  options.method = engine::Method::luminance;
   cases.push_back({"luminance", options, 128.0});
 }
 
@@ -135,10 +139,10 @@ const std::vector<ExtractionCase>& extraction_cases() {
 }
 
 bool has_kernel(const ExtractionCase& extraction) {
-  const ExtractionOptions& options = extraction.options;
-  if (options.norm != Norm::additive) return false;
-  return options.method == Method::fixed ||
-         (options.method == Method::adaptive && options.levels == 1);
+  const engine::ExtractionOptions& options = extraction.options;
+  if (options.norm != engine::Norm::additive) return false;
+  return options.method == engine::Method::fixed ||
+         (options.method == engine::Method::adaptive && options.levels == 1);
 }
 
 GreyImage rescaled(const GreyImage& image, int divisor, int offset) {

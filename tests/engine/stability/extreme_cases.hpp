@@ -22,7 +22,7 @@ namespace touchtrial {
 /// A method with its options, and what can be said of its textures.
 struct ExtractionCase {
   std::string name;
-  ExtractionOptions options;
+  engine::ExtractionOptions options;
   double largest_texture = 0.0;  ///< |T| of no 8-bit image exceeds this
 };
 

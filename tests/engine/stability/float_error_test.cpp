@@ -30,12 +30,12 @@ struct Comparison {
 };
 
 void compare(const GreyImage& image, int radius, Comparison& counts) {
-  ExtractionOptions options;
+  engine::ExtractionOptions options;
   options.radius = radius;
-  WantedPlanes wanted;
+  engine::WantedPlanes wanted;
   wanted.csgv = wanted.picture = true;
-  const auto truth = extract_texture<double>(image, options, wanted);
-  const auto single = extract_texture<float>(image, options, wanted);
+  const auto truth = engine::extract_texture<double>(image, options, wanted);
+  const auto single = engine::extract_texture<float>(image, options, wanted);
   for (std::size_t i = 0; i < image.size(); ++i) {
     ++counts.pixels;
     if (is_at_branch_point(truth.csgv.samples()[i])) {
@@ -54,7 +54,7 @@ TEST_CASE("8-bit textures of both precisions are the same but at branch points a
   on_every_simd_target([] {
     Comparison noisy;
     Comparison smooth;
-    for (const int radius : {1, 2, 3, 7, 20, ExtractionOptions::kMaxRadius}) {
+    for (const int radius : {1, 2, 3, 7, 20, engine::ExtractionOptions::kMaxRadius}) {
       for (const Size size : {Size{3, 5}, Size{33, 35}, Size{120, 161}}) {
         INFO("radius " << radius << ", " << size.height << " x " << size.width);
         compare(noise_image(size), radius, noisy);
@@ -71,21 +71,22 @@ TEST_CASE("8-bit textures of both precisions are the same but at branch points a
 }
 
 double ms_ssim_error(const GreyImage& a, const GreyImage& b) {
-  const MsSsim exact = ms_ssim<double>(a, b);
-  const MsSsim single = ms_ssim<float>(a, b);
+  const engine::MsSsim exact = engine::ms_ssim<double>(a, b);
+  const engine::MsSsim single = engine::ms_ssim<float>(a, b);
   return std::max(std::abs(single.unit - exact.unit), std::abs(single.wang - exact.wang));
 }
 
 GreyImage texture_picture_of(const GreyImage& image, double order) {
-  ExtractionOptions options;
-  options.method = Method::fixed;
+  engine::ExtractionOptions options;
+  options.method = engine::Method::fixed;
   options.order = order;
-  return texture_picture(extract_texture<double>(image, options).texture);
+  return engine::texture_picture(engine::extract_texture<double>(image, options).texture);
 }
 
 TEST_CASE("MS-SSIM of textures in single precision is within 2e-7 of double") {
   const GreyImage image = cloth_image({200, 181});
-  const GreyImage adaptive = texture_picture(extract_texture<double>(image, {}).texture);
+  const GreyImage adaptive =
+      engine::texture_picture(engine::extract_texture<double>(image, {}).texture);
   on_every_simd_target([&] {
     for (const double order : {0.05, 0.5, 0.95}) {
       CHECK(ms_ssim_error(adaptive, texture_picture_of(image, order)) < 2e-7);

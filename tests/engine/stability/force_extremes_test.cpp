@@ -33,7 +33,7 @@ Real sobel_y(const Plane<Real>& g, int y, int x) {
 
 /// How far the force inside is from half of minus the gradient of the texture.
 template <typename Real>
-double error_inside(const Extraction<Real>& result) {
+double error_inside(const engine::Extraction<Real>& result) {
   const Plane<Real>& texture = result.texture;
   double error = 0.0;
   for (int y = 1; y + 1 < texture.height(); ++y) {
@@ -61,7 +61,7 @@ double force_x_at(const Plane<Real>& g, int y, int x) {
 }
 
 template <typename Real>
-double error_in_first_row(const Extraction<Real>& result) {
+double error_in_first_row(const engine::Extraction<Real>& result) {
   double error = 0.0;
   for (int x = 0; x < result.texture.width(); ++x) {
     error = std::max(error, std::abs(result.force.x.at(0, x) - force_x_at(result.texture, 0, x)));
@@ -72,10 +72,10 @@ double error_in_first_row(const Extraction<Real>& result) {
 TEST_CASE(
     "the force of every extreme texture is half of minus its Sobel gradient, "
     "one-sided at the border") {
-  WantedPlanes wanted;
+  engine::WantedPlanes wanted;
   wanted.force = true;
   for_every_extreme([&]<typename Real>(const ExtractionCase& extraction, const GreyImage& image) {
-    const auto result = extract_texture<Real>(image, extraction.options, wanted);
+    const auto result = engine::extract_texture<Real>(image, extraction.options, wanted);
     const double digits = std::is_same_v<Real, float> ? 1e-6 : 1e-14;
     const double tolerance = digits * 8.0 * std::max(1.0, largest_magnitude(result.texture));
     REQUIRE(error_inside(result) <= tolerance);
@@ -83,8 +83,8 @@ TEST_CASE(
   });
 }
 
-TextureField field_of(const GreyImage& image) {
-  return make_texture_field(extract_texture<double>(image, {}).texture, {});
+engine::TextureField field_of(const GreyImage& image) {
+  return engine::make_texture_field(engine::extract_texture<double>(image, {}).texture, {});
 }
 
 /// Positions and velocities that no hand has, but a broken device may report.
@@ -98,12 +98,13 @@ const std::vector<Vec3>& wild_vectors() {
 }
 
 TEST_CASE("the paper model's force is finite and limited for gains from 1e-12 to 1e12") {
-  const TextureField field = field_of(noise_image({33, 35}));
-  RenderingOptions options;
+  const engine::TextureField field = field_of(noise_image({33, 35}));
+  engine::RenderingOptions options;
   options.damping_n_s_per_mm = 0.01;
   for (double gain = 1e-12; gain < 2e12; gain *= 1e3) {
-    for (const Gains gains : {Gains{gain, 0.0}, Gains{0.0, gain}, Gains{gain, gain}}) {
-      const PaperModel model(field.view(), options, gains);
+    for (const engine::Gains gains :
+         {engine::Gains{gain, 0.0}, engine::Gains{0.0, gain}, engine::Gains{gain, gain}}) {
+      const engine::PaperModel model(field.view(), options, gains);
       for (const Vec3 position_mm : wild_vectors()) {
         for (const Vec3 velocity_mm_s : wild_vectors()) {
           const Vec3 force_n = model.force_n(position_mm, velocity_mm_s);
@@ -116,13 +117,13 @@ TEST_CASE("the paper model's force is finite and limited for gains from 1e-12 to
 }
 
 TEST_CASE("the paper model's tangential force is proportional to its gain until it is limited") {
-  const TextureField field = field_of(noise_image({33, 35}));
+  const engine::TextureField field = field_of(noise_image({33, 35}));
   const Vec3 position_mm{3.3, 3.1, -1.0};
-  const PaperModel unit(field.view(), {}, {1e-6, 0.0});
+  const engine::PaperModel unit(field.view(), {}, {1e-6, 0.0});
   const Vec3 force_n = unit.force_n(position_mm, {});
   REQUIRE(std::hypot(force_n.x, force_n.y) > 0.0);
   for (const double factor : {1e-6, 1e-3, 1e3}) {
-    const PaperModel model(field.view(), {}, {1e-6 * factor, 0.0});
+    const engine::PaperModel model(field.view(), {}, {1e-6 * factor, 0.0});
     CHECK(model.force_n(position_mm, {}).x == Approx(factor * force_n.x).epsilon(1e-12));
     CHECK(model.force_n(position_mm, {}).z == Approx(force_n.z).epsilon(1e-12));
   }
@@ -132,17 +133,17 @@ TEST_CASE("gains of extreme textures are finite, and those of flat ones are zero
   for (const Size size : extreme_sizes()) {
     for (const auto& [name, image] : extreme_images(size)) {
       INFO(name << ", " << size.height << " x " << size.width);
-      const TextureField field = field_of(image);
-      const std::vector<FieldView> views = {field.view()};
+      const engine::TextureField field = field_of(image);
+      const std::vector<engine::FieldView> views = {field.view()};
       for (const double budget : {1e-12, 0.4, 1e12}) {
-        RenderingOptions options;
+        engine::RenderingOptions options;
         options.texture_stiffness_n_per_mm = budget;
-        const Gains gains = choose_gains(views, options).of_field.front();
+        const engine::Gains gains = engine::choose_gains(views, options).of_field.front();
         CHECK(std::isfinite(gains.tangential_n));
         CHECK(std::isfinite(gains.normal_n));
         CHECK(gains.tangential_n >= 0.0);
         CHECK(gains.normal_n >= 0.0);
-        const FieldStatistics statistics = field_statistics(field.view(), gains);
+        const engine::FieldStatistics statistics = engine::field_statistics(field.view(), gains);
         CHECK(std::isfinite(statistics.tangential_p999_n));
         CHECK(statistics.share_below_1_mm >= 0.0);
         CHECK(statistics.share_below_1_mm <= 1.0 + 1e-12);

@@ -17,8 +17,8 @@ TEST_CASE("metrics of an extreme image and itself are exactly 1 in both precisio
   in_both_precisions([&]<typename Real>() {
     for (const auto& [name, image] : images) {
       INFO(name);
-      CHECK(ssim<Real>(image, image) == 1.0);
-      const MsSsim similarity = ms_ssim<Real>(image, image);
+      CHECK(engine::ssim<Real>(image, image) == 1.0);
+      const engine::MsSsim similarity = engine::ms_ssim<Real>(image, image);
       CHECK(similarity.unit == 1.0);
       CHECK(similarity.wang == 1.0);
     }
@@ -31,15 +31,15 @@ TEST_CASE("metrics of two extreme images are finite, in range and do not see whi
     for (std::size_t i = 0; i < images.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) {
         INFO(images[i].name << " and " << images[j].name);
-        const MsSsim there = ms_ssim<Real>(images[i].image, images[j].image);
-        const MsSsim back = ms_ssim<Real>(images[j].image, images[i].image);
+        const engine::MsSsim there = engine::ms_ssim<Real>(images[i].image, images[j].image);
+        const engine::MsSsim back = engine::ms_ssim<Real>(images[j].image, images[i].image);
         CHECK(there.unit == back.unit);
         CHECK(there.wang == back.wang);
         CHECK(std::abs(there.unit) <= 1.0);
         CHECK(there.wang >= 0.0);
         CHECK(there.wang <= 1.0);
-        const double single_scale = ssim<Real>(images[i].image, images[j].image);
-        CHECK(single_scale == ssim<Real>(images[j].image, images[i].image));
+        const double single_scale = engine::ssim<Real>(images[i].image, images[j].image);
+        CHECK(single_scale == engine::ssim<Real>(images[j].image, images[i].image));
         CHECK(std::abs(single_scale) <= 1.0);
       }
     }
@@ -49,8 +49,8 @@ TEST_CASE("metrics of two extreme images are finite, in range and do not see whi
 TEST_CASE("entropy and co-occurrence of a constant are those of certainty") {
   for (int level = 0; level < 256; ++level) {
     const GreyImage image = flat_image({2, 3}, level);
-    CHECK(entropy(image) == 0.0);
-    for (const GlcmStatistics& statistics : glcm_statistics(image)) {
+    CHECK(engine::entropy(image) == 0.0);
+    for (const engine::GlcmStatistics& statistics : engine::glcm_statistics(image)) {
       CHECK(statistics.angular_second_moment == 1.0);
       CHECK(statistics.energy == 1.0);
       CHECK(statistics.entropy == 0.0);
@@ -64,7 +64,7 @@ TEST_CASE("co-occurrence statistics of extreme images are finite and in range") 
   for (const Size size : {Size{2, 2}, Size{3, 5}, Size{2, 64}, Size{63, 2}, kSize}) {
     for (const auto& [name, image] : extreme_images(size)) {
       INFO(name << ", " << size.height << " x " << size.width);
-      for (const GlcmStatistics& statistics : glcm_statistics(image)) {
+      for (const engine::GlcmStatistics& statistics : engine::glcm_statistics(image)) {
         CHECK(statistics.angular_second_moment > 0.0);
         CHECK(statistics.angular_second_moment <= 1.0);
         CHECK(statistics.entropy >= 0.0);

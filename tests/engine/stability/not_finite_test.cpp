@@ -37,13 +37,13 @@ TEMPLATE_TEST_CASE("a plane with one sample that is not finite is refused by nam
                    double) {
   for (const double value : kNotFinite) {
     with_each_sample<TestType>(value, [](const Plane<TestType>& plane) {
-      CHECK(refusal_of([&] { (void)tangential_force(plane, 3); }) ==
+      CHECK(refusal_of([&] { (void)engine::tangential_force(plane, 3); }) ==
             "tangential_force: the surface has samples that are not finite");
-      CHECK(refusal_of([&] { (void)texture_picture(plane); }) ==
+      CHECK(refusal_of([&] { (void)engine::texture_picture(plane); }) ==
             "texture_picture: the texture has samples that are not finite");
-      CHECK(refusal_of([&] { (void)texture_picture(plane, Mapping::stretch); }) ==
+      CHECK(refusal_of([&] { (void)engine::texture_picture(plane, engine::Mapping::stretch); }) ==
             "texture_picture: the texture has samples that are not finite");
-      CHECK(refusal_of([&] { (void)texture_surface(plane); }) ==
+      CHECK(refusal_of([&] { (void)engine::texture_surface(plane); }) ==
             "texture_surface: the texture has samples that are not finite");
     });
   }
@@ -52,9 +52,9 @@ TEMPLATE_TEST_CASE("a plane with one sample that is not finite is refused by nam
 TEST_CASE("a field of a texture that is not finite is refused by name") {
   for (const double value : kNotFinite) {
     with_each_sample<double>(value, [](const Plane<double>& plane) {
-      CHECK(refusal_of([&] { (void)make_texture_field(plane, {}); }) ==
+      CHECK(refusal_of([&] { (void)engine::make_texture_field(plane, {}); }) ==
             "make_texture_field: the texture has samples that are not finite");
-      CHECK(refusal_of([&] { (void)gaussian_filtered(plane, 2.0); }) ==
+      CHECK(refusal_of([&] { (void)engine::gaussian_filtered(plane, 2.0); }) ==
             "gaussian_filtered: the plane has samples that are not finite");
     });
   }
@@ -62,55 +62,60 @@ TEST_CASE("a field of a texture that is not finite is refused by name") {
 
 TEST_CASE("an option that is not finite is refused by its name, whatever the method") {
   const GreyImage image = noise_image({9, 9});
-  const auto refusal = [&](Method method, const std::function<void(ExtractionOptions&)>& spoil) {
-    ExtractionOptions options;
+  const auto refusal = [&](engine::Method method,
+                           const std::function<void(engine::ExtractionOptions&)>& spoil) {
+    engine::ExtractionOptions options;
     options.method = method;
     spoil(options);
-    return refusal_of([&] { (void)extract_texture<float>(image, options); });
+    return refusal_of([&] { (void)engine::extract_texture<float>(image, options); });
   };
   for (const double value : kNotFinite) {
-    CHECK_THAT(refusal(Method::fixed, [=](auto& o) { o.order = value; }), holds_text("order:"));
-    CHECK_THAT(refusal(Method::gaussian, [=](auto& o) { o.sigma_px = value; }),
+    CHECK_THAT(refusal(engine::Method::fixed, [=](auto& o) { o.order = value; }),
+               holds_text("order:"));
+    CHECK_THAT(refusal(engine::Method::gaussian, [=](auto& o) { o.sigma_px = value; }),
                holds_text("sigma:"));
-    CHECK_THAT(refusal(Method::median, [=](auto& o) { o.threshold_grey = value; }),
+    CHECK_THAT(refusal(engine::Method::median, [=](auto& o) { o.threshold_grey = value; }),
                holds_text("threshold:"));
-    CHECK_THAT(refusal(Method::edge, [=](auto& o) { o.divisor = value; }), holds_text("divisor:"));
-    CHECK_THAT(refusal(Method::tv_gabor, [=](auto& o) { o.tv_gabor.lambda = value; }),
+    CHECK_THAT(refusal(engine::Method::edge, [=](auto& o) { o.divisor = value; }),
+               holds_text("divisor:"));
+    CHECK_THAT(refusal(engine::Method::tv_gabor, [=](auto& o) { o.tv_gabor.lambda = value; }),
                holds_text("lambda:"));
-    CHECK_THAT(refusal(Method::tv_gabor, [=](auto& o) { o.tv_gabor.gap = value; }),
+    CHECK_THAT(refusal(engine::Method::tv_gabor, [=](auto& o) { o.tv_gabor.gap = value; }),
                holds_text("gap:"));
   }
 }
 
 TEST_CASE("orders of 1 and beyond, and below 0, are refused before anything is computed") {
   for (const double order : {1.0, -1.0, -1e-300, 1.0 + 1e-15, 1e300, kNan, kInfinity}) {
-    ExtractionOptions options;
-    options.method = Method::fixed;
+    engine::ExtractionOptions options;
+    options.method = engine::Method::fixed;
     options.order = order;
-    CHECK_THAT(refusal_of([&] { check_options(options); }),
+    CHECK_THAT(refusal_of([&] { engine::check_options(options); }),
                holds_text("order: must be in [0, 1), not "));
   }
 }
 
 TEST_CASE("rendering options that are not finite are refused") {
-  const TextureField field = make_texture_field(Plane<double>(5, 5, 1.0), {});
-  const std::vector<FieldView> views = {field.view()};
+  const engine::TextureField field = engine::make_texture_field(Plane<double>(5, 5, 1.0), {});
+  const std::vector<engine::FieldView> views = {field.view()};
   for (const double value : kNotFinite) {
-    RenderingOptions options;
+    engine::RenderingOptions options;
     options.pitch_mm = value;
-    CHECK_FALSE(
-        refusal_of([&] { (void)make_texture_field(Plane<double>(5, 5), options); }).empty());
+    CHECK_FALSE(refusal_of([&] {
+                  (void)engine::make_texture_field(Plane<double>(5, 5), options);
+                }).empty());
     options = {};
     options.filter_mm = value;
-    CHECK_FALSE(
-        refusal_of([&] { (void)make_texture_field(Plane<double>(5, 5), options); }).empty());
+    CHECK_FALSE(refusal_of([&] {
+                  (void)engine::make_texture_field(Plane<double>(5, 5), options);
+                }).empty());
     options = {};
     options.texture_stiffness_n_per_mm = value;
-    CHECK_FALSE(refusal_of([&] { (void)choose_gains(views, options); }).empty());
-    for (const Gains gains : {Gains{value, 0.1}, Gains{0.1, value}}) {
+    CHECK_FALSE(refusal_of([&] { (void)engine::choose_gains(views, options); }).empty());
+    for (const engine::Gains gains : {engine::Gains{value, 0.1}, engine::Gains{0.1, value}}) {
       options = {};
       options.gains = gains;
-      CHECK(refusal_of([&] { (void)choose_gains(views, options); }) ==
+      CHECK(refusal_of([&] { (void)engine::choose_gains(views, options); }) ==
             "choose_gains: explicit gains must be finite numbers >= 0");
     }
   }

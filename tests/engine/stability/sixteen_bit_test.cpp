@@ -49,12 +49,14 @@ TEST_CASE("16-bit noise and steps over the full range have textures like any oth
   }
   const GreyImage image = samples::read_bytes(samples::encoded(".png", picture));
   in_both_precisions([&]<typename Real>() {
-    for (const Method method : {Method::adaptive, Method::fixed, Method::gaussian}) {
-      ExtractionOptions options;
+    for (const engine::Method method :
+         {engine::Method::adaptive, engine::Method::fixed, engine::Method::gaussian}) {
+      engine::ExtractionOptions options;
       options.method = method;
-      const auto result = extract_texture<Real>(image, options, WantedPlanes::all());
-      CHECK(all_finite(result.texture));
-      CHECK(all_finite(result.force.x));
+      const auto result =
+          engine::extract_texture<Real>(image, options, engine::WantedPlanes::all());
+      CHECK(engine::all_finite(result.texture));
+      CHECK(engine::all_finite(result.force.x));
     }
   });
 }

@@ -12,9 +12,9 @@ namespace {
 
 constexpr double kLambdas[] = {1e-6, 1e-4, 1e-2, 1.0, 1e3};
 
-ExtractionOptions tv_gabor_options(double lambda, int max_steps = 300) {
-  ExtractionOptions options;
-  options.method = Method::tv_gabor;
+engine::ExtractionOptions tv_gabor_options(double lambda, int max_steps = 300) {
+  engine::ExtractionOptions options;
+  options.method = engine::Method::tv_gabor;
   options.tv_gabor.lambda = lambda;
   options.tv_gabor.max_steps = max_steps;
   return options;
@@ -22,9 +22,10 @@ ExtractionOptions tv_gabor_options(double lambda, int max_steps = 300) {
 
 void check_decomposition(const GreyImage& image, double lambda) {
   const auto check = [&]<typename Real>() {
-    const auto result = extract_texture<Real>(image, tv_gabor_options(lambda), WantedPlanes::all());
-    REQUIRE(all_finite(result.texture));
-    REQUIRE(all_finite(result.cartoon));
+    const auto result =
+        engine::extract_texture<Real>(image, tv_gabor_options(lambda), engine::WantedPlanes::all());
+    REQUIRE(engine::all_finite(result.texture));
+    REQUIRE(engine::all_finite(result.cartoon));
     REQUIRE(result.gap >= 0.0);
     REQUIRE(std::isfinite(result.gap));
     REQUIRE(result.converged == (result.gap <= 1e-5));
@@ -56,9 +57,9 @@ TEST_CASE("tv-gabor's gap falls as steps are added, and never below zero") {
     for (const GreyImage& image : {noise_image({24, 20}), cloth_image({24, 20})}) {
       std::vector<double> gaps;
       for (const int steps : {10, 40, 160, 640}) {
-        ExtractionOptions options = tv_gabor_options(lambda, steps);
+        engine::ExtractionOptions options = tv_gabor_options(lambda, steps);
         options.tv_gabor.gap = 1e-12;
-        gaps.push_back(extract_texture<double>(image, options).gap);
+        gaps.push_back(engine::extract_texture<double>(image, options).gap);
         REQUIRE(gaps.back() >= 0.0);
       }
       INFO("lambda " << lambda << ", gaps " << gaps[0] << " " << gaps[1] << " " << gaps[2] << " "
@@ -72,12 +73,12 @@ TEST_CASE("tv-gabor's gap falls as steps are added, and never below zero") {
 TEST_CASE("tv-gabor of a negative is the negative texture, and brightness changes nothing") {
   for (const GreyImage& image : {noise_image({16, 20}), step_image({16, 20}, 0, 255)}) {
     const GreyImage dark = rescaled(image, 2, 0);
-    ExtractionOptions options = tv_gabor_options(0.01, 2000);
+    engine::ExtractionOptions options = tv_gabor_options(0.01, 2000);
     options.tv_gabor.gap = 1e-9;
-    const auto texture = extract_texture<double>(dark, options).texture;
-    Plane<double> negative = extract_texture<double>(negative_of(dark), options).texture;
+    const auto texture = engine::extract_texture<double>(dark, options).texture;
+    Plane<double> negative = engine::extract_texture<double>(negative_of(dark), options).texture;
     for (double& sample : negative.samples()) sample = -sample;
-    const auto bright = extract_texture<double>(rescaled(image, 2, 100), options).texture;
+    const auto bright = engine::extract_texture<double>(rescaled(image, 2, 100), options).texture;
     CHECK(largest_difference(negative, texture) < 0.05);
     CHECK(largest_difference(bright, texture) < 0.05);
   }

@@ -14,13 +14,15 @@
 namespace touchtrial {
 namespace {
 
-TvGaborProblem<double> problem_of(const GreyImage& image, const TvGaborOptions& options) {
-  const Plane<double> torus = extended_to_torus<double>(image);
-  return {torus, gabor_spectrum(options.components, torus.height(), torus.width()), options.lambda};
+engine::TvGaborProblem<double> problem_of(const GreyImage& image,
+                                          const engine::TvGaborOptions& options) {
+  const Plane<double> torus = engine::extended_to_torus<double>(image);
+  return {torus, engine::gabor_spectrum(options.components, torus.height(), torus.width()),
+          options.lambda};
 }
 
-VectorField<double> random_multiplier(int height, int width) {
-  VectorField<double> multiplier(height, width);
+engine::VectorField<double> random_multiplier(int height, int width) {
+  engine::VectorField<double> multiplier(height, width);
   RandomStream random(7, "multiplier");
   for (std::size_t i = 0; i < multiplier.x.size(); ++i) {
     multiplier.x.samples()[i] = random.uniform(-0.7, 0.7);
@@ -37,14 +39,14 @@ Plane<double> scaled(const Plane<double>& plane, double factor) {
 
 TEST_CASE("a certificate holds what primal and dual are by definition") {
   const GreyImage image = cloth_image({9, 14});
-  TvGaborOptions options;
+  engine::TvGaborOptions options;
   options.lambda = 0.02;
-  const TvGaborProblem<double> problem = problem_of(image, options);
+  const engine::TvGaborProblem<double> problem = problem_of(image, options);
   const int height = problem.image.height();
   const int width = problem.image.width();
-  RealFft<double> fft(height, width);
-  const VectorField<double> half = random_multiplier(height, width);  // of norm < 1
-  const auto certificate = certify(problem, half, 0.9, fft);
+  engine::RealFft<double> fft(height, width);
+  const engine::VectorField<double> half = random_multiplier(height, width);  // of norm < 1
+  const auto certificate = engine::certify(problem, half, 0.9, fft);
 
   const reference::TvGabor definition(image, options);
   const reference::Dual p{scaled(half.x, -0.9), scaled(half.y, -0.9)};
@@ -54,19 +56,21 @@ TEST_CASE("a certificate holds what primal and dual are by definition") {
 }
 
 TEST_CASE("a certificate of no multiplier has no texture and the whole gap") {
-  const TvGaborProblem<double> problem = problem_of(noise_image({8, 8}), {});
-  RealFft<double> fft(problem.image.height(), problem.image.width());
-  const auto certificate = certify(
-      problem, VectorField<double>(problem.image.height(), problem.image.width()), 1.0, fft);
+  const engine::TvGaborProblem<double> problem = problem_of(noise_image({8, 8}), {});
+  engine::RealFft<double> fft(problem.image.height(), problem.image.width());
+  const auto certificate = engine::certify(
+      problem, engine::VectorField<double>(problem.image.height(), problem.image.width()), 1.0,
+      fft);
   CHECK(largest_magnitude(certificate.texture) == 0.0);
   CHECK(certificate.gap == Approx(1.0).epsilon(1e-14));
 }
 
 TEST_CASE("a certificate of a flat image has gap zero") {
-  const TvGaborProblem<double> problem = problem_of(flat_image({8, 8}, 90), {});
-  RealFft<double> fft(problem.image.height(), problem.image.width());
-  const auto certificate = certify(
-      problem, VectorField<double>(problem.image.height(), problem.image.width()), 1.0, fft);
+  const engine::TvGaborProblem<double> problem = problem_of(flat_image({8, 8}, 90), {});
+  engine::RealFft<double> fft(problem.image.height(), problem.image.width());
+  const auto certificate = engine::certify(
+      problem, engine::VectorField<double>(problem.image.height(), problem.image.width()), 1.0,
+      fft);
   CHECK(certificate.gap == 0.0);
 }
 

@@ -10,13 +10,13 @@
 namespace touchtrial {
 namespace {
 
-const std::vector<GaborComponent>& default_components() {
-  static const std::vector<GaborComponent> components = TvGaborOptions{}.components;
+const std::vector<engine::GaborComponent>& default_components() {
+  static const std::vector<engine::GaborComponent> components = engine::TvGaborOptions{}.components;
   return components;
 }
 
 TEST_CASE("gabor_spectrum lies between 0 and 1, reaches 1, and is 0 at frequency zero") {
-  const Plane<double> spectrum = gabor_spectrum(default_components(), 48, 42);
+  const Plane<double> spectrum = engine::gabor_spectrum(default_components(), 48, 42);
   REQUIRE(spectrum.height() == 48);
   REQUIRE(spectrum.width() == 22);
   const auto [least, largest] =
@@ -27,25 +27,27 @@ TEST_CASE("gabor_spectrum lies between 0 and 1, reaches 1, and is 0 at frequency
 }
 
 TEST_CASE("gabor_spectrum of one component peaks at its frequency and direction") {
-  const Plane<double> along_x = gabor_spectrum(std::vector<GaborComponent>{{0.25, 0.0}}, 48, 48);
+  const Plane<double> along_x =
+      engine::gabor_spectrum(std::vector<engine::GaborComponent>{{0.25, 0.0}}, 48, 48);
   CHECK(along_x.at(0, 12) > 0.99);
   CHECK(along_x.at(12, 0) < 0.01);
-  const Plane<double> along_y = gabor_spectrum(std::vector<GaborComponent>{{0.25, 90.0}}, 48, 48);
+  const Plane<double> along_y =
+      engine::gabor_spectrum(std::vector<engine::GaborComponent>{{0.25, 90.0}}, 48, 48);
   CHECK(along_y.at(12, 0) > 0.99);
   CHECK(along_y.at(0, 12) < 0.01);
 }
 
 TEST_CASE("gabor_spectrum is what the convolution with M's kernel multiplies by") {
   const GreyImage image(10, 8);
-  const reference::TvGabor by_convolution(image, TvGaborOptions{});
+  const reference::TvGabor by_convolution(image, engine::TvGaborOptions{});
   Plane<double> impulse(by_convolution.torus().height(), by_convolution.torus().width());
   impulse.at(0, 0) = 1.0;
   const Plane<double> response = by_convolution.apply_m(impulse);
-  RealFft<double> fft(impulse.height(), impulse.width());
+  engine::RealFft<double> fft(impulse.height(), impulse.width());
   std::copy(response.samples().begin(), response.samples().end(), fft.plane().begin());
   fft.forward();
   const Plane<double> spectrum =
-      gabor_spectrum(default_components(), impulse.height(), impulse.width());
+      engine::gabor_spectrum(default_components(), impulse.height(), impulse.width());
   for (std::size_t i = 0; i < spectrum.size(); ++i) {
     REQUIRE(fft.spectrum()[i].real() == Approx(spectrum.samples()[i]).margin(1e-13));
     REQUIRE(fft.spectrum()[i].imag() == Approx(0.0).margin(1e-13));

@@ -35,10 +35,11 @@ TEMPLATE_TEST_CASE("TV-Gabor's row kernels do what defines them on every target"
       const auto was_x = noise<TestType>(width, "was x"), was_y = noise<TestType>(width, "was y");
       auto z_x = old_x, z_y = old_y, former_x = was_x, former_y = was_y;
       std::vector<TestType> target_x(width), target_y(width);
-      const AdmmNumbers<TestType> numbers{TestType(1.5), TestType(0.75), TestType(0.25)};
-      admm_row<TestType>({f.data(), below.data(), v.data(), v_below.data(), z_x.data(), z_y.data(),
-                          former_x.data(), former_y.data(), target_x.data(), target_y.data()},
-                         width, numbers);
+      const engine::AdmmNumbers<TestType> numbers{TestType(1.5), TestType(0.75), TestType(0.25)};
+      engine::admm_row<TestType>(
+          {f.data(), below.data(), v.data(), v_below.data(), z_x.data(), z_y.data(),
+           former_x.data(), former_y.data(), target_x.data(), target_y.data()},
+          width, numbers);
       for (std::size_t i = 0; i < width; ++i) {
         const std::size_t right = i + 1 == width ? 0 : i + 1;
         const double f_x = static_cast<double>(f[right]) - f[i];
@@ -60,8 +61,8 @@ TEMPLATE_TEST_CASE("a clipped row is nowhere longer than 1 on any target", "", f
   on_every_simd_target([] {
     const auto x = noise<TestType>(41, "x"), y = noise<TestType>(41, "y");
     std::vector<TestType> out_x(41), out_y(41), norms(41);
-    clip_row(x.data(), y.data(), 41, TestType(3), out_x.data(), out_y.data());
-    norm_row(out_x.data(), out_y.data(), 41, norms.data());
+    engine::clip_row(x.data(), y.data(), 41, TestType(3), out_x.data(), out_y.data());
+    engine::norm_row(out_x.data(), out_y.data(), 41, norms.data());
     for (const TestType norm : norms) CHECK(norm <= Approx(1.0).epsilon(1e-6));
   });
 }

@@ -45,12 +45,14 @@ double power_at(const GreyImage& image, double fx, double fy) {
 
 TEST_CASE("the strongest component of a wave is the wave") {
   for (const double direction : {0.0, 90.0}) {
-    const GaborComponent found = strongest_component(wave({100, 100}, 0.2, direction));
+    const engine::GaborComponent found =
+        engine::strongest_component(wave({100, 100}, 0.2, direction));
     CHECK(found.frequency_cycles_per_px == Approx(0.2));
     CHECK(found.direction_deg == Approx(direction));
   }
   for (const double direction : {30.0, 45.0, 150.0}) {
-    const GaborComponent found = strongest_component(wave({128, 160}, 0.3, direction));
+    const engine::GaborComponent found =
+        engine::strongest_component(wave({128, 160}, 0.3, direction));
     CHECK(found.frequency_cycles_per_px == Approx(0.3).margin(0.006));
     CHECK(found.direction_deg == Approx(direction).margin(1.5));
   }
@@ -63,7 +65,7 @@ TEST_CASE("shading below 0.04 cycles per pixel is not taken for texture") {
     image.samples()[i] =
         static_cast<std::uint8_t>(image.samples()[i] / 2 + ripple.samples()[i] / 4);
   }
-  const GaborComponent found = strongest_component(image);
+  const engine::GaborComponent found = engine::strongest_component(image);
   CHECK(found.frequency_cycles_per_px == Approx(0.25));
   CHECK(found.direction_deg == Approx(90.0));
 }
@@ -71,7 +73,7 @@ TEST_CASE("shading below 0.04 cycles per pixel is not taken for texture") {
 TEST_CASE("no frequency of the grid within the range is stronger than the strongest") {
   for (const Size size : {Size{16, 21}, Size{15, 16}, Size{3, 3}, Size{1, 12}}) {
     const GreyImage image = cloth_image(size);
-    const GaborComponent found = strongest_component(image);
+    const engine::GaborComponent found = engine::strongest_component(image);
     const double direction = found.direction_deg * std::numbers::pi / 180.0;
     const double most = power_at(image, found.frequency_cycles_per_px * std::cos(direction),
                                  found.frequency_cycles_per_px * std::sin(direction));
@@ -89,25 +91,25 @@ TEST_CASE("no frequency of the grid within the range is stronger than the strong
 TEST_CASE("an image without any frequency in the range is refused") {
   for (const Size size : {Size{1, 1}, Size{2, 2}, Size{1, 2}}) {
     CHECK(refusal_of([&] {
-            (void)strongest_component(noise_image(size));
+            (void)engine::strongest_component(noise_image(size));
           }).starts_with("components: auto needs an image of 3 px or more, not "));
   }
-  CHECK_FALSE(refusal_of([] { (void)strongest_component(GreyImage()); }).empty());
+  CHECK_FALSE(refusal_of([] { (void)engine::strongest_component(GreyImage()); }).empty());
 }
 
 TEST_CASE("automatic tv-gabor is tv-gabor with the strongest component, and says which") {
   const GreyImage image = wave({48, 40}, 0.2, 0.0);
-  ExtractionOptions automatic;
-  automatic.method = Method::tv_gabor;
+  engine::ExtractionOptions automatic;
+  automatic.method = engine::Method::tv_gabor;
   automatic.tv_gabor.automatic = true;
   automatic.tv_gabor.components.clear();
-  ExtractionOptions listed = automatic;
+  engine::ExtractionOptions listed = automatic;
   listed.tv_gabor.automatic = false;
-  listed.tv_gabor.components = {strongest_component(image)};
-  const auto result = extract_texture<double>(image, automatic);
+  listed.tv_gabor.components = {engine::strongest_component(image)};
+  const auto result = engine::extract_texture<double>(image, automatic);
   CHECK(result.components == listed.tv_gabor.components);
-  CHECK(result.texture == extract_texture<double>(image, listed).texture);
-  const auto flat = extract_texture<double>(flat_image({2, 2}, 9), automatic);
+  CHECK(result.texture == engine::extract_texture<double>(image, listed).texture);
+  const auto flat = engine::extract_texture<double>(flat_image({2, 2}, 9), automatic);
   CHECK(largest_magnitude(flat.texture) == 0.0);
   CHECK(flat.components.empty());
 }

@@ -13,8 +13,8 @@
 namespace touchtrial {
 namespace {
 
-TvGaborOptions precise_options() {
-  TvGaborOptions options;
+engine::TvGaborOptions precise_options() {
+  engine::TvGaborOptions options;
   options.gap = 1e-9;
   options.max_steps = 20000;
   return options;
@@ -34,8 +34,8 @@ GreyImage striped_image(Size size) {
 
 TEST_CASE("tv_gabor agrees with accelerated projected gradient on the dual") {
   for (const GreyImage& image : {striped_image({10, 10}), noise_image({2, 3})}) {
-    const TvGaborOptions options = precise_options();
-    const TvGaborResult<double> result = tv_gabor<double>(image, options);
+    const engine::TvGaborOptions options = precise_options();
+    const engine::TvGaborResult<double> result = engine::tv_gabor<double>(image, options);
     const reference::TvGabor definition(image, options);
     const Plane<double> expected = definition.cropped(definition.texture(definition.fista(2000)));
     CHECK(result.converged);
@@ -45,19 +45,20 @@ TEST_CASE("tv_gabor agrees with accelerated projected gradient on the dual") {
 }
 
 TEST_CASE("tv_gabor takes any components and lambda") {
-  TvGaborOptions options = precise_options();
+  engine::TvGaborOptions options = precise_options();
   options.lambda = 0.05;
   options.components = {{0.2, 30.0}, {0.4, 120.0}};
   const GreyImage image = striped_image({8, 10});
   const reference::TvGabor definition(image, options);
   const Plane<double> expected = definition.cropped(definition.texture(definition.fista(2000)));
-  CHECK(distance_relative_to(tv_gabor<double>(image, options).texture, expected) < 1e-4);
+  CHECK(distance_relative_to(engine::tv_gabor<double>(image, options).texture, expected) < 1e-4);
 }
 
 TEMPLATE_TEST_CASE("tv_gabor of a flat image is zero with gap zero and no steps", "", float,
                    double) {
   for (const Size size : {Size{1, 1}, Size{3, 5}, Size{40, 40}}) {
-    const TvGaborResult<TestType> result = tv_gabor<TestType>(flat_image(size, 77), {});
+    const engine::TvGaborResult<TestType> result =
+        engine::tv_gabor<TestType>(flat_image(size, 77), {});
     CHECK(largest_magnitude(result.texture) == 0.0);
     CHECK(result.cartoon == Plane<TestType>(size.height, size.width, TestType{77}));
     CHECK(result.gap == 0.0);
@@ -70,7 +71,7 @@ TEMPLATE_TEST_CASE("tv_gabor gives cartoon plus texture the image's shape and le
                    double) {
   for (const Size size : {Size{1, 9}, Size{9, 1}, Size{2, 2}, Size{5, 7}, Size{64, 63}}) {
     const GreyImage image = noise_image(size);
-    const TvGaborResult<TestType> result = tv_gabor<TestType>(image, {});
+    const engine::TvGaborResult<TestType> result = engine::tv_gabor<TestType>(image, {});
     Plane<TestType> sum = result.cartoon;
     REQUIRE(sum.size() == result.texture.size());
     for (std::size_t i = 0; i < sum.size(); ++i) {
@@ -87,18 +88,18 @@ TEST_CASE("tv_gabor sees texture in stripes of its frequency and little in a bro
   for (int y = 0; y < 64; ++y) {
     for (int x = 0; x < 64; ++x) stripes.at(y, x) = (x / 2) % 2 == 0 ? 100 : 160;
   }
-  const auto striped = tv_gabor<double>(stripes, {});
+  const auto striped = engine::tv_gabor<double>(stripes, {});
   CHECK(largest_magnitude(striped.texture) > 25.0);
-  TvGaborOptions options;
+  engine::TvGaborOptions options;
   options.gap = 1e-3;
-  const auto edge = tv_gabor<double>(step_image({64, 64}, 100, 160), options);
+  const auto edge = engine::tv_gabor<double>(step_image({64, 64}, 100, 160), options);
   CHECK(largest_magnitude(edge.texture) < 2.0);
 }
 
 TEST_CASE("tv_gabor in float finds the texture that double finds") {
   for (const GreyImage& image : {noise_image({90, 81}), cloth_image({90, 81})}) {
-    const auto exact = tv_gabor<double>(image, {});
-    const auto single = tv_gabor<float>(image, {});
+    const auto exact = engine::tv_gabor<double>(image, {});
+    const auto single = engine::tv_gabor<float>(image, {});
     CHECK(exact.converged);
     CHECK(single.converged);
     CHECK(distance_relative_to(single.texture, exact.texture) < 1e-3);
@@ -106,31 +107,32 @@ TEST_CASE("tv_gabor in float finds the texture that double finds") {
 }
 
 TEST_CASE("tv_gabor in float goes on in double where float's digits end") {
-  TvGaborOptions options;
+  engine::TvGaborOptions options;
   options.gap = 1e-8;
-  const auto result = tv_gabor<float>(noise_image({40, 41}), options);
+  const auto result = engine::tv_gabor<float>(noise_image({40, 41}), options);
   CHECK(result.converged);
   CHECK(result.gap <= 1e-8);
   CHECK(distance_relative_to(result.texture,
-                             tv_gabor<double>(noise_image({40, 41}), options).texture) < 1e-4);
+                             engine::tv_gabor<double>(noise_image({40, 41}), options).texture) <
+        1e-4);
 }
 
 TEST_CASE("tv_gabor gives the same samples every time") {
   const GreyImage image = cloth_image({30, 31});
-  CHECK(tv_gabor<float>(image, {}).texture == tv_gabor<float>(image, {}).texture);
+  CHECK(engine::tv_gabor<float>(image, {}).texture == engine::tv_gabor<float>(image, {}).texture);
 }
 
 TEST_CASE("tv_gabor of a negative is the negative texture") {
   const GreyImage image = cloth_image({40, 41});
-  auto negative = tv_gabor<double>(negative_of(image), {}).texture;
+  auto negative = engine::tv_gabor<double>(negative_of(image), {}).texture;
   for (double& sample : negative.samples()) sample = -sample;
-  CHECK(distance_relative_to(negative, tv_gabor<double>(image, {}).texture) < 1e-9);
+  CHECK(distance_relative_to(negative, engine::tv_gabor<double>(image, {}).texture) < 1e-9);
 }
 
 TEST_CASE("tv_gabor that runs out of steps says so and gives what it has") {
-  TvGaborOptions options;
+  engine::TvGaborOptions options;
   options.max_steps = 3;
-  const auto result = tv_gabor<double>(cloth_image({40, 41}), options);
+  const auto result = engine::tv_gabor<double>(cloth_image({40, 41}), options);
   CHECK_FALSE(result.converged);
   CHECK(result.steps == 3);
   CHECK(result.gap > options.gap);
@@ -138,18 +140,19 @@ TEST_CASE("tv_gabor that runs out of steps says so and gives what it has") {
 }
 
 TEMPLATE_TEST_CASE("tv_gabor stays finite at the ends of lambda's range", "", float, double) {
-  for (const double lambda : {TvGaborOptions::kMinLambda, TvGaborOptions::kMaxLambda}) {
-    TvGaborOptions options;
+  for (const double lambda :
+       {engine::TvGaborOptions::kMinLambda, engine::TvGaborOptions::kMaxLambda}) {
+    engine::TvGaborOptions options;
     options.lambda = lambda;
     options.max_steps = 300;
-    const auto result = tv_gabor<TestType>(noise_image({20, 20}), options);
+    const auto result = engine::tv_gabor<TestType>(noise_image({20, 20}), options);
     CHECK(std::isfinite(largest_magnitude(result.texture)));
     CHECK(std::isfinite(result.gap));
   }
 }
 
 TEST_CASE("tv_gabor refuses an empty image") {
-  CHECK_THROWS_AS(tv_gabor<float>(GreyImage(), {}), std::invalid_argument);
+  CHECK_THROWS_AS(engine::tv_gabor<float>(GreyImage(), {}), std::invalid_argument);
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include "support/fault_vfs.hpp"
 
 using namespace touchtrial;
+using namespace touchtrial::collect;
+using namespace touchtrial::store;
 using namespace touchtrial::fixture;
 using touchtrial::testing::Fault;
 using touchtrial::testing::FaultVfs;

@@ -5,6 +5,8 @@
 #include <algorithm>
 
 using namespace touchtrial;
+using namespace touchtrial::collect;
+using namespace touchtrial::store;
 using namespace touchtrial::fixture;
 
 namespace {

@@ -15,11 +15,11 @@ namespace touchtrial::fixture {
 namespace fs = std::filesystem;
 using std::chrono::minutes;
 
-using Access = StudyStore::Access;
+using Access = store::StudyStore::Access;
 
 /// People, not simulated: times of day count.
-inline StudyCommitment lab_commitment() {
-  StudyCommitment commitment = fixture::commitment();
+inline store::StudyCommitment lab_commitment() {
+  store::StudyCommitment commitment = fixture::commitment();
   commitment.simulated = false;
   return commitment;
 }
@@ -30,8 +30,9 @@ struct Visitor {
   nanoseconds at{};  ///< since kUtc
 };
 
-inline SessionOpening opening_of(const Visitor& visitor, const StudyCommitment& commitment) {
-  SessionOpening opening = fixture::opening(1);
+inline store::SessionOpening opening_of(const Visitor& visitor,
+                                        const store::StudyCommitment& commitment) {
+  store::SessionOpening opening = fixture::opening(1);
   opening.participant = visitor.participant;
   opening.enrolment = visitor.enrolment;
   opening.study_id = commitment.study_id;
@@ -42,7 +43,7 @@ inline SessionOpening opening_of(const Visitor& visitor, const StudyCommitment& 
 }
 
 /// Records the visitors' finished sessions.
-inline void visit(StudyStore& store, const std::vector<Visitor>& visitors) {
+inline void visit(store::StudyStore& store, const std::vector<Visitor>& visitors) {
   for (const Visitor& visitor : visitors) {
     const int session = store.next_session();
     store.add_session(
@@ -52,11 +53,11 @@ inline void visit(StudyStore& store, const std::vector<Visitor>& visitors) {
 }
 
 /// Opens a session and leaves it open.
-inline void begin(StudyStore& store, const Visitor& visitor) {
+inline void begin(store::StudyStore& store, const Visitor& visitor) {
   const int session = store.next_session();
   const auto sink =
       store.begin_session(session, wrapped_key_of(session), [&] { return kUtc + visitor.at; });
-  SessionRecorder recorder(session, participant_key(session), *sink);
+  store::SessionRecorder recorder(session, participant_key(session), *sink);
   recorder.opened(nanoseconds(0), opening_of(visitor, store.commitment()), R"({"schedule":"x"})");
 }
 
@@ -65,16 +66,16 @@ class Lab {
  public:
   /// Makes a station's database. \return its path
   fs::path station(const std::string& name, const std::vector<Visitor>& visitors,
-                   const StudyCommitment& commitment = lab_commitment()) {
+                   const store::StudyCommitment& commitment = lab_commitment()) {
     const fs::path path = file(name);
-    StudyStore store = StudyStore::create(path, commitment, kUtc);
+    store::StudyStore store = store::StudyStore::create(path, commitment, kUtc);
     visit(store, visitors);
     return path;
   }
   /// Something is done at a station.
   template <typename Work>
   static void at(const fs::path& path, Work&& work) {
-    StudyStore store = StudyStore::open(path, Access::read_write);
+    store::StudyStore store = store::StudyStore::open(path, Access::read_write);
     work(store);
   }
   [[nodiscard]] fs::path file(const std::string& name) const { return folder_.path() / name; }
@@ -89,16 +90,16 @@ class Lab {
   TempFolder folder_;
 };
 
-inline Stations stations_in(const std::vector<fs::path>& files) {
-  Stations stations;
+inline collect::Stations stations_in(const std::vector<fs::path>& files) {
+  collect::Stations stations;
   for (const fs::path& file : files) {
-    for (auto& station : stations_of_file(file)) stations.push_back(std::move(station));
+    for (auto& station : collect::stations_of_file(file)) stations.push_back(std::move(station));
   }
   return stations;
 }
 
-inline CollectReport merge(const std::vector<fs::path>& files, const fs::path& target) {
-  return collect_into_file(stations_in(files), target);
+inline collect::CollectReport merge(const std::vector<fs::path>& files, const fs::path& target) {
+  return collect::collect_into_file(stations_in(files), target);
 }
 
 /// The line with which a merge is refused, which then leaves nothing behind; empty if it is not.
@@ -112,9 +113,9 @@ inline std::string merge_refusal(const Lab& lab, const std::vector<fs::path>& fi
   return left == 0 ? line : line + " [LEFT A FILE]";
 }
 
-inline std::vector<std::string> participants_in(const StudyStore& store) {
+inline std::vector<std::string> participants_in(const store::StudyStore& store) {
   std::vector<std::string> participants;
-  for (const SessionRow& row : store.sessions()) participants.push_back(row.participant);
+  for (const store::SessionRow& row : store.sessions()) participants.push_back(row.participant);
   return participants;
 }
 

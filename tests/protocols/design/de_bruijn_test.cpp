@@ -13,7 +13,7 @@ TEST_CASE("every ordered pair of symbols follows each other once in a de Bruijn 
   RandomStream random(1, "test");
   for (int symbols = 1; symbols <= 12; ++symbols) {
     for (int repetition = 0; repetition < 20; ++repetition) {
-      const std::vector<int> cycle = random_de_bruijn_cycle(symbols, random);
+      const std::vector<int> cycle = design::random_de_bruijn_cycle(symbols, random);
       REQUIRE(cycle.size() == static_cast<std::size_t>(symbols) * symbols);
       std::set<std::pair<int, int>> pairs;
       for (std::size_t i = 0; i < cycle.size(); ++i) {
@@ -31,7 +31,7 @@ TEST_CASE("each of the 216 de Bruijn sequences over three symbols is equally lik
   // freedom lie below 332.
   RandomStream random(2, "test");
   std::map<std::vector<int>, int> counts;
-  for (int i = 0; i < 216 * 100; ++i) ++counts[random_de_bruijn_cycle(3, random)];
+  for (int i = 0; i < 216 * 100; ++i) ++counts[design::random_de_bruijn_cycle(3, random)];
   CHECK(counts.size() == 216);
   CHECK(chi_square_uniform(counts, 216) < 332.0);
 }

@@ -15,11 +15,11 @@
 namespace touchtrial {
 namespace {
 
-std::string refusal_of(const std::filesystem::path& path, const Study& study) {
-  return message_of<StudyError>([&] { return load_plan(path, study); });
+std::string refusal_of(const std::filesystem::path& path, const design::Study& study) {
+  return message_of<StudyError>([&] { return design::load_plan(path, study); });
 }
 
-Study study_with_methods(int methods) {
+design::Study study_with_methods(int methods) {
   nlohmann::json study = comparison_of(2);
   study["methods"] = nlohmann::json::array();
   for (int i = 0; i < methods; ++i) {
@@ -35,17 +35,17 @@ std::vector<std::string> names(int count) {
   return all;
 }
 
-EnrolmentPlan plan_of(const Study& study, int participants, int stations) {
-  EnrolmentPlan plan = empty_plan(study, names(stations));
-  extend_plan(plan, study, participants);
+design::EnrolmentPlan plan_of(const design::Study& study, int participants, int stations) {
+  design::EnrolmentPlan plan = design::empty_plan(study, names(stations));
+  design::extend_plan(plan, study, participants);
   return plan;
 }
 
 /// Which station has each number, from 1; every number has one.
-std::vector<std::string> owners(const EnrolmentPlan& plan) {
+std::vector<std::string> owners(const design::EnrolmentPlan& plan) {
   std::vector<std::string> owner(static_cast<std::size_t>(plan.participants()));
-  for (const StationShare& share : plan.stations) {
-    for (const EnrolmentRange& range : share.ranges) {
+  for (const design::StationShare& share : plan.stations) {
+    for (const design::EnrolmentRange& range : share.ranges) {
       for (int number = range.first; number <= range.last; ++number) {
         std::string& place = owner.at(static_cast<std::size_t>(number - 1));
         CHECK(place.empty());
@@ -66,14 +66,14 @@ void check_even(const std::vector<int>& counts) {
 }  // namespace
 
 TEST_CASE("a plan gives every number to one station, as many to each as can be") {
-  const Study study = study_with_methods(2);
+  const design::Study study = study_with_methods(2);
   for (int participants = 1; participants <= 60; ++participants) {
     for (int stations = 1; stations <= 7; ++stations) {
-      const EnrolmentPlan plan = plan_of(study, participants, stations);
+      const design::EnrolmentPlan plan = plan_of(study, participants, stations);
       CHECK(plan.participants() == participants);
       CHECK(owners(plan).size() == static_cast<std::size_t>(participants));
       std::vector<int> sizes;
-      for (const StationShare& share : plan.stations) sizes.push_back(share.size());
+      for (const design::StationShare& share : plan.stations) sizes.push_back(share.size());
       check_even(sizes);
     }
   }
@@ -81,10 +81,10 @@ TEST_CASE("a plan gives every number to one station, as many to each as can be")
 
 TEST_CASE("orders of methods are as even at each station as in the whole study") {
   for (int methods = 2; methods <= 5; ++methods) {
-    const Study study = study_with_methods(methods);
-    const EnrolmentPlan plan = plan_of(study, 37, 3);
-    for (const StationShare& share : plan.stations) {
-      const std::vector<int> counts = orders_of(study, share.ranges);
+    const design::Study study = study_with_methods(methods);
+    const design::EnrolmentPlan plan = plan_of(study, 37, 3);
+    for (const design::StationShare& share : plan.stations) {
+      const std::vector<int> counts = design::orders_of(study, share.ranges);
       CHECK(counts.size() == static_cast<std::size_t>(methods % 2 == 0 ? methods : 2 * methods));
       CHECK(std::accumulate(counts.begin(), counts.end(), 0) == share.size());
       check_even(counts);
@@ -95,48 +95,48 @@ TEST_CASE("orders of methods are as even at each station as in the whole study")
 TEST_CASE("a study of mixed blocks has one order of methods") {
   nlohmann::json study = comparison_of(2);
   study["trials"] = {{"blocks", "mixed"}};
-  const std::vector<EnrolmentRange> range = {{3, 9}};
-  CHECK(orders_of(parsed(study), range) == std::vector<int>{7});
+  const std::vector<design::EnrolmentRange> range = {{3, 9}};
+  CHECK(design::orders_of(parsed(study), range) == std::vector<int>{7});
 }
 
 TEST_CASE("a plan that is extended leaves every number where it was") {
-  const Study study = study_with_methods(2);
-  EnrolmentPlan plan = plan_of(study, 10, 4);
+  const design::Study study = study_with_methods(2);
+  design::EnrolmentPlan plan = plan_of(study, 10, 4);
   const std::vector<std::string> before = owners(plan);
-  extend_plan(plan, study, 31);
+  design::extend_plan(plan, study, 31);
   const std::vector<std::string> after = owners(plan);
   REQUIRE(after.size() == 31);
   CHECK(std::equal(before.begin(), before.end(), after.begin()));
   std::vector<int> sizes;
-  for (const StationShare& share : plan.stations) sizes.push_back(share.size());
+  for (const design::StationShare& share : plan.stations) sizes.push_back(share.size());
   check_even(sizes);
-  CHECK_THROWS_AS(extend_plan(plan, study, 30), std::invalid_argument);
+  CHECK_THROWS_AS(design::extend_plan(plan, study, 30), std::invalid_argument);
 }
 
 TEST_CASE("a plan that is extended makes orders even again that an odd number left uneven") {
-  const Study study = study_with_methods(2);
-  EnrolmentPlan plan = plan_of(study, 6, 2);
-  extend_plan(plan, study, 7);
-  extend_plan(plan, study, 12);
-  for (const StationShare& share : plan.stations) {
-    CHECK(orders_of(study, share.ranges) == std::vector<int>{3, 3});
+  const design::Study study = study_with_methods(2);
+  design::EnrolmentPlan plan = plan_of(study, 6, 2);
+  design::extend_plan(plan, study, 7);
+  design::extend_plan(plan, study, 12);
+  for (const design::StationShare& share : plan.stations) {
+    CHECK(design::orders_of(study, share.ranges) == std::vector<int>{3, 3});
   }
 }
 
 TEST_CASE("a plan is read as it was written") {
   const TempFolder folder;
-  const Study study = study_with_methods(2);
-  EnrolmentPlan plan = plan_of(study, 10, 4);
-  extend_plan(plan, study, 17);
+  const design::Study study = study_with_methods(2);
+  design::EnrolmentPlan plan = plan_of(study, 10, 4);
+  design::extend_plan(plan, study, 17);
   const std::filesystem::path path = folder.path() / "cloths.plan.json";
-  save_plan(path, plan);
-  CHECK(load_plan(path, study) == plan);
-  CHECK(plan_path_for(folder.path() / "cloths.json") == path);
+  design::save_plan(path, plan);
+  CHECK(design::load_plan(path, study) == plan);
+  CHECK(design::plan_path_for(folder.path() / "cloths.json") == path);
 }
 
 TEST_CASE("a plan that does not deal each number once is refused at its place") {
   const TempFolder folder;
-  const Study study = study_with_methods(2);
+  const design::Study study = study_with_methods(2);
   const std::filesystem::path path = folder.path() / "p.json";
   const auto refusal_of_stations = [&](const std::string& stations,
                                        const std::string& name = "small") {
@@ -166,33 +166,34 @@ TEST_CASE("a plan that does not deal each number once is refused at its place") 
 }
 
 TEST_CASE("a station takes its smallest number that nobody has") {
-  const Study study = study_with_methods(2);
-  EnrolmentPlan plan = plan_of(study, 6, 2);
-  CHECK(next_of_station(plan, "s2", {}, "p.json") == 4);
-  CHECK(next_of_station(plan, "s2", {4, 1}, "p.json") == 5);
-  CHECK(next_of_station(plan, "s1", {1, 3}, "p.json") == 2);
+  const design::Study study = study_with_methods(2);
+  design::EnrolmentPlan plan = plan_of(study, 6, 2);
+  CHECK(design::next_of_station(plan, "s2", {}, "p.json") == 4);
+  CHECK(design::next_of_station(plan, "s2", {4, 1}, "p.json") == 5);
+  CHECK(design::next_of_station(plan, "s1", {1, 3}, "p.json") == 2);
   CHECK_THAT(message_of<StudyError>([&] {
-               return next_of_station(plan, "s1", {1, 2, 3}, "p.json");
+               return design::next_of_station(plan, "s1", {1, 2, 3}, "p.json");
              }),
              Catch::Contains("p.json: all numbers of station s1 are taken"));
-  CHECK_THAT(message_of<StudyError>([&] { return next_of_station(plan, "s3", {}, "p.json"); }),
-             Catch::Contains("has no station \"s3\"; it has s1, s2"));
-  extend_plan(plan, study, 8);
+  CHECK_THAT(
+      message_of<StudyError>([&] { return design::next_of_station(plan, "s3", {}, "p.json"); }),
+      Catch::Contains("has no station \"s3\"; it has s1, s2"));
+  design::extend_plan(plan, study, 8);
   // 7 would be the third of one order at s1, and makes s2 even.
-  CHECK(next_of_station(plan, "s1", {1, 2, 3}, "p.json") == 8);
+  CHECK(design::next_of_station(plan, "s1", {1, 2, 3}, "p.json") == 8);
 }
 
 TEST_CASE("names of stations are simple, and each is one station's") {
-  const Study study = study_with_methods(2);
+  const design::Study study = study_with_methods(2);
   const auto refused = [&](const std::vector<std::string>& stations) {
-    CHECK_THROWS_AS(empty_plan(study, stations), UsageError);
+    CHECK_THROWS_AS(design::empty_plan(study, stations), UsageError);
   };
   refused({});
   refused({""});
   refused({"lab/2"});
   refused({std::string(33, 'a')});
   refused({"a", "a"});
-  refused(std::vector<std::string>(kMostStations + 1, "a"));
+  refused(std::vector<std::string>(design::kMostStations + 1, "a"));
 }
 
 }  // namespace touchtrial

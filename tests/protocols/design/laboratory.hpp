@@ -21,7 +21,7 @@ inline void write_noise(const std::filesystem::path& path, std::uint64_t seed) {
   RandomStream random(seed, "test image");
   GreyImage image(kSide, kSide);
   for (auto& sample : image.samples()) sample = static_cast<std::uint8_t>(random.below(256));
-  write_png(path, image);
+  engine::write_png(path, image);
 }
 
 /// A study of three small images in a folder of its own.
@@ -38,11 +38,13 @@ struct Laboratory {
     return folder.path() / ("c" + std::to_string(c) + "_0.png");
   }
   [[nodiscard]] std::filesystem::path pack() const { return folder.path() / "small.pack"; }
-  [[nodiscard]] StudyKey key() const {
+  [[nodiscard]] design::StudyKey key() const {
     SeededEntropy entropy(key_seed);
-    return make_study_key(parsed(document, folder.path()), entropy, simulated);
+    return design::make_study_key(parsed(document, folder.path()), entropy, simulated);
   }
-  [[nodiscard]] PrepareReport prepare() const { return prepare_pack(key(), pack()); }
+  [[nodiscard]] design::PrepareReport prepare() const {
+    return design::prepare_pack(key(), pack());
+  }
   [[nodiscard]] std::map<std::string, Bytes> files() const {
     std::map<std::string, Bytes> files;
     for (const auto& file : std::filesystem::directory_iterator(pack())) {
@@ -52,11 +54,12 @@ struct Laboratory {
   }
 };
 
-inline int reused(const PrepareReport& report) {
-  return static_cast<int>(std::ranges::count(report.stimuli, true, &PreparedStimulus::reused));
+inline int reused(const design::PrepareReport& report) {
+  return static_cast<int>(
+      std::ranges::count(report.stimuli, true, &design::PreparedStimulus::reused));
 }
 
-inline bool warns(const PrepareReport& report, const std::string& part) {
+inline bool warns(const design::PrepareReport& report, const std::string& part) {
   return std::ranges::any_of(report.warnings, [&](const std::string& warning) {
     return warning.find(part) != std::string::npos;
   });

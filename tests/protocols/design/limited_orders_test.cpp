@@ -13,15 +13,16 @@
 namespace touchtrial {
 namespace {
 
-bool keeps(const std::vector<int>& order, int max_run, RunBefore before) {
+bool keeps(const std::vector<int>& order, int max_run, design::RunBefore before) {
   return std::ranges::all_of(order, [&](int symbol) {
-    before = run_at_end({symbol}, before);
+    before = design::run_at_end({symbol}, before);
     return before.length <= max_run;
   });
 }
 
 /// Every order of the copies, by trying all.
-std::set<std::vector<int>> allowed(const std::vector<int>& counts, int max_run, RunBefore before) {
+std::set<std::vector<int>> allowed(const std::vector<int>& counts, int max_run,
+                                   design::RunBefore before) {
   std::vector<int> order;
   for (int s = 0; s < static_cast<int>(counts.size()); ++s) {
     order.insert(order.end(), static_cast<std::size_t>(counts[static_cast<std::size_t>(s)]), s);
@@ -35,7 +36,7 @@ std::set<std::vector<int>> allowed(const std::vector<int>& counts, int max_run, 
 
 /// Every sequence of that length, by trying all.
 std::set<std::vector<int>> allowed_sequences(int symbols, int length, int max_run,
-                                             RunBefore before) {
+                                             design::RunBefore before) {
   std::set<std::vector<int>> found = {{}};
   for (int i = 0; i < length; ++i) {
     std::set<std::vector<int>> longer;
@@ -56,7 +57,7 @@ std::set<std::vector<int>> allowed_sequences(int symbols, int length, int max_ru
 struct Case {
   std::vector<int> counts;
   int max_run;
-  RunBefore before;
+  design::RunBefore before;
 };
 
 std::vector<Case> small_cases() {
@@ -96,10 +97,10 @@ TEST_CASE("orders with limited runs are counted exactly, and found impossible wh
   for (const auto& [counts, max_run, before] : small_cases()) {
     const auto possible = allowed(counts, max_run, before);
     INFO("limit " << max_run << " after " << before.length << " of " << before.symbol);
-    CHECK(count_limited_orders(counts, max_run, before) == std::to_string(possible.size()));
-    CHECK(limited_order_exists(counts, max_run, before) == !possible.empty());
+    CHECK(design::count_limited_orders(counts, max_run, before) == std::to_string(possible.size()));
+    CHECK(design::limited_order_exists(counts, max_run, before) == !possible.empty());
     RandomStream random(1, "test");
-    const auto drawn = draw_limited_order(counts, max_run, before, random);
+    const auto drawn = design::draw_limited_order(counts, max_run, before, random);
     CHECK(drawn.has_value() == !possible.empty());
     if (drawn) CHECK(possible.count(*drawn) == 1);
     impossible += possible.empty() ? 1 : 0;
@@ -116,7 +117,7 @@ TEST_CASE("orders with limited runs are drawn uniformly from all") {
     const auto possible = allowed(counts, max_run, before);
     REQUIRE(possible.size() > 1);
     CHECK(std::abs(excess(possible, 200, [&](int) {
-            return draw_limited_order(counts, max_run, before, random).value();
+            return design::draw_limited_order(counts, max_run, before, random).value();
           })) < 4.0);
   }
 }
@@ -129,7 +130,7 @@ TEST_CASE("sequences with limited runs are drawn uniformly from all") {
     const auto possible = allowed_sequences(symbols.front(), 5, max_run, before);
     REQUIRE_FALSE(possible.empty());
     CHECK(std::abs(excess(possible, 300, [&](int) {
-            return draw_limited_sequence(symbols.front(), 5, max_run, before, random);
+            return design::draw_limited_sequence(symbols.front(), 5, max_run, before, random);
           })) < (possible.size() > 1 ? 4.0 : 1.1));
   }
 }
@@ -137,34 +138,34 @@ TEST_CASE("sequences with limited runs are drawn uniformly from all") {
 TEST_CASE("Williams orders with and without a limit are drawn uniformly from all that there are") {
   struct WilliamsCase {
     int symbols, rows, max_run;
-    RunBefore before;
+    design::RunBefore before;
   };
   for (const auto& [symbols, rows, max_run, before] : std::vector<WilliamsCase>{
            {3, 2, 0, {}}, {3, 3, 1, {}}, {4, 2, 1, {}}, {3, 4, 1, {2, 1}}, {2, 3, 2, {0, 2}}}) {
     RandomStream free_random(9, "all");
     std::set<std::vector<int>> possible;
     for (int i = 0; i < 20'000; ++i) {
-      const auto order = random_williams_order(symbols, rows, 0, {}, free_random);
+      const auto order = design::random_williams_order(symbols, rows, 0, {}, free_random);
       if (max_run == 0 || keeps(order, max_run, before)) possible.insert(order);
     }
     RandomStream random(10, "limited");
     INFO(symbols << " symbols, " << rows << " rows, limit " << max_run);
     CHECK(std::abs(excess(possible, 100, [&](int) {
-            return random_williams_order(symbols, rows, max_run, before, random);
+            return design::random_williams_order(symbols, rows, max_run, before, random);
           })) < 4.0);
   }
 }
 
 TEST_CASE("two rows of two symbols are the one Williams order that no limit of 1 allows") {
-  CHECK_FALSE(williams_order_exists(2, 2, 1));
+  CHECK_FALSE(design::williams_order_exists(2, 2, 1));
   RandomStream random(11, "two");
   for (int i = 0; i < 100; ++i) {
-    CHECK_FALSE(keeps(random_williams_order(2, 2, 0, {}, random), 1, {}));
+    CHECK_FALSE(keeps(design::random_williams_order(2, 2, 0, {}, random), 1, {}));
   }
-  CHECK(williams_order_exists(2, 1, 1));
+  CHECK(design::williams_order_exists(2, 1, 1));
   for (int symbols = 3; symbols < 9; ++symbols) {
-    CHECK(williams_order_exists(symbols, 50, 1));
-    CHECK(keeps(random_williams_order(symbols, 50, 1, {}, random), 1, {}));
+    CHECK(design::williams_order_exists(symbols, 50, 1));
+    CHECK(keeps(design::random_williams_order(symbols, 50, 1, {}, random), 1, {}));
   }
 }
 
@@ -172,7 +173,7 @@ TEST_CASE("all rows of a Williams order balance places and, within rows, neighbo
   for (const int symbols : {3, 4, 5, 6}) {
     RandomStream random(12, "balance");
     const int rows = symbols % 2 == 0 ? symbols : 2 * symbols;
-    const auto order = random_williams_order(symbols, rows, 0, {}, random);
+    const auto order = design::random_williams_order(symbols, rows, 0, {}, random);
     std::map<std::pair<int, int>, int> places;
     std::map<std::pair<int, int>, int> neighbours;
     for (int i = 0; i < rows * symbols; ++i) {
@@ -188,14 +189,14 @@ TEST_CASE("all rows of a Williams order balance places and, within rows, neighbo
 }
 
 TEST_CASE("sizes that could not be counted are told before anything is counted") {
-  CHECK(limited_orders_are_countable(std::vector<int>(5, 5), 2));
-  CHECK(limited_orders_are_countable(std::vector<int>(2, 300), 2));
-  CHECK(limited_orders_are_countable(std::vector<int>(12, 5), 2));
-  CHECK(limited_orders_are_countable(std::vector<int>(64, 2), 2));
-  CHECK_FALSE(limited_orders_are_countable(std::vector<int>(64, 156), 2));
-  CHECK_FALSE(limited_orders_are_countable(std::vector<int>(2, 5000), 2));
-  CHECK_FALSE(limited_orders_are_countable(std::vector<int>(32, 5), 2));
-  CHECK_FALSE(limited_orders_are_countable(std::vector<int>(2, 300), 100));
+  CHECK(design::limited_orders_are_countable(std::vector<int>(5, 5), 2));
+  CHECK(design::limited_orders_are_countable(std::vector<int>(2, 300), 2));
+  CHECK(design::limited_orders_are_countable(std::vector<int>(12, 5), 2));
+  CHECK(design::limited_orders_are_countable(std::vector<int>(64, 2), 2));
+  CHECK_FALSE(design::limited_orders_are_countable(std::vector<int>(64, 156), 2));
+  CHECK_FALSE(design::limited_orders_are_countable(std::vector<int>(2, 5000), 2));
+  CHECK_FALSE(design::limited_orders_are_countable(std::vector<int>(32, 5), 2));
+  CHECK_FALSE(design::limited_orders_are_countable(std::vector<int>(2, 300), 100));
 }
 
 TEST_CASE("the largest sizes are drawn") {
@@ -203,12 +204,12 @@ TEST_CASE("the largest sizes are drawn") {
   for (const auto& [symbols, copies, max_run] :
        {std::tuple{2, 300, 3}, {12, 5, 1}, {64, 2, 1}, {5, 12, 2}}) {
     const std::vector<int> counts(static_cast<std::size_t>(symbols), copies);
-    const auto order = draw_limited_order(counts, max_run, {}, random).value();
+    const auto order = design::draw_limited_order(counts, max_run, {}, random).value();
     CHECK(keeps(order, max_run, {}));
     for (int s = 0; s < symbols; ++s) CHECK(std::ranges::count(order, s) == copies);
   }
-  CHECK(keeps(draw_limited_sequence(2, 10'000, 2, {}, random), 2, {}));
-  CHECK(draw_limited_sequence(64, 10'000, 9'000, {}, random).size() == 10'000);
+  CHECK(keeps(design::draw_limited_sequence(2, 10'000, 2, {}, random), 2, {}));
+  CHECK(design::draw_limited_sequence(64, 10'000, 9'000, {}, random).size() == 10'000);
 }
 
 }  // namespace touchtrial

@@ -20,7 +20,7 @@ struct PracticeLaboratory : Laboratory {
     write_noise(folder.path() / "one.png", 11);
     write_noise(folder.path() / "two.png", 12);
   }
-  [[nodiscard]] Study study() const { return parsed(document, folder.path()); }
+  [[nodiscard]] design::Study study() const { return parsed(document, folder.path()); }
 };
 
 PlaneGeometry plane_of(int side) {
@@ -28,28 +28,28 @@ PlaneGeometry plane_of(int side) {
 }
 
 /// Forces of a light press along a line.
-std::vector<Vec3> felt(const RenderingModel& model) {
+std::vector<Vec3> felt(const engine::RenderingModel& model) {
   std::vector<Vec3> forces;
-  Bristle touch;
+  engine::Bristle touch;
   for (double x = 0.5; x < 4.0; x += 0.1) {
     forces.push_back(model.force_n({x, 2.0, -0.5}, {}, touch));
   }
   return forces;
 }
 
-bool has_texture(const RenderingModel& model) {
+bool has_texture(const engine::RenderingModel& model) {
   const std::vector<Vec3> forces = felt(model);
   return std::ranges::any_of(forces, [&](const Vec3& force) { return force.x != 0.0; });
 }
 
-constexpr Gains kStrong{.tangential_n = 1.0, .normal_n = 1.0};
-constexpr Gains kWeak{.tangential_n = 1e-6, .normal_n = 1e-6};
+constexpr engine::Gains kStrong{.tangential_n = 1.0, .normal_n = 1.0};
+constexpr engine::Gains kWeak{.tangential_n = 1e-6, .normal_n = 1e-6};
 
 }  // namespace
 
 TEST_CASE("practice textures are felt on a plane of the study's size, and differ") {
   const PracticeLaboratory laboratory;
-  const PracticeSet practice(laboratory.study(), kStrong, plane_of(kSide));
+  const design::PracticeSet practice(laboratory.study(), kStrong, plane_of(kSide));
   REQUIRE(practice.classes() == 2);
   CHECK(practice.plane().width_px == kSide);
   CHECK(has_texture(practice.model(0)));
@@ -61,8 +61,8 @@ TEST_CASE("practice textures are felt on a plane of the study's size, and differ
 
 TEST_CASE("practice is no stronger than the pack, and than the budget allows") {
   const PracticeLaboratory laboratory;
-  const auto strongest = [&](const Gains& gains) {
-    const PracticeSet practice(laboratory.study(), gains, plane_of(kSide));
+  const auto strongest = [&](const engine::Gains& gains) {
+    const design::PracticeSet practice(laboratory.study(), gains, plane_of(kSide));
     double most = 0.0;
     for (const Vec3& force : felt(practice.model(0))) most = std::max(most, std::abs(force.x));
     return most;
@@ -74,9 +74,10 @@ TEST_CASE("practice is no stronger than the pack, and than the budget allows") {
 
 TEST_CASE("the middle of a larger image is practised on, a smaller one is refused") {
   const PracticeLaboratory laboratory;
-  CHECK(has_texture(PracticeSet(laboratory.study(), kStrong, plane_of(kSide - 4)).model(1)));
+  CHECK(
+      has_texture(design::PracticeSet(laboratory.study(), kStrong, plane_of(kSide - 4)).model(1)));
   const auto too_large = [&] {
-    return PracticeSet(laboratory.study(), kStrong, plane_of(kSide + 1));
+    return design::PracticeSet(laboratory.study(), kStrong, plane_of(kSide + 1));
   };
   CHECK(refuses<StudyError>(too_large, "/practice/classes/0/images/0: has fewer pixels"));
 }
@@ -84,12 +85,12 @@ TEST_CASE("the middle of a larger image is practised on, a smaller one is refuse
 TEST_CASE("a practice image that is missing is named by its place") {
   const PracticeLaboratory laboratory;
   std::filesystem::remove(laboratory.folder.path() / "two.png");
-  CHECK(
-      refuses<StudyError>([&] { return PracticeSet(laboratory.study(), kStrong, plane_of(kSide)); },
-                          "/practice/classes/1/images/0: "));
+  CHECK(refuses<StudyError>(
+      [&] { return design::PracticeSet(laboratory.study(), kStrong, plane_of(kSide)); },
+      "/practice/classes/1/images/0: "));
   CHECK(refuses<StudyError>(
       [&] {
-        check_images_exist(laboratory.study());
+        design::check_images_exist(laboratory.study());
         return 0;
       },
       "/practice/classes/1/images/0: "));
@@ -97,27 +98,27 @@ TEST_CASE("a practice image that is missing is named by its place") {
 
 TEST_CASE("a study without practice has the plane without texture") {
   const Laboratory laboratory;
-  const Study study = parsed(laboratory.document, laboratory.folder.path());
-  const PracticeSet practice(study, kStrong, plane_of(kSide));
+  const design::Study study = parsed(laboratory.document, laboratory.folder.path());
+  const design::PracticeSet practice(study, kStrong, plane_of(kSide));
   CHECK(practice.classes() == 0);
   CHECK_FALSE(has_texture(practice.flat()));
-  CHECK(practice_round(study, 1, 1).empty());
+  CHECK(design::practice_round(study, 1, 1).empty());
 }
 
 TEST_CASE("a practice round has every texture about equally often, in an order of its own") {
   const PracticeLaboratory laboratory;
-  const Study study = laboratory.study();
+  const design::Study study = laboratory.study();
   std::set<std::vector<int>> orders;
   std::set<std::vector<int>> layouts;
   for (int enrolment = 1; enrolment <= 20; ++enrolment) {
     for (int round = 1; round <= 2; ++round) {
-      const std::vector<int> order = practice_round(study, enrolment, round);
-      CHECK(order == practice_round(study, enrolment, round));
+      const std::vector<int> order = design::practice_round(study, enrolment, round);
+      CHECK(order == design::practice_round(study, enrolment, round));
       REQUIRE(order.size() == 5);
       const auto ones = std::ranges::count(order, 1);
       CHECK((ones == 2 || ones == 3));
       orders.insert(order);
-      std::vector<int> layout = practice_layout(study, enrolment, round);
+      std::vector<int> layout = design::practice_layout(study, enrolment, round);
       layouts.insert(layout);
       std::ranges::sort(layout);
       CHECK(layout == std::vector<int>{0, 1});
@@ -128,12 +129,13 @@ TEST_CASE("a practice round has every texture about equally often, in an order o
 }
 
 TEST_CASE("the weakest gains of a pack are each gain's lowest") {
-  PackManifest manifest;
-  CHECK(weakest_gains(manifest) == Gains{});
+  engine::PackManifest manifest;
+  CHECK(design::weakest_gains(manifest) == engine::Gains{});
   manifest.entries.resize(2);
   manifest.entries[0].gains = {.tangential_n = 1.0, .normal_n = 4.0, .height_mm = 2.0};
   manifest.entries[1].gains = {.tangential_n = 2.0, .normal_n = 3.0, .height_mm = 2.0};
-  CHECK(weakest_gains(manifest) == Gains{.tangential_n = 1.0, .normal_n = 3.0, .height_mm = 2.0});
+  CHECK(design::weakest_gains(manifest) ==
+        engine::Gains{.tangential_n = 1.0, .normal_n = 3.0, .height_mm = 2.0});
 }
 
 }  // namespace touchtrial

@@ -12,9 +12,9 @@ namespace {
 
 using nlohmann::json;
 
-std::string text_of_stages(const std::vector<Stage>& stages) {
+std::string text_of_stages(const std::vector<engine::Stage>& stages) {
   std::string text;
-  for (const Stage& stage : stages) {
+  for (const engine::Stage& stage : stages) {
     text += stage.name + " " + std::string(name_of(stage.state)) + "; ";
   }
   return text;
@@ -22,10 +22,10 @@ std::string text_of_stages(const std::vector<Stage>& stages) {
 
 /// The stages of each stimulus in words, and those of the study last.
 std::vector<std::string> explained(const Laboratory& laboratory) {
-  const PrepareReport report =
-      prepare_pack(laboratory.key(), laboratory.pack(), {}, {.explain = true});
+  const design::PrepareReport report =
+      design::prepare_pack(laboratory.key(), laboratory.pack(), {}, {.explain = true});
   std::vector<std::string> texts;
-  for (const PreparedStimulus& stimulus : report.stimuli) {
+  for (const design::PreparedStimulus& stimulus : report.stimuli) {
     texts.push_back(text_of_stages(stimulus.stages));
   }
   texts.push_back(text_of_stages(report.study_stages));
@@ -57,11 +57,12 @@ TEST_CASE("an explanation tells what was computed and what was reused, and costs
 
 TEST_CASE("an explanation tells a damaged field from one that was never there") {
   const Laboratory laboratory;
-  const StudyKey key = laboratory.key();
+  const design::StudyKey key = laboratory.key();
   const auto why_written = [&] {
-    const PrepareReport report = prepare_pack(key, laboratory.pack(), {}, {.explain = true});
+    const design::PrepareReport report =
+        design::prepare_pack(key, laboratory.pack(), {}, {.explain = true});
     const auto& stages = report.stimuli[0].stages;
-    const auto written = std::ranges::find(stages, "write field", &Stage::name);
+    const auto written = std::ranges::find(stages, "write field", &engine::Stage::name);
     return written == stages.end() ? std::string() : written->why;
   };
   CHECK(why_written() == "the pack had none of this picture and these options");
@@ -71,15 +72,16 @@ TEST_CASE("an explanation tells a damaged field from one that was never there") 
 
 TEST_CASE("an explanation gives reasons and bytes, and never a code") {
   const Laboratory laboratory;
-  const StudyKey key = laboratory.key();
-  const PrepareReport report = prepare_pack(key, laboratory.pack(), {}, {.explain = true});
-  const PreparedStimulus& first = report.stimuli.front();
-  for (const Stage& stage : first.stages) {
+  const design::StudyKey key = laboratory.key();
+  const design::PrepareReport report =
+      design::prepare_pack(key, laboratory.pack(), {}, {.explain = true});
+  const design::PreparedStimulus& first = report.stimuli.front();
+  for (const engine::Stage& stage : first.stages) {
     INFO(stage.name);
     CHECK_FALSE(stage.why.empty());
     CHECK(stage.why.find(key.stimuli[0].code) == std::string::npos);
     CHECK(stage.bytes > 0);
-    CHECK((stage.seconds > 0.0) == (stage.state == StageState::computed));
+    CHECK((stage.seconds > 0.0) == (stage.state == engine::StageState::computed));
   }
   CHECK(first.stages[3].bytes == kSide * kSide * sizeof(double));
   CHECK(first.stages[6].bytes == first.bytes);
@@ -87,7 +89,8 @@ TEST_CASE("an explanation gives reasons and bytes, and never a code") {
 
 TEST_CASE("of a flat image nothing is extracted, and its field is what an extraction would give") {
   Laboratory laboratory;
-  for (std::uint64_t c = 0; c < 3; ++c) write_png(laboratory.image(c), GreyImage(kSide, kSide, 90));
+  for (std::uint64_t c = 0; c < 3; ++c)
+    engine::write_png(laboratory.image(c), GreyImage(kSide, kSide, 90));
   for (const char* method : {"adaptive", "luminance", "tv-gabor"}) {
     INFO(method);
     laboratory.document["methods"] = {{{"name", method}}};
@@ -95,11 +98,12 @@ TEST_CASE("of a flat image nothing is extracted, and its field is what an extrac
           "read image computed; sub-bands skipped; order map skipped; texture skipped; control "
           "skipped; filter skipped; filter, forces computed; write field computed; statistics "
           "computed; ");
-    const StudyKey key = laboratory.key();
-    const auto texture =
-        extract_texture<double>(read_grey_image(laboratory.image(0)), key.study.methods[0]).texture;
-    const TextureField expected = make_texture_field(texture, key.study.rendering);
-    const MappedField field = Pack(laboratory.pack()).map(key.stimuli[0].code);
+    const design::StudyKey key = laboratory.key();
+    const auto texture = engine::extract_texture<double>(
+                             engine::read_grey_image(laboratory.image(0)), key.study.methods[0])
+                             .texture;
+    const engine::TextureField expected = engine::make_texture_field(texture, key.study.rendering);
+    const engine::MappedField field = engine::Pack(laboratory.pack()).map(key.stimuli[0].code);
     CHECK(std::ranges::equal(std::as_bytes(field.view().samples),
                              std::as_bytes(expected.view().samples)));
   }
@@ -113,16 +117,16 @@ TEST_CASE("the surface model makes no force planes, and says how many bytes that
         "skipped; filter, spline computed; force planes skipped; write field computed; statistics "
         "computed; ");
   laboratory.document["rendering"]["filter_mm"] = 0.3;
-  const PrepareReport report =
-      prepare_pack(laboratory.key(), laboratory.pack(), {}, {.explain = true});
+  const design::PrepareReport report =
+      design::prepare_pack(laboratory.key(), laboratory.pack(), {}, {.explain = true});
   CHECK(report.stimuli[0].stages[6].bytes == kSide * kSide * 8);
 }
 
 TEST_CASE("a method without sub-bands skips them, and statistics are skipped unasked") {
   Laboratory laboratory;
   laboratory.document["methods"] = {{{"name", "fixed"}}};
-  const PrepareReport report =
-      prepare_pack(laboratory.key(), laboratory.pack(), {}, {.statistics = false, .explain = true});
+  const design::PrepareReport report = design::prepare_pack(laboratory.key(), laboratory.pack(), {},
+                                                            {.statistics = false, .explain = true});
   CHECK(text_of_stages(report.stimuli[0].stages) ==
         "read image computed; sub-bands skipped; order map skipped; texture computed; control "
         "skipped; filter, forces computed; write field computed; statistics skipped; ");
@@ -141,18 +145,18 @@ TEST_CASE("a method's control is made of its texture, which is taken once, and d
   CHECK(texts[1] ==
         "read image reused; texture reused; control computed; filter, forces computed; write field "
         "computed; statistics computed; ");
-  const StudyKey key = laboratory.key();
-  const GreyImage image = read_grey_image(laboratory.image(0));
-  const ExtractionOptions control = method_of(key.study, {0, 0, 1});
-  const auto texture = extract_texture<double>(image, control).texture;
-  const TextureField expected = make_texture_field(texture, key.study.rendering);
-  const Pack pack(laboratory.pack());
-  const MappedField field = pack.map(key.code_of({0, 0, 1}));
+  const design::StudyKey key = laboratory.key();
+  const GreyImage image = engine::read_grey_image(laboratory.image(0));
+  const engine::ExtractionOptions control = design::method_of(key.study, {0, 0, 1});
+  const auto texture = engine::extract_texture<double>(image, control).texture;
+  const engine::TextureField expected = engine::make_texture_field(texture, key.study.rendering);
+  const engine::Pack pack(laboratory.pack());
+  const engine::MappedField field = pack.map(key.code_of({0, 0, 1}));
   CHECK(std::ranges::equal(std::as_bytes(field.view().samples),
                            std::as_bytes(expected.view().samples)));
   CHECK(pack.entry(key.code_of({0, 0, 1})).checksum != pack.entry(key.code_of({2, 0, 1})).checksum);
   CHECK(pack.entry(key.code_of({0, 0, 0})).checksum == pack.entry(key.code_of({2, 0, 0})).checksum);
-  const PrepareReport again = laboratory.prepare();
+  const design::PrepareReport again = laboratory.prepare();
   CHECK(reused(again) == 6);
   CHECK(again.stimuli[1].method == "adaptive-phase-scrambled");
   laboratory.document["seed"] = 5;
@@ -161,14 +165,14 @@ TEST_CASE("a method's control is made of its texture, which is taken once, and d
 
 TEST_CASE("large images, which are prepared one at a time, give the pack of small ones") {
   Laboratory laboratory;
-  write_png(laboratory.image(1), GreyImage(3, 5, 7));
+  engine::write_png(laboratory.image(1), GreyImage(3, 5, 7));
   static_cast<void>(laboratory.prepare());
   const auto whole = laboratory.files();
   std::filesystem::remove_all(laboratory.pack());
   int done = 0;
-  const PrepareReport report =
-      prepare_pack(laboratory.key(), laboratory.pack(), [&](int count, int) { done = count; },
-                   {.explain = true, .large_image_px = kSide * kSide - 1});
+  const design::PrepareReport report = design::prepare_pack(
+      laboratory.key(), laboratory.pack(), [&](int count, int) { done = count; },
+      {.explain = true, .large_image_px = kSide * kSide - 1});
   CHECK(laboratory.files() == whole);
   CHECK(done == 3);
   CHECK(text_of_stages(report.stimuli[0].stages) == kBuilt);

@@ -22,41 +22,41 @@ namespace touchtrial {
 using nlohmann::json;
 
 TEST_CASE("packs and keys lie beside the study file, or where one says") {
-  CHECK(default_pack_place("dir/x.json").pack == "dir/x.pack");
-  CHECK(default_pack_place("dir/x.json").key == "dir/x.key");
-  CHECK(default_pack_place("x.y.json").key == "x.y.key");
-  CHECK(simulated_pack_place("dir/x.json").pack == "dir/x.sim.pack");
-  CHECK(simulated_pack_place("dir/x.json").key.empty());
-  CHECK(pack_place_at("there/a.pack").key == "there/a.key");
-  CHECK(pack_place_at("there/a.pack/").pack == "there/a.pack");
-  CHECK(pack_place_at("there/a.pack/").key == "there/a.key");
-  CHECK(pack_place_at("there/a.b").key == "there/a.b.key");
+  CHECK(design::default_pack_place("dir/x.json").pack == "dir/x.pack");
+  CHECK(design::default_pack_place("dir/x.json").key == "dir/x.key");
+  CHECK(design::default_pack_place("x.y.json").key == "x.y.key");
+  CHECK(design::simulated_pack_place("dir/x.json").pack == "dir/x.sim.pack");
+  CHECK(design::simulated_pack_place("dir/x.json").key.empty());
+  CHECK(design::pack_place_at("there/a.pack").key == "there/a.key");
+  CHECK(design::pack_place_at("there/a.pack/").pack == "there/a.pack");
+  CHECK(design::pack_place_at("there/a.pack/").key == "there/a.key");
+  CHECK(design::pack_place_at("there/a.b").key == "there/a.b.key");
 }
 
 TEST_CASE("prepare makes a field for every stimulus, under its code, with the chosen gains") {
   const Laboratory laboratory;
-  const StudyKey key = laboratory.key();
-  const PrepareReport report = laboratory.prepare();
+  const design::StudyKey key = laboratory.key();
+  const design::PrepareReport report = laboratory.prepare();
   CHECK(report.stimuli.size() == 3);
   CHECK(reused(report) == 0);
   CHECK(report.warnings.empty());
   CHECK(report.skipped.empty());
-  const Pack pack(laboratory.pack());
+  const engine::Pack pack(laboratory.pack());
   CHECK(pack.manifest().study_id == key.study_id);
   REQUIRE(pack.manifest().entries.size() == 3);
   for (std::size_t i = 0; i < 3; ++i) {
     const std::string& code = key.stimuli[i].code;
-    const PreparedStimulus& prepared = report.stimuli[i];
+    const design::PreparedStimulus& prepared = report.stimuli[i];
     CHECK(prepared.class_label == "c" + std::to_string(i));
     CHECK(prepared.method == "adaptive");
     CHECK(pack.is_intact(code));
     CHECK(pack.entry(code).gains == prepared.gains);
     CHECK(prepared.gains == report.stimuli[0].gains);
     CHECK(prepared.gains.tangential_n > 0.0);
-    const MappedField field = pack.map(code);
+    const engine::MappedField field = pack.map(code);
     CHECK(field.view().geometry.width_px == kSide);
-    CHECK(prepared.bytes > kSide * kSide * sizeof(FieldSample));
-    const FieldStatistics expected = field_statistics(field.view(), prepared.gains);
+    CHECK(prepared.bytes > kSide * kSide * sizeof(engine::FieldSample));
+    const engine::FieldStatistics expected = engine::field_statistics(field.view(), prepared.gains);
     CHECK(prepared.statistics.tangential_rms_n == expected.tangential_rms_n);
     CHECK(prepared.statistics.tangential_rms_n > 0.0);
   }
@@ -65,11 +65,11 @@ TEST_CASE("prepare makes a field for every stimulus, under its code, with the ch
 TEST_CASE("a field is what the engine makes of the image") {
   const Laboratory laboratory;
   static_cast<void>(laboratory.prepare());
-  const StudyKey key = laboratory.key();
-  const GreyImage image = read_grey_image(laboratory.image(1));
-  const auto texture = extract_texture<double>(image, key.study.methods[0]).texture;
-  const TextureField expected = make_texture_field(texture, key.study.rendering);
-  const MappedField field = Pack(laboratory.pack()).map(key.stimuli[1].code);
+  const design::StudyKey key = laboratory.key();
+  const GreyImage image = engine::read_grey_image(laboratory.image(1));
+  const auto texture = engine::extract_texture<double>(image, key.study.methods[0]).texture;
+  const engine::TextureField expected = engine::make_texture_field(texture, key.study.rendering);
+  const engine::MappedField field = engine::Pack(laboratory.pack()).map(key.stimuli[1].code);
   REQUIRE(field.view().samples.size() == expected.view().samples.size());
   for (std::size_t i = 0; i < field.view().samples.size(); ++i) {
     CHECK(field.view().samples[i].surface == expected.view().samples[i].surface);
@@ -82,7 +82,7 @@ TEST_CASE("a second prepare builds nothing and writes nothing") {
   static_cast<void>(laboratory.prepare());
   const auto before = std::filesystem::last_write_time(laboratory.pack() / "pack.json");
   const auto files = laboratory.files();
-  const PrepareReport again = laboratory.prepare();
+  const design::PrepareReport again = laboratory.prepare();
   CHECK(reused(again) == 3);
   CHECK(std::filesystem::last_write_time(laboratory.pack() / "pack.json") == before);
   CHECK(laboratory.files() == files);
@@ -100,16 +100,17 @@ TEST_CASE("only what changed is built again") {
   Laboratory laboratory;
   static_cast<void>(laboratory.prepare());
   write_noise(laboratory.image(1), 77);
-  const PrepareReport image_changed = laboratory.prepare();
+  const design::PrepareReport image_changed = laboratory.prepare();
   CHECK(reused(image_changed) == 2);
   CHECK_FALSE(image_changed.stimuli[1].reused);
 
   laboratory.document["rendering"] = {{"max_force_n", 2.0}, {"texture_stiffness_n_per_mm", 0.2}};
-  const PrepareReport gains_changed = laboratory.prepare();
+  const design::PrepareReport gains_changed = laboratory.prepare();
   CHECK(reused(gains_changed) == 3);
   CHECK(gains_changed.stimuli[0].gains.tangential_n ==
         Approx(image_changed.stimuli[0].gains.tangential_n / 2.0));
-  CHECK(Pack(laboratory.pack()).manifest().entries[0].gains == gains_changed.stimuli[0].gains);
+  CHECK(engine::Pack(laboratory.pack()).manifest().entries[0].gains ==
+        gains_changed.stimuli[0].gains);
 
   laboratory.document["rendering"] = {{"filter_mm", 0.3}};
   CHECK(reused(laboratory.prepare()) == 0);
@@ -121,15 +122,15 @@ TEST_CASE("only what changed is built again") {
 
 TEST_CASE("a study with the surface model has packs of coefficients, a third of the size") {
   Laboratory laboratory;
-  const PrepareReport paper = laboratory.prepare();
+  const design::PrepareReport paper = laboratory.prepare();
   laboratory.document["rendering"] = {{"model", "surface"}};
-  const PrepareReport report = laboratory.prepare();
+  const design::PrepareReport report = laboratory.prepare();
   CHECK(reused(report) == 0);
   CHECK(reused(laboratory.prepare()) == 3);
-  const Pack pack(laboratory.pack());
+  const engine::Pack pack(laboratory.pack());
   for (std::size_t i = 0; i < report.stimuli.size(); ++i) {
-    const MappedField field = pack.map(laboratory.key().stimuli[i].code);
-    CHECK(field.view().model() == ModelKind::surface);
+    const engine::MappedField field = pack.map(laboratory.key().stimuli[i].code);
+    CHECK(field.view().model() == engine::ModelKind::surface);
     CHECK(report.stimuli[i].gains.height_mm > 0.0);
     CHECK(report.stimuli[i].statistics.tangential_rms_n > 0.0);
     CHECK(3 * (report.stimuli[i].bytes - 64) == paper.stimuli[i].bytes - 64);
@@ -147,8 +148,9 @@ TEST_CASE("a pack of the former format is built again, with a warning") {
   former["version"] = 1;
   for (json& field : former["fields"]) field["gains"].erase("height_mm");
   replace_file(path, std::string_view(former.dump(2)));
-  CHECK_THROWS_WITH(Pack(laboratory.pack()), holds_text("/version: is not 2, the only version"));
-  const PrepareReport report = laboratory.prepare();
+  CHECK_THROWS_WITH(engine::Pack(laboratory.pack()),
+                    holds_text("/version: is not 2, the only version"));
+  const design::PrepareReport report = laboratory.prepare();
   CHECK(reused(report) == 0);
   CHECK(warns(report, "all fields were built anew"));
   CHECK(laboratory.files() == whole);
@@ -158,13 +160,13 @@ TEST_CASE("a damaged or missing field is built again") {
   const Laboratory laboratory;
   static_cast<void>(laboratory.prepare());
   const auto whole = laboratory.files();
-  const StudyKey key = laboratory.key();
+  const design::StudyKey key = laboratory.key();
   const auto first = laboratory.pack() / (key.stimuli[0].code + ".field");
   Bytes content = read_file(first);
   content[content.size() / 2] ^= 1U;
   replace_file(first, ByteView(content));
   std::filesystem::remove(laboratory.pack() / (key.stimuli[2].code + ".field"));
-  const PrepareReport report = laboratory.prepare();
+  const design::PrepareReport report = laboratory.prepare();
   CHECK(reused(report) == 1);
   CHECK(report.stimuli[1].reused);
   CHECK(laboratory.files() == whole);
@@ -175,7 +177,7 @@ TEST_CASE("a damaged table of contents is replaced, with a warning") {
   static_cast<void>(laboratory.prepare());
   const auto whole = laboratory.files();
   replace_file(laboratory.pack() / "pack.json", std::string("{\"format\""));
-  const PrepareReport report = laboratory.prepare();
+  const design::PrepareReport report = laboratory.prepare();
   CHECK(reused(report) == 0);
   CHECK(warns(report, "all fields were built anew"));
   CHECK(laboratory.files() == whole);
@@ -189,14 +191,14 @@ TEST_CASE("an interrupted prepare leaves a pack that is nobody's, and keeps what
   write_noise(laboratory.image(1), 92);
   replace_file(laboratory.image(2), std::string("not an image"));
   CHECK_THROWS_AS(laboratory.prepare(), StudyError);
-  const StudyKey key = laboratory.key();
-  CHECK(Pack(laboratory.pack()).manifest().study_id == unfinished_id(key));
-  CHECK(unfinished_id(key) != key.study_id);
+  const design::StudyKey key = laboratory.key();
+  CHECK(engine::Pack(laboratory.pack()).manifest().study_id == design::unfinished_id(key));
+  CHECK(design::unfinished_id(key) != key.study_id);
 
   write_noise(laboratory.image(2), 2);
-  const PrepareReport completed = laboratory.prepare();
+  const design::PrepareReport completed = laboratory.prepare();
   CHECK(reused(completed) == 3);
-  CHECK(Pack(laboratory.pack()).manifest().study_id == key.study_id);
+  CHECK(engine::Pack(laboratory.pack()).manifest().study_id == key.study_id);
   for (std::uint64_t c = 0; c < 2; ++c) write_noise(laboratory.image(c), c);
   static_cast<void>(laboratory.prepare());
   CHECK(laboratory.files() == whole);
@@ -211,7 +213,7 @@ TEST_CASE("fields of stimuli that are gone, and drafts, are removed, and other f
   replace_file(laboratory.pack() / "notes.txt", std::string("mine"));
   replace_file(laboratory.pack() / "other.field", std::string("mine"));
   laboratory.document["classes"].erase(2);
-  const PrepareReport report = laboratory.prepare();
+  const design::PrepareReport report = laboratory.prepare();
   CHECK(reused(report) == 2);
   const auto files = laboratory.files();
   CHECK(files.count(gone + ".field") == 0);
@@ -219,7 +221,7 @@ TEST_CASE("fields of stimuli that are gone, and drafts, are removed, and other f
   CHECK(files.count("pack.json.tmp9") == 0);
   CHECK(files.count("notes.txt") == 1);
   CHECK(files.count("other.field") == 1);
-  CHECK(Pack(laboratory.pack()).manifest().entries.size() == 2);
+  CHECK(engine::Pack(laboratory.pack()).manifest().entries.size() == 2);
 }
 
 TEST_CASE("nothing in a pack tells what it shows") {
@@ -237,13 +239,13 @@ TEST_CASE("nothing in a pack tells what it shows") {
 TEST_CASE("without the key an input tag cannot be looked up from the image") {
   Laboratory laboratory;
   static_cast<void>(laboratory.prepare());
-  const auto tags = Pack(laboratory.pack()).manifest().entries;
+  const auto tags = engine::Pack(laboratory.pack()).manifest().entries;
   laboratory.key_seed = 2;
   std::filesystem::remove_all(laboratory.pack());
   static_cast<void>(laboratory.prepare());
-  const Pack pack(laboratory.pack());
-  for (const PackEntry& entry : pack.manifest().entries) {
-    for (const PackEntry& before : tags) CHECK(entry.input_tag != before.input_tag);
+  const engine::Pack pack(laboratory.pack());
+  for (const engine::PackEntry& entry : pack.manifest().entries) {
+    for (const engine::PackEntry& before : tags) CHECK(entry.input_tag != before.input_tag);
   }
 }
 
@@ -254,7 +256,7 @@ TEST_CASE("the pack of another key is not overwritten, unless it is simulated") 
   CHECK(refuses<FileError>([&] { return laboratory.prepare(); }, "holds the pack of another key"));
   laboratory.simulated = true;
   CHECK(reused(laboratory.prepare()) == 0);
-  CHECK(Pack(laboratory.pack()).manifest().study_id == laboratory.key().study_id);
+  CHECK(engine::Pack(laboratory.pack()).manifest().study_id == laboratory.key().study_id);
   CHECK(laboratory.files().size() == 3 + 2);
 }
 
@@ -277,7 +279,7 @@ TEST_CASE("two prepares of one pack do not run at once") {
   const Laboratory laboratory;
   static_cast<void>(laboratory.prepare());
   {
-    const PackLock lock(laboratory.pack());
+    const design::PackLock lock(laboratory.pack());
     CHECK(refuses<FileError>([&] { return laboratory.prepare(); }, "is being prepared by another"));
   }
   CHECK(reused(laboratory.prepare()) == 3);
@@ -287,10 +289,10 @@ TEST_CASE("who prepares a pack may wait while another does") {
   const Laboratory laboratory;
   static_cast<void>(laboratory.prepare());
   std::atomic<bool> is_free{false};
-  std::optional<PackLock> other(std::in_place, laboratory.pack());
+  std::optional<design::PackLock> other(std::in_place, laboratory.pack());
   auto waiting = std::async(std::launch::async, [&] {
-    const PrepareReport report =
-        prepare_pack(laboratory.key(), laboratory.pack(), {}, {.wait = true});
+    const design::PrepareReport report =
+        design::prepare_pack(laboratory.key(), laboratory.pack(), {}, {.wait = true});
     return is_free.load() ? reused(report) : -1;
   });
   is_free = true;
@@ -307,7 +309,7 @@ TEST_CASE("a file in the place of the pack is refused") {
 TEST_CASE("a classification skips the methods that it does not present, and says so") {
   Laboratory laboratory;
   laboratory.document["methods"].push_back({{"name", "tv-gabor"}});
-  const PrepareReport report = laboratory.prepare();
+  const design::PrepareReport report = laboratory.prepare();
   CHECK(report.stimuli.size() == 3);
   REQUIRE(report.skipped.size() == 1);
   CHECK(report.skipped[0].what == "tv-gabor x 3 stimuli");
@@ -320,11 +322,11 @@ TEST_CASE("a comparison prepares every method, and equalised, all have the same 
   laboratory.document["protocol"] = "comparison";
   laboratory.document["methods"] = {{{"name", "adaptive"}}, {{"name", "tv-gabor"}}};
   laboratory.document["rendering"] = {{"equalise", "rms"}};
-  const PrepareReport report = laboratory.prepare();
+  const design::PrepareReport report = laboratory.prepare();
   REQUIRE(report.stimuli.size() == 6);
   CHECK(report.stimuli[0].method == "adaptive");
   CHECK(report.stimuli[1].method == "tv-gabor");
-  for (const PreparedStimulus& prepared : report.stimuli) {
+  for (const design::PreparedStimulus& prepared : report.stimuli) {
     CHECK(prepared.statistics.tangential_rms_n ==
           Approx(report.stimuli[0].statistics.tangential_rms_n).epsilon(1e-5));
   }
@@ -344,8 +346,8 @@ TEST_CASE("what is probably not meant is warned of") {
                                       {"reference_grey", 0}};
   std::filesystem::copy_file(laboratory.image(0), laboratory.image(2),
                              std::filesystem::copy_options::overwrite_existing);
-  write_png(laboratory.image(1), GreyImage(kSide, kSide, 90));
-  const PrepareReport report = laboratory.prepare();
+  engine::write_png(laboratory.image(1), GreyImage(kSide, kSide, 90));
+  const design::PrepareReport report = laboratory.prepare();
   CHECK(warns(report, "/rendering/gains: the explicit gains exceed the stiffness budget of 0.4"));
   CHECK(warns(report, "/rendering/equalise: rms has no effect"));
   CHECK(warns(report, "/rendering/reference_grey: 0 is the paper's literal reading"));
@@ -356,7 +358,7 @@ TEST_CASE("what is probably not meant is warned of") {
 
 TEST_CASE("gains that leave nothing to feel are warned of, unless somebody asked for them") {
   Laboratory laboratory;
-  for (std::uint64_t c = 0; c < 3; ++c) write_png(laboratory.image(c), GreyImage(1, 7, 50));
+  for (std::uint64_t c = 0; c < 3; ++c) engine::write_png(laboratory.image(c), GreyImage(1, 7, 50));
   CHECK(warns(laboratory.prepare(), "nothing will be felt"));
   laboratory.document["rendering"]["gains"] = {{"tangential_n", 0}, {"normal_n", 0}};
   CHECK_FALSE(warns(laboratory.prepare(), "nothing will be felt"));
@@ -366,7 +368,7 @@ TEST_CASE("gains that leave nothing to feel are warned of, unless somebody asked
 TEST_CASE("a solver that gives up is warned of with the gap it reached") {
   Laboratory laboratory;
   laboratory.document["methods"] = {{{"name", "tv-gabor"}, {"max_steps", 1}, {"gap", 1e-12}}};
-  const PrepareReport report = laboratory.prepare();
+  const design::PrepareReport report = laboratory.prepare();
   CHECK(report.warnings.size() == 3);
   CHECK(warns(report, "method tv-gabor: stopped after 1 steps at a relative gap of "));
 }
@@ -375,10 +377,11 @@ TEST_CASE("progress counts every stimulus once") {
   const Laboratory laboratory;
   std::vector<int> counts;
   int total = 0;
-  static_cast<void>(prepare_pack(laboratory.key(), laboratory.pack(), [&](int done, int of) {
-    counts.push_back(done);
-    total = of;
-  }));
+  static_cast<void>(
+      design::prepare_pack(laboratory.key(), laboratory.pack(), [&](int done, int of) {
+        counts.push_back(done);
+        total = of;
+      }));
   CHECK(counts == std::vector<int>{1, 2, 3});
   CHECK(total == 3);
 }

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-Study study_with(json document, const json& trials) {
+design::Study study_with(json document, const json& trials) {
   document["trials"] = trials;
   document["seed"] = 5;
   return parsed(document);
@@ -26,12 +26,12 @@ bool refused(const json& document, const json& trials, const std::string& part) 
 }
 
 /// The longest run of a class within a block, catch trials left out.
-int longest_run(const std::vector<Presentation>& presentations) {
+int longest_run(const std::vector<design::Presentation>& presentations) {
   int longest = 0;
   int run = 0;
-  const Presentation* before = nullptr;
-  for (const Presentation& shown : presentations) {
-    if (shown.kind == PresentationKind::catch_trial) continue;
+  const design::Presentation* before = nullptr;
+  for (const design::Presentation& shown : presentations) {
+    if (shown.kind == design::PresentationKind::catch_trial) continue;
     const bool same = before != nullptr && before->block == shown.block &&
                       before->stimulus.class_index == shown.stimulus.class_index;
     run = same ? run + 1 : 1;
@@ -41,17 +41,18 @@ int longest_run(const std::vector<Presentation>& presentations) {
   return longest;
 }
 
-std::map<StimulusIndex, int> scored_counts(const std::vector<Presentation>& presentations) {
-  std::map<StimulusIndex, int> counts;
-  for (const Presentation& shown : presentations) {
-    if (shown.kind == PresentationKind::scored) ++counts[shown.stimulus];
+std::map<design::StimulusIndex, int> scored_counts(
+    const std::vector<design::Presentation>& presentations) {
+  std::map<design::StimulusIndex, int> counts;
+  for (const design::Presentation& shown : presentations) {
+    if (shown.kind == design::PresentationKind::scored) ++counts[shown.stimulus];
   }
   return counts;
 }
 
-std::vector<Presentation> without_catch(std::vector<Presentation> presentations) {
-  std::erase_if(presentations, [](const Presentation& shown) {
-    return shown.kind == PresentationKind::catch_trial;
+std::vector<design::Presentation> without_catch(std::vector<design::Presentation> presentations) {
+  std::erase_if(presentations, [](const design::Presentation& shown) {
+    return shown.kind == design::PresentationKind::catch_trial;
   });
   for (std::size_t i = 0; i < presentations.size(); ++i) {
     presentations[i].trial = static_cast<int>(i) + 1;
@@ -64,13 +65,13 @@ std::vector<Presentation> without_catch(std::vector<Presentation> presentations)
 TEST_CASE("every schedule keeps the limit of runs and its balance") {
   for (const char* blocks : {"by-method", "mixed"}) {
     for (const int max_run : {1, 2, 3}) {
-      const Study study = study_with(
+      const design::Study study = study_with(
           comparison_of(3),
           {{"repeats", 4}, {"max_run", max_run}, {"blocks", blocks}, {"lead_in", 2}, {"catch", 3}});
       for (int enrolment = 1; enrolment <= 50; ++enrolment) {
-        const Schedule schedule = make_schedule(study, enrolment);
+        const design::Schedule schedule = design::make_schedule(study, enrolment);
         CHECK(schedule.presentations.size() ==
-              24 + 2 * (study.trials.blocks == Blocks::mixed ? 1 : 2) + 3);
+              24 + 2 * (study.trials.blocks == design::Blocks::mixed ? 1 : 2) + 3);
         CHECK(longest_run(schedule.presentations) <= max_run);
         const auto counts = scored_counts(schedule.presentations);
         CHECK(counts.size() == 6);
@@ -81,19 +82,19 @@ TEST_CASE("every schedule keeps the limit of runs and its balance") {
 }
 
 TEST_CASE("independent draws keep the limit of runs too") {
-  const Study study =
+  const design::Study study =
       study_with(study_of(2), {{"order", "uniform"}, {"repeats", 20}, {"max_run", 2}});
   for (int enrolment = 1; enrolment <= 50; ++enrolment) {
-    CHECK(longest_run(make_schedule(study, enrolment).presentations) <= 2);
+    CHECK(longest_run(design::make_schedule(study, enrolment).presentations) <= 2);
   }
 }
 
 TEST_CASE("schedules with limited runs are uniform over all allowed orders") {
-  const Study study = study_with(study_of(3), {{"repeats", 2}, {"max_run", 1}});
+  const design::Study study = study_with(study_of(3), {{"repeats", 2}, {"max_run", 1}});
   std::map<std::vector<int>, int> counts;
   for (int enrolment = 1; enrolment <= 6000; ++enrolment) {
     std::vector<int> order;
-    for (const auto& shown : make_schedule(study, enrolment).presentations) {
+    for (const auto& shown : design::make_schedule(study, enrolment).presentations) {
       order.push_back(shown.stimulus.class_index);
     }
     ++counts[order];
@@ -104,17 +105,17 @@ TEST_CASE("schedules with limited runs are uniform over all allowed orders") {
 
 TEST_CASE("a limit that no run can reach leaves the order as it was") {
   const json trials = {{"repeats", 4}};
-  const Study free = study_with(study_of(4), trials);
-  const Study limited = study_with(study_of(4), {{"repeats", 4}, {"max_run", 4}});
-  CHECK(make_schedule(limited, 3) == make_schedule(free, 3));
+  const design::Study free = study_with(study_of(4), trials);
+  const design::Study limited = study_with(study_of(4), {{"repeats", 4}, {"max_run", 4}});
+  CHECK(design::make_schedule(limited, 3) == design::make_schedule(free, 3));
 }
 
 TEST_CASE("what cannot be combined with a limit of runs is refused with why") {
   CHECK(refused(study_of(3), {{"order", "de-bruijn"}, {"repeats", 3}, {"max_run", 1}},
                 "/trials/max_run: is 1, but in the order de-bruijn every class follows itself"));
-  const Study kept =
+  const design::Study kept =
       study_with(study_of(3), {{"order", "de-bruijn"}, {"repeats", 3}, {"max_run", 2}});
-  CHECK(longest_run(make_schedule(kept, 1).presentations) == 2);
+  CHECK(longest_run(design::make_schedule(kept, 1).presentations) == 2);
   CHECK(refused(study_of(2), {{"order", "williams"}, {"max_run", 1}},
                 "/trials/max_run: is 1, which no order williams of 2 classes keeps"));
   CHECK(refused(study_of(64), {{"repeats", 100}, {"max_run", 2}},
@@ -124,10 +125,10 @@ TEST_CASE("what cannot be combined with a limit of runs is refused with why") {
 }
 
 TEST_CASE("a Williams block is permutations, balanced over places with as many as classes") {
-  const Study study =
+  const design::Study study =
       study_with(comparison_of(4), {{"order", "williams"}, {"repeats", 4}, {"max_run", 1}});
   for (int enrolment = 1; enrolment <= 20; ++enrolment) {
-    const auto presentations = make_schedule(study, enrolment).presentations;
+    const auto presentations = design::make_schedule(study, enrolment).presentations;
     REQUIRE(presentations.size() == 32);
     CHECK(longest_run(presentations) == 1);
     for (std::size_t block = 0; block < 2; ++block) {
@@ -141,20 +142,20 @@ TEST_CASE("a Williams block is permutations, balanced over places with as many a
 }
 
 TEST_CASE("catch trials come at any place but the first, and change nothing else") {
-  const Study plain = study_with(study_of(2, 3), {{"repeats", 2}});
-  const Study caught = study_with(study_of(2, 3), {{"repeats", 2}, {"catch", 2}});
+  const design::Study plain = study_with(study_of(2, 3), {{"repeats", 2}});
+  const design::Study caught = study_with(study_of(2, 3), {{"repeats", 2}, {"catch", 2}});
   std::map<std::pair<int, int>, int> places;
   for (int enrolment = 1; enrolment <= 3000; ++enrolment) {
-    const Schedule schedule = make_schedule(caught, enrolment);
+    const design::Schedule schedule = design::make_schedule(caught, enrolment);
     REQUIRE(schedule.presentations.size() == 6);
     std::vector<int> at;
-    for (const Presentation& shown : schedule.presentations) {
-      if (shown.kind == PresentationKind::catch_trial) at.push_back(shown.trial);
+    for (const design::Presentation& shown : schedule.presentations) {
+      if (shown.kind == design::PresentationKind::catch_trial) at.push_back(shown.trial);
     }
     REQUIRE(at.size() == 2);
     CHECK(at[0] > 1);
     ++places[{at[0], at[1]}];
-    const Schedule without = make_schedule(plain, enrolment);
+    const design::Schedule without = design::make_schedule(plain, enrolment);
     CHECK(without_catch(schedule.presentations) == without.presentations);
     CHECK(schedule.layout == without.layout);
   }
@@ -163,12 +164,12 @@ TEST_CASE("catch trials come at any place but the first, and change nothing else
 }
 
 TEST_CASE("a catch trial belongs to the block of the presentation before it") {
-  const Study study = study_with(comparison_of(2), {{"repeats", 2}, {"catch", 5}});
+  const design::Study study = study_with(comparison_of(2), {{"repeats", 2}, {"catch", 5}});
   for (int enrolment = 1; enrolment <= 30; ++enrolment) {
-    const auto presentations = make_schedule(study, enrolment).presentations;
+    const auto presentations = design::make_schedule(study, enrolment).presentations;
     for (std::size_t i = 1; i < presentations.size(); ++i) {
       CHECK(presentations[i].trial == static_cast<int>(i) + 1);
-      if (presentations[i].kind == PresentationKind::catch_trial) {
+      if (presentations[i].kind == design::PresentationKind::catch_trial) {
         CHECK(presentations[i].block == presentations[i - 1].block);
       }
     }
@@ -177,61 +178,63 @@ TEST_CASE("a catch trial belongs to the block of the presentation before it") {
 
 TEST_CASE("a schedule with catch trials is read as it was written, with a code like the others") {
   SeededEntropy entropy(1);
-  const StudyKey key = make_study_key(study_with(study_of(3), {{"catch", 2}}), entropy, false);
-  const Schedule schedule = make_schedule(key.study, 1);
-  const std::string text = schedule_to_json(schedule, key);
-  CHECK(schedule_from_json(text, key) == schedule);
-  CHECK(catch_code(key).size() == key.stimuli.front().code.size());
-  CHECK_FALSE(key.stimulus_of(catch_code(key)));
+  const design::StudyKey key =
+      design::make_study_key(study_with(study_of(3), {{"catch", 2}}), entropy, false);
+  const design::Schedule schedule = design::make_schedule(key.study, 1);
+  const std::string text = design::schedule_to_json(schedule, key);
+  CHECK(design::schedule_from_json(text, key) == schedule);
+  CHECK(design::catch_code(key).size() == key.stimuli.front().code.size());
+  CHECK_FALSE(key.stimulus_of(design::catch_code(key)));
   json changed = json::parse(text);
   for (json& shown : changed["presentations"]) {
     if (shown["kind"] == "catch") shown["code"] = key.stimuli.front().code;
   }
-  CHECK_THROWS_AS(schedule_from_json(changed.dump(), key), StoreError);
+  CHECK_THROWS_AS(design::schedule_from_json(changed.dump(), key), StoreError);
   changed["presentations"][0]["kind"] = "other";
-  CHECK_THROWS_AS(schedule_from_json(changed.dump(), key), StoreError);
+  CHECK_THROWS_AS(design::schedule_from_json(changed.dump(), key), StoreError);
 }
 
 TEST_CASE("the schedule rule names limits and catch trials only where there are some") {
-  const std::string plain = schedule_rule(study_with(study_of(3), {{"repeats", 5}}));
+  const std::string plain = design::schedule_rule(study_with(study_of(3), {{"repeats", 5}}));
   CHECK(plain.ends_with("; lead_in=0"));
-  CHECK(schedule_rule(study_with(study_of(3), {{"max_run", 2}, {"catch", 4}})) ==
+  CHECK(design::schedule_rule(study_with(study_of(3), {{"max_run", 2}, {"catch", 4}})) ==
         plain + "; max_run=2; catch=4");
 }
 
 TEST_CASE("a restarted block is a fresh order of the same block under new numbers") {
-  const Study study =
+  const design::Study study =
       study_with(comparison_of(3, 2), {{"repeats", 4}, {"max_run", 2}, {"catch", 4}});
-  const Schedule schedule = make_schedule(study, 2);
+  const design::Schedule schedule = design::make_schedule(study, 2);
   for (int block = 0; block < 2; ++block) {
-    std::vector<Presentation> before;
+    std::vector<design::Presentation> before;
     std::ranges::copy_if(schedule.presentations, std::back_inserter(before),
                          [block](const auto& shown) { return shown.block == block; });
-    const auto again = restarted_block(study, 2, block, 0, 101);
-    CHECK(again == restarted_block(study, 2, block, 0, 101));
+    const auto again = design::restarted_block(study, 2, block, 0, 101);
+    CHECK(again == design::restarted_block(study, 2, block, 0, 101));
     REQUIRE(again.size() == before.size());
     CHECK(again.front().trial == 101);
     CHECK(again.back().trial == 100 + static_cast<int>(again.size()));
-    CHECK(again.front().kind != PresentationKind::catch_trial);
+    CHECK(again.front().kind != design::PresentationKind::catch_trial);
     CHECK(scored_counts(again) == scored_counts(before));
     CHECK(longest_run(again) <= 2);
-    const auto third = restarted_block(study, 2, block, 1, 101);
+    const auto third = design::restarted_block(study, 2, block, 1, 101);
     CHECK_FALSE(third == again);
     CHECK(scored_counts(third) == scored_counts(before));
-    CHECK(restarted_block(study, 2, block, 0, 201).front().stimulus == again.front().stimulus);
+    CHECK(design::restarted_block(study, 2, block, 0, 201).front().stimulus ==
+          again.front().stimulus);
   }
-  CHECK_THROWS_AS(restarted_block(study, 2, 2, 0, 1), std::invalid_argument);
-  CHECK_THROWS_AS(restarted_block(study, 2, 0, -1, 1), std::invalid_argument);
+  CHECK_THROWS_AS(design::restarted_block(study, 2, 2, 0, 1), std::invalid_argument);
+  CHECK_THROWS_AS(design::restarted_block(study, 2, 0, -1, 1), std::invalid_argument);
 }
 
 TEST_CASE("a restarted block is read as it was written") {
   SeededEntropy entropy(1);
-  const StudyKey key = make_study_key(
+  const design::StudyKey key = design::make_study_key(
       study_with(study_of(3), {{"catch", 2}, {"order", "williams"}}), entropy, false);
-  const auto block = restarted_block(key.study, 1, 0, 0, 18);
-  CHECK(block_from_json(block_to_json(block, key), key) == block);
-  CHECK_THROWS_AS(block_from_json("{", key), StoreError);
-  CHECK_THROWS_AS(block_from_json("[{}]", key), StoreError);
+  const auto block = design::restarted_block(key.study, 1, 0, 0, 18);
+  CHECK(design::block_from_json(design::block_to_json(block, key), key) == block);
+  CHECK_THROWS_AS(design::block_from_json("{", key), StoreError);
+  CHECK_THROWS_AS(design::block_from_json("[{}]", key), StoreError);
 }
 
 }  // namespace touchtrial

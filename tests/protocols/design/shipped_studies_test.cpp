@@ -9,46 +9,47 @@ namespace {
 
 const std::filesystem::path kConfig = std::filesystem::path(TOUCHTRIAL_SOURCE_DIR) / "config";
 
-std::vector<std::string> labels_of(const Study& study) {
+std::vector<std::string> labels_of(const design::Study& study) {
   std::vector<std::string> labels;
-  for (const StudyClass& study_class : study.classes) labels.push_back(study_class.label);
+  for (const design::StudyClass& study_class : study.classes) labels.push_back(study_class.label);
   return labels;
 }
 
 }  // namespace
 
 TEST_CASE("the classification study is the paper's: five textures, 25 trials, one method") {
-  const Study study = load_study(kConfig / "classification.json");
+  const design::Study study = design::load_study(kConfig / "classification.json");
   CHECK(study.name == "classification");
   CHECK(labels_of(study) == std::vector<std::string>{"bark", "cloth", "pebbles", "straw", "brick"});
   CHECK(study.presented_methods() == 1);
-  CHECK(study.methods == std::vector<StudyMethod>{{{}, "adaptive"}});
+  CHECK(study.methods == std::vector<design::StudyMethod>{{{}, "adaptive"}});
   CHECK(study.scored_trials() == 25);
-  CHECK(make_schedule(study, 1).presentations.size() == 25);
-  CHECK(study.rendering == RenderingOptions{});
-  CHECK(study.trials == TrialOptions{.practice = 5, .break_every = 10});
-  CHECK(study.session == SessionPlan{});
+  CHECK(design::make_schedule(study, 1).presentations.size() == 25);
+  CHECK(study.rendering == engine::RenderingOptions{});
+  CHECK(study.trials == design::TrialOptions{.practice = 5, .break_every = 10});
+  CHECK(study.session == design::SessionPlan{});
   CHECK(study.seed == 31875542);
 }
 
 TEST_CASE("the comparison study has four objects and both methods at the same rms force") {
-  const Study study = load_study(kConfig / "comparison.json");
+  const design::Study study = design::load_study(kConfig / "comparison.json");
   CHECK(study.name == "comparison");
   CHECK(study.classes.size() == 4);
   REQUIRE(study.presented_methods() == 2);
-  CHECK(study.methods[0].method == Method::adaptive);
-  CHECK(study.methods[1].method == Method::tv_gabor);
-  CHECK(study.methods[1].tv_gabor == TvGaborOptions{});
-  CHECK(study.rendering.equalise == Equalise::rms);
-  CHECK(study.trials.blocks == Blocks::by_method);
+  CHECK(study.methods[0].method == engine::Method::adaptive);
+  CHECK(study.methods[1].method == engine::Method::tv_gabor);
+  CHECK(study.methods[1].tv_gabor == engine::TvGaborOptions{});
+  CHECK(study.rendering.equalise == engine::Equalise::rms);
+  CHECK(study.trials.blocks == design::Blocks::by_method);
   CHECK(study.scored_trials() == 40);
 }
 
 TEST_CASE("the surface study is the classification study under the other model") {
-  const Study study = load_study(kConfig / "classification-surface.json");
-  const Study paper = load_study(kConfig / "classification.json");
+  const design::Study study = design::load_study(kConfig / "classification-surface.json");
+  const design::Study paper = design::load_study(kConfig / "classification.json");
   CHECK(study.name == "classification-surface");
-  CHECK(study.rendering == RenderingOptions{.model = ModelKind::surface, .gains = {}});
+  CHECK(study.rendering ==
+        engine::RenderingOptions{.model = engine::ModelKind::surface, .gains = {}});
   CHECK(labels_of(study) == labels_of(paper));
   CHECK(study.methods == paper.methods);
   CHECK(study.trials.repeats == paper.trials.repeats);
@@ -57,15 +58,15 @@ TEST_CASE("the surface study is the classification study under the other model")
 }
 
 TEST_CASE("the study of exemplars has the same classes with five pictures each") {
-  const Study study = load_study(kConfig / "classification-exemplars.json");
-  CHECK(labels_of(study) == labels_of(load_study(kConfig / "classification.json")));
-  for (const StudyClass& study_class : study.classes) CHECK(study_class.images.size() == 5);
+  const design::Study study = design::load_study(kConfig / "classification-exemplars.json");
+  CHECK(labels_of(study) == labels_of(design::load_study(kConfig / "classification.json")));
+  for (const design::StudyClass& study_class : study.classes) CHECK(study_class.images.size() == 5);
   CHECK(study.scored_trials() == 25);
 }
 
 TEST_CASE("the comparison without outlines differs from the other in its pictures alone") {
-  const Study textures = load_study(kConfig / "comparison-textures.json");
-  const Study objects = load_study(kConfig / "comparison.json");
+  const design::Study textures = design::load_study(kConfig / "comparison-textures.json");
+  const design::Study objects = design::load_study(kConfig / "comparison.json");
   CHECK(textures.name == "comparison-textures");
   CHECK(textures.classes.size() == 4);
   CHECK(textures.methods == objects.methods);
@@ -76,24 +77,24 @@ TEST_CASE("the comparison without outlines differs from the other in its picture
 }
 
 TEST_CASE("the study of controls has its adaptive method beside what could stand in for it") {
-  const Study study = load_study(kConfig / "controls.json");
-  CHECK(labels_of(study) == labels_of(load_study(kConfig / "comparison-textures.json")));
+  const design::Study study = design::load_study(kConfig / "controls.json");
+  CHECK(labels_of(study) == labels_of(design::load_study(kConfig / "comparison-textures.json")));
   REQUIRE(study.presented_methods() == 4);
-  CHECK(study.methods[0] == StudyMethod{{}, "adaptive"});
+  CHECK(study.methods[0] == design::StudyMethod{{}, "adaptive"});
   CHECK(study.methods[1].label == "adaptive-phase-scrambled");
-  CHECK(study.methods[1].control == Control::phase_scrambled);
-  CHECK(study.methods[2].method == Method::edge);
-  CHECK(study.methods[3].method == Method::luminance);
-  CHECK(study.rendering.equalise == Equalise::rms);
+  CHECK(study.methods[1].control == engine::Control::phase_scrambled);
+  CHECK(study.methods[2].method == engine::Method::edge);
+  CHECK(study.methods[3].method == engine::Method::luminance);
+  CHECK(study.rendering.equalise == engine::Equalise::rms);
 }
 
 TEST_CASE("the two default studies are practised on textures of neither, and are registered") {
   for (const char* name : {"classification.json", "comparison.json"}) {
-    const Study study = load_study(kConfig / name);
+    const design::Study study = design::load_study(kConfig / name);
     CHECK(study.practice.classes.size() == 3);
     CHECK(study.practice.criterion == 4);
     CHECK(study.practice.rounds == 2);
-    for (const StudyClass& learnt : study.practice.classes) {
+    for (const design::StudyClass& learnt : study.practice.classes) {
       CHECK(std::filesystem::is_regular_file(study.folder / learnt.images.front()));
     }
     CHECK(study.registration.participants == 20);
@@ -109,8 +110,8 @@ TEST_CASE("every image of the studies that come with the program is there") {
   for (const char* name :
        {"classification.json", "classification-exemplars.json", "classification-surface.json",
         "comparison.json", "comparison-textures.json", "controls.json"}) {
-    const Study study = load_study(kConfig / name);
-    for (const StudyClass& study_class : study.classes) {
+    const design::Study study = design::load_study(kConfig / name);
+    for (const design::StudyClass& study_class : study.classes) {
       for (const std::filesystem::path& image : study_class.images) {
         INFO(image.string());
         CHECK(std::filesystem::is_regular_file(study.folder / image));

@@ -64,9 +64,9 @@ namespace touchtrial {
   return study;
 }
 
-[[nodiscard]] inline Study parsed(const nlohmann::json& study,
-                                  const std::filesystem::path& folder = "somewhere") {
-  return parse_study(study.dump(), folder, "study.json");
+[[nodiscard]] inline design::Study parsed(const nlohmann::json& study,
+                                          const std::filesystem::path& folder = "somewhere") {
+  return design::parse_study(study.dump(), folder, "study.json");
 }
 
 }  // namespace touchtrial

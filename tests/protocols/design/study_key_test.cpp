@@ -17,12 +17,12 @@ namespace {
 
 using nlohmann::json;
 
-StudyKey key_for(const json& document, std::uint64_t seed = 1, bool simulated = false) {
+design::StudyKey key_for(const json& document, std::uint64_t seed = 1, bool simulated = false) {
   SeededEntropy entropy(seed);
-  return make_study_key(parsed(document, "/studies"), entropy, simulated);
+  return design::make_study_key(parsed(document, "/studies"), entropy, simulated);
 }
 
-std::string code_of_image(const StudyKey& key, const std::string& image, int method = 0) {
+std::string code_of_image(const design::StudyKey& key, const std::string& image, int method = 0) {
   for (const auto& [code, stimulus] : key.stimuli) {
     const auto& images = key.study.classes[static_cast<std::size_t>(stimulus.class_index)].images;
     const bool wanted = images[static_cast<std::size_t>(stimulus.exemplar)] == image;
@@ -44,7 +44,7 @@ bool is_hex(const std::string& text, std::size_t digits) {
 }  // namespace
 
 TEST_CASE("a key names every presented stimulus with a code of its own") {
-  const StudyKey key = key_for(comparison_of(3, 4));
+  const design::StudyKey key = key_for(comparison_of(3, 4));
   REQUIRE(key.stimuli.size() == 3 * 4 * 2);
   std::set<std::string> codes;
   for (const auto& [code, stimulus] : key.stimuli) {
@@ -61,7 +61,7 @@ TEST_CASE("a key names every presented stimulus with a code of its own") {
 TEST_CASE("a key knows no code and no stimulus that its study does not present") {
   json document = comparison_of(3);
   document["protocol"] = "classification";
-  const StudyKey key = key_for(document);
+  const design::StudyKey key = key_for(document);
   CHECK(key.stimuli.size() == 3);
   CHECK_FALSE(key.stimulus_of("0123456789abcdef").has_value());
   CHECK_THROWS_AS(key.code_of({0, 0, 1}), StudyError);
@@ -69,27 +69,27 @@ TEST_CASE("a key knows no code and no stimulus that its study does not present")
 }
 
 TEST_CASE("secrets decide codes and identity: two keys of one study share none") {
-  const StudyKey one = key_for(study_of(5), 1);
-  const StudyKey other = key_for(study_of(5), 2);
+  const design::StudyKey one = key_for(study_of(5), 1);
+  const design::StudyKey other = key_for(study_of(5), 2);
   CHECK(one.study_id != other.study_id);
   std::set<std::string> codes;
-  for (const StudyKey* key : {&one, &other}) {
-    for (const KeyedStimulus& stimulus : key->stimuli) codes.insert(stimulus.code);
+  for (const design::StudyKey* key : {&one, &other}) {
+    for (const design::KeyedStimulus& stimulus : key->stimuli) codes.insert(stimulus.code);
   }
   CHECK(codes.size() == 10);
   SystemEntropy entropy;
-  const Study study = parsed(study_of(5));
-  CHECK(make_study_key(study, entropy, false).master !=
-        make_study_key(study, entropy, false).master);
+  const design::Study study = parsed(study_of(5));
+  CHECK(design::make_study_key(study, entropy, false).master !=
+        design::make_study_key(study, entropy, false).master);
 }
 
 TEST_CASE("codes stay with their stimuli when others come and go") {
   json document = study_of(3, 2);
-  const StudyKey before = key_for(document);
+  const design::StudyKey before = key_for(document);
   document["classes"].erase(0);
   document["classes"].push_back({{"label", "new"}, {"images", {"new.png"}}});
   document["rendering"] = {{"pitch_mm", 0.1}};
-  const StudyKey after = rekeyed(before, parsed(document));
+  const design::StudyKey after = design::rekeyed(before, parsed(document));
   CHECK(after.study_id == before.study_id);
   CHECK(after.master == before.master);
   CHECK(after.nonce == before.nonce);
@@ -115,15 +115,16 @@ TEST_CASE("a saved key is for its owner's eyes and comes back whole") {
   const TempFolder folder;
   const auto path = folder.path() / "small.key";
   SeededEntropy entropy(5);
-  const Study study = parse_study(comparison_of(3, 2).dump(1), folder.path(), "study.json");
-  StudyKey key = make_study_key(study, entropy, true);
+  const design::Study study =
+      design::parse_study(comparison_of(3, 2).dump(1), folder.path(), "study.json");
+  design::StudyKey key = design::make_study_key(study, entropy, true);
   key.pack_folder = folder.path() / "small.pack";
-  save_study_key(path, key);
+  design::save_study_key(path, key);
   struct stat status {};
   REQUIRE(::stat(path.c_str(), &status) == 0);
   CHECK((status.st_mode & 0777U) == 0600U);
 
-  const StudyKey loaded = load_study_key(path);
+  const design::StudyKey loaded = design::load_study_key(path);
   CHECK(loaded.study_id == key.study_id);
   CHECK(loaded.master == key.master);
   CHECK(loaded.nonce == key.nonce);
@@ -134,7 +135,7 @@ TEST_CASE("a saved key is for its owner's eyes and comes back whole") {
   };
   CHECK(same(loaded.study.folder, folder.path()));
   CHECK(same(loaded.pack_folder, key.pack_folder));
-  CHECK(study_seal(loaded) == study_seal(key));
+  CHECK(design::study_seal(loaded) == design::study_seal(key));
   REQUIRE(loaded.stimuli.size() == key.stimuli.size());
   for (std::size_t i = 0; i < key.stimuli.size(); ++i) {
     CHECK(loaded.stimuli[i].code == key.stimuli[i].code);
@@ -145,12 +146,12 @@ TEST_CASE("a saved key is for its owner's eyes and comes back whole") {
 TEST_CASE("a key moved together with its study and pack finds them at the new place") {
   const TempFolder folder;
   std::filesystem::create_directories(folder.path() / "old");
-  StudyKey key = key_for(minimal_study());
+  design::StudyKey key = key_for(minimal_study());
   key.study.folder = folder.path() / "old";
   key.pack_folder = folder.path() / "old" / "small.pack";
-  save_study_key(folder.path() / "old" / "small.key", key);
+  design::save_study_key(folder.path() / "old" / "small.key", key);
   std::filesystem::rename(folder.path() / "old", folder.path() / "new");
-  const StudyKey moved = load_study_key(folder.path() / "new" / "small.key");
+  const design::StudyKey moved = design::load_study_key(folder.path() / "new" / "small.key");
   CHECK(moved.pack_folder == std::filesystem::canonical(folder.path()) / "new" / "small.pack");
   CHECK(moved.study.folder == std::filesystem::canonical(folder.path()) / "new");
 }
@@ -158,27 +159,27 @@ TEST_CASE("a key moved together with its study and pack finds them at the new pl
 TEST_CASE("any altered byte of a key file is found") {
   const TempFolder folder;
   const auto path = folder.path() / "small.key";
-  save_study_key(path, key_for(minimal_study()));
+  design::save_study_key(path, key_for(minimal_study()));
   const Bytes content = read_file(path);
   for (std::size_t i = 0; i < content.size(); ++i) {
     Bytes altered = content;
     altered[i] = static_cast<std::uint8_t>(altered[i] ^ 1U);
     overwrite(path, altered);
     INFO("byte " << i);
-    CHECK_THROWS_AS(load_study_key(path), FileError);
+    CHECK_THROWS_AS(design::load_study_key(path), FileError);
   }
 }
 
 TEST_CASE("a key file that is cut or extended is refused") {
   const TempFolder folder;
   const auto path = folder.path() / "small.key";
-  save_study_key(path, key_for(minimal_study()));
+  design::save_study_key(path, key_for(minimal_study()));
   const std::string content = text_of(read_file(path));
   for (const std::string& damaged :
        {content.substr(0, content.size() / 2), content.substr(0, content.size() - 1),
         content + "\n", std::string(), std::string("[[[[")}) {
     replace_file(path, damaged);
-    CHECK_THROWS_AS(load_study_key(path), FileError);
+    CHECK_THROWS_AS(design::load_study_key(path), FileError);
   }
 }
 
@@ -186,38 +187,41 @@ TEST_CASE("a file that is no key, and a key of another version, are told apart f
   const TempFolder folder;
   const auto path = folder.path() / "small.key";
   replace_file(path, minimal_study().dump());
-  CHECK(refuses<FileError>([&] { return load_study_key(path); }, "is not a Touchtrial key"));
+  CHECK(
+      refuses<FileError>([&] { return design::load_study_key(path); }, "is not a Touchtrial key"));
   replace_file(path, std::string(R"({"format": "touchtrial-key", "version": 2})"));
-  CHECK(refuses<FileError>([&] { return load_study_key(path); }, "is a key of version 2, not 1"));
-  CHECK(refuses<FileError>([&] { return load_study_key(folder.path() / "none.key"); },
+  CHECK(refuses<FileError>([&] { return design::load_study_key(path); },
+                           "is a key of version 2, not 1"));
+  CHECK(refuses<FileError>([&] { return design::load_study_key(folder.path() / "none.key"); },
                            "does not exist"));
 }
 
 TEST_CASE("a schedule comes back from its secret text") {
   json document = comparison_of(3, 2);
   document["trials"] = {{"lead_in", 1}};
-  const StudyKey key = key_for(document);
-  const Schedule schedule = make_schedule(key.study, 4);
-  const std::string text = schedule_to_json(schedule, key);
-  CHECK(schedule_from_json(text, key) == schedule);
+  const design::StudyKey key = key_for(document);
+  const design::Schedule schedule = design::make_schedule(key.study, 4);
+  const std::string text = design::schedule_to_json(schedule, key);
+  CHECK(design::schedule_from_json(text, key) == schedule);
   CHECK(text.find("label") == std::string::npos);
   CHECK(text.find(".png") == std::string::npos);
   CHECK(text.find('\n') == std::string::npos);
 }
 
 TEST_CASE("a schedule of another key, or of another form, is refused") {
-  const StudyKey key = key_for(study_of(3));
-  const std::string text = schedule_to_json(make_schedule(key.study, 1), key);
-  CHECK_THROWS_AS(schedule_from_json(text, key_for(study_of(3), 2)), StoreError);
-  CHECK_THROWS_AS(schedule_from_json("", key), StoreError);
-  CHECK_THROWS_AS(schedule_from_json("[]", key), StoreError);
-  CHECK_THROWS_AS(schedule_from_json("{\"presentations\":1,\"layout\":[]}", key), StoreError);
+  const design::StudyKey key = key_for(study_of(3));
+  const std::string text = design::schedule_to_json(design::make_schedule(key.study, 1), key);
+  CHECK_THROWS_AS(design::schedule_from_json(text, key_for(study_of(3), 2)), StoreError);
+  CHECK_THROWS_AS(design::schedule_from_json("", key), StoreError);
+  CHECK_THROWS_AS(design::schedule_from_json("[]", key), StoreError);
+  CHECK_THROWS_AS(design::schedule_from_json("{\"presentations\":1,\"layout\":[]}", key),
+                  StoreError);
   json altered = json::parse(text);
   altered["layout"][1] = altered["layout"][0];
-  CHECK_THROWS_AS(schedule_from_json(altered.dump(), key), StoreError);
+  CHECK_THROWS_AS(design::schedule_from_json(altered.dump(), key), StoreError);
   altered = json::parse(text);
   altered["presentations"][0]["kind"] = "other";
-  CHECK_THROWS_AS(schedule_from_json(altered.dump(), key), StoreError);
+  CHECK_THROWS_AS(design::schedule_from_json(altered.dump(), key), StoreError);
 }
 
 }  // namespace touchtrial

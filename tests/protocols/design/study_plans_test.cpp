@@ -19,37 +19,37 @@ bool refused(const json& document, const std::string& part) {
 }  // namespace
 
 TEST_CASE("practice, session and registration are read with every key") {
-  const Study study = parsed(planned_study());
+  const design::Study study = parsed(planned_study());
   CHECK(study.trials.practice == 5);
   REQUIRE(study.practice.classes.size() == 2);
   CHECK(study.practice.classes[1].label == "velvet");
   CHECK(study.practice.criterion == 4);
-  const SessionPlan& session = study.session;
+  const design::SessionPlan& session = study.session;
   CHECK(session.language == "en");
   CHECK(session.instructions.at("en").front() == "Feel the plane.\n\nSlowly.");
-  CHECK(session.sight == Sight::blindfold);
-  CHECK(session.masking == MaskingPlan{});
+  CHECK(session.sight == design::Sight::blindfold);
+  CHECK(session.masking == design::MaskingPlan{});
   CHECK(session.confidence_levels == 5);
   CHECK(session.day_sheet == std::vector<std::string>{"Door shut"});
   REQUIRE(session.closing_questions.size() == 1);
-  CHECK(session.closing_questions[0].kind == QuestionKind::choice);
+  CHECK(session.closing_questions[0].kind == design::QuestionKind::choice);
   CHECK(session.closing_questions[0].options[1].at("de") == "Tiefe");
   CHECK(study.registration.participants == 20);
 }
 
 TEST_CASE("a study without the sections has the documented plan") {
-  const Study study = parsed(minimal_study());
-  CHECK(study.practice == PracticePlan{});
-  CHECK(study.session == SessionPlan{});
-  CHECK(study.registration == Registration{});
+  const design::Study study = parsed(minimal_study());
+  CHECK(study.practice == design::PracticePlan{});
+  CHECK(study.session == design::SessionPlan{});
+  CHECK(study.registration == design::Registration{});
 }
 
 TEST_CASE("the plans, written as JSON, are read as they were") {
-  const Study study = parsed(planned_study());
+  const design::Study study = parsed(planned_study());
   json again = planned_study();
-  again["practice"] = to_json(study.practice);
-  again["session"] = to_json(study.session);
-  again["registration"] = to_json(study.registration);
+  again["practice"] = design::to_json(study.practice);
+  again["session"] = design::to_json(study.session);
+  again["registration"] = design::to_json(study.registration);
   CHECK(parsed(again).practice == study.practice);
   CHECK(parsed(again).session == study.session);
   CHECK(parsed(again).registration == study.registration);
@@ -58,13 +58,14 @@ TEST_CASE("the plans, written as JSON, are read as they were") {
 TEST_CASE("a key gives the plans back as they were sealed") {
   const TempFolder folder;
   SeededEntropy entropy(1);
-  const StudyKey key = make_study_key(parsed(planned_study(), folder.path()), entropy, false);
-  save_study_key(folder.path() / "small.key", key);
-  const StudyKey loaded = load_study_key(folder.path() / "small.key");
+  const design::StudyKey key =
+      design::make_study_key(parsed(planned_study(), folder.path()), entropy, false);
+  design::save_study_key(folder.path() / "small.key", key);
+  const design::StudyKey loaded = design::load_study_key(folder.path() / "small.key");
   CHECK(loaded.study.practice == key.study.practice);
   CHECK(loaded.study.session == key.study.session);
   CHECK(loaded.study.registration == key.study.registration);
-  CHECK(study_seal(loaded) == study_seal(key));
+  CHECK(design::study_seal(loaded) == design::study_seal(key));
 }
 
 TEST_CASE("nobody practises with what is in the study, nor with one texture under two names") {
@@ -139,7 +140,7 @@ TEST_CASE("options belong to choices, and questions have ids of their own") {
   questions[0]["kind"] = "number";
   CHECK(refused(document, "/session/closing_questions/0/options: belongs to a question"));
   questions[0].erase("options");
-  CHECK(parsed(document).session.closing_questions[0].kind == QuestionKind::number);
+  CHECK(parsed(document).session.closing_questions[0].kind == design::QuestionKind::number);
   questions[0]["kind"] = "choice";
   CHECK(refused(document, "/session/closing_questions/0/options: is missing"));
 }

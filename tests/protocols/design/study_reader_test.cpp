@@ -16,7 +16,7 @@ using nlohmann::json;
 /// The error that a text is refused with; empty if it is accepted.
 std::string refusal_of_text(const std::string& text) {
   try {
-    static_cast<void>(parse_study(text, "", "study.json"));
+    static_cast<void>(design::parse_study(text, "", "study.json"));
   } catch (const StudyError& error) {
     return error.what();
   }
@@ -36,16 +36,16 @@ bool contains(const std::string& text, const std::string& part) {
 }  // namespace
 
 TEST_CASE("a study with the required keys alone has the documented defaults") {
-  const Study study = parsed(minimal_study());
+  const design::Study study = parsed(minimal_study());
   CHECK(study.name == "small");
-  CHECK(study.protocol == Protocol::classification);
+  CHECK(study.protocol == design::Protocol::classification);
   REQUIRE(study.classes.size() == 2);
   CHECK(study.classes[1].label == "smooth");
   CHECK(study.classes[1].images == std::vector<std::filesystem::path>{"smooth.png"});
   REQUIRE(study.methods.size() == 1);
-  CHECK(study.methods[0] == ExtractionOptions{});
-  CHECK(study.rendering == RenderingOptions{});
-  CHECK(study.trials == TrialOptions{});
+  CHECK(study.methods[0] == engine::ExtractionOptions{});
+  CHECK(study.rendering == engine::RenderingOptions{});
+  CHECK(study.trials == design::TrialOptions{});
   CHECK(study.seed == 0);
   CHECK(study.folder == "somewhere");
   CHECK(json::parse(study.text) == minimal_study());
@@ -84,35 +84,35 @@ TEST_CASE("every key of a full study is read") {
                         {"on_interruption", "leave-out"},
                         {"resume_within_h", 2.5}};
   document["seed"] = 9007199254740992;
-  const Study study = parsed(document);
-  CHECK(study.protocol == Protocol::comparison);
+  const design::Study study = parsed(document);
+  CHECK(study.protocol == design::Protocol::comparison);
   CHECK(study.classes[2].images.size() == 2);
-  CHECK(study.methods[0].method == Method::fixed);
+  CHECK(study.methods[0].method == engine::Method::fixed);
   CHECK(study.methods[0].radius == 4);
   CHECK(study.methods[0].order == 0.25);
-  CHECK(study.methods[1].tv_gabor == TvGaborOptions{0.02, {{0.1, 30.0}}, 1e-4, 77});
-  const RenderingOptions rendering{.pitch_mm = 0.1,
-                                   .stiffness_n_per_mm = 0.5,
-                                   .damping_n_s_per_mm = 0.001,
-                                   .filter_mm = 0.3,
-                                   .texture_stiffness_n_per_mm = 0.2,
-                                   .gains = Gains{0.01, 0.02},
-                                   .equalise = Equalise::rms,
-                                   .reference_grey = 100.5,
-                                   .neighbourhood = 5,
-                                   .max_force_n = 2.0};
+  CHECK(study.methods[1].tv_gabor == engine::TvGaborOptions{0.02, {{0.1, 30.0}}, 1e-4, 77});
+  const engine::RenderingOptions rendering{.pitch_mm = 0.1,
+                                           .stiffness_n_per_mm = 0.5,
+                                           .damping_n_s_per_mm = 0.001,
+                                           .filter_mm = 0.3,
+                                           .texture_stiffness_n_per_mm = 0.2,
+                                           .gains = engine::Gains{0.01, 0.02},
+                                           .equalise = engine::Equalise::rms,
+                                           .reference_grey = 100.5,
+                                           .neighbourhood = 5,
+                                           .max_force_n = 2.0};
   CHECK(study.rendering == rendering);
-  const TrialOptions trials{.repeats = 7,
-                            .order = TrialOrder::uniform,
-                            .explore_limit_s = 30.0,
-                            .on_timeout = OnTimeout::no_response,
-                            .break_every = 10,
-                            .catch_trials = 3,
-                            .lead_in = 2,
-                            .blocks = Blocks::mixed,
-                            .max_run = 4,
-                            .on_interruption = OnInterruption::leave_out,
-                            .resume_within_h = 2.5};
+  const design::TrialOptions trials{.repeats = 7,
+                                    .order = design::TrialOrder::uniform,
+                                    .explore_limit_s = 30.0,
+                                    .on_timeout = design::OnTimeout::no_response,
+                                    .break_every = 10,
+                                    .catch_trials = 3,
+                                    .lead_in = 2,
+                                    .blocks = design::Blocks::mixed,
+                                    .max_run = 4,
+                                    .on_interruption = design::OnInterruption::leave_out,
+                                    .resume_within_h = 2.5};
   CHECK(study.trials == trials);
   CHECK(study.seed == 9007199254740992U);
 }
@@ -173,21 +173,22 @@ TEST_CASE("every method is read with its options, and written again as it was re
                          {{"name", "median"}, {"radius", 3}, {"threshold", 0}},
                          {{"name", "edge"}, {"divisor", 2}},
                          {{"name", "luminance"}}};
-  const Study study = parsed(document);
+  const design::Study study = parsed(document);
   REQUIRE(study.methods.size() == 6);
-  CHECK(study.methods[0].norm == Norm::sum);
-  CHECK(study.methods[0].gradient == Gradient::prewitt);
-  CHECK(study.methods[0].combine == Combine::max);
+  CHECK(study.methods[0].norm == engine::Norm::sum);
+  CHECK(study.methods[0].gradient == engine::Gradient::prewitt);
+  CHECK(study.methods[0].combine == engine::Combine::max);
   CHECK(study.methods[0].levels == 3);
   CHECK(study.methods[1].tv_gabor.automatic);
   CHECK(study.methods[2].sigma_px == 1.5);
   CHECK(study.methods[3].radius == 3);
   CHECK(study.methods[3].threshold_grey == 0.0);
   CHECK(study.methods[4].divisor == 2.0);
-  CHECK(study.methods[5].method == Method::luminance);
+  CHECK(study.methods[5].method == engine::Method::luminance);
   json again = document;
   again["methods"] = json::array();
-  for (const StudyMethod& method : study.methods) again["methods"].push_back(to_json(method));
+  for (const design::StudyMethod& method : study.methods)
+    again["methods"].push_back(design::to_json(method));
   CHECK(again["methods"][1]["components"] == "auto");
   CHECK(again["methods"][5] == json{{"name", "luminance"}});
   CHECK(parsed(again).methods == study.methods);
@@ -198,14 +199,15 @@ TEST_CASE("a method and its control, or two settings of one method, are told apa
   document["methods"] = {{{"name", "adaptive"}},
                          {{"name", "adaptive"}, {"control", "phase-scrambled"}},
                          {{"name", "adaptive"}, {"radius", 7}, {"label", "wide"}}};
-  const Study study = parsed(document);
+  const design::Study study = parsed(document);
   CHECK(study.methods[0].label == "adaptive");
   CHECK(study.methods[1].label == "adaptive-phase-scrambled");
-  CHECK(study.methods[1].control == Control::phase_scrambled);
+  CHECK(study.methods[1].control == engine::Control::phase_scrambled);
   CHECK(study.methods[2].label == "wide");
   json again = document;
   again["methods"] = json::array();
-  for (const StudyMethod& method : study.methods) again["methods"].push_back(to_json(method));
+  for (const design::StudyMethod& method : study.methods)
+    again["methods"].push_back(design::to_json(method));
   CHECK_FALSE(again["methods"][0].contains("label"));
   CHECK_FALSE(again["methods"][0].contains("control"));
   CHECK(parsed(again).methods == study.methods);
@@ -229,8 +231,9 @@ TEST_CASE("a study with the surface model has its own gains and friction") {
   json document = minimal_study();
   document["rendering"] = {
       {"model", "surface"}, {"gains", {{"height_mm", 0.004}}}, {"friction", 0.25}};
-  const RenderingOptions expected{
-      .model = ModelKind::surface, .gains = Gains{.height_mm = 0.004}, .friction = 0.25};
+  const engine::RenderingOptions expected{.model = engine::ModelKind::surface,
+                                          .gains = engine::Gains{.height_mm = 0.004},
+                                          .friction = 0.25};
   CHECK(parsed(document).rendering == expected);
   document["rendering"]["gains"] = "budget";
   CHECK_FALSE(parsed(document).rendering.gains);
@@ -406,17 +409,17 @@ TEST_CASE("a study file is read from disk, with images relative to its folder") 
   const TempFolder folder;
   const auto path = folder.path() / "small.json";
   replace_file(path, minimal_study().dump(2));
-  const Study study = load_study(path);
+  const design::Study study = design::load_study(path);
   CHECK(study.folder == folder.path());
   CHECK(study.text == minimal_study().dump(2));
 }
 
 TEST_CASE("a study file that is missing, a folder or far too large is refused as a study") {
   const TempFolder folder;
-  CHECK_THROWS_AS(load_study(folder.path() / "none.json"), StudyError);
-  CHECK_THROWS_AS(load_study(folder.path()), StudyError);
+  CHECK_THROWS_AS(design::load_study(folder.path() / "none.json"), StudyError);
+  CHECK_THROWS_AS(design::load_study(folder.path()), StudyError);
   replace_file(folder.path() / "large.json", std::string((16U << 20U) + 1, ' '));
-  CHECK_THROWS_AS(load_study(folder.path() / "large.json"), StudyError);
+  CHECK_THROWS_AS(design::load_study(folder.path() / "large.json"), StudyError);
 }
 
 }  // namespace touchtrial

@@ -376,7 +376,7 @@ TEST_CASE("the reader keeps the schema's lengths of lists") {
 TEST_CASE("the schema's defaults are the reader's") {
   json document = minimal_study();
   document["practice"]["classes"] = full_plans()["practice"]["classes"];  // required
-  const Study bare = parsed(document);
+  const design::Study bare = parsed(document);
   int defaults = 0;
   for (const Property& property : all_properties()) {
     const std::string place = property.place.to_string();
@@ -386,7 +386,7 @@ TEST_CASE("the schema's defaults are the reader's") {
     study[property.place] = property.schema["default"];
     INFO(place);
     ++defaults;
-    const Study written = parsed(study);
+    const design::Study written = parsed(study);
     CHECK(written.rendering == bare.rendering);
     CHECK(written.trials == bare.trials);
     CHECK(written.practice == bare.practice);

@@ -11,9 +11,9 @@ namespace {
 
 using nlohmann::json;
 
-StudyKey key_for(const json& document, std::uint64_t seed = 1) {
+design::StudyKey key_for(const json& document, std::uint64_t seed = 1) {
   SeededEntropy entropy(seed);
-  return make_study_key(parsed(document), entropy, false);
+  return design::make_study_key(parsed(document), entropy, false);
 }
 
 json labelled_study() {
@@ -26,7 +26,7 @@ json labelled_study() {
 }  // namespace
 
 TEST_CASE("the configuration in clear has no label, image name or seed") {
-  const std::string text = blinded_configuration(key_for(labelled_study()));
+  const std::string text = design::blinded_configuration(key_for(labelled_study()));
   for (const char* secret :
        {"bark", "c1_0", "c2_1", ".png", "31875542", "seed", "label", "classes"}) {
     INFO(secret);
@@ -48,21 +48,21 @@ TEST_CASE("the configuration in clear has no label, image name or seed") {
 }
 
 TEST_CASE("the codes in clear are sorted, so that their order tells nothing") {
-  const StudyKey key = key_for(labelled_study());
-  const std::vector<std::string> codes = json::parse(blinded_configuration(key))["stimuli"];
+  const design::StudyKey key = key_for(labelled_study());
+  const std::vector<std::string> codes = json::parse(design::blinded_configuration(key))["stimuli"];
   REQUIRE(codes.size() == key.stimuli.size());
   CHECK(std::is_sorted(codes.begin(), codes.end()));
   std::vector<std::string> in_study_order;
-  for (const KeyedStimulus& stimulus : key.stimuli) in_study_order.push_back(stimulus.code);
+  for (const design::KeyedStimulus& stimulus : key.stimuli) in_study_order.push_back(stimulus.code);
   CHECK_FALSE(in_study_order == codes);
 }
 
 TEST_CASE("the order of classes and images in the study does not show in clear") {
   json document = labelled_study();
-  const std::string before = blinded_configuration(key_for(document));
+  const std::string before = design::blinded_configuration(key_for(document));
   std::swap(document["classes"][0], document["classes"][2]);
   std::swap(document["classes"][1]["images"][0], document["classes"][1]["images"][1]);
-  CHECK(blinded_configuration(key_for(document)) == before);
+  CHECK(design::blinded_configuration(key_for(document)) == before);
 }
 
 TEST_CASE("the sections in clear, read again, give the same study options") {
@@ -71,12 +71,12 @@ TEST_CASE("the sections in clear, read again, give the same study options") {
                            {"filter_mm", 0.30000000000000004}};
   document["trials"] = {{"order", "uniform"}, {"blocks", "mixed"}};
   document["methods"] = {{{"name", "fixed"}, {"order", 1.0 / 3.0}}, {{"name", "tv-gabor"}}};
-  const StudyKey key = key_for(document);
-  const json configuration = json::parse(blinded_configuration(key));
+  const design::StudyKey key = key_for(document);
+  const json configuration = json::parse(design::blinded_configuration(key));
   for (const char* section : {"rendering", "trials", "methods"}) {
     document[section] = configuration[section];
   }
-  const Study again = parsed(document);
+  const design::Study again = parsed(document);
   CHECK(again.rendering == key.study.rendering);
   CHECK(again.trials == key.study.trials);
   CHECK(again.methods == key.study.methods);
@@ -85,23 +85,23 @@ TEST_CASE("the sections in clear, read again, give the same study options") {
 TEST_CASE("a study that has none of the newer keys keeps its configuration and seal") {
   // Written by the program before it knew practice, sessions and registrations.
   json document = labelled_study();
-  StudyKey key = key_for(document);
-  CHECK(to_hex(study_seal(key)) ==
+  design::StudyKey key = key_for(document);
+  CHECK(to_hex(design::study_seal(key)) ==
         "7af5bedec9c62bea77c60a41d6ea87a7110a5e1cdcb2561861db4e8eb4399934");
   const std::string trials =
       R"("trials":{"blocks":"by-method","break_every":0,"catch":0,"explore_limit_s":60.0,)"
       R"("lead_in":0,"on_timeout":"fade","order":"shuffled","practice":0,"repeats":5}})";
-  CHECK(blinded_configuration(key).ends_with(trials));
+  CHECK(design::blinded_configuration(key).ends_with(trials));
   document["trials"] = {{"order", "de-bruijn"}, {"repeats", 3}, {"break_every", 7}};
   key = key_for(document);
-  CHECK(to_hex(study_seal(key)) ==
+  CHECK(to_hex(design::study_seal(key)) ==
         "0d6c41ceb5fdbae1234501fd554ffed5c553b6803b015caace9d9015ed3e4b65");
   document["practice"]["classes"] = planned_study()["practice"]["classes"];
-  CHECK_FALSE(study_seal(key_for(document)) == study_seal(key));
+  CHECK_FALSE(design::study_seal(key_for(document)) == design::study_seal(key));
 }
 
 TEST_CASE("of practice, session and registration no text stands in clear") {
-  const std::string text = blinded_configuration(key_for(planned_study()));
+  const std::string text = design::blinded_configuration(key_for(planned_study()));
   for (const char* secret : {"corduroy", "velvet", ".png", "Feel the plane", "Door shut", "form 3",
                              "2026-17", "Which cue", "Edges", "They can."}) {
     INFO(secret);
@@ -117,7 +117,7 @@ TEST_CASE("of practice, session and registration no text stands in clear") {
                                          {"closing", true}});
   CHECK(configuration["texts"].get<std::string>().size() == 64);
   CHECK_FALSE(configuration["texts"] ==
-              json::parse(blinded_configuration(key_for(planned_study(), 2)))["texts"]);
+              json::parse(design::blinded_configuration(key_for(planned_study(), 2)))["texts"]);
 }
 
 TEST_CASE("any change of what people read or are asked changes the seal") {
@@ -140,17 +140,18 @@ TEST_CASE("any change of what people read or are asked changes the seal") {
       [](json& d) { d["trials"]["order"] = "williams"; },
       [](json& d) { d["trials"]["on_interruption"] = "restart-block"; },
       [](json& d) { d["trials"]["resume_within_h"] = 1; }};
-  std::set<Digest> seals = {study_seal(key_for(planned_study()))};
+  std::set<Digest> seals = {design::study_seal(key_for(planned_study()))};
   for (const auto& change : changes) {
     json document = planned_study();
     change(document);
-    seals.insert(study_seal(key_for(document)));
+    seals.insert(design::study_seal(key_for(document)));
   }
   CHECK(seals.size() == changes.size() + 1);
 }
 
 TEST_CASE("the seal is the same for the same key and study") {
-  CHECK(study_seal(key_for(labelled_study())) == study_seal(key_for(labelled_study())));
+  CHECK(design::study_seal(key_for(labelled_study())) ==
+        design::study_seal(key_for(labelled_study())));
 }
 
 TEST_CASE("any change of study, secrets or codes changes the seal") {
@@ -172,32 +173,34 @@ TEST_CASE("any change of study, secrets or codes changes the seal") {
       [](json& d) { d["trials"]["explore_limit_s"] = 61; },
       [](json& d) { d["trials"]["blocks"] = "mixed"; },
       [](json& d) { d["seed"] = 2; }};
-  std::set<Digest> seals = {study_seal(key_for(labelled_study()))};
+  std::set<Digest> seals = {design::study_seal(key_for(labelled_study()))};
   for (const auto& change : changes) {
     json document = labelled_study();
     change(document);
-    seals.insert(study_seal(key_for(document)));
+    seals.insert(design::study_seal(key_for(document)));
   }
   CHECK(seals.size() == changes.size() + 1);
 
-  StudyKey key = key_for(labelled_study());
+  design::StudyKey key = key_for(labelled_study());
   key.master[31] ^= 1U;
-  CHECK(seals.insert(study_seal(key)).second);
+  CHECK(seals.insert(design::study_seal(key)).second);
   key = key_for(labelled_study());
   key.nonce[0] ^= 1U;
-  CHECK(seals.insert(study_seal(key)).second);
+  CHECK(seals.insert(design::study_seal(key)).second);
   key = key_for(labelled_study());
   key.simulated = true;
-  CHECK(seals.insert(study_seal(key)).second);
+  CHECK(seals.insert(design::study_seal(key)).second);
   key = key_for(labelled_study());
   std::swap(key.stimuli[0].code, key.stimuli[5].code);
-  CHECK(seals.insert(study_seal(key)).second);
+  CHECK(seals.insert(design::study_seal(key)).second);
 }
 
 TEST_CASE("where a study lies and how its file is laid out do not change the seal") {
   SeededEntropy entropy(1);
-  const Study moved = parse_study(labelled_study().dump(4), "elsewhere", "other.json");
-  CHECK(study_seal(make_study_key(moved, entropy, false)) == study_seal(key_for(labelled_study())));
+  const design::Study moved =
+      design::parse_study(labelled_study().dump(4), "elsewhere", "other.json");
+  CHECK(design::study_seal(design::make_study_key(moved, entropy, false)) ==
+        design::study_seal(key_for(labelled_study())));
 }
 
 }  // namespace touchtrial

@@ -12,22 +12,24 @@ namespace touchtrial {
 /// Counts of (presented class, answered class).
 using Confusion = std::map<std::pair<int, int>, int>;
 
-[[nodiscard]] inline Schedule schedule_of_session(const StudyStore& store, const StudyKey& key,
-                                                  int session) {
+[[nodiscard]] inline design::Schedule schedule_of_session(const store::StudyStore& store,
+                                                          const design::StudyKey& key,
+                                                          int session) {
   const auto participant_key =
-      unwrap_participant_key(key.master, session, store.wrapped_key(session).value());
-  return schedule_from_json(
-      unsealed(store.events(session).front(), participant_key.value()).value(), key);
+      store::unwrap_participant_key(key.master, session, store.wrapped_key(session).value());
+  return design::schedule_from_json(
+      store::unsealed(store.events(session).front(), participant_key.value()).value(), key);
 }
 
-[[nodiscard]] inline Confusion confusion_of(const StudyStore& store, const StudyKey& key) {
-  std::map<int, Schedule> schedules;
-  for (const SessionRow& row : store.sessions()) {
+[[nodiscard]] inline Confusion confusion_of(const store::StudyStore& store,
+                                            const design::StudyKey& key) {
+  std::map<int, design::Schedule> schedules;
+  for (const store::SessionRow& row : store.sessions()) {
     schedules[row.session] = schedule_of_session(store, key, row.session);
   }
   Confusion confusion;
-  for (const TrialRow& row : store.trials()) {
-    const Schedule& schedule = schedules[row.session];
+  for (const store::TrialRow& row : store.trials()) {
+    const design::Schedule& schedule = schedules[row.session];
     const int presented = schedule.presentations.at(row.trial - 1).stimulus.class_index;
     if (row.position) ++confusion[{presented, schedule.layout.at(*row.position)}];
   }

@@ -16,15 +16,17 @@ class DefaultStudy {
  public:
   explicit DefaultStudy(const char* study_file = "classification.json")
       : key_(make_key(study_file)) {
-    prepare_pack(key_, folder_.path() / "default.sim.pack");
+    design::prepare_pack(key_, folder_.path() / "default.sim.pack");
   }
 
   [[nodiscard]] double accuracy_of(const char* subject_file, int participants) const {
-    const Pack pack(folder_.path() / "default.sim.pack");
-    const SubjectModel subject = load_subject_model(kConfig / "subjects" / subject_file);
-    StudyStore store = StudyStore::create(folder_.path() / (std::string(subject_file) + ".db"),
-                                          commitment_of(key_, pack, true, false), {});
-    const SimulationReport report = simulate_study(
+    const engine::Pack pack(folder_.path() / "default.sim.pack");
+    const session::SubjectModel subject =
+        session::load_subject_model(kConfig / "subjects" / subject_file);
+    store::StudyStore store =
+        store::StudyStore::create(folder_.path() / (std::string(subject_file) + ".db"),
+                                  session::commitment_of(key_, pack, true, false), {});
+    const session::SimulationReport report = session::simulate_study(
         key_, pack, subject, {.participants = participants, .seed = 1, .jobs = 2}, store);
     CHECK(report.invalid_trials == 0);
     const Confusion confusion = confusion_of(store, key_);
@@ -32,13 +34,13 @@ class DefaultStudy {
   }
 
  private:
-  [[nodiscard]] static StudyKey make_key(const char* study_file) {
+  [[nodiscard]] static design::StudyKey make_key(const char* study_file) {
     SeededEntropy entropy(1);
-    return make_study_key(load_study(kConfig / study_file), entropy, true);
+    return design::make_study_key(design::load_study(kConfig / study_file), entropy, true);
   }
 
   TempFolder folder_;
-  StudyKey key_;
+  design::StudyKey key_;
 };
 
 TEST_CASE("the default subject's mean accuracy in the default study is like people's") {

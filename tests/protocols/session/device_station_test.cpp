@@ -9,26 +9,26 @@
 namespace touchtrial {
 namespace {
 
-using Says = Attendant::Says;
+using Says = session::Attendant::Says;
 
 struct Bench {
   Cable cable;
   FakeDevice* device = nullptr;
   Helper helper{cable};
-  DeviceStation station{opener(cable, device), std::nullopt, helper};
+  session::DeviceStation station{opener(cable, device), std::nullopt, helper};
 
-  SupplyState until_settled() {
-    SupplyState state = station.make_ready();
-    while (state == SupplyState::not_yet) state = station.make_ready();
+  session::SupplyState until_settled() {
+    session::SupplyState state = station.make_ready();
+    while (state == session::SupplyState::not_yet) state = station.make_ready();
     return state;
   }
 };
 
 TEST_CASE("a device is armed once somebody consents, and then ready without asking") {
   Bench bench;
-  CHECK(bench.station.make_ready() == SupplyState::ready);
+  CHECK(bench.station.make_ready() == session::SupplyState::ready);
   CHECK(bench.helper.consents == 1);
-  CHECK(bench.station.make_ready() == SupplyState::ready);
+  CHECK(bench.station.make_ready() == session::SupplyState::ready);
   CHECK(bench.helper.consents == 1);
   CHECK(bench.station.info().model == "Fake One");
   CHECK(bench.cable.opened == 1);
@@ -38,14 +38,14 @@ TEST_CASE("what is missing is said until it is there") {
   Bench bench;
   bench.cable.plugged = false;
   bench.cable.homed = false;
-  CHECK(bench.station.make_ready() == SupplyState::not_yet);
+  CHECK(bench.station.make_ready() == session::SupplyState::not_yet);
   CHECK_THROWS_AS(bench.station.device(), std::logic_error);
-  CHECK(bench.until_settled() == SupplyState::ready);
+  CHECK(bench.until_settled() == session::SupplyState::ready);
   REQUIRE(bench.helper.needs.size() == 2);
   CHECK(bench.helper.needs.front() == "fake: no such device; plug it in");
 
   bench.cable.homed = false;
-  CHECK(bench.station.make_ready() == SupplyState::not_yet);
+  CHECK(bench.station.make_ready() == session::SupplyState::not_yet);
   CHECK(bench.helper.needs.back() ==
         "the device is not homed; move its handle through the whole range");
 }
@@ -55,71 +55,71 @@ TEST_CASE("a file that the device needs and that is missing is said and waited f
   FakeDevice* device = nullptr;
   Helper helper{cable};
   int tries = 0;
-  DeviceStation station(
+  session::DeviceStation station(
       [&, open = opener(cable, device)] {
         if (++tries == 1) throw FileError("fw.bin: cannot be read; correct falcon.firmware");
         return open();
       },
       std::nullopt, helper);
-  CHECK(station.make_ready() == SupplyState::not_yet);
+  CHECK(station.make_ready() == session::SupplyState::not_yet);
   REQUIRE(helper.needs.size() == 1);
   CHECK(helper.needs.front() == "fw.bin: cannot be read; correct falcon.firmware");
-  CHECK(station.make_ready() == SupplyState::ready);
+  CHECK(station.make_ready() == session::SupplyState::ready);
 }
 
 TEST_CASE("a device that was lost is opened anew and armed anew") {
   Bench bench;
-  REQUIRE(bench.until_settled() == SupplyState::ready);
+  REQUIRE(bench.until_settled() == session::SupplyState::ready);
   bench.cable.plugged = false;
-  DeviceSample sample;
-  CHECK(bench.station.device().read(sample) == DeviceStatus::fault);
-  CHECK(bench.until_settled() == SupplyState::ready);
+  device::DeviceSample sample;
+  CHECK(bench.station.device().read(sample) == device::DeviceStatus::fault);
+  CHECK(bench.until_settled() == session::SupplyState::ready);
   CHECK(bench.cable.opened == 2);
   CHECK(bench.helper.consents == 2);
-  CHECK(bench.station.device().read(sample) == DeviceStatus::ok);
+  CHECK(bench.station.device().read(sample) == device::DeviceStatus::ok);
 }
 
 TEST_CASE("after an interruption the same device waits for consent") {
   Bench bench;
-  REQUIRE(bench.until_settled() == SupplyState::ready);
+  REQUIRE(bench.until_settled() == session::SupplyState::ready);
   bench.station.interrupted();
-  CHECK(bench.until_settled() == SupplyState::ready);
+  CHECK(bench.until_settled() == session::SupplyState::ready);
   CHECK(bench.cable.opened == 1);
   CHECK(bench.helper.consents == 2);
 }
 
 TEST_CASE("another device is not taken for the one that the session began with") {
   Bench bench;
-  REQUIRE(bench.until_settled() == SupplyState::ready);
+  REQUIRE(bench.until_settled() == session::SupplyState::ready);
   bench.cable.plugged = false;
-  DeviceSample sample;
+  device::DeviceSample sample;
   static_cast<void>(bench.station.device().read(sample));
   bench.cable.serial = "B2";
   bench.helper.plugs_in = false;
   bench.cable.plugged = true;
-  CHECK(bench.station.make_ready() == SupplyState::not_yet);
+  CHECK(bench.station.make_ready() == session::SupplyState::not_yet);
   CHECK(bench.helper.needs.back() ==
         "fake B2 is not the device that the session began with; connect fake A1");
   bench.cable.serial = "A1";
-  CHECK(bench.station.make_ready() == SupplyState::ready);
+  CHECK(bench.station.make_ready() == session::SupplyState::ready);
 }
 
 TEST_CASE("whoever gives up ends the wait") {
   Bench bench;
   bench.cable.plugged = false;
   bench.helper.gives_up = true;
-  CHECK(bench.station.make_ready() == SupplyState::stopped);
+  CHECK(bench.station.make_ready() == session::SupplyState::stopped);
 }
 
 TEST_CASE("a station describes its device and what its servo thread obtained") {
-  SessionOpening opening;
-  DeviceInfo device{"falcon", "F7", 8.5, false};
+  store::SessionOpening opening;
+  device::DeviceInfo device{"falcon", "F7", 8.5, false};
   device.model = "Novint Falcon";
   device.visual = true;
-  SchedulingObtained scheduling;
-  scheduling.policy = SchedulingPolicy::fifo;
+  device::SchedulingObtained scheduling;
+  scheduling.policy = device::SchedulingPolicy::fifo;
   scheduling.priority = 80;
-  describe_station(opening, device, scheduling, 2000.0, "ab");
+  session::describe_station(opening, device, scheduling, 2000.0, "ab");
   CHECK(opening.device == "falcon");
   CHECK(opening.device_serial == "F7");
   REQUIRE(opening.station);

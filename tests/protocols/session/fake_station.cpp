@@ -6,14 +6,14 @@
 
 namespace touchtrial {
 
-DeviceInfo FakeDevice::info() const {
-  DeviceInfo info{"fake", cable_.serial, 3.3, false};
+device::DeviceInfo FakeDevice::info() const {
+  device::DeviceInfo info{"fake", cable_.serial, 3.3, false};
   info.model = "Fake One";
   info.firmware = "7";
   return info;
 }
 
-DeviceStatus FakeDevice::read(DeviceSample& sample) noexcept {
+device::DeviceStatus FakeDevice::read(device::DeviceSample& sample) noexcept {
   constexpr int kComingDown = 50;
   constexpr int kStrokeTicks = 250;
   constexpr double kMmATick = 0.06;
@@ -29,18 +29,18 @@ DeviceStatus FakeDevice::read(DeviceSample& sample) noexcept {
   sample = {};
   sample.position_mm = {x_mm, 10.0, height_mm};
   sample.sequence = ++sequence_;
-  return lost_ ? DeviceStatus::fault : DeviceStatus::ok;
+  return lost_ ? device::DeviceStatus::fault : device::DeviceStatus::ok;
 }
 
-DeviceStatus FakeDevice::write(Vec3 force_n) noexcept {
+device::DeviceStatus FakeDevice::write(Vec3 force_n) noexcept {
   const bool is_zero = force_n == Vec3{};
   if (!is_zero) ++cable_.strong_writes;
   if (!is_zero && halted_) ++cable_.writes_unarmed;
   cable_.last_was_zero = is_zero || halted_ || lost_;
-  return lost_ ? DeviceStatus::fault : DeviceStatus::ok;
+  return lost_ ? device::DeviceStatus::fault : device::DeviceStatus::ok;
 }
 
-Attendant::Says Helper::attend(const std::string& need) {
+session::Attendant::Says Helper::attend(const std::string& need) {
   if (gives_up && !need.empty()) return Says::stop;
   if (need.empty()) {
     ++consents;
@@ -54,8 +54,8 @@ Attendant::Says Helper::attend(const std::string& need) {
   return Says::wait;
 }
 
-DeviceStation::Open opener(Cable& cable, FakeDevice*& device) {
-  return [&cable, &device]() -> std::unique_ptr<HapticDevice> {
+session::DeviceStation::Open opener(Cable& cable, FakeDevice*& device) {
+  return [&cable, &device]() -> std::unique_ptr<device::HapticDevice> {
     if (!cable.plugged) throw DeviceError("fake: no such device; plug it in");
     auto opened = std::make_unique<FakeDevice>(cable);
     device = opened.get();

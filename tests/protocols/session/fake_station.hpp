@@ -27,21 +27,21 @@ struct Cable {
 };
 
 /// Strokes the plane to and fro at 60 mm/s, 0.3 mm deep, after coming down for 50 ticks.
-class FakeDevice final : public HapticDevice {
+class FakeDevice final : public device::HapticDevice {
  public:
   explicit FakeDevice(Cable& cable) : cable_(cable) { ++cable.opened; }
   ~FakeDevice() override { cable_.last_was_zero = true; }
 
-  [[nodiscard]] DeviceInfo info() const override;
-  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override;
-  [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override;
+  [[nodiscard]] device::DeviceInfo info() const override;
+  [[nodiscard]] device::DeviceStatus read(device::DeviceSample& sample) noexcept override;
+  [[nodiscard]] device::DeviceStatus write(Vec3 force_n) noexcept override;
   void halt() noexcept override { halted_ = true; }
   void rearm() noexcept override { halted_ = false; }
-  [[nodiscard]] DeviceFault fault() const noexcept override {
-    return lost_ ? DeviceFault::link_lost : DeviceFault::none;
+  [[nodiscard]] device::DeviceFault fault() const noexcept override {
+    return lost_ ? device::DeviceFault::link_lost : device::DeviceFault::none;
   }
-  [[nodiscard]] DeviceReadiness readiness() const noexcept override {
-    return cable_.homed ? DeviceReadiness::ready : DeviceReadiness::needs_homing;
+  [[nodiscard]] device::DeviceReadiness readiness() const noexcept override {
+    return cable_.homed ? device::DeviceReadiness::ready : device::DeviceReadiness::needs_homing;
   }
   /// A new exploration: the hand is up again.
   void lift() noexcept { tick_ = 0; }
@@ -55,7 +55,7 @@ class FakeDevice final : public HapticDevice {
 };
 
 /// Remembers what was missing; plugs the cable in when asked for the second time.
-class Helper final : public Attendant {
+class Helper final : public session::Attendant {
  public:
   explicit Helper(Cable& cable) : cable_(cable) {}
 
@@ -71,6 +71,6 @@ class Helper final : public Attendant {
 };
 
 /// Opens the fake; the newest one is `device` while it lives.
-[[nodiscard]] DeviceStation::Open opener(Cable& cable, FakeDevice*& device);
+[[nodiscard]] session::DeviceStation::Open opener(Cable& cable, FakeDevice*& device);
 
 }  // namespace touchtrial

@@ -13,8 +13,8 @@ namespace touchtrial {
 namespace {
 
 /// Unsure enough that answers differ, and with every kind of error.
-SubjectModel erring_subject() {
-  SubjectModel subject;
+session::SubjectModel erring_subject() {
+  session::SubjectModel subject;
   subject.explore_s = 1.5;
   subject.training_passes = 4;
   subject.weber = 1.2;
@@ -29,7 +29,7 @@ SubjectModel erring_subject() {
   return subject;
 }
 
-std::vector<std::string> labels_of(const Schedule& schedule, const Study& study) {
+std::vector<std::string> labels_of(const design::Schedule& schedule, const design::Study& study) {
   std::vector<std::string> labels;
   for (const int picture : schedule.layout) labels.push_back(study.classes[picture].label);
   return labels;
@@ -38,11 +38,11 @@ std::vector<std::string> labels_of(const Schedule& schedule, const Study& study)
 struct Fields {
   explicit Fields(const TinyStudy& study)
       : source(study.pack(), study.key().study.rendering), all(study.key(), source) {}
-  StimulusSource source;
-  LabelledFields all;
+  session::StimulusSource source;
+  session::LabelledFields all;
 };
 
-FeltBank bank_of(const TinyStudy& study, const FeltBankOptions& options) {
+session::FeltBank bank_of(const TinyStudy& study, const session::FeltBankOptions& options) {
   return {Fields(study).all, study.key().study, erring_subject(), options};
 }
 
@@ -51,30 +51,31 @@ TEST_CASE("answers from trials felt alone are those of the servo path, one by on
   const std::string trials = GENERATE(R"({"repeats": 3, "lead_in": 2, "catch": 0})",
                                       R"({"repeats": 2, "explore_limit_s": 1.2})");
   TinyStudy study({.images = 2, .trials = trials, .rendering = R"({"max_force_n": 0.9})"});
-  const SubjectModel subject = erring_subject();
+  const session::SubjectModel subject = erring_subject();
   constexpr std::uint64_t kSeed = 17;
-  StudyStore store = StudyStore::create(study.next_database(),
-                                        commitment_of(study.key(), study.pack(), true, false), {});
-  static_cast<void>(simulate_study(study.key(), study.pack(), subject,
-                                   {.participants = 3, .seed = kSeed, .jobs = 2}, store));
-  const Study& design = study.key().study;
+  store::StudyStore store = store::StudyStore::create(
+      study.next_database(), session::commitment_of(study.key(), study.pack(), true, false), {});
+  static_cast<void>(session::simulate_study(study.key(), study.pack(), subject,
+                                            {.participants = 3, .seed = kSeed, .jobs = 2}, store));
+  const design::Study& design = study.key().study;
   const Fields fields(study);
-  const FeltKnowledge knowledge =
-      learn_by_feeling(fields.all, subject, design.rendering.max_force_n, kSeed, 1);
-  const FeltBank places = bank_of(study, {.explorations = 1});
-  const std::vector<TrialRow> rows = store.trials();
+  const session::FeltKnowledge knowledge =
+      session::learn_by_feeling(fields.all, subject, design.rendering.max_force_n, kSeed, 1);
+  const session::FeltBank places = bank_of(study, {.explorations = 1});
+  const std::vector<store::TrialRow> rows = store.trials();
   std::size_t row = 0;
   for (int number = 1; number <= 3; ++number) {
-    const Schedule schedule = make_schedule(design, number);
-    const Individual individual(subject, kSeed, number);
-    const SeenPictures pictures = see(labels_of(schedule, design), subject, individual, knowledge);
-    const FeltDecision decision(individual, knowledge);
+    const design::Schedule schedule = design::make_schedule(design, number);
+    const session::Individual individual(subject, kSeed, number);
+    const session::SeenPictures pictures =
+        session::see(labels_of(schedule, design), subject, individual, knowledge);
+    const session::FeltDecision decision(individual, knowledge);
     std::uint64_t nth = 0;
-    for (const Presentation& shown : schedule.presentations) {
-      const LabelledField& field = fields.all.all()[places.place_of(shown.stimulus)];
-      const FeltFeatures felt =
-          feel_trial(field, fields.all.plane(), design, subject, kSeed, number, ++nth);
-      RandomStream random = stream_of_trial(kSeed, kAnswerPurpose, number, nth);
+    for (const design::Presentation& shown : schedule.presentations) {
+      const session::LabelledField& field = fields.all.all()[places.place_of(shown.stimulus)];
+      const engine::FeltFeatures felt =
+          session::feel_trial(field, fields.all.plane(), design, subject, kSeed, number, ++nth);
+      RandomStream random = session::stream_of_trial(kSeed, session::kAnswerPurpose, number, nth);
       REQUIRE(row < rows.size());
       INFO("participant " << number << ", presentation " << nth);
       REQUIRE(rows[row].position.value() == decision.answer(felt, pictures, random).position);
@@ -86,10 +87,10 @@ TEST_CASE("answers from trials felt alone are those of the servo path, one by on
 
 TEST_CASE("a bank is the same for any number of jobs, and a larger one begins with the smaller") {
   const TinyStudy study;
-  const FeltBank alone = bank_of(study, {.explorations = 6, .seed = 3, .jobs = 1});
-  const FeltBank crowd = bank_of(study, {.explorations = 6, .seed = 3, .jobs = 4});
-  const FeltBank fewer = bank_of(study, {.explorations = 2, .seed = 3, .jobs = 2});
-  const FeltBank other = bank_of(study, {.explorations = 6, .seed = 4, .jobs = 2});
+  const session::FeltBank alone = bank_of(study, {.explorations = 6, .seed = 3, .jobs = 1});
+  const session::FeltBank crowd = bank_of(study, {.explorations = 6, .seed = 3, .jobs = 4});
+  const session::FeltBank fewer = bank_of(study, {.explorations = 2, .seed = 3, .jobs = 2});
+  const session::FeltBank other = bank_of(study, {.explorations = 6, .seed = 4, .jobs = 2});
   REQUIRE(alone.stimuli() == 5);
   for (int place = 0; place < 5; ++place) {
     for (int i = 0; i < 6; ++i) REQUIRE(alone.felt(place)[i] == crowd.felt(place)[i]);
@@ -102,10 +103,11 @@ TEST_CASE("a bank is the same for any number of jobs, and a larger one begins wi
 TEST_CASE("a bank does not depend on codes, noise or bias") {
   const TinyStudy study({.secret = 1});
   const TinyStudy recoded({.secret = 2});
-  SubjectModel still;
+  session::SubjectModel still;
   still.explore_s = erring_subject().explore_s;
-  const FeltBank one = bank_of(study, {.explorations = 2});
-  const FeltBank other(Fields(recoded).all, recoded.key().study, still, {.explorations = 2});
+  const session::FeltBank one = bank_of(study, {.explorations = 2});
+  const session::FeltBank other(Fields(recoded).all, recoded.key().study, still,
+                                {.explorations = 2});
   for (int place = 0; place < one.stimuli(); ++place) {
     CHECK(one.felt(place)[1] == other.felt(place)[1]);
   }
@@ -113,7 +115,7 @@ TEST_CASE("a bank does not depend on codes, noise or bias") {
 
 TEST_CASE("a bank has every class, image and method of a study, and tells where") {
   const TinyStudy study({.images = 2, .comparison = true});
-  const FeltBank bank = bank_of(study, {.explorations = 1});
+  const session::FeltBank bank = bank_of(study, {.explorations = 1});
   REQUIRE(bank.stimuli() == 20);
   for (int place = 0; place < 20; ++place) CHECK(bank.place_of(bank.stimulus(place)) == place);
   CHECK_THROWS_AS(bank.place_of({5, 0, 0}), std::invalid_argument);
@@ -122,14 +124,15 @@ TEST_CASE("a bank has every class, image and method of a study, and tells where"
 TEST_CASE("a bank's explorations are draws from what trials feel like") {
   const TinyStudy study;
   const Fields fields(study);
-  const FeltBank bank = bank_of(study, {.explorations = 60, .jobs = 2});
-  const SubjectModel subject = erring_subject();
+  const session::FeltBank bank = bank_of(study, {.explorations = 60, .jobs = 2});
+  const session::SubjectModel subject = erring_subject();
   double difference = 0.0;
   double square = 0.0;
   for (int i = 0; i < 60; ++i) {
-    const double trial = feel_trial(fields.all.all()[0], fields.all.plane(), study.key().study,
-                                    subject, 5, i + 1, 1)[kLateralBandsAt + 2];
-    const double banked = bank.felt(0)[i][kLateralBandsAt + 2];
+    const double trial =
+        session::feel_trial(fields.all.all()[0], fields.all.plane(), study.key().study, subject, 5,
+                            i + 1, 1)[engine::kLateralBandsAt + 2];
+    const double banked = bank.felt(0)[i][engine::kLateralBandsAt + 2];
     difference += trial - banked;
     square += (trial - banked) * (trial - banked);
   }
@@ -141,8 +144,8 @@ TEST_CASE("a bank's explorations are draws from what trials feel like") {
 TEST_CASE("a bank counts its explorations, and refuses impossible numbers") {
   const TinyStudy study;
   const Fields fields(study);
-  const auto make = [&](const FeltBankOptions& options, const Progress& progress) {
-    return FeltBank(fields.all, study.key().study, erring_subject(), options, progress);
+  const auto make = [&](const session::FeltBankOptions& options, const design::Progress& progress) {
+    return session::FeltBank(fields.all, study.key().study, erring_subject(), options, progress);
   };
   int last = 0;
   make({.explorations = 2, .jobs = 2}, [&](int done, int of) {

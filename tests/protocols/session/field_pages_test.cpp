@@ -16,27 +16,28 @@ namespace {
 
 constexpr int kSidePx = 500;
 
-RenderingOptions options_of(ModelKind model) {
-  RenderingOptions options;
+engine::RenderingOptions options_of(engine::ModelKind model) {
+  engine::RenderingOptions options;
   options.model = model;
   return options;
 }
 
-Gains gains_of(ModelKind model) {
-  return model == ModelKind::surface ? Gains{.height_mm = 0.005} : Gains{0.005, 0.005};
+engine::Gains gains_of(engine::ModelKind model) {
+  return model == engine::ModelKind::surface ? engine::Gains{.height_mm = 0.005}
+                                             : engine::Gains{0.005, 0.005};
 }
 
-TextureField wavy_field(const RenderingOptions& options) {
+engine::TextureField wavy_field(const engine::RenderingOptions& options) {
   Plane<double> texture(kSidePx, kSidePx);
   for (int y = 0; y < kSidePx; ++y) {
     for (int x = 0; x < kSidePx; ++x) texture.at(y, x) = 20.0 * std::sin(0.4 * x + 0.1 * y);
   }
-  return make_texture_field(texture, options);
+  return engine::make_texture_field(texture, options);
 }
 
 /// Pages of the pixels that interpolation at these positions needs.
-std::set<std::size_t> pages_under(const Trace& trace, const PlaneGeometry& plane, int reach_before,
-                                  int reach_behind, std::size_t bytes_a_pixel) {
+std::set<std::size_t> pages_under(const store::Trace& trace, const PlaneGeometry& plane,
+                                  int reach_before, int reach_behind, std::size_t bytes_a_pixel) {
   std::set<std::size_t> pages;
   const auto inside = [](int i) { return std::clamp(i, 0, kSidePx - 1); };
   for (const auto& sample : trace.samples) {
@@ -55,44 +56,47 @@ std::set<std::size_t> pages_under(const Trace& trace, const PlaneGeometry& plane
   return pages;
 }
 
-class Explorer final : public PromptParticipant {
+class Explorer final : public session::PromptParticipant {
  public:
   void see_pictures(const std::vector<std::string>&) override {}
-  [[nodiscard]] HapticDevice& begin_exploring(const PlaneGeometry& plane) override {
+  [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& plane) override {
     RandomStream random(1, "field_pages_test");
-    return hand_.emplace(make_exploring_hand(subject_, plane, random));
+    return hand_.emplace(session::make_exploring_hand(subject_, plane, random));
   }
-  void feel(const ServoSample&) noexcept override {}
-  [[nodiscard]] ParticipantAnswer answer() override { return {}; }
+  void feel(const device::ServoSample&) noexcept override {}
+  [[nodiscard]] session::ParticipantAnswer answer() override { return {}; }
 
  private:
-  SubjectModel subject_;
-  std::optional<SimulatedHand> hand_;
+  session::SubjectModel subject_;
+  std::optional<device::SimulatedHand> hand_;
 };
 
-Trace explored(const RenderingModel& model, const PlaneGeometry& plane) {
+store::Trace explored(const engine::RenderingModel& model, const PlaneGeometry& plane) {
   Explorer explorer;
-  Trace trace;
-  REQUIRE(VirtualExplorer().explore(model, plane, explorer, {}, trace).servo.end ==
-          ServoEnd::hand_stopped);
+  store::Trace trace;
+  REQUIRE(session::VirtualExplorer().explore(model, plane, explorer, {}, trace).servo.end ==
+          device::ServoEnd::hand_stopped);
   return trace;
 }
 
 /// The pages that ten seconds of exploration touch, and the same exploration with no other page.
-std::size_t touched_pages(ModelKind model, std::size_t& of) {
-  const RenderingOptions options = options_of(model);
-  const TextureField field = wavy_field(options);
-  FieldView view = field.view();
+std::size_t touched_pages(engine::ModelKind model, std::size_t& of) {
+  const engine::RenderingOptions options = options_of(model);
+  const engine::TextureField field = wavy_field(options);
+  engine::FieldView view = field.view();
   const PlaneGeometry plane = view.geometry;
-  const Trace trace = explored(RenderingModel(view, options, gains_of(model)), plane);
-  const bool surface = model == ModelKind::surface;
+  const store::Trace trace =
+      explored(engine::RenderingModel(view, options, gains_of(model)), plane);
+  const bool surface = model == engine::ModelKind::surface;
   GuardedBytes guarded(surface ? std::as_bytes(view.coefficients) : std::as_bytes(view.samples));
   const auto pages = surface ? pages_under(trace, plane, 1, 2, sizeof(float))
-                             : pages_under(trace, plane, 0, 1, sizeof(FieldSample));
+                             : pages_under(trace, plane, 0, 1, sizeof(engine::FieldSample));
   guarded.leave_only(pages);
-  view.samples = surface ? std::span<const FieldSample>() : guarded.as<FieldSample>();
+  view.samples =
+      surface ? std::span<const engine::FieldSample>() : guarded.as<engine::FieldSample>();
   view.coefficients = surface ? guarded.as<float>() : std::span<const float>();
-  const Trace again = explored(RenderingModel(view, options, gains_of(model)), plane);
+  const store::Trace again =
+      explored(engine::RenderingModel(view, options, gains_of(model)), plane);
   REQUIRE(again.samples.size() == trace.samples.size());
   for (std::size_t i = 0; i < trace.samples.size(); ++i) {
     REQUIRE(again.samples[i].force_n == trace.samples[i].force_n);
@@ -104,8 +108,8 @@ std::size_t touched_pages(ModelKind model, std::size_t& of) {
 TEST_CASE("ten seconds on a texture touch no page of its field but those under the stylus") {
   std::size_t of_surface = 0;
   std::size_t of_paper = 0;
-  const std::size_t surface = touched_pages(ModelKind::surface, of_surface);
-  const std::size_t paper = touched_pages(ModelKind::paper, of_paper);
+  const std::size_t surface = touched_pages(engine::ModelKind::surface, of_surface);
+  const std::size_t paper = touched_pages(engine::ModelKind::paper, of_paper);
   CAPTURE(surface, of_surface, paper, of_paper);
   CHECK(surface > 0);
   CHECK(surface < of_surface * 9 / 10);
@@ -114,16 +118,18 @@ TEST_CASE("ten seconds on a texture touch no page of its field but those under t
 }
 
 TEST_CASE("a hand that does not come down touches no page of a field") {
-  const RenderingOptions options = options_of(GENERATE(ModelKind::paper, ModelKind::surface));
-  const TextureField field = wavy_field(options);
-  FieldView view = field.view();
-  const bool surface = options.model == ModelKind::surface;
+  const engine::RenderingOptions options =
+      options_of(GENERATE(engine::ModelKind::paper, engine::ModelKind::surface));
+  const engine::TextureField field = wavy_field(options);
+  engine::FieldView view = field.view();
+  const bool surface = options.model == engine::ModelKind::surface;
   GuardedBytes guarded(surface ? std::as_bytes(view.coefficients) : std::as_bytes(view.samples));
   guarded.leave_only({});
-  view.samples = surface ? std::span<const FieldSample>() : guarded.as<FieldSample>();
+  view.samples =
+      surface ? std::span<const engine::FieldSample>() : guarded.as<engine::FieldSample>();
   view.coefficients = surface ? guarded.as<float>() : std::span<const float>();
-  const RenderingModel model(view, options, gains_of(options.model));
-  Bristle touch;
+  const engine::RenderingModel model(view, options, gains_of(options.model));
+  engine::Bristle touch;
   for (int x_mm = 0; x_mm < 100; ++x_mm) {
     REQUIRE(model.force_n({1.0 * x_mm, 50.0, 0.5}, {0.0, 0.0, -100.0}, touch) == Vec3{});
   }

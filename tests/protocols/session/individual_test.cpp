@@ -12,8 +12,8 @@ namespace {
 
 const std::vector<std::string> kLabels = {"bark", "cloth", "straw"};
 
-SubjectModel population() {
-  SubjectModel subject;
+session::SubjectModel population() {
+  session::SubjectModel subject;
   subject.weber = 0.3;
   subject.weber_spread = 0.2;
   subject.lapse = 0.1;
@@ -33,10 +33,10 @@ struct Spread {
 };
 
 /// Of one figure over many people.
-Spread spread_of(const std::function<double(const Individual&)>& figure) {
-  const SubjectModel subject = population();
+Spread spread_of(const std::function<double(const session::Individual&)>& figure) {
+  const session::SubjectModel subject = population();
   std::vector<double> values;
-  for (int i = 1; i <= kPeople; ++i) values.push_back(figure(Individual(subject, 7, i)));
+  for (int i = 1; i <= kPeople; ++i) values.push_back(figure(session::Individual(subject, 7, i)));
   Spread spread;
   for (const double value : values) spread.mean += value / kPeople;
   for (const double value : values) spread.sd += std::pow(value - spread.mean, 2) / (kPeople - 1);
@@ -51,27 +51,29 @@ void check_normal(const Spread& found, double mean, double sd) {
 }
 
 TEST_CASE("people of a population differ as its subject file says") {
-  check_normal(spread_of([](const Individual& one) { return std::log(one.weber()); }),
+  check_normal(spread_of([](const session::Individual& one) { return std::log(one.weber()); }),
                std::log(0.3), 0.2);
-  check_normal(
-      spread_of([](const Individual& one) { return std::log(one.lapse() / (1.0 - one.lapse())); }),
-      std::log(0.1 / 0.9), 0.8);
+  check_normal(spread_of([](const session::Individual& one) {
+                 return std::log(one.lapse() / (1.0 - one.lapse()));
+               }),
+               std::log(0.1 / 0.9), 0.8);
   // Straw is last: no preference for its place, only for the class.
-  check_normal(spread_of([](const Individual& one) { return one.bias(kLabels)[2]; }), 0.0, 0.6);
-  check_normal(spread_of([](const Individual& one) { return one.bias(kLabels)[0]; }), 0.5,
+  check_normal(spread_of([](const session::Individual& one) { return one.bias(kLabels)[2]; }), 0.0,
+               0.6);
+  check_normal(spread_of([](const session::Individual& one) { return one.bias(kLabels)[0]; }), 0.5,
                std::hypot(0.4, 0.6));
-  check_normal(spread_of([](const Individual& one) { return one.bias(kLabels)[1]; }), 1.25,
+  check_normal(spread_of([](const session::Individual& one) { return one.bias(kLabels)[1]; }), 1.25,
                std::hypot(0.2, 0.6));
 }
 
 TEST_CASE("without spreads everybody is as the subject file says, to the last digit") {
-  SubjectModel subject = population();
+  session::SubjectModel subject = population();
   subject.weber_spread = 0.0;
   subject.lapse_spread = 0.0;
   subject.position_bias_spread = 0.0;
   subject.class_bias_spread = 0.0;
   for (int i = 1; i <= 20; ++i) {
-    const Individual one(subject, 3, i);
+    const session::Individual one(subject, 3, i);
     CHECK(one.weber() == subject.weber);
     CHECK(one.lapse() == subject.lapse);
     CHECK(one.bias(kLabels) == std::vector<double>{0.5, 1.25, 0.0});
@@ -79,33 +81,33 @@ TEST_CASE("without spreads everybody is as the subject file says, to the last di
 }
 
 TEST_CASE("a preference belongs to the class wherever its picture lies") {
-  SubjectModel subject = population();
+  session::SubjectModel subject = population();
   subject.position_bias = 0.0;
   subject.position_bias_spread = 0.0;
-  const Individual one(subject, 3, 1);
+  const session::Individual one(subject, 3, 1);
   const std::vector<double> there = one.bias({"bark", "cloth", "straw"});
   const std::vector<double> elsewhere = one.bias({"straw", "bark", "cloth"});
   CHECK(there == std::vector<double>{elsewhere[1], elsewhere[2], elsewhere[0]});
 }
 
 TEST_CASE("one difference between people does not change the others") {
-  const SubjectModel all = population();
-  SubjectModel less = all;
+  const session::SubjectModel all = population();
+  session::SubjectModel less = all;
   less.lapse_spread = 0.0;
   less.class_bias_spread = 0.0;
-  const Individual one(all, 3, 5);
-  const Individual other(less, 3, 5);
+  const session::Individual one(all, 3, 5);
+  const session::Individual other(less, 3, 5);
   CHECK(one.weber() == other.weber());
   CHECK(one.lapse() != other.lapse());
-  CHECK(one.weber() != Individual(all, 3, 6).weber());
-  CHECK(one.weber() != Individual(all, 4, 5).weber());
+  CHECK(one.weber() != session::Individual(all, 3, 6).weber());
+  CHECK(one.weber() != session::Individual(all, 4, 5).weber());
 }
 
 TEST_CASE("who never lapses, or always, has no neighbours that do otherwise") {
-  SubjectModel subject = population();
+  session::SubjectModel subject = population();
   for (const double lapse : {0.0, 1.0}) {
     subject.lapse = lapse;
-    for (int i = 1; i <= 10; ++i) CHECK(Individual(subject, 1, i).lapse() == lapse);
+    for (int i = 1; i <= 10; ++i) CHECK(session::Individual(subject, 1, i).lapse() == lapse);
   }
 }
 

@@ -21,21 +21,23 @@ namespace {
 using testing::DiskOperation;
 using testing::Fault;
 using testing::FaultVfs;
-using Access = StudyStore::Access;
+using Access = store::StudyStore::Access;
 using Kind = Fault::Kind;
 
 constexpr int kTrials = 25;
 
 /// A stylus that rests on the plane for 40 ticks.
-class BriefStylus final : public HapticDevice {
+class BriefStylus final : public device::HapticDevice {
  public:
-  [[nodiscard]] DeviceInfo info() const override { return {"brief", "", 3.3, true}; }
-  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override {
+  [[nodiscard]] device::DeviceInfo info() const override { return {"brief", "", 3.3, true}; }
+  [[nodiscard]] device::DeviceStatus read(device::DeviceSample& sample) noexcept override {
     sample.position_mm = {10.0, 10.0, -1.0};
     sample.sequence = static_cast<std::uint64_t>(tick_) + 1;
-    return ++tick_ <= 40 ? DeviceStatus::ok : DeviceStatus::stopped;
+    return ++tick_ <= 40 ? device::DeviceStatus::ok : device::DeviceStatus::stopped;
   }
-  [[nodiscard]] DeviceStatus write(Vec3) noexcept override { return DeviceStatus::ok; }
+  [[nodiscard]] device::DeviceStatus write(Vec3) noexcept override {
+    return device::DeviceStatus::ok;
+  }
   void halt() noexcept override {}
   void rearm() noexcept override {}
 
@@ -44,17 +46,17 @@ class BriefStylus final : public HapticDevice {
 };
 
 /// Names one picture after the other.
-class Restless final : public PromptParticipant {
+class Restless final : public session::PromptParticipant {
  public:
   explicit Restless(int first) : next_(first) {}
 
   void see_pictures(const std::vector<std::string>&) override {}
-  [[nodiscard]] HapticDevice& begin_exploring(const PlaneGeometry&) override {
+  [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry&) override {
     stylus_ = BriefStylus();
     return stylus_;
   }
-  void feel(const ServoSample&) noexcept override {}
-  [[nodiscard]] ParticipantAnswer answer() override {
+  void feel(const device::ServoSample&) noexcept override {}
+  [[nodiscard]] session::ParticipantAnswer answer() override {
     return {next_++ % 5, std::chrono::seconds(1)};
   }
 
@@ -66,11 +68,12 @@ class Restless final : public PromptParticipant {
 /// The study, and a database of it without sessions; made once.
 struct Laboratory {
   Laboratory() {
-    static_cast<void>(StudyStore::create(
-        empty, commitment_of(study.key(), study.pack(), true, false), std::chrono::seconds(1)));
+    static_cast<void>(store::StudyStore::create(
+        empty, session::commitment_of(study.key(), study.pack(), true, false),
+        std::chrono::seconds(1)));
   }
   TinyStudy study{{.side_px = 120, .trials = R"({"repeats": 5})"}};
-  StimulusSource source{study.pack(), study.key().study.rendering};
+  session::StimulusSource source{study.pack(), study.key().study.rendering};
   SecretKey participant_key = sha256(bytes_of("participant"));
   std::filesystem::path empty = study.next_database();
 };
@@ -93,9 +96,9 @@ struct KilledSession {
   /// \return whether it came to its end
   bool start() try {
     ++starts;
-    StudyStore store = StudyStore::open(path, Access::read_write);
-    const std::optional<SessionRow> open = store.open_session_of("P001");
-    const std::optional<SessionRow> any = store.session_of("P001");
+    store::StudyStore store = store::StudyStore::open(path, Access::read_write);
+    const std::optional<store::SessionRow> open = store.open_session_of("P001");
+    const std::optional<store::SessionRow> any = store.session_of("P001");
     if (any && !open) return true;  // it had ended, only nobody was told
     run(store, open.has_value());
     return true;
@@ -104,39 +107,40 @@ struct KilledSession {
   }
 
   std::filesystem::path path;
-  std::vector<Event> acknowledged;
+  std::vector<store::Event> acknowledged;
   int starts = 0;
 
  private:
-  void run(StudyStore& store, bool again) {
+  void run(store::StudyStore& store, bool again) {
     Laboratory& lab = laboratory();
-    const StudyKey& key = lab.study.key();
-    const Bytes wrapped = wrap_participant_key(key.master, 1, lab.participant_key);
+    const design::StudyKey& key = lab.study.key();
+    const Bytes wrapped = store::wrap_participant_key(key.master, 1, lab.participant_key);
     NotingSink sink(again ? store.continue_session(1) : store.begin_session(1, wrapped),
                     acknowledged);
-    const Schedule schedule = make_schedule(key.study, 1);
-    Session session(schedule, key.study.trials, SessionRecorder(1, lab.participant_key, sink));
-    VirtualSessionClock clock;
+    const design::Schedule schedule = design::make_schedule(key.study, 1);
+    session::Session session(schedule, key.study.trials,
+                             store::SessionRecorder(1, lab.participant_key, sink));
+    session::VirtualSessionClock clock;
     if (again) {
       session.restore(store.events(1));
-      clock = VirtualSessionClock(session.last() + std::chrono::seconds(30));
+      clock = session::VirtualSessionClock(session.last() + std::chrono::seconds(30));
       session.take_up(clock.now(), {.after = "program-ended", .away_s = 30.0});
     } else {
-      session.open({}, opening(), schedule_to_json(schedule, key));
+      session.open({}, opening(), design::schedule_to_json(schedule, key));
     }
     Restless participant(starts);
-    VirtualExplorer explorer;
-    AlwaysReady devices;
-    run_session(session, {key, lab.source, participant, clock, explorer, devices});
+    session::VirtualExplorer explorer;
+    session::AlwaysReady devices;
+    session::run_session(session, {key, lab.source, participant, clock, explorer, devices});
   }
 
-  static SessionOpening opening() {
-    const StudyKey& key = laboratory().study.key();
-    SessionOpening opening;
+  static store::SessionOpening opening() {
+    const design::StudyKey& key = laboratory().study.key();
+    store::SessionOpening opening;
     opening.participant = "P001";
     opening.enrolment = 1;
     opening.study_id = key.study_id;
-    opening.seal = study_seal(key);
+    opening.seal = design::study_seal(key);
     opening.device = "simulated";
     opening.simulated = true;
     return opening;
@@ -144,8 +148,9 @@ struct KilledSession {
 };
 
 /// Every acknowledged event is there, once, as it was acknowledged.
-void require_kept(const std::vector<Event>& stored, const std::vector<Event>& acknowledged) {
-  for (const Event& event : acknowledged) {
+void require_kept(const std::vector<store::Event>& stored,
+                  const std::vector<store::Event>& acknowledged) {
+  for (const store::Event& event : acknowledged) {
     REQUIRE(event.sequence < static_cast<std::int64_t>(stored.size()));
     REQUIRE(stored[static_cast<std::size_t>(event.sequence)].hash == event.hash);
   }
@@ -153,24 +158,25 @@ void require_kept(const std::vector<Event>& stored, const std::vector<Event>& ac
 
 /// 25 answers, five of each class, and a chain that holds.
 void require_complete(const KilledSession& session) {
-  const StudyStore store = StudyStore::open(session.path, Access::read_only);
+  const store::StudyStore store = store::StudyStore::open(session.path, Access::read_only);
   REQUIRE_FALSE(store.first_fault());
   REQUIRE(store.sessions().size() == 1);
-  REQUIRE(store.sessions().at(0).state == SessionState::completed);
+  REQUIRE(store.sessions().at(0).state == store::SessionState::completed);
   require_kept(store.events(1), session.acknowledged);
   std::map<int, int> class_of_trial;
-  for (const Presentation& one : make_schedule(laboratory().study.key().study, 1).presentations) {
+  for (const design::Presentation& one :
+       design::make_schedule(laboratory().study.key().study, 1).presentations) {
     class_of_trial[one.trial] = one.stimulus.class_index;
   }
   std::map<int, int> answered;
-  for (const TrialRow& trial : store.trials()) {
-    REQUIRE(trial.state == TrialState::answered);
+  for (const store::TrialRow& trial : store.trials()) {
+    REQUIRE(trial.state == store::TrialState::answered);
     ++answered[class_of_trial.at(trial.trial)];
   }
   REQUIRE(store.trials().size() == kTrials);
   for (int class_index = 0; class_index < 5; ++class_index) REQUIRE(answered[class_index] == 5);
   int answers = 0;
-  store.for_each(EventKind::answered, [&](const Event&) { ++answers; });
+  store.for_each(store::EventKind::answered, [&](const store::Event&) { ++answers; });
   REQUIRE(answers == kTrials);
 }
 
@@ -184,7 +190,7 @@ bool is_finished_after(FaultVfs& vfs, const Fault& fault) {
   if (!vfs.struck()) return false;
   vfs.start_anew();
   {
-    const StudyStore store = StudyStore::open(session.path, Access::read_only);
+    const store::StudyStore store = store::StudyStore::open(session.path, Access::read_only);
     REQUIRE_FALSE(store.first_fault());
     require_kept(store.events(1), session.acknowledged);
   }

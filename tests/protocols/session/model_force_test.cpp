@@ -21,24 +21,24 @@ TEST_CASE("either rendering model in the servo, with its ring and hooks, asks fo
                                          R"({"model": "surface", "friction": 0.2})");
   CAPTURE(rendering);
   const TinyStudy study({.rendering = rendering});
-  const StimulusSource source(study.pack(), study.key().study.rendering);
+  const session::StimulusSource source(study.pack(), study.key().study.rendering);
   RandomStream random(1, "model_force_test");
-  SimulatedHand hand = make_exploring_hand({}, source.plane(), random);
-  ModelForce force(source.model(study.pack().manifest().entries.front().code));
-  SampleRing ring(5000);
-  RingSink sink(ring);
-  ServoControl control;
-  LatestValue<ServoState> state;
+  device::SimulatedHand hand = session::make_exploring_hand({}, source.plane(), random);
+  session::ModelForce force(source.model(study.pack().manifest().entries.front().code));
+  device::SampleRing ring(5000);
+  device::RingSink sink(ring);
+  device::ServoControl control;
+  device::LatestValue<device::ServoState> state;
   std::atomic<std::int64_t> heartbeat{0};
-  FlightRecorder recorder(1.0, kServoRateHz);
-  DurationHistogram lateness;
-  MotorHeat heat;
-  LatestValue<ServoParameters> parameters;
-  VirtualClock clock;
+  device::FlightRecorder recorder(1.0, device::kServoRateHz);
+  device::DurationHistogram lateness;
+  device::MotorHeat heat;
+  device::LatestValue<device::ServoParameters> parameters;
+  device::VirtualClock clock;
   static_cast<void>(take_realtime_offences());
-  const ServoReport report =
-      run_servo(hand, force, sink, {.limit_ticks = 4000, .fade_ticks = 0}, clock,
-                {&control, &state, &heartbeat, &recorder, &lateness, &heat, &parameters});
+  const device::ServoReport report =
+      device::run_servo(hand, force, sink, {.limit_ticks = 4000, .fade_ticks = 0}, clock,
+                        {&control, &state, &heartbeat, &recorder, &lateness, &heat, &parameters});
   CHECK(take_realtime_offences() == RealtimeOffences{});
   CHECK(report.ticks == 4000);
   CHECK(report.contact_ticks > 1000);

@@ -28,23 +28,23 @@ namespace {
 using std::chrono::seconds;
 
 /// Feels at a station, names a picture by what was felt, and remembers what was named.
-class PersonAtStation : public PromptParticipant {
+class PersonAtStation : public session::PromptParticipant {
  public:
-  PersonAtStation(DeviceStation& station, FakeDevice*& device)
+  PersonAtStation(session::DeviceStation& station, FakeDevice*& device)
       : station_(station), device_(device) {}
 
   void see_pictures(const std::vector<std::string>& labels) override { pictures_ = labels.size(); }
-  [[nodiscard]] HapticDevice& begin_exploring(const PlaneGeometry&) override {
+  [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry&) override {
     device_->lift();
     felt_n_ = 0.0;
     samples_ = 0;
     return station_.device();
   }
-  void feel(const ServoSample& sample) noexcept override {
+  void feel(const device::ServoSample& sample) noexcept override {
     felt_n_ += std::abs(sample.force_n.x);
     ++samples_;
   }
-  [[nodiscard]] ParticipantAnswer answer() override {
+  [[nodiscard]] session::ParticipantAnswer answer() override {
     const auto tenths = static_cast<std::size_t>(felt_n_ * 10.0);
     const int position = static_cast<int>((tenths + named.size()) % pictures_);
     named.push_back(position);
@@ -55,91 +55,92 @@ class PersonAtStation : public PromptParticipant {
   [[nodiscard]] int samples() const noexcept { return samples_; }
 
  private:
-  DeviceStation& station_;
+  session::DeviceStation& station_;
   FakeDevice*& device_;
   std::size_t pictures_ = 0;
   double felt_n_ = 0.0;
   int samples_ = 0;
 };
 
-RealTimeOptions as_fast_as_it_goes() {
-  RealTimeOptions options;
-  options.scheduling.policy = SchedulingPolicy::other;
+session::RealTimeOptions as_fast_as_it_goes() {
+  session::RealTimeOptions options;
+  options.scheduling.policy = device::SchedulingPolicy::other;
   options.scheduling.lock_memory = false;
   options.watchdog_time = &still_time();
-  options.clock = [] { return std::make_unique<VirtualClock>(); };
+  options.clock = [] { return std::make_unique<device::VirtualClock>(); };
   return options;
 }
 
 /// A session of 5 trials of 0.4 s at the fake station.
 struct Laboratory {
-  explicit Laboratory(const RealTimeOptions& options = as_fast_as_it_goes())
+  explicit Laboratory(const session::RealTimeOptions& options = as_fast_as_it_goes())
       : explorer(options),
-        session(make_schedule(study.key().study, 1), study.key().study.trials,
-                SessionRecorder(1, participant_key, events)) {}
+        session(design::make_schedule(study.key().study, 1), study.key().study.trials,
+                store::SessionRecorder(1, participant_key, events)) {}
 
-  SessionTally run(Participant& participant) {
-    REQUIRE(station.make_ready() == SupplyState::ready);
-    SessionOpening opening;
+  session::SessionTally run(session::Participant& participant) {
+    REQUIRE(station.make_ready() == session::SupplyState::ready);
+    store::SessionOpening opening;
     opening.participant = "P001";
     opening.enrolment = 1;
-    describe_station(opening, station.info(), explorer.scheduling(), kServoRateHz, "");
+    session::describe_station(opening, station.info(), explorer.scheduling(), device::kServoRateHz,
+                              "");
     session.open({}, opening, "{}");
-    return run_session(session,
-                       {study.key(), source, participant, clock, explorer, station, kServoRateHz});
+    return session::run_session(session, {study.key(), source, participant, clock, explorer,
+                                          station, device::kServoRateHz});
   }
-  SessionTally run() { return run(person); }
+  session::SessionTally run() { return run(person); }
 
-  [[nodiscard]] std::vector<Event> all(EventKind kind) const {
-    std::vector<Event> found;
-    for (const Event& event : events.events) {
+  [[nodiscard]] std::vector<store::Event> all(store::EventKind kind) const {
+    std::vector<store::Event> found;
+    for (const store::Event& event : events.events) {
       if (event.kind == kind) found.push_back(event);
     }
     return found;
   }
 
   TinyStudy study{{.trials = R"({"repeats": 1, "explore_limit_s": 0.4})"}};
-  StimulusSource source{study.pack(), study.key().study.rendering};
+  session::StimulusSource source{study.pack(), study.key().study.rendering};
   SecretKey participant_key = sha256(bytes_of("somebody"));
-  BufferedEvents events;
+  store::BufferedEvents events;
   Cable cable;
   FakeDevice* device = nullptr;
   Helper helper{cable};
-  DeviceStation station{opener(cable, device), std::nullopt, helper};
+  session::DeviceStation station{opener(cable, device), std::nullopt, helper};
   PersonAtStation person{station, device};
-  VirtualSessionClock clock;
-  RealTimeExplorer explorer;
-  Session session;
+  session::VirtualSessionClock clock;
+  session::RealTimeExplorer explorer;
+  session::Session session;
 };
 
 TEST_CASE("a real-time session stores every answer, every sample and the servo's health") {
   Laboratory lab;
   static_cast<void>(take_realtime_offences());
-  const SessionTally tally = lab.run();
+  const session::SessionTally tally = lab.run();
   CHECK(take_realtime_offences() == RealtimeOffences{});
-  CHECK(lab.session.phase() == SessionPhase::closed);
+  CHECK(lab.session.phase() == session::SessionPhase::closed);
   CHECK(tally.presentations == 5);
-  const std::vector<Event> answers = lab.all(EventKind::answered);
+  const std::vector<store::Event> answers = lab.all(store::EventKind::answered);
   REQUIRE(answers.size() == 5);
   for (std::size_t i = 0; i < answers.size(); ++i) {
-    CHECK(answer_from_json(answers[i].body).position == lab.person.named[i]);
+    CHECK(store::answer_from_json(answers[i].body).position == lab.person.named[i]);
   }
   REQUIRE(lab.events.traces.size() == 5);
-  for (const Event& stored : lab.all(EventKind::trace_stored)) {
-    const TraceBody body = trace_body_from_json(stored.body);
+  for (const store::Event& stored : lab.all(store::EventKind::trace_stored)) {
+    const store::TraceBody body = store::trace_body_from_json(stored.body);
     CHECK(body.samples == 500);
     REQUIRE(body.servo);
     CHECK(body.servo->lost == 0);
     CHECK(body.servo->held == 0);
-    const TrialMeasures measures =
-        measures_from_json(unsealed(stored, lab.participant_key).value());
+    const store::TrialMeasures measures =
+        store::measures_from_json(store::unsealed(stored, lab.participant_key).value());
     CHECK(measures.contact_s > 0.3);
     CHECK(measures.limited_ticks);
   }
   CHECK(lab.person.samples() == 500);
   CHECK(lab.cable.last_was_zero);
   CHECK(lab.cable.strong_writes > 5 * 300);
-  const SessionOpening opening = opening_from_json(lab.events.events.front().body);
+  const store::SessionOpening opening = store::opening_from_json(lab.events.events.front().body);
   REQUIRE(opening.station);
   CHECK(opening.station->model == "Fake One");
   CHECK(opening.station->scheduling == "other, memory not locked");
@@ -148,30 +149,31 @@ TEST_CASE("a real-time session stores every answer, every sample and the servo's
 TEST_CASE("a cable that comes off in mid-trial interrupts it, and it is repeated at the end") {
   Laboratory lab;
   lab.cable.pull_at_tick = 200;
-  const SessionTally tally = lab.run();
+  const session::SessionTally tally = lab.run();
   CHECK(tally.presentations == 6);
   CHECK(lab.cable.opened == 2);
   CHECK(lab.helper.consents == 2);
   CHECK(lab.cable.writes_unarmed == 0);
   CHECK(lab.cable.last_was_zero);
-  CHECK(lab.all(EventKind::answered).size() == 5);
-  CHECK(lab.all(EventKind::paused).size() == 1);
-  const std::vector<Event> interrupted = lab.all(EventKind::interrupted);
+  CHECK(lab.all(store::EventKind::answered).size() == 5);
+  CHECK(lab.all(store::EventKind::paused).size() == 1);
+  const std::vector<store::Event> interrupted = lab.all(store::EventKind::interrupted);
   REQUIRE(interrupted.size() == 1);
-  const TrialBody body = trial_from_json(interrupted.front().body);
+  const store::TrialBody body = store::trial_from_json(interrupted.front().body);
   CHECK(body.reason == "device lost");
-  CHECK(trial_from_json(lab.all(EventKind::presented).back().body).trial == body.trial);
+  CHECK(store::trial_from_json(lab.all(store::EventKind::presented).back().body).trial ==
+        body.trial);
 }
 
 TEST_CASE("the flight record of an interruption is sealed and holds the ticks before it") {
   Laboratory lab;
   lab.cable.pull_at_tick = 200;
   lab.run();
-  const Event event = lab.all(EventKind::interrupted).front();
+  const store::Event event = lab.all(store::EventKind::interrupted).front();
   CHECK(event.body.find("link") == std::string::npos);
-  CHECK_FALSE(unsealed(event, SecretKey{}));
-  const InterruptionDetail detail =
-      interruption_from_json(unsealed(event, lab.participant_key).value());
+  CHECK_FALSE(store::unsealed(event, SecretKey{}));
+  const store::InterruptionDetail detail =
+      store::interruption_from_json(store::unsealed(event, lab.participant_key).value());
   CHECK(detail.safety_fault == "device");
   CHECK(detail.device_fault == "link_lost");
   CHECK(detail.ticks == 201);
@@ -184,14 +186,14 @@ TEST_CASE("a session ends when whoever attends gives up on the device") {
   lab.cable.pull_at_tick = 200;
   lab.helper.gives_up = true;
   lab.run();
-  CHECK(lab.session.phase() == SessionPhase::closed);
-  CHECK(lab.all(EventKind::stopped).size() == 1);
-  CHECK(lab.all(EventKind::answered).empty());
-  CHECK_FALSE(completion_from_json(lab.events.events.back().body));
+  CHECK(lab.session.phase() == session::SessionPhase::closed);
+  CHECK(lab.all(store::EventKind::stopped).size() == 1);
+  CHECK(lab.all(store::EventKind::answered).empty());
+  CHECK_FALSE(store::completion_from_json(lab.events.events.back().body));
 }
 
 /// Servo time that stands still from one tick on until it is told to go on.
-class GateClock final : public ServoClock {
+class GateClock final : public device::ServoClock {
  public:
   GateClock(std::atomic<bool>& open, Time gate) : open_(open), gate_(gate) {}
   [[nodiscard]] Time now() noexcept override { return now_; }
@@ -206,8 +208,8 @@ class GateClock final : public ServoClock {
   Time now_{};
 };
 
-RealTimeOptions gated(std::atomic<bool>& gate) {
-  RealTimeOptions options = as_fast_as_it_goes();
+session::RealTimeOptions gated(std::atomic<bool>& gate) {
+  session::RealTimeOptions options = as_fast_as_it_goes();
   options.clock = [&gate] {
     return std::make_unique<GateClock>(gate, std::chrono::milliseconds(100));
   };
@@ -217,15 +219,15 @@ RealTimeOptions gated(std::atomic<bool>& gate) {
 /// Acts on the servo while its time stands still, in every exploration or in the first alone.
 class Acting final : public PersonAtStation {
  public:
-  using Act = std::function<void(ServoControl&)>;
+  using Act = std::function<void(device::ServoControl&)>;
   Acting(Laboratory& lab, std::atomic<bool>& gate, bool once, Act act)
       : PersonAtStation(lab.station, lab.device), gate_(gate), once_(once), act_(std::move(act)) {}
 
-  [[nodiscard]] HapticDevice& begin_exploring(const PlaneGeometry& plane) override {
+  [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& plane) override {
     gate_ = false;
     return PersonAtStation::begin_exploring(plane);
   }
-  void exploring(ServoControl& servo) override {
+  void exploring(device::ServoControl& servo) override {
     if (!once_ || !acted_) act_(servo);
     acted_ = true;
     gate_ = true;
@@ -241,46 +243,46 @@ class Acting final : public PersonAtStation {
 TEST_CASE("a participant who is done ends the exploration before its time is up") {
   std::atomic<bool> gate{false};
   Laboratory lab(gated(gate));
-  Acting person(lab, gate, false, [](ServoControl& servo) { servo.finish(); });
+  Acting person(lab, gate, false, [](device::ServoControl& servo) { servo.finish(); });
   lab.run(person);
-  CHECK(lab.all(EventKind::answered).size() == 5);
-  CHECK(lab.all(EventKind::timed_out).empty());
-  for (const Event& stored : lab.all(EventKind::trace_stored)) {
-    CHECK(trace_body_from_json(stored.body).samples <= 201);
+  CHECK(lab.all(store::EventKind::answered).size() == 5);
+  CHECK(lab.all(store::EventKind::timed_out).empty());
+  for (const store::Event& stored : lab.all(store::EventKind::trace_stored)) {
+    CHECK(store::trace_body_from_json(stored.body).samples <= 201);
   }
 }
 
 TEST_CASE("a comfort stop interrupts the trial, and force comes back by consent alone") {
   std::atomic<bool> gate{false};
   Laboratory lab(gated(gate));
-  Acting person(lab, gate, true, [](ServoControl& servo) { servo.comfort_stop(); });
+  Acting person(lab, gate, true, [](device::ServoControl& servo) { servo.comfort_stop(); });
   lab.run(person);
-  const std::vector<Event> interrupted = lab.all(EventKind::interrupted);
+  const std::vector<store::Event> interrupted = lab.all(store::EventKind::interrupted);
   REQUIRE(interrupted.size() == 1);
-  CHECK(trial_from_json(interrupted.front().body).reason == "comfort stop");
+  CHECK(store::trial_from_json(interrupted.front().body).reason == "comfort stop");
   CHECK(lab.cable.opened == 1);
   CHECK(lab.helper.consents == 2);
   CHECK(lab.cable.writes_unarmed == 0);
-  CHECK(lab.all(EventKind::answered).size() == 5);
+  CHECK(lab.all(store::EventKind::answered).size() == 5);
 }
 
 TEST_CASE("an emergency stop between two explorations holds for the next") {
   Laboratory lab;
   lab.explorer.control().emergency_stop();
   lab.run();
-  const std::vector<Event> interrupted = lab.all(EventKind::interrupted);
+  const std::vector<store::Event> interrupted = lab.all(store::EventKind::interrupted);
   REQUIRE(interrupted.size() == 1);
-  const TrialBody body = trial_from_json(interrupted.front().body);
+  const store::TrialBody body = store::trial_from_json(interrupted.front().body);
   CHECK(body.trial == 1);
   CHECK(body.reason == "emergency stop");
   CHECK(lab.helper.consents == 2);
-  CHECK(lab.all(EventKind::answered).size() == 5);
+  CHECK(lab.all(store::EventKind::answered).size() == 5);
 }
 
 TEST_CASE("an error on the session's thread leaves the hand without force") {
   std::atomic<bool> gate{false};
   Laboratory lab(gated(gate));
-  Acting person(lab, gate, true, [&](ServoControl&) {
+  Acting person(lab, gate, true, [&](device::ServoControl&) {
     gate = true;
     throw std::runtime_error("the screen is gone");
   });
@@ -290,34 +292,34 @@ TEST_CASE("an error on the session's thread leaves the hand without force") {
 
 TEST_CASE("a real-time session by the machine's own clock records how late its ticks were") {
   const TinyStudy study({.trials = R"({"repeats": 1})"});
-  const StimulusSource source(study.pack(), study.key().study.rendering);
-  SubjectModel subject;
+  const session::StimulusSource source(study.pack(), study.key().study.rendering);
+  session::SubjectModel subject;
   subject.explore_s = 0.2;
   subject.training_passes = 1;
-  const FeltKnowledge knowledge =
-      learn_by_feeling(LabelledFields(study.key(), source), subject, 3.3, 1, 1);
-  SimulatedParticipant participant(subject, knowledge, 1, 1);
-  RealTimeOptions patient;  // a paced clock, and the scheduling that can be had
+  const session::FeltKnowledge knowledge =
+      session::learn_by_feeling(session::LabelledFields(study.key(), source), subject, 3.3, 1, 1);
+  session::SimulatedParticipant participant(subject, knowledge, 1, 1);
+  session::RealTimeOptions patient;  // a paced clock, and the scheduling that can be had
   patient.watchdog_time = &still_time();
-  RealTimeExplorer explorer(patient);
-  SteadySessionClock clock;
-  AlwaysReady devices;
-  BufferedEvents events;
-  Session session(make_schedule(study.key().study, 1), study.key().study.trials,
-                  SessionRecorder(1, SecretKey{}, events));
-  SessionOpening opening;
+  session::RealTimeExplorer explorer(patient);
+  session::SteadySessionClock clock;
+  session::AlwaysReady devices;
+  store::BufferedEvents events;
+  session::Session session(design::make_schedule(study.key().study, 1), study.key().study.trials,
+                           store::SessionRecorder(1, SecretKey{}, events));
+  store::SessionOpening opening;
   opening.participant = "P001";
   opening.enrolment = 1;
   session.open(clock.now(), opening, "{}");
-  const SessionTally tally =
-      run_session(session, {study.key(), source, participant, clock, explorer, devices});
-  CHECK(session.phase() == SessionPhase::closed);
+  const session::SessionTally tally =
+      session::run_session(session, {study.key(), source, participant, clock, explorer, devices});
+  CHECK(session.phase() == session::SessionPhase::closed);
   // Ticks of 0.2 s that were not left out take that long: no clock runs faster.
   CHECK(tally.duration >= std::chrono::milliseconds(tally.ticks - 5));
   int traces = 0;
-  for (const Event& event : events.events) {
-    if (event.kind != EventKind::trace_stored) continue;
-    const TraceBody body = trace_body_from_json(event.body);
+  for (const store::Event& event : events.events) {
+    if (event.kind != store::EventKind::trace_stored) continue;
+    const store::TraceBody body = store::trace_body_from_json(event.body);
     ++traces;
     REQUIRE(body.servo);
     CHECK(body.servo->rate_hz > 0.0);

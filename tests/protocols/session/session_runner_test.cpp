@@ -13,18 +13,20 @@ namespace touchtrial {
 namespace {
 
 /// A stylus that rests on the plane for 100 ticks, or is unplugged before.
-class RestingStylus final : public HapticDevice {
+class RestingStylus final : public device::HapticDevice {
  public:
   explicit RestingStylus(bool is_lost) : is_lost_(is_lost) {}
 
-  [[nodiscard]] DeviceInfo info() const override { return {"resting", "", 3.3, true}; }
-  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override {
+  [[nodiscard]] device::DeviceInfo info() const override { return {"resting", "", 3.3, true}; }
+  [[nodiscard]] device::DeviceStatus read(device::DeviceSample& sample) noexcept override {
     sample.position_mm = {10.0, 10.0, -1.0};
     sample.sequence = static_cast<std::uint64_t>(tick_) + 1;
-    if (is_lost_ && tick_ == 50) return DeviceStatus::fault;
-    return ++tick_ <= 100 ? DeviceStatus::ok : DeviceStatus::stopped;
+    if (is_lost_ && tick_ == 50) return device::DeviceStatus::fault;
+    return ++tick_ <= 100 ? device::DeviceStatus::ok : device::DeviceStatus::stopped;
   }
-  [[nodiscard]] DeviceStatus write(Vec3) noexcept override { return DeviceStatus::ok; }
+  [[nodiscard]] device::DeviceStatus write(Vec3) noexcept override {
+    return device::DeviceStatus::ok;
+  }
   void halt() noexcept override {}
   void rearm() noexcept override {}
 
@@ -34,17 +36,19 @@ class RestingStylus final : public HapticDevice {
 };
 
 /// Always names the first picture; the device is lost in the first so many presentations.
-class Unlucky final : public PromptParticipant {
+class Unlucky final : public session::PromptParticipant {
  public:
   explicit Unlucky(int losses) : losses_(losses) {}
 
   void see_pictures(const std::vector<std::string>& labels) override { pictures = labels; }
-  [[nodiscard]] HapticDevice& begin_exploring(const PlaneGeometry&) override {
+  [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry&) override {
     stylus_ = RestingStylus(losses_-- > 0);
     return stylus_;
   }
-  void feel(const ServoSample&) noexcept override { ++ticks; }
-  [[nodiscard]] ParticipantAnswer answer() override { return {0, std::chrono::seconds(1)}; }
+  void feel(const device::ServoSample&) noexcept override { ++ticks; }
+  [[nodiscard]] session::ParticipantAnswer answer() override {
+    return {0, std::chrono::seconds(1)};
+  }
 
   std::vector<std::string> pictures;
   int ticks = 0;
@@ -55,31 +59,31 @@ class Unlucky final : public PromptParticipant {
 };
 
 struct Ran {
-  SessionTally tally;
-  BufferedEvents events;
+  session::SessionTally tally;
+  store::BufferedEvents events;
 
-  [[nodiscard]] int count(EventKind kind) const {
-    return static_cast<int>(std::ranges::count(events.events, kind, &Event::kind));
+  [[nodiscard]] int count(store::EventKind kind) const {
+    return static_cast<int>(std::ranges::count(events.events, kind, &store::Event::kind));
   }
 };
 
-Ran run(Participant& participant) {
+Ran run(session::Participant& participant) {
   const TinyStudy study({.trials = R"({"repeats": 1})"});
-  const StimulusSource source(study.pack(), study.key().study.rendering);
+  const session::StimulusSource source(study.pack(), study.key().study.rendering);
   Ran ran;
-  Session session(make_schedule(study.key().study, 1), study.key().study.trials,
-                  SessionRecorder(1, SecretKey{}, ran.events));
-  SessionOpening opening;
+  session::Session session(design::make_schedule(study.key().study, 1), study.key().study.trials,
+                           store::SessionRecorder(1, SecretKey{}, ran.events));
+  store::SessionOpening opening;
   opening.participant = "P001";
   opening.enrolment = 1;
   session.open({}, opening, "{}");
-  ran.tally = run_session_in_virtual_time(session, study.key(), source, participant);
-  CHECK(session.phase() == SessionPhase::closed);
+  ran.tally = session::run_session_in_virtual_time(session, study.key(), source, participant);
+  CHECK(session.phase() == session::SessionPhase::closed);
   return ran;
 }
 
 /// Real time in which everything takes a while, whatever is asked or stored.
-class CreepingClock final : public SessionClock {
+class CreepingClock final : public session::SessionClock {
  public:
   [[nodiscard]] Time now() override { return now_ += std::chrono::milliseconds(3); }
   void pass(Time duration) override { now_ += duration; }
@@ -90,16 +94,18 @@ class CreepingClock final : public SessionClock {
 
 /// Reads the field of each presentation before it is felt, as the servo would, and counts how often
 /// a page of it had to be fetched.
-class PageCountingExplorer final : public Explorer {
+class PageCountingExplorer final : public session::Explorer {
  public:
   explicit PageCountingExplorer(bool in_real_time) : in_real_time_(in_real_time) {}
 
   [[nodiscard]] bool in_real_time() const noexcept override { return in_real_time_; }
-  [[nodiscard]] Exploration explore(const RenderingModel& model, const PlaneGeometry& plane,
-                                    Participant& participant, const ServoOptions& options,
-                                    Trace& trace) override {
+  [[nodiscard]] session::Exploration explore(const engine::RenderingModel& model,
+                                             const PlaneGeometry& plane,
+                                             session::Participant& participant,
+                                             const device::ServoOptions& options,
+                                             store::Trace& trace) override {
     const long before = fetched_so_far();
-    Bristle touch;
+    engine::Bristle touch;
     for (double y_mm = 0.1; y_mm < plane.height_mm(); y_mm += plane.pitch_mm) {
       for (double x_mm = 0.1; x_mm < plane.width_mm(); x_mm += plane.pitch_mm) {
         felt_n_ += model.force_n({x_mm, y_mm, -1.0}, {}, touch).z;
@@ -120,17 +126,19 @@ class PageCountingExplorer final : public Explorer {
 
   bool in_real_time_;
   double felt_n_ = 0.0;
-  VirtualExplorer usual_;
+  session::VirtualExplorer usual_;
 };
 
 /// In virtual time, but the desk has its turn while the plane is on.
-class AttendedExplorer final : public Explorer {
+class AttendedExplorer final : public session::Explorer {
  public:
   [[nodiscard]] bool in_real_time() const noexcept override { return false; }
-  [[nodiscard]] Exploration explore(const RenderingModel& model, const PlaneGeometry& plane,
-                                    Participant& participant, const ServoOptions& options,
-                                    Trace& trace) override {
-    ServoControl control;
+  [[nodiscard]] session::Exploration explore(const engine::RenderingModel& model,
+                                             const PlaneGeometry& plane,
+                                             session::Participant& participant,
+                                             const device::ServoOptions& options,
+                                             store::Trace& trace) override {
+    device::ServoControl control;
     participant.exploring(control);
     participant.exploring(control);
     was_stopped = control.comfort_stop_asked();
@@ -140,17 +148,19 @@ class AttendedExplorer final : public Explorer {
   bool was_stopped = false;
 
  private:
-  VirtualExplorer usual_;
+  session::VirtualExplorer usual_;
 };
 
 /// Says that the program is to end from the first exploration on, whenever asked.
-class Insisting final : public Experimenter {
+class Insisting final : public session::Experimenter {
  public:
-  void show(const SessionStatus& status) override { insists_ |= status.stage == "exploring"; }
-  [[nodiscard]] std::optional<ExperimenterRequest> request() override {
+  void show(const session::SessionStatus& status) override {
+    insists_ |= status.stage == "exploring";
+  }
+  [[nodiscard]] std::optional<session::ExperimenterRequest> request() override {
     if (!insists_) return std::nullopt;
     if (++asked_ > 100) throw std::runtime_error("the desk does not stop asking");
-    return ExperimenterRequest{ExperimenterRequest::Kind::leave, "a signal", ""};
+    return session::ExperimenterRequest{session::ExperimenterRequest::Kind::leave, "a signal", ""};
   }
 
  private:
@@ -158,26 +168,26 @@ class Insisting final : public Experimenter {
   int asked_ = 0;
 };
 
-Ran run_with(Explorer& explorer, SessionClock& clock,
-             Experimenter& experimenter = no_experimenter()) {
+Ran run_with(session::Explorer& explorer, session::SessionClock& clock,
+             session::Experimenter& experimenter = session::no_experimenter()) {
   const TinyStudy study({.trials = R"({"repeats": 1})"});
-  const StimulusSource source(study.pack(), study.key().study.rendering);
+  const session::StimulusSource source(study.pack(), study.key().study.rendering);
   Ran ran;
-  Session session(make_schedule(study.key().study, 1), study.key().study.trials,
-                  SessionRecorder(1, SecretKey{}, ran.events));
-  SessionOpening opening;
+  session::Session session(design::make_schedule(study.key().study, 1), study.key().study.trials,
+                           store::SessionRecorder(1, SecretKey{}, ran.events));
+  store::SessionOpening opening;
   opening.participant = "P001";
   opening.enrolment = 1;
   session.open({}, opening, "{}");
   Unlucky person(1);
-  AlwaysReady devices;
-  ran.tally = run_session(
-      session, {study.key(), source, person, clock, explorer, devices, kServoRateHz, experimenter});
+  session::AlwaysReady devices;
+  ran.tally = session::run_session(session, {study.key(), source, person, clock, explorer, devices,
+                                             device::kServoRateHz, experimenter});
   return ran;
 }
 
 TEST_CASE("in real time every field is in memory before it is felt, whichever it is") {
-  VirtualSessionClock clock;
+  session::VirtualSessionClock clock;
   PageCountingExplorer real(true);
   CHECK(run_with(real, clock).tally.presentations == 6);
   CHECK(real.fetched == 0);
@@ -188,19 +198,19 @@ TEST_CASE("in real time every field is in memory before it is felt, whichever it
 
 TEST_CASE("times in clear say when an exploration ended, not how long its trace took to pack") {
   CreepingClock clock;
-  VirtualExplorer explorer;
+  session::VirtualExplorer explorer;
   const Ran ran = run_with(explorer, clock);
-  SessionClock::Time plane_on{};
+  session::SessionClock::Time plane_on{};
   int ends = 0;
-  const std::vector<Event>& events = ran.events.events;
+  const std::vector<store::Event>& events = ran.events.events;
   for (std::size_t i = 0; i < events.size(); ++i) {
-    if (events[i].kind == EventKind::presented) plane_on = events[i].at;
-    if (events[i].kind == EventKind::interrupted) {
+    if (events[i].kind == store::EventKind::presented) plane_on = events[i].at;
+    if (events[i].kind == store::EventKind::interrupted) {
       CHECK(events[i].at - plane_on == std::chrono::milliseconds(50));
       ++ends;
     }
-    if (events[i].kind == EventKind::trace_stored) {
-      REQUIRE(events[i + 1].kind == EventKind::answered);
+    if (events[i].kind == store::EventKind::trace_stored) {
+      REQUIRE(events[i + 1].kind == store::EventKind::answered);
       CHECK(events[i + 1].at == events[i].at);
       ++ends;
     }
@@ -219,8 +229,8 @@ TEST_CASE(
   CHECK(ran.tally.ticks == 500);
   CHECK(ran.tally.invalid_trials == 5);
   CHECK(lucky.ticks == 500);
-  CHECK(ran.count(EventKind::answered) == 5);
-  CHECK(ran.count(EventKind::trace_stored) == 5);
+  CHECK(ran.count(store::EventKind::answered) == 5);
+  CHECK(ran.count(store::EventKind::trace_stored) == 5);
   CHECK(ran.tally.duration == ran.events.events.back().at);
 }
 
@@ -228,31 +238,31 @@ TEST_CASE("a presentation in which the device was lost is repeated and leaves no
   Unlucky unlucky(2);
   const Ran ran = run(unlucky);
   CHECK(ran.tally.presentations == 7);
-  CHECK(ran.count(EventKind::interrupted) == 2);
-  CHECK(ran.count(EventKind::answered) == 5);
-  CHECK(ran.count(EventKind::trace_stored) == 5);
-  CHECK(ran.count(EventKind::stopped) == 0);
+  CHECK(ran.count(store::EventKind::interrupted) == 2);
+  CHECK(ran.count(store::EventKind::answered) == 5);
+  CHECK(ran.count(store::EventKind::trace_stored) == 5);
+  CHECK(ran.count(store::EventKind::stopped) == 0);
 }
 
 TEST_CASE("a session that is to end while the plane is on is left once, however often it is said") {
-  VirtualSessionClock clock;
+  session::VirtualSessionClock clock;
   AttendedExplorer explorer;
   Insisting experimenter;
   const Ran ran = run_with(explorer, clock, experimenter);
   CHECK(explorer.was_stopped);
   CHECK(ran.tally.left == "a signal");
-  CHECK(ran.count(EventKind::presented) == 1);
-  CHECK(ran.count(EventKind::answered) == 0);
-  CHECK(ran.count(EventKind::closed) == 0);
+  CHECK(ran.count(store::EventKind::presented) == 1);
+  CHECK(ran.count(store::EventKind::answered) == 0);
+  CHECK(ran.count(store::EventKind::closed) == 0);
 }
 
 TEST_CASE("a session whose device is lost again and again is stopped") {
   Unlucky doomed(1000);
   const Ran ran = run(doomed);
-  CHECK(ran.count(EventKind::interrupted) == 6);
-  CHECK(ran.count(EventKind::answered) == 0);
-  CHECK(ran.count(EventKind::stopped) == 1);
-  CHECK(ran.count(EventKind::closed) == 1);
+  CHECK(ran.count(store::EventKind::interrupted) == 6);
+  CHECK(ran.count(store::EventKind::answered) == 0);
+  CHECK(ran.count(store::EventKind::stopped) == 1);
+  CHECK(ran.count(store::EventKind::closed) == 1);
 }
 
 }  // namespace

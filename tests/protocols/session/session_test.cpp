@@ -13,25 +13,25 @@ namespace touchtrial {
 namespace {
 
 using std::chrono::seconds;
-using Phase = SessionPhase;
-using Input = SessionInput;
+using Phase = session::SessionPhase;
+using Input = session::SessionInput;
 
 /// Stores in memory, and refuses when told to, as a full disk does.
-class FickleSink final : public EventSink {
+class FickleSink final : public store::EventSink {
  public:
-  void accept(const Event& event, const std::optional<SealedTrace>& trace) override {
+  void accept(const store::Event& event, const std::optional<store::SealedTrace>& trace) override {
     if (refuses) throw StoreError("the disk is full");
     stored.accept(event, trace);
   }
   bool refuses = false;
-  BufferedEvents stored;
+  store::BufferedEvents stored;
 };
 
-Schedule schedule_of(int trials) {
-  Schedule schedule;
+design::Schedule schedule_of(int trials) {
+  design::Schedule schedule;
   for (int i = 0; i < trials; ++i) {
     schedule.presentations.push_back(
-        {i + 1, i / 2, PresentationKind::scored, {.class_index = i % 3}});
+        {i + 1, i / 2, design::PresentationKind::scored, {.class_index = i % 3}});
   }
   schedule.layout = {2, 0, 1};
   return schedule;
@@ -39,8 +39,8 @@ Schedule schedule_of(int trials) {
 
 /// A session with everything before its first trial done, at 3 s.
 struct Laboratory {
-  explicit Laboratory(int trials = 3, const TrialOptions& options = {})
-      : session(schedule_of(trials), options, SessionRecorder(1, SecretKey{}, sink)) {
+  explicit Laboratory(int trials = 3, const design::TrialOptions& options = {})
+      : session(schedule_of(trials), options, store::SessionRecorder(1, SecretKey{}, sink)) {
     opening.participant = "P001";
     opening.enrolment = 1;
     session.open(seconds(1), opening, "{}");
@@ -56,9 +56,9 @@ struct Laboratory {
     session.confirm(now += seconds(1));
   }
 
-  [[nodiscard]] std::vector<EventKind> kinds() const {
-    std::vector<EventKind> kinds;
-    for (const Event& event : sink.stored.events) kinds.push_back(event.kind);
+  [[nodiscard]] std::vector<store::EventKind> kinds() const {
+    std::vector<store::EventKind> kinds;
+    for (const store::Event& event : sink.stored.events) kinds.push_back(event.kind);
     return kinds;
   }
   [[nodiscard]] nlohmann::json last_body() const {
@@ -66,13 +66,13 @@ struct Laboratory {
   }
 
   FickleSink sink;
-  SessionOpening opening;
-  Session session;
+  store::SessionOpening opening;
+  session::Session session;
   seconds now{3};
 };
 
 /// The inputs that the session takes now.
-std::vector<Input> accepted(const Session& session) {
+std::vector<Input> accepted(const session::Session& session) {
   std::vector<Input> inputs;
   for (int i = 0; i <= static_cast<int>(Input::close); ++i) {
     if (session.accepts(static_cast<Input>(i))) inputs.push_back(static_cast<Input>(i));
@@ -87,7 +87,7 @@ TEST_CASE("a session goes from opening to closing and records each step") {
   CHECK(lab.session.phase() == Phase::finished);
   CHECK(lab.session.current() == nullptr);
   lab.session.close(lab.now);
-  using Kind = EventKind;
+  using Kind = store::EventKind;
   const std::vector<Kind> expected = {
       Kind::opened,   Kind::calibrated, Kind::instructed,    Kind::presented, Kind::first_contact,
       Kind::answered, Kind::presented,  Kind::first_contact, Kind::answered,  Kind::closed};
@@ -97,7 +97,7 @@ TEST_CASE("a session goes from opening to closing and records each step") {
 
 TEST_CASE("each phase takes its own inputs and no others") {
   Laboratory lab(2);
-  Session& session = lab.session;
+  session::Session& session = lab.session;
   using List = std::vector<Input>;
   CHECK(accepted(session) == List{Input::present, Input::practise, Input::take_break, Input::pause,
                                   Input::note, Input::stop});
@@ -188,7 +188,7 @@ TEST_CASE("an answer counts only once the sink has taken it") {
   lab.sink.refuses = false;
   lab.session.confirm(seconds(7));
   CHECK(lab.session.phase() == Phase::finished);
-  CHECK(lab.kinds().back() == EventKind::answered);
+  CHECK(lab.kinds().back() == store::EventKind::answered);
 }
 
 TEST_CASE("a plane that could not be recorded is not presented") {
@@ -211,8 +211,8 @@ TEST_CASE("an interrupted trial is repeated after all others, under its number")
   CHECK(trials == std::vector<int>{2, 3, 1});
 }
 
-TrialEvidence evidence_of(const Session& session, double height_mm) {
-  TraceBody body;
+store::TrialEvidence evidence_of(const session::Session& session, double height_mm) {
+  store::TraceBody body;
   body.trial = 1;
   return session.packed(body, {}, {1000.0, {{{1.0, 2.0, height_mm}, {0.0, 0.0, 0.5}}}});
 }
@@ -220,8 +220,8 @@ TrialEvidence evidence_of(const Session& session, double height_mm) {
 TEST_CASE("evidence is stored with the answer, the last that was kept and no other") {
   Laboratory lab;
   lab.session.present(seconds(4));
-  const TrialEvidence first = evidence_of(lab.session, 3.0);
-  const TrialEvidence last = evidence_of(lab.session, 4.0);
+  const store::TrialEvidence first = evidence_of(lab.session, 3.0);
+  const store::TrialEvidence last = evidence_of(lab.session, 4.0);
   lab.session.keep_evidence(first);
   lab.session.end_exploring(seconds(5));
   lab.session.explore_again(seconds(6));
@@ -232,10 +232,10 @@ TEST_CASE("evidence is stored with the answer, the last that was kept and no oth
   lab.session.confirm(seconds(8));
   REQUIRE(lab.sink.stored.traces.size() == 1);
   CHECK(lab.sink.stored.traces.front().box == last.trace.box);
-  const std::vector<EventKind> kinds = lab.kinds();
-  CHECK(kinds[kinds.size() - 3] == EventKind::explored_again);
-  CHECK(kinds[kinds.size() - 2] == EventKind::trace_stored);
-  CHECK(kinds.back() == EventKind::answered);
+  const std::vector<store::EventKind> kinds = lab.kinds();
+  CHECK(kinds[kinds.size() - 3] == store::EventKind::explored_again);
+  CHECK(kinds[kinds.size() - 2] == store::EventKind::trace_stored);
+  CHECK(kinds.back() == store::EventKind::answered);
 }
 
 TEST_CASE("a trial can be interrupted while the participant answers; its evidence is forgotten") {
@@ -261,8 +261,8 @@ TEST_CASE("nobody goes back to the plane once time is up") {
 }
 
 TEST_CASE("a spoilt trial is left out if the study says so") {
-  TrialOptions options;
-  options.on_interruption = OnInterruption::leave_out;
+  design::TrialOptions options;
+  options.on_interruption = design::OnInterruption::leave_out;
   Laboratory lab(2, options);
   lab.session.present(seconds(4));
   lab.session.interrupt(seconds(5), "device lost");
@@ -283,13 +283,13 @@ TEST_CASE("when time is up an answer is still required") {
 }
 
 TEST_CASE("when time is up and the study says no-response, the trial is over without an answer") {
-  TrialOptions options;
-  options.on_timeout = OnTimeout::no_response;
+  design::TrialOptions options;
+  options.on_timeout = design::OnTimeout::no_response;
   Laboratory lab(1, options);
   lab.session.present(seconds(4));
   lab.session.time_out(seconds(64));
   CHECK(lab.session.phase() == Phase::finished);
-  CHECK(lab.kinds().back() == EventKind::timed_out);
+  CHECK(lab.kinds().back() == store::EventKind::timed_out);
 }
 
 TEST_CASE("only the first contact of a presentation is recorded") {
@@ -297,15 +297,15 @@ TEST_CASE("only the first contact of a presentation is recorded") {
   lab.session.present(seconds(4));
   lab.session.contact(seconds(5));
   lab.session.contact(seconds(6));
-  CHECK(std::ranges::count(lab.kinds(), EventKind::first_contact) == 1);
+  CHECK(std::ranges::count(lab.kinds(), store::EventKind::first_contact) == 1);
   lab.session.interrupt(seconds(7), "again");
   lab.session.present(seconds(8));
   lab.session.contact(seconds(9));
-  CHECK(std::ranges::count(lab.kinds(), EventKind::first_contact) == 2);
+  CHECK(std::ranges::count(lab.kinds(), store::EventKind::first_contact) == 2);
 }
 
 TEST_CASE("a break is due when the study says so") {
-  TrialOptions options;
+  design::TrialOptions options;
   options.break_every = 2;
   Laboratory lab(4, options);
   CHECK_FALSE(lab.session.break_due());
@@ -340,25 +340,25 @@ TEST_CASE("a session that was stopped closes as incomplete") {
   CHECK(lab.last_body().at("complete") == false);
 }
 
-BlockRestart two_trials_again() {
+session::BlockRestart two_trials_again() {
   return {[](int block, int, int first_trial) {
-            return std::vector<Presentation>{
-                {first_trial, block, PresentationKind::scored, {.class_index = 2}},
-                {first_trial + 1, block, PresentationKind::scored, {.class_index = 1}}};
+            return std::vector<design::Presentation>{
+                {first_trial, block, design::PresentationKind::scored, {.class_index = 2}},
+                {first_trial + 1, block, design::PresentationKind::scored, {.class_index = 1}}};
           },
-          [](const std::vector<Presentation>&) { return std::string("{}"); }};
+          [](const std::vector<design::Presentation>&) { return std::string("{}"); }};
 }
 
-TrialOptions restarting_blocks() {
-  TrialOptions options;
-  options.on_interruption = OnInterruption::restart_block;
+design::TrialOptions restarting_blocks() {
+  design::TrialOptions options;
+  options.on_interruption = design::OnInterruption::restart_block;
   return options;
 }
 
 TEST_CASE("a spoilt trial begins its block anew, under new numbers, if the study says so") {
   FickleSink sink;
-  Session session(schedule_of(4), restarting_blocks(), SessionRecorder(1, SecretKey{}, sink),
-                  two_trials_again());
+  session::Session session(schedule_of(4), restarting_blocks(),
+                           store::SessionRecorder(1, SecretKey{}, sink), two_trials_again());
   session.open({}, {}, "{}");
   session.calibrate({});
   session.instruct({});
@@ -375,16 +375,16 @@ TEST_CASE("a spoilt trial begins its block anew, under new numbers, if the study
     session.confirm({});
   }
   CHECK(trials == std::vector<int>{1, 2, 5, 6, 3, 4});
-  CHECK_THROWS_AS(
-      Session(schedule_of(4), restarting_blocks(), SessionRecorder(1, SecretKey{}, sink)),
-      std::invalid_argument);
+  CHECK_THROWS_AS(session::Session(schedule_of(4), restarting_blocks(),
+                                   store::SessionRecorder(1, SecretKey{}, sink)),
+                  std::invalid_argument);
 }
 
 /// Runs a session that is killed after so many events, takes it up until its end, and gives its
 /// trials as they were answered.
-std::vector<int> killed_after(std::size_t kept, const TrialOptions& options) {
+std::vector<int> killed_after(std::size_t kept, const design::TrialOptions& options) {
   FickleSink first;
-  const auto run = [](Session& session, FickleSink& sink, std::size_t most) {
+  const auto run = [](session::Session& session, FickleSink& sink, std::size_t most) {
     const auto over = [&] { return sink.stored.events.size() >= most; };
     const auto at = [&] { return session.last() + seconds(1); };
     while (session.phase() != Phase::closed && !over()) {
@@ -410,14 +410,14 @@ std::vector<int> killed_after(std::size_t kept, const TrialOptions& options) {
       }
     }
   };
-  Session session(schedule_of(4), options, SessionRecorder(1, SecretKey{}, first),
-                  two_trials_again());
+  session::Session session(schedule_of(4), options, store::SessionRecorder(1, SecretKey{}, first),
+                           two_trials_again());
   session.open({}, {}, "{}");
   run(session, first, kept);
 
   FickleSink second;
-  Session again(schedule_of(4), options, SessionRecorder(1, SecretKey{}, second),
-                two_trials_again());
+  session::Session again(schedule_of(4), options, store::SessionRecorder(1, SecretKey{}, second),
+                         two_trials_again());
   again.restore(first.stored.events);
   CHECK(again.last() == first.stored.events.back().at);
   if (again.phase() != Phase::closed) again.take_up(again.last(), {"program-ended", 1.0, "1"});
@@ -427,12 +427,12 @@ std::vector<int> killed_after(std::size_t kept, const TrialOptions& options) {
   std::vector<int> answered;
   Digest head{};
   std::int64_t sequence = 0;
-  for (const BufferedEvents* part : {&first.stored, &second.stored}) {
-    for (const Event& event : part->events) {
+  for (const store::BufferedEvents* part : {&first.stored, &second.stored}) {
+    for (const store::Event& event : part->events) {
       CHECK(event.previous == head);
       CHECK(event.sequence == sequence++);
       head = event.hash;
-      if (event.kind != EventKind::answered) continue;
+      if (event.kind != store::EventKind::answered) continue;
       answered.push_back(nlohmann::json::parse(event.body).at("trial"));
     }
   }
@@ -448,8 +448,8 @@ TEST_CASE("a session that was killed after any event is taken up where it stood"
     std::ranges::sort(repeated);
     CHECK(repeated == std::vector<int>{1, 2, 3, 4});
 
-    TrialOptions options;
-    options.on_interruption = OnInterruption::leave_out;
+    design::TrialOptions options;
+    options.on_interruption = design::OnInterruption::leave_out;
     const bool in_trial = kept > 3 && kept < 16 && (kept - 3) % 3 != 0;
     CHECK(killed_after(kept, options).size() == (in_trial ? 3U : 4U));
 
@@ -467,7 +467,7 @@ TEST_CASE("a pause is over when a session is taken up, and nobody is asked twice
   lab.session.practise(seconds(3), {1, 1, 2, true});
   lab.session.pause(seconds(4), "telephone");
   FickleSink sink;
-  Session again(schedule_of(3), {}, SessionRecorder(1, SecretKey{}, sink));
+  session::Session again(schedule_of(3), {}, store::SessionRecorder(1, SecretKey{}, sink));
   again.restore(lab.sink.stored.events);
   CHECK(again.phase() == Phase::paused);
   again.take_up(seconds(5), {"program-ended", 1.0, "1"});
@@ -482,9 +482,9 @@ TEST_CASE("events that do not fit the schedule are refused") {
   Laboratory lab(1);
   lab.session.present(seconds(4));
   FickleSink sink;
-  Schedule other = schedule_of(1);
+  design::Schedule other = schedule_of(1);
   other.presentations.front().trial = 2;
-  Session again(other, {}, SessionRecorder(1, SecretKey{}, sink));
+  session::Session again(other, {}, store::SessionRecorder(1, SecretKey{}, sink));
   CHECK_THROWS_WITH(again.restore(lab.sink.stored.events), Catch::Contains("verify"));
 }
 

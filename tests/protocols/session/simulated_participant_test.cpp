@@ -12,17 +12,18 @@ constexpr PlaneGeometry kPlane{0.2, 120, 120};
 const std::vector<std::string> kPictures = {"straw", "bark", "brick"};
 
 /// Three classes that feel alike in all but strength.
-FeltKnowledge knowledge() {
-  FeltKnowledge known;
+session::FeltKnowledge knowledge() {
+  session::FeltKnowledge known;
   known.label_of_prototype = {"bark", "straw", "brick"};
   for (int label = 0; label < 3; ++label) {
-    known.examples.push_back({label, std::vector<double>(kFeltFeatures, -6.0 + 2.0 * label)});
+    known.examples.push_back(
+        {label, std::vector<double>(engine::kFeltFeatures, -6.0 + 2.0 * label)});
   }
   return known;
 }
 
 /// Feels a lateral and normal noise of a strength, long enough to be judged.
-void feel_noise(Participant& participant, double strength_n) {
+void feel_noise(session::Participant& participant, double strength_n) {
   static_cast<void>(participant.begin_exploring(kPlane));
   RandomStream random(3, "simulated_participant_test");
   for (int i = 0; i < 3000; ++i) {
@@ -32,10 +33,10 @@ void feel_noise(Participant& participant, double strength_n) {
   }
 }
 
-std::vector<int> answers(const SubjectModel& subject, int count, std::uint64_t seed = 1,
+std::vector<int> answers(const session::SubjectModel& subject, int count, std::uint64_t seed = 1,
                          double strength_n = 0.002) {
-  const FeltKnowledge known = knowledge();
-  SimulatedParticipant participant(subject, known, seed, 1);
+  const session::FeltKnowledge known = knowledge();
+  session::SimulatedParticipant participant(subject, known, seed, 1);
   participant.see_pictures(kPictures);
   std::vector<int> given;
   for (int i = 0; i < count; ++i) {
@@ -51,14 +52,14 @@ TEST_CASE("an ideal subject names the picture of the class that feels most alike
 }
 
 TEST_CASE("a label swap matches two pictures to each other's feelings and leaves the others") {
-  SubjectModel swapped;
+  session::SubjectModel swapped;
   swapped.label_swap = {{"bark", "straw"}};
   CHECK(answers(swapped, 1, 1, 0.002).front() == 0);
   CHECK(answers(swapped, 1, 1, 20.0).front() == 2);
 }
 
 TEST_CASE("a subject who always lapses answers every position about equally often") {
-  SubjectModel lapsing;
+  session::SubjectModel lapsing;
   lapsing.lapse = 1.0;
   const std::vector<int> given = answers(lapsing, 300);
   for (int position = 0; position < 3; ++position) {
@@ -68,29 +69,29 @@ TEST_CASE("a subject who always lapses answers every position about equally ofte
 }
 
 TEST_CASE("a strong bias wins over what is felt") {
-  SubjectModel first;
+  session::SubjectModel first;
   first.weber = 0.3;
   first.position_bias = 1e6;
   CHECK(answers(first, 1).front() == 0);
-  SubjectModel fond;
+  session::SubjectModel fond;
   fond.weber = 0.3;
   fond.class_bias = {{"brick", 1e6}};
   CHECK(answers(fond, 1).front() == 2);
 }
 
 TEST_CASE("answers and thoughts are a function of seed and number of the participant") {
-  SubjectModel unsure;
+  session::SubjectModel unsure;
   unsure.weber = 30.0;
   CHECK(answers(unsure, 40, 5) == answers(unsure, 40, 5));
   CHECK(answers(unsure, 40, 5) != answers(unsure, 40, 6));
 }
 
 TEST_CASE("the time to think does not depend on what is felt") {
-  const FeltKnowledge known = knowledge();
-  const SubjectModel subject;
+  const session::FeltKnowledge known = knowledge();
+  const session::SubjectModel subject;
   std::set<std::chrono::nanoseconds> thoughts;
   for (const double strength_n : {0.002, 0.05, 20.0}) {
-    SimulatedParticipant participant(subject, known, 1, 1);
+    session::SimulatedParticipant participant(subject, known, 1, 1);
     participant.see_pictures(kPictures);
     feel_noise(participant, strength_n);
     thoughts.insert(participant.answer().thought);
@@ -99,23 +100,23 @@ TEST_CASE("the time to think does not depend on what is felt") {
 }
 
 TEST_CASE("every exploration has a path of its own") {
-  const FeltKnowledge known = knowledge();
-  const SubjectModel subject;
-  SimulatedParticipant one(subject, known, 1, 1);
-  SimulatedParticipant other(subject, known, 1, 2);
+  const session::FeltKnowledge known = knowledge();
+  const session::SubjectModel subject;
+  session::SimulatedParticipant one(subject, known, 1, 1);
+  session::SimulatedParticipant other(subject, known, 1, 2);
   std::set<double> starts;
-  DeviceSample sample;
-  for (SimulatedParticipant* participant : {&one, &one, &other, &other}) {
-    REQUIRE(participant->begin_exploring(kPlane).read(sample) == DeviceStatus::ok);
+  device::DeviceSample sample;
+  for (session::SimulatedParticipant* participant : {&one, &one, &other, &other}) {
+    REQUIRE(participant->begin_exploring(kPlane).read(sample) == device::DeviceStatus::ok);
     starts.insert(sample.position_mm.x);
   }
   CHECK(starts.size() == 4);
 }
 
 TEST_CASE("a class that was learnt and has no picture is refused") {
-  const FeltKnowledge known = knowledge();
-  const SubjectModel subject;
-  SimulatedParticipant participant(subject, known, 1, 1);
+  const session::FeltKnowledge known = knowledge();
+  const session::SubjectModel subject;
+  session::SimulatedParticipant participant(subject, known, 1, 1);
   CHECK_THROWS_AS(participant.see_pictures({"bark", "straw"}), std::invalid_argument);
 }
 

@@ -9,13 +9,13 @@
 
 namespace touchtrial {
 
-class StillTime final : public WatchdogTime {
+class StillTime final : public device::WatchdogTime {
  public:
   [[nodiscard]] Time now() noexcept override { return {}; }
   void pause(Time) noexcept override { std::this_thread::sleep_for(std::chrono::milliseconds(1)); }
 };
 
-[[nodiscard]] inline WatchdogTime& still_time() noexcept {
+[[nodiscard]] inline device::WatchdogTime& still_time() noexcept {
   static StillTime time;
   return time;
 }

@@ -6,7 +6,7 @@ namespace touchtrial {
 namespace {
 
 TEST_CASE("a subject model that is written is read back as the same one, to the last digit") {
-  SubjectModel model;
+  session::SubjectModel model;
   model.weber = 0.1 + 0.2;
   model.weber_spread = 1.0 / 3.0;
   model.lapse = 0.02;
@@ -21,9 +21,9 @@ TEST_CASE("a subject model that is written is read back as the same one, to the 
   model.slowest_mm_s = 20.0;
   model.fastest_mm_s = 70.0;
   model.training_passes = 3;
-  const std::string written = subject_model_json(model);
-  const SubjectModel read = parse_subject_model(written, "written");
-  CHECK(subject_model_json(read) == written);
+  const std::string written = session::subject_model_json(model);
+  const session::SubjectModel read = session::parse_subject_model(written, "written");
+  CHECK(session::subject_model_json(read) == written);
   CHECK(read.weber == model.weber);
   CHECK(read.weber_spread == model.weber_spread);
   CHECK(read.class_bias == model.class_bias);

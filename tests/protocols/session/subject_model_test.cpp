@@ -20,8 +20,8 @@ json pairs(const std::vector<std::vector<std::string>>& lists) {
 
 const std::filesystem::path kRoot = TOUCHTRIAL_SOURCE_DIR;
 
-SubjectModel parsed(const json& subject) {
-  return parse_subject_model(subject.dump(), "subject.json");
+session::SubjectModel parsed(const json& subject) {
+  return session::parse_subject_model(subject.dump(), "subject.json");
 }
 
 /// The error that a subject is refused with; empty if it is accepted.
@@ -34,28 +34,29 @@ std::string refusal(const json& subject) {
   return "";
 }
 
-Study study_of(const std::vector<std::string>& labels) {
-  Study study;
+design::Study study_of(const std::vector<std::string>& labels) {
+  design::Study study;
   for (const std::string& label : labels) study.classes.push_back({label, {}});
   return study;
 }
 
 TEST_CASE("a subject file says everything about a subject") {
-  const SubjectModel subject = parsed({{"weber", 0.3},
-                                       {"weber_spread", 0.1},
-                                       {"lapse", 0.02},
-                                       {"lapse_spread", 0.4},
-                                       {"bias",
-                                        {{"position", 0.5},
-                                         {"position_spread", 0.25},
-                                         {"classes", {{{"label", "bark"}, {"log_odds", -1}}}},
-                                         {"class_spread", 0.75}}},
-                                       {"label_swap", pairs({{"straw", "brick"}})},
-                                       {"explore_s", 8},
-                                       {"push_n", 0.6},
-                                       {"slowest_mm_s", 60},
-                                       {"fastest_mm_s", 90},
-                                       {"training_passes", 3}});
+  const session::SubjectModel subject =
+      parsed({{"weber", 0.3},
+              {"weber_spread", 0.1},
+              {"lapse", 0.02},
+              {"lapse_spread", 0.4},
+              {"bias",
+               {{"position", 0.5},
+                {"position_spread", 0.25},
+                {"classes", {{{"label", "bark"}, {"log_odds", -1}}}},
+                {"class_spread", 0.75}}},
+              {"label_swap", pairs({{"straw", "brick"}})},
+              {"explore_s", 8},
+              {"push_n", 0.6},
+              {"slowest_mm_s", 60},
+              {"fastest_mm_s", 90},
+              {"training_passes", 3}});
   CHECK(subject.weber == 0.3);
   CHECK(subject.weber_spread == 0.1);
   CHECK(subject.lapse == 0.02);
@@ -63,7 +64,7 @@ TEST_CASE("a subject file says everything about a subject") {
   CHECK(subject.position_bias == 0.5);
   CHECK(subject.position_bias_spread == 0.25);
   CHECK(subject.class_bias_spread == 0.75);
-  CHECK(subject.class_bias == std::vector<ClassBias>{{"bark", -1.0}});
+  CHECK(subject.class_bias == std::vector<session::ClassBias>{{"bark", -1.0}});
   REQUIRE(subject.label_swap.size() == 1);
   CHECK(subject.label_swap[0] == std::pair<std::string, std::string>{"straw", "brick"});
   CHECK(subject.explore_s == 8.0);
@@ -74,7 +75,7 @@ TEST_CASE("a subject file says everything about a subject") {
 }
 
 TEST_CASE("an empty subject file is an ideal subject") {
-  const SubjectModel subject = parsed(json::object());
+  const session::SubjectModel subject = parsed(json::object());
   CHECK(subject.weber == 0.0);
   CHECK(subject.lapse == 0.0);
   CHECK(subject.explore_s == 10.0);
@@ -93,13 +94,13 @@ TEST_CASE("a subject file is refused with the place and a remedy") {
   CHECK_THAT(refusal({{"slowest_mm_s", 200}}), Contains("/slowest_mm_s"));
   CHECK_THAT(refusal({{"fastest_mm_s", 20}}), Contains("/fastest_mm_s"));
   CHECK_THAT(refusal(json::array()), Contains("subject.json"));
-  CHECK_THROWS_AS(parse_subject_model("{", "subject.json"), StudyError);
-  CHECK_THROWS_AS(load_subject_model("no/such/subject.json"), FileError);
+  CHECK_THROWS_AS(session::parse_subject_model("{", "subject.json"), StudyError);
+  CHECK_THROWS_AS(session::load_subject_model("no/such/subject.json"), FileError);
 }
 
 TEST_CASE("a label that the study does not have is refused with its place") {
   using Catch::Contains;
-  const Study study = study_of({"bark", "straw", "brick"});
+  const design::Study study = study_of({"bark", "straw", "brick"});
   CHECK_NOTHROW(parsed({{"label_swap", pairs({{"bark", "straw"}})}}).check_labels(study));
   CHECK_THROWS_WITH(parsed({{"label_swap", pairs({{"bark", "strew"}})}}).check_labels(study),
                     Contains("subject.json: /label_swap/0/1") && Contains("straw"));
@@ -111,12 +112,12 @@ TEST_CASE("the subject files that come with the program are accepted") {
   const auto folder = kRoot / "config" / "subjects";
   std::set<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
-    CHECK_NOTHROW(load_subject_model(entry.path()));
+    CHECK_NOTHROW(session::load_subject_model(entry.path()));
     names.insert(entry.path().filename().string());
   }
   CHECK(names.contains("default.json"));
-  CHECK(load_subject_model(folder / "ideal.json").weber == 0.0);
-  CHECK(load_subject_model(folder / "swapped.json").label_swap.size() == 1);
+  CHECK(session::load_subject_model(folder / "ideal.json").weber == 0.0);
+  CHECK(session::load_subject_model(folder / "swapped.json").label_swap.size() == 1);
 }
 
 TEST_CASE("the schema of subject files and the reader know the same keys and bounds") {

@@ -22,7 +22,7 @@ constexpr std::array<Weave, 5> kWeaves = {{{"bark", 12.0, 0.0},
                                            {"straw", 10.0, 135.0},
                                            {"brick", 40.0, 90.0}}};
 
-Study study_with(const TinyStudyOptions& options) {
+design::Study study_with(const TinyStudyOptions& options) {
   std::string classes;
   for (const Weave& weave : kWeaves) {
     std::string images;
@@ -34,44 +34,45 @@ Study study_with(const TinyStudyOptions& options) {
   }
   const std::string methods = options.comparison ? R"([{"name":"adaptive"},{"name":"tv-gabor"}])"
                                                  : R"([{"name":"adaptive"}])";
-  return parse_study(R"({"study":"tiny","protocol":")" +
-                         std::string(options.comparison ? "comparison" : "classification") +
-                         R"(","classes":[)" + classes + R"(],"methods":)" + methods +
-                         R"(,"trials":)" + options.trials + R"(,"rendering":)" + options.rendering +
-                         R"(,"seed":7})",
-                     ".", "tiny.json");
+  return design::parse_study(R"({"study":"tiny","protocol":")" +
+                                 std::string(options.comparison ? "comparison" : "classification") +
+                                 R"(","classes":[)" + classes + R"(],"methods":)" + methods +
+                                 R"(,"trials":)" + options.trials + R"(,"rendering":)" +
+                                 options.rendering + R"(,"seed":7})",
+                             ".", "tiny.json");
 }
 
-StudyKey key_with(const TinyStudyOptions& options) {
+design::StudyKey key_with(const TinyStudyOptions& options) {
   SeededEntropy entropy(options.secret);
-  return make_study_key(study_with(options), entropy, true);
+  return design::make_study_key(study_with(options), entropy, true);
 }
 
-Pack write_pack(const std::filesystem::path& folder, const StudyKey& key,
-                const TinyStudyOptions& options) {
-  std::vector<TextureField> fields;
-  for (const KeyedStimulus& keyed : key.stimuli) {
-    fields.push_back(
-        make_texture_field(tiny_texture(keyed.stimulus, options.side_px), key.study.rendering));
+engine::Pack write_pack(const std::filesystem::path& folder, const design::StudyKey& key,
+                        const TinyStudyOptions& options) {
+  std::vector<engine::TextureField> fields;
+  for (const design::KeyedStimulus& keyed : key.stimuli) {
+    fields.push_back(engine::make_texture_field(tiny_texture(keyed.stimulus, options.side_px),
+                                                key.study.rendering));
   }
-  std::vector<FieldView> views;
-  for (const TextureField& field : fields) views.push_back(field.view());
-  const StudyGains gains = choose_gains(views, key.study.rendering);
+  std::vector<engine::FieldView> views;
+  for (const engine::TextureField& field : fields) views.push_back(field.view());
+  const engine::StudyGains gains = engine::choose_gains(views, key.study.rendering);
   std::filesystem::create_directories(folder);
-  PackManifest manifest{key.study_id, {}};
+  engine::PackManifest manifest{key.study_id, {}};
   for (std::size_t i = 0; i < fields.size(); ++i) {
     const std::string& code = key.stimuli[i].code;
-    const Digest checksum = write_field(folder, code, views[i]);
-    manifest.entries.push_back({code, checksum, {}, options.smooth ? Gains{} : gains.of_field[i]});
+    const Digest checksum = engine::write_field(folder, code, views[i]);
+    manifest.entries.push_back(
+        {code, checksum, {}, options.smooth ? engine::Gains{} : gains.of_field[i]});
   }
-  std::ranges::sort(manifest.entries, {}, &PackEntry::code);
-  write_manifest(folder, manifest);
-  return Pack(folder);
+  std::ranges::sort(manifest.entries, {}, &engine::PackEntry::code);
+  engine::write_manifest(folder, manifest);
+  return engine::Pack(folder);
 }
 
 }  // namespace
 
-Plane<double> tiny_texture(const StimulusIndex& stimulus, int side_px) {
+Plane<double> tiny_texture(const design::StimulusIndex& stimulus, int side_px) {
   const Weave& weave = kWeaves[stimulus.class_index];
   const int image = stimulus.exemplar + 100 * stimulus.method;
   RandomStream random(static_cast<std::uint64_t>(image), weave.label);

@@ -28,19 +28,19 @@ class TinyStudy {
  public:
   explicit TinyStudy(const TinyStudyOptions& options = {});
 
-  [[nodiscard]] const StudyKey& key() const noexcept { return key_; }
-  [[nodiscard]] const Pack& pack() const noexcept { return pack_; }
+  [[nodiscard]] const design::StudyKey& key() const noexcept { return key_; }
+  [[nodiscard]] const engine::Pack& pack() const noexcept { return pack_; }
   /// A place for a database that nobody else has.
   [[nodiscard]] std::filesystem::path next_database();
 
  private:
   TempFolder folder_;
-  StudyKey key_;
-  Pack pack_;
+  design::StudyKey key_;
+  engine::Pack pack_;
   int databases_ = 0;
 };
 
 /// A texture T of one class, image and method; the same for the same arguments.
-[[nodiscard]] Plane<double> tiny_texture(const StimulusIndex& stimulus, int side_px = 120);
+[[nodiscard]] Plane<double> tiny_texture(const design::StimulusIndex& stimulus, int side_px = 120);
 
 }  // namespace touchtrial

@@ -7,13 +7,13 @@
 namespace touchtrial {
 namespace {
 
-ServoSample sample_at(std::int64_t tick, double z_mm = -1.0, double push_n = 0.5) {
+device::ServoSample sample_at(std::int64_t tick, double z_mm = -1.0, double push_n = 0.5) {
   return {{0.1 * static_cast<double>(tick), 2.0, z_mm}, {0.0, 0.0, push_n}, tick};
 }
 
 TEST_CASE("a trace without gaps holds the samples as they came") {
-  Trace trace;
-  TraceBuilder builder(trace, 2000.0, 10);
+  store::Trace trace;
+  session::TraceBuilder builder(trace, 2000.0, 10);
   for (std::int64_t tick = 0; tick < 10; ++tick) builder.add(sample_at(tick));
   REQUIRE(trace.samples.size() == 10);
   CHECK(trace.rate_hz == 2000.0);
@@ -22,8 +22,8 @@ TEST_CASE("a trace without gaps holds the samples as they came") {
 }
 
 TEST_CASE("a gap is filled by the sample before it, so that a sample's place is its time") {
-  Trace trace;
-  TraceBuilder builder(trace, 1000.0, 10);
+  store::Trace trace;
+  session::TraceBuilder builder(trace, 1000.0, 10);
   builder.add(sample_at(0, 5.0, 0.0));
   builder.add(sample_at(3));
   builder.add(sample_at(6));
@@ -37,8 +37,8 @@ TEST_CASE("a gap is filled by the sample before it, so that a sample's place is 
 }
 
 TEST_CASE("a first sample that is late fills what came before it") {
-  Trace trace;
-  TraceBuilder builder(trace, 1000.0, 10);
+  store::Trace trace;
+  session::TraceBuilder builder(trace, 1000.0, 10);
   builder.add(sample_at(2));
   REQUIRE(trace.samples.size() == 3);
   CHECK(trace.samples[0].position_mm == trace.samples[2].position_mm);
@@ -46,8 +46,8 @@ TEST_CASE("a first sample that is late fills what came before it") {
 }
 
 TEST_CASE("a trace never grows beyond its room and takes no tick twice") {
-  Trace trace;
-  TraceBuilder builder(trace, 1000.0, 4);
+  store::Trace trace;
+  session::TraceBuilder builder(trace, 1000.0, 4);
   const auto* const memory = trace.samples.data();
   for (const std::int64_t tick : {0, 1, 1, 0, 2, 9, 3, 4}) builder.add(sample_at(tick));
   CHECK(trace.samples.size() == 4);
@@ -56,8 +56,8 @@ TEST_CASE("a trace never grows beyond its room and takes no tick twice") {
 }
 
 TEST_CASE("landing is the time of the first sample that is low enough, whatever was left out") {
-  Trace trace;
-  TraceBuilder builder(trace, 4000.0, 100);
+  store::Trace trace;
+  session::TraceBuilder builder(trace, 4000.0, 100);
   CHECK_FALSE(builder.landed_at());
   builder.add(sample_at(0, 10.0, 0.0));
   builder.add(sample_at(8, 3.0, 0.0));

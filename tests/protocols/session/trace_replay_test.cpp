@@ -17,43 +17,47 @@ namespace touchtrial {
 namespace {
 
 /// Brings one simulated hand.
-class Stroker final : public PromptParticipant {
+class Stroker final : public session::PromptParticipant {
  public:
   void see_pictures(const std::vector<std::string>&) override {}
-  [[nodiscard]] HapticDevice& begin_exploring(const PlaneGeometry& plane) override {
-    SubjectModel subject;
+  [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& plane) override {
+    session::SubjectModel subject;
     subject.explore_s = 2.0;
     RandomStream random(3, "trace_replay_test");
-    return hand_.emplace(make_exploring_hand(subject, plane, random));
+    return hand_.emplace(session::make_exploring_hand(subject, plane, random));
   }
-  void feel(const ServoSample&) noexcept override {}
-  [[nodiscard]] ParticipantAnswer answer() override { return {}; }
+  void feel(const device::ServoSample&) noexcept override {}
+  [[nodiscard]] session::ParticipantAnswer answer() override { return {}; }
 
  private:
-  std::optional<SimulatedHand> hand_;
+  std::optional<device::SimulatedHand> hand_;
 };
 
-class KeepingSink final : public SampleSink {
+class KeepingSink final : public device::SampleSink {
  public:
-  void record(const ServoSample& sample) noexcept override { forces_n.push_back(sample.force_n); }
+  void record(const device::ServoSample& sample) noexcept override {
+    forces_n.push_back(sample.force_n);
+  }
   std::vector<Vec3> forces_n;
 };
 
 TEST_CASE("a stored trial, replayed through its model, calls forth the same forces") {
   const TinyStudy study;
-  const StimulusSource source(study.pack(), study.key().study.rendering);
-  for (const KeyedStimulus& keyed : study.key().stimuli) {
-    const RenderingModel& model = source.model(keyed.code);
+  const session::StimulusSource source(study.pack(), study.key().study.rendering);
+  for (const design::KeyedStimulus& keyed : study.key().stimuli) {
+    const engine::RenderingModel& model = source.model(keyed.code);
     Stroker stroker;
-    Trace recorded;
-    static_cast<void>(VirtualExplorer().explore(model, source.plane(), stroker, {}, recorded));
-    const Trace stored = decode_trace(encode_trace(recorded));
+    store::Trace recorded;
+    static_cast<void>(
+        session::VirtualExplorer().explore(model, source.plane(), stroker, {}, recorded));
+    const store::Trace stored = store::decode_trace(store::encode_trace(recorded));
 
-    ReplayDevice replay(std::make_unique<RecordedMotion>(motion_of(stored)));
-    ModelForce force(model);
+    device::ReplayDevice replay(
+        std::make_unique<device::RecordedMotion>(session::motion_of(stored)));
+    session::ModelForce force(model);
     KeepingSink sink;
-    const ServoReport report = run_servo_in_virtual_time(replay, force, sink, {});
-    REQUIRE(report.end == ServoEnd::hand_stopped);
+    const device::ServoReport report = device::run_servo_in_virtual_time(replay, force, sink, {});
+    REQUIRE(report.end == device::ServoEnd::hand_stopped);
     REQUIRE(sink.forces_n.size() == stored.samples.size());
     double worst_n = 0.0;
     double strongest_n = 0.0;
@@ -68,7 +72,7 @@ TEST_CASE("a stored trial, replayed through its model, calls forth the same forc
 }
 
 TEST_CASE("a trace without samples cannot be replayed") {
-  CHECK_THROWS_AS(motion_of(Trace()), std::invalid_argument);
+  CHECK_THROWS_AS(session::motion_of(store::Trace()), std::invalid_argument);
 }
 
 }  // namespace

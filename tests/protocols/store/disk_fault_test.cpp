@@ -4,6 +4,7 @@
 #include <set>
 
 using namespace touchtrial;
+using namespace touchtrial::store;
 using namespace touchtrial::fixture;
 
 namespace {

@@ -8,6 +8,7 @@
 #include <vector>
 
 using namespace touchtrial;
+using namespace touchtrial::store;
 
 namespace {
 

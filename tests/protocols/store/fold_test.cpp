@@ -5,6 +5,7 @@
 #include "support/catch.hpp"
 
 using namespace touchtrial;
+using namespace touchtrial::store;
 using namespace touchtrial::fixture;
 
 namespace {

@@ -12,24 +12,24 @@
 namespace touchtrial {
 
 /// Passes events on, and notes those that were acknowledged.
-class NotingSink final : public EventSink {
+class NotingSink final : public store::EventSink {
  public:
   /// \param acknowledged  outlives this
-  NotingSink(std::unique_ptr<EventSink> sink, std::vector<Event>& acknowledged)
+  NotingSink(std::unique_ptr<store::EventSink> sink, std::vector<store::Event>& acknowledged)
       : sink_(std::move(sink)), acknowledged_(acknowledged) {}
 
-  void accept(const Event& event, const std::optional<SealedTrace>& trace) override {
+  void accept(const store::Event& event, const std::optional<store::SealedTrace>& trace) override {
     sink_->accept(event, trace);
     acknowledged_.push_back(event);
   }
-  void accept_together(std::span<const RecordedEvent> events) override {
+  void accept_together(std::span<const store::RecordedEvent> events) override {
     sink_->accept_together(events);
-    for (const RecordedEvent& recorded : events) acknowledged_.push_back(recorded.event);
+    for (const store::RecordedEvent& recorded : events) acknowledged_.push_back(recorded.event);
   }
 
  private:
-  std::unique_ptr<EventSink> sink_;
-  std::vector<Event>& acknowledged_;
+  std::unique_ptr<store::EventSink> sink_;
+  std::vector<store::Event>& acknowledged_;
 };
 
 }  // namespace touchtrial

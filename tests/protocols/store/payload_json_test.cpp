@@ -13,6 +13,7 @@
 #include <vector>
 
 using namespace touchtrial;
+using namespace touchtrial::store;
 
 TEST_CASE("bodies are compact JSON with sorted keys") {
   REQUIRE(presented_to_json(7, 2) == R"({"block":2,"trial":7})");

@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 
 using namespace touchtrial;
+using namespace touchtrial::store;
 using namespace touchtrial::fixture;
 
 namespace {

@@ -18,33 +18,34 @@ using testing::FaultVfs;
 
 /// What a program was told is safe.
 struct Acknowledged {
-  std::vector<Event> session;  ///< of session 2, event by event
-  ChainHead file;              ///< where the file's chain ended, after a change of it returned
-  std::size_t under_way = 2;   ///< the most events of session 2 that one step stores
+  std::vector<store::Event> session;  ///< of session 2, event by event
+  store::ChainHead file;      ///< where the file's chain ended, after a change of it returned
+  std::size_t under_way = 2;  ///< the most events of session 2 that one step stores
 };
 
 /// What is done to a database that has session 1 and is open.
-using Story = std::function<void(StudyStore&, Acknowledged&)>;
+using Story = std::function<void(store::StudyStore&, Acknowledged&)>;
 
 /// Does one step of a session; may do it again if it is refused.
 using Attempt = std::function<void(const std::function<void()>&)>;
 
 /// Session 2, each answer stored together with its trace.
-inline void record_session(StudyStore& store, Acknowledged& acknowledged, const Attempt& attempt) {
+inline void record_session(store::StudyStore& store, Acknowledged& acknowledged,
+                           const Attempt& attempt) {
   NotingSink sink(store.begin_session(2, wrapped_key_of(2), [] { return kUtc; }),
                   acknowledged.session);
-  SessionRecorder recorder(2, participant_key(2), sink);
-  const Trace trace = stroking(400, 0.05);
+  store::SessionRecorder recorder(2, participant_key(2), sink);
+  const store::Trace trace = stroking(400, 0.05);
   attempt([&] { recorder.opened(nanoseconds(0), opening(2), R"({"schedule":"2"})"); });
-  attempt([&] { recorder.remarked(seconds(1), EventKind::instructed, "read aloud"); });
+  attempt([&] { recorder.remarked(seconds(1), store::EventKind::instructed, "read aloud"); });
   for (int trial = 1; trial <= 3; ++trial) {
     const nanoseconds start = seconds(20 * trial);
     attempt([&] { recorder.presented(start, trial, 0); });
     attempt([&] { recorder.first_contact(start + milliseconds(350), trial); });
-    const TraceBody body{
+    const store::TraceBody body{
         .trial = trial, .samples = 0, .rate_hz = 1000.0, .overruns = 0, .valid = true, .trace = {}};
-    const TrialEvidence evidence = recorder.packed(body, {}, trace);
-    const AnswerBody answer{
+    const store::TrialEvidence evidence = recorder.packed(body, {}, trace);
+    const store::AnswerBody answer{
         .trial = trial, .position = trial, .first_position = {}, .confidence = {}};
     attempt([&] { recorder.answered(start + seconds(9), answer, evidence); });
   }
@@ -52,7 +53,7 @@ inline void record_session(StudyStore& store, Acknowledged& acknowledged, const 
 }
 
 /// The same, told once.
-inline void tell_session(StudyStore& store, Acknowledged& acknowledged) {
+inline void tell_session(store::StudyStore& store, Acknowledged& acknowledged) {
   record_session(store, acknowledged, [](const std::function<void()>& step) { step(); });
 }
 
@@ -73,25 +74,25 @@ struct Outcome {
 inline Outcome tell(const std::filesystem::path& path, const Story& story) {
   Outcome outcome;
   outcome.refusal = refusal_of([&] {
-    StudyStore store = StudyStore::open(path, StudyStore::Access::read_write);
+    store::StudyStore store = store::StudyStore::open(path, store::StudyStore::Access::read_write);
     story(store, outcome.acknowledged);
   });
   return outcome;
 }
 
 /// Everything that was acknowledged is there, once, and the chain holds.
-inline void require_kept(const StudyStore& store, const Acknowledged& acknowledged) {
+inline void require_kept(const store::StudyStore& store, const Acknowledged& acknowledged) {
   const auto fault = store.first_fault();
   INFO((fault ? fault->what : std::string()));
   REQUIRE_FALSE(fault);
-  const std::vector<Event> kept = store.events(2);
+  const std::vector<store::Event> kept = store.events(2);
   REQUIRE(kept.size() >= acknowledged.session.size());
   // Of what was under way no more than one step.
   REQUIRE(kept.size() <= acknowledged.session.size() + acknowledged.under_way);
   for (std::size_t i = 0; i < acknowledged.session.size(); ++i) {
     REQUIRE(kept[i].hash == acknowledged.session[i].hash);
   }
-  const std::vector<Event> file = store.events(0);
+  const std::vector<store::Event> file = store.events(0);
   REQUIRE(file.size() >= static_cast<std::size_t>(acknowledged.file.length));
   if (acknowledged.file.length > 0) {
     REQUIRE(file[static_cast<std::size_t>(acknowledged.file.length) - 1].hash ==
@@ -100,11 +101,11 @@ inline void require_kept(const StudyStore& store, const Acknowledged& acknowledg
 }
 
 /// Goes on with session 2 where it broke off, to its end.
-inline void finish_session(StudyStore& store) {
+inline void finish_session(store::StudyStore& store) {
   const auto open = store.open_session_of(participant_of(2));
   if (!open || store.state().closed) return;
   const auto sink = store.continue_session(2, [] { return kUtc; });
-  SessionRecorder recorder(2, participant_key(2), *sink);
+  store::SessionRecorder recorder(2, participant_key(2), *sink);
   recorder.go_on_after(store.last_event(2).value());
   recorder.resumed(seconds(100), {.after = "program-ended", .away_s = 1.0, .program_version = ""});
   recorder.closed(seconds(101), false);
@@ -112,7 +113,7 @@ inline void finish_session(StudyStore& store) {
 
 /// The database takes what may follow: the rest of session 2, another session, changes of the file.
 inline void require_writable(const std::filesystem::path& path) {
-  StudyStore store = StudyStore::open(path, StudyStore::Access::read_write);
+  store::StudyStore store = store::StudyStore::open(path, store::StudyStore::Access::read_write);
   finish_session(store);
   if (!store.state().closed) add(store, store.next_session());
   if (!store.sessions().at(0).excluded) store.exclude(1, kUtc, "a test");

@@ -7,6 +7,7 @@
 #include <array>
 
 using namespace touchtrial;
+using namespace touchtrial::store;
 using namespace touchtrial::fixture;
 
 namespace {

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 using namespace touchtrial;
+using namespace touchtrial::store;
 using namespace touchtrial::fixture;
 
 TEST_CASE("a participant's session is held once, and other participants' are not hindered") {

@@ -37,7 +37,7 @@ inline SecretKey participant_key(int session) {
   return digest_of("participant key " + std::to_string(session));
 }
 
-inline StudyCommitment commitment() {
+inline store::StudyCommitment commitment() {
   return {.study = "classification",
           .protocol = "classification",
           .study_id = "00112233445566778899aabbccddeeff",
@@ -55,7 +55,7 @@ inline std::string participant_of(int session) {
   return "P" + std::to_string(session);
 }
 
-inline SessionOpening opening(int session) {
+inline store::SessionOpening opening(int session) {
   return {.participant = participant_of(session),
           .enrolment = session,
           .study_id = commitment().study_id,
@@ -68,9 +68,9 @@ inline SessionOpening opening(int session) {
 }
 
 /// A hand that strokes to and fro while a texture of the given rms force shakes it.
-inline Trace stroking(std::size_t samples, double texture_rms_n, std::uint64_t seed = 1) {
+inline store::Trace stroking(std::size_t samples, double texture_rms_n, std::uint64_t seed = 1) {
   RandomStream random(seed, "trace fixture");
-  Trace trace;
+  store::Trace trace;
   trace.rate_hz = 1000.0;
   double phase = 0.0;
   double shake_mm = 0.0;
@@ -93,10 +93,10 @@ inline Trace stroking(std::size_t samples, double texture_rms_n, std::uint64_t s
 
 /// Records a session of `trials` trials; the last is not answered in time, the second is answered
 /// after a change of mind and with a confidence.
-inline void record(SessionRecorder& recorder, int session, int trials, const Trace& trace,
-                   const SessionOpening& how) {
+inline void record(store::SessionRecorder& recorder, int session, int trials,
+                   const store::Trace& trace, const store::SessionOpening& how) {
   recorder.opened(nanoseconds(0), how, R"({"schedule":")" + std::to_string(session) + "\"}");
-  recorder.remarked(seconds(1), EventKind::instructed, "read aloud");
+  recorder.remarked(seconds(1), store::EventKind::instructed, "read aloud");
   for (int trial = 1; trial <= trials; ++trial) {
     const nanoseconds start = seconds(20 * trial);
     recorder.presented(start, trial, (trial - 1) / 2);
@@ -104,7 +104,7 @@ inline void record(SessionRecorder& recorder, int session, int trials, const Tra
     if (trial == trials) {
       recorder.timed_out(start + seconds(10), trial);
     } else {
-      AnswerBody answer{
+      store::AnswerBody answer{
           .trial = trial, .position = trial % 5, .first_position = {}, .confidence = {}};
       if (trial == 2) answer.first_position = 4;
       if (trial == 2) answer.confidence = 3;
@@ -124,23 +124,23 @@ inline void record(SessionRecorder& recorder, int session, int trials, const Tra
   recorder.closed(seconds(20 * trials + 30), true);
 }
 
-inline BufferedEvents session_of(int session, int trials, const Trace& trace,
-                                 const SessionOpening& how) {
-  BufferedEvents events;
-  SessionRecorder recorder(session, participant_key(session), events);
+inline store::BufferedEvents session_of(int session, int trials, const store::Trace& trace,
+                                        const store::SessionOpening& how) {
+  store::BufferedEvents events;
+  store::SessionRecorder recorder(session, participant_key(session), events);
   record(recorder, session, trials, trace, how);
   return events;
 }
 
-inline BufferedEvents session_of(int session, int trials = 3) {
+inline store::BufferedEvents session_of(int session, int trials = 3) {
   return session_of(session, trials, stroking(20, 0.05), opening(session));
 }
 
 inline Bytes wrapped_key_of(int session) {
-  return wrap_participant_key(study_master(), session, participant_key(session));
+  return store::wrap_participant_key(study_master(), session, participant_key(session));
 }
 
-inline void add(StudyStore& store, int session, int trials = 3) {
+inline void add(store::StudyStore& store, int session, int trials = 3) {
   store.add_session(session_of(session, trials), wrapped_key_of(session), kUtc);
 }
 
@@ -163,7 +163,7 @@ inline bool contains(const std::string& text, const std::string& part) {
 class StoredFixture {
  public:
   explicit StoredFixture(int sessions = 0, int trials = 3)
-      : store(StudyStore::create(path, commitment(), kUtc)) {
+      : store(store::StudyStore::create(path, commitment(), kUtc)) {
     for (int session = 1; session <= sessions; ++session) add(*store, session, trials);
   }
   /// A copy of another study, which must be closed.
@@ -173,7 +173,7 @@ class StoredFixture {
 
   TempFolder folder;
   std::filesystem::path path = folder.path() / "study.db";
-  std::optional<StudyStore> store;
+  std::optional<store::StudyStore> store;
 };
 
 /// Calls `work` while the triggers that protect events are gone, and puts them back.
@@ -197,7 +197,7 @@ inline void tamper(StoredFixture& study, const std::string& sql) {
     raw.exec("PRAGMA foreign_keys = OFF; PRAGMA synchronous = OFF");
     without_triggers(raw, [&] { raw.exec(sql); });
   }
-  study.store = StudyStore::open(study.path, StudyStore::Access::read_write);
+  study.store = store::StudyStore::open(study.path, store::StudyStore::Access::read_write);
 }
 
 }  // namespace touchtrial::fixture

@@ -8,6 +8,7 @@
 #include <sstream>
 
 using namespace touchtrial;
+using namespace touchtrial::store;
 using namespace touchtrial::fixture;
 
 namespace {

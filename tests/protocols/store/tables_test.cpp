@@ -13,6 +13,7 @@
 #include <SQLiteCpp/Statement.h>
 
 using namespace touchtrial;
+using namespace touchtrial::store;
 
 namespace {
 

@@ -10,6 +10,7 @@
 #include <limits>
 
 using namespace touchtrial;
+using namespace touchtrial::store;
 
 namespace {
 

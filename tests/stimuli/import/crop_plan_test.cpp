@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 using namespace touchtrial;
+using namespace touchtrial::stimuli;
 
 namespace {
 

@@ -17,6 +17,8 @@
 #include <nlohmann/json.hpp>
 
 using namespace touchtrial;
+using namespace touchtrial::engine;
+using namespace touchtrial::stimuli;
 using nlohmann::json;
 namespace fs = std::filesystem;
 

@@ -7,6 +7,7 @@
 #include <numbers>
 
 using namespace touchtrial;
+using namespace touchtrial::stimuli;
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 constexpr std::array<std::uint8_t, 3> kGreeting = {0x0A, 0x43, 0x0D};
@@ -52,4 +52,4 @@ bool BootLoader::can_run() const {
   return options_.image.empty() || equal(image_, options_.image);
 }
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 
 /// How a boot loader behaves, and misbehaves.
 struct BootLoaderOptions {
@@ -49,4 +49,4 @@ class BootLoader {
   int block_ = 0;
 };
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 /// The requests before a greeting, in their order.
@@ -233,4 +233,4 @@ void FalconEmulator::complain(const std::string& what) {
   }
 }
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

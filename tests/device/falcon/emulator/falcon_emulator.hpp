@@ -15,7 +15,7 @@
 
 #include <mutex>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 
 /// How a transfer ended.
 enum class UsbStatus {
@@ -111,4 +111,4 @@ class FalconEmulator {
   std::vector<std::string> complaints_;
 };
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

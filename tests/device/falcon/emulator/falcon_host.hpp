@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 
 class FalconHost {
  public:
@@ -69,4 +69,4 @@ class FalconHost {
   FalconStream stream_;
 };
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <numbers>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 constexpr double kDeg = std::numbers::pi / 180.0;
@@ -63,4 +63,4 @@ std::optional<Vec3> reference_force_n(Vec3 native_m, const std::array<double, 3>
   return torques_nm[0] * (*rows)[0] + torques_nm[1] * (*rows)[1] + torques_nm[2] * (*rows)[2];
 }
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -7,7 +7,7 @@
 #include <array>
 #include <optional>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 
 /// theta1 of the three legs, rad, at a native position, m. \return nothing out of reach
 [[nodiscard]] std::optional<std::array<double, 3>> reference_theta1(Vec3 native_m);
@@ -20,4 +20,4 @@ namespace touchtrial::falcon {
 [[nodiscard]] std::optional<Vec3> reference_force_n(Vec3 native_m,
                                                     const std::array<double, 3>& torques_nm);
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 using Bytes = std::vector<std::uint8_t>;
@@ -166,4 +166,4 @@ TEST_CASE("ftdi chip: packets of 64 bytes with two status bytes each, up to a sh
 }
 
 }  // namespace
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 
 bool FtdiChip::control(const ControlRequest& r) {
   if (r.type != 0x40 || r.index != 0) return false;
@@ -69,4 +69,4 @@ std::vector<std::uint8_t> FtdiChip::bulk_in(std::size_t most) {
   return transfer;
 }
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

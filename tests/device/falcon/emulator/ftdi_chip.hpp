@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 
 /// A control transfer without data.
 struct ControlRequest {
@@ -69,4 +69,4 @@ class FtdiChip {
   bool dtr_ = false;
 };
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -5,7 +5,7 @@
 #include <numbers>
 #include <utility>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 constexpr int kHomingTicks = 1000;
@@ -14,7 +14,7 @@ constexpr double kCarryMmPerTick = 0.1;
 
 }  // namespace
 
-HandOnFalcon::HandOnFalcon(const PlanePlacement& placement, Vec3 rest_mm)
+HandOnFalcon::HandOnFalcon(const device::PlanePlacement& placement, Vec3 rest_mm)
     : placement_(placement), rest_mm_(rest_mm), position_mm_(rest_mm) {}
 
 Vec3 HandOnFalcon::tick(Vec3 force_n) {
@@ -40,7 +40,7 @@ void HandOnFalcon::home() {
   ticks_ = kHomingTicks;
 }
 
-void HandOnFalcon::explore(SimulatedHand hand) {
+void HandOnFalcon::explore(device::SimulatedHand hand) {
   const std::scoped_lock lock(mutex_);
   hand_.emplace(std::move(hand));
   carry_to(hand_position_mm(), Doing::approaching);
@@ -80,18 +80,19 @@ void HandOnFalcon::carry() {
 
 void HandOnFalcon::explore_on(Vec3 force_n) {
   // A simulated hand cannot fail; that it stops is told by its next reading.
-  static_cast<void>(hand_->write(to_plane_direction(force_n, placement_.orientation)));
+  static_cast<void>(hand_->write(device::to_plane_direction(force_n, placement_.orientation)));
   position_mm_ = hand_position_mm();
-  DeviceSample sample;
-  if (hand_->read(sample) == DeviceStatus::ok) return;
+  device::DeviceSample sample;
+  if (hand_->read(sample) == device::DeviceStatus::ok) return;
   ++explorations_;
   carry_to(rest_mm_, Doing::returning);
 }
 
 Vec3 HandOnFalcon::hand_position_mm() {
-  DeviceSample sample;
+  device::DeviceSample sample;
   static_cast<void>(hand_->read(sample));
-  return placement_.origin_mm + to_device_direction(sample.position_mm, placement_.orientation);
+  return placement_.origin_mm +
+         device::to_device_direction(sample.position_mm, placement_.orientation);
 }
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -7,7 +7,7 @@
 #include <mutex>
 #include <optional>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 
 /// Gives the emulator its hand: `emulator.set_hand([&](Vec3 force_n) { return hand.tick(force_n);
 /// })`. Every tick is a millisecond, as the simulated hand's own. Positions and forces of the
@@ -17,7 +17,7 @@ namespace touchtrial::falcon {
 class HandOnFalcon {
  public:
   /// \param rest_mm  where the grip waits between explorations, device frame
-  HandOnFalcon(const PlanePlacement& placement, Vec3 rest_mm);
+  HandOnFalcon(const device::PlanePlacement& placement, Vec3 rest_mm);
 
   /// One millisecond. \return where the grip then is, device frame, mm
   [[nodiscard]] Vec3 tick(Vec3 force_n);
@@ -26,7 +26,7 @@ class HandOnFalcon {
   void home();
   /// Carries the grip to the hand's start at 100 mm/s, lets the hand explore until it stops, and
   /// carries the grip back to rest. What was being done before ends there.
-  void explore(SimulatedHand hand);
+  void explore(device::SimulatedHand hand);
   /// Whether the grip is at rest: nothing left to do.
   [[nodiscard]] bool at_rest() const;
   /// Explorations that ended because their hand stopped.
@@ -41,7 +41,7 @@ class HandOnFalcon {
   [[nodiscard]] Vec3 hand_position_mm();
 
   mutable std::mutex mutex_;
-  PlanePlacement placement_;
+  device::PlanePlacement placement_;
   Vec3 rest_mm_;
   Vec3 position_mm_;
   Vec3 from_mm_;
@@ -50,7 +50,7 @@ class HandOnFalcon {
   int tick_ = 0;   ///< of what it is doing
   int ticks_ = 0;  ///< that this takes
   int explorations_ = 0;
-  std::optional<SimulatedHand> hand_;
+  std::optional<device::SimulatedHand> hand_;
 };
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -7,19 +7,19 @@
 #include <cmath>
 #include <vector>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 constexpr PlaneGeometry kPlane{0.08, 500, 500};  // 40 mm
-const PlanePlacement kTable{PlaneOrientation::horizontal, {-20.0, -10.0, -20.0}};
-const PlanePlacement kWall{PlaneOrientation::vertical, {-20.0, 20.0, -10.0}};
+const device::PlanePlacement kTable{device::PlaneOrientation::horizontal, {-20.0, -10.0, -20.0}};
+const device::PlanePlacement kWall{device::PlaneOrientation::vertical, {-20.0, 20.0, -10.0}};
 constexpr double kWallNPerMm = 0.4;
 
-SimulatedHand hand_for(double explore_s) {
+device::SimulatedHand hand_for(double explore_s) {
   RandomStream random(1, "hand_on_falcon_test");
-  HandOptions options;
+  device::HandOptions options;
   options.explore_s = explore_s;
-  return {options, ExplorationPath(kPlane, {.duration_s = explore_s}, random)};
+  return {options, device::ExplorationPath(kPlane, {.duration_s = explore_s}, random)};
 }
 
 Vec3 wall_force_n(Vec3 plane_mm) {
@@ -29,7 +29,7 @@ Vec3 wall_force_n(Vec3 plane_mm) {
 /// The plainest servo: reads, computes a flat wall, writes.
 struct FlatWallServo {
   FalconHost& host;
-  PlanePlacement placement;
+  device::PlanePlacement placement;
   MotorValues motors{};
   Vec3 last_m = kCentreM;
 
@@ -42,15 +42,15 @@ struct FlatWallServo {
     const Pose pose = forward_kinematics(theta1_of_counts(reply->counts), last_m);
     REQUIRE(pose.status == PoseStatus::ok);
     last_m = pose.native_m;
-    const Vec3 plane_mm = to_plane_position_mm(to_device_mm(pose.native_m), placement);
-    const Vec3 force_n = to_device_direction(wall_force_n(plane_mm), placement.orientation);
+    const Vec3 plane_mm = device::to_plane_position_mm(to_device_mm(pose.native_m), placement);
+    const Vec3 force_n = device::to_device_direction(wall_force_n(plane_mm), placement.orientation);
     motors = motor_values(torques_nm(pose.jacobian, force_n).value());
     return plane_mm;
   }
 };
 
 struct Rig {
-  explicit Rig(const PlanePlacement& placement, bool homed)
+  explicit Rig(const device::PlanePlacement& placement, bool homed)
       : hand(placement, {0.0, 15.0, 0.0}),
         falcon({.firmware_runs = true, .homed = homed, .boot_loader = {}},
                [this](Vec3 force_n) { return hand.tick(force_n); }),
@@ -77,7 +77,7 @@ TEST_CASE("hand on falcon: homing moves every axis far enough, and the grip retu
 }
 
 TEST_CASE("hand on falcon: a wall through packets and legs feels as a wall written directly") {
-  const PlanePlacement placement = GENERATE(kTable, kWall);
+  const device::PlanePlacement placement = GENERATE(kTable, kWall);
   Rig rig(placement, true);
   rig.hand.explore(hand_for(2.0));
   std::vector<Vec3> felt;
@@ -89,12 +89,12 @@ TEST_CASE("hand on falcon: a wall through packets and legs feels as a wall writt
   CHECK(rig.hand.explorations() == 1);
   CHECK(rig.falcon.complaints().empty());
 
-  SimulatedHand direct = hand_for(2.0);
+  device::SimulatedHand direct = hand_for(2.0);
   std::vector<Vec3> expected;
-  DeviceSample sample;
-  while (direct.read(sample) == DeviceStatus::ok) {
+  device::DeviceSample sample;
+  while (direct.read(sample) == device::DeviceStatus::ok) {
     expected.push_back(sample.position_mm);
-    CHECK(direct.write(wall_force_n(sample.position_mm)) == DeviceStatus::ok);
+    CHECK(direct.write(wall_force_n(sample.position_mm)) == device::DeviceStatus::ok);
   }
   // Steady on the wall, both: the same depth and the same place along the path.
   const auto landed = std::ranges::find_if(felt, [](Vec3 p) { return p.z < 0.0; });
@@ -123,4 +123,4 @@ TEST_CASE("hand on falcon: one exploration after another, without a jump") {
 }
 
 }  // namespace
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 constexpr double kCentreM = 0.1215;
@@ -154,4 +154,4 @@ void RunningFalcon::complain(const std::string& what) {
   }
 }
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 
 /// Called once for every exchange, one millisecond of the hand's time: takes the force on it, N,
 /// and tells where it then is, mm, both in the device frame.
@@ -82,4 +82,4 @@ class RunningFalcon {
   std::vector<std::string> complaints_;
 };
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

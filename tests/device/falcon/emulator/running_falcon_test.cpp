@@ -5,7 +5,7 @@
 #include <cmath>
 #include <thread>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 EmulatorOptions homed_falcon() {
@@ -228,4 +228,4 @@ TEST_CASE("emulated falcon: transfers and mishaps may come from different thread
 }
 
 }  // namespace
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <vector>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 
 /// As long as a known image; every byte value occurs.
 inline std::vector<std::uint8_t> dummy_firmware() {
@@ -26,4 +26,4 @@ inline std::filesystem::path write_dummy_firmware(const std::filesystem::path& f
   return file;
 }
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 void throw_if_gone(UsbStatus status) {
@@ -47,4 +47,4 @@ void EmulatorTransport::serve(std::chrono::microseconds /*at_most*/) noexcept {
   }
 }
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -4,7 +4,7 @@
 #include "device/falcon/emulator/falcon_emulator.hpp"
 #include "device/falcon/ftdi_transport.hpp"
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 
 /// As the real chip, a read brings status bytes alone where there is nothing else; but at once.
 class EmulatorTransport final : public FtdiTransport {
@@ -29,4 +29,4 @@ class EmulatorTransport final : public FtdiTransport {
   FtdiStreamSink* sink_ = nullptr;
 };
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -3,7 +3,7 @@
 #include <condition_variable>
 #include <mutex>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 
 struct Lockstep::State {
   std::mutex mutex;
@@ -65,4 +65,4 @@ void Lockstep::steps(int count) noexcept {
   for (int i = 0; i < count; ++i) step();
 }
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -6,7 +6,7 @@
 
 #include <memory>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 
 /// Lets the USB thread of one FalconDevice go on, one exchange at a time.
 class Lockstep {
@@ -28,28 +28,30 @@ class Lockstep {
 };
 
 /// The same device; each `read` is of an exchange of its own, which takes the force written before.
-class LockstepDevice final : public HapticDevice {
+class LockstepDevice final : public device::HapticDevice {
  public:
   /// \param device, lockstep  must outlive this
-  LockstepDevice(HapticDevice& device, Lockstep& lockstep) noexcept
+  LockstepDevice(device::HapticDevice& device, Lockstep& lockstep) noexcept
       : device_(device), lockstep_(lockstep) {}
 
-  [[nodiscard]] DeviceInfo info() const override { return device_.info(); }
-  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override {
+  [[nodiscard]] device::DeviceInfo info() const override { return device_.info(); }
+  [[nodiscard]] device::DeviceStatus read(device::DeviceSample& sample) noexcept override {
     lockstep_.step();
     return device_.read(sample);
   }
-  [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override {
+  [[nodiscard]] device::DeviceStatus write(Vec3 force_n) noexcept override {
     return device_.write(force_n);
   }
   void halt() noexcept override { device_.halt(); }
   void rearm() noexcept override { device_.rearm(); }
-  [[nodiscard]] DeviceFault fault() const noexcept override { return device_.fault(); }
-  [[nodiscard]] DeviceReadiness readiness() const noexcept override { return device_.readiness(); }
+  [[nodiscard]] device::DeviceFault fault() const noexcept override { return device_.fault(); }
+  [[nodiscard]] device::DeviceReadiness readiness() const noexcept override {
+    return device_.readiness();
+  }
 
  private:
-  HapticDevice& device_;
+  device::HapticDevice& device_;
   Lockstep& lockstep_;
 };
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -14,7 +14,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 using nlohmann::json;
@@ -102,4 +102,4 @@ TEST_CASE("device test guides through homing and ends with the motors at rest") 
 }
 
 }  // namespace
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

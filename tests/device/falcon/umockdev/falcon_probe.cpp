@@ -13,6 +13,7 @@
 namespace {
 
 using namespace touchtrial;
+using namespace touchtrial::device;
 
 void list() {
   for (const falcon::UsbFalcon& found : falcon::find_usb_falcons()) {

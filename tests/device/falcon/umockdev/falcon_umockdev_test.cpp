@@ -9,7 +9,7 @@
 #include <cmath>
 #include <thread>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 using testing::ChildProcess;
@@ -69,4 +69,4 @@ TEST_CASE("another process loads, homes and pushes a Falcon, loses it and finds 
 }
 
 }  // namespace
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -14,7 +14,7 @@
 #include <cmath>
 #include <thread>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 using testing::EmulatorUsbModel;
@@ -40,10 +40,10 @@ struct PluggedFalcon {
 };
 
 std::unique_ptr<FalconDevice> open_in_lockstep(Lockstep& lockstep,
-                                               const FalconSettings& settings = {}) {
+                                               const device::FalconSettings& settings = {}) {
   FalconOptions options;
   options.pace = lockstep.pace();
-  options.scheduling = {SchedulingPolicy::other, 0, false};
+  options.scheduling = {device::SchedulingPolicy::other, 0, false};
   return std::make_unique<FalconDevice>(open_usb_falcon(settings.serial), settings,
                                         std::move(options));
 }
@@ -61,34 +61,34 @@ bool wait_until(Condition holds) {
 TEST_CASE("through libusb a Falcon is loaded, homed and pushes as it is told") {
   const TempFolder folder;
   PluggedFalcon falcon(EmulatorOptions{});
-  FalconSettings settings;
+  device::FalconSettings settings;
   settings.firmware = write_dummy_firmware(folder.path());
   Lockstep lockstep;
   const auto device = open_in_lockstep(lockstep, settings);
   CHECK(falcon.emulator.image() == dummy_firmware());
-  CHECK(device->readiness() == DeviceReadiness::needs_homing);
+  CHECK(device->readiness() == device::DeviceReadiness::needs_homing);
   CHECK(device->info().serial == "FALCON1");
 
   falcon.emulator.set_hand([tick = 0](Vec3) mutable {
     return Vec3{5.0, 0.0, 25.0 * std::sin(2e-3 * std::acos(-1.0) * ++tick)};
   });
   LockstepDevice paced(*device, lockstep);
-  DeviceSample sample;
+  device::DeviceSample sample;
   double worst_n = 0.0;
   double worst_mm = 0.0;
   for (int i = 0; i < 2000; ++i) {
-    REQUIRE(paced.read(sample) == DeviceStatus::ok);
+    REQUIRE(paced.read(sample) == device::DeviceStatus::ok);
     REQUIRE(sample.sequence == static_cast<std::uint64_t>(i) + 1);
     if (i < 1000) continue;
     REQUIRE(sample.ready);
     worst_mm = std::max(worst_mm, norm(sample.position_mm - falcon.emulator.position_mm()));
     const Vec3 force_n = {0.5, -0.3 * std::sin(0.01 * i), 1.5};
-    REQUIRE(paced.write(force_n) == DeviceStatus::ok);
+    REQUIRE(paced.write(force_n) == device::DeviceStatus::ok);
     lockstep.step();
     ++i;
     // Of the pose one exchange ago: the hand has moved by less than 0.2 mm.
     worst_n = std::max(worst_n, norm(falcon.emulator.force_n() - force_n));
-    REQUIRE(device->read(sample) == DeviceStatus::ok);
+    REQUIRE(device->read(sample) == device::DeviceStatus::ok);
   }
   CHECK(worst_mm < 0.06);
   CHECK(worst_n < 0.02);
@@ -99,7 +99,7 @@ TEST_CASE("through libusb buttons arrive and damage is survived") {
   PluggedFalcon falcon;
   Lockstep lockstep;
   const auto device = open_in_lockstep(lockstep);
-  DeviceSample sample;
+  device::DeviceSample sample;
   for (int i = 0; i < 50; ++i) {
     falcon.emulator.press(i % 16);
     falcon.emulator.drop_replies(i % 10 == 3 ? 1 : 0);
@@ -107,7 +107,7 @@ TEST_CASE("through libusb buttons arrive and damage is survived") {
     const std::vector<std::uint8_t> garbage(static_cast<std::size_t>(i), '<');
     falcon.usb.with_model([&] { falcon.emulator.send_garbage(garbage); });
     lockstep.steps(3);
-    REQUIRE(device->read(sample) == DeviceStatus::ok);
+    REQUIRE(device->read(sample) == device::DeviceStatus::ok);
     REQUIRE(sample.buttons == static_cast<std::uint32_t>(i % 16));
   }
   CHECK(norm(sample.position_mm) < 0.06);
@@ -116,10 +116,10 @@ TEST_CASE("through libusb buttons arrive and damage is survived") {
 TEST_CASE("in real time exchanges go on by themselves") {
   PluggedFalcon falcon;
   FalconDevice device(open_usb_falcon(""), {});
-  DeviceSample sample;
+  device::DeviceSample sample;
   CHECK(wait_until([&] {
-    return device.read(sample) == DeviceStatus::ok && sample.sequence >= 100 &&
-           device.write({0.0, 0.0, 1.0}) == DeviceStatus::ok &&
+    return device.read(sample) == device::DeviceStatus::ok && sample.sequence >= 100 &&
+           device.write({0.0, 0.0, 1.0}) == device::DeviceStatus::ok &&
            norm(falcon.emulator.force_n() - Vec3{0.0, 0.0, 1.0}) < 0.01;
   }));
   CHECK(sample.ready);
@@ -129,24 +129,24 @@ TEST_CASE("in real time exchanges go on by themselves") {
 
 TEST_CASE("unplugged in the middle of a push, the Falcon is lost, and plugged in it opens anew") {
   PluggedFalcon falcon;
-  auto device = std::make_unique<FalconDevice>(open_usb_falcon(""), FalconSettings{});
+  auto device = std::make_unique<FalconDevice>(open_usb_falcon(""), device::FalconSettings{});
   for (int round = 0; round < 3; ++round) {
     INFO("round " << round);
-    DeviceSample sample;
+    device::DeviceSample sample;
     REQUIRE(wait_until([&] {
-      return device->write({0.0, 0.0, 1.0}) == DeviceStatus::ok &&
+      return device->write({0.0, 0.0, 1.0}) == device::DeviceStatus::ok &&
              norm(falcon.emulator.force_n()) > 0.5;
     }));
     falcon.unplug();
-    REQUIRE(wait_until([&] { return device->fault() == DeviceFault::link_lost; }));
-    CHECK(device->read(sample) == DeviceStatus::fault);
-    CHECK(device->write({}) == DeviceStatus::fault);
+    REQUIRE(wait_until([&] { return device->fault() == device::DeviceFault::link_lost; }));
+    CHECK(device->read(sample) == device::DeviceStatus::fault);
+    CHECK(device->write({}) == device::DeviceStatus::fault);
     falcon.replug();
     // The lost one is still open: both may be, but the old one never comes back.
-    auto anew = std::make_unique<FalconDevice>(open_usb_falcon(""), FalconSettings{});
-    CHECK(device->fault() == DeviceFault::link_lost);
+    auto anew = std::make_unique<FalconDevice>(open_usb_falcon(""), device::FalconSettings{});
+    CHECK(device->fault() == device::DeviceFault::link_lost);
     device = std::move(anew);
-    CHECK(device->fault() == DeviceFault::none);
+    CHECK(device->fault() == device::DeviceFault::none);
   }
   device.reset();
   CHECK(falcon.usb.open_handles() == 0);
@@ -155,7 +155,7 @@ TEST_CASE("unplugged in the middle of a push, the Falcon is lost, and plugged in
 TEST_CASE("unplugged while it is being opened, the Falcon is told to be gone") {
   const TempFolder folder;
   PluggedFalcon falcon(EmulatorOptions{});
-  FalconSettings settings;
+  device::FalconSettings settings;
   settings.firmware = write_dummy_firmware(folder.path());
   auto transport = open_usb_falcon("");
   falcon.unplug();
@@ -170,8 +170,8 @@ TEST_CASE("while one program has the Falcon a second one cannot open it") {
 }
 
 TEST_CASE("the registry lists a Falcon with what is missing, and opens it") {
-  DeviceSettings settings;
-  const DeviceDriver driver = falcon_driver();
+  device::DeviceSettings settings;
+  const device::DeviceDriver driver = device::falcon_driver();
   const auto none = driver.list(settings);
   REQUIRE(none.size() == 1);
   CHECK_FALSE(none[0].present);
@@ -190,8 +190,8 @@ TEST_CASE("the registry lists a Falcon with what is missing, and opens it") {
   falcon.usb.allow(false);
   CHECK_THAT(driver.list(settings).at(0).missing.at(0), holds_text("install-udev-rules"));
   falcon.usb.allow(true);
-  CHECK(open_device("falcon", settings)->info().name == "falcon");
+  CHECK(device::open_device("falcon", settings)->info().name == "falcon");
 }
 
 }  // namespace
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <deque>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 using std::chrono::milliseconds;
@@ -255,4 +255,4 @@ TEST_CASE("a Falcon that is plugged in again is found and opened anew") {
 }
 
 }  // namespace
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -6,7 +6,7 @@ namespace touchtrial::testing {
 
 bool EmulatorUsbModel::vendor_request(std::uint8_t request, std::uint16_t value,
                                       std::uint16_t index) {
-  return emulator_.control({0x40, request, value, index}) == falcon::UsbStatus::ok;
+  return emulator_.control({0x40, request, value, index}) == device::falcon::UsbStatus::ok;
 }
 
 void EmulatorUsbModel::bulk_out(std::span<const std::uint8_t> bytes) {

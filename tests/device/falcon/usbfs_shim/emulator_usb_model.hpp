@@ -11,7 +11,7 @@ namespace touchtrial::testing {
 class EmulatorUsbModel final : public UsbModel {
  public:
   /// \param emulator  must outlive this
-  explicit EmulatorUsbModel(falcon::FalconEmulator& emulator) : emulator_(emulator) {}
+  explicit EmulatorUsbModel(device::falcon::FalconEmulator& emulator) : emulator_(emulator) {}
 
   [[nodiscard]] bool vendor_request(std::uint8_t request, std::uint16_t value,
                                     std::uint16_t index) override;
@@ -19,7 +19,7 @@ class EmulatorUsbModel final : public UsbModel {
   [[nodiscard]] std::size_t bulk_in(std::span<std::uint8_t> bytes) override;
 
  private:
-  falcon::FalconEmulator& emulator_;
+  device::falcon::FalconEmulator& emulator_;
 };
 
 }  // namespace touchtrial::testing

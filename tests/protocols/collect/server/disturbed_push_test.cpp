@@ -13,6 +13,8 @@
 #include <unistd.h>
 
 using namespace touchtrial;
+using namespace touchtrial::collect;
+using namespace touchtrial::store;
 using namespace touchtrial::fixture;
 
 namespace {

@@ -5,6 +5,8 @@
 #include <stdexcept>
 
 using namespace touchtrial;
+using namespace touchtrial::collect;
+using namespace touchtrial::store;
 
 namespace {
 

@@ -6,6 +6,8 @@
 #include "support/catch.hpp"
 
 using namespace touchtrial;
+using namespace touchtrial::collect;
+using namespace touchtrial::store;
 using namespace touchtrial::fixture;
 
 namespace {

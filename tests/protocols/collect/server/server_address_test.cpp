@@ -6,6 +6,7 @@
 #include <string>
 
 using namespace touchtrial;
+using namespace touchtrial::collect;
 
 namespace {
 

@@ -16,16 +16,16 @@ namespace touchtrial::fixture {
 using testing::PostgresServer;
 
 /// A study's file as a station, with a hook before every session's events are read.
-class OpenStation final : public StationFile {
+class OpenStation final : public collect::StationFile {
  public:
-  explicit OpenStation(const StudyStore& store, std::string name = "study.db")
+  explicit OpenStation(const store::StudyStore& store, std::string name = "study.db")
       : store_(store), name_(std::move(name)) {}
 
   const std::string& name() const override { return name_; }
-  std::vector<Event> file_chain() override { return store_.events(0); }
-  std::vector<Event> events(int own_session) override {
+  std::vector<store::Event> file_chain() override { return store_.events(0); }
+  std::vector<store::Event> events(int own_session) override {
     if (before) before(own_session);
-    std::vector<Event> events = store_.events(own_session);
+    std::vector<store::Event> events = store_.events(own_session);
     if (alter) alter(events);
     return events;
   }
@@ -39,7 +39,7 @@ class OpenStation final : public StationFile {
   }
   void for_each_trace(int own_session,
                       const std::function<void(int, const Bytes&)>& visit) override {
-    for (const TrialRow& row : store_.trials()) {
+    for (const store::TrialRow& row : store_.trials()) {
       if (row.session != own_session) continue;
       if (before_trace) before_trace(own_session, row.trial);
       auto box = trace(own_session, row.trial);
@@ -50,11 +50,11 @@ class OpenStation final : public StationFile {
 
   std::function<void(int)> before;
   std::function<void(int, int)> before_trace;
-  std::function<void(std::vector<Event>&)> alter;
+  std::function<void(std::vector<store::Event>&)> alter;
   std::function<void(int, Bytes&)> alter_trace;
 
  private:
-  const StudyStore& store_;
+  const store::StudyStore& store_;
   std::string name_;
 };
 
@@ -65,8 +65,8 @@ struct Visit {
   int enrolment = 0;
 };
 
-inline void add_visit(StudyStore& store, const Visit& visit, int trials = 3) {
-  SessionOpening how = opening(visit.session);
+inline void add_visit(store::StudyStore& store, const Visit& visit, int trials = 3) {
+  store::SessionOpening how = opening(visit.session);
   how.participant = visit.participant;
   how.enrolment = visit.enrolment;
   store.add_session(session_of(visit.session, trials, stroking(20, 0.05), how),
@@ -90,16 +90,18 @@ struct ServerFixture {
   [[nodiscard]] std::string url(const std::string& user = PostgresServer::kAdministrator) const {
     return server.url(database, user);
   }
-  [[nodiscard]] ServerAddress address(
+  [[nodiscard]] collect::ServerAddress address(
       const std::string& user = PostgresServer::kAdministrator) const {
-    return ServerAddress(url(user));
+    return collect::ServerAddress(url(user));
   }
-  PushReport push(StationFile& station, const PushOptions& options = {}) const {
-    PushReport report;
-    push_station(station, address(), options, report);
+  collect::PushReport push(collect::StationFile& station,
+                           const collect::PushOptions& options = {}) const {
+    collect::PushReport report;
+    collect::push_station(station, address(), options, report);
     return report;
   }
-  PushReport push(const StudyStore& store, const PushOptions& options = {}) const {
+  collect::PushReport push(const store::StudyStore& store,
+                           const collect::PushOptions& options = {}) const {
     OpenStation station(store);
     return push(station, options);
   }

@@ -7,6 +7,8 @@
 #include <thread>
 
 using namespace touchtrial;
+using namespace touchtrial::collect;
+using namespace touchtrial::store;
 using namespace touchtrial::fixture;
 
 TEST_CASE("a station's finished sessions come to the server whole, and come once") {

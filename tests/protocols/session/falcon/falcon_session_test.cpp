@@ -16,23 +16,24 @@
 
 #include <algorithm>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 /// The middle of a plane of 40 mm, 10 mm below the middle of the workspace.
-constexpr PlanePlacement kPlacement{PlaneOrientation::horizontal, {-20.0, -10.0, -20.0}};
+constexpr device::PlanePlacement kPlacement{device::PlaneOrientation::horizontal,
+                                            {-20.0, -10.0, -20.0}};
 
-RealTimeOptions as_fast_as_it_goes() {
-  RealTimeOptions options;
-  options.scheduling.policy = SchedulingPolicy::other;
+session::RealTimeOptions as_fast_as_it_goes() {
+  session::RealTimeOptions options;
+  options.scheduling.policy = device::SchedulingPolicy::other;
   options.scheduling.lock_memory = false;
   options.watchdog_time = &still_time();
-  options.clock = [] { return std::make_unique<VirtualClock>(); };
+  options.clock = [] { return std::make_unique<device::VirtualClock>(); };
   return options;
 }
 
-SubjectModel quick_subject() {
-  SubjectModel subject;
+session::SubjectModel quick_subject() {
+  session::SubjectModel subject;
   subject.explore_s = 1.2;
   subject.training_passes = 4;
   return subject;
@@ -48,8 +49,8 @@ struct Laboratory {
   /// The cable is pulled in this presentation, once the hand pushes.
   void pull_in_presentation(int number) { pull_in_ = number; }
 
-  DeviceStation::Open opener() {
-    return [this]() -> std::unique_ptr<HapticDevice> {
+  session::DeviceStation::Open opener() {
+    return [this]() -> std::unique_ptr<device::HapticDevice> {
       device = nullptr;
       auto opened = std::make_unique<SteppedFalcon>(settings, [this] { pull_if_due(); });
       device = opened.get();
@@ -57,50 +58,53 @@ struct Laboratory {
     };
   }
 
-  SessionTally run() {
-    while (station.make_ready() != SupplyState::ready) {
+  session::SessionTally run() {
+    while (station.make_ready() != session::SupplyState::ready) {
     }
-    const std::unique_ptr<EventSink> sink = store.begin_session(
-        1, wrap_participant_key(study.key().master, 1, participant_key), [] { return kUtc; });
-    const Schedule schedule = make_schedule(study.key().study, 1);
-    Session session(schedule, study.key().study.trials, SessionRecorder(1, participant_key, *sink));
-    SessionOpening opening;
+    const std::unique_ptr<store::EventSink> sink =
+        store.begin_session(1, store::wrap_participant_key(study.key().master, 1, participant_key),
+                            [] { return kUtc; });
+    const design::Schedule schedule = design::make_schedule(study.key().study, 1);
+    session::Session session(schedule, study.key().study.trials,
+                             store::SessionRecorder(1, participant_key, *sink));
+    store::SessionOpening opening;
     opening.participant = "P001";
     opening.enrolment = 1;
     opening.study_id = study.key().study_id;
-    opening.seal = study_seal(study.key());
-    describe_station(opening, station.info(), explorer.scheduling(), kServoRateHz, "");
-    session.open({}, opening, schedule_to_json(schedule, study.key()));
-    return run_session(session,
-                       {study.key(), source, person, clock, explorer, station, kServoRateHz});
+    opening.seal = design::study_seal(study.key());
+    session::describe_station(opening, station.info(), explorer.scheduling(), device::kServoRateHz,
+                              "");
+    session.open({}, opening, design::schedule_to_json(schedule, study.key()));
+    return session::run_session(
+        session, {study.key(), source, person, clock, explorer, station, device::kServoRateHz});
   }
 
-  [[nodiscard]] std::vector<Event> all(EventKind kind) const {
-    std::vector<Event> found;
-    store.for_each(kind, [&](const Event& event) { found.push_back(event); });
+  [[nodiscard]] std::vector<store::Event> all(store::EventKind kind) const {
+    std::vector<store::Event> found;
+    store.for_each(kind, [&](const store::Event& event) { found.push_back(event); });
     return found;
   }
 
   static constexpr std::chrono::nanoseconds kUtc = std::chrono::seconds(1'700'000'000);
 
   TinyStudy study{{.side_px = 200, .trials = R"({"repeats": 5, "explore_limit_s": 20})"}};
-  StimulusSource source{study.pack(), study.key().study.rendering};
-  StudyStore store = StudyStore::create(
-      study.next_database(), commitment_of(study.key(), study.pack(), false, false), kUtc);
+  session::StimulusSource source{study.pack(), study.key().study.rendering};
+  store::StudyStore store = store::StudyStore::create(
+      study.next_database(), session::commitment_of(study.key(), study.pack(), false, false), kUtc);
   SecretKey participant_key = sha256(bytes_of("somebody"));
   TempFolder folder;
-  FalconSettings settings;
+  device::FalconSettings settings;
   EmulatedFalcon falcon{kPlacement};
   SteppedFalcon* device = nullptr;
   Experimenter experimenter{falcon, device};
-  DeviceStation station{opener(), kPlacement, experimenter};
-  SubjectModel subject = quick_subject();
-  FeltKnowledge knowledge =
-      learn_by_feeling(LabelledFields(study.key(), source), subject, 3.3, 5, 1);
-  SimulatedParticipant mind{subject, knowledge, 5, 1};
+  session::DeviceStation station{opener(), kPlacement, experimenter};
+  session::SubjectModel subject = quick_subject();
+  session::FeltKnowledge knowledge =
+      session::learn_by_feeling(session::LabelledFields(study.key(), source), subject, 3.3, 5, 1);
+  session::SimulatedParticipant mind{subject, knowledge, 5, 1};
   PersonAtFalcon person{mind, falcon, station};
-  VirtualSessionClock clock;
-  RealTimeExplorer explorer{as_fast_as_it_goes()};
+  session::VirtualSessionClock clock;
+  session::RealTimeExplorer explorer{as_fast_as_it_goes()};
 
  private:
   void pull_if_due() {
@@ -114,8 +118,8 @@ struct Laboratory {
 
 void check_answers(const Laboratory& lab) {
   std::vector<int> stored;
-  for (const Event& event : lab.all(EventKind::answered)) {
-    stored.push_back(answer_from_json(event.body).position);
+  for (const store::Event& event : lab.all(store::EventKind::answered)) {
+    stored.push_back(store::answer_from_json(event.body).position);
   }
   CHECK(stored == lab.person.named);
   CHECK(stored.size() == 25);
@@ -125,8 +129,8 @@ void check_closed_study(Laboratory& lab) {
   CHECK_FALSE(lab.store.first_fault());
   lab.store.close_study(Laboratory::kUtc);
   lab.store.unblind(Laboratory::kUtc, "planned", false);
-  const Outcomes outcomes = load_outcomes(lab.store, lab.study.key());
-  const StudyReport report = make_report(outcomes);
+  const analysis::Outcomes outcomes = analysis::load_outcomes(lab.store, lab.study.key());
+  const analysis::StudyReport report = analysis::make_report(outcomes);
   CHECK(report.trials == 25);
   CHECK(report.participants == 1);
   // Chance is 5: the textures came through driver, USB and device.
@@ -137,22 +141,22 @@ TEST_CASE("a whole session on the emulated Falcon loses no response, though it i
   Laboratory lab;
   constexpr int kUnlucky = 7;
   lab.pull_in_presentation(kUnlucky);
-  const SessionTally tally = lab.run();
+  const session::SessionTally tally = lab.run();
   CHECK(tally.presentations == 26);
   check_answers(lab);
 
   // The trial is marked and comes again at the end, under its number.
-  const std::vector<Event> interrupted = lab.all(EventKind::interrupted);
+  const std::vector<store::Event> interrupted = lab.all(store::EventKind::interrupted);
   REQUIRE(interrupted.size() == 1);
-  const TrialBody body = trial_from_json(interrupted[0].body);
+  const store::TrialBody body = store::trial_from_json(interrupted[0].body);
   CHECK(body.trial == kUnlucky);
   CHECK(body.reason == "device lost");
-  CHECK(trial_from_json(lab.all(EventKind::presented).back().body).trial == kUnlucky);
-  CHECK(lab.all(EventKind::paused).size() == 1);
+  CHECK(store::trial_from_json(lab.all(store::EventKind::presented).back().body).trial == kUnlucky);
+  CHECK(lab.all(store::EventKind::paused).size() == 1);
 
   // The fault and the seconds before it, for who has the key.
-  const InterruptionDetail detail =
-      interruption_from_json(opened_part(interrupted[0], lab.participant_key));
+  const store::InterruptionDetail detail =
+      store::interruption_from_json(analysis::opened_part(interrupted[0], lab.participant_key));
   CHECK(detail.device_fault == "link_lost");
   CHECK(detail.ticks > 100);
   CHECK(std::ranges::count(detail.flight, '\n') == detail.ticks + 1);
@@ -164,8 +168,8 @@ TEST_CASE("a whole session on the emulated Falcon loses no response, though it i
   CHECK(lab.falcon.emulator.complaints().empty());
   CHECK(lab.falcon.emulator.loads() == 1);  // since its power came back
 
-  for (const Event& event : lab.all(EventKind::trace_stored)) {
-    const TraceBody trace = trace_body_from_json(event.body);
+  for (const store::Event& event : lab.all(store::EventKind::trace_stored)) {
+    const store::TraceBody trace = store::trace_body_from_json(event.body);
     REQUIRE(trace.servo);
     CHECK(trace.servo->lost == 0);
     CHECK(trace.overruns == 0);
@@ -174,4 +178,4 @@ TEST_CASE("a whole session on the emulated Falcon loses no response, though it i
 }
 
 }  // namespace
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

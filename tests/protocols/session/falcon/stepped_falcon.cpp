@@ -5,24 +5,25 @@
 #include <algorithm>
 #include <utility>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 namespace {
 
 constexpr Vec3 kRestMm = {0.0, 15.0, 0.0};
 /// More than homing takes.
 constexpr int kHomingSteps = 1200;
 
-std::unique_ptr<FalconDevice> open_in_lockstep(const FalconSettings& settings, Lockstep& lockstep) {
+std::unique_ptr<FalconDevice> open_in_lockstep(const device::FalconSettings& settings,
+                                               Lockstep& lockstep) {
   FalconOptions options;
   options.pace = lockstep.pace();
-  options.scheduling = {SchedulingPolicy::other, 0, false};
+  options.scheduling = {device::SchedulingPolicy::other, 0, false};
   return std::make_unique<FalconDevice>(open_usb_falcon(settings.serial), settings,
                                         std::move(options));
 }
 
 }  // namespace
 
-EmulatedFalcon::EmulatedFalcon(const PlanePlacement& placement) : hand(placement, kRestMm) {
+EmulatedFalcon::EmulatedFalcon(const device::PlanePlacement& placement) : hand(placement, kRestMm) {
   emulator.set_hand([this](Vec3 force_n) { return hand.tick(force_n); });
 }
 
@@ -38,20 +39,21 @@ void EmulatedFalcon::plug() {
   plugged = true;
 }
 
-SteppedFalcon::SteppedFalcon(const FalconSettings& settings, std::function<void()> before_read)
+SteppedFalcon::SteppedFalcon(const device::FalconSettings& settings,
+                             std::function<void()> before_read)
     : falcon_(open_in_lockstep(settings, lockstep_)), before_read_(std::move(before_read)) {}
 
-DeviceStatus SteppedFalcon::read(DeviceSample& sample) noexcept {
+device::DeviceStatus SteppedFalcon::read(device::DeviceSample& sample) noexcept {
   if (before_read_) before_read_();
   lockstep_.step();
   return falcon_->read(sample);
 }
 
-DeviceStatus SteppedFalcon::write(Vec3 force_n) noexcept {
+device::DeviceStatus SteppedFalcon::write(Vec3 force_n) noexcept {
   return falcon_->write(force_n);
 }
 
-Attendant::Says Experimenter::attend(const std::string& need) {
+session::Attendant::Says Experimenter::attend(const std::string& need) {
   strongest_n = std::max(strongest_n, norm(falcon_.emulator.force_n()));
   if (need.empty()) {
     ++consents;
@@ -67,21 +69,21 @@ Attendant::Says Experimenter::attend(const std::string& need) {
   return Says::wait;
 }
 
-HapticDevice& PersonAtFalcon::begin_exploring(const PlaneGeometry& plane) {
+device::HapticDevice& PersonAtFalcon::begin_exploring(const PlaneGeometry& plane) {
   ++begun;
   explored_ = falcon_.hand.explorations();
-  falcon_.hand.explore(static_cast<const SimulatedHand&>(mind_.begin_exploring(plane)));
+  falcon_.hand.explore(static_cast<const device::SimulatedHand&>(mind_.begin_exploring(plane)));
   return station_.device();
 }
 
-void PersonAtFalcon::exploring(ServoControl& servo) {
+void PersonAtFalcon::exploring(device::ServoControl& servo) {
   if (falcon_.hand.explorations() > explored_) servo.finish();
 }
 
-ParticipantAnswer PersonAtFalcon::answer() {
-  const ParticipantAnswer answer = mind_.answer();
+session::ParticipantAnswer PersonAtFalcon::answer() {
+  const session::ParticipantAnswer answer = mind_.answer();
   named.push_back(answer.position);
   return answer;
 }
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

@@ -16,11 +16,11 @@
 #include <string>
 #include <vector>
 
-namespace touchtrial::falcon {
+namespace touchtrial::device::falcon {
 
 /// A Falcon on the bus, switched on and never loaded, with a hand on its grip.
 struct EmulatedFalcon {
-  explicit EmulatedFalcon(const PlanePlacement& placement);
+  explicit EmulatedFalcon(const device::PlanePlacement& placement);
 
   /// Cable and power: firmware and homing are gone afterwards.
   void unplug();
@@ -34,18 +34,20 @@ struct EmulatedFalcon {
 };
 
 /// FalconDevice in lockstep, with its lockstep.
-class SteppedFalcon final : public HapticDevice {
+class SteppedFalcon final : public device::HapticDevice {
  public:
   /// \param before_read  on the servo's thread, while the USB thread rests; may be empty
-  SteppedFalcon(const FalconSettings& settings, std::function<void()> before_read);
+  SteppedFalcon(const device::FalconSettings& settings, std::function<void()> before_read);
 
-  [[nodiscard]] DeviceInfo info() const override { return falcon_->info(); }
-  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override;
-  [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override;
+  [[nodiscard]] device::DeviceInfo info() const override { return falcon_->info(); }
+  [[nodiscard]] device::DeviceStatus read(device::DeviceSample& sample) noexcept override;
+  [[nodiscard]] device::DeviceStatus write(Vec3 force_n) noexcept override;
   void halt() noexcept override { falcon_->halt(); }
   void rearm() noexcept override { falcon_->rearm(); }
-  [[nodiscard]] DeviceFault fault() const noexcept override { return falcon_->fault(); }
-  [[nodiscard]] DeviceReadiness readiness() const noexcept override { return falcon_->readiness(); }
+  [[nodiscard]] device::DeviceFault fault() const noexcept override { return falcon_->fault(); }
+  [[nodiscard]] device::DeviceReadiness readiness() const noexcept override {
+    return falcon_->readiness();
+  }
   void steps(int count) noexcept { lockstep_.steps(count); }
 
  private:
@@ -56,7 +58,7 @@ class SteppedFalcon final : public HapticDevice {
 
 /// Does what the program says is missing: plugs the Falcon in, homes its grip, and consents. Notes
 /// the force on the grip whenever asked.
-class Experimenter final : public Attendant {
+class Experimenter final : public session::Attendant {
  public:
   Experimenter(EmulatedFalcon& falcon, SteppedFalcon*& device) : falcon_(falcon), device_(device) {}
   [[nodiscard]] Says attend(const std::string& need) override;
@@ -71,25 +73,26 @@ class Experimenter final : public Attendant {
 };
 
 /// Somebody who knows the textures, feels them through the Falcon, and answers.
-class PersonAtFalcon final : public PromptParticipant {
+class PersonAtFalcon final : public session::PromptParticipant {
  public:
-  PersonAtFalcon(SimulatedParticipant& mind, EmulatedFalcon& falcon, DeviceStation& station)
+  PersonAtFalcon(session::SimulatedParticipant& mind, EmulatedFalcon& falcon,
+                 session::DeviceStation& station)
       : mind_(mind), falcon_(falcon), station_(station) {}
 
   void see_pictures(const std::vector<std::string>& labels) override { mind_.see_pictures(labels); }
-  [[nodiscard]] HapticDevice& begin_exploring(const PlaneGeometry& plane) override;
-  void exploring(ServoControl& servo) override;
-  void feel(const ServoSample& sample) noexcept override { mind_.feel(sample); }
-  [[nodiscard]] ParticipantAnswer answer() override;
+  [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& plane) override;
+  void exploring(device::ServoControl& servo) override;
+  void feel(const device::ServoSample& sample) noexcept override { mind_.feel(sample); }
+  [[nodiscard]] session::ParticipantAnswer answer() override;
 
   std::vector<int> named;     ///< every choice, in order
   std::atomic<int> begun{0};  ///< explorations
 
  private:
-  SimulatedParticipant& mind_;
+  session::SimulatedParticipant& mind_;
   EmulatedFalcon& falcon_;
-  DeviceStation& station_;
+  session::DeviceStation& station_;
   int explored_ = 0;
 };
 
-}  // namespace touchtrial::falcon
+}  // namespace touchtrial::device::falcon

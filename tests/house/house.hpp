@@ -1,0 +1,64 @@
+/// \file The rules of docs/architecture.md, held against the sources of a tree. Every function
+/// returns what breaks its rule, a line each.
+#pragma once
+
+#include "house/declarations.hpp"
+
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace touchtrial::house {
+
+/// A folder with a static library of its own, and an arrow to each folder that it may include.
+struct Room {
+  std::string folder;
+  std::string name_space;
+  std::set<std::string> arrows;  ///< folders
+  bool sees_inside = false;      ///< may include what is private in others, and the tests' references
+};
+
+[[nodiscard]] const std::vector<Room>& rooms();
+
+struct SourceFile {
+  std::string path;  ///< from the root
+  const Room* room = nullptr;
+  std::string text;
+  std::vector<std::string> quoted;  ///< what it includes, in the order of its lines
+  std::vector<std::string> angled;
+  Declarations declared;
+
+  [[nodiscard]] bool is_header() const { return path.ends_with(".hpp"); }
+  /// Read once for every SIMD target, by the target macro's rules.
+  [[nodiscard]] bool once_a_target() const { return path.ends_with("-inl.hpp"); }
+};
+
+class House {
+ public:
+  /// Reads all sources of all rooms below a root. \throws std::filesystem::filesystem_error
+  explicit House(std::filesystem::path root);
+
+  [[nodiscard]] const std::vector<SourceFile>& files() const { return files_; }
+
+  /// Includes of what is not there, of what is in no room, and against the arrows.
+  [[nodiscard]] std::vector<std::string> wrong_includes() const;
+  /// Headers that show a third-party header, themselves or by way of another, in another room.
+  [[nodiscard]] std::vector<std::string> third_party_headers_shown() const;
+  /// Headers whose first comment says "Private to", included from outside their folder.
+  [[nodiscard]] std::vector<std::string> private_headers_used_elsewhere() const;
+  /// Types, inline functions and inline variables that two files define under one qualified name.
+  [[nodiscard]] std::vector<std::string> names_defined_twice() const;
+  /// Files that open a namespace that is not their room's.
+  [[nodiscard]] std::vector<std::string> namespaces_of_other_rooms() const;
+  /// Headers that do not guard themselves, or do not say what they are for.
+  [[nodiscard]] std::vector<std::string> unguarded_or_unexplained_headers() const;
+
+ private:
+  [[nodiscard]] const SourceFile* find(const std::string& path) const;
+
+  std::filesystem::path root_;
+  std::vector<SourceFile> files_;
+};
+
+}  // namespace touchtrial::house
