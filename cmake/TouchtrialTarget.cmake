@@ -4,14 +4,16 @@ set(TOUCHTRIAL_UNHURRIED -O1 -Wno-maybe-uninitialized)
 
 option(TOUCHTRIAL_UNITY "Compile several files at a time: sooner done, but less is rebuilt alone" OFF)
 
+# How many files, of the product and of its tests.
+set(TOUCHTRIAL_BATCH 8)
 set(TOUCHTRIAL_TEST_BATCH 8)
 
 # touchtrial_library(NAME [UNHURRIED] [EXCEPT folders...] [PUBLIC targets...] [PRIVATE libraries...])
 # One static library a folder, of every .cpp file in and below it, except those of folders that are
-# libraries of their own. PUBLIC: targets of ours, along
-# the arrows of docs/architecture.md; PRIVATE: third-party libraries, whose headers no public header
-# includes. UNHURRIED: nothing in it is worth optimising; files that read and write JSON and other
-# texts are so everywhere.
+# libraries of their own. PUBLIC: targets of ours, along the arrows of docs/architecture.md; PRIVATE:
+# third-party libraries, whose headers no public header includes. UNHURRIED: nothing in it is worth
+# optimising. With TOUCHTRIAL_UNITY a few files that lie beside each other are compiled at a time:
+# names without linkage must differ among them.
 function(touchtrial_library name)
   cmake_parse_arguments(ARG "UNHURRIED" "" "EXCEPT;PUBLIC;PRIVATE" ${ARGN})
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS "${CMAKE_CURRENT_SOURCE_DIR}/*.cpp")
@@ -29,29 +31,37 @@ function(touchtrial_library name)
   target_link_libraries(${name} PUBLIC ${ARG_PUBLIC} PRIVATE touchtrial_settings ${ARG_PRIVATE})
   if(ARG_UNHURRIED)
     target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:${TOUCHTRIAL_UNHURRIED}>)
-    return()
   endif()
-  list(FILTER sources INCLUDE REGEX "(_json|_text|_csv|_html|_figure|_object|manifest|_key_file)\\.cpp$")
-  set_source_files_properties(${sources} PROPERTIES
-    COMPILE_OPTIONS "$<$<CONFIG:Release>:${TOUCHTRIAL_UNHURRIED}>")
+  if(TOUCHTRIAL_UNITY)
+    touchtrial_compile_together(${name} ${sources})
+  endif()
 endfunction()
 
-# touchtrial_compile_together(TARGET BATCH REGEX)
-# With TOUCHTRIAL_UNITY, those of the target's sources that match are compiled so many at a time, as
-# they share a header that costs more than they do: their names without linkage must differ.
-function(touchtrial_compile_together target batch regex)
-  if(NOT TOUCHTRIAL_UNITY)
-    return()
-  endif()
-  get_target_property(sources ${target} SOURCES)
-  list(FILTER sources INCLUDE REGEX "${regex}")
-  set(number 0)
-  foreach(source IN LISTS sources)
-    math(EXPR group "${number} / ${batch}")
-    set_source_files_properties("${source}" PROPERTIES UNITY_GROUP "together_${group}")
-    math(EXPR number "${number} + 1")
-  endforeach()
+# Compiles the files of a folder TOUCHTRIAL_BATCH at a time. Files that Highway compiles once for
+# every SIMD target include themselves, and so stay alone.
+function(touchtrial_compile_together target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
+  touchtrial_allow_included_sources(${target})
+  foreach(source ${ARGN})
+    file(STRINGS "${source}" once_a_target REGEX "#include <hwy/foreach_target\\.h>")
+    if(once_a_target)
+      continue()
+    endif()
+    get_filename_component(folder "${source}" DIRECTORY)
+    file(RELATIVE_PATH folder "${CMAKE_SOURCE_DIR}" "${folder}")
+    string(REPLACE "/" "_" group "${folder}")
+    math(EXPR batch "0${files_of_${group}} / ${TOUCHTRIAL_BATCH}")
+    math(EXPR files_of_${group} "0${files_of_${group}} + 1")
+    set_source_files_properties("${source}" PROPERTIES UNITY_GROUP "${group}_${batch}")
+  endforeach()
+endfunction()
+
+# Whatever is not in the translation unit's own file counts as a header for GCC, which then warns of
+# anonymous namespaces in it.
+function(touchtrial_allow_included_sources target)
+  if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+  endif()
 endfunction()
 
 # touchtrial_joined(VARIABLE BATCH NAME sources...)
@@ -95,9 +105,8 @@ function(touchtrial_test name)
   add_executable(${name} ${units})
   target_include_directories(${name} PRIVATE "${CMAKE_SOURCE_DIR}/tests" "${CMAKE_SOURCE_DIR}")
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} touchtrial_test_support touchtrial_settings)
-  if(TOUCHTRIAL_UNITY AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # Whatever is not in the translation unit's own file counts as a header.
-    target_compile_options(${name} PRIVATE -Wno-subobject-linkage)
+  if(TOUCHTRIAL_UNITY)
+    touchtrial_allow_included_sources(${name})
   endif()
   # Optimising the test framework costs more time than the tests then save.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:${TOUCHTRIAL_UNHURRIED}>)
