@@ -1,5 +1,4 @@
 #include "app/sync_summary.hpp"
-#include "core/errors.hpp"
 
 #include <fmt/format.h>
 

@@ -1,8 +1,8 @@
 #include "bench/machine.hpp"
 
-#include "app/this_processor.hpp"
 #include "bench/inputs/simd_name.hpp"
-#include "engine/simd/targets.hpp"
+#include "bench/jitter/this_processor.hpp"
+#include "tests/engine/simd/targets.hpp"
 
 #include <ctime>
 
@@ -13,8 +13,7 @@
 namespace touchtrial::bench {
 
 Machine this_machine() {
-  return {fmt::format("{}, {}", app::this_processor(),
-                      instruction_set_of(engine::simd_targets().front())),
+  return {fmt::format("{}, {}", this_processor(), instruction_set_of(simd_targets().front())),
           TOUCHTRIAL_COMPILER, CV_VERSION,
           fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)))};
 }

@@ -12,7 +12,7 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "engine/fourier/planning.hpp"
-#include "engine/simd/targets.hpp"
+#include "tests/engine/simd/targets.hpp"
 
 #include <cstdio>
 #include <exception>
@@ -86,7 +86,7 @@ void run(const Arguments& arguments) {
   if (!arguments.image.empty()) choose_timed_picture(arguments.image);
   choose_usual_target(arguments.target);
   const std::vector<std::string> targets =
-      arguments.target.empty() ? engine::simd_targets() : std::vector{arguments.target};
+      arguments.target.empty() ? simd_targets() : std::vector{arguments.target};
   const Scope scope = scope_for(arguments, targets);
   if (!arguments.only.empty()) return run_only(arguments, scope);
   const Effort effort = arguments.quick ? quick_effort() : Effort{};
@@ -108,7 +108,7 @@ void set_up(CLI::App& program, Arguments& arguments) {
   program.add_option("--json", arguments.json, "Measure every kernel at every size, write FILE");
   program.add_option("--image", arguments.image, "Take times on this picture, not on bark.png");
   program.add_option("--target", arguments.target, "Use this SIMD target only, for instance AVX2")
-      ->check(CLI::IsMember(engine::simd_targets()));
+      ->check(CLI::IsMember(simd_targets()));
   CLI::Option* const only =
       program.add_option("--only", arguments.only, "Run this case alone and measure nothing");
   program.add_option("--runs", arguments.runs, "How often")

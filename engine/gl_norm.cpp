@@ -1,10 +1,9 @@
 #include "engine/gl_norm.hpp"
 
-#include "engine/gl_weights.hpp"
-
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <stdexcept>
 
 namespace touchtrial::engine {
 namespace {
@@ -30,6 +29,16 @@ void apply(Norm norm, const GreyImage& image, Plane<double>& texture, WeightSum 
 }
 
 }  // namespace
+
+double gl_weight_sum(double order, int radius) {
+  if (!(order >= 0.0 && order < 1.0)) {
+    throw std::invalid_argument("order: must be in [0, 1)");
+  }
+  if (radius < 1) throw std::invalid_argument("radius: must be at least 1");
+  double product = 1.0;
+  for (int k = 1; k <= radius; ++k) product *= 1.0 - order / k;
+  return product;
+}
 
 void apply_norm(Norm norm, const GreyImage& image, int radius, double order,
                 Plane<double>& texture) {

@@ -1,7 +1,6 @@
 #include "fuzz/entries.hpp"
 
 #include "core/errors.hpp"
-#include "core/npy.hpp"
 #include "device/falcon/falcon_kinematics.hpp"
 #include "device/falcon/falcon_packet.hpp"
 #include "engine/image_file.hpp"
@@ -87,15 +86,6 @@ void read_as_image(ByteView bytes) {
     require(!image.empty(), "a picture has pixels");
     require(static_cast<std::int64_t>(image.size()) <= engine::kMaxImagePixels,
             "a picture is not huge");
-  });
-}
-
-void read_as_npy(ByteView bytes) {
-  accept_or_refuse([&] {
-    const NpyArray array = parse_npy(bytes, "array.npy");
-    std::size_t count = 1;
-    for (const int extent : array.shape) count *= static_cast<std::size_t>(extent);
-    require(array.as_doubles().size() == count, "an array has as many samples as its shape");
   });
 }
 

@@ -13,7 +13,6 @@ namespace touchtrial::fuzz {
 /// \throws std::logic_error if what was accepted contradicts itself, or a refusal is not one line
 /// \throws what the reader throws besides the errors that it documents: a bug
 void read_as_image(ByteView bytes);
-void read_as_npy(ByteView bytes);
 void read_as_study(ByteView bytes);
 void read_as_subject(ByteView bytes);
 void read_as_trace(ByteView bytes);
@@ -25,8 +24,7 @@ struct Entry {
   void (*read)(ByteView bytes);
 };
 
-inline constexpr std::array<Entry, 6> kEntries = {{{"image", read_as_image},
-                                                   {"npy", read_as_npy},
+inline constexpr std::array<Entry, 5> kEntries = {{{"image", read_as_image},
                                                    {"study", read_as_study},
                                                    {"subject", read_as_subject},
                                                    {"trace", read_as_trace},

@@ -84,8 +84,7 @@ std::vector<PathPoint> thinned_path(const store::Trace& trace, int count) {
   std::vector<PathPoint> points;
   for (std::size_t i = 0; i < samples.size(); i += step) {
     const store::TraceSample& at = samples[i];
-    points.push_back({static_cast<double>(i) / trace.rate_hz,
-                      {at.position_mm.x, at.position_mm.y},
+    points.push_back({{at.position_mm.x, at.position_mm.y},
                       {at.force_n.x, at.force_n.y},
                       tangential_rms_n(samples.subspan(i, std::min(step, samples.size() - i))),
                       at.force_n.z,

@@ -19,9 +19,8 @@ inline constexpr int kMostPathPoints = 2000;
 
 /// One sample of the trace, and those after it up to the next point.
 struct PathPoint {
-  double at_s = 0.0;  ///< since plane-on
-  Vec2 position_mm;   ///< on the plane, from its top-left corner; y runs downwards in the picture
-  Vec2 force_n;       ///< tangential, as sent to the device: of the texture and of friction, if any
+  Vec2 position_mm;  ///< on the plane, from its top-left corner; y runs downwards in the picture
+  Vec2 force_n;      ///< tangential, as sent to the device: of the texture and of friction, if any
   double tangential_rms_n = 0.0;  ///< size of the tangential force until the next point
   double normal_n = 0.0;
   bool in_contact = false;  ///< the normal force pushes

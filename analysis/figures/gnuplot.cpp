@@ -1,7 +1,6 @@
 #include "analysis/figures/gnuplot.hpp"
 
 #include "analysis/figures/gnuplot_process.hpp"
-#include "core/bytes.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 

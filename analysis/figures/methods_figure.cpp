@@ -1,6 +1,5 @@
 #include "analysis/figures/figure_kinds.hpp"
 #include "analysis/figures/style.hpp"
-#include "analysis/text_table.hpp"
 
 #include <algorithm>
 #include <cmath>

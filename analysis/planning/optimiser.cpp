@@ -28,7 +28,6 @@ double evaluated(Search& search, std::span<const double> scaled, std::span<doubl
   for (std::size_t i = 0; i < at.size(); ++i) at[i] *= search.scales[i];
   const double value = search.function(at, slopes);
   for (std::size_t i = 0; i < slopes.size(); ++i) slopes[i] *= search.scales[i];
-  ++search.best.evaluations;
   if (value > search.best.value) {
     search.best.value = value;
     search.best.at = std::move(at);
@@ -60,14 +59,14 @@ Optimum maximise(const SmoothFunction& function, std::vector<double> start, cons
   for (std::size_t i = 0; i < start.size(); ++i) {
     start[i] = std::clamp(start[i], bounds.lower[i], bounds.upper[i]);
   }
-  if (start.empty()) return {start, function(start, {}), 1};
+  if (start.empty()) return {start, function(start, {})};
   const Solver solver(nlopt_create(NLOPT_LD_SLSQP, static_cast<unsigned>(start.size())),
                       &nlopt_destroy);
   if (!solver) throw std::bad_alloc();
   Search search{function,
                 options.scales.empty() ? std::vector<double>(start.size(), 1.0) : options.scales,
                 solver.get(),
-                {start, -std::numeric_limits<double>::infinity(), 0},
+                {start, -std::numeric_limits<double>::infinity()},
                 {}};
   nlopt_set_lower_bounds(solver.get(), divided(bounds.lower, search.scales).data());
   nlopt_set_upper_bounds(solver.get(), divided(bounds.upper, search.scales).data());

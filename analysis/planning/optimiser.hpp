@@ -18,7 +18,6 @@ struct Bounds {
 struct Optimum {
   std::vector<double> at;
   double value = 0.0;
-  int evaluations = 0;
 };
 
 struct OptimiserOptions {

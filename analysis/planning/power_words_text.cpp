@@ -1,6 +1,5 @@
 #include "analysis/planning/power_words.hpp"
 #include "analysis/statistics/chance_test.hpp"
-#include "analysis/text_figures.hpp"
 
 #include <fmt/format.h>
 

@@ -29,7 +29,6 @@ class MonitorHistory {
   static constexpr double kBinsPerS = 50.0;
   static constexpr double kBinS = 1.0 / kBinsPerS;
   static constexpr std::size_t kBins = 250;
-  static constexpr double kSpanS = kBinS * kBins;
 
   /// \param rate_hz  of the servo, > 0: what its ticks mean
   explicit MonitorHistory(double rate_hz);

@@ -16,8 +16,7 @@ enum class FontWeight { regular, bold };
 /// \param height  window units, > 0
 ImFont* add_font(float height, FontWeight weight);
 
-/// Index of a size in ImGui's list of fonts.
-inline constexpr int kTextFont = 0;
+/// Index of the larger size in ImGui's list of fonts; the usual one is 0.
 inline constexpr int kLargeFont = 1;
 
 }  // namespace touchtrial::app

@@ -3,7 +3,6 @@
 #include "app/windows/fonts.hpp"
 #include "app/windows/glfw_library.hpp"
 #include "app/windows/screen_scale.hpp"
-#include "core/errors.hpp"
 
 #include <algorithm>
 #include <chrono>

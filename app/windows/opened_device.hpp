@@ -25,7 +25,6 @@ class OpenedDevice {
   OpenedDevice& operator=(const OpenedDevice&) = delete;
 
   [[nodiscard]] device::HapticDevice& device() noexcept { return *device_; }
-  [[nodiscard]] bool has_window() const noexcept { return window_ != nullptr; }
   /// One picture of the window, about every 16 ms; without one, that long a pause.
   void attend();
   /// The person asks in the window to stop: the space bar, or closing it.

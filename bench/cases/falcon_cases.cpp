@@ -1,6 +1,7 @@
 #include "bench/cases/cases.hpp"
 #include "core/random.hpp"
 #include "device/falcon/falcon_kinematics.hpp"
+#include "tests/device/falcon/falcon_inverse.hpp"
 
 #include <cmath>
 #include <memory>

@@ -1,4 +1,5 @@
 #include "bench/cases/cases.hpp"
+#include "bench/inputs/adaptive_filter.hpp"
 #include "bench/inputs/difference.hpp"
 #include "bench/inputs/pictures.hpp"
 #include "bench/peers/fixed_mask.hpp"
@@ -6,7 +7,6 @@
 #include "bench/peers/naive_mask.hpp"
 #include "engine/extraction.hpp"
 #include "engine/gl_texture.hpp"
-#include "engine/kernels/float_extraction.hpp"
 
 #include <memory>
 
@@ -64,9 +64,7 @@ struct AdaptiveFilter {
 Job adaptive_job(int size_px, int radius) {
   const auto filter = std::make_shared<AdaptiveFilter>(size_px);
   return {
-      [=] {
-        engine::filter_adaptive(filter->input.image, radius, filter->input.orders, filter->texture);
-      },
+      [=] { filter_adaptive(filter->input.image, radius, filter->input.orders, filter->texture); },
       [=] {
         const auto truth =
             engine::gl_texture<double>(filter->input.image, radius, filter->input.half_orders());

@@ -1,9 +1,9 @@
 #include "bench/cases/cases.hpp"
 #include "bench/inputs/pictures.hpp"
 #include "bench/inputs/tv_gabor_truth.hpp"
-#include "engine/tv_gabor/course.hpp"
 #include "engine/tv_gabor/tv_gabor.hpp"
 #include "tests/engine/plane_comparison.hpp"
+#include "tests/engine/reference/tv_gabor_course.hpp"
 
 #include <memory>
 
@@ -35,11 +35,11 @@ Case tv_gabor_case_of(const std::string& who, int size_px, Decompose decompose) 
   return one;
 }
 
-Case solver_case(const std::string& who, engine::TvGaborAlgorithm algorithm, int size_px,
+Case solver_case(const std::string& who, reference::TvGaborAlgorithm algorithm, int size_px,
                  int steps) {
   return tv_gabor_case_of(who + ", " + std::to_string(steps) + " steps", size_px,
                           [=](const GreyImage& image) {
-                            engine::TvGaborCourse<float> course(image, {}, algorithm);
+                            reference::TvGaborCourse<float> course(image, {}, algorithm);
                             course.advance(steps);
                             return course.point().texture;
                           });
@@ -55,11 +55,11 @@ Case default_stop_case(int size_px) {
 }  // namespace
 
 Case admm_case(int size_px, int steps) {
-  return solver_case(our_name(), engine::TvGaborAlgorithm::admm, size_px, steps);
+  return solver_case(our_name(), reference::TvGaborAlgorithm::admm, size_px, steps);
 }
 
 Case fixed_point_case(int size_px, int steps) {
-  return solver_case("fixed point", engine::TvGaborAlgorithm::fixed_point, size_px, steps);
+  return solver_case("fixed point", reference::TvGaborAlgorithm::fixed_point, size_px, steps);
 }
 
 Cases tv_gabor_cases(const Scope& scope) {
@@ -67,7 +67,7 @@ Cases tv_gabor_cases(const Scope& scope) {
   for (const int size_px : scope.sizes_px) {
     if (size_px > kLargest_px) continue;
     cases.push_back(default_stop_case(size_px));
-    cases.push_back(solver_case("FISTA", engine::TvGaborAlgorithm::fista, size_px, kFistaSteps));
+    cases.push_back(solver_case("FISTA", reference::TvGaborAlgorithm::fista, size_px, kFistaSteps));
   }
   return cases;
 }

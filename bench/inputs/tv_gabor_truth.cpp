@@ -1,6 +1,6 @@
 #include "bench/inputs/tv_gabor_truth.hpp"
 
-#include "engine/tv_gabor/course.hpp"
+#include "tests/engine/reference/tv_gabor_course.hpp"
 
 #include <optional>
 
@@ -19,7 +19,7 @@ const Plane<double>& tv_gabor_truth(const GreyImage& image) {
   };
   static std::optional<Remembered> last;
   if (!last || last->image != image) {
-    engine::TvGaborCourse<double> course(image, {}, engine::TvGaborAlgorithm::admm);
+    reference::TvGaborCourse<double> course(image, {}, reference::TvGaborAlgorithm::admm);
     course.advance(kSteps);
     last = Remembered{image, course.point().texture};
   }

@@ -1,6 +1,6 @@
 #include "bench/measure/simd_target.hpp"
 
-#include "engine/simd/targets.hpp"
+#include "tests/engine/simd/targets.hpp"
 
 #include <optional>
 
@@ -16,15 +16,15 @@ std::optional<std::string>& usual_target() {
 
 void choose_usual_target(const std::string& name) {
   if (!name.empty()) usual_target() = name;
-  engine::force_simd_target(usual_target());
+  force_simd_target(usual_target());
 }
 
 ForcedTarget::ForcedTarget(const std::string& name) : forced_(!name.empty()) {
-  if (forced_) engine::force_simd_target(name);
+  if (forced_) force_simd_target(name);
 }
 
 ForcedTarget::~ForcedTarget() {
-  if (forced_) engine::force_simd_target(usual_target());
+  if (forced_) force_simd_target(usual_target());
 }
 
 }  // namespace touchtrial::bench

@@ -15,7 +15,7 @@ constexpr int kMostAdmmLooks = 30;
 template <typename Real>
 class TimedCourse {
  public:
-  TimedCourse(const GreyImage& image, engine::TvGaborAlgorithm algorithm)
+  TimedCourse(const GreyImage& image, reference::TvGaborAlgorithm algorithm)
       : truth_(tv_gabor_truth(image)),
         start_us_(cpu_clock_us()),
         course_(image, {}, algorithm),
@@ -25,21 +25,21 @@ class TimedCourse {
     const double start_us = cpu_clock_us();
     course_.advance(steps);
     us_ += cpu_clock_us() - start_us;
-    const engine::TvGaborPoint<Real> point = course_.point();
+    const reference::TvGaborPoint<Real> point = course_.point();
     return {point.steps, us_, distance_relative_to(point.texture, truth_), point.gap};
   }
 
  private:
   const Plane<double>& truth_;
   double start_us_;
-  engine::TvGaborCourse<Real> course_;
+  reference::TvGaborCourse<Real> course_;
   double us_;
 };
 
 }  // namespace
 
 template <typename Real>
-std::vector<CoursePoint> watch_course(const GreyImage& image, engine::TvGaborAlgorithm algorithm,
+std::vector<CoursePoint> watch_course(const GreyImage& image, reference::TvGaborAlgorithm algorithm,
                                       int steps, int looks) {
   TimedCourse<Real> course(image, algorithm);
   std::vector<CoursePoint> points;
@@ -48,7 +48,7 @@ std::vector<CoursePoint> watch_course(const GreyImage& image, engine::TvGaborAlg
 }
 
 std::optional<CoursePoint> admm_until(const GreyImage& image, double error) {
-  TimedCourse<float> course(image, engine::TvGaborAlgorithm::admm);
+  TimedCourse<float> course(image, reference::TvGaborAlgorithm::admm);
   for (int look = 0; look < kMostAdmmLooks; ++look) {
     const CoursePoint point = course.after(kAdmmRhythm);
     if (point.error <= error) return point;
@@ -57,16 +57,16 @@ std::optional<CoursePoint> admm_until(const GreyImage& image, double error) {
 }
 
 std::vector<SolverCourse> solver_courses(const GreyImage& image) {
-  using enum engine::TvGaborAlgorithm;
+  using enum reference::TvGaborAlgorithm;
   return {{"ADMM", watch_course<float>(image, admm, kAdmmRhythm, 15)},
           {"ADMM, double", watch_course<double>(image, admm, kAdmmRhythm, 15)},
           {"FISTA", watch_course<float>(image, fista, 50, 20)},
           {"fixed point", watch_course<float>(image, fixed_point, 50, 20)}};
 }
 
-template std::vector<CoursePoint> watch_course<float>(const GreyImage&, engine::TvGaborAlgorithm,
+template std::vector<CoursePoint> watch_course<float>(const GreyImage&, reference::TvGaborAlgorithm,
                                                       int, int);
-template std::vector<CoursePoint> watch_course<double>(const GreyImage&, engine::TvGaborAlgorithm,
-                                                       int, int);
+template std::vector<CoursePoint> watch_course<double>(const GreyImage&,
+                                                       reference::TvGaborAlgorithm, int, int);
 
 }  // namespace touchtrial::bench

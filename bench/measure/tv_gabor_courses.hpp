@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/plane.hpp"
-#include "engine/tv_gabor/course.hpp"
+#include "tests/engine/reference/tv_gabor_course.hpp"
 
 #include <optional>
 #include <string>
@@ -26,8 +26,8 @@ struct SolverCourse {
 /// \param steps  between two looks \param looks  how many \param image  not flat
 template <typename Real>
 [[nodiscard]] std::vector<CoursePoint> watch_course(const GreyImage& image,
-                                                    engine::TvGaborAlgorithm algorithm, int steps,
-                                                    int looks);
+                                                    reference::TvGaborAlgorithm algorithm,
+                                                    int steps, int looks);
 
 /// Steps that ADMM in single precision takes to come this close, in tens; nothing if a few hundred
 /// do not do.

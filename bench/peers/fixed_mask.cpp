@@ -1,6 +1,6 @@
 #include "bench/peers/fixed_mask.hpp"
 
-#include "engine/gl_weights.hpp"
+#include "tests/engine/reference/gl_weights.hpp"
 
 #include <cmath>
 #include <vector>
@@ -8,7 +8,7 @@
 namespace touchtrial::bench {
 
 cv::Mat fixed_order_mask(double order, int radius, MaskGives gives) {
-  const std::vector<double> weights = engine::gl_weights(order, radius);
+  const std::vector<double> weights = reference::gl_weights(order, radius);
   cv::Mat mask = cv::Mat::zeros(2 * radius + 1, 2 * radius + 1, CV_32F);
   double centre = gives == MaskGives::enhanced ? 1.0 : 0.0;
   for (int k = 1; k <= radius; ++k) {

@@ -1,4 +1,3 @@
-#include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/strict_json.hpp"
 #include "device/calibration/certificate.hpp"

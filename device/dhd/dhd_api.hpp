@@ -9,9 +9,9 @@
 
 namespace touchtrial::device::dhd {
 
-/// What most functions return: below 0 an error, 0 done, or one of these.
-constexpr int kTimeGuard = 1;       ///< asked too soon: the values are those of before
-constexpr int kMotorSaturated = 2;  ///< less force than was asked for; no fault
+/// What most functions return: below 0 an error, 0 done, 2 that the motors gave less force than was
+/// asked for, which is no fault, or this: asked too soon, so the values are those of before.
+constexpr int kTimeGuard = 1;
 
 /// Places in the status. Longer than any version's, so that a newer library stays inside.
 using Status = std::array<int, 32>;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 namespace touchtrial::device::falcon {
 namespace {
@@ -32,26 +31,6 @@ Vec3 cross(Vec3 a, Vec3 b) noexcept {
 
 double determinant(const std::array<Vec3, 3>& rows) noexcept {
   return dot(rows[0], cross(rows[1], rows[2]));
-}
-
-std::optional<LegAngles> angles_of_leg(const LegPoint& p) noexcept {
-  const double side = p.side_m / kParallelogramM;
-  if (!(std::abs(side) < 1.0) || !(p.along_m > 0.0)) return std::nullopt;
-  const double theta3 = std::acos(side);
-  const double reach = 2.0 * kEndLinkM + kParallelogramM * std::sin(theta3);
-  const double a2 = 2.0 * kArmM * p.across_m;
-  const double sum =
-      p.along_m * p.along_m + p.across_m * p.across_m + kArmM * kArmM - reach * reach;
-  const double half = 4.0 * kArmM * p.along_m;
-  const double discriminant = half * half - 4.0 * (sum - a2) * (sum + a2);
-  if (!(discriminant >= 0.0)) return std::nullopt;
-  // The smaller root of (sum + a2) t^2 - half t + (sum - a2) = 0, t = tan(theta1 / 2), in the form
-  // that stays exact where sum + a2 is zero.
-  const double theta1 = 2.0 * std::atan(2.0 * (sum - a2) / (half + std::sqrt(discriminant)));
-  const double across = p.across_m - kArmM * std::cos(theta1);
-  const double along = p.along_m - kArmM * std::sin(theta1);
-  if (!(along > 0.0)) return std::nullopt;
-  return LegAngles{theta1, std::atan2(along, across), theta3};
 }
 
 /// The arms' ends, in the legs' planes.
@@ -177,34 +156,6 @@ double theta1_of_count(std::int16_t count) noexcept {
 
 PerLeg theta1_of_counts(const EncoderCounts& counts) noexcept {
   return {theta1_of_count(counts[0]), theta1_of_count(counts[1]), theta1_of_count(counts[2])};
-}
-
-std::int16_t count_of_theta1(double theta1_rad) noexcept {
-  using Limits = std::numeric_limits<std::int16_t>;
-  const double count = std::round((theta1_rad / kRadPerDeg - kDegAtCountZero) / kDegPerCount);
-  if (std::isnan(count)) return 0;
-  return static_cast<std::int16_t>(std::clamp<double>(count, Limits::min(), Limits::max()));
-}
-
-std::optional<Legs> inverse_kinematics(Vec3 native_m) noexcept {
-  Legs legs;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto angles = angles_of_leg(seen_by_leg(native_m, kLegDirections[i]));
-    if (!angles) return std::nullopt;
-    legs[i] = *angles;
-  }
-  return legs;
-}
-
-LegJacobian leg_jacobian(const Legs& legs) noexcept {
-  LegJacobian jacobian;
-  for (std::size_t i = 0; i < 3; ++i) {
-    const auto& [theta1, theta2, theta3] = legs[i];
-    const Vec3 in_leg = {std::cos(theta2), std::cos(theta3) / std::sin(theta3), std::sin(theta2)};
-    jacobian.pull[i] = to_native_axes(in_leg, kLegDirections[i]);
-    jacobian.lever_m[i] = kArmM * std::sin(theta2 - theta1);
-  }
-  return jacobian;
 }
 
 std::optional<PerLeg> torques_nm(const LegJacobian& jacobian, Vec3 force_n) noexcept {

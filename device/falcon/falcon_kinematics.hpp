@@ -7,7 +7,7 @@
 /// constants are those that the open drivers use. Not verified on hardware.
 ///
 /// Two frames. Native, m: z along the device's axis towards the person, measured from the base.
-/// Device, mm: the frame of HapticDevice. Only `to_device_mm` and `to_native_m` know both.
+/// Device, mm: the frame of HapticDevice. Only `to_device_mm` knows both.
 ///
 /// Everything here is a pure function: any thread, no heap, no throw, bounded time.
 #pragma once
@@ -32,25 +32,10 @@ inline constexpr double kWorkspaceRadiusMm = 40.0;
 [[nodiscard]] constexpr Vec3 to_device_mm(Vec3 native_m) noexcept {
   return 1000.0 * (native_m - kCentreM);
 }
-[[nodiscard]] constexpr Vec3 to_native_m(Vec3 device_mm) noexcept {
-  return 0.001 * device_mm + kCentreM;
-}
 
 /// theta1 at an encoder's count, rad. Counts hold once the axis is homed.
 [[nodiscard]] double theta1_of_count(std::int16_t count) noexcept;
 [[nodiscard]] PerLeg theta1_of_counts(const EncoderCounts& counts) noexcept;
-/// The count nearest to an angle, rad; the nearest int16 if there is none. NaN gives 0.
-[[nodiscard]] std::int16_t count_of_theta1(double theta1_rad) noexcept;
-
-struct LegAngles {
-  double theta1_rad = 0.0;  ///< arm
-  double theta2_rad = 0.0;  ///< parallelogram, within the leg's plane
-  double theta3_rad = 0.0;  ///< parallelogram, out of the leg's plane; pi / 2 is upright
-};
-using Legs = std::array<LegAngles, 3>;
-
-/// Inverse kinematics. \return nothing if the position is out of reach or not finite
-[[nodiscard]] std::optional<Legs> inverse_kinematics(Vec3 native_m) noexcept;
 
 /// How the legs act on the hand at one pose:
 /// d theta1_i / d position = pull_i / lever_i, in rad/m.
@@ -58,8 +43,6 @@ struct LegJacobian {
   std::array<Vec3, 3> pull;  ///< dimensionless, native axes
   PerLeg lever_m{};          ///< 0 where an arm and its parallelogram are in line
 };
-
-[[nodiscard]] LegJacobian leg_jacobian(const Legs& legs) noexcept;
 
 /// Motor torques, N m, that make the hand feel a force: J^T F with J = d position / d theta1.
 /// \param force_n  on the hand; native and device axes are parallel

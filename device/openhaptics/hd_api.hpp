@@ -52,7 +52,6 @@ constexpr Enum kForceRamping = 0x4002;
 /// States of calibration, and bits of its styles.
 constexpr Enum kCalibrationOk = 0x5000;
 constexpr Enum kCalibrationNeedsUpdate = 0x5001;
-constexpr Enum kCalibrationNeedsHand = 0x5002;
 constexpr int kStyleAuto = 2;
 constexpr int kStyleInkwell = 4;
 

@@ -29,7 +29,7 @@ std::vector<DeviceListing> list_replay(const DeviceSettings& settings) {
 }
 
 std::unique_ptr<HapticDevice> open_replay(const DeviceSettings& settings) {
-  return std::make_unique<ReplayDevice>(std::make_unique<RecordedMotion>(motion_of(settings)));
+  return std::make_unique<ReplayDevice>(motion_of(settings));
 }
 
 }  // namespace

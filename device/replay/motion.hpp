@@ -9,19 +9,8 @@
 
 namespace touchtrial::device {
 
-/// Where a replay takes its positions from. `position_mm` is called on the servo thread: no heap,
-/// lock or I/O.
-class MotionSource {
- public:
-  virtual ~MotionSource() = default;
-  [[nodiscard]] virtual double rate_hz() const noexcept = 0;  ///< > 0
-  [[nodiscard]] virtual std::int64_t ticks() const noexcept = 0;
-  /// Plane frame. \param tick  0 .. ticks() - 1
-  [[nodiscard]] virtual Vec3 position_mm(std::int64_t tick) const noexcept = 0;
-};
-
-/// Motion in memory.
-class RecordedMotion final : public MotionSource {
+/// Motion in memory. Its parts are read on the servo thread: no heap, lock or I/O.
+class RecordedMotion {
  public:
   /// More ticks than any trial has; what is longer is no recording.
   static constexpr std::int64_t kMostTicks = 4'000'000;
@@ -30,11 +19,12 @@ class RecordedMotion final : public MotionSource {
   /// \throws std::invalid_argument if it is not, or there are no positions or too many
   RecordedMotion(std::vector<Vec3> positions_mm, double rate_hz);
 
-  [[nodiscard]] double rate_hz() const noexcept override { return rate_hz_; }
-  [[nodiscard]] std::int64_t ticks() const noexcept override {
+  [[nodiscard]] double rate_hz() const noexcept { return rate_hz_; }
+  [[nodiscard]] std::int64_t ticks() const noexcept {
     return static_cast<std::int64_t>(positions_mm_.size());
   }
-  [[nodiscard]] Vec3 position_mm(std::int64_t tick) const noexcept override {
+  /// Plane frame. \param tick  0 .. ticks() - 1
+  [[nodiscard]] Vec3 position_mm(std::int64_t tick) const noexcept {
     return positions_mm_[static_cast<std::size_t>(tick)];
   }
 

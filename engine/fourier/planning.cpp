@@ -20,10 +20,6 @@ void use_measured_plans(const std::filesystem::path& folder, std::size_t fewest_
   wisdom_files().set_folder(folder, fewest_samples);
 }
 
-void use_estimated_plans() {
-  wisdom_files().set_folder({}, 0);
-}
-
 std::filesystem::path user_cache_folder() {
   if (const auto cache = absolute_path_in("XDG_CACHE_HOME"); !cache.empty()) {
     return cache / "touchtrial";

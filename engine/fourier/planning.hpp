@@ -13,14 +13,11 @@ inline constexpr std::size_t kSamplesWorthMeasuring = std::size_t{1} << 18U;
 /// From now on transforms of at least `fewest_samples` follow the plan that a file in the folder
 /// holds. Where there is none that fits, plans are timed and the outcome is kept, so that every
 /// later run on the machine has the same plan, and the same bits. What cannot be kept is not timed
-/// but estimated; nothing here is an error. \param folder  made if it is missing; empty: estimate
+/// but estimated; nothing here is an error. \param folder  made if it is missing; empty: every
+/// plan is estimated, the same in every process with the same FFTW and processor, as from the start
 /// Affects the whole process, thread-safe; transforms that exist keep their plans.
 void use_measured_plans(const std::filesystem::path& folder,
                         std::size_t fewest_samples = kSamplesWorthMeasuring);
-
-/// From now on plans are estimated: the same in every process with the same FFTW and processor. So
-/// it is from the start.
-void use_estimated_plans();
 
 /// The user's cache folder for this program: touchtrial in $XDG_CACHE_HOME, else in ~/.cache; empty
 /// where neither variable holds an absolute path.

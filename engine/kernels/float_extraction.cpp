@@ -12,7 +12,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <utility>
 
 namespace touchtrial::engine {
 namespace {
@@ -115,24 +114,6 @@ void extract_fixed(const GreyImage& image, int radius, double order, const Wante
             static_cast<float>(order));
   TextureSink sink(image.height(), image.width(), wanted, result);
   filter_rows(image, radius, sink, [=](int) { return order; });
-}
-
-void filter_adaptive(const GreyImage& image, int radius, const Plane<float>& orders,
-                     Plane<float>& texture) {
-  constexpr std::size_t kReadPast = 2 * kVectorBytes / sizeof(float);
-  const auto width = static_cast<std::size_t>(image.width());
-  AlignedRows<float> last(1, width, kReadPast);
-  Extraction<float> result;
-  result.texture = std::move(texture);
-  TextureSink sink(image.height(), image.width(), {}, result);
-  filter_rows(image, radius, sink, [&](int y) -> const float* {
-    const float* const row = orders.row(y).data();
-    const std::size_t end = (static_cast<std::size_t>(y) + 1) * width;
-    if (end + kReadPast <= orders.size()) return row;
-    std::copy_n(row, width, last.row(0));
-    return last.row(0);
-  });
-  texture = std::move(result.texture);
 }
 
 void extract_sub_bands(const GreyImage& image, Extraction<float>& result) {

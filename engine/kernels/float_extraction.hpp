@@ -20,12 +20,6 @@ void extract_adaptive(const GreyImage& image, int radius, const WantedPlanes& wa
 void extract_fixed(const GreyImage& image, int radius, double order, const WantedPlanes& wanted,
                    Extraction<float>& result);
 
-/// The filter alone, additive, with an order for each pixel.
-/// \param orders  v in [0, 1), the image's shape
-/// \param texture  receives the texture; used again if it has the right shape
-void filter_adaptive(const GreyImage& image, int radius, const Plane<float>& orders,
-                     Plane<float>& texture);
-
 /// The sub-bands alone: those planes of `result`.
 void extract_sub_bands(const GreyImage& image, Extraction<float>& result);
 

@@ -69,12 +69,6 @@ Vec3 SurfaceModel::contact_force_n(Vec3 position_mm, Vec3 velocity_mm_s,
   return limited_in_norm(force_n, max_force_n_);
 }
 
-double SurfaceModel::potential_mj(Vec3 position_mm) const noexcept {
-  const Relief relief = relief_at(position_mm.x, position_mm.y);
-  const double pressed_mm = std::max(0.0, relief.height_mm - position_mm.z);
-  return 0.5 * stiffness_n_per_mm_ * pressed_mm * pressed_mm;
-}
-
 SurfaceModel::Relief SurfaceModel::relief_at(double x_mm, double y_mm) const noexcept {
   if (mm_per_grey_ == 0.0) return {};
   const PlaneGeometry& plane = field_.geometry;

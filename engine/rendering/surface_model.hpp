@@ -34,10 +34,6 @@ class SurfaceModel {
   /// PaperModel's. \param bristle  of this presentation; not used without friction
   [[nodiscard]] Vec3 force_n(Vec3 position_mm, Vec3 velocity_mm_s, Bristle& bristle) const noexcept;
 
-  /// U, in mJ (N mm): what pressing to this point has stored.
-  /// \param position_mm  finite
-  [[nodiscard]] double potential_mj(Vec3 position_mm) const noexcept;
-
  private:
   /// alpha * h and its gradient at a point of the plane.
   struct Relief {

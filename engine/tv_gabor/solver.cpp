@@ -15,7 +15,6 @@ constexpr std::size_t kChecksToFall = 5;
 template <typename Real>
 TvGaborSolver<Real>::TvGaborSolver(const GreyImage& image, const TvGaborOptions& options)
     : wanted_gap_(options.gap),
-      max_steps_(options.max_steps),
       problem_(tv_gabor_problem<Real>(image, options)),
       fft_(problem_.image.height(), problem_.image.width(), FftPlan::measured),
       schedule_(mean_gradient(problem_.image)),
@@ -24,27 +23,15 @@ TvGaborSolver<Real>::TvGaborSolver(const GreyImage& image, const TvGaborOptions&
 }
 
 template <typename Real>
-SolverStop TvGaborSolver<Real>::run(Patience patience) {
-  while (steps_ < max_steps_) {
-    step_to_check(max_steps_);
+SolverStop TvGaborSolver<Real>::run(int max_steps, Patience patience) {
+  while (steps_ < max_steps) {
+    step_to_check(max_steps);
     if (certificate_.gap <= wanted_gap_) return SolverStop::converged;
     // Without steps left there is nothing to go on with, so this is the end, not a stall.
-    const bool may_stall = patience == Patience::limited && steps_ < max_steps_;
+    const bool may_stall = patience == Patience::limited && steps_ < max_steps;
     if (may_stall && is_stalled()) return SolverStop::stalled;
   }
   return SolverStop::exhausted;
-}
-
-template <typename Real>
-void TvGaborSolver<Real>::advance(int count) {
-  const int last = steps_ + count;
-  while (steps_ < last) step_to_check(last);
-}
-
-template <typename Real>
-void TvGaborSolver<Real>::check_the_start() {
-  certificate_ = certify(problem_, admm_.z(), admm_.penalty(), fft_);
-  admm_.start_again();
 }
 
 /// Certifying costs as much as a step; the penalty changes only then.

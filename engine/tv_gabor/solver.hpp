@@ -26,7 +26,7 @@ enum class Patience { limited, unlimited };
 template <typename Real>
 class TvGaborSolver {
  public:
-  /// \param image  not flat, not empty
+  /// \param image  not flat, not empty \param options  max_steps does not count
   TvGaborSolver(const GreyImage& image, const TvGaborOptions& options);
   /// Goes on where a solver of the same image and options, of another precision, stopped.
   template <typename Other>
@@ -42,13 +42,9 @@ class TvGaborSolver {
   TvGaborSolver(const TvGaborSolver&) = delete;
   TvGaborSolver& operator=(const TvGaborSolver&) = delete;
 
-  /// Takes steps until one of the reasons to stop holds.
-  SolverStop run(Patience patience);
-  /// Takes that many steps, whatever the gap is; the certificate is then that of the last one.
-  void advance(int count);
-
-  /// Certifies what there is before the first step.
-  void check_the_start();
+  /// Takes steps until one of the reasons to stop holds; the certificate is then that of the last
+  /// one. \param max_steps  after which no steps are left
+  [[nodiscard]] SolverStop run(int max_steps, Patience patience);
 
   /// Texture on the torus and gap at the last check; empty before the first.
   [[nodiscard]] const TvGaborCertificate<Real>& certificate() const noexcept {
@@ -64,7 +60,6 @@ class TvGaborSolver {
   [[nodiscard]] bool is_stalled() const;
 
   double wanted_gap_;
-  int max_steps_;
   TvGaborProblem<Real> problem_;
   RealFft<Real> fft_;
   PenaltySchedule schedule_;

@@ -35,17 +35,17 @@ template <typename Real>
 TvGaborResult<Real> solved(const GreyImage& image, const TvGaborOptions& options) {
   if constexpr (std::is_same_v<Real, double>) {
     TvGaborSolver<double> solver(image, options);
-    return result_of<double>(solver, solver.run(Patience::unlimited), image);
+    return result_of<double>(solver, solver.run(options.max_steps, Patience::unlimited), image);
   } else {
     auto solver = std::make_optional<TvGaborSolver<float>>(image, options);
-    const SolverStop stop = solver->run(Patience::limited);
+    const SolverStop stop = solver->run(options.max_steps, Patience::limited);
     if (stop != SolverStop::stalled) return result_of<float>(*solver, stop, image);
     const VectorField<float> z = solver->z();
     const PenaltySchedule schedule = solver->schedule();
     const int steps = solver->steps();
     solver.reset();  // before double's larger planes are there
     TvGaborSolver<double> finisher(image, options, z, schedule, steps);
-    return result_of<float>(finisher, finisher.run(Patience::unlimited), image);
+    return result_of<float>(finisher, finisher.run(options.max_steps, Patience::unlimited), image);
   }
 }
 

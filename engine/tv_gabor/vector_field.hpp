@@ -38,16 +38,4 @@ void negative_divergence_of_row(std::span<const Real> along_x, std::span<const R
   }
 }
 
-/// The same for a whole field. \param out  height x width samples, row-major
-template <typename Real>
-void negative_divergence(const VectorField<Real>& field, std::span<Real> out) noexcept {
-  const int height = field.x.height();
-  const std::size_t width = static_cast<std::size_t>(field.x.width());
-  for (int y = 0; y < height; ++y) {
-    negative_divergence_of_row<Real>(field.x.row(y), field.y.row(y),
-                                     field.y.row(y == 0 ? height - 1 : y - 1),
-                                     out.subspan(static_cast<std::size_t>(y) * width, width));
-  }
-}
-
 }  // namespace touchtrial::engine

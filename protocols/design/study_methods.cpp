@@ -1,5 +1,4 @@
 /// The study file's "methods".
-#include "core/nearest_name.hpp"
 #include "protocols/design/study_sections.hpp"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-#include "core/random.hpp"
 #include "stimuli/noise.hpp"
 #include "stimuli/recipes.hpp"
 #include "stimuli/relief.hpp"

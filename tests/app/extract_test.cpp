@@ -1,9 +1,9 @@
 #include "app/touchtrial_process.hpp"
 #include "core/files.hpp"
-#include "core/npy.hpp"
 #include "core/random.hpp"
 #include "engine/image_file.hpp"
 #include "support/catch.hpp"
+#include "support/npy_array.hpp"
 #include "support/temp_folder.hpp"
 
 #include <algorithm>
@@ -42,10 +42,10 @@ TEST_CASE("extract writes the texture and every stage, with consistent shapes an
   CHECK(read_npy(dump / "subband_LH.npy").shape == std::vector<int>{11, 17});
   CHECK(read_npy(dump / "force_tangential.npy").shape == std::vector<int>{21, 34, 2});
   CHECK(read_npy(dump / "order.npy").type == "<f8");
-  const auto image = read_npy(dump / "image.npy").as_doubles();
-  const auto texture = read_npy(dump / "texture.npy").as_doubles();
-  const auto enhanced = read_npy(dump / "enhanced.npy").as_doubles();
-  const auto rounded = read_npy(dump / "texture_u8.npy").as_doubles();
+  const auto image = read_npy(dump / "image.npy").samples;
+  const auto texture = read_npy(dump / "texture.npy").samples;
+  const auto enhanced = read_npy(dump / "enhanced.npy").samples;
+  const auto rounded = read_npy(dump / "texture_u8.npy").samples;
   const GreyImage written = read_grey_image(folder.path() / "out.png");
   for (std::size_t i = 0; i < texture.size(); ++i) {
     CHECK(enhanced[i] == Approx(image[i] + texture[i]));
@@ -117,7 +117,7 @@ TEST_CASE("extract maps the picture as asked, and never the forces") {
                 .exit_code == 0);
   }
   const auto plane = [&](const char* mapping, const char* name) {
-    return read_npy(folder.path() / mapping / name).as_doubles();
+    return read_npy(folder.path() / mapping / name).samples;
   };
   const std::vector<double> picture = plane("stretch", "texture_u8.npy");
   CHECK(*std::min_element(picture.begin(), picture.end()) == 0.0);

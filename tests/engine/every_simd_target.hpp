@@ -12,15 +12,15 @@ namespace touchtrial {
 /// Forces a target while it lives, then lets the best one be chosen again.
 class ForcedSimdTarget {
  public:
-  explicit ForcedSimdTarget(const std::string& name) { engine::force_simd_target(name); }
-  ~ForcedSimdTarget() { engine::force_simd_target(std::nullopt); }
+  explicit ForcedSimdTarget(const std::string& name) { force_simd_target(name); }
+  ~ForcedSimdTarget() { force_simd_target(std::nullopt); }
   ForcedSimdTarget(const ForcedSimdTarget&) = delete;
   ForcedSimdTarget& operator=(const ForcedSimdTarget&) = delete;
 };
 
 template <typename Check>
 void on_every_simd_target(const Check& check) {
-  for (const std::string& name : engine::simd_targets()) {
+  for (const std::string& name : simd_targets()) {
     const ForcedSimdTarget forced(name);
     INFO("target " << name);
     check();

@@ -3,7 +3,7 @@
 
 #include "engine/example_images.hpp"
 #include "engine/extraction.hpp"
-#include "engine/gl_weights.hpp"
+#include "engine/gl_norm.hpp"
 #include "engine/plane_comparison.hpp"
 #include "engine/reference/adaptive_reference.hpp"
 #include "engine/reference/options_reference.hpp"

@@ -1,7 +1,7 @@
 #include "engine/gl_texture.hpp"
 
 #include "engine/example_images.hpp"
-#include "engine/gl_weights.hpp"
+#include "engine/gl_norm.hpp"
 #include "engine/plane_comparison.hpp"
 #include "engine/reference/adaptive_reference.hpp"
 #include "support/catch.hpp"

@@ -19,7 +19,6 @@ TEST_CASE("a path is thinned evenly, and each point knows the force until the ne
   trace.samples[8].force_n.z = 0.0;
   const std::vector<analysis::PathPoint> points = analysis::thinned_path(trace, 3);
   REQUIRE(points.size() == 3);
-  CHECK(points[1].at_s == Approx(0.004));
   CHECK(points[1].position_mm.x == Approx(0.4));
   CHECK(points[1].force_n.x == 3.0);
   CHECK(points[1].tangential_rms_n == Approx(5.0));

@@ -2,6 +2,7 @@
 #include "device/falcon/falcon_device.hpp"
 
 #include "core/errors.hpp"
+#include "device/falcon/falcon_inverse.hpp"
 #include "device/falcon/rig/dummy_firmware.hpp"
 #include "device/falcon/rig/emulator_transport.hpp"
 #include "device/falcon/rig/lockstep.hpp"

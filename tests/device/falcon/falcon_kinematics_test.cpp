@@ -2,6 +2,7 @@
 
 #include "core/random.hpp"
 #include "device/falcon/emulator/falcon_legs.hpp"
+#include "device/falcon/falcon_inverse.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -96,12 +97,10 @@ TEST_CASE("falcon encoders: 35 degrees at count 0, 0.0364347 degrees a count") {
   CHECK(theta1_of_count(0) == Approx(35.0 * kDeg));
   CHECK(theta1_of_count(-1000) == Approx((35.0 - 36.4347) * kDeg));
   for (int count = -32768; count <= 32767; ++count) {
-    const auto value = static_cast<std::int16_t>(count);
-    if (count_of_theta1(theta1_of_count(value)) != value) FAIL("count " << count);
+    const double expected = (35.0 + 0.0364347 * count) * kDeg;
+    const double found = theta1_of_count(static_cast<std::int16_t>(count));
+    if (std::abs(found - expected) > 1e-12) FAIL("count " << count);
   }
-  CHECK(count_of_theta1(1e9) == 32767);
-  CHECK(count_of_theta1(-kInfinity) == -32768);
-  CHECK(count_of_theta1(kNan) == 0);
 }
 
 TEST_CASE("falcon inverse kinematics agrees with bisection and with the law of cosines") {

@@ -4,15 +4,10 @@
 #include "device/simulated/simulated_hand.hpp"
 #include "support/catch.hpp"
 
-#include <memory>
 #include <stdexcept>
 
 namespace touchtrial {
 namespace {
-
-std::unique_ptr<const device::MotionSource> motion(std::vector<Vec3> positions_mm, double rate_hz) {
-  return std::make_unique<device::RecordedMotion>(std::move(positions_mm), rate_hz);
-}
 
 /// A wall with a damper, so that velocity matters too.
 class DampedWall final : public device::ForceSource {
@@ -40,23 +35,21 @@ TEST_CASE("a recorded session replayed through the servo gives the same forces")
   const std::vector<device::ServoSample> original = stroke_damped_wall();
   std::vector<Vec3> positions_mm;
   for (const device::ServoSample& sample : original) positions_mm.push_back(sample.position_mm);
-  device::ReplayDevice replay(motion(positions_mm, device::kServoRateHz));
+  device::ReplayDevice replay({positions_mm, device::kServoRateHz});
   DampedWall wall;
   KeptSamples kept;
   const device::ServoReport report = device::run_servo_in_virtual_time(replay, wall, kept, {});
   CHECK(report.end == device::ServoEnd::hand_stopped);
   CHECK(report.contact_ticks > 3000);
   REQUIRE(kept.samples.size() == original.size());
-  REQUIRE(replay.forces_n().size() == original.size());
   for (std::size_t i = 0; i < original.size(); ++i) {
     REQUIRE(kept.samples[i].position_mm == original[i].position_mm);
     REQUIRE(norm(kept.samples[i].force_n - original[i].force_n) < 1e-9);
-    REQUIRE(replay.forces_n()[i] == kept.samples[i].force_n);
   }
 }
 
 TEST_CASE("a replay goes through its positions once, with the velocity of each step") {
-  device::ReplayDevice replay(motion({{0, 0, 1}, {2, 0, 1}, {2, -3, 1}}, 2000.0));
+  device::ReplayDevice replay({{{0, 0, 1}, {2, 0, 1}, {2, -3, 1}}, 2000.0});
   CHECK(replay.info().max_rate_hz == 2000.0);
   CHECK(replay.info().simulated);
   std::vector<Vec3> velocities;
@@ -70,18 +63,9 @@ TEST_CASE("a replay goes through its positions once, with the velocity of each s
   CHECK(sample.position_mm == Vec3{2, -3, 1});
 }
 
-TEST_CASE("a replay keeps the forces of its motion and none after it") {
-  device::ReplayDevice replay(motion({{}, {}}, 1000.0));
-  for (const double force_n : {1.0, 2.0, 3.0}) (void)replay.write({force_n, 0.0, 0.0});
-  REQUIRE(replay.forces_n().size() == 2);
-  CHECK(replay.forces_n()[1].x == 2.0);
-}
-
-TEST_CASE("a replay of nothing, or with no force, is refused") {
-  CHECK_THROWS_AS(motion({}, 1000.0), std::invalid_argument);
-  CHECK_THROWS_AS(motion({{}}, 0.0), std::invalid_argument);
-  CHECK_THROWS_AS(device::ReplayDevice(nullptr), std::invalid_argument);
-  CHECK_THROWS_AS(device::ReplayDevice(motion({{}}, 1000.0), 0.0), std::invalid_argument);
+TEST_CASE("a motion of nothing, or at no rate, is refused") {
+  CHECK_THROWS_AS(device::RecordedMotion({}, 1000.0), std::invalid_argument);
+  CHECK_THROWS_AS(device::RecordedMotion({{}}, 0.0), std::invalid_argument);
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ class MeasuredPlans {
   explicit MeasuredPlans(const fs::path& folder, std::size_t fewest_samples = 1) {
     engine::use_measured_plans(folder, fewest_samples);
   }
-  ~MeasuredPlans() { engine::use_estimated_plans(); }
+  ~MeasuredPlans() { engine::use_measured_plans({}); }
   MeasuredPlans(const MeasuredPlans&) = delete;
   MeasuredPlans& operator=(const MeasuredPlans&) = delete;
 };

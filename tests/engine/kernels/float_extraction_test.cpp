@@ -200,18 +200,6 @@ TEST_CASE("an image that is worked on in several strips has the CSGV of double")
   });
 }
 
-TEST_CASE("filter_adaptive gives the texture that an extraction gives for its orders") {
-  engine::WantedPlanes wanted;
-  wanted.order = true;
-  Plane<float> texture(2, 2);
-  for (const Size size : {Size{1, 1}, Size{3, 5}, Size{64, 63}, Size{270, 281}}) {
-    const GreyImage image = cloth_image(size);
-    const auto expected = engine::extract_texture<float>(image, adaptive_options(3), wanted);
-    engine::filter_adaptive(image, 3, expected.order, texture);
-    CHECK(texture == expected.texture);
-  }
-}
-
 TEST_CASE(
     "an extraction that is used again holds what the last image and "
     "wishes gave") {

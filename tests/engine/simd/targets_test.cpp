@@ -14,14 +14,14 @@ namespace touchtrial {
 namespace {
 
 TEST_CASE("simd_targets names at least one target, and none twice") {
-  const std::vector<std::string> names = engine::simd_targets();
+  const std::vector<std::string> names = simd_targets();
   REQUIRE_FALSE(names.empty());
   CHECK(std::set<std::string>(names.begin(), names.end()).size() == names.size());
   CHECK(std::set<std::string>(names.begin(), names.end()).count("Unknown") == 0);
 }
 
 TEST_CASE("the kernels under test have the portable target besides those of this processor") {
-  const std::vector<std::string> names = engine::simd_targets();
+  const std::vector<std::string> names = simd_targets();
   const bool has_portable = std::any_of(names.begin(), names.end(), [](const std::string& name) {
     return name == "SCALAR" || name == "EMU128";
   });
@@ -31,20 +31,19 @@ TEST_CASE("the kernels under test have the portable target besides those of this
 }
 
 TEST_CASE("force_simd_target leaves its target alone to choose from, and all of them afterwards") {
-  const std::vector<std::string> names = engine::simd_targets();
+  const std::vector<std::string> names = simd_targets();
   const std::int64_t all = hwy::SupportedTargets();
   for (const std::string& name : names) {
     const ForcedSimdTarget forced(name);
     CHECK(hwy::TargetName(hwy::SupportedTargets()) == name);
-    CHECK(engine::simd_targets() == names);
+    CHECK(simd_targets() == names);
   }
   CHECK(hwy::SupportedTargets() == all);
 }
 
 TEST_CASE("force_simd_target refuses a name that the machine does not have") {
-  CHECK(refusal_of([] { engine::force_simd_target("AVX9"); }) ==
-        "force_simd_target: no target AVX9");
-  CHECK_FALSE(refusal_of([] { engine::force_simd_target(""); }).empty());
+  CHECK(refusal_of([] { force_simd_target("AVX9"); }) == "force_simd_target: no target AVX9");
+  CHECK_FALSE(refusal_of([] { force_simd_target(""); }).empty());
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // Every extractor on every extreme image: finite, bounded, the same each time; and its laws.
 #include "engine/finite_plane.hpp"
-#include "engine/gl_weights.hpp"
+#include "engine/gl_norm.hpp"
 #include "engine/plane_comparison.hpp"
 #include "engine/stability/extreme_cases.hpp"
 #include "support/catch.hpp"

@@ -1,6 +1,6 @@
 #include "engine/stability/extreme_cases.hpp"
 
-#include "engine/gl_weights.hpp"
+#include "engine/gl_norm.hpp"
 
 #include <cmath>
 #include <utility>

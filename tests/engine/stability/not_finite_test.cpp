@@ -1,6 +1,5 @@
 // NaN or infinity in, a clear error out: every function that takes real numbers from outside.
 #include "core/errors.hpp"
-#include "core/npy.hpp"
 #include "engine/extraction.hpp"
 #include "engine/gaussian_filter.hpp"
 #include "engine/refusal.hpp"
@@ -8,7 +7,6 @@
 #include "engine/rendering/gains.hpp"
 #include "engine/stability/extreme_cases.hpp"
 #include "support/catch.hpp"
-#include "support/temp_folder.hpp"
 
 #include <functional>
 #include <limits>
@@ -118,19 +116,6 @@ TEST_CASE("rendering options that are not finite are refused") {
       CHECK(refusal_of([&] { (void)engine::choose_gains(views, options); }) ==
             "choose_gains: explicit gains must be finite numbers >= 0");
     }
-  }
-}
-
-TEST_CASE("an npy file with a sample that is not finite is refused by name") {
-  const TempFolder folder;
-  const auto path = folder.path() / "plane.npy";
-  for (const double value : kNotFinite) {
-    Plane<double> plane(4, 5);
-    plane.at(3, 4) = value;
-    write_npy(path, plane);
-    CHECK_THROWS_WITH(read_npy(path), holds_text("plane.npy") && holds_text("not finite"));
-    write_npy(path, converted<float>(plane));
-    CHECK_THROWS_AS(read_npy(path), FileError);
   }
 }
 

@@ -1,7 +1,6 @@
-#include "engine/tv_gabor/course.hpp"
-
 #include "engine/example_images.hpp"
 #include "engine/plane_comparison.hpp"
+#include "engine/reference/tv_gabor_course.hpp"
 #include "engine/reference/tv_gabor_reference.hpp"
 #include "support/catch.hpp"
 
@@ -12,34 +11,35 @@
 namespace touchtrial {
 namespace {
 
-constexpr engine::TvGaborAlgorithm kAlgorithms[] = {engine::TvGaborAlgorithm::admm,
-                                                    engine::TvGaborAlgorithm::fista,
-                                                    engine::TvGaborAlgorithm::fixed_point};
+using reference::TvGaborAlgorithm;
+using reference::TvGaborCourse;
+using reference::TvGaborPoint;
+
+constexpr TvGaborAlgorithm kAlgorithms[] = {TvGaborAlgorithm::admm, TvGaborAlgorithm::fista,
+                                            TvGaborAlgorithm::fixed_point};
 
 template <typename Real>
-engine::TvGaborPoint<Real> after(const GreyImage& image, engine::TvGaborAlgorithm algorithm,
-                                 int steps) {
-  engine::TvGaborCourse<Real> course(image, {}, algorithm);
+TvGaborPoint<Real> after(const GreyImage& image, TvGaborAlgorithm algorithm, int steps) {
+  TvGaborCourse<Real> course(image, {}, algorithm);
   course.advance(steps);
   return course.point();
 }
 
 TEMPLATE_TEST_CASE("all TV-Gabor solvers reach one texture", "", float, double) {
   const GreyImage image = noise_image({12, 15});
-  const auto expected = after<double>(image, engine::TvGaborAlgorithm::admm, 1500).texture;
-  CHECK(distance_relative_to(after<TestType>(image, engine::TvGaborAlgorithm::admm, 200).texture,
+  const auto expected = after<double>(image, TvGaborAlgorithm::admm, 1500).texture;
+  CHECK(distance_relative_to(after<TestType>(image, TvGaborAlgorithm::admm, 200).texture,
                              expected) < 1e-3);
-  CHECK(distance_relative_to(after<TestType>(image, engine::TvGaborAlgorithm::fista, 1000).texture,
+  CHECK(distance_relative_to(after<TestType>(image, TvGaborAlgorithm::fista, 1000).texture,
                              expected) < 1e-3);
-  CHECK(distance_relative_to(
-            after<TestType>(image, engine::TvGaborAlgorithm::fixed_point, 4000).texture, expected) <
-        1e-2);
+  CHECK(distance_relative_to(after<TestType>(image, TvGaborAlgorithm::fixed_point, 4000).texture,
+                             expected) < 1e-2);
 }
 
 TEMPLATE_TEST_CASE("gaps of TV-Gabor solvers are never negative and shrink overall", "", float,
                    double) {
-  for (const engine::TvGaborAlgorithm algorithm : kAlgorithms) {
-    engine::TvGaborCourse<TestType> course(cloth_image({40, 33}), {}, algorithm);
+  for (const TvGaborAlgorithm algorithm : kAlgorithms) {
+    TvGaborCourse<TestType> course(cloth_image({40, 33}), {}, algorithm);
     double last = 100.0;
     for (const int steps : {0, 20, 60, 200}) {
       course.advance(steps);
@@ -52,30 +52,30 @@ TEMPLATE_TEST_CASE("gaps of TV-Gabor solvers are never negative and shrink overa
   }
 }
 
-TEST_CASE("the engine's FISTA takes the reference's steps") {
+TEST_CASE("FISTA on the engine's transforms takes the reference's steps") {
   const GreyImage image = cloth_image({6, 9});
   const reference::TvGabor definition(image, {});
   const Plane<double> expected = definition.cropped(definition.texture(definition.fista(30)));
-  const auto found = after<double>(image, engine::TvGaborAlgorithm::fista, 30).texture;
+  const auto found = after<double>(image, TvGaborAlgorithm::fista, 30).texture;
   CHECK(distance_relative_to(found, expected) < 1e-9);
 }
 
-TEST_CASE("the engine's fixed point takes the steps that define it") {
+TEST_CASE("the fixed point on the engine's transforms takes the steps that define it") {
   const GreyImage image = cloth_image({6, 9});
   const reference::TvGabor definition(image, {});
   const Plane<double> expected = definition.cropped(definition.texture(definition.fixed_point(30)));
-  const auto found = after<double>(image, engine::TvGaborAlgorithm::fixed_point, 30).texture;
+  const auto found = after<double>(image, TvGaborAlgorithm::fixed_point, 30).texture;
   CHECK(distance_relative_to(found, expected) < 1e-9);
 }
 
 TEST_CASE("looking at a TV-Gabor course does not change it") {
-  for (const engine::TvGaborAlgorithm algorithm : kAlgorithms) {
+  for (const TvGaborAlgorithm algorithm : kAlgorithms) {
     const GreyImage image = noise_image({10, 11});
-    engine::TvGaborCourse<double> watched(image, {}, algorithm);
+    TvGaborCourse<double> watched(image, {}, algorithm);
     watched.advance(20);
     CHECK(watched.point().gap == watched.point().gap);
     watched.advance(20);
-    engine::TvGaborCourse<double> alone(image, {}, algorithm);
+    TvGaborCourse<double> alone(image, {}, algorithm);
     alone.advance(20);
     alone.advance(20);
     CHECK(watched.point().texture == alone.point().texture);
@@ -83,10 +83,9 @@ TEST_CASE("looking at a TV-Gabor course does not change it") {
 }
 
 TEST_CASE("a TV-Gabor course of a flat or empty image is refused") {
-  CHECK_THROWS_AS(
-      engine::TvGaborCourse<float>(flat_image({4, 4}, 9), {}, engine::TvGaborAlgorithm::fista),
-      std::invalid_argument);
-  CHECK_THROWS_AS(engine::TvGaborCourse<float>(GreyImage(), {}, engine::TvGaborAlgorithm::admm),
+  CHECK_THROWS_AS(TvGaborCourse<float>(flat_image({4, 4}, 9), {}, TvGaborAlgorithm::fista),
+                  std::invalid_argument);
+  CHECK_THROWS_AS(TvGaborCourse<float>(GreyImage(), {}, TvGaborAlgorithm::admm),
                   std::invalid_argument);
 }
 

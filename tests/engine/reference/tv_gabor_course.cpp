@@ -1,0 +1,274 @@
+#include "engine/reference/tv_gabor_course.hpp"
+
+#include "engine/fourier/real_fft.hpp"
+#include "engine/tv_gabor/certificate.hpp"
+#include "engine/tv_gabor/domain.hpp"
+#include "engine/tv_gabor/problem.hpp"
+#include "engine/tv_gabor/row_kernels.hpp"
+#include "engine/tv_gabor/solver.hpp"
+#include "engine/tv_gabor/spectral_peak.hpp"
+#include "engine/tv_gabor/vector_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+namespace touchtrial::reference {
+namespace {
+
+/// out = -div field. \param out  height x width samples, row-major
+template <typename Real>
+void negative_divergence(const engine::VectorField<Real>& field, std::span<Real> out) noexcept {
+  const int height = field.x.height();
+  const std::size_t width = static_cast<std::size_t>(field.x.width());
+  for (int y = 0; y < height; ++y) {
+    engine::negative_divergence_of_row<Real>(
+        field.x.row(y), field.y.row(y), field.y.row(y == 0 ? height - 1 : y - 1),
+        out.subspan(static_cast<std::size_t>(y) * width, width));
+  }
+}
+
+/// Steps of the projected gradient up to this length converge: |grad M div| <= 8.
+constexpr double kLongestDualStep = 0.125;
+
+/// The slope of TV-Gabor's dual, which both slower solvers follow.
+template <typename Real>
+class DualSlope {
+ public:
+  /// Keeps references to both; the transform has the image's size.
+  DualSlope(const engine::TvGaborProblem<Real>& problem, engine::RealFft<Real>& fft)
+      : problem_(problem),
+        fft_(fft),
+        x_(static_cast<std::size_t>(problem.image.width())),
+        y_(x_.size()) {}
+
+  /// Gets ready to give the rows of w = grad(M div p - lambda f). \param q  -p
+  void at(const engine::VectorField<Real>& q) {
+    negative_divergence(q, fft_.plane());
+    fft_.forward();
+    const auto spectrum = fft_.spectrum();
+    const auto scale = Real{1} / static_cast<Real>(problem_.image.size());
+    for (std::size_t i = 0; i < spectrum.size(); ++i) {
+      spectrum[i] *= scale * problem_.spectrum.samples()[i];
+    }
+    fft_.inverse();
+    const auto lambda = static_cast<Real>(problem_.lambda);
+    const auto plane = fft_.plane();
+    for (std::size_t i = 0; i < plane.size(); ++i) plane[i] -= lambda * problem_.image.samples()[i];
+  }
+
+  /// w, of one row of the torus; valid until the next call.
+  void go_to_row(int y) {
+    const int below = y + 1 == problem_.image.height() ? 0 : y + 1;
+    const auto row = [this](int index) {
+      return std::span<const Real>(fft_.plane())
+          .subspan(static_cast<std::size_t>(index) * x_.size(), x_.size());
+    };
+    engine::gradient_of_row<Real>(row(y), row(below), x_, y_);
+  }
+  [[nodiscard]] std::span<const Real> x() const noexcept { return x_; }
+  [[nodiscard]] std::span<const Real> y() const noexcept { return y_; }
+
+ private:
+  const engine::TvGaborProblem<Real>& problem_;
+  engine::RealFft<Real>& fft_;
+  std::vector<Real> x_, y_;
+};
+
+/// Accelerated projected gradient: steps of 1/8 from p = 0.
+template <typename Real>
+class Fista {
+ public:
+  /// Keeps references to both; the transform is also used by others between steps.
+  Fista(const engine::TvGaborProblem<Real>& problem, engine::RealFft<Real>& fft)
+      : slope_(problem, fft),
+        q_(problem.image.height(), problem.image.width()),
+        ahead_(problem.image.height(), problem.image.width()),
+        next_x_(static_cast<std::size_t>(problem.image.width())),
+        next_y_(next_x_.size()) {}
+
+  void step() {
+    const double next_t = (1.0 + std::sqrt(1.0 + 4.0 * t_ * t_)) / 2.0;
+    const auto momentum = static_cast<Real>((t_ - 1.0) / next_t);
+    const auto tau = static_cast<Real>(kLongestDualStep);
+    slope_.at(ahead_);
+    for (int y = 0; y < q_.x.height(); ++y) {
+      slope_.go_to_row(y);
+      const auto w_x = slope_.x(), w_y = slope_.y();
+      const auto q_x = q_.x.row(y), q_y = q_.y.row(y);
+      const auto ahead_x = ahead_.x.row(y), ahead_y = ahead_.y.row(y);
+      for (std::size_t x = 0; x < next_x_.size(); ++x) {
+        next_x_[x] = ahead_x[x] - tau * w_x[x];
+        next_y_[x] = ahead_y[x] - tau * w_y[x];
+      }
+      engine::clip_row(next_x_.data(), next_y_.data(), next_x_.size(), Real{1}, next_x_.data(),
+                       next_y_.data());
+      for (std::size_t x = 0; x < next_x_.size(); ++x) {
+        ahead_x[x] = next_x_[x] + momentum * (next_x_[x] - q_x[x]);
+        ahead_y[x] = next_y_[x] + momentum * (next_y_[x] - q_y[x]);
+        q_x[x] = next_x_[x];
+        q_y[x] = next_y_[x];
+      }
+    }
+    t_ = next_t;
+  }
+  /// q = -p, at most 1 long.
+  [[nodiscard]] const engine::VectorField<Real>& q() const noexcept { return q_; }
+
+ private:
+  DualSlope<Real> slope_;
+  engine::VectorField<Real> q_;
+  engine::VectorField<Real> ahead_;    // where the slope is taken
+  std::vector<Real> next_x_, next_y_;  // rows
+  double t_ = 1.0;
+};
+
+/// p <- (p + tau w) / (1 + tau |w|), with tau = 1/8, from p = 0.
+template <typename Real>
+class FixedPoint {
+ public:
+  /// Keeps references to both; the transform is also used by others between steps.
+  FixedPoint(const engine::TvGaborProblem<Real>& problem, engine::RealFft<Real>& fft)
+      : slope_(problem, fft),
+        q_(problem.image.height(), problem.image.width()),
+        norms_(static_cast<std::size_t>(problem.image.width())) {}
+
+  void step() {
+    const auto tau = static_cast<Real>(kLongestDualStep);
+    slope_.at(q_);
+    for (int y = 0; y < q_.x.height(); ++y) {
+      slope_.go_to_row(y);
+      const auto w_x = slope_.x(), w_y = slope_.y();
+      engine::norm_row(w_x.data(), w_y.data(), norms_.size(), norms_.data());
+      const auto q_x = q_.x.row(y), q_y = q_.y.row(y);
+      for (std::size_t x = 0; x < norms_.size(); ++x) {
+        const Real share = Real{1} / (Real{1} + tau * norms_[x]);
+        q_x[x] = share * (q_x[x] - tau * w_x[x]);
+        q_y[x] = share * (q_y[x] - tau * w_y[x]);
+      }
+    }
+  }
+  /// q = -p, at most 1 long.
+  [[nodiscard]] const engine::VectorField<Real>& q() const noexcept { return q_; }
+
+ private:
+  DualSlope<Real> slope_;
+  engine::VectorField<Real> q_;
+  std::vector<Real> norms_;  // of a row
+};
+
+engine::TvGaborOptions with_components(const GreyImage& image, engine::TvGaborOptions options) {
+  if (options.automatic) options.components = {engine::strongest_component(image)};
+  return options;
+}
+
+void refuse_flat(const GreyImage& image) {
+  const auto samples = image.samples();
+  const auto differs = [&](auto sample) { return sample != samples.front(); };
+  if (!std::any_of(samples.begin(), samples.end(), differs)) {
+    throw std::invalid_argument("TvGaborCourse: the image is empty or flat");
+  }
+}
+
+}  // namespace
+
+template <typename Real>
+class TvGaborCourse<Real>::Solver {
+ public:
+  virtual ~Solver() = default;
+  virtual void advance(int steps) = 0;
+  [[nodiscard]] virtual engine::TvGaborCertificate<Real> certificate() = 0;
+};
+
+template <typename Real>
+class TvGaborCourse<Real>::Admm final : public Solver {
+ public:
+  Admm(const GreyImage& image, const engine::TvGaborOptions& options)
+      : image_(image), options_(without_end(options)), solver_(image_, options_) {}
+
+  void advance(int steps) override {
+    static_cast<void>(solver_.run(solver_.steps() + steps, engine::Patience::unlimited));
+  }
+  /// The solver looks for the first time after its first steps, so the start is certified here.
+  engine::TvGaborCertificate<Real> certificate() override {
+    if (solver_.steps() > 0) return solver_.certificate();
+    const auto problem = engine::tv_gabor_problem<Real>(image_, options_);
+    engine::RealFft<Real> fft(problem.image.height(), problem.image.width());
+    return engine::certify(problem, solver_.z(), solver_.schedule().penalty(), fft);
+  }
+
+ private:
+  static engine::TvGaborOptions without_end(engine::TvGaborOptions options) {
+    options.gap = -1.0;  // which no gap reaches
+    return options;
+  }
+
+  GreyImage image_;
+  engine::TvGaborOptions options_;
+  engine::TvGaborSolver<Real> solver_;
+};
+
+template <typename Real>
+template <typename engine::Method>
+class TvGaborCourse<Real>::OnDual final : public Solver {
+ public:
+  OnDual(const GreyImage& image, const engine::TvGaborOptions& options)
+      : problem_(engine::tv_gabor_problem<Real>(image, options)),
+        fft_(problem_.image.height(), problem_.image.width(), engine::FftPlan::measured),
+        method_(problem_, fft_) {}
+
+  void advance(int steps) override {
+    for (int step = 0; step < steps; ++step) method_.step();
+  }
+  engine::TvGaborCertificate<Real> certificate() override {
+    return engine::certify(problem_, method_.q(), 1.0, fft_);
+  }
+
+ private:
+  engine::TvGaborProblem<Real> problem_;
+  engine::RealFft<Real> fft_;
+  engine::Method method_;
+};
+
+template <typename Real>
+TvGaborCourse<Real>::TvGaborCourse(const GreyImage& image, const engine::TvGaborOptions& options,
+                                   TvGaborAlgorithm algorithm)
+    : height_(image.height()), width_(image.width()) {
+  refuse_flat(image);
+  const engine::TvGaborOptions all = with_components(image, options);
+  switch (algorithm) {
+    case TvGaborAlgorithm::admm:
+      solver_ = std::make_unique<Admm>(image, all);
+      break;
+    case TvGaborAlgorithm::fista:
+      solver_ = std::make_unique<OnDual<Fista<Real>>>(image, all);
+      break;
+    case TvGaborAlgorithm::fixed_point:
+      solver_ = std::make_unique<OnDual<FixedPoint<Real>>>(image, all);
+      break;
+  }
+}
+
+template <typename Real>
+TvGaborCourse<Real>::~TvGaborCourse() = default;
+
+template <typename Real>
+void TvGaborCourse<Real>::advance(int steps) {
+  solver_->advance(steps);
+  steps_ += steps;
+}
+
+template <typename Real>
+TvGaborPoint<Real> TvGaborCourse<Real>::point() {
+  const engine::TvGaborCertificate<Real> certificate = solver_->certificate();
+  return {steps_, certificate.gap,
+          engine::cropped_from_torus(certificate.texture, height_, width_)};
+}
+
+template class TvGaborCourse<float>;
+template class TvGaborCourse<double>;
+
+}  // namespace touchtrial::reference

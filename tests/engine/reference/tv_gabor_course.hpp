@@ -1,0 +1,63 @@
+/// \file TV-Gabor by three solvers, step by step, to compare them: the engine's ADMM, and two
+/// slower ones on the dual, which share the engine's transforms and not its iteration. Source:
+/// docs/method.md, "TV-Gabor".
+#pragma once
+
+#include "core/plane.hpp"
+#include "engine/extraction.hpp"
+
+#include <memory>
+
+namespace touchtrial::reference {
+
+enum class TvGaborAlgorithm {
+  admm,  ///< the one that extraction uses, its checks included
+  /// Accelerated projected gradient, steps of 1/8: A. Beck and M. Teboulle, "A fast iterative
+  /// shrinkage-thresholding algorithm for linear inverse problems", 2009.
+  fista,
+  /// The semi-implicit fixed point, tau = 1/8: A. Chambolle, "An algorithm for total variation
+  /// minimization and applications", 2004. The baseline to beat.
+  fixed_point,
+};
+
+/// What a solver has after some steps.
+template <typename Real>
+struct TvGaborPoint {
+  int steps = 0;
+  double gap = 0.0;     ///< relative primal-dual gap, >= 0
+  Plane<Real> texture;  ///< v, grey levels, of the image's shape
+};
+
+/// A solver in one precision throughout: float does not go on in double as extraction's does. One
+/// object belongs to one thread at a time.
+template <typename Real>
+class TvGaborCourse {
+ public:
+  /// \param image  at least 1 x 1 \param options  lambda and components count; gap and max_steps
+  /// do not
+  /// \throws std::invalid_argument if the image is empty or flat, or too small to choose a
+  /// component
+  TvGaborCourse(const GreyImage& image, const engine::TvGaborOptions& options,
+                TvGaborAlgorithm algorithm);
+  ~TvGaborCourse();
+  TvGaborCourse(const TvGaborCourse&) = delete;
+  TvGaborCourse& operator=(const TvGaborCourse&) = delete;
+
+  /// Takes steps: what a benchmark times. ADMM checks every tenth, and the last of each call.
+  /// \param steps  >= 0
+  void advance(int steps);
+  /// Texture and gap as they are; does not change the course. Costs about a step.
+  [[nodiscard]] TvGaborPoint<Real> point();
+
+ private:
+  class Solver;
+  class Admm;
+  template <typename engine::Method>
+  class OnDual;
+
+  int height_, width_;
+  int steps_ = 0;
+  std::unique_ptr<Solver> solver_;
+};
+
+}  // namespace touchtrial::reference
