@@ -1,5 +1,6 @@
 #include "analysis/exports/bids/export_bids.hpp"
 #include "analysis/exports/export_csv.hpp"
+#include "analysis/exports/export_events.hpp"
 #include "analysis/exports/export_json.hpp"
 #include "analysis/exports/export_psych_ds.hpp"
 #include "analysis/exports/r/mixed_model.hpp"
@@ -53,15 +54,11 @@ void require_fitting(const ExportArguments& arguments) {
   }
 }
 
-std::vector<fs::path> export_model(const store::StudyStore& store,
-                                   const std::optional<analysis::Outcomes>& outcomes,
-                                   const fs::path& folder) {
-  if (!outcomes) {
-    throw StoreError(
-        "the study has not been unblinded, and a model is all outcomes; run `touchtrial close` and "
-        "`touchtrial unblind`");
-  }
-  return analysis::export_mixed_model(store, *outcomes, folder);
+/// \param what  would tell what was presented, or how it was answered
+void require_outcomes(const std::optional<analysis::Outcomes>& outcomes, const std::string& what) {
+  if (outcomes) return;
+  throw StoreError("the study has not been unblinded, and " + what +
+                   "; run `touchtrial close` and `touchtrial unblind`");
 }
 
 std::vector<fs::path> write_files(const ExportArguments& arguments, const store::StudyStore& store,
@@ -70,7 +67,14 @@ std::vector<fs::path> write_files(const ExportArguments& arguments, const store:
   const std::string& format = arguments.format;
   if (format == "csv") return analysis::export_csv(store, outcomes, arguments.folder);
   if (format == "json") return {analysis::export_json(store, outcomes, arguments.folder)};
-  if (format == "r") return export_model(store, outcomes, arguments.folder);
+  if (format == "r") {
+    require_outcomes(outcomes, "a model is all outcomes");
+    return analysis::export_mixed_model(store, *outcomes, arguments.folder);
+  }
+  if (format == "events") {
+    require_outcomes(outcomes, "forces before a fault tell what was presented");
+    return analysis::export_events(store, *key, *outcomes, arguments.folder);
+  }
   const analysis::DatasetSource study{store, outcomes ? &*outcomes : nullptr,
                                       key ? &*key : nullptr};
   analysis::DatasetOptions options = arguments.dataset;
@@ -119,7 +123,7 @@ void add_export_command(CLI::App& program, Action& action) {
       ->check(study_place_validator())
       ->required();
   command->add_option("--format", arguments->format, "What to write")
-      ->check(CLI::IsMember({"csv", "json", "bids", "psych-ds", "r"}))
+      ->check(CLI::IsMember({"csv", "json", "bids", "psych-ds", "r", "events"}))
       ->capture_default_str();
   command->add_option("-o,--out", arguments->folder, "Folder to write into")
       ->check(place_validator())

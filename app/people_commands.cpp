@@ -6,7 +6,6 @@
 #include "protocols/store/personal_data.hpp"
 #include "protocols/store/study_store.hpp"
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -86,32 +85,9 @@ int note(const PeopleArguments& arguments) {
   return 0;
 }
 
-/// Copies that the program made beside the database; they were made before the key was destroyed.
-std::vector<fs::path> copies_of(const fs::path& database) {
-  const fs::path absolute = fs::absolute(database);
-  const std::string prefix = absolute.filename().string() + ".";
-  std::vector<fs::path> copies;
-  std::error_code error;
-  for (fs::directory_iterator entry(absolute.parent_path(), error), end; !error && entry != end;
-       entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    if (name.starts_with(prefix) && name.find(".backup") != std::string::npos) {
-      copies.push_back(entry->path());
-    }
-  }
-  std::sort(copies.begin(), copies.end());
-  return copies;
-}
-
-std::string remaining_text(const fs::path& database) {
-  std::string text;
-  for (const fs::path& copy : copies_of(database)) {
-    text += "still readable: " + copy.string() + "; destroy this copy\n";
-  }
-  return text +
-         "destroy every other copy of the database too (backups, snapshots, sent files): in them "
-         "the participant's data can still be read\n";
-}
+constexpr const char* kRemaining =
+    "destroy every other copy of the database too (backups, snapshots, sent files): in them the "
+    "participant's data can still be read\n";
 
 /// Personal data go even if the key went before, in a withdrawal that was broken off.
 bool remove_person(const PeopleArguments& arguments) {
@@ -141,7 +117,7 @@ int withdraw(const PeopleArguments& arguments) {
   print(place_of(arguments) + ": withdrawn; what was sealed of this person cannot be read again" +
         (removed ? ", and the personal data are removed\n" : "\n") +
         (store.stations() > 0 ? "this is a merged database: withdraw in the station's too\n" : "") +
-        remaining_text(arguments.database));
+        kRemaining);
   return 0;
 }
 
@@ -202,7 +178,7 @@ void add_people_commands(CLI::App& program, Action& action) {
   run_with(noted, action, note);
   auto database = std::make_shared<fs::path>();
   CLI::App* command =
-      program.add_subcommand("migrate", "Bring an older database up to date; a copy is kept");
+      program.add_subcommand("migrate", "Bring an older database up to date; copy it first");
   command->add_option("DB", *database, "Database of the study")->required();
   command->callback([=, &action] { action = [=] { return migrate_database(*database); }; });
 }

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 
 namespace touchtrial::collect {
 
@@ -39,6 +40,12 @@ class ServerArray {
   void add(const std::optional<Value>& value) {
     if (value) return add(*value);
     add_bare("NULL");
+  }
+
+  void add(std::monostate) { add_bare("NULL"); }
+  template <typename... Values>
+  void add(const std::variant<std::monostate, Values...>& value) {
+    std::visit([this](const auto& held) { add(held); }, value);
   }
 
   /// How long it is so far, in bytes.

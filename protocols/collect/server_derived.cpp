@@ -3,12 +3,13 @@
 #include "protocols/collect/server_study.hpp"
 #include "protocols/store/collected_chain.hpp"
 #include "protocols/store/damaged_store.hpp"
-#include "protocols/store/state_names.hpp"
+#include "protocols/store/row_cells.hpp"
+#include "protocols/store/tables.hpp"
 
+#include <initializer_list>
 #include <map>
 #include <string>
 #include <utility>
-#include <vector>
 
 namespace touchtrial::collect {
 namespace {
@@ -16,40 +17,31 @@ namespace {
 /// Station on the server, and the session's own number.
 using Place = std::pair<int, int>;
 
-/// One row of a derived table as text, in the order of its columns.
-std::string text_of(const store::SessionRow& row) {
-  return row.participant + "|" + std::to_string(row.enrolment) + "|" +
-         std::string(store::name_of(row.state)) + "|" + std::to_string(row.simulated) + "|" +
-         std::to_string(row.pilot) + "|" + std::to_string(row.excluded) + "|" +
-         std::to_string(row.withdrawn) + "|" + row.device + "|" + row.replaced_by;
+store::Cell cell_of(const pqxx::field& field, store::ColumnType type) {
+  if (field.is_null()) return {};
+  switch (type) {
+    case store::ColumnType::integer:
+      return field.as<std::int64_t>();
+    case store::ColumnType::real:
+      return field.as<double>();
+    case store::ColumnType::text:
+      return field.as<std::string>();
+    case store::ColumnType::blob:
+      break;  // derived tables have none
+  }
+  return {};
 }
 
-template <typename Value>
-std::string text_of(const std::optional<Value>& value) {
-  return value ? std::to_string(*value) : "";
+/// \param tables  whose columns the row has, one table after the other
+store::Cells cells_of(const pqxx::row& row, std::initializer_list<store::Table> tables) {
+  store::Cells cells;
+  for (const store::Table table : tables) {
+    for (const store::TableColumn& column : store::table_definition(table).columns) {
+      cells.push_back(cell_of(row[static_cast<pqxx::row::size_type>(cells.size())], column.type));
+    }
+  }
+  return cells;
 }
-
-std::string text_of(const store::TrialRow& row) {
-  const auto time = [](const std::optional<std::chrono::nanoseconds>& at) {
-    return at ? std::to_string(at->count()) : std::string();
-  };
-  return std::to_string(row.block) + "|" + std::string(store::name_of(row.state)) + "|" +
-         time(row.presented_at) + "|" + time(row.contact_at) + "|" + std::to_string(row.valid) +
-         "|" + std::to_string(row.overruns) + "|" + std::to_string(row.samples) + "|" +
-         std::to_string(row.explorations) + "|" + time(row.answered_at) + "|" +
-         text_of(row.position) + "|" + text_of(row.first_position) + "|" + text_of(row.confidence);
-}
-
-/// The same in SQL; rates, which have no such simple text, come as numbers.
-constexpr const char* kSessionRows =
-    "SELECT station, coalesce(own_session, session), concat_ws('|', participant, enrolment, state, "
-    "simulated, pilot, excluded, withdrawn, device, coalesce(replaced_by, '')) FROM sessions";
-constexpr const char* kTrialRows =
-    "SELECT s.station, coalesce(s.own_session, s.session), t.trial, t.rate_hz, concat(t.block, "
-    "'|', t.state, '|', t.presented_at_ns, '|', t.contact_at_ns, '|', t.valid, '|', t.overruns, "
-    "'|', t.samples, '|', t.explorations, '|', r.answered_at_ns, '|', r.position, '|', "
-    "r.first_position, '|', r.confidence) FROM trials t LEFT JOIN sessions s USING(session) "
-    "LEFT JOIN responses r ON r.session = t.session AND r.trial = t.trial";
 
 class DerivedCheck {
  public:
@@ -61,31 +53,22 @@ class DerivedCheck {
       const auto number = identity ? find_station(work, *identity) : std::nullopt;
       if (number) stations[station] = *number;
     }
-    for (const store::SessionRow& row : collected.sessions()) {
-      places_[row.session] = {stations[row.station], row.own_session};
-      sessions_[places_[row.session]] = text_of(row);
+    std::map<int, Place> places;
+    for (store::SessionRow row : collected.sessions()) {
+      const Place place(stations[row.station], row.own_session);
+      places[row.session] = place;
+      row.station = place.first;
+      sessions_[place] = row;
     }
     for (const store::TrialRow& row : collected.trials()) {
-      trials_[{places_[row.session], row.trial}] = {row.rate_hz, text_of(row)};
+      trials_[{places[row.session], row.trial}] = row;
       responses_ += row.answered_at ? 1 : 0;
     }
   }
 
   void run() {
-    for (const pqxx::row& row : work_.exec(kSessionRows)) {
-      const Place place(row[0].as<int>(), row[1].as<int>());
-      const auto expected = sessions_.extract(place);
-      if (expected.empty() || expected.mapped() != row[2].c_str()) refuse("sessions", place);
-    }
-    if (!sessions_.empty()) refuse("sessions", sessions_.begin()->first);
-    for (const pqxx::row& row : work_.exec(kTrialRows)) {
-      const Place place(row[0].as<int>(0), row[1].as<int>(0));
-      const auto expected = trials_.extract({place, row[2].as<int>()});
-      const bool same = !expected.empty() && expected.mapped().first == row[3].as<double>() &&
-                        expected.mapped().second == row[4].c_str();
-      if (!same) refuse("trials or responses", place);
-    }
-    if (!trials_.empty()) refuse("trials", trials_.begin()->first.first);
+    check_sessions();
+    check_trials();
     if (work_.exec1("SELECT count(*) FROM responses")[0].as<int>() != responses_) {
       throw store::DamagedStore(
           server_.address().shown() +
@@ -95,6 +78,36 @@ class DerivedCheck {
   }
 
  private:
+  void check_sessions() {
+    for (const pqxx::row& row : work_.exec(
+             "SELECT " + store::column_list(store::table_definition(store::Table::sessions)) +
+             " FROM sessions")) {
+      store::SessionRow there = store::session_row(cells_of(row, {store::Table::sessions}));
+      const Place place(there.station, there.own_session);
+      places_[there.session] = place;
+      const auto expected = sessions_.extract(place);
+      // Sessions have other numbers there.
+      if (!expected.empty()) there.session = expected.mapped().session;
+      if (expected.empty() || expected.mapped() != there) refuse("sessions", place);
+    }
+    if (!sessions_.empty()) refuse("sessions", sessions_.begin()->first);
+  }
+
+  void check_trials() {
+    for (const pqxx::row& row : work_.exec(
+             "SELECT " + store::column_list(store::table_definition(store::Table::trials), "t.") +
+             ", " + store::column_list(store::table_definition(store::Table::responses), "r.") +
+             " FROM trials t LEFT JOIN responses r USING(session, trial)")) {
+      store::TrialRow there =
+          store::trial_row(cells_of(row, {store::Table::trials, store::Table::responses}));
+      const Place place = places_[there.session];
+      const auto expected = trials_.extract({place, there.trial});
+      if (!expected.empty()) there.session = expected.mapped().session;
+      if (expected.empty() || expected.mapped() != there) refuse("trials or responses", place);
+    }
+    if (!trials_.empty()) refuse("trials", trials_.begin()->first.first);
+  }
+
   [[noreturn]] void refuse(const std::string& table, const Place& place) const {
     throw store::DamagedStore(server_.address().shown() + ", station " +
                               std::to_string(place.first) + ", session " +
@@ -104,9 +117,9 @@ class DerivedCheck {
 
   pqxx::work& work_;
   const ServerConnection& server_;
-  std::map<int, Place> places_;
-  std::map<Place, std::string> sessions_;
-  std::map<std::pair<Place, int>, std::pair<double, std::string>> trials_;
+  std::map<int, Place> places_;  ///< by the session's number on the server
+  std::map<Place, store::SessionRow> sessions_;
+  std::map<std::pair<Place, int>, store::TrialRow> trials_;
   int responses_ = 0;
 };
 

@@ -1,10 +1,13 @@
 #include "protocols/collect/server_rows.hpp"
 
 #include "protocols/collect/server_array.hpp"
+#include "protocols/collect/server_schema.hpp"
 #include "protocols/store/event_fault.hpp"
-#include "protocols/store/state_names.hpp"
+#include "protocols/store/row_cells.hpp"
+#include "protocols/store/tables.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <string>
 #include <utility>
@@ -18,12 +21,31 @@ constexpr std::size_t kBatch = 8U << 20U;
 constexpr std::int64_t kLargestEvent = 64 << 20;
 constexpr std::int64_t kLargestTrace = 512 << 20;
 
+/// What arrays of a column's values are cast to.
+std::string array_of(store::ColumnType type) {
+  return std::string(kServerTypes.at(static_cast<std::size_t>(type))) + "[]";
+}
+
+/// "INSERT INTO trials(...) SELECT * FROM unnest(...)": a parameter a column, which holds all rows.
+std::string insertion_sql(const store::TableDefinition& table) {
+  std::string parameters;
+  int number = 0;
+  for (const store::TableColumn& column : table.columns) {
+    parameters +=
+        (number == 0 ? "$" : ", $") + std::to_string(number + 1) + "::" + array_of(column.type);
+    ++number;
+  }
+  return "INSERT INTO " + std::string(table.name) + "(" + store::column_list(table) +
+         ") SELECT * FROM unnest(" + parameters + ")";
+}
+
 /// Columns of rows of events, on their way.
 class EventBatch {
  public:
   EventBatch(pqxx::work& work, int session) : work_(work), session_(session) {}
 
   void add(const store::Event& event) {
+    sessions_.add(session_);
     sequences_.add(event.sequence);
     kinds_.add(store::name_of(event.kind));
     times_.add(event.at.count());
@@ -37,19 +59,17 @@ class EventBatch {
 
   void send() {
     if (sequences_.size() == 0) return;
-    work_.exec_params0(
-        "INSERT INTO events(session, sequence, kind, at_ns, body, sealed, previous, hash, "
-        "own_session) SELECT $1::bigint, e.* FROM unnest($2::bigint[], $3::text[], $4::bigint[], "
-        "$5::text[], $6::bytea[], $7::bytea[], $8::bytea[], $9::bigint[]) AS e",
-        session_, sequences_.text(), kinds_.text(), times_.text(), bodies_.text(), sealed_.text(),
-        previous_.text(), hashes_.text(), own_.text());
-    sequences_ = kinds_ = times_ = bodies_ = sealed_ = previous_ = hashes_ = own_ = {};
+    work_.exec_params0(insertion_sql(store::table_definition(store::Table::events)),
+                       sessions_.text(), sequences_.text(), kinds_.text(), times_.text(),
+                       bodies_.text(), sealed_.text(), previous_.text(), hashes_.text(),
+                       own_.text());
+    sessions_ = sequences_ = kinds_ = times_ = bodies_ = sealed_ = previous_ = hashes_ = own_ = {};
   }
 
  private:
   pqxx::work& work_;
   int session_;
-  ServerArray sequences_, kinds_, times_, bodies_, sealed_, previous_, hashes_, own_;
+  ServerArray sessions_, sequences_, kinds_, times_, bodies_, sealed_, previous_, hashes_, own_;
 };
 
 /// Traces on their way, one after the other in one parameter that is sent as it is: as text they
@@ -84,50 +104,15 @@ class TraceBatch {
   ServerArray trials_, starts_, lengths_;
 };
 
-std::optional<std::int64_t> count_of(const std::optional<std::chrono::nanoseconds>& time) {
-  if (!time) return std::nullopt;
-  return time->count();
-}
-
-void insert_trial_rows(pqxx::work& work, int session, const store::DerivedRows& rows) {
-  ServerArray trials, blocks, states, presented, contacts, valid, overruns, samples, rates,
-      explorations;
-  for (const auto& [id, row] : rows.trials) {
-    trials.add(row.trial);
-    blocks.add(row.block);
-    states.add(store::name_of(row.state));
-    presented.add(row.presented_at.count());
-    contacts.add(count_of(row.contact_at));
-    valid.add(row.valid);
-    overruns.add(row.overruns);
-    samples.add(row.samples);
-    rates.add(row.rate_hz);
-    explorations.add(row.explorations);
+void insert_rows(pqxx::work& work, store::Table table, std::span<const store::Cells> rows) {
+  const store::TableDefinition& definition = store::table_definition(table);
+  std::vector<std::string> columns;
+  for (std::size_t i = 0; i < definition.columns.size(); ++i) {
+    ServerArray column;
+    for (const store::Cells& row : rows) column.add(row.at(i));
+    columns.push_back(column.text());
   }
-  work.exec_params0(
-      "INSERT INTO trials(session, trial, block, state, presented_at_ns, contact_at_ns, valid, "
-      "overruns, samples, rate_hz, explorations) SELECT $1::bigint, t.* FROM unnest($2::bigint[], "
-      "$3::bigint[], $4::text[], $5::bigint[], $6::bigint[], $7::bigint[], $8::bigint[], "
-      "$9::bigint[], $10::double precision[], $11::bigint[]) AS t",
-      session, trials.text(), blocks.text(), states.text(), presented.text(), contacts.text(),
-      valid.text(), overruns.text(), samples.text(), rates.text(), explorations.text());
-}
-
-void insert_response_rows(pqxx::work& work, int session, const store::DerivedRows& rows) {
-  ServerArray trials, times, positions, firsts, confidences;
-  for (const auto& [id, row] : rows.trials) {
-    if (!row.answered_at || !row.position) continue;
-    trials.add(row.trial);
-    times.add(row.answered_at->count());
-    positions.add(*row.position);
-    firsts.add(row.first_position);
-    confidences.add(row.confidence);
-  }
-  work.exec_params0(
-      "INSERT INTO responses(session, trial, answered_at_ns, position, first_position, confidence) "
-      "SELECT $1::bigint, r.* FROM unnest($2::bigint[], $3::bigint[], $4::bigint[], $5::bigint[], "
-      "$6::bigint[]) AS r",
-      session, trials.text(), times.text(), positions.text(), firsts.text(), confidences.text());
+  work.exec_params0(insertion_sql(definition), pqxx::prepare::make_dynamic_params(columns));
 }
 
 Digest digest_of(const pqxx::field& field, int session, std::int64_t sequence) {
@@ -191,18 +176,21 @@ void insert_key(pqxx::work& work, int session, const Bytes& wrapped) {
 }
 
 void insert_session(pqxx::work& work, const store::SessionRow& row) {
-  work.exec_params0(
-      "INSERT INTO sessions(session, participant, enrolment, state, simulated, pilot, excluded, "
-      "withdrawn, device, replaced_by, own_session, station) "
-      "VALUES($1, $2, $3, $4, $5, $6, $7, $8, $9, nullif($10, ''), $11, $12)",
-      row.session, row.participant, row.enrolment, std::string(store::name_of(row.state)),
-      int{row.simulated}, int{row.pilot}, int{row.excluded}, int{row.withdrawn}, row.device,
-      row.replaced_by, row.own_session, row.station);
+  insert_rows(work, store::Table::sessions,
+              std::array{store::session_cells(row, store::OwnNumber::always)});
 }
 
 void insert_trials(pqxx::work& work, int session, const store::DerivedRows& rows) {
-  insert_trial_rows(work, session, rows);
-  insert_response_rows(work, session, rows);
+  std::vector<store::Cells> trials;
+  std::vector<store::Cells> responses;
+  for (const auto& [id, own] : rows.trials) {
+    store::TrialRow row = own;
+    row.session = session;
+    trials.push_back(store::trial_cells(row));
+    if (row.position) responses.push_back(store::response_cells(row));
+  }
+  insert_rows(work, store::Table::trials, trials);
+  insert_rows(work, store::Table::responses, responses);
 }
 
 std::vector<store::Event> read_events(pqxx::work& work, int session, std::int64_t first) {

@@ -1,7 +1,5 @@
 #include "protocols/collect/server_schema.hpp"
 
-#include "protocols/store/tables.hpp"
-
 #include <array>
 
 namespace touchtrial::collect {
@@ -24,64 +22,34 @@ CREATE FUNCTION touchtrial_append_only() RETURNS trigger LANGUAGE plpgsql AS
   $$ BEGIN RAISE EXCEPTION '% are append-only', TG_TABLE_NAME; END $$;
 )sql";
 
-std::string name_of(store::ColumnType type) {
-  switch (type) {
-    case store::ColumnType::integer:
-      return "BIGINT";
-    case store::ColumnType::real:
-      return "DOUBLE PRECISION";
-    case store::ColumnType::text:
-      return "TEXT";
-    case store::ColumnType::blob:
-      return "BYTEA";
-  }
-  return {};
-}
-
-std::string listed(std::span<const std::string_view> names) {
-  std::string text;
-  for (const std::string_view name : names) text += (text.empty() ? "" : ", ") + std::string(name);
-  return text;
-}
-
-std::string column_sql(const store::TableColumn& column) {
-  std::string sql = std::string(column.name) + " " + name_of(column.type);
-  if (!column.nullable) sql += " NOT NULL";
-  if (!column.default_value.empty()) sql += " DEFAULT " + std::string(column.default_value);
-  return sql;
-}
-
 std::string table_sql(const store::TableDefinition& table) {
   const std::string name(table.name);
-  std::string sql = "CREATE TABLE " + name + "(";
-  for (const store::TableColumn& column : table.columns) sql += column_sql(column) + ", ";
-  for (const store::TableReference& reference : table.references) {
-    sql += "FOREIGN KEY(" + listed(reference.columns) + ") REFERENCES " +
-           std::string(reference.table) + "(" + listed(reference.columns) + "), ";
-  }
-  sql += "PRIMARY KEY(" + listed(table.key) + "));";
-  for (const store::UniqueIndex& index : table.unique) {
-    sql += "CREATE UNIQUE INDEX " + std::string(index.name) + " ON " + name + "(" +
-           std::string(index.column) + ") WHERE " + std::string(index.where) + ";";
-  }
+  std::string sql =
+      store::create_table_sql(table, kServerTypes) + ";\n" + store::create_indices_sql(table);
   if (table.append_only) {
     sql += "CREATE TRIGGER " + name + "_append_only BEFORE UPDATE OR DELETE OR TRUNCATE ON " +
            name + " FOR EACH STATEMENT EXECUTE FUNCTION touchtrial_append_only();";
   }
+  for (const store::TableColumn& column : table.columns) {
+    // Trying to make them smaller costs more than all the rest of storing them.
+    if (column.bulky) {
+      sql += "ALTER TABLE " + name + " ALTER COLUMN " + std::string(column.name) +
+             " SET STORAGE EXTERNAL;";
+    }
+  }
   return sql;
 }
 
-void make_first_version(pqxx::work& work) {
+void make_tables(pqxx::work& work) {
   work.exec(kServerAlone);
   for (const store::TableDefinition& table : store::table_definitions())
     work.exec(table_sql(table));
-  // Sealed bytes do not shrink, and trying costs more than all the rest of storing them.
-  work.exec("ALTER TABLE traces ALTER COLUMN box SET STORAGE EXTERNAL");
   work.exec("CREATE UNIQUE INDEX sessions_of_station ON sessions(station, own_session)");
+  work.exec_params0("INSERT INTO touchtrial_schema(version) VALUES($1)", store::kSchemaVersion);
 }
 
-constexpr std::array<ServerMigration, 1> kMigrations = {make_first_version};
-static_assert(kFirstServerVersion + kMigrations.size() - 1 == store::kSchemaVersion);
+constexpr std::array<ServerMigration, store::kSchemaVersion - store::kOldestSchemaVersion>
+    kMigrations = {};
 
 std::string our_names() {
   std::string names = "{stations";
@@ -115,9 +83,17 @@ std::optional<int> version_in(pqxx::work& work, const ServerConnection& server) 
   return std::nullopt;
 }
 
-[[noreturn]] void refuse_newer(const ServerConnection& server, int version, int known) {
-  server.refuse("was written by a newer Touchtrial (schema " + std::to_string(version) +
-                ", this one knows " + std::to_string(known) + "); install that");
+/// \throws StoreError if the tables are of a version that is not known here
+void require_known(const ServerConnection& server, int version, int newest) {
+  if (version > newest) {
+    server.refuse("was written by a newer Touchtrial (schema " + std::to_string(version) +
+                  ", this one knows " + std::to_string(newest) + "); install that");
+  }
+  if (version < store::kOldestSchemaVersion) {
+    server.refuse("was written by an older Touchtrial (schema " + std::to_string(version) +
+                  ", the oldest that this one knows is " +
+                  std::to_string(store::kOldestSchemaVersion) + "); use the program that wrote it");
+  }
 }
 
 }  // namespace
@@ -131,9 +107,9 @@ std::optional<int> server_version(ServerConnection& server) {
 }
 
 void bring_forward(ServerConnection& server, std::span<const ServerMigration> steps) {
-  const int newest = kFirstServerVersion + static_cast<int>(steps.size()) - 1;
+  const int newest = store::kOldestSchemaVersion + static_cast<int>(steps.size());
   const auto is_current = [&](std::optional<int> version) {
-    if (version && *version > newest) refuse_newer(server, *version, newest);
+    if (version) require_known(server, *version, newest);
     return version == newest;
   };
   // Whoever may only add rows must not need more rights than that.
@@ -143,18 +119,17 @@ void bring_forward(ServerConnection& server, std::span<const ServerMigration> st
         "SELECT pg_advisory_xact_lock(hashtextextended('touchtrial ' || current_schema(), 0))");
     const std::optional<int> version = version_in(work, server);
     if (is_current(version)) return;
-    const int done = version ? *version - kFirstServerVersion + 1 : 0;
-    for (const ServerMigration step : steps.subspan(static_cast<std::size_t>(done))) step(work);
-    work.exec_params0(version ? "UPDATE touchtrial_schema SET version = $1"
-                              : "INSERT INTO touchtrial_schema(version) VALUES($1)",
-                      newest);
+    if (!version) return make_tables(work);
+    const auto done = static_cast<std::size_t>(*version - store::kOldestSchemaVersion);
+    for (const ServerMigration step : steps.subspan(done)) step(work);
+    work.exec_params0("UPDATE touchtrial_schema SET version = $1", newest);
   });
 }
 
 void require_current(ServerConnection& server) {
   const std::optional<int> version = server_version(server);
   if (!version) server.refuse("holds no study yet; push one with `touchtrial sync`");
-  if (*version > store::kSchemaVersion) refuse_newer(server, *version, store::kSchemaVersion);
+  require_known(server, *version, store::kSchemaVersion);
   if (*version < store::kSchemaVersion) {
     server.refuse("is of an older schema; the next `touchtrial sync` brings it up to date");
   }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "protocols/collect/server_connection.hpp"
+#include "protocols/store/tables.hpp"
 
 #include <optional>
 #include <span>
@@ -10,23 +11,22 @@
 
 namespace touchtrial::collect {
 
-/// The version of tables.hpp with which servers began.
-inline constexpr int kFirstServerVersion = 3;
+inline constexpr store::TypeNames kServerTypes = {"BIGINT", "DOUBLE PRECISION", "TEXT", "BYTEA"};
 
 /// One step forward; runs inside a transaction.
 using ServerMigration = void (*)(pqxx::work&);
 
-/// server_migrations()[i] makes version kFirstServerVersion + i of the one before; the first of
-/// them begins with nothing.
+/// server_migrations()[i] makes version kOldestSchemaVersion + i + 1 of the one before it.
 [[nodiscard]] std::span<const ServerMigration> server_migrations();
 
 /// Nothing if the database has no tables of ours.
 /// \throws StoreError if there are others under their names, or no schema to look in
 [[nodiscard]] std::optional<int> server_version(ServerConnection& server);
 
-/// Makes the tables, or brings them to the newest version, in one transaction; two programs that do
-/// it at once come one after the other.
-/// \throws StoreError if the tables are newer, which are left alone, or not ours
+/// Makes the tables of kSchemaVersion, or brings those that are there to the newest version, which
+/// follows from `steps`, in one transaction; two programs that do it at once come one after the
+/// other.
+/// \throws StoreError if the tables are newer or too old, which are left alone, or not ours
 void bring_forward(ServerConnection& server,
                    std::span<const ServerMigration> steps = server_migrations());
 

@@ -6,7 +6,7 @@
 #include "protocols/collect/server_schema.hpp"
 #include "protocols/collect/server_study.hpp"
 #include "protocols/store/event_fault.hpp"
-#include "protocols/store/state_names.hpp"
+#include "protocols/store/row_cells.hpp"
 
 #include <algorithm>
 #include <filesystem>

@@ -2,11 +2,10 @@
 
 #include "protocols/store/chain_link.hpp"
 #include "protocols/store/collected_chain.hpp"
-#include "protocols/store/derived_rows.hpp"
 #include "protocols/store/event_fault.hpp"
-#include "protocols/store/event_rows.hpp"
 #include "protocols/store/file_chain.hpp"
-#include "protocols/store/schema_check.hpp"
+#include "protocols/store/rows.hpp"
+#include "protocols/store/schema.hpp"
 #include "protocols/store/session_check.hpp"
 
 #include <algorithm>

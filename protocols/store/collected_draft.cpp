@@ -3,8 +3,7 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "protocols/store/database.hpp"
-#include "protocols/store/derived_rows.hpp"
-#include "protocols/store/event_rows.hpp"
+#include "protocols/store/rows.hpp"
 #include "protocols/store/schema.hpp"
 #include "protocols/store/session_check.hpp"
 
@@ -67,7 +66,7 @@ struct CollectedDraft::Impl {
   /// \param file  nullptr: temporary
   Impl(std::unique_ptr<DraftFile> draft, Database made, std::filesystem::path name)
       : file(std::move(draft)), database(std::move(made)), target(std::move(name)) {
-    migrate(database, migrations());
+    make_tables(database);
     database.run([&] { database.write_carelessly(); });
   }
 

@@ -32,7 +32,8 @@ class Database {
   /// An existing one. For reading it leaves no files behind and works in a folder that cannot be
   /// written, if the file has no log beside it.
   /// \param newest_version  the newest schema that the program knows
-  /// \throws StoreError if it is missing, none of ours, damaged or newer (see check_header)
+  /// \throws StoreError if it is missing, none of ours, damaged, newer or too old (see
+  ///   check_header)
   [[nodiscard]] static Database open(const std::filesystem::path& path, Mode mode,
                                      int newest_version);
 
@@ -41,7 +42,7 @@ class Database {
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
   [[nodiscard]] SQLite::Database& connection() const { return connection_; }
 
-  /// A prepared statement, compiled once. \param sql  a literal
+  /// A prepared statement, compiled once. \param sql  lives as long as the program
   [[nodiscard]] Query query(const char* sql) const;
   /// One of its own, for loops whose body may ask anything else of this database.
   [[nodiscard]] Query separate_query(const char* sql) const;

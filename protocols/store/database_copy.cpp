@@ -1,11 +1,25 @@
 #include "protocols/store/database_copy.hpp"
 
 #include "protocols/store/database.hpp"
-#include "protocols/store/schema.hpp"
+#include "protocols/store/tables.hpp"
 
 #include <system_error>
 
+#include <SQLiteCpp/Backup.h>
+#include <sqlite3.h>
+
 namespace touchtrial::store {
+namespace {
+
+void write_copy(const Database& database, const std::filesystem::path& to) {
+  SQLite::Database target(to.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  if (SQLite::Backup(target, database.connection()).executeStep(-1) != SQLITE_DONE) {
+    throw StoreError(database.refusal(
+        "cannot be copied, because another program uses it; close it there, and try again"));
+  }
+}
+
+}  // namespace
 
 void copy_database(const std::filesystem::path& from, const std::filesystem::path& to) {
   const Database database = Database::open(from, Database::Mode::read_only, kSchemaVersion);

@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "protocols/store/damaged_store.hpp"
+#include "protocols/store/tables.hpp"
 
 #include <array>
 #include <cstring>
@@ -72,6 +73,11 @@ void check_header(const std::filesystem::path& path, int newest_version) {
                      ", this one knows " + std::to_string(newest_version) + "); use that version");
   }
   if (version == 0) refuse_damaged(path, "has no schema version, so it is damaged");
+  if (version < std::uint32_t{kOldestSchemaVersion}) {
+    refuse(path, "was written by an older Touchtrial (schema " + std::to_string(version) +
+                     ", the oldest that this one knows is " + std::to_string(kOldestSchemaVersion) +
+                     "); use the program that wrote it");
+  }
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);
   // A log may hold pages that the file still lacks.

@@ -10,8 +10,8 @@ namespace touchtrial::store {
 /// What tells our databases from other SQLite files: "TTRL" in SQLite's application_id.
 inline constexpr std::int32_t kApplicationId = 0x5454524c;
 
-/// Looks at a file before SQLite does, so that a file of others, a newer one or a truncated one is
-/// refused untouched.
+/// Looks at a file before SQLite does, so that a file of others, a newer one, one older than
+/// kOldestSchemaVersion, or a truncated one is refused untouched.
 /// \param newest_version  the newest schema that the program knows
 /// \throws DamagedStore if it is truncated or has no version, StoreError for all else; both with
 ///   file and remedy

@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <variant>
 
 #include <SQLiteCpp/Column.h>
 #include <SQLiteCpp/Statement.h>
@@ -48,6 +49,15 @@ class Query {
     return *this;
   }
   Query& bind(ByteView blob);
+  Query& bind(std::monostate) {
+    statement_->bind(++bound_);
+    return *this;
+  }
+  /// Whatever of these it holds; std::monostate is NULL.
+  template <typename... Values>
+  Query& bind(const std::variant<std::monostate, Values...>& value) {
+    return std::visit([this](const auto& held) -> Query& { return bind(held); }, value);
+  }
 
   /// \return whether there is a (further) row
   [[nodiscard]] bool step() { return statement_->executeStep(); }

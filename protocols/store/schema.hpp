@@ -1,34 +1,38 @@
-/// \file The tables, and how older databases become newer ones.
-/// Format: docs/data-dictionary.md, "Database".
+/// \file The tables in an SQLite file: how they are made, brought forward and checked.
+/// Private to protocols/store. Format: docs/data-dictionary.md, "Database".
 #pragma once
 
 #include "protocols/store/database.hpp"
 #include "protocols/store/tables.hpp"
 
 #include <filesystem>
+#include <optional>
 #include <span>
+#include <string>
 
 namespace touchtrial::store {
 
 /// One step forward; runs inside a transaction.
 using Migration = void (*)(SQLite::Database&);
 
-/// migrations()[v] makes version v + 1 of version v; version 0 is an empty database.
+/// migrations()[i] makes version kOldestSchemaVersion + i + 1 of the one before it.
 [[nodiscard]] std::span<const Migration> migrations();
 
-/// Brings a database to version `steps.size()` in one transaction. Unless it is empty, a copy of it
-/// is laid at backup_path first.
-/// \throws StoreError if a step fails, which leaves the database as it was, or
-///   another copy exists
-void migrate(const Database& database, std::span<const Migration> steps);
+/// Makes the tables of kSchemaVersion in an empty database, in one transaction.
+void make_tables(const Database& database);
+
+/// Opens an existing database whose tables are of the newest version, which follows from `steps`.
+/// For writing, older ones are first brought forward, in one transaction.
+/// \throws StoreError as Database::open; if a step fails, which leaves the database as it was; for
+///   reading, if the tables are older
+[[nodiscard]] Database open_current(const std::filesystem::path& path, Database::Mode mode,
+                                    std::span<const Migration> steps = migrations());
 
 [[nodiscard]] int schema_version(const Database& database);
 
-/// A copy of the whole database, whatever else is written meanwhile, under a name that is free.
-/// \throws StoreError if another program keeps it from being read
-void write_copy(const Database& database, const std::filesystem::path& to);
-
-/// `<db>.v<version>.backup`
-[[nodiscard]] std::filesystem::path backup_path(const std::filesystem::path& database, int version);
+/// Whether a database has the tables, indices and triggers of kSchemaVersion, and no others: a
+/// dropped trigger, an altered table, a view that stands in for something.
+/// \return what differs, by type and name; nothing if all agrees
+[[nodiscard]] std::optional<std::string> schema_fault(const Database& database);
 
 }  // namespace touchtrial::store

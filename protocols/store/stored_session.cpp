@@ -1,8 +1,7 @@
 #include "protocols/store/stored_session.hpp"
 
-#include "protocols/store/derived_rows.hpp"
-#include "protocols/store/event_rows.hpp"
 #include "protocols/store/payload_json.hpp"
+#include "protocols/store/rows.hpp"
 
 #include <utility>
 

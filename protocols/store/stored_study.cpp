@@ -2,9 +2,8 @@
 
 #include "protocols/store/chain_link.hpp"
 #include "protocols/store/collected_chain.hpp"
-#include "protocols/store/derived_rows.hpp"
-#include "protocols/store/event_rows.hpp"
 #include "protocols/store/payload_json.hpp"
+#include "protocols/store/rows.hpp"
 
 #include <algorithm>
 #include <limits>

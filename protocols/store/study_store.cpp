@@ -4,9 +4,8 @@
 #include "protocols/store/chain_check.hpp"
 #include "protocols/store/collected_draft.hpp"
 #include "protocols/store/damaged_store.hpp"
-#include "protocols/store/derived_rows.hpp"
-#include "protocols/store/event_rows.hpp"
 #include "protocols/store/payload_json.hpp"
+#include "protocols/store/rows.hpp"
 #include "protocols/store/schema.hpp"
 #include "protocols/store/stored_session.hpp"
 #include "protocols/store/stored_study.hpp"
@@ -32,13 +31,8 @@ void remove_database(const std::filesystem::path& path) {
 }
 
 void check_tables(const Database& database) {
-  const int tables =
-      database.connection()
-          .execAndGet(
-              "SELECT count(*) FROM sqlite_schema WHERE type = 'table' AND name IN ('events', "
-              "'traces', 'participant_keys', 'sessions', 'trials', 'responses')")
-          .getInt();
-  if (tables != 6) {
+  for (const TableDefinition& table : table_definitions()) {
+    if (database.connection().tableExists(std::string(table.name))) continue;
     throw DamagedStore(
         database.refusal("lacks tables of its schema; it is damaged, restore it from a backup"));
   }
@@ -102,7 +96,7 @@ StudyStore StudyStore::create(const std::filesystem::path& path, const StudyComm
 void StudyStore::fill_new(const std::filesystem::path& draft, const StudyCommitment& commitment,
                           std::chrono::nanoseconds at) {
   Impl impl(Database::create(draft));
-  migrate(impl.database(), migrations());
+  make_tables(impl.database());
   impl.change(
       [&] { impl.study.append_to_file(EventKind::study_committed, at, to_json(commitment)); });
   // From its birth the file is whole without its log.
@@ -110,15 +104,8 @@ void StudyStore::fill_new(const std::filesystem::path& draft, const StudyCommitm
 }
 
 StudyStore StudyStore::open(const std::filesystem::path& path, Access access) {
-  const bool writes = access == Access::read_write;
-  auto impl = std::make_unique<Impl>(Database::open(
-      path, writes ? Database::Mode::read_write : Database::Mode::read_only, kSchemaVersion));
-  if (writes) {
-    migrate(impl->database(), migrations());
-  } else if (schema_version(impl->database()) < kSchemaVersion) {
-    impl->study.refuse(
-        "is of an older schema; `touchtrial migrate` brings it up to date and keeps a copy");
-  }
+  auto impl = std::make_unique<Impl>(open_current(
+      path, access == Access::read_write ? Database::Mode::read_write : Database::Mode::read_only));
   impl->run([&] { check_tables(impl->database()); });
   return StudyStore(std::move(impl));
 }

@@ -121,13 +121,13 @@ class StudyStore {
 
   enum class Access { read_only, read_write };
 
-  /// Opens an existing database; an older schema is migrated (read_write) after a backup beside the
-  /// file, a newer one is refused untouched. Reading changes nothing (but folds in a log that a
-  /// crash left), leaves nothing beside the file, and sees what other programs write; a file
+  /// Opens an existing database; one of another schema is refused untouched, unless this program
+  /// knows how to bring it forward and may write. Reading changes nothing (but folds in a log that
+  /// a crash left), leaves nothing beside the file, and sees what other programs write; a file
   /// without a -wal can be read where nothing can be written, but should not be written to then by
   /// anybody else. Only what opening takes is looked at: see first_fault.
   /// \throws DamagedStore if it is truncated, lacks tables or cannot be read by SQLite
-  /// \throws StoreError if it is missing, no Touchtrial database, or newer
+  /// \throws StoreError if it is missing, no Touchtrial database, or of another schema
   [[nodiscard]] static StudyStore open(const std::filesystem::path& path, Access access);
 
   ~StudyStore();

@@ -17,8 +17,8 @@ constexpr auto kEvents = std::to_array<TableColumn>({{"session", integer},
                                                      {"previous", blob},
                                                      {"hash", blob},
                                                      {"own_session", integer, true}});
-constexpr auto kTraces =
-    std::to_array<TableColumn>({{"session", integer}, {"trial", integer}, {"box", blob}});
+constexpr auto kTraces = std::to_array<TableColumn>(
+    {{"session", integer}, {"trial", integer}, {"box", blob, false, {}, true}});
 constexpr auto kKeys = std::to_array<TableColumn>({{"session", integer}, {"wrapped", blob}});
 constexpr auto kSessions = std::to_array<TableColumn>({{"session", integer},
                                                        {"participant", text},
@@ -70,10 +70,69 @@ constexpr auto kTables = std::to_array<TableDefinition>({
     {"responses", kResponses, kOfTrial, false, {}, kResponsesRefer},
 });
 
+std::string listed(std::span<const Names> names) {
+  std::string text;
+  for (const Names name : names) text += (text.empty() ? "" : ", ") + std::string(name);
+  return text;
+}
+
+std::string reference_sql(const TableReference& reference) {
+  return "REFERENCES " + std::string(reference.table) + "(" + listed(reference.columns) + ")";
+}
+
+std::string column_sql(const TableDefinition& table, const TableColumn& column,
+                       const TypeNames& types) {
+  std::string sql =
+      std::string(column.name) + " " + std::string(types.at(static_cast<std::size_t>(column.type)));
+  if (table.key.size() == 1 && table.key.front() == column.name) return sql + " PRIMARY KEY";
+  if (!column.nullable) sql += " NOT NULL";
+  if (!column.default_value.empty()) sql += " DEFAULT " + std::string(column.default_value);
+  for (const TableReference& reference : table.references) {
+    if (reference.columns.size() == 1 && reference.columns.front() == column.name) {
+      sql += " " + reference_sql(reference);
+    }
+  }
+  return sql;
+}
+
 }  // namespace
 
 std::span<const TableDefinition> table_definitions() {
   return kTables;
+}
+
+const TableDefinition& table_definition(Table table) {
+  return kTables.at(static_cast<std::size_t>(table));
+}
+
+std::string column_list(const TableDefinition& table, std::string_view prefix) {
+  std::string text;
+  for (const TableColumn& column : table.columns) {
+    text += (text.empty() ? "" : ", ") + std::string(prefix) + std::string(column.name);
+  }
+  return text;
+}
+
+std::string create_table_sql(const TableDefinition& table, const TypeNames& types) {
+  std::string sql = "CREATE TABLE " + std::string(table.name) + "(\n";
+  for (const TableColumn& column : table.columns) {
+    sql += "  " + column_sql(table, column, types) + ",\n";
+  }
+  if (table.key.size() > 1) sql += "  PRIMARY KEY(" + listed(table.key) + "),\n";
+  for (const TableReference& reference : table.references) {
+    if (reference.columns.size() == 1) continue;  // stands with its column
+    sql += "  FOREIGN KEY(" + listed(reference.columns) + ") " + reference_sql(reference) + ",\n";
+  }
+  return sql.substr(0, sql.size() - 2) + "\n)";
+}
+
+std::string create_indices_sql(const TableDefinition& table) {
+  std::string sql;
+  for (const UniqueIndex& index : table.unique) {
+    sql += "CREATE UNIQUE INDEX " + std::string(index.name) + " ON " + std::string(table.name) +
+           "(" + std::string(index.column) + ") WHERE " + std::string(index.where) + ";\n";
+  }
+  return sql;
 }
 
 }  // namespace touchtrial::store

@@ -52,7 +52,7 @@ TEST_CASE("merged stations report and export what one station with all participa
   REQUIRE(merged.exit_code == 0);
   CHECK(json::parse(merged.output).at("participants") == 4);
   CHECK(merged.output == one.output);
-  for (const std::string format : {"csv", "json", "r", "psych-ds"}) {
+  for (const std::string format : {"csv", "json", "r", "psych-ds", "events"}) {
     for (const std::string name : {"one", "C"}) {
       const ProgramResult ran = study.run({"export", study.in(name + ".db"), "--format", format,
                                            "-o", study.in(name + "-" + format)});

@@ -2,8 +2,8 @@
 // run as an experimenter runs them.
 #include "app/study_folder.hpp"
 #include "core/cipher.hpp"
+#include "core/files.hpp"
 #include "protocols/design/study_key.hpp"
-#include "protocols/store/first_version.hpp"
 #include "protocols/store/personal_data.hpp"
 #include "protocols/store/study_store.hpp"
 #include "support/catch.hpp"
@@ -13,6 +13,8 @@
 #include <set>
 #include <string>
 #include <vector>
+
+#include <SQLiteCpp/Database.h>
 
 using namespace touchtrial;
 using namespace touchtrial::design;
@@ -259,18 +261,15 @@ TEST_CASE("after a withdrawal nothing that was sealed of that person can be open
   CHECK(study.outcomes().at("trials") == 4 * 6);
 }
 
-TEST_CASE("a withdrawal names the backups in which the person can still be read") {
+TEST_CASE("who withdrew can be replaced, and copies are to be destroyed") {
   const PeopleStudy study;
-  fs::copy_file(study.database(), study.path() / "study.db.v1.backup");
   const ProgramResult withdrawn = study.people("withdraw", "P001", {"--reason", "asked to"});
   REQUIRE(withdrawn.exit_code == 0);
-  CHECK(withdrawn.output.find("still readable: " + study.in("study.db.v1.backup")) !=
-        std::string::npos);
+  CHECK(withdrawn.output.find("destroy every other copy of the database") != std::string::npos);
   check_refused(study.people("withdraw", "P001", {"--reason", "again"}), 1,
                 {"P001", "already withdrawn"});
   check_refused(study.people("withdraw", "P9", {"--reason", "who"}), 1, {"P9", "no session"});
   check_refused(study.people("withdraw", "P002"), 2, {"--reason"});
-  // Who withdrew can be replaced, and does not come back.
   REQUIRE(study.people("replace", "P001", {"--with", "P031", "--reason", "place is wanted"})
               .exit_code == 0);
   check_refused(study.session_of("P001"), 1, {"P001"});
@@ -305,22 +304,18 @@ TEST_CASE("notes and deviations stand on the file's chain, before and after clos
   check_verified(study);
 }
 
-TEST_CASE("an older database is brought forward once, with a copy, and means what it meant") {
+TEST_CASE("migrate leaves a current database as it is, and refuses one that it does not know") {
   const PeopleStudy study;
-  const json before = study.quality();
-  const fs::path now = study.path() / "now.db";
-  fs::rename(study.database(), now);
-  fixture::write_first_version(study.database(), now);
-  check_refused(study.run({"report", study.in("study.db")}), 1, {"study.db", "migrate"});
-  const ProgramResult migrated = study.run({"migrate", study.in("study.db")});
-  INFO(migrated.errors);
-  REQUIRE(migrated.exit_code == 0);
-  CHECK(fs::exists(study.path() / "study.db.v1.backup"));
-  CHECK(study.quality() == before);
-  check_verified(study);
+  const Bytes before = read_file(study.database());
   CHECK(study.run({"migrate", study.in("study.db")}).exit_code == 0);
+  CHECK(read_file(study.database()) == before);
   check_refused(study.run({"migrate", study.in("none.db")}), 1, {"none.db", "no such database"});
-  // The copy was made before: who withdraws is told of it.
-  const ProgramResult withdrawn = study.people("withdraw", "P001", {"--reason", "asked to"});
-  CHECK(withdrawn.output.find("study.db.v1.backup; destroy this copy") != std::string::npos);
+  SQLite::Database(study.database().string(), SQLite::OPEN_READWRITE)
+      .exec("PRAGMA user_version = 2");
+  const Bytes older = read_file(study.database());
+  for (const char* const command : {"migrate", "report", "verify"}) {
+    check_refused(study.run({command, study.in("study.db")}), 1,
+                  {"study.db", "older Touchtrial (schema 2", "use the program that wrote it"});
+  }
+  CHECK(read_file(study.database()) == older);
 }

@@ -103,6 +103,13 @@ TEST_CASE("before unblinding, report and export show quality and no outcome") {
     CHECK(reported.output.find(label) == std::string::npos);
   }
   REQUIRE(study.run({"export", study.in("a.db"), "--out", study.in("csv")}).exit_code == 0);
+  for (const std::string format : {"r", "events"}) {
+    const ProgramResult refused =
+        study.run({"export", study.in("a.db"), "--format", format, "--out", study.in("none")});
+    CHECK(refused.exit_code == 1);
+    CHECK(refused.errors.find("has not been unblinded") != std::string::npos);
+    CHECK_FALSE(fs::exists(study.path() / "none"));
+  }
   const std::string trials = content(study.path() / "csv" / "trials.csv");
   const std::string header = trials.substr(0, trials.find('\n'));
   for (const std::string column : {"class", "exemplar", "method", "response", "correct"}) {

@@ -1,3 +1,4 @@
+#include "protocols/store/rows.hpp"
 #include "protocols/store/schema.hpp"
 #include "protocols/store/store_fixture.hpp"
 #include "support/catch.hpp"
@@ -52,8 +53,6 @@ void fail(SQLite::Database& database) {
   database.exec("CREATE TABLE half(x INTEGER) STRICT");
   database.exec("no SQL");
 }
-
-constexpr int kNext = kSchemaVersion + 1;
 
 std::vector<Migration> with_one_more(Migration step) {
   std::vector<Migration> steps(migrations().begin(), migrations().end());
@@ -165,13 +164,21 @@ TEST_CASE("what is no database of ours is refused untouched") {
   }
 }
 
-TEST_CASE("a newer database is refused untouched") {
+TEST_CASE("a database of a newer or an unknown older schema is refused untouched") {
   StoredFixture study(1);
   study.store.reset();
-  SQLite::Database(study.path.string(), SQLite::OPEN_READWRITE).exec("PRAGMA user_version = 4");
+  const auto refusal_as = [&](int version, Access access) {
+    SQLite::Database(study.path.string(), SQLite::OPEN_READWRITE)
+        .exec("PRAGMA user_version = " + std::to_string(version));
+    return refusal_untouched(study.path, access);
+  };
   for (const Access access : {Access::read_only, Access::read_write}) {
-    REQUIRE(contains(refusal_untouched(study.path, access),
-                     "newer Touchtrial (schema 4, this one knows 3)"));
+    CHECK(contains(refusal_as(4, access), "newer Touchtrial (schema 4, this one knows 3)"));
+    for (const int version : {1, 2}) {
+      CHECK(contains(refusal_as(version, access),
+                     "older Touchtrial (schema " + std::to_string(version) +
+                         ", the oldest that this one knows is 3); use the program that wrote it"));
+    }
   }
 }
 
@@ -222,46 +229,34 @@ TEST_CASE("a database that another program is writing to is refused with the rem
   REQUIRE(study.store->state().closed);
 }
 
-TEST_CASE("an older database is brought forward after a backup") {
+TEST_CASE("an older database is brought forward when it is opened for writing") {
   StoredFixture study(2);
   const auto trials = study.store->trials();
   study.store.reset();
   const std::vector<Migration> steps = with_one_more(add_a_table);
-  {
-    const Database database = Database::open(study.path, Database::Mode::read_write, kNext);
-    migrate(database, steps);
-    REQUIRE(schema_version(database) == kNext);
-    migrate(database, steps);  // nothing is left to do
+  const std::string before = content_of(study.path);
+  CHECK(contains(
+      refusal_of([&] { return open_current(study.path, Database::Mode::read_only, steps); }),
+      "is of an older schema; copy it, and bring it up to date with `touchtrial migrate`"));
+  CHECK(content_of(study.path) == before);
+  for (int i = 0; i < 2; ++i) {  // the second time nothing is left to do
+    const Database database = open_current(study.path, Database::Mode::read_write, steps);
+    CHECK(schema_version(database) == kSchemaVersion + 1);
+    CHECK(read_trials(database) == trials);
   }
-  const auto backup = backup_path(study.path, kSchemaVersion);
-  REQUIRE(backup.string() == study.path.string() + ".v3.backup");
-  const StudyStore before = StudyStore::open(backup, Access::read_only);
-  REQUIRE(before.trials() == trials);
-  REQUIRE_FALSE(before.first_fault());
-  REQUIRE(contains(refusal_of([&] { return StudyStore::open(study.path, Access::read_only); }),
-                   "newer"));
-  SQLite::Database raw(study.path.string());
-  REQUIRE(raw.execAndGet("SELECT count(*) FROM trials").getInt() == 6);
-  REQUIRE(raw.tableExists("later"));
+  CHECK(contains(refusal_of([&] { return StudyStore::open(study.path, Access::read_only); }),
+                 "newer"));
+  const Database database = open_current(study.path, Database::Mode::read_only, steps);
+  CHECK(database.connection().tableExists("later"));
+  CHECK(schema_fault(database) == "table later does not belong to the schema");
 }
 
 TEST_CASE("a migration that fails leaves the database as it was") {
   StoredFixture study(1);
   study.store.reset();
   const std::vector<Migration> steps = with_one_more(fail);
-  {
-    const Database database = Database::open(study.path, Database::Mode::read_write, kNext);
-    REQUIRE_THROWS_AS(migrate(database, steps), StoreError);
-    REQUIRE(schema_version(database) == kSchemaVersion);
-    REQUIRE_FALSE(database.connection().tableExists("half"));
-    // The same again: the backup that stands there is the one that would be made.
-    REQUIRE_FALSE(
-        contains(refusal_of([&] { migrate(database, steps); }), ".v3.backup exists already"));
-  }
-  StudyStore::open(study.path, Access::read_write).exclude(1, kUtc, "changes the file");
-  {
-    const Database database = Database::open(study.path, Database::Mode::read_write, kNext);
-    REQUIRE(contains(refusal_of([&] { migrate(database, steps); }), ".v3.backup exists already"));
-  }
-  REQUIRE_FALSE(StudyStore::open(study.path, Access::read_only).first_fault());
+  CHECK_THROWS_AS(open_current(study.path, Database::Mode::read_write, steps), StoreError);
+  CHECK_FALSE(SQLite::Database(study.path.string()).tableExists("half"));
+  CHECK(pragma(study.path, "user_version") == std::to_string(kSchemaVersion));
+  CHECK_FALSE(StudyStore::open(study.path, Access::read_only).first_fault());
 }

@@ -124,9 +124,8 @@ TEST_CASE("a database that is brought forward is the old one or the new one afte
   std::vector<Migration> steps(migrations().begin(), migrations().end());
   steps.push_back(
       [](SQLite::Database& database) { database.exec("CREATE TABLE later(x INTEGER) STRICT"); });
-  const int newest = static_cast<int>(steps.size());
   const auto bring_forward = [&](const std::filesystem::path& path) {
-    migrate(Database::open(path, Database::Mode::read_write, newest), steps);
+    static_cast<void>(open_current(path, Database::Mode::read_write, steps));
   };
   for (const Kind kind : kEnds) {
     Fault fault{.kind = kind, .at = 1};
@@ -138,8 +137,6 @@ TEST_CASE("a database that is brought forward is the old one or the new one afte
       if (!vfs.struck()) break;
       vfs.start_anew();
       bring_forward(study.path);
-      const auto backup = backup_path(study.path, newest - 1);
-      REQUIRE_FALSE(StudyStore::open(backup, StudyStore::Access::read_only).first_fault());
       SQLite::Database raw(study.path.string());
       REQUIRE(raw.tableExists("later"));
       REQUIRE(raw.execAndGet("SELECT count(*) FROM trials").getInt() == 3);

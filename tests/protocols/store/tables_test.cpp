@@ -1,6 +1,7 @@
-// The description of the tables, held against what the migrations make.
+// The description of the tables, held against what SQLite makes of it.
 #include "protocols/store/tables.hpp"
 
+#include "core/hash.hpp"
 #include "protocols/store/schema.hpp"
 #include "support/catch.hpp"
 
@@ -17,11 +18,11 @@ using namespace touchtrial::store;
 
 namespace {
 
-SQLite::Database migrated() {
-  SQLite::Database database(":memory:", SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
-  for (const Migration step : migrations()) step(database);
-  return database;
-}
+struct NewDatabase {
+  NewDatabase() { make_tables(made); }
+  Database made = Database::temporary("new");
+  SQLite::Database& database = made.connection();
+};
 
 std::string name_of(ColumnType type) {
   switch (type) {
@@ -92,7 +93,8 @@ std::set<std::string> names_of(SQLite::Database& database, const std::string& ty
 }  // namespace
 
 TEST_CASE("the tables of a new database are those that are described") {
-  SQLite::Database database = migrated();
+  const NewDatabase fresh;
+  SQLite::Database& database = fresh.database;
   std::set<std::string> names;
   for (const TableDefinition& table : table_definitions()) {
     names.emplace(table.name);
@@ -102,7 +104,8 @@ TEST_CASE("the tables of a new database are those that are described") {
 }
 
 TEST_CASE("what is taken once is described as the indices of a new database have it") {
-  SQLite::Database database = migrated();
+  const NewDatabase fresh;
+  SQLite::Database& database = fresh.database;
   std::set<std::string> names;
   for (const TableDefinition& table : table_definitions()) {
     for (const UniqueIndex& index : table.unique) {
@@ -116,7 +119,8 @@ TEST_CASE("what is taken once is described as the indices of a new database have
 }
 
 TEST_CASE("tables are append-only where a new database has triggers that say so") {
-  SQLite::Database database = migrated();
+  const NewDatabase fresh;
+  SQLite::Database& database = fresh.database;
   std::set<std::string> expected;
   for (const TableDefinition& table : table_definitions()) {
     if (!table.append_only) continue;
@@ -128,7 +132,8 @@ TEST_CASE("tables are append-only where a new database has triggers that say so"
 }
 
 TEST_CASE("tables refer to each other as a new database's do, and to tables before them") {
-  SQLite::Database database = migrated();
+  const NewDatabase fresh;
+  SQLite::Database& database = fresh.database;
   std::set<std::string> before;
   for (const TableDefinition& table : table_definitions()) {
     Lines described;
@@ -150,4 +155,22 @@ TEST_CASE("tables refer to each other as a new database's do, and to tables befo
     CHECK(found == described);
     before.emplace(table.name);
   }
+}
+
+// Whoever changes the tables gives them a new version, and a step that leads there.
+TEST_CASE("version 3 of the tables stays what it is") {
+  const NewDatabase fresh;
+  SQLite::Statement query(fresh.database,
+                          "SELECT type || ' ' || name || ' ' || tbl_name || ' ' || coalesce(sql, "
+                          "'') FROM sqlite_schema ORDER BY type, name");
+  std::string text;
+  while (query.executeStep()) {
+    std::string object = query.getColumn(0).getString();
+    std::erase_if(object, [](char c) { return c == ' ' || c == '\n'; });
+    text += object + '\n';
+  }
+  INFO(text);
+  CHECK(kSchemaVersion == 3);
+  CHECK(to_hex(sha256(bytes_of(text))) ==
+        "5431dda569d65ee95e995c4b3f8fc095799ce570d14e3ae8a8c39633563a5bb4");
 }

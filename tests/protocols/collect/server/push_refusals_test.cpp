@@ -2,6 +2,7 @@
 // chain that went on by itself, no rights.
 #include "protocols/collect/server/server_fixture.hpp"
 #include "protocols/collect/server_schema.hpp"
+#include "protocols/collect/server_stations.hpp"
 #include "protocols/store/damaged_store.hpp"
 #include "support/catch.hpp"
 
@@ -146,7 +147,7 @@ TEST_CASE("a newer schema is refused untouched, an older one brought forward") {
   const ServerFixture there;
   StoredFixture study(1);
   there.push(*study.store);
-  const std::array steps = {server_migrations()[0], ServerMigration{add_another_table}};
+  const std::array steps = {ServerMigration{add_another_table}};
   ServerConnection server(there.address());
   bring_forward(server, steps);
   CHECK(there.first("SELECT version FROM touchtrial_schema") == "4");
@@ -161,11 +162,25 @@ TEST_CASE("a newer schema is refused untouched, an older one brought forward") {
   check_untouched(there, counts);
 }
 
+TEST_CASE("an unknown older schema is refused untouched") {
+  const ServerFixture there;
+  StoredFixture study(1);
+  there.push(*study.store);
+  there.ask("UPDATE touchtrial_schema SET version = 2");
+  add(*study.store, 2);
+  const std::string counts = there.counts();
+  CHECK_THAT(push_refusal(there, *study.store),
+             holds_text("older Touchtrial (schema 2, the oldest that this one knows is 3); use"));
+  CHECK_THAT(refusal_of([&] { static_cast<void>(stations_of_server(there.address())); }),
+             holds_text("older Touchtrial (schema 2"));
+  check_untouched(there, counts);
+}
+
 TEST_CASE("a step that fails leaves the schema as it was") {
   const ServerFixture there;
   StoredFixture study(1);
   there.push(*study.store);
-  const std::array steps = {server_migrations()[0], ServerMigration{add_another_table},
+  const std::array steps = {ServerMigration{add_another_table},
                             ServerMigration{[](pqxx::work& work) { work.exec("NONSENSE"); }}};
   ServerConnection server(there.address());
   CHECK_THAT(refusal_of([&] { bring_forward(server, steps); }), holds_text("syntax error"));

@@ -1,9 +1,10 @@
-/// \file Events and traces as rows of tables. Private to protocols/store.
-/// All functions throw SQLite::Exception; call them inside Database::run.
+/// \file Events, traces and derived rows in the tables of an SQLite file. Private to
+/// protocols/store. All functions throw SQLite::Exception; call them inside Database::run.
 #pragma once
 
 #include "protocols/store/database.hpp"
 #include "protocols/store/event.hpp"
+#include "protocols/store/fold.hpp"
 #include "protocols/store/session_recorder.hpp"
 
 #include <cstdint>
@@ -39,5 +40,16 @@ void for_each_event(const Database& database, std::int64_t session, const EventV
 
 /// Every number but 0 that an event gives as its session, ascending.
 [[nodiscard]] std::vector<std::int64_t> sessions_with_events(const Database& database);
+
+/// By session. \throws EventFault if a row holds what no event gives rise to
+[[nodiscard]] std::vector<SessionRow> read_sessions(const Database& database);
+/// By session and trial. \throws the same
+[[nodiscard]] std::vector<TrialRow> read_trials(const Database& database);
+
+/// The rows that `scope` names, as far as they exist. \throws the same
+[[nodiscard]] DerivedRows read_rows(const Database& database, const FoldScope& scope);
+/// Adds or changes every row of `rows`.
+void write_rows(const Database& database, const DerivedRows& rows);
+void delete_all_rows(const Database& database);
 
 }  // namespace touchtrial::store
