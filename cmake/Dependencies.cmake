@@ -1,7 +1,6 @@
 # Everything that Touchtrial uses and did not write. Debian 12's versions serve.
 find_package(PkgConfig REQUIRED)
 find_package(Threads REQUIRED)
-find_package(OpenCV REQUIRED COMPONENTS core imgproc imgcodecs)
 find_package(nlohmann_json REQUIRED)
 find_package(spdlog REQUIRED)
 find_package(fmt REQUIRED)
@@ -44,7 +43,18 @@ else()
   add_library(touchtrial_hwy ALIAS PkgConfig::hwy)
 endif()
 
-# OpenCV's headers warn under C++20; as a system target they stay quiet.
+# Only what OpenCV computes with: its own package file wants all of its modules installed, and what
+# these bring along. Its headers warn under C++20; as a system target they stay quiet.
+find_path(OPENCV_HEADERS opencv2/imgproc.hpp PATH_SUFFIXES opencv4 REQUIRED)
+find_library(OPENCV_CORE opencv_core REQUIRED)
+find_library(OPENCV_IMGPROC opencv_imgproc REQUIRED)
 add_library(touchtrial_opencv INTERFACE)
-target_include_directories(touchtrial_opencv SYSTEM INTERFACE ${OpenCV_INCLUDE_DIRS})
-target_link_libraries(touchtrial_opencv INTERFACE opencv_core opencv_imgproc opencv_imgcodecs)
+target_include_directories(touchtrial_opencv SYSTEM INTERFACE "${OPENCV_HEADERS}")
+target_link_libraries(touchtrial_opencv INTERFACE "${OPENCV_IMGPROC}" "${OPENCV_CORE}")
+
+# What reads pictures. libtiff has handlers of errors for each file from 4.5 on.
+find_package(PNG REQUIRED)
+find_package(JPEG REQUIRED)
+find_package(TIFF 4.5 REQUIRED)
+add_library(touchtrial_pictures INTERFACE)
+target_link_libraries(touchtrial_pictures INTERFACE PNG::PNG JPEG::JPEG TIFF::TIFF)

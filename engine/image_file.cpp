@@ -2,19 +2,13 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "engine/image_formats/decoder_input.hpp"
-#include "engine/image_formats/image_fault.hpp"
-#include "engine/image_formats/image_kind.hpp"
-#include "engine/image_formats/pnm.hpp"
-#include "engine/image_formats/quiet_decoder.hpp"
+#include "engine/image_formats/image_format.hpp"
 #include "engine/pictures/colour_image.hpp"
 
 #include <new>
 #include <stdexcept>
 #include <string>
 #include <system_error>
-
-#include <opencv2/core.hpp>
 
 namespace touchtrial::engine {
 namespace {
@@ -28,13 +22,13 @@ GreyImage decode_file(ByteView file) {
   if (file.empty()) throw ImageFault{"is empty", "copy or export it again"};
   switch (kind_of_image(file)) {
     case ImageKind::png:
-      return decode_grey(check_png(file));
+      return read_png(file);
     case ImageKind::jpeg:
-      return decode_grey(check_jpeg(file));
+      return read_jpeg(file);
     case ImageKind::tiff:
-      return decode_grey(check_tiff(file));
+      return read_tiff(file);
     case ImageKind::bmp:
-      return decode_grey(check_bmp(file));
+      return read_bmp(file);
     case ImageKind::pnm:
       return read_pnm(file);
   }
@@ -66,8 +60,6 @@ GreyImage decode_grey_image(ByteView file, const std::string& name) {
     throw error_about(name, "does not fit into memory", "crop or shrink it");
   } catch (const std::length_error&) {
     throw error_about(name, "does not fit into memory", "crop or shrink it");
-  } catch (const cv::Exception& error) {
-    throw error_about(name, "cannot be decoded (" + error.err + ")", "copy or export it again");
   }
 }
 

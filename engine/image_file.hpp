@@ -22,8 +22,7 @@ inline constexpr std::int64_t kMaxImagePixels = std::int64_t{1} << 28;
 /// kind, zero-sized,
 ///   of an unsupported sample type, has more than kMaxImagePixels pixels, a side of more than a
 ///   million, or data that the decoder finds damaged
-/// Prints nothing, whatever the decoder thinks of the file: while it decodes, what this process
-/// writes to standard error is thrown away. Thread-safe; one picture is decoded at a time.
+/// Prints nothing, whatever the decoder thinks of the file. Thread-safe.
 /// A file over 64 MiB is mapped, and must not be made shorter meanwhile; what it costs goes by its
 /// picture, not by its size.
 [[nodiscard]] GreyImage read_grey_image(const std::filesystem::path& path);

@@ -1,8 +1,6 @@
 #include "engine/image_notes.hpp"
 
-#include "engine/image_formats/byte_order.hpp"
-#include "engine/image_formats/image_kind.hpp"
-#include "engine/image_formats/tiff_directory.hpp"
+#include "engine/image_formats/image_format.hpp"
 
 #include <algorithm>
 #include <array>

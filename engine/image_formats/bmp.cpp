@@ -1,13 +1,15 @@
-#include "engine/image_formats/byte_order.hpp"
-#include "engine/image_formats/decoder_input.hpp"
+#include "engine/image_formats/image_format.hpp"
+
+#include <algorithm>
+#include <array>
 
 namespace touchtrial::engine {
 namespace {
 
 constexpr std::size_t kFileHeaderSize = 14;
-constexpr std::size_t kCompressionAt = 30;
 constexpr std::size_t kMasksAt = 54;
 constexpr std::uint32_t kInfoHeaderSize = 40;
+constexpr std::uint32_t kMostColours = 256;
 constexpr std::uint32_t kHeaderSizeWithAlphaMask = 56;
 
 enum Compression : std::uint32_t { kNone = 0, kRle8 = 1, kRle4 = 2, kBitFields = 3 };
@@ -15,11 +17,13 @@ enum Compression : std::uint32_t { kNone = 0, kRle8 = 1, kRle4 = 2, kBitFields =
 struct Header {
   std::uint32_t size = 0;
   std::int64_t width = 0;
-  std::int64_t height = 0;  ///< absolute; rows may be stored from the top or the bottom
+  std::int64_t height = 0;
+  bool from_top = false;  ///< rows are stored from the top, not from the bottom
   std::uint32_t bits = 0;
   std::uint32_t compression = kNone;
   std::uint32_t data_size = 0;  ///< may be 0 without compression
   std::uint32_t data_at = 0;
+  std::uint32_t colours = 0;  ///< entries of the palette; 0: as many as the bits can name
 };
 
 Header read_header(ByteView file) {
@@ -27,13 +31,16 @@ Header read_header(ByteView file) {
   header.size = little32(file, kFileHeaderSize);
   if (header.size < kInfoHeaderSize)
     throw_unsupported_image("is an OS/2 BMP, which is not supported");
+  static_cast<void>(bytes_at(file, kFileHeaderSize, header.size));
   header.data_at = little32(file, 10);
   header.width = static_cast<std::int32_t>(little32(file, 18));
   const std::int64_t rows = static_cast<std::int32_t>(little32(file, 22));
+  header.from_top = rows < 0;
   header.height = rows < 0 ? -rows : rows;
   header.bits = little16(file, 28);
-  header.compression = little32(file, kCompressionAt);
+  header.compression = little32(file, 30);
   header.data_size = little32(file, 34);
+  header.colours = little32(file, 46);
   return header;
 }
 
@@ -63,16 +70,133 @@ bool is_supported(ByteView file, const Header& header) {
   }
 }
 
-/// Bytes that the pixels take; for the compressed kinds what the header claims.
-std::uint64_t data_size(const Header& header) {
-  if (header.compression == kRle8 || header.compression == kRle4) return header.data_size;
-  const std::uint64_t row_bits = static_cast<std::uint64_t>(header.width) * header.bits;
-  return (row_bits + 31) / 32 * 4 * static_cast<std::uint64_t>(header.height);
+bool is_run_length(const Header& header) {
+  return header.compression == kRle8 || header.compression == kRle4;
 }
+
+/// Bytes of a row, which is padded to whole groups of four.
+std::uint64_t row_size(const Header& header) {
+  return (static_cast<std::uint64_t>(header.width) * header.bits + 31) / 32 * 4;
+}
+
+/// The pixels' bytes; of the compressed kinds as many as the header claims.
+ByteView data_of(ByteView file, const Header& header) {
+  const std::uint64_t size = is_run_length(header)
+                                 ? header.data_size
+                                 : row_size(header) * static_cast<std::uint64_t>(header.height);
+  if (size == 0) throw_truncated_image();
+  return bytes_at(file, header.data_at, size);
+}
+
+/// The grey levels of the palette; what a file leaves out is black.
+using Palette = std::array<std::uint8_t, kMostColours>;
+
+Palette read_palette(ByteView file, const Header& header) {
+  Palette palette{};
+  if (header.bits > 8) return palette;
+  const std::size_t count = header.colours == 0 ? std::size_t{1} << header.bits : header.colours;
+  if (count > kMostColours) throw_truncated_image();
+  const ByteView entries = bytes_at(file, kFileHeaderSize + header.size, 4 * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    palette[i] = luma(entries[4 * i + 2], entries[4 * i + 1], entries[4 * i]);
+  }
+  return palette;
+}
+
+/// The `index`-th number of `bits` (1, 4 or 8), the first in the highest bits.
+std::size_t packed_number(ByteView bytes, std::size_t index, std::size_t bits) {
+  const std::size_t in_byte = 8 / bits;
+  const std::size_t shift = (in_byte - 1 - index % in_byte) * bits;
+  return bytes[index / in_byte] >> shift & ((std::size_t{1} << bits) - 1);
+}
+
+void read_row(ByteView stored, std::size_t bits, Alpha alpha, const Palette& palette,
+              std::span<std::uint8_t> row) {
+  for (std::size_t x = 0; x < row.size(); ++x) {
+    if (bits <= 8) {
+      row[x] = palette[packed_number(stored, x, bits)];
+    } else {
+      const std::uint8_t* bgr = &stored[x * bits / 8];
+      const std::array<std::uint8_t, 4> rgba = {bgr[2], bgr[1], bgr[0],
+                                                bits == 32 ? bgr[3] : std::uint8_t{255}};
+      row[x] = grey_of(rgba.data(), 4, alpha);
+    }
+  }
+}
+
+/// Runs of pixels, and jumps over pixels that have the palette's first colour. Rows come one behind
+/// the other.
+class RunLengths {
+ public:
+  RunLengths(ByteView data, const Header& header, const Palette& palette)
+      : data_(data),
+        bits_(header.bits),
+        width_(static_cast<std::size_t>(header.width)),
+        palette_(palette),
+        pixels_(width_ * static_cast<std::size_t>(header.height), palette[0]) {}
+
+  Bytes read() {
+    while (at_ < pixels_.size()) {
+      const ByteView code = take(2);
+      if (code[0] != 0) {
+        repeat(code[0], code[1]);
+      } else if (code[1] > 2) {
+        copy(code[1]);
+      } else if (code[1] == kEndOfPicture) {
+        break;
+      } else if (code[1] == kJump) {
+        const ByteView jump = take(2);
+        at_ += jump[0] + jump[1] * width_;
+        row_is_full_ = false;
+      } else {
+        // At the end of a full row the place is the next row's beginning already.
+        if (!row_is_full_) at_ += width_ - at_ % width_;
+        row_is_full_ = false;
+      }
+    }
+    return std::move(pixels_);
+  }
+
+ private:
+  enum Code : std::uint8_t { kEndOfRow = 0, kEndOfPicture = 1, kJump = 2 };
+
+  ByteView take(std::size_t count) {
+    const ByteView taken = bytes_at(data_, 0, count);
+    data_ = data_.subspan(count);
+    return taken;
+  }
+
+  void repeat(std::size_t count, std::uint8_t value) {
+    const std::array<std::uint8_t, 1> pair = {value};
+    const std::size_t in_byte = 8 / bits_;
+    put(count, [&](std::size_t i) { return packed_number(pair, i % in_byte, bits_); });
+  }
+
+  void copy(std::size_t count) {
+    const std::size_t size = (count * bits_ + 7) / 8;
+    const ByteView stored = take(size + size % 2);
+    put(count, [&](std::size_t i) { return packed_number(stored, i, bits_); });
+  }
+
+  template <typename NumberAt>
+  void put(std::size_t count, NumberAt number_at_place) {
+    if (at_ % width_ + count > width_) throw_truncated_image();
+    for (std::size_t i = 0; i < count; ++i) pixels_[at_++] = palette_[number_at_place(i)];
+    row_is_full_ = at_ % width_ == 0;
+  }
+
+  ByteView data_;
+  std::size_t bits_;
+  std::size_t width_;
+  const Palette& palette_;
+  Bytes pixels_;
+  std::size_t at_ = 0;
+  bool row_is_full_ = false;  ///< by the run before
+};
 
 }  // namespace
 
-DecoderInput check_bmp(ByteView file) {
+GreyImage read_bmp(ByteView file) {
   const Header header = read_header(file);
   check_image_size(header.width, header.height);
   if (!is_supported(file, header)) {
@@ -80,18 +204,23 @@ DecoderInput check_bmp(ByteView file) {
                             " bits and compression " + std::to_string(header.compression) +
                             ", which is not supported");
   }
-  if (bytes_at(file, header.data_at, data_size(header)).empty()) throw_truncated_image();
-  DecoderInput input;
-  const ByteView used = file.first(header.data_at + data_size(header));
-  input.bytes.assign(used.begin(), used.end());
-  input.width_px = static_cast<int>(header.width);
-  input.height_px = static_cast<int>(header.height);
-  // Usual masks without alpha mean the same as no masks, where the decoder knows that the fourth
-  // byte is nothing.
-  if (header.compression == kBitFields && !has_alpha(file, header)) {
-    input.bytes[kCompressionAt] = kNone;
+  const ByteView data = data_of(file, header);
+  const Palette palette = read_palette(file, header);
+  const Alpha alpha = has_alpha(file, header) ? Alpha::straight : Alpha::ignored;
+  const bool is_packed = is_run_length(header);
+  const Bytes unpacked = is_packed ? RunLengths(data, header, palette).read() : Bytes();
+  GreyImage image(static_cast<int>(header.height), static_cast<int>(header.width));
+  const std::size_t size = is_packed ? static_cast<std::size_t>(header.width) : row_size(header);
+  for (int y = 0; y < image.height(); ++y) {
+    const auto stored = static_cast<std::size_t>(header.from_top ? y : image.height() - 1 - y);
+    const auto row = image.row(y);
+    if (is_packed) {
+      std::copy_n(unpacked.begin() + static_cast<std::ptrdiff_t>(stored * size), size, row.begin());
+    } else {
+      read_row(data.subspan(stored * size, size), header.bits, alpha, palette, row);
+    }
   }
-  return input;
+  return image;
 }
 
 }  // namespace touchtrial::engine

@@ -1,8 +1,16 @@
-#include "engine/image_formats/byte_order.hpp"
-#include "engine/image_formats/decoder_input.hpp"
+#include "engine/image_file.hpp"
+#include "engine/image_formats/escape.hpp"
+#include "engine/image_formats/image_format.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
+#include <new>
 #include <utility>
+
+// libjpeg's headers want <cstdio> before them.
+#include <jerror.h>
+#include <jpeglib.h>
 
 namespace touchtrial::engine {
 namespace {
@@ -23,6 +31,11 @@ enum Marker : std::uint32_t {
   kApp15 = 0xEF,
   kComment = 0xFE,
 };
+
+/// Far more than any encoder writes; each scan of a progressive file goes over the whole picture.
+constexpr int kMostScans = 100;
+/// The coefficients of the largest progressive picture, and some room for libjpeg's tables.
+constexpr long kMostMemory = 6L * kMaxImagePixels + (1L << 28U);
 
 struct Frame {
   std::uint32_t width = 0;  ///< 0: not seen yet
@@ -96,14 +109,13 @@ class Walk {
     return true;
   }
 
-  /// \throws ImageFault unless the frame can be filled from the scans: a block takes a bit at least
-  DecoderInput finish() {
+  /// What decides pixels. \throws ImageFault unless the frame can be filled from the scans: a block
+  /// takes a bit at least
+  Bytes finish() {
     if (frame_.width == 0 || scan_bytes_ == 0) throw_truncated_image();
     const std::uint64_t blocks = std::uint64_t{(frame_.width + 7) / 8} * ((frame_.height + 7) / 8);
     if (blocks > scan_bytes_ * 8) throw_truncated_image();
-    input_.width_px = static_cast<int>(frame_.width);
-    input_.height_px = static_cast<int>(frame_.height);
-    return std::move(input_);
+    return std::move(kept_);
   }
 
  private:
@@ -121,6 +133,10 @@ class Walk {
   }
 
   void scan_data() {
+    if (++scans_ > kMostScans) {
+      throw ImageFault{"is a JPEG of more than " + std::to_string(kMostScans) + " scans",
+                       "export it again"};
+    }
     const std::size_t end = end_of_scan_data(file_, at_);
     copy(at_, end - at_);
     scan_bytes_ += end - at_;
@@ -129,23 +145,95 @@ class Walk {
 
   void copy(std::size_t at, std::size_t size) {
     const ByteView part = bytes_at(file_, at, size);
-    input_.bytes.insert(input_.bytes.end(), part.begin(), part.end());
+    kept_.insert(kept_.end(), part.begin(), part.end());
   }
 
   ByteView file_;
   std::size_t at_ = 2;
   Frame frame_;
   std::uint64_t scan_bytes_ = 0;
-  DecoderInput input_;
+  int scans_ = 0;
+  Bytes kept_;
+};
+
+[[noreturn]] void leave(j_common_ptr jpeg) {
+  std::array<char, JMSG_LENGTH_MAX> text{};
+  jpeg->err->format_message(jpeg, text.data());
+  static_cast<Escape*>(jpeg->client_data)->leave(text.data());
+}
+
+/// Some cameras pad their files with a few bytes before the end marker; the others that are
+/// harmless speak of how the file describes itself.
+bool is_harmless(const jpeg_error_mgr& said) {
+  constexpr int kMostPadding = 16;
+  if (said.msg_code == JWRN_ADOBE_XFORM || said.msg_code == JWRN_JFIF_MAJOR) return true;
+  return said.msg_code == JWRN_EXTRANEOUS_DATA && said.msg_parm.i[0] <= kMostPadding &&
+         said.msg_parm.i[1] == static_cast<int>(kEnd);
+}
+
+/// Levels below 0 are warnings: libjpeg goes on with samples that it made up.
+void weigh_message(j_common_ptr jpeg, int level) {
+  if (level < 0 && !is_harmless(*jpeg->err)) leave(jpeg);
+}
+
+/// libjpeg on a file in memory.
+class Decoder {
+ public:
+  Decoder() {
+    jpeg_.err = jpeg_std_error(&errors_);
+    jpeg_.client_data = &escape_;
+    errors_.error_exit = leave;
+    errors_.emit_message = weigh_message;
+  }
+  ~Decoder() { jpeg_destroy_decompress(&jpeg_); }
+  Decoder(const Decoder&) = delete;
+  Decoder& operator=(const Decoder&) = delete;
+
+  GreyImage read(ByteView file) {
+    require(reaches_end(escape_, [&] { read_start(file); }));
+    GreyImage image(static_cast<int>(jpeg_.output_height), static_cast<int>(jpeg_.output_width));
+    const int channels = jpeg_.output_components;
+    Bytes samples(std::size_t{jpeg_.output_width} * static_cast<std::size_t>(channels));
+    require(reaches_end(escape_, [&] {
+      for (int y = 0; y < image.height(); ++y) {
+        JSAMPROW row = samples.data();
+        jpeg_read_scanlines(&jpeg_, &row, 1);
+        make_grey(samples.data(), channels, Alpha::ignored, image.row(y));
+      }
+      jpeg_finish_decompress(&jpeg_);
+    }));
+    return image;
+  }
+
+ private:
+  void require(bool done) const {
+    if (done) return;
+    if (errors_.msg_code == JERR_OUT_OF_MEMORY) throw std::bad_alloc();
+    throw_damaged_image(escape_.complaint.data());
+  }
+
+  void read_start(ByteView file) {
+    jpeg_create_decompress(&jpeg_);
+    jpeg_.mem->max_memory_to_use = kMostMemory;
+    jpeg_mem_src(&jpeg_, file.data(), file.size());
+    jpeg_read_header(&jpeg_, TRUE);
+    jpeg_.out_color_space = jpeg_.num_components == 1 ? JCS_GRAYSCALE : JCS_RGB;
+    jpeg_start_decompress(&jpeg_);
+  }
+
+  Escape escape_;
+  jpeg_error_mgr errors_{};
+  jpeg_decompress_struct jpeg_{};
 };
 
 }  // namespace
 
-DecoderInput check_jpeg(ByteView file) {
+GreyImage read_jpeg(ByteView file) {
   Walk walk(file);
   while (walk.step()) {
   }
-  return walk.finish();
+  const Bytes kept = walk.finish();
+  return Decoder().read(kept);
 }
 
 }  // namespace touchtrial::engine

@@ -1,8 +1,13 @@
-#include "engine/image_formats/byte_order.hpp"
-#include "engine/image_formats/decoder_input.hpp"
+#include "engine/image_formats/escape.hpp"
+#include "engine/image_formats/image_format.hpp"
 
 #include <array>
+#include <bit>
+#include <cstring>
 #include <string_view>
+
+#include <png.h>
+#include <zlib.h>
 
 namespace touchtrial::engine {
 namespace {
@@ -10,8 +15,9 @@ namespace {
 constexpr std::size_t kSignatureSize = 8;
 constexpr std::size_t kChunkOverhead = 12;  // length, type, checksum
 constexpr std::size_t kHeaderSize = 13;
-
-enum ColourType : std::uint8_t { kGrey = 0, kRgb = 2, kPalette = 3, kGreyAlpha = 4, kRgba = 6 };
+/// Of a chunk without samples: a palette has 768 bytes.
+constexpr std::size_t kLargestChunk = std::size_t{1} << 23U;
+constexpr int kMostChunks = 64;
 
 struct Chunk {
   std::string_view type;
@@ -34,16 +40,17 @@ struct Header {
 };
 
 bool is_legal(const Header& header) {
+  const int depth = header.depth;
+  const bool is_small = depth == 1 || depth == 2 || depth == 4;
   switch (header.colour) {
-    case kGrey:
-      return header.depth == 1 || header.depth == 2 || header.depth == 4 || header.depth == 8 ||
-             header.depth == 16;
-    case kPalette:
-      return header.depth == 1 || header.depth == 2 || header.depth == 4 || header.depth == 8;
-    case kRgb:
-    case kGreyAlpha:
-    case kRgba:
-      return header.depth == 8 || header.depth == 16;
+    case PNG_COLOR_TYPE_GRAY:
+      return is_small || depth == 8 || depth == 16;
+    case PNG_COLOR_TYPE_PALETTE:
+      return is_small || depth == 8;
+    case PNG_COLOR_TYPE_RGB:
+    case PNG_COLOR_TYPE_GRAY_ALPHA:
+    case PNG_COLOR_TYPE_RGB_ALPHA:
+      return depth == 8 || depth == 16;
     default:
       return false;
   }
@@ -71,14 +78,6 @@ void check_amount(const Header& header, std::uint64_t packed_bytes) {
   if (packed_bytes == 0 || unpacked_bytes > packed_bytes * 1032 + 1024) throw_truncated_image();
 }
 
-/// The grey level that tRNS names, as the decoder will scale it.
-int transparent_sample(const Header& header, ByteView data) {
-  const int sample = static_cast<int>(big16(data, 0));
-  if (header.depth >= 8) return sample;
-  const int maximum = (1 << header.depth) - 1;
-  return (sample & maximum) * (255 / maximum);
-}
-
 bool decides_pixels(std::string_view type) {
   return type == "IHDR" || type == "PLTE" || type == "tRNS" || type == "IDAT" || type == "IEND";
 }
@@ -87,39 +86,152 @@ bool is_critical(std::string_view type) {
   return (type[0] & 0x20) == 0;
 }
 
-DecoderInput started(ByteView file, const Header& header) {
-  DecoderInput input;
-  input.width_px = static_cast<int>(header.width);
-  input.height_px = static_cast<int>(header.height);
-  input.bytes.assign(file.begin(), file.begin() + kSignatureSize);
-  return input;
-}
-
-}  // namespace
-
-DecoderInput check_png(ByteView file) {
+/// The file without colour profiles, gamma, texts and notes: libpng gets nothing else to see.
+Bytes what_decides_pixels(ByteView file) {
   const Header header = read_header(file);
-  DecoderInput input = started(file, header);
+  Bytes kept(file.begin(), file.begin() + kSignatureSize);
   std::uint64_t packed_bytes = 0;
   for (std::size_t at = kSignatureSize;;) {
     const Chunk chunk = chunk_at(file, at);
     at += chunk.whole.size();
-    if (!decides_pixels(chunk.type)) {
-      if (is_critical(chunk.type))
-        throw_unsupported_image("is a PNG with an unknown critical chunk");
-      continue;
+    if (decides_pixels(chunk.type)) {
+      if (chunk.type == "IDAT") packed_bytes += chunk.data.size();
+      kept.insert(kept.end(), chunk.whole.begin(), chunk.whole.end());
+    } else if (is_critical(chunk.type)) {
+      throw_unsupported_image("is a PNG with an unknown critical chunk");
     }
-    if (chunk.type == "tRNS" && header.colour == kGrey) {
-      // Decoders differ in what they make of it, so it is kept from them.
-      input.transparent_grey = transparent_sample(header, chunk.data);
-      continue;
-    }
-    if (chunk.type == "IDAT") packed_bytes += chunk.data.size();
-    input.bytes.insert(input.bytes.end(), chunk.whole.begin(), chunk.whole.end());
     if (chunk.type == "IEND") break;
   }
   check_amount(header, packed_bytes);
-  return input;
+  return kept;
+}
+
+[[noreturn]] void leave(png_structp png, png_const_charp what) {
+  static_cast<Escape*>(png_get_error_ptr(png))->leave(what);
+}
+
+void stay_silent(png_structp /*png*/, png_const_charp /*warning*/) {}
+
+void take_bytes(png_structp png, png_bytep to, std::size_t count) {
+  auto& left = *static_cast<ByteView*>(png_get_io_ptr(png));
+  if (count > left.size()) png_error(png, "ends too early");
+  std::memcpy(to, left.data(), count);
+  left = left.subspan(count);
+}
+
+/// libpng on a file in memory: rows of 8- or 16-bit grey, grey alpha, RGB or RGBA samples.
+class Decoder {
+ public:
+  explicit Decoder(ByteView file) : left_(file) {}
+  ~Decoder() { png_destroy_read_struct(&png_, &info_, nullptr); }
+  Decoder(const Decoder&) = delete;
+  Decoder& operator=(const Decoder&) = delete;
+
+  GreyImage read() {
+    require(reaches_end(escape_, [&] { read_start(); }));
+    return png_get_bit_depth(png_, info_) == 16 ? rows<png_uint_16>() : rows<png_byte>();
+  }
+
+ private:
+  void require(bool done) const {
+    if (!done) throw_damaged_image(escape_.complaint.data());
+  }
+
+  void read_start() {
+    png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, &escape_, leave, stay_silent);
+    info_ = png_ == nullptr ? nullptr : png_create_info_struct(png_);
+    if (info_ == nullptr) escape_.leave("libpng has no memory or another version");
+    png_set_user_limits(png_, kMaxSidePx, kMaxSidePx);
+    png_set_chunk_malloc_max(png_, kLargestChunk);
+    png_set_chunk_cache_max(png_, kMostChunks);
+    // The one chunk with notes that is left decides pixels, too.
+    png_set_crc_action(png_, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
+    png_set_read_fn(png_, &left_, take_bytes);
+    png_read_info(png_, info_);
+    png_set_expand(png_);
+    if (std::endian::native == std::endian::little) png_set_swap(png_);
+    passes_ = png_set_interlace_handling(png_);
+    png_read_update_info(png_, info_);
+  }
+
+  /// Row by row; all rows are kept only where several passes fill them.
+  template <typename Sample>
+  GreyImage rows() {
+    const int height = static_cast<int>(png_get_image_height(png_, info_));
+    const int channels = png_get_channels(png_, info_);
+    const std::size_t row_size = png_get_rowbytes(png_, info_) / sizeof(Sample);
+    GreyImage image(height, static_cast<int>(png_get_image_width(png_, info_)));
+    std::vector<Sample> samples(passes_ == 1 ? row_size
+                                             : row_size * static_cast<std::size_t>(height));
+    const auto row_of = [&](int y) {
+      return samples.data() + (passes_ == 1 ? 0 : row_size * static_cast<std::size_t>(y));
+    };
+    require(reaches_end(escape_, [&] {
+      for (int pass = 1; pass <= passes_; ++pass) {
+        for (int y = 0; y < height; ++y) {
+          png_read_row(png_, reinterpret_cast<png_bytep>(row_of(y)), nullptr);
+          if (pass == passes_) make_grey(row_of(y), channels, Alpha::straight, image.row(y));
+        }
+      }
+      png_read_end(png_, nullptr);
+    }));
+    return image;
+  }
+
+  Escape escape_;
+  ByteView left_;
+  png_structp png_ = nullptr;
+  png_infop info_ = nullptr;
+  int passes_ = 1;
+};
+
+void give_bytes(png_structp png, png_bytep from, std::size_t count) {
+  bool fits = true;
+  try {
+    auto& file = *static_cast<Bytes*>(png_get_io_ptr(png));
+    file.insert(file.end(), from, from + count);
+  } catch (const std::exception&) {
+    fits = false;
+  }
+  if (!fits) png_error(png, "no memory is left");
+}
+
+void flush_nothing(png_structp /*png*/) {}
+
+}  // namespace
+
+GreyImage read_png(ByteView file) {
+  const Bytes kept = what_decides_pixels(file);
+  return Decoder(kept).read();
+}
+
+Bytes png_of_samples(int height, int width, int channels, std::span<const std::uint8_t> samples) {
+  Bytes file;
+  Escape escape;
+  png_structp png = nullptr;
+  png_infop info = nullptr;
+  const bool done = reaches_end(escape, [&] {
+    png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &escape, leave, stay_silent);
+    info = png == nullptr ? nullptr : png_create_info_struct(png);
+    if (info == nullptr) escape.leave("libpng has no memory or another version");
+    png_set_write_fn(png, &file, give_bytes, flush_nothing);
+    // Filtered rows and zlib's best effort: textures pack poorly, so every per cent is welcome.
+    png_set_compression_level(png, Z_BEST_COMPRESSION);
+    png_set_compression_strategy(png, Z_FILTERED);
+    png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8,
+                 channels == 1 ? PNG_COLOR_TYPE_GRAY : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_write_info(png, info);
+    const std::size_t row_size =
+        static_cast<std::size_t>(width) * static_cast<std::size_t>(channels);
+    for (std::size_t at = 0; at < samples.size(); at += row_size) {
+      png_write_row(png, samples.data() + at);
+    }
+    png_write_end(png, info);
+  });
+  png_destroy_write_struct(&png, &info);
+  if (!done) throw_damaged_image(escape.complaint.data());
+  return file;
 }
 
 }  // namespace touchtrial::engine

@@ -1,9 +1,6 @@
-#include "engine/image_formats/pnm.hpp"
-
-#include "engine/image_formats/byte_order.hpp"
-#include "engine/image_formats/sample_rules.hpp"
-
-#include <string_view>
+// PGM and PPM, text and binary, of any maximum value, which decides the scale. Of a file with
+// several pictures the first is read.
+#include "engine/image_formats/image_format.hpp"
 
 namespace touchtrial::engine {
 namespace {

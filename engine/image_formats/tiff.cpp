@@ -1,24 +1,90 @@
-#include "engine/image_formats/byte_order.hpp"
-#include "engine/image_formats/decoder_input.hpp"
-#include "engine/image_formats/tiff_directory.hpp"
+#include "engine/image_file.hpp"
+#include "engine/image_formats/image_format.hpp"
 
 #include <algorithm>
-#include <set>
+#include <array>
+#include <cstdarg>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <new>
+#include <string_view>
+
+#include <tiffio.h>
 
 namespace touchtrial::engine {
 namespace {
 
-enum Compression : std::uint32_t { kNone = 1, kJpeg = 7, kFirstFax = 2, kLastFax = 4 };
-enum Photometric : std::uint32_t {
-  kWhiteIsZero = 0,
-  kBlackIsZero = 1,
-  kRgb = 2,
-  kPalette = 3,
-  kYcbcr = 6
-};
-constexpr std::uint32_t kSeparatePlanes = 2;
-constexpr std::uint32_t kUnsignedSamples = 1;
-constexpr std::uint32_t kStraightAlpha = 2;
+constexpr std::size_t kEntrySize = 12;
+constexpr std::uint32_t kLong = 4;
+constexpr std::uint32_t kRational = 5;
+
+/// Bytes of one value; 0 for types that no entry of ours has.
+std::size_t size_of_type(std::uint32_t type) {
+  switch (type) {
+    case 1:
+      return 1;  // BYTE
+    case 3:
+      return 2;  // SHORT
+    case kLong:
+      return 4;
+    default:
+      return 0;
+  }
+}
+
+}  // namespace
+
+TiffDirectory::TiffDirectory(ByteView file)
+    : file_(file),
+      order_(bytes_at(file, 0, 2)[0] == std::uint8_t{'M'} ? ByteOrder::big : ByteOrder::little) {
+  const std::size_t start = number_at(file, 4, 4, order_);
+  const std::size_t count = number_at(file, start, 2, order_);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t at = start + 2 + i * kEntrySize;
+    const auto tag = static_cast<TiffTag>(number_at(bytes_at(file, at, kEntrySize), 0, 2, order_));
+    const bool is_new = entries_.emplace(tag, at).second;
+    // Which of two entries counts is up to the reader, so such a file has no meaning.
+    if (!is_new) throw_truncated_image();
+  }
+  // The place of the next directory ends this one; where it points to does not matter.
+  static_cast<void>(bytes_at(file, start + 2 + count * kEntrySize, 4));
+}
+
+std::vector<std::uint32_t> TiffDirectory::values(TiffTag tag) const {
+  const auto entry = entries_.find(tag);
+  if (entry == entries_.end()) return {};
+  const std::size_t at = entry->second;
+  const std::size_t size = size_of_type(number_at(file_, at + 2, 2, order_));
+  const std::size_t count = number_at(file_, at + 4, 4, order_);
+  const bool is_inline = size * count <= 4;
+  const std::size_t from = is_inline ? at + 8 : number_at(file_, at + 8, 4, order_);
+  const ByteView bytes = bytes_at(file_, from, size * count);
+  std::vector<std::uint32_t> values(size == 0 ? 0 : count);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = number_at(bytes, i * size, size, order_);
+  }
+  return values;
+}
+
+std::uint32_t TiffDirectory::value(TiffTag tag, std::uint32_t otherwise) const {
+  const std::vector<std::uint32_t> all = values(tag);
+  return all.empty() ? otherwise : all.front();
+}
+
+std::optional<double> TiffDirectory::fraction(TiffTag tag) const {
+  const auto entry = entries_.find(tag);
+  if (entry == entries_.end()) return std::nullopt;
+  const std::size_t at = entry->second;
+  if (number_at(file_, at + 2, 2, order_) != kRational) return std::nullopt;
+  const std::size_t place = number_at(file_, at + 8, 4, order_);
+  const std::uint32_t numerator = number_at(file_, place, 4, order_);
+  const std::uint32_t denominator = number_at(file_, place + 4, 4, order_);
+  if (denominator == 0) return std::nullopt;
+  return static_cast<double>(numerator) / denominator;
+}
+
+namespace {
 
 struct Layout {
   std::uint32_t width;
@@ -27,10 +93,9 @@ struct Layout {
   std::uint32_t channels;
   std::uint32_t compression;
   std::uint32_t photometric;
-  std::uint32_t predictor;
   bool separate;
 
-  [[nodiscard]] bool is_grey() const { return photometric <= kBlackIsZero; }
+  [[nodiscard]] bool is_grey() const { return photometric <= PHOTOMETRIC_MINISBLACK; }
 };
 
 /// Every channel has the value of the first one, or the entry is absent.
@@ -49,26 +114,24 @@ Layout read_layout(const TiffDirectory& directory) {
       get(TiffTag::height, 0),
       get(TiffTag::bits_per_sample, 1),
       get(TiffTag::samples_per_pixel, 1),
-      get(TiffTag::compression, kNone),
-      get(TiffTag::photometric, kBlackIsZero),
-      get(TiffTag::predictor, 1),
-      get(TiffTag::planar, 1) == kSeparatePlanes && get(TiffTag::samples_per_pixel, 1) > 1};
+      get(TiffTag::compression, COMPRESSION_NONE),
+      get(TiffTag::photometric, PHOTOMETRIC_MINISBLACK),
+      get(TiffTag::planar, 1) == PLANARCONFIG_SEPARATE && get(TiffTag::samples_per_pixel, 1) > 1};
   check_image_size(layout.width, layout.height);
   return layout;
 }
 
 bool channels_fit(const Layout& layout) {
   switch (layout.photometric) {
-    case kWhiteIsZero:
-    case kBlackIsZero:
-      return layout.channels == 1 ||
-             (layout.channels == 2 && layout.bits >= 8 && !layout.separate &&
-              layout.predictor == 1 && layout.compression != kJpeg);
-    case kRgb:
+    case PHOTOMETRIC_MINISWHITE:
+    case PHOTOMETRIC_MINISBLACK:
+      return layout.channels == 1 || (layout.channels == 2 && layout.bits >= 8 &&
+                                      !layout.separate && layout.compression != COMPRESSION_JPEG);
+    case PHOTOMETRIC_RGB:
       return (layout.channels == 3 || layout.channels == 4) && layout.bits >= 8;
-    case kPalette:
+    case PHOTOMETRIC_PALETTE:
       return layout.channels == 1 && layout.bits <= 8;
-    case kYcbcr:
+    case PHOTOMETRIC_YCBCR:
       return layout.channels == 3 && layout.bits == 8;
     default:
       return false;
@@ -76,20 +139,35 @@ bool channels_fit(const Layout& layout) {
 }
 
 bool compression_fits(const Layout& layout) {
-  static const std::set<std::uint32_t> kBytewise = {kNone, 5, 8, 32773, 32946};
-  if (kBytewise.count(layout.compression) != 0) return true;
-  if (layout.compression == kJpeg) return layout.bits == 8;
-  return layout.compression >= kFirstFax && layout.compression <= kLastFax && layout.bits == 1;
+  switch (layout.compression) {
+    case COMPRESSION_NONE:
+    case COMPRESSION_LZW:
+    case COMPRESSION_ADOBE_DEFLATE:
+    case COMPRESSION_DEFLATE:
+    case COMPRESSION_PACKBITS:
+      return true;
+    case COMPRESSION_JPEG:
+      return layout.bits == 8;
+    case COMPRESSION_CCITTRLE:
+    case COMPRESSION_CCITTFAX3:
+    case COMPRESSION_CCITTFAX4:
+      return layout.bits == 1;
+    default:
+      return false;
+  }
 }
 
 void check_samples(const TiffDirectory& directory, const Layout& layout) {
-  const std::uint32_t format = directory.value(TiffTag::sample_format, kUnsignedSamples);
-  if (format != kUnsignedSamples || !is_uniform(directory, TiffTag::sample_format, format) ||
+  const std::uint32_t format = directory.value(TiffTag::sample_format, SAMPLEFORMAT_UINT);
+  if (format != SAMPLEFORMAT_UINT || !is_uniform(directory, TiffTag::sample_format, format) ||
       (layout.bits != 1 && layout.bits != 8 && layout.bits != 16) ||
       !is_uniform(directory, TiffTag::bits_per_sample, 1)) {
     throw_unsupported_image("is a TIFF of " + std::to_string(layout.bits) + "-bit " +
-                            (format == kUnsignedSamples ? "" : "signed or floating-point ") +
+                            (format == SAMPLEFORMAT_UINT ? "" : "signed or floating-point ") +
                             "samples, which is not supported");
+  }
+  if (!directory.has(TiffTag::photometric)) {
+    throw_unsupported_image("is a TIFF that does not say what its samples mean");
   }
   if (!channels_fit(layout) || (layout.separate && layout.bits != 8)) {
     throw_unsupported_image("is a TIFF with an arrangement of channels (" +
@@ -106,10 +184,15 @@ void check_samples(const TiffDirectory& directory, const Layout& layout) {
 struct Pieces {
   std::uint64_t width = 0;
   std::uint64_t height = 0;
+  std::uint64_t count = 0;
   bool tiled = false;
   std::vector<std::uint32_t> offsets;
   std::vector<std::uint32_t> sizes;
 };
+
+std::uint64_t ceil_divide(std::uint64_t a, std::uint64_t b) {
+  return (a + b - 1) / b;
+}
 
 Pieces read_pieces(const TiffDirectory& directory, const Layout& layout) {
   constexpr std::uint64_t kMaxTilePixels = std::uint64_t{1} << 26U;
@@ -129,11 +212,9 @@ Pieces read_pieces(const TiffDirectory& directory, const Layout& layout) {
     pieces.sizes = directory.values(TiffTag::strip_byte_counts);
   }
   if (pieces.width == 0 || pieces.height == 0) throw_truncated_image();
+  pieces.count = ceil_divide(layout.height, pieces.height) *
+                 ceil_divide(layout.width, pieces.width) * (layout.separate ? layout.channels : 1);
   return pieces;
-}
-
-std::uint64_t ceil_divide(std::uint64_t a, std::uint64_t b) {
-  return (a + b - 1) / b;
 }
 
 /// Bytes of one piece, unpacked; the last strip may be shorter than the others.
@@ -146,73 +227,236 @@ std::uint64_t unpacked_size(const Layout& layout, const Pieces& pieces, std::uin
 
 /// How many bytes one byte of a file may unpack to, generously; 0 if there is no limit.
 std::uint64_t packing_limit(const Layout& layout) {
-  if (layout.photometric == kYcbcr || layout.compression == kJpeg) return 0;
-  if (layout.compression == kNone) return 1;
+  if (layout.photometric == PHOTOMETRIC_YCBCR || layout.compression == COMPRESSION_JPEG) return 0;
+  if (layout.compression == COMPRESSION_NONE) return 1;
   return layout.bits == 1 ? 0 : 4096;
 }
 
 void check_pieces(ByteView file, const Layout& layout, const Pieces& pieces) {
   const std::uint64_t rows = ceil_divide(layout.height, pieces.height);
   const std::uint64_t columns = ceil_divide(layout.width, pieces.width);
-  const std::uint64_t count = rows * columns * (layout.separate ? layout.channels : 1);
-  if (pieces.offsets.size() < count || pieces.sizes.size() < count) throw_truncated_image();
+  if (pieces.offsets.size() < pieces.count || pieces.sizes.size() < pieces.count) {
+    throw_truncated_image();
+  }
   const std::uint64_t limit = packing_limit(layout);
-  for (std::size_t i = 0; i < count; ++i) {
+  for (std::size_t i = 0; i < pieces.count; ++i) {
     const ByteView piece = bytes_at(file, pieces.offsets[i], pieces.sizes[i]);
     const std::uint64_t needed = unpacked_size(layout, pieces, i / columns % rows);
     if (piece.empty() || (limit != 0 && needed > limit * piece.size())) throw_truncated_image();
   }
 }
 
-/// The decoder drops alpha beside grey; told that there are twice as many grey columns, it keeps
-/// it.
-void describe_alpha_as_columns(const TiffDirectory& directory, const Layout& layout,
-                               DecoderInput& input) {
-  directory.set(input.bytes, TiffTag::width, 2 * layout.width);
-  directory.set(input.bytes, TiffTag::tile_width, 2 * directory.value(TiffTag::tile_width, 0));
-  directory.set(input.bytes, TiffTag::samples_per_pixel, 1);
-  directory.set(input.bytes, TiffTag::bits_per_sample, layout.bits);
-  directory.set(input.bytes, TiffTag::sample_format, kUnsignedSamples);
-  directory.hide(input.bytes, TiffTag::extra_samples);
-  input.alpha_as_columns = true;
-}
-
 /// A fourth channel that the file says nothing about is alpha by common usage.
-Alpha alpha_rule(const TiffDirectory& directory, const Layout& layout) {
-  if (!directory.has(TiffTag::extra_samples)) return Alpha::straight;
-  const bool is_straight = directory.value(TiffTag::extra_samples, 0) == kStraightAlpha;
-  // The decoder multiplies 8-bit colours by their alpha itself, with the rounding that is ours too.
-  const bool is_multiplied = layout.bits == 8 && !layout.is_grey();
-  return is_straight && !is_multiplied ? Alpha::straight : Alpha::ignored;
+Alpha alpha_rule(const TiffDirectory& directory) {
+  const std::uint32_t meaning = directory.value(TiffTag::extra_samples, EXTRASAMPLE_UNASSALPHA);
+  return meaning == EXTRASAMPLE_UNASSALPHA ? Alpha::straight : Alpha::ignored;
 }
 
-/// The decoder stumbles over uncompressed tiles with less than the four bytes a pixel that it makes
-/// of them.
-void refuse_plain_tiles(const Layout& layout, const Pieces& pieces) {
-  if (!pieces.tiled || layout.compression != kNone) return;
-  if (layout.bits == 16 || layout.bits * layout.channels == 32) return;
-  throw_unsupported_image("is a TIFF in tiles without compression, which is not supported");
+/// libtiff leaves out entries that it finds wrong, and goes on with what is usual. That must not
+/// befall those that say what the samples are. \throws ImageFault
+void require_same_view(TIFF* tiff, const TiffDirectory& directory, const Layout& layout) {
+  const bool is_predicted = layout.compression == COMPRESSION_LZW ||
+                            layout.compression == COMPRESSION_DEFLATE ||
+                            layout.compression == COMPRESSION_ADOBE_DEFLATE;
+  for (const TiffTag tag :
+       {TiffTag::bits_per_sample, TiffTag::compression, TiffTag::photometric, TiffTag::fill_order,
+        TiffTag::samples_per_pixel, TiffTag::planar, TiffTag::predictor}) {
+    if (!directory.has(tag) || (tag == TiffTag::predictor && !is_predicted)) continue;
+    std::uint16_t value = 0;
+    const bool is_known = TIFFGetField(tiff, static_cast<std::uint32_t>(tag), &value) == 1;
+    if (!is_known || value != directory.value(tag, 0)) throw_truncated_image();
+  }
+}
+
+/// A file in memory, and what libtiff said about it.
+struct Source {
+  ByteView file;
+  std::size_t at = 0;
+  bool decoding = false;  ///< not opening any more
+  std::array<char, 200> complaint{};
+
+  void require(bool done) const {
+    if (!done || complaint[0] != 0) throw_damaged_image(complaint.data());
+  }
+};
+
+Source& source_of(void* handle) {
+  return *static_cast<Source*>(handle);
+}
+
+tmsize_t take_bytes(thandle_t handle, void* to, tmsize_t count) {
+  Source& source = source_of(handle);
+  const std::size_t left = source.file.size() - std::min(source.at, source.file.size());
+  const std::size_t taken = std::min(left, static_cast<std::size_t>(count));
+  if (taken > 0) std::memcpy(to, source.file.data() + source.at, taken);
+  source.at += taken;
+  return static_cast<tmsize_t>(taken);
+}
+
+tmsize_t give_nothing(thandle_t /*handle*/, void* /*from*/, tmsize_t /*count*/) {
+  return 0;
+}
+
+toff_t move_to(thandle_t handle, toff_t offset, int from) {
+  Source& source = source_of(handle);
+  if (from == SEEK_CUR) offset += source.at;
+  if (from == SEEK_END) offset += source.file.size();
+  return source.at = offset;
+}
+
+int leave_open(thandle_t /*handle*/) {
+  return 0;
+}
+
+toff_t size_of_file(thandle_t handle) {
+  return source_of(handle).file.size();
+}
+
+/// libtiff reads the samples where they are. (It refuses plain tiles that it has to copy.)
+int map_file(thandle_t handle, void** start, toff_t* size) {
+  const ByteView file = source_of(handle).file;
+  *start = const_cast<std::uint8_t*>(file.data());
+  *size = file.size();
+  return 1;
+}
+
+void leave_mapped(thandle_t /*handle*/, void* /*start*/, toff_t /*size*/) {}
+
+constexpr int kDealtWith = 1;
+
+/// Keeps the first complaint.
+int keep_error(TIFF* /*tiff*/, void* handle, const char* module, const char* format,
+               va_list values) {
+  auto& complaint = source_of(handle).complaint;
+  if (complaint[0] != 0) return kDealtWith;
+  const int used = std::snprintf(complaint.data(), complaint.size(), "%s: ", module);
+  const auto start = std::min(static_cast<std::size_t>(std::max(used, 0)), complaint.size());
+  std::vsnprintf(complaint.data() + start, complaint.size() - start, format, values);
+  return kDealtWith;
+}
+
+/// While a file is opened, warnings are about entries that decide no pixel, or that are checked
+/// here. Later they tell of samples that libtiff made up, but for the one about an older kind of
+/// LZW, which it reads all the same.
+int weigh_warning(TIFF* tiff, void* handle, const char* module, const char* format,
+                  va_list values) {
+  const bool is_about_old_lzw = module != nullptr && std::string_view(module) == "LZWPreDecode";
+  if (!source_of(handle).decoding || is_about_old_lzw) return kDealtWith;
+  return keep_error(tiff, handle, module, format, values);
+}
+
+using TiffFile = std::unique_ptr<TIFF, decltype(&TIFFClose)>;
+
+TiffFile opened(Source& source) {
+  // Eight bytes a pixel are the most that a picture takes.
+  constexpr tmsize_t kLargestBlock = 8 * kMaxImagePixels + (1 << 20U);
+  const std::unique_ptr<TIFFOpenOptions, decltype(&TIFFOpenOptionsFree)> options(
+      TIFFOpenOptionsAlloc(), TIFFOpenOptionsFree);
+  if (!options) throw std::bad_alloc();
+  TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), kLargestBlock);
+  TIFFOpenOptionsSetErrorHandlerExtR(options.get(), keep_error, &source);
+  TIFFOpenOptionsSetWarningHandlerExtR(options.get(), weigh_warning, &source);
+  TiffFile tiff(TIFFClientOpenExt("picture", "rc", &source, take_bytes, give_nothing, move_to,
+                                  leave_open, size_of_file, map_file, leave_mapped, options.get()),
+                TIFFClose);
+  if (!tiff) throw_damaged_image(source.complaint.data());
+  source.complaint.fill(0);
+  source.decoding = true;
+  return tiff;
+}
+
+struct Rgba : TIFFRGBAImage {
+  explicit Rgba(TIFF* tiff) : TIFFRGBAImage() {
+    std::array<char, 1024> why{};
+    if (TIFFRGBAImageOK(tiff, why.data()) == 0 ||
+        TIFFRGBAImageBegin(this, tiff, 1, why.data()) == 0) {
+      throw_damaged_image(why.data());
+    }
+    orientation = req_orientation = ORIENTATION_TOPLEFT;
+  }
+  ~Rgba() { TIFFRGBAImageEnd(this); }
+  Rgba(const Rgba&) = delete;
+  Rgba& operator=(const Rgba&) = delete;
+};
+
+/// Colour, palettes and bilevel samples, of whose many arrangements libtiff makes 8-bit RGBA. Where
+/// the file says that alpha is straight, libtiff multiplies colours by it, rounding as we do.
+GreyImage read_as_rgba(TIFF* tiff, const Source& source, const Layout& layout,
+                       std::uint64_t piece_height, Alpha alpha) {
+  Rgba rgba(tiff);
+  source.require(rgba.width == layout.width && rgba.height == layout.height);
+  GreyImage image(static_cast<int>(layout.height), static_cast<int>(layout.width));
+  const auto most_rows =
+      static_cast<std::uint32_t>(std::min<std::uint64_t>(piece_height, layout.height));
+  std::vector<std::uint32_t> raster(std::size_t{layout.width} * most_rows);
+  for (std::uint32_t y = 0; y < layout.height; y += most_rows) {
+    rgba.row_offset = static_cast<int>(y);
+    const std::uint32_t rows = std::min(most_rows, layout.height - y);
+    source.require(TIFFRGBAImageGet(&rgba, raster.data(), layout.width, rows) == 1);
+    const std::size_t first = std::size_t{y} * layout.width;
+    for (std::size_t i = 0; i < std::size_t{rows} * layout.width; ++i) {
+      std::array<std::uint8_t, 4> samples{};
+      for (std::size_t k = 0; k < 4; ++k) {
+        samples[k] = static_cast<std::uint8_t>(raster[i] >> (8 * k));
+      }
+      image.samples()[first + i] = grey_of(samples.data(), 4, alpha);
+    }
+  }
+  return image;
+}
+
+/// 16-bit samples, and 8-bit grey with alpha, which libtiff would not keep apart: channels side by
+/// side, in strips or tiles.
+template <typename Sample>
+GreyImage read_samples(TIFF* tiff, const Source& source, const Layout& layout, const Pieces& pieces,
+                       Alpha alpha) {
+  GreyImage image(static_cast<int>(layout.height), static_cast<int>(layout.width));
+  const std::size_t row_size = pieces.width * layout.channels;
+  std::vector<Sample> piece(row_size * pieces.height);
+  const std::uint64_t columns = ceil_divide(layout.width, pieces.width);
+  for (std::uint32_t i = 0; i < pieces.count; ++i) {
+    const std::uint64_t top = i / columns * pieces.height;
+    const std::uint64_t left = i % columns * pieces.width;
+    const auto size = static_cast<tmsize_t>(unpacked_size(layout, pieces, i / columns));
+    source.require(size == (pieces.tiled ? TIFFReadEncodedTile(tiff, i, piece.data(), size)
+                                         : TIFFReadEncodedStrip(tiff, i, piece.data(), size)));
+    if (layout.photometric == PHOTOMETRIC_MINISWHITE) {
+      // Before alpha is composited: it concerns the colour only.
+      for (std::size_t at = 0; at < piece.size(); at += layout.channels) {
+        piece[at] = static_cast<Sample>(~piece[at]);
+      }
+    }
+    const std::uint64_t rows = std::min(pieces.height, layout.height - top);
+    const std::uint64_t width = std::min(pieces.width, layout.width - left);
+    for (std::uint64_t y = 0; y < rows; ++y) {
+      make_grey(piece.data() + y * row_size, static_cast<int>(layout.channels), alpha,
+                image.row(static_cast<int>(top + y)).subspan(left, width));
+    }
+  }
+  return image;
 }
 
 }  // namespace
 
-DecoderInput check_tiff(ByteView file) {
+GreyImage read_tiff(ByteView file) {
   const TiffDirectory directory(file);
   const Layout layout = read_layout(directory);
   check_samples(directory, layout);
   const Pieces pieces = read_pieces(directory, layout);
   check_pieces(file, layout, pieces);
-  refuse_plain_tiles(layout, pieces);
-  DecoderInput input;
-  input.bytes.assign(file.begin(), file.end());
-  input.width_px = static_cast<int>(layout.width);
-  input.height_px = static_cast<int>(layout.height);
-  input.alpha = alpha_rule(directory, layout);
-  input.white_is_zero = layout.photometric == kWhiteIsZero;
-  directory.set(input.bytes, TiffTag::orientation, 1);
-  if (layout.is_grey()) directory.set(input.bytes, TiffTag::photometric, kBlackIsZero);
-  if (layout.channels == 2) describe_alpha_as_columns(directory, layout, input);
-  return input;
+  Source source{.file = file};
+  const TiffFile tiff = opened(source);
+  require_same_view(tiff.get(), directory, layout);
+  const Alpha alpha = alpha_rule(directory);
+  if (layout.bits == 16) {
+    return read_samples<std::uint16_t>(tiff.get(), source, layout, pieces, alpha);
+  }
+  if (layout.channels == 2) {
+    return read_samples<std::uint8_t>(tiff.get(), source, layout, pieces, alpha);
+  }
+  const bool is_composited = directory.has(TiffTag::extra_samples);
+  return read_as_rgba(tiff.get(), source, layout, pieces.height,
+                      is_composited ? Alpha::ignored : Alpha::straight);
 }
 
 }  // namespace touchtrial::engine

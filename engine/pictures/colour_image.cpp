@@ -1,30 +1,26 @@
 #include "engine/pictures/colour_image.hpp"
 
 #include "core/errors.hpp"
+#include "engine/image_formats/image_format.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
-#include <vector>
+#include <string>
 
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
 namespace touchtrial::engine {
 namespace {
 
-/// Filtered rows and zlib's best effort: textures pack poorly, so every per cent is welcome.
-Bytes encoded(const cv::Mat& pixels) {
-  const std::vector<int> options = {cv::IMWRITE_PNG_COMPRESSION, 9, cv::IMWRITE_PNG_STRATEGY,
-                                    cv::IMWRITE_PNG_STRATEGY_FILTERED};
-  Bytes bytes;
+Bytes encoded(int height, int width, int channels, std::span<const std::uint8_t> samples) {
   try {
-    if (cv::imencode(".png", pixels, bytes, options) && !bytes.empty()) return bytes;
-  } catch (const cv::Exception&) {
-    // What it says names its own sources, not the picture.
+    return png_of_samples(height, width, channels, samples);
+  } catch (const ImageFault&) {
+    throw FileError("a picture cannot be encoded as PNG; give a smaller image");
   }
-  throw FileError("a picture cannot be encoded as PNG; give a smaller image");
 }
 
 void require_pixels(bool empty, const char* who) {
@@ -35,21 +31,17 @@ void require_pixels(bool empty, const char* who) {
 
 Bytes png_bytes(const GreyImage& image) {
   require_pixels(image.empty(), "png_bytes");
-  cv::Mat pixels(image.height(), image.width(), CV_8UC1);
-  for (int y = 0; y < image.height(); ++y) std::ranges::copy(image.row(y), pixels.ptr(y));
-  return encoded(pixels);
+  return encoded(image.height(), image.width(), 1, image.samples());
 }
 
 Bytes png_bytes(const ColourImage& image) {
   require_pixels(image.empty(), "png_bytes");
-  cv::Mat pixels(image.height(), image.width(), CV_8UC3);
-  for (int y = 0; y < image.height(); ++y) {
-    for (int x = 0; x < image.width(); ++x) {
-      const Rgb& pixel = image.at(y, x);
-      pixels.at<cv::Vec3b>(y, x) = cv::Vec3b(pixel.blue, pixel.green, pixel.red);
-    }
+  Bytes samples;
+  samples.reserve(3 * image.size());
+  for (const Rgb& pixel : image.samples()) {
+    samples.insert(samples.end(), {pixel.red, pixel.green, pixel.blue});
   }
-  return encoded(pixels);
+  return encoded(image.height(), image.width(), 3, samples);
 }
 
 GreyImage resized(const GreyImage& image, int height, int width) {

@@ -2,10 +2,11 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "engine/image_formats/sample_rules.hpp"
+#include "engine/image_formats/image_format.hpp"
 #include "image_samples.hpp"
 #include "support/catch.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <thread>
 
@@ -30,7 +31,7 @@ TEST_CASE("the integer sample rules are the rounded formulas") {
   CHECK(luma(10, 20, 30) == 18);
 }
 
-// The PNG files below come from an encoder written on zlib alone, not from OpenCV's.
+// The PNG files below come from an encoder written on zlib alone, not from libpng.
 
 TEST_CASE("a grey PNG of any bit depth keeps its samples, spread over 0 to 255") {
   // Samples 1 0 1 0, then 0 1 2 3, then 0 5 10 15.
@@ -129,16 +130,19 @@ TEST_CASE("a PNG's palette and its transparency are looked up") {
 }
 
 TEST_CASE("a 24-bit PNG follows the grey formula, not the decoder's own grey") {
-  const cv::Mat picture = colour_picture();
-  const GreyImage grey = read_bytes(encoded(".png", picture));
-  REQUIRE(grey.height() == picture.rows);
-  REQUIRE(grey.width() == picture.cols);
-  for (int y = 0; y < grey.height(); ++y) {
-    for (int x = 0; x < grey.width(); ++x) {
-      const auto& bgr = picture.at<cv::Vec3b>(y, x);
-      REQUIRE(grey.at(y, x) == (299 * bgr[2] + 587 * bgr[1] + 114 * bgr[0] + 500) / 1000);
-    }
-  }
+  const Raster picture = colour_picture();
+  const GreyImage grey = read_bytes(png_file(picture));
+  REQUIRE(grey.height() == 48);
+  REQUIRE(grey.width() == 64);
+  for (std::size_t i = 0; i < grey.size(); ++i) REQUIRE(grey.samples()[i] == grey_at(picture, i));
+}
+
+TEST_CASE("an interlaced PNG is put together from its passes") {
+  const GreyImage grey = read_bytes(
+      hex("89504e470d0a1a0a0000000d4948445200000003000000020800000001cf180950000000124944415478"
+          "9c636064606660626061650300004e00163121d02c0000000049454e44ae426082"));
+  CHECK(Row(grey.row(0).begin(), grey.row(0).end()) == Row{1, 2, 3});
+  CHECK(Row(grey.row(1).begin(), grey.row(1).end()) == Row{4, 5, 6});
 }
 
 TEST_CASE("a grey picture survives writing and reading unchanged") {
@@ -235,12 +239,18 @@ TEST_CASE("a TIFF's orientation is ignored, in 8 and 16 bits") {
 }
 
 TEST_CASE("a compressed TIFF decodes to what was encoded") {
-  cv::Mat grey;
-  cv::extractChannel(colour_picture(), grey, 0);
-  const int compression = GENERATE(1, 5, 8, 32773);
-  const GreyImage image =
-      read_bytes(encoded(".tif", grey, {cv::IMWRITE_TIFF_COMPRESSION, compression}));
-  CHECK(std::equal(image.samples().begin(), image.samples().end(), grey.begin<std::uint8_t>()));
+  const Raster colour = colour_picture();
+  Raster grey{colour.height, colour.width, 1, 8, {}};
+  for (std::size_t i = 0; i < colour.samples.size(); i += 3) {
+    grey.samples.push_back(colour.samples[i + 1]);
+  }
+  const auto compression = static_cast<std::uint16_t>(GENERATE(1, 5, 8, 32773));
+  const GreyImage image = read_bytes(tiff_file(grey, compression));
+  CHECK(std::ranges::equal(image.samples(), grey.samples));
+  const GreyImage of_colour = read_bytes(tiff_file(colour, compression));
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    REQUIRE(of_colour.samples()[i] == grey_at(colour, i));
+  }
 }
 
 /// A TIFF of one 16 x 16 tile, of which the picture is the upper left corner.
@@ -269,11 +279,24 @@ TEST_CASE("a TIFF in tiles of four 8-bit channels is read") {
   CHECK(first_row(tiff.bytes()) == Row{255, 255, 255, 255, 255});
 }
 
-TEST_CASE("a TIFF in 8-bit tiles without compression is refused by name") {
-  for (const std::uint32_t bits : {1U, 8U}) {
-    CHECK_THROWS_WITH(read_bytes(tiled_tiff(bits, Bytes(256))),
-                      holds_text("tiles without compression"));
-  }
+TEST_CASE("a TIFF in 8-bit or bilevel tiles without compression is read") {
+  Bytes tile(256);
+  for (std::size_t i = 0; i < tile.size(); ++i) tile[i] = static_cast<std::uint8_t>(i);
+  CHECK(first_row(tiled_tiff(8, tile)) == Row{0, 1, 2, 3, 4});
+  CHECK(read_bytes(tiled_tiff(8, tile)).at(3, 4) == 3 * 16 + 4);
+  CHECK(first_row(tiled_tiff(1, Bytes(32, 0b10100000))) == Row{255, 0, 255, 0, 0});
+}
+
+TEST_CASE("grey with alpha in a TIFF is read from differences of neighbours, too") {
+  // (10, 255) (100, 128): 2 is the predictor of differences, packed by runs of which none repeats.
+  const Bytes differences = {3, 10, 255, 90, 129};
+  Tiff tiff(2, 1, differences);
+  tiff.with(258, {8, 8}).with(277, {2}).with(338, {2}).with(259, {32773});
+  CHECK(first_row(tiff.bytes()) == Row{10, (90 * 129 + 127) / 255});
+  const Bytes deflated = hex("789ce3fa1fd50800045e01e5");
+  Tiff predicted(2, 1, deflated);
+  predicted.with(258, {8, 8}).with(277, {2}).with(338, {2}).with(259, {8}).with(317, {2});
+  CHECK(first_row(predicted.bytes()) == Row{10, 50});
 }
 
 TEST_CASE("BMP rows from the top or the bottom, palettes and alpha follow the rules") {
@@ -290,6 +313,22 @@ TEST_CASE("BMP rows from the top or the bottom, palettes and alpha follow the ru
         Row{18, 108});
 }
 
+TEST_CASE("BMP palettes of 4 and 8 bits and run lengths follow the rules") {
+  const Bytes palette = numbers({0x010203, 0x646E78, 0xFA0009, 0x0A0A0A}, 4);
+  Bytes four = Bmp{3, 1, 4, {0x12, 0x30, 0, 0}, palette, 0, {}}.bytes();
+  four[46] = 4;  // entries of the palette
+  CHECK(first_row(four) == Row{108, 76, 10});
+  Bytes eight = Bmp{3, 1, 8, {2, 0, 9, 0}, palette, 0, {}}.bytes();
+  eight[46] = 4;
+  CHECK(first_row(eight) == Row{76, 2, 0});
+  Bytes runs = Bmp{7, 1, 4, {3, 0x12, 0, 3, 0x31, 0x20, 1, 0x30, 0, 1}, palette, 2, {}}.bytes();
+  runs[46] = 4;
+  CHECK(first_row(runs) == Row{108, 76, 108, 10, 108, 76, 10});
+  const GreyImage packed = read_bytes(packed_bmp());
+  CHECK(Row(packed.samples().begin(), packed.samples().end()) ==
+        Row{30, 30, 30, 30, 30, 0, 0, 20, 0, 0, 10, 10, 10, 20, 30});
+}
+
 TEST_CASE("PGM and PPM of any maximum are scaled to 0 to 255 and rounded") {
   using namespace std::string_view_literals;
   CHECK(first_row(text("P5 3 1 255\n\x00\x64\xff"sv)) == Row{0, 100, 255});
@@ -303,19 +342,15 @@ TEST_CASE("PGM and PPM of any maximum are scaled to 0 to 255 and rounded") {
 
 TEST_CASE("a JPEG is made grey from its decoded colours") {
   const int progressive = GENERATE(0, 1);
-  const Bytes file = encoded(".jpg", colour_picture(), {cv::IMWRITE_JPEG_PROGRESSIVE, progressive});
-  const cv::Mat decoded = cv::imdecode(file, cv::IMREAD_COLOR);
+  const Bytes file = jpeg_file(colour_picture(), progressive == 1);
+  const Raster decoded = colours_of_jpeg(file);
   const GreyImage grey = read_bytes(file);
-  for (int y = 0; y < grey.height(); ++y) {
-    for (int x = 0; x < grey.width(); ++x) {
-      const auto& bgr = decoded.at<cv::Vec3b>(y, x);
-      REQUIRE(grey.at(y, x) == (299 * bgr[2] + 587 * bgr[1] + 114 * bgr[0] + 500) / 1000);
-    }
-  }
+  REQUIRE(grey.size() == std::size_t{48} * 64);
+  for (std::size_t i = 0; i < grey.size(); ++i) REQUIRE(grey.samples()[i] == grey_at(decoded, i));
 }
 
 TEST_CASE("a JPEG's orientation, comments and bytes after its end change nothing") {
-  const Bytes plain = encoded(".jpg", colour_picture());
+  const Bytes plain = jpeg_file(colour_picture());
   // An Exif segment whose only entry turns the picture by a quarter, and a comment.
   const Bytes notes =
       hex("ffe10022457869660000"
@@ -330,7 +365,7 @@ TEST_CASE("a JPEG's orientation, comments and bytes after its end change nothing
 TEST_CASE("pictures read by several threads at once are the same as one by one") {
   const TempFolder folder;
   const auto path = folder.path() / "picture.jpg";
-  replace_file(path, encoded(".jpg", colour_picture()));
+  replace_file(path, jpeg_file(colour_picture()));
   const GreyImage expected = read_grey_image(path);
   std::vector<GreyImage> images(4);
   std::vector<std::thread> threads;

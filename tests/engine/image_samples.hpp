@@ -14,8 +14,6 @@
 #include <string_view>
 #include <vector>
 
-#include <opencv2/imgcodecs.hpp>
-
 namespace touchtrial::samples {
 
 inline Bytes hex(std::string_view digits) {
@@ -128,24 +126,56 @@ inline Bytes text(std::string_view characters) {
   return {characters.begin(), characters.end()};
 }
 
+/// Samples of 8 or 16 bits, rows from the top: grey, or red, green, blue.
+struct Raster {
+  std::uint32_t height = 0;
+  std::uint32_t width = 0;
+  std::uint32_t channels = 1;
+  std::uint32_t bits = 8;
+  std::vector<std::uint16_t> samples;
+};
+
 /// A colour picture with smooth and rough parts.
-inline cv::Mat colour_picture(int height = 48, int width = 64) {
-  cv::Mat picture(height, width, CV_8UC3);
-  for (int y = 0; y < height; ++y) {
-    for (int x = 0; x < width; ++x) {
-      picture.at<cv::Vec3b>(y, x) = {static_cast<std::uint8_t>((3 * x + y) % 256),
-                                     static_cast<std::uint8_t>((x * y) % 256),
-                                     static_cast<std::uint8_t>((x / 8 + y / 8) % 2 * 200)};
+inline Raster colour_picture(std::uint32_t height = 48, std::uint32_t width = 64) {
+  Raster picture{height, width, 3, 8, {}};
+  for (std::uint32_t y = 0; y < height; ++y) {
+    for (std::uint32_t x = 0; x < width; ++x) {
+      for (const std::uint32_t sample : {(x / 8 + y / 8) % 2 * 200, x * y, 3 * x + y}) {
+        picture.samples.push_back(static_cast<std::uint16_t>(sample % 256));
+      }
     }
   }
   return picture;
 }
 
-inline Bytes encoded(const std::string& extension, const cv::Mat& picture,
-                     const std::vector<int>& options = {}) {
-  Bytes bytes;
-  cv::imencode(extension, picture, bytes, options);
-  return bytes;
+/// The formula of docs/method.md, for pixel `i`.
+inline int grey_at(const Raster& colours, std::size_t i) {
+  const std::uint16_t* rgb = &colours.samples[3 * i];
+  return (299 * rgb[0] + 587 * rgb[1] + 114 * rgb[2] + 500) / 1000;
+}
+
+/// Two bytes a sample of 16 bits, in either order.
+Bytes sample_bytes(const Raster& raster, bool big);
+
+Bytes png_file(const Raster& raster);
+Bytes jpeg_file(const Raster& raster, bool progressive = false);
+/// \param compression  as the file's entry says it; 5: LZW
+Bytes tiff_file(const Raster& raster, std::uint16_t compression = 5);
+/// Colour alone.
+Bytes bmp_file(const Raster& raster);
+Bytes ppm_file(const Raster& raster);
+
+/// What libjpeg makes of a colour file, without our reader.
+Raster colours_of_jpeg(const Bytes& file);
+
+/// A palette BMP of run lengths, 5 x 3: 1 1 1 2 3, jumped over but for a 2 in the middle, and 3 3 3
+/// 3 3, from the bottom; the palette is grey levels 0, 10, 20, 30.
+inline Bytes packed_bmp() {
+  const Bytes palette = numbers({0, 0x0A0A0A, 0x141414, 0x1E1E1E}, 4);
+  const Bytes runs = {3, 1, 1, 2, 1, 3, 0, 0, 0, 2, 2, 0, 1, 2, 0, 0, 5, 3, 0, 1};
+  Bytes file = Bmp{5, 3, 8, runs, palette, 1, {}}.bytes();
+  file[46] = 4;  // entries of the palette
+  return file;
 }
 
 /// Writes the bytes to a file and reads it as a picture.
@@ -163,16 +193,6 @@ inline std::vector<int> first_row(const Bytes& bytes) {
 }
 
 /// One whole picture of each kind, for tests that cut and change them.
-inline std::map<std::string, Bytes> one_of_each_kind() {
-  const cv::Mat colour = colour_picture(12, 15);
-  return {{"png", encoded(".png", colour)},
-          {"jpeg", encoded(".jpg", colour)},
-          {"progressive jpeg", encoded(".jpg", colour, {cv::IMWRITE_JPEG_PROGRESSIVE, 1})},
-          {"tiff", encoded(".tif", colour)},
-          {"plain tiff", Tiff(5, 3, Bytes(15, 9)).bytes()},
-          {"bmp", encoded(".bmp", colour)},
-          {"pgm", text("P5 2 2 255\nabcd")},
-          {"ppm", text("P6 2 1 65535\nabcdefghijkl")}};
-}
+std::map<std::string, Bytes> one_of_each_kind();
 
 }  // namespace touchtrial::samples

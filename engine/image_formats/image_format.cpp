@@ -1,6 +1,6 @@
-#include "engine/image_formats/image_kind.hpp"
+#include "engine/image_formats/image_format.hpp"
 
-#include "engine/image_formats/image_fault.hpp"
+#include "engine/image_file.hpp"
 
 #include <array>
 #include <string_view>
@@ -61,6 +61,49 @@ ImageKind kind_of_image(ByteView file) {
                      "save it as PNG, JPEG, TIFF, BMP or PGM"};
   }
   throw ImageFault{"is not an image of a known kind", "give a PNG, JPEG, TIFF, BMP or PGM file"};
+}
+
+void throw_truncated_image() {
+  throw_damaged_image("");
+}
+
+void throw_damaged_image(const std::string& complaint) {
+  throw ImageFault{complaint.empty() ? "is truncated or damaged" : "is damaged (" + complaint + ")",
+                   "copy or export it again"};
+}
+
+void throw_unsupported_image(const std::string& what) {
+  throw ImageFault{what, "save it as 8- or 16-bit grey or RGB, for instance as PNG"};
+}
+
+void check_image_size(std::int64_t width_px, std::int64_t height_px) {
+  const std::string size = std::to_string(width_px) + " x " + std::to_string(height_px) + " pixels";
+  if (width_px <= 0 || height_px <= 0) {
+    throw ImageFault{"has " + size, "export it again with at least one pixel"};
+  }
+  if (width_px > kMaxImagePixels / height_px) {
+    throw ImageFault{
+        "has " + size + ", more than " + std::to_string(kMaxImagePixels) + " pixels in all",
+        "crop or shrink it"};
+  }
+  if (width_px > kMaxSidePx || height_px > kMaxSidePx) {
+    throw ImageFault{"has " + size + ", a side longer than " + std::to_string(kMaxSidePx),
+                     "crop or shrink it"};
+  }
+}
+
+ByteView bytes_at(ByteView bytes, std::size_t at, std::size_t count) {
+  if (at > bytes.size() || count > bytes.size() - at) throw_truncated_image();
+  return bytes.subspan(at, count);
+}
+
+std::uint32_t number_at(ByteView bytes, std::size_t at, std::size_t size, ByteOrder order) {
+  const ByteView digits = bytes_at(bytes, at, size);
+  std::uint32_t number = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    number = number << 8U | digits[order == ByteOrder::big ? i : size - 1 - i];
+  }
+  return number;
 }
 
 }  // namespace touchtrial::engine

@@ -1,0 +1,31 @@
+/// \file The way out of libpng and libjpeg, whose error handlers must not return.
+#pragma once
+
+#include <array>
+#include <csetjmp>
+#include <cstdio>
+
+namespace touchtrial::engine {
+
+/// Where an error handler leaves to, and what it leaves behind.
+struct Escape {
+  std::jmp_buf back;
+  std::array<char, 200> complaint{};
+
+  [[noreturn]] void leave(const char* what) noexcept {
+    std::snprintf(complaint.data(), complaint.size(), "%s", what);
+    std::longjmp(back, 1);
+  }
+};
+
+/// Runs `steps`, which an error handler may leave half-way by `escape`. The jump destroys nothing:
+/// whatever needs a destructor is made outside of `steps` and reaches them by reference.
+/// \return whether the steps reached their end
+template <typename Steps>
+[[nodiscard, gnu::noinline]] bool reaches_end(Escape& escape, const Steps& steps) {
+  if (setjmp(escape.back) != 0) return false;
+  steps();
+  return true;
+}
+
+}  // namespace touchtrial::engine
