@@ -7,6 +7,8 @@ option(TOUCHTRIAL_UNITY "Compile several files at a time: sooner done, but less 
 # How many files, of the product and of its tests.
 set(TOUCHTRIAL_BATCH 8)
 set(TOUCHTRIAL_TEST_BATCH 8)
+# Only a test that hangs takes so long: on a busy machine all of them may wait for their turn.
+set(TOUCHTRIAL_TEST_TIMEOUT_S 1800)
 
 # touchtrial_library(NAME [UNHURRIED] [EXCEPT folders...] [PUBLIC targets...] [PRIVATE libraries...])
 # One static library a folder, of every .cpp file in and below it, except those of folders that are
@@ -112,8 +114,9 @@ function(touchtrial_test name)
   target_compile_options(${name} PRIVATE $<$<CONFIG:Release>:${TOUCHTRIAL_UNHURRIED}>)
   if(ARG_WHOLE)
     add_test(NAME ${name} COMMAND ${name})
-    set_tests_properties(${name} PROPERTIES TIMEOUT 600)
+    set_tests_properties(${name} PROPERTIES TIMEOUT ${TOUCHTRIAL_TEST_TIMEOUT_S})
     return()
   endif()
-  catch_discover_tests(${name} TEST_PREFIX "${name}: " PROPERTIES TIMEOUT 600)
+  catch_discover_tests(${name} TEST_PREFIX "${name}: "
+    PROPERTIES TIMEOUT ${TOUCHTRIAL_TEST_TIMEOUT_S})
 endfunction()

@@ -31,7 +31,8 @@ using std::chrono::milliseconds;
 constexpr const char* kTitle = "Touchtrial";
 /// The session's thread looks elsewhere this often.
 constexpr milliseconds kAttention{10};
-constexpr milliseconds kPictureLimit{10'000};
+/// Long enough that only a window that hangs is given up.
+constexpr milliseconds kPictureLimit{300'000};
 /// Enter that is still held from the screen before does not end an exploration.
 constexpr milliseconds kNoAccident{500};
 /// Force that is too much; the tone comes again only after it has been less than the second.
@@ -266,7 +267,6 @@ struct ParticipantWindow::State {
 
   // Between threads.
   std::atomic<int> gone{-1};
-  std::atomic<std::int64_t> pumps{0};
   std::atomic<bool> exploring{false};
   std::atomic<bool> comfort_asked{false};
   std::atomic<bool> finish_asked{false};
@@ -308,7 +308,6 @@ void ParticipantWindow::pump(milliseconds longest) {
   s.hide_pointer();
   s.publish_pointer();
   if (device::StopOnSignals::asked()) s.leave(WindowGone::signal);
-  ++s.pumps;
 }
 
 void ParticipantWindow::check() const {
@@ -399,10 +398,6 @@ std::optional<WindowGone> ParticipantWindow::gone() const noexcept {
   const int why = state_->gone;
   if (why < 0) return std::nullopt;
   return static_cast<WindowGone>(why);
-}
-
-std::int64_t ParticipantWindow::pumps() const noexcept {
-  return state_->pumps;
 }
 
 void ParticipantWindow::close() noexcept {

@@ -9,7 +9,6 @@
 #include "protocols/session/participant.hpp"
 
 #include <chrono>
-#include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
@@ -96,9 +95,6 @@ class ParticipantWindow final : public session::Participant {
   /// \name Any thread
   ///@{
   [[nodiscard]] std::optional<WindowGone> gone() const noexcept;
-  /// How often `pump` has come to its end: what the system had told the window before a call of it
-  /// began was taken by then.
-  [[nodiscard]] std::int64_t pumps() const noexcept;
   /// As if the window manager had closed it.
   void close() noexcept;
   /// What is now to happen: as if the event had come by itself.
@@ -106,7 +102,7 @@ class ParticipantWindow final : public session::Participant {
   /// Waits until the newest step has been on the screen for a picture. \return false if it is not
   /// within the time, or the window is gone
   [[nodiscard]] bool wait_until_shown(std::chrono::milliseconds longest);
-  /// What is on the screen: waits for a picture. \throws DeviceError if none comes within 10 s
+  /// What is on the screen: waits for a picture. \throws DeviceError if none comes within 5 min
   [[nodiscard]] engine::ColourImage picture();
   /// What is in the experimenter's window, likewise. \throws std::logic_error if there is none
   [[nodiscard]] engine::ColourImage console_picture();

@@ -99,8 +99,9 @@ std::string found_in(const std::string& text, const std::map<std::string, std::s
   return found;
 }
 
-/// Presents in real time, looks at the running program again and again from the first response
-/// on, and kills it after the sixth. Leaves `out`, `cmdline`, `fd`, `maps` and `stored`.
+/// Presents in real time, looks at the program again and again from the first response on, and
+/// kills it after the sixth. It stands still for every look, so that none takes time from the
+/// session. Leaves `out`, `cmdline`, `fd`, `maps` and `stored`.
 void look_while_it_runs(const OddStudy& study) {
   std::string command = TOUCHTRIAL_PROGRAM;
   for (const std::string& argument : study.session({"--real-time"})) {
@@ -108,11 +109,13 @@ void look_while_it_runs(const OddStudy& study) {
   }
   const std::string script = command + R"( > out 2>&1 & p=$!
       until grep -q 'trial 1 acknowledged' out; do sleep 0.02; [ -e /proc/$p/fd/1 ] || exit 9; done
-      until grep -q 'trial 6 acknowledged' out; do
+      while kill -STOP $p && [ -e /proc/$p/fd/1 ]; do
         cat /proc/$p/cmdline >> cmdline; ls -l /proc/$p/fd >> fd; cat /proc/$p/maps >> maps
-        ls db* >> stored; cat db* >> stored; sleep 0.2; [ -e /proc/$p/fd/1 ] || exit 9
+        ls db* >> stored; cat db* >> stored
+        if grep -q 'trial 6 acknowledged' out; then kill -9 $p; wait $p; exit 0; fi
+        kill -CONT $p; sleep 0.2
       done
-      kill -9 $p; wait $p; exit 0)";
+      exit 9)";
   const std::string there = "cd '" + study.path().string() + "' || exit 9; ";
   const ProgramResult looked = run_program("/bin/sh", study.path(), {"-c", there + script});
   INFO(looked.errors);

@@ -2,6 +2,7 @@
 #include "app/study_folder.hpp"
 #include "protocols/store/study_store.hpp"
 #include "support/catch.hpp"
+#include "support/child_process.hpp"
 
 #include <csignal>
 #include <filesystem>
@@ -10,6 +11,7 @@
 
 using namespace touchtrial;
 using namespace touchtrial::store;
+using touchtrial::testing::ChildProcess;
 
 namespace {
 
@@ -27,21 +29,23 @@ ProgramResult run(const StudyFolder& study, const std::string& participant,
   return study.run(run_arguments(study, participant, more));
 }
 
-/// Starts the session in real time, waits for a line of its output, and sends a signal.
-/// \return what the shell had: 128 + the signal's number if it died of it
-ProgramResult run_until(const StudyFolder& study, const std::string& participant,
-                        const std::string& line, int signal) {
-  std::string command = std::string(TOUCHTRIAL_PROGRAM);
-  for (const std::string& argument : run_arguments(study, participant, {"--real-time"})) {
-    command += " '" + argument + "'";
+/// A session in real time that is sent a signal once its first response was acknowledged.
+struct Interrupted {
+  Interrupted(const StudyFolder& study, const std::string& participant, int signal) {
+    std::vector<std::string> command = run_arguments(study, participant, {"--real-time"});
+    command.insert(command.begin(), TOUCHTRIAL_PROGRAM);
+    ChildProcess program(command, {});
+    const bool responded = program.says("trial 1 acknowledged\n");
+    program.send_signal(signal);
+    exit_code = program.finish();
+    output = program.output();
+    INFO(output);
+    REQUIRE(responded);
   }
-  const std::string out = "'" + study.in("out") + "'";
-  const std::string script = command + " > " + out + " & p=$!; until grep -q '" + line + "' " +
-                             out + "; do sleep 0.02; kill -0 $p || break; done; kill -" +
-                             std::to_string(signal) + " $p; wait $p; code=$?; cat " + out +
-                             "; exit $code";
-  return run_program("/bin/sh", study.path(), {"-c", script});
-}
+
+  int exit_code = 0;   ///< -1 if it died of the signal
+  std::string output;  ///< and what it said of errors
+};
 
 int acknowledged(const std::string& output) {
   int count = 0;
@@ -137,8 +141,8 @@ TEST_CASE("stations take their own numbers of a plan, and a replacement its pred
 
 TEST_CASE("a session that was killed goes on after the responses that were acknowledged") {
   const StudyFolder study;
-  const ProgramResult killed = run_until(study, "P01", "trial", SIGKILL);
-  CHECK(killed.exit_code == 128 + SIGKILL);
+  const Interrupted killed(study, "P01", SIGKILL);
+  CHECK(killed.exit_code == -1);
   const int before = acknowledged(killed.output);
   CHECK(before >= 1);
   CHECK(before < 6);
@@ -156,9 +160,9 @@ TEST_CASE("a session that was killed goes on after the responses that were ackno
 
 TEST_CASE("a session that is asked to end stays open, says so, and goes on later") {
   const StudyFolder study;
-  const ProgramResult stopped = run_until(study, "P01", "trial", SIGTERM);
+  const Interrupted stopped(study, "P01", SIGTERM);
   CHECK(stopped.exit_code == 128 + SIGTERM);
-  CHECK(stopped.errors.find("SIGTERM") != std::string::npos);
+  CHECK(stopped.output.find("SIGTERM") != std::string::npos);
   CHECK(stopped.output.find("left open") != std::string::npos);
   REQUIRE(run(study, "P01", {"--on-existing", "resume"}).exit_code == 0);
   check_balanced(study, 1);
@@ -166,7 +170,7 @@ TEST_CASE("a session that is asked to end stays open, says so, and goes on later
 
 TEST_CASE("a session that was left can be begun anew, and the one before enters no outcomes") {
   const StudyFolder study;
-  REQUIRE(run_until(study, "P01", "trial", SIGKILL).exit_code == 128 + SIGKILL);
+  REQUIRE(Interrupted(study, "P01", SIGKILL).exit_code == -1);
   const ProgramResult restarted = run(study, "P01", {"--on-existing", "restart"});
   INFO(restarted.errors);
   CHECK(restarted.exit_code == 0);
@@ -192,7 +196,7 @@ TEST_CASE("pilots, other studies and studies that changed are refused") {
 
 TEST_CASE("closing a study names the sessions that can then no longer be continued") {
   const StudyFolder study;
-  REQUIRE(run_until(study, "P01", "trial", SIGKILL).exit_code == 128 + SIGKILL);
+  REQUIRE(Interrupted(study, "P01", SIGKILL).exit_code == -1);
   REQUIRE(run(study, "P02").exit_code == 0);
   const ProgramResult closed = study.run({"close", study.in("db")});
   INFO(closed.errors);

@@ -12,7 +12,9 @@
 namespace touchtrial::testing {
 namespace {
 
-constexpr std::chrono::seconds kPatience{60};
+/// Long enough that only a program that hangs is given up.
+constexpr std::chrono::seconds kPatience{300};
+constexpr std::chrono::seconds kBetweenLooks{1};
 
 /// In the child. Never returns.
 [[noreturn]] void become(std::vector<char*>& arguments, const std::vector<std::string>& environment,
@@ -69,31 +71,29 @@ void ChildProcess::write(const std::string& text) {
   [[maybe_unused]] const ssize_t written = ::write(input_, text.data(), text.size());
 }
 
-bool ChildProcess::read_more(std::chrono::steady_clock::time_point until) {
-  const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
-      until - std::chrono::steady_clock::now());
+bool ChildProcess::listen(std::chrono::milliseconds longest) {
   pollfd waiting{output_pipe_, POLLIN, 0};
-  if (left.count() <= 0 || poll(&waiting, 1, static_cast<int>(left.count())) <= 0) return false;
+  if (ended_ || poll(&waiting, 1, static_cast<int>(longest.count())) <= 0) return !ended_;
   std::array<char, 4096> bytes{};
   const ssize_t count = ::read(output_pipe_, bytes.data(), bytes.size());
-  if (count <= 0) return false;
-  output_.append(bytes.data(), static_cast<std::size_t>(count));
-  return true;
+  ended_ = count <= 0;
+  if (!ended_) output_.append(bytes.data(), static_cast<std::size_t>(count));
+  return !ended_;
 }
 
 bool ChildProcess::says(const std::string& text) {
   const auto until = std::chrono::steady_clock::now() + kPatience;
   while (output_.find(text) == std::string::npos) {
-    if (!read_more(until)) return false;
+    if (!listen(kBetweenLooks) || std::chrono::steady_clock::now() > until) return false;
   }
   return true;
 }
 
 int ChildProcess::finish() {
   const auto until = std::chrono::steady_clock::now() + kPatience;
-  while (read_more(until)) {
+  while (listen(kBetweenLooks)) {
+    if (std::chrono::steady_clock::now() > until) return -1;
   }
-  if (std::chrono::steady_clock::now() >= until) return -1;
   int status = 0;
   waitpid(process_, &status, 0);
   process_ = -1;

@@ -24,21 +24,21 @@ class ChildProcess {
   /// Its input ends.
   void close_input();
   void send_signal(int signal);
+  /// Reads what it says within this time, or before. \return false at the end of its output
+  [[nodiscard]] bool listen(std::chrono::milliseconds longest);
   /// Reads until its output, both streams together, holds this. \return false if it ended first, or
-  ///   after a minute
+  ///   hangs
   [[nodiscard]] bool says(const std::string& text);
-  /// Reads to its end. \return its exit code; -1 if it died by a signal or did not end in a minute
+  /// Reads to its end. \return its exit code; -1 if it died by a signal, or hangs
   [[nodiscard]] int finish();
   [[nodiscard]] const std::string& output() const { return output_; }
 
  private:
-  /// \return false at the end of its output, or when time is up
-  bool read_more(std::chrono::steady_clock::time_point until);
-
   pid_t process_ = -1;
   int input_ = -1;
   int output_pipe_ = -1;
   std::string output_;
+  bool ended_ = false;  ///< the output
 };
 
 }  // namespace touchtrial::testing

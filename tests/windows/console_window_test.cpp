@@ -4,7 +4,6 @@
 #include "device/servo/servo_control.hpp"
 #include "engine/pictures/colour_image.hpp"
 #include "support/catch.hpp"
-#include "windows/heard.hpp"
 #include "windows/virtual_screen.hpp"
 
 #include <chrono>
@@ -25,6 +24,10 @@ using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 using Kind = session::ExperimenterRequest::Kind;
 
+constexpr const char* kTitle = "Touchtrial";
+constexpr const char* kConsoleTitle = "Touchtrial console";
+/// Long enough that only a window that hangs is given up.
+constexpr milliseconds kPatience{300'000};
 constexpr int kParticipantWidth = 1280;
 
 session::SessionStatus status(const std::string& stage = "answering") {
@@ -52,8 +55,8 @@ app::ParticipantWindowOptions options(app::ConsoleExperimenter& console) {
 struct Room {
   Room() : screen(VirtualScreen::open("2240x1080")), window(options(console)) {
     window.see_pictures({"bark", "cloth"});
-    screen->xdotool("search --name '^Touchtrial$' windowmove 0 0");
-    screen->xdotool("search --name '^Touchtrial console$' windowmove 1280 0");
+    screen->move_window(kTitle, 0, 0);
+    screen->move_window(kConsoleTitle, kParticipantWidth, 0);
   }
 
   template <typename Session>
@@ -63,13 +66,13 @@ struct Room {
 
   /// Waits until the console shows what was done to it.
   void settle() {
-    wait_until_heard(window);
+    REQUIRE(screen->wait_until_heard(kTitle));
     static_cast<void>(window.console_picture());
   }
 
   /// Clicks in the experimenter's window, which gets the focus, as window managers give it.
   void click(std::pair<int, int> at) {
-    screen->xdotool("search --name '^Touchtrial console$' windowfocus --sync");
+    screen->focus_window(kConsoleTitle);
     screen->move_pointer(kParticipantWidth + at.first, at.second);
     screen->press();
     screen->release();
@@ -81,9 +84,9 @@ struct Room {
     settle();
   }
 
-  /// Waits for the next request, 20 s at most.
+  /// Waits for the next request.
   std::optional<session::ExperimenterRequest> request() {
-    const auto give_up = steady_clock::now() + std::chrono::seconds(20);
+    const auto give_up = steady_clock::now() + kPatience;
     while (steady_clock::now() < give_up) {
       if (auto asked = console.request()) return asked;
       std::this_thread::sleep_for(milliseconds(5));
@@ -186,14 +189,15 @@ TEST_CASE("keys pressed over the console are the participant's, but for what is 
     const Buttons buttons = buttons_of(room.window.console_picture());
     const session::AnswerStep answer{.trial = 7, .of = 25};
     CHECK_FALSE(room.window.attend(answer));
-    CHECK(room.window.wait_until_shown(milliseconds(20'000)));
+    CHECK(room.window.wait_until_shown(kPatience));
     room.click(buttons.note);
     room.type("1 2 Return");
     CHECK(is(room.request(), Kind::note, "12"));
     for (int i = 0; i < 20; ++i) CHECK_FALSE(room.window.attend(answer));
     room.type("2 Return");
     std::optional<session::StepReply> reply;
-    for (int i = 0; i < 2000 && !reply; ++i) reply = room.window.attend(answer);
+    const auto give_up = steady_clock::now() + kPatience;
+    while (!reply && steady_clock::now() < give_up) reply = room.window.attend(answer);
     REQUIRE(reply);
     CHECK(reply->position == 1);
   });
@@ -207,12 +211,12 @@ TEST_CASE("while a plane is on the space bar is a comfort stop even where a note
     room.click(buttons.note);
     room.type("h o t");
     room.window.show_exploring({0.2, 256, 256});
-    CHECK(room.window.wait_until_shown(milliseconds(20'000)));
+    CHECK(room.window.wait_until_shown(kPatience));
     device::ServoControl servo;
     room.window.exploring(servo);
     CHECK_FALSE(servo.comfort_stop_asked());
     room.screen->type("space");
-    const auto give_up = steady_clock::now() + std::chrono::seconds(20);
+    const auto give_up = steady_clock::now() + kPatience;
     while (!servo.comfort_stop_asked() && steady_clock::now() < give_up) {
       room.window.exploring(servo);
       std::this_thread::sleep_for(milliseconds(1));
@@ -230,7 +234,7 @@ TEST_CASE("the console is the same to the last byte, whatever the participant se
     room.console.show(status());
     for (const int position : {0, 1}) {
       CHECK_FALSE(room.window.attend(session::FeedbackStep{0, position}));
-      CHECK(room.window.wait_until_shown(milliseconds(20'000)));
+      CHECK(room.window.wait_until_shown(kPatience));
       const engine::ColourImage picture = room.window.console_picture();
       if (!first) first = picture;
       CHECK(picture == *first);
@@ -274,10 +278,10 @@ TEST_CASE("screenshots of every state of the console, for TOUCHTRIAL_SCREENSHOTS
     room.window.show_exploring({0.2, 256, 256});
     room.console.show(status("exploring"));
     keep(room.window.console_picture(), "console-exploring");
-    room.screen->xdotool("search --name '^Touchtrial console$' windowsize 1280 720");
+    room.screen->resize_window(kConsoleTitle, 1280, 720);
     room.settle();
     keep(room.window.console_picture(), "console-1280x720");
-    room.screen->xdotool("search --name '^Touchtrial console$' windowsize 1920 1080");
+    room.screen->resize_window(kConsoleTitle, 1920, 1080);
     room.settle();
     keep(room.window.console_picture(), "console-1920x1080");
   });

@@ -1,19 +1,17 @@
 // "touchtrial device monitor" as its users run it, on a screen that nobody sees.
 #include "engine/image_file.hpp"
 #include "support/catch.hpp"
+#include "support/child_process.hpp"
 #include "support/temp_folder.hpp"
 #include "windows/virtual_screen.hpp"
 
+#include <chrono>
 #include <csignal>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <set>
 #include <string>
-
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace touchtrial {
 namespace {
@@ -41,36 +39,22 @@ bool monitors(const std::string& arguments) {
   return is_well ? line.empty() : line.find("the servo stood still") != std::string::npos;
 }
 
-/// The program with a simulated hand on the wall, until it is sent this signal.
-/// \return as waitpid
-int status_after(int signal, const std::filesystem::path& errors) {
-  const pid_t child = ::fork();
-  if (child == 0) {
-    if (std::freopen(errors.c_str(), "w", stderr) == nullptr) ::_exit(98);
-    ::execl(TOUCHTRIAL_PROGRAM, TOUCHTRIAL_PROGRAM, "device", "monitor", "simulated", "--wall",
-            static_cast<char*>(nullptr));
-    ::_exit(99);
-  }
-  // The window is there.
-  const int found =
-      std::system("timeout 60 xdotool search --sync --name 'device monitor' >/dev/null");
-  ::kill(child, found == 0 ? signal : SIGKILL);
-  int status = 0;
-  ::waitpid(child, &status, 0);
-  return status;
-}
-
 TEST_CASE("device monitor that is asked to end by a signal leaves as a shell expects") {
   const auto screen = VirtualScreen::open();
-  const TempFolder folder;
   const auto [name, signal] =
       GENERATE(table<std::string, int>({{"SIGINT", SIGINT}, {"SIGTERM", SIGTERM}}));
-  const auto errors = folder.path() / "errors";
-  const int status = status_after(signal, errors);
-  REQUIRE(WIFEXITED(status));
-  CHECK(WEXITSTATUS(status) == 128 + signal);
-  CHECK_THAT(first_line_of(errors), holds_text("stopped by " + name));
-  CHECK_THAT(first_line_of(errors), holds_text("the force is zero"));
+  testing::ChildProcess program({TOUCHTRIAL_PROGRAM, "device", "monitor", "simulated", "--wall"},
+                                {});
+  while (!screen->has_window("Touchtrial: device monitor, simulated")) {
+    INFO(program.output());
+    REQUIRE(program.listen(std::chrono::milliseconds(20)));
+  }
+  program.send_signal(signal);
+  const int code = program.finish();
+  const std::string& output = program.output();
+  CHECK(code == 128 + signal);
+  CHECK_THAT(output.substr(0, output.find('\n')),
+             holds_text("stopped by " + name) && holds_text("the force is zero"));
 }
 
 TEST_CASE("device monitor writes a picture of the window that is not blank") {

@@ -8,7 +8,6 @@
 #include "protocols/session/prompt_participant.hpp"
 #include "stimuli/generator.hpp"
 #include "support/catch.hpp"
-#include "windows/heard.hpp"
 #include "windows/virtual_screen.hpp"
 
 #include <algorithm>
@@ -32,6 +31,9 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
+constexpr const char* kTitle = "Touchtrial";
+/// Long enough that only a window that hangs is given up.
+constexpr milliseconds kPatience{300'000};
 constexpr PlaneGeometry kPlane = {0.2, 256, 256};
 const std::vector<std::string> kLabels = {"bark", "cloth", "pebbles", "straw", "brick"};
 
@@ -71,24 +73,26 @@ struct Sitting {
   /// Shows a step until it is on the glass; session's thread.
   void show(const session::Step& step) {
     CHECK_FALSE(window.attend(step));
-    CHECK(window.wait_until_shown(milliseconds(20'000)));
+    CHECK(window.wait_until_shown(kPatience));
   }
-  /// Types until the window has heard it.
+  /// Waits until the window shows what came of all that was done to it.
+  void settle() {
+    REQUIRE(screen->wait_until_heard(kTitle));
+    CHECK(window.wait_until_shown(kPatience));
+  }
   void type(const std::string& keys) {
     screen->type(keys);
-    wait_until_heard(window);
+    settle();
   }
-  /// Clicks until the window shows what came of it.
   void click(int x, int y) {
     screen->move_pointer(x, y);
     screen->press();
     screen->release();
-    wait_until_heard(window);
-    CHECK(window.wait_until_shown(milliseconds(20'000)));
+    settle();
   }
-  /// Attends until there is a reply, or a minute has gone by.
+  /// Attends until there is a reply, or the window is gone.
   std::optional<session::StepReply> reply_to(const session::Step& step) {
-    const auto give_up = steady_clock::now() + std::chrono::seconds(60);
+    const auto give_up = steady_clock::now() + kPatience;
     while (steady_clock::now() < give_up && !window.gone()) {
       if (const auto reply = window.attend(step)) return reply;
     }
@@ -175,7 +179,6 @@ TEST_CASE("a pause covers a choice, which is still there afterwards") {
   sitting.run([&] {
     sitting.show(answer_step());
     sitting.type("4");
-    CHECK(sitting.window.wait_until_shown(milliseconds(20'000)));
     sitting.show(session::PauseStep{});
     sitting.type("2 Return");
     for (int i = 0; i < 20; ++i) CHECK_FALSE(sitting.window.attend(session::PauseStep{}));
@@ -192,13 +195,13 @@ TEST_CASE("while a plane is on the space bar stops the force and Enter ends the 
   sitting.run([&] {
     sitting.show(session::ReadyStep{1, 25, false});
     sitting.window.show_exploring(kPlane);
-    CHECK(sitting.window.wait_until_shown(milliseconds(20'000)));
+    CHECK(sitting.window.wait_until_shown(kPatience));
     std::this_thread::sleep_for(milliseconds(600));
     device::ServoControl servo;
     sitting.window.exploring(servo);
     CHECK_FALSE(servo.finish_asked());
     sitting.screen->type(stops ? "space" : "Return");
-    const auto give_up = steady_clock::now() + std::chrono::seconds(20);
+    const auto give_up = steady_clock::now() + kPatience;
     while (!servo.comfort_stop_asked() && !servo.finish_asked() && steady_clock::now() < give_up) {
       sitting.window.exploring(servo);
       std::this_thread::sleep_for(milliseconds(1));
@@ -241,8 +244,7 @@ TEST_CASE("the exploring screen is the same to the last byte, whatever is felt")
       sitting.window.show_exploring(kPlane);
       feel_texture(sitting.window, 0.4 * trial);
       sitting.screen->move_pointer(100 * trial, 60 * trial);
-      wait_until_heard(sitting.window);
-      CHECK(sitting.window.wait_until_shown(milliseconds(20'000)));
+      sitting.settle();
       const engine::ColourImage picture = sitting.window.picture();
       if (!first) first = picture;
       CHECK(picture == *first);
@@ -299,7 +301,7 @@ TEST_CASE("a simulated participant sits before the window and answers with its k
     app::WindowSubject subject(sitting.window, chooser, false);
     subject.see_pictures(kLabels);
     const auto reply_to = [&](const session::Step& step) {
-      const auto give_up = steady_clock::now() + std::chrono::seconds(60);
+      const auto give_up = steady_clock::now() + kPatience;
       while (steady_clock::now() < give_up) {
         if (auto reply = subject.attend(step)) return *reply;
       }
@@ -326,9 +328,9 @@ TEST_CASE("a simulated participant sits before the window and answers with its k
 
 TEST_CASE("the window's title and the monitor's number are all that the system sees") {
   Sitting sitting;
-  sitting.screen->xdotool("search --name '^Touchtrial$' >/dev/null");
+  CHECK(sitting.screen->has_window(kTitle));
   sitting.run([&] { sitting.show(answer_step()); });
-  sitting.screen->xdotool("search --name '^Touchtrial$' >/dev/null");
+  CHECK(sitting.screen->has_window(kTitle));
 }
 
 TEST_CASE("a monitor that is not there is named, and how many there are") {
@@ -413,25 +415,22 @@ TEST_CASE("screenshots of every screen, for TOUCHTRIAL_SCREENSHOTS=FOLDER", "[.]
   sitting.run([&] {
     for (const auto& [name, step] : gallery()) {
       sitting.show(step);
-      if (name == "question" || name == "answer") sitting.screen->type("4");
-      if (name == "text") sitting.screen->type("B y space f e e l");
-      std::this_thread::sleep_for(milliseconds(500));
+      if (name == "question" || name == "answer") sitting.type("4");
+      if (name == "text") sitting.type("B y space f e e l");
       keep(sitting.window, file(name));
       if (name != "answer") continue;
-      sitting.screen->type("2");
-      std::this_thread::sleep_for(milliseconds(500));
+      sitting.type("2");
       keep(sitting.window, file("answer-changed"));
     }
     session::AnswerStep step = answer_step(12);
     step.confidence_levels = 5;
     sitting.show(step);
-    sitting.screen->type("4 Return 3");
-    std::this_thread::sleep_for(milliseconds(500));
+    sitting.type("4 Return 3");
     keep(sitting.window, file("confidence"));
     static_cast<void>(sitting.answer(session::ReadyStep{2, 5, true}, "Return"));
     sitting.window.show_exploring(kPlane);
     feel_texture(sitting.window, 0.9);
-    CHECK(sitting.window.wait_until_shown(milliseconds(20'000)));
+    CHECK(sitting.window.wait_until_shown(kPatience));
     keep(sitting.window, file("exploring-practice"));
   });
 }

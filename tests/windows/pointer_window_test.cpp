@@ -52,14 +52,19 @@ struct PilotStation {
     thread.start([this] {
       device::PacedClock servo_clock{std::chrono::microseconds(50)};
       // Long enough that only a test that hangs would see it end by itself.
-      const device::ServoOptions options = {.limit_ticks = 300'000};
+      const device::ServoOptions options = {.limit_ticks = 3'600'000};
       report = device::run_servo(last, wall, sink, options, servo_clock, {.state = &states});
     });
   }
 
+  /// A servo whose window has closed ends.
+  ~PilotStation() { window.reset(); }
+  PilotStation(const PilotStation&) = delete;
+  PilotStation& operator=(const PilotStation&) = delete;
+
   /// Lets the window live until the servo's state is as wanted. \return false if it never is
   bool attend_until(const std::function<bool(const device::ServoState&)>& is_as_wanted) {
-    const auto give_up = std::chrono::steady_clock::now() + std::chrono::seconds(60);
+    const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(5);
     while (std::chrono::steady_clock::now() < give_up) {
       window->draw_frame();
       if (is_as_wanted(states.get())) return true;

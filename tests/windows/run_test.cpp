@@ -3,6 +3,7 @@
 #include "core/files.hpp"
 #include "protocols/store/study_store.hpp"
 #include "support/catch.hpp"
+#include "support/child_process.hpp"
 #include "support/temp_folder.hpp"
 #include "windows/virtual_screen.hpp"
 
@@ -12,12 +13,9 @@
 #include <filesystem>
 #include <map>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <nlohmann/json.hpp>
-#include <sys/wait.h>
-#include <unistd.h>
 
 namespace touchtrial {
 namespace {
@@ -97,79 +95,73 @@ TEST_CASE("a simulated participant answers with the window's keys as without a w
 /// A person with a keyboard, who looks at what the experimenter's status says. Its "trial" counts
 /// presentations: one in which a busy machine let the servo stand still is spoilt, and its stimulus
 /// comes again under a later number.
+///
+/// A key that comes before its screen does nothing: keys are pressed again until the status has
+/// changed. Each time the window has heard all keys before the status is read, so that a number
+/// reaches the screen of its own trial, or none.
 class Pilot {
  public:
   Pilot(const Laboratory& lab, const VirtualScreen& screen)
-      : screen_(screen),
-        log_(lab.in("log")),
-        arguments_(lab.run_arguments("pilot.db",
-                                     {"--device", "mouse", "--pilot", "--window", "1280x720"})) {}
+      : screen_(screen), program_(command_in(lab), {}) {}
 
   /// \return the program's exit code
   int sit_through() {
-    child_ = ::fork();
-    if (child_ == 0) become_program();
-    int status = 0;
-    while (::waitpid(child_, &status, WNOHANG) == 0) {
-      react();
-      std::this_thread::sleep_for(std::chrono::milliseconds(60));
-    }
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    while (program_.listen(kBetweenKeys)) react();
+    return program_.finish();
   }
   [[nodiscard]] std::vector<int> meant() const {
     std::vector<int> positions;
     for (const auto& [presentation, position] : meant_) positions.push_back(position);
     return positions;
   }
+  [[nodiscard]] const std::string& output() const { return program_.output(); }
 
  private:
-  [[noreturn]] void become_program() const {
-    std::vector<char*> arguments = {const_cast<char*>(TOUCHTRIAL_PROGRAM)};
-    for (const std::string& one : arguments_) arguments.push_back(const_cast<char*>(one.c_str()));
-    arguments.push_back(nullptr);
-    if (std::freopen("/dev/null", "r", stdin) == nullptr ||
-        std::freopen(log_.c_str(), "w", stderr) == nullptr ||
-        std::freopen("/dev/null", "w", stdout) == nullptr) {
-      ::_exit(98);
-    }
-    ::execv(TOUCHTRIAL_PROGRAM, arguments.data());
-    ::_exit(99);
+  static constexpr std::chrono::milliseconds kBetweenKeys{20};
+
+  static std::vector<std::string> command_in(const Laboratory& lab) {
+    std::vector<std::string> command =
+        lab.run_arguments("pilot.db", {"--device", "mouse", "--pilot", "--window", "1280x720"});
+    command.insert(command.begin(), TOUCHTRIAL_PROGRAM);
+    return command;
   }
 
   /// "P01  answering  trial 3 of 25 .."
   void react() {
-    const std::string line = last_line();
-    const bool answering = line.find("  answering  ") != std::string::npos;
+    const std::string line = status();
+    if (line.empty()) return;
     const std::size_t at = line.find("  trial ");
-    if (line.rfind("P01  ", 0) != 0) return;
-    if (answering && at != std::string::npos) {
+    if (line.find("  answering  ") != std::string::npos && at != std::string::npos) {
       const int presentation = std::atoi(line.c_str() + at + 8);
       meant_[presentation] = presentation % 5;
       screen_.type(std::to_string(presentation % 5 + 1));
     }
     screen_.type("Return");
+    // The last one closes the window.
+    screen_.wait_until_heard("Touchtrial");
   }
 
-  /// That has been written to its end.
-  [[nodiscard]] std::string last_line() const {
-    if (!fs::exists(log_)) return "";
-    std::string text = text_of(read_file(log_, 1U << 24U));
-    text.erase(text.rfind('\n') == std::string::npos ? 0 : text.rfind('\n'));
-    return text.substr(text.rfind('\n') + 1);
+  /// The last that was written to its end; "" if there is none.
+  [[nodiscard]] std::string status() const {
+    std::string text = "\n" + program_.output();
+    text.erase(text.rfind('\n'));
+    const std::size_t begin = text.rfind("\nP01  ");
+    if (begin == std::string::npos) return "";
+    return text.substr(begin + 1, text.find('\n', begin + 1) - begin - 1);
   }
 
   const VirtualScreen& screen_;
-  std::string log_;
-  std::vector<std::string> arguments_;
+  testing::ChildProcess program_;
   std::map<int, int> meant_;  ///< position by presentation that was answered
-  pid_t child_ = -1;
 };
 
 TEST_CASE("a person pilots a whole session of 25 trials from the keyboard") {
   const auto screen = VirtualScreen::open("1280x720");
   const Laboratory lab;
   Pilot pilot(lab, *screen);
-  REQUIRE(pilot.sit_through() == 0);
+  const int code = pilot.sit_through();
+  INFO(pilot.output());
+  REQUIRE(code == 0);
   CHECK(pilot.meant().size() == 25);
   CHECK(positions_as_answered(lab.in("pilot.db")) == pilot.meant());
   lab.verify("pilot.db");

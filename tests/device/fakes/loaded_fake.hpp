@@ -11,10 +11,10 @@
 
 namespace touchtrial::fakes {
 
-/// Polls until something holds. \return false if it does not within a minute: something hangs
+/// Polls until something holds. \return false if it does not within five minutes: something hangs
 template <typename Predicate>
 [[nodiscard]] bool eventually(Predicate holds) {
-  const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(5);
   while (!holds()) {
     if (std::chrono::steady_clock::now() > give_up) return false;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));

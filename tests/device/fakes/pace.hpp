@@ -34,7 +34,7 @@ class Pace {
     permits_ = steps;
     const long goal = done_ + steps;
     changed_.notify_all();
-    return changed_.wait_for(lock, std::chrono::seconds(60), [&] { return done_ >= goal; });
+    return changed_.wait_for(lock, std::chrono::minutes(5), [&] { return done_ >= goal; });
   }
   void run_freely() {
     const std::lock_guard lock(mutex_);

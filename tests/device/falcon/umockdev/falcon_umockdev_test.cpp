@@ -23,7 +23,7 @@ HandModel swinging_hand() {
 }
 
 bool wait_until_pushed(const FalconEmulator& emulator) {
-  for (int i = 0; i < 6000; ++i) {
+  for (int i = 0; i < 30'000; ++i) {
     if (std::abs(emulator.force_n().z - 1.0) < 0.01) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }

@@ -48,10 +48,10 @@ std::unique_ptr<FalconDevice> open_in_lockstep(Lockstep& lockstep,
                                         std::move(options));
 }
 
-/// Waits in real time for what the USB thread brings; gives up after half a minute.
+/// Waits in real time for what the USB thread brings; gives up after five minutes.
 template <typename Condition>
 bool wait_until(Condition holds) {
-  for (int i = 0; i < 30'000; ++i) {
+  for (int i = 0; i < 300'000; ++i) {
     if (holds()) return true;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
