@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct FitArguments {
+struct DeviceFitArguments {
   fs::path study;
   std::string driver;
   std::optional<device::PlaneOrientation> orientation;
@@ -22,7 +22,7 @@ struct FitArguments {
   bool json = false;
 };
 
-int fit(const FitArguments& arguments) {
+int fit(const DeviceFitArguments& arguments) {
   const device::DeviceSettings settings = device::device_settings_for(arguments.settings);
   const design::Study study = design::load_study(arguments.study);
   const StudyFit fit = fit_study(study, arguments.driver, settings, arguments.orientation);
@@ -39,7 +39,7 @@ void add_device_fit_command(CLI::App& device, Action& action) {
   const std::map<std::string, device::PlaneOrientation> orientations = {
       {"horizontal", device::PlaneOrientation::horizontal},
       {"vertical", device::PlaneOrientation::vertical}};
-  auto arguments = std::make_shared<FitArguments>();
+  auto arguments = std::make_shared<DeviceFitArguments>();
   CLI::App* command = device.add_subcommand(
       "fit", "Whether a study's plane fits a device's workspace; if not, the crop that would");
   command->add_option("STUDY", arguments->study, "Study file")->required();

@@ -32,7 +32,7 @@ struct MergeArguments {
   bool json = false;
 };
 
-void refuse_existing(const fs::path& path) {
+void refuse_existing_output(const fs::path& path) {
   if (!is_there(path)) return;
   throw StoreError(one_line(path.string()) + ": exists already; give another name with -o");
 }
@@ -122,7 +122,7 @@ std::string summary_of(const MergeArguments& arguments, const collect::CollectRe
 
 int merge(const MergeArguments& arguments) {
   if (arguments.target.empty()) throw UsageError("merge: -o is empty; give it a file name");
-  refuse_existing(arguments.target);
+  refuse_existing_output(arguments.target);
   collect::Stations stations = stations_of(arguments.databases);
   const std::optional<design::StudyKey> key = key_to_lay(arguments, stations);
   const collect::CollectReport report =

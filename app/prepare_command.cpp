@@ -105,7 +105,7 @@ std::string gains_of(const design::PrepareReport& report, engine::ModelKind mode
       first.tangential_n, first.normal_n);
 }
 
-std::string totals_of(const design::PrepareReport& report) {
+std::string line_of_totals(const design::PrepareReport& report) {
   const auto reused = std::count_if(report.stimuli.begin(), report.stimuli.end(),
                                     [](const design::PreparedStimulus& s) { return s.reused; });
   const auto total = static_cast<std::ptrdiff_t>(report.stimuli.size());
@@ -150,7 +150,7 @@ int prepare(const PrepareArguments& arguments) {
     return 0;
   }
   print((arguments.explain ? explanation_text(report) + "\n" : "") + table_of(report) +
-        gains_of(report, study.rendering.model) + totals_of(report) +
+        gains_of(report, study.rendering.model) + line_of_totals(report) +
         fmt::format("pack {}\nkey  {} (keep it to yourself)\n", place.pack.string(),
                     place.key.string()));
   if (arguments.loop_work) print(loop_work_table(study));

@@ -11,7 +11,7 @@
 namespace touchtrial::engine {
 namespace {
 
-constexpr int kMidGrey = 128;
+constexpr int kReferenceGrey = 128;
 constexpr double kStrongestEdge = 127.0;  // 255 in the picture
 
 }  // namespace
@@ -44,8 +44,9 @@ Plane<Real> edge_texture(const GreyImage& image, double divisor) {
 template <typename Real>
 Plane<Real> luminance_texture(const GreyImage& image) {
   Plane<Real> texture(image.height(), image.width());
-  std::ranges::transform(image.samples(), texture.samples().begin(),
-                         [](std::uint8_t grey) { return static_cast<Real>(grey - kMidGrey); });
+  std::ranges::transform(image.samples(), texture.samples().begin(), [](std::uint8_t grey) {
+    return static_cast<Real>(grey - kReferenceGrey);
+  });
   return texture;
 }
 

@@ -8,7 +8,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-std::string quoted(std::string_view text) {
+std::string quoted_field(std::string_view text) {
   if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
   std::string field = "\"";
   for (const char c : text) {
@@ -20,7 +20,7 @@ std::string quoted(std::string_view text) {
 
 struct CsvField {
   std::string operator()(std::monostate) const { return ""; }
-  std::string operator()(const std::string& text) const { return quoted(text); }
+  std::string operator()(const std::string& text) const { return quoted_field(text); }
   std::string operator()(std::int64_t number) const { return fmt::format("{}", number); }
   std::string operator()(double number) const { return fmt::format("{}", number); }
   std::string operator()(std::chrono::nanoseconds time) const { return seconds_text(time); }
@@ -49,7 +49,7 @@ std::string csv_text(const DataTable& table) {
     }
     text += '\n';
   };
-  add_line(table.columns, [](const std::string& name) { return quoted(name); });
+  add_line(table.columns, [](const std::string& name) { return quoted_field(name); });
   for (const std::vector<DataCell>& row : table.rows) {
     if (row.size() != table.columns.size()) {
       throw std::invalid_argument("a row needs as many cells as the table has columns");

@@ -66,7 +66,7 @@ bool has_column(std::span<const std::vector<double>> paper, std::size_t classes)
   });
 }
 
-std::string alt_of(const StudyReport& report) {
+std::string alt_of_accuracy(const StudyReport& report) {
   std::string alt = "Accuracy by class, with 95 % Wilson intervals:";
   const MethodReport& method = report.methods.front();
   for (std::size_t i = 0; i < method.accuracy.size(); ++i) {
@@ -121,7 +121,8 @@ std::optional<Figure> accuracy_figure(const StudyReport& report, bool paper_valu
   const Legend legend(sheet, margins.left_cm, legend_of(paper_values, classes));
   margins.top_cm = legend.room_cm() + 0.2;
 
-  Figure figure{.id = "accuracy-by-class", .caption = {}, .alt = alt_of(report), .script = {}};
+  Figure figure{
+      .id = "accuracy-by-class", .caption = {}, .alt = alt_of_accuracy(report), .script = {}};
   figure.width_cm = sheet.width_cm;
   figure.height_cm = sheet.height_cm;
   figure.caption = stamped(

@@ -99,7 +99,7 @@ std::string names_of(std::span<const std::string> classes, double cell_cm, bool 
   return script;
 }
 
-std::string alt_of(const StudyReport& report, const MethodReport& method) {
+std::string alt_of_confusions(const StudyReport& report, const MethodReport& method) {
   std::string alt = "Confusion matrix of " + method.method + ", rows presented, columns answered.";
   for (int row = 0; row < method.confusion.classes(); ++row) {
     alt += fmt::format(" {}:", report.classes[static_cast<std::size_t>(row)]);
@@ -132,7 +132,7 @@ Figure confusion_figure(const StudyReport& report, std::size_t number) {
 
   Figure figure{.id = fmt::format("confusion-{}", number + 1),
                 .caption = {},
-                .alt = alt_of(report, method),
+                .alt = alt_of_confusions(report, method),
                 .script = {}};
   figure.width_cm = sheet.width_cm;
   figure.height_cm = sheet.height_cm;

@@ -18,7 +18,7 @@ constexpr double kPanel_cm = 6.0;  ///< at least, with what is above it
 constexpr double kSpread = 0.6;    ///< of methods beside each other, in classes
 constexpr double kHalfRow = 0.36;  ///< of the dots of one pair
 /// Participants drawn as dots a pair; of more, evenly spaced ones in order of their difference.
-constexpr std::size_t kMostDots = 200;
+constexpr std::size_t kMostPaths = 200;
 
 double aside(std::size_t number, std::size_t count) {
   if (count < 2) return 0.0;
@@ -52,10 +52,10 @@ std::vector<double> differences(const MethodReport& first, const MethodReport& s
     }
   }
   std::sort(all.begin(), all.end());
-  if (all.size() <= kMostDots) return all;
+  if (all.size() <= kMostPaths) return all;
   std::vector<double> thinned;
-  for (std::size_t i = 0; i < kMostDots; ++i) {
-    thinned.push_back(all[i * (all.size() - 1) / (kMostDots - 1)]);
+  for (std::size_t i = 0; i < kMostPaths; ++i) {
+    thinned.push_back(all[i * (all.size() - 1) / (kMostPaths - 1)]);
   }
   return thinned;
 }
@@ -138,7 +138,7 @@ std::string differences_panel(const StudyReport& report, const NamesBelow& below
              kInk);
 }
 
-std::string alt_of(const StudyReport& report) {
+std::string alt_of_methods(const StudyReport& report) {
   std::string alt = "Accuracy by class and method, with 95 % Wilson intervals.";
   for (std::size_t i = 0; i < report.methods.size(); ++i) {
     const MethodReport& method = report.methods[i];
@@ -189,7 +189,7 @@ std::optional<Figure> methods_figure(const StudyReport& report) {
   right.bottom_cm = left.bottom_cm;
   right.top_cm = left.top_cm;
 
-  Figure figure{.id = "methods", .caption = {}, .alt = alt_of(report), .script = {}};
+  Figure figure{.id = "methods", .caption = {}, .alt = alt_of_methods(report), .script = {}};
   figure.width_cm = sheet.width_cm;
   figure.height_cm = sheet.height_cm;
   for (std::size_t i = 0; i < report.methods.size(); ++i) {

@@ -68,7 +68,7 @@ std::string bars_plot(std::size_t number, const Heaps& heaps) {
       number, 0.42 * heaps.step, series_colour(number));
 }
 
-std::string alt_of(const StudyReport& report) {
+std::string alt_of_participants(const StudyReport& report) {
   std::string alt = "Each participant's accuracy as a dot, the mean and its 95 % interval.";
   for (const MethodReport& method : report.methods) {
     if (!method.mean.mean) continue;
@@ -116,7 +116,8 @@ std::optional<Figure> participants_figure(const StudyReport& report) {
     means.push_back({100.0 * mean, base - 0.13, 100.0 * bar.low, 100.0 * bar.high});
   }
 
-  Figure figure{.id = "participants", .caption = {}, .alt = alt_of(report), .script = {}};
+  Figure figure{
+      .id = "participants", .caption = {}, .alt = alt_of_participants(report), .script = {}};
   figure.width_cm = sheet.width_cm;
   figure.height_cm = sheet.height_cm;
   figure.caption = stamped(report.simulated,

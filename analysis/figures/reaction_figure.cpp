@@ -47,7 +47,7 @@ bool has_times(const MethodReport& method, std::size_t classes) {
              [](const ReactionTimes& times) { return times.from_plane_on.median.has_value(); });
 }
 
-std::string plot_of(std::size_t number) {
+std::string plot_of_reactions(std::size_t number) {
   return fmt::format(
       "plot $times{0} using 1:2 with points pt {1} ps 0.22 lc rgb '{3}' notitle, $boxes{0} using "
       "1:3:($1 - 0.34):($1 + 0.34):2:4 with boxxyerror fs empty border lc rgb '{2}' lw 1.5 lc rgb "
@@ -56,7 +56,7 @@ std::string plot_of(std::size_t number) {
       number, 7, series_colour(number), kFaint);
 }
 
-std::string alt_of(const StudyReport& report, const MethodReport& method) {
+std::string alt_of_reactions(const StudyReport& report, const MethodReport& method) {
   std::string alt;
   for (std::size_t i = 0; i < report.classes.size(); ++i) {
     const Quartiles& q = method.reaction[i].from_plane_on;
@@ -104,9 +104,9 @@ std::optional<Figure> reaction_figure(const StudyReport& report) {
                      "set yrange [0:*]\nset ytics auto format '%g'\nset ylabel 'reaction time, "
                      "s'\n";
 
-    figure.script += (i == 0 ? legend.script() : "") + plot_of(i) + "\n";
+    figure.script += (i == 0 ? legend.script() : "") + plot_of_reactions(i) + "\n";
     figure.script += "unset label\nunset arrow\n";
-    figure.alt += alt_of(report, method);
+    figure.alt += alt_of_reactions(report, method);
   }
   figure.script += "unset multiplot\n";
   figure.width_cm = panels.sheet().width_cm;

@@ -14,7 +14,7 @@ namespace {
 /// wide as the panel.
 constexpr int kTrialsOfPoint = 15;
 /// No more points than can be told apart.
-constexpr int kMostPoints = 60;
+constexpr int kMostPositions = 60;
 
 struct Point {
   double first = 0.0;
@@ -42,7 +42,7 @@ int places_together(const std::vector<GroupAccuracy>& groups) {
   const auto places = static_cast<int>(groups.size());
   const double of_place = static_cast<double>(trials) / std::max(places, 1);
   const int needed = static_cast<int>(std::ceil(kTrialsOfPoint / std::max(of_place, 1.0)));
-  return std::max({1, needed, (places + kMostPoints - 1) / kMostPoints});
+  return std::max({1, needed, (places + kMostPositions - 1) / kMostPositions});
 }
 
 std::vector<Point> points_of(const std::vector<GroupAccuracy>& groups) {
@@ -70,7 +70,7 @@ std::vector<std::vector<double>> rows_of(const std::vector<Point>& points) {
   return rows;
 }
 
-std::string plot_of(std::size_t number) {
+std::string plot_of_trials(std::size_t number) {
   return fmt::format(
       "plot $trials{0} using 1:3:4 with filledcurves fs solid 0.2 noborder lc rgb '{1}' notitle, "
       "$trials{0} using 1:2 with linespoints pt {2} ps 0.5 lw 1.3 lc rgb '{1}' notitle",
@@ -112,7 +112,7 @@ std::optional<Figure> trials_figure(const StudyReport& report) {
                                  place_of(groups.back().group) + 1.0) +
                      chance_line(classes);
 
-    figure.script += (i == 0 ? legend.script() : "") + plot_of(i) + "\n";
+    figure.script += (i == 0 ? legend.script() : "") + plot_of_trials(i) + "\n";
     figure.script += "unset label\nunset arrow\nunset object\n";
     figure.alt += fmt::format(" {}: {:.1f} % at first, {:.1f} % at last.", method.method,
                               rows.front()[1], rows.back()[1]);

@@ -20,6 +20,12 @@ void add_sources(const Table& table, std::vector<Source>& references) {
 
 }  // namespace
 
+bool has_tables_or_warnings(const Section& section) {
+  return std::any_of(section.blocks.begin(), section.blocks.end(), [](const Block& block) {
+    return std::holds_alternative<Table>(block) || std::holds_alternative<Warnings>(block);
+  });
+}
+
 std::vector<Source> references_of(const Document& document) {
   std::vector<Source> references;
   for (const Section& section : document.sections) {

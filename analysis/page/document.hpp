@@ -85,6 +85,9 @@ struct Section {
   std::vector<Block> blocks;
 };
 
+/// Whether anything of a section is told in a file of tables.
+[[nodiscard]] bool has_tables_or_warnings(const Section& section);
+
 struct Document {
   std::string title;
   std::string stamp;                 ///< "SIMULATED" or empty: goes on every table

@@ -10,7 +10,6 @@
 namespace touchtrial::analysis {
 namespace {
 
-constexpr double kUsualLevel = 0.05;
 constexpr const char* kNoWidth = " *";  ///< mark of a note
 
 std::string pair_name(const StudyReport& report, const MethodPair& pair) {

@@ -9,8 +9,6 @@
 namespace touchtrial::analysis {
 namespace {
 
-constexpr double kUsualLevel = 0.05;
-
 /// A count and its share of the row.
 std::string count_cell(int count, int of) {
   if (count == 0) return "0";

@@ -9,6 +9,9 @@
 
 namespace touchtrial::analysis {
 
+/// What a reader takes for significant: wording alone depends on it.
+inline constexpr double kUsualLevel = 0.05;
+
 [[nodiscard]] Section headline_section(const StudyReport& report);
 [[nodiscard]] Section warnings_section(const StudyReport& report);
 [[nodiscard]] Section accuracy_section(const StudyReport& report);

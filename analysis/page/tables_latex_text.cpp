@@ -138,12 +138,6 @@ std::string warnings_latex(const Warnings& warnings) {
   return text + "\\end{itemize}\n";
 }
 
-bool is_shown(const Section& section) {
-  return std::any_of(section.blocks.begin(), section.blocks.end(), [](const Block& block) {
-    return std::holds_alternative<Table>(block) || std::holds_alternative<Warnings>(block);
-  });
-}
-
 }  // namespace
 
 std::string table_latex(const Table& table, const std::string& stamp) {
@@ -159,7 +153,7 @@ std::string tables_latex(const Document& document) {
     text += "\\noindent\\textbf{" + latex_escaped(banner) + "}\\par\\medskip\n";
   }
   for (const Section& section : document.sections) {
-    if (!is_shown(section)) continue;
+    if (!has_tables_or_warnings(section)) continue;
     text += "\\section*{" + latex_escaped(section.title) + "}\n";
     for (const Block& block : section.blocks) {
       if (const auto* warnings = std::get_if<Warnings>(&block)) text += warnings_latex(*warnings);

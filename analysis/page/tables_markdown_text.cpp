@@ -9,7 +9,7 @@ namespace touchtrial::analysis {
 namespace {
 
 /// Text that shows as it is; line breaks become spaces, as a row is one line.
-std::string escaped(const std::string& text) {
+std::string escaped_markdown(const std::string& text) {
   constexpr std::string_view kMarkup = "\\`*_{}[]<>#|~&!$^";
   std::string safe;
   for (const char c : text) {
@@ -29,25 +29,26 @@ std::string line_of(const std::vector<std::string>& cells) {
 std::string row_of(const std::vector<Cell>& row) {
   std::vector<std::string> cells;
   for (const Cell& cell : row) {
-    cells.push_back(cell.strong && !cell.text.empty() ? "**" + escaped(cell.text) + "**"
-                                                      : escaped(cell.text));
+    cells.push_back(cell.strong && !cell.text.empty() ? "**" + escaped_markdown(cell.text) + "**"
+                                                      : escaped_markdown(cell.text));
   }
   return line_of(cells);
 }
 
 std::string table_text(const Table& table, const std::string& stamp,
                        const std::vector<Source>& references) {
-  std::string text = "**" + escaped(stamped(table.caption, stamp)) + "**\n\n";
+  std::string text = "**" + escaped_markdown(stamped(table.caption, stamp)) + "**\n\n";
   std::vector<std::string> titles;
   std::vector<std::string> rules;
   for (const Column& column : table.columns) {
-    titles.push_back(escaped(column.title));
+    titles.push_back(escaped_markdown(column.title));
     rules.emplace_back(column.align == Align::left ? ":---" : "---:");
   }
   text += line_of(titles) + line_of(rules);
   for (const std::vector<Cell>& row : table.rows) text += row_of(row);
   for (const Cited& note : table.notes) {
-    text += '\n' + escaped(note.text) + escaped(citation_mark(note, references)) + '\n';
+    text += '\n' + escaped_markdown(note.text) + escaped_markdown(citation_mark(note, references)) +
+            '\n';
   }
   return text;
 }
@@ -55,21 +56,16 @@ std::string table_text(const Table& table, const std::string& stamp,
 std::string references_text(const std::vector<Source>& references) {
   std::string text;
   for (std::size_t i = 0; i < references.size(); ++i) {
-    text += fmt::format("{}. {}\n", i + 1, escaped(std::string(citation_of(references[i]))));
+    text +=
+        fmt::format("{}. {}\n", i + 1, escaped_markdown(std::string(citation_of(references[i]))));
   }
   return text;
 }
 
 std::string warnings_text(const Warnings& warnings) {
   std::string text;
-  for (const std::string& one : warnings.sentences) text += "- " + escaped(one) + '\n';
+  for (const std::string& one : warnings.sentences) text += "- " + escaped_markdown(one) + '\n';
   return text + '\n';
-}
-
-bool is_shown(const Section& section) {
-  return std::any_of(section.blocks.begin(), section.blocks.end(), [](const Block& block) {
-    return std::holds_alternative<Table>(block) || std::holds_alternative<Warnings>(block);
-  });
 }
 
 }  // namespace
@@ -82,11 +78,12 @@ std::string table_markdown(const Table& table, const std::string& stamp) {
 
 std::string tables_markdown(const Document& document) {
   const std::vector<Source> references = references_of(document);
-  std::string text = "# " + escaped(stamped(document.title, document.stamp)) + "\n\n";
-  for (const std::string& banner : document.banners) text += "**" + escaped(banner) + "**\n\n";
+  std::string text = "# " + escaped_markdown(stamped(document.title, document.stamp)) + "\n\n";
+  for (const std::string& banner : document.banners)
+    text += "**" + escaped_markdown(banner) + "**\n\n";
   for (const Section& section : document.sections) {
-    if (!is_shown(section)) continue;
-    text += "## " + escaped(section.title) + "\n\n";
+    if (!has_tables_or_warnings(section)) continue;
+    text += "## " + escaped_markdown(section.title) + "\n\n";
     for (const Block& block : section.blocks) {
       if (const auto* warnings = std::get_if<Warnings>(&block)) text += warnings_text(*warnings);
       const auto* table = std::get_if<Table>(&block);

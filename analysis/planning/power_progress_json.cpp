@@ -29,7 +29,7 @@ ordered_json setting_object(const PowerSetting& setting) {
           {"has_fixed_counts", setting.has_fixed_counts}};
 }
 
-ordered_json plan_object(const PowerPlan& plan) {
+ordered_json stored_plan(const PowerPlan& plan) {
   return {{"participants", plan.participants},
           {"runs", plan.runs},
           {"seed", plan.seed},
@@ -56,7 +56,7 @@ ordered_json progress_object(const PowerProgress& progress) {
           {"version", kVersion},
           {"simulated", true},
           {"setting", setting_object(progress.setting)},
-          {"plan", plan_object(progress.plan)},
+          {"plan", stored_plan(progress.plan)},
           {"shard", {progress.shard.number, progress.shard.count}},
           {"cells", std::move(cells)}};
 }
@@ -135,7 +135,7 @@ PowerProgress progress_of(const ordered_json& object) {
   return progress;
 }
 
-[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& what) {
+[[noreturn]] void refuse_progress(const std::filesystem::path& path, const std::string& what) {
   throw FileError(one_line(path.string() + ": is no progress of a power run (" + what +
                            "); give the folder or files that power wrote"));
 }
@@ -155,11 +155,11 @@ PowerProgress load_progress(const std::filesystem::path& path) {
     require(document.at("sha256") == digest_of(object), "it is truncated or was altered");
     return progress_of(object);
   } catch (const ordered_json::exception&) {
-    refuse(path, "it is truncated, or not JSON of this form");
+    refuse_progress(path, "it is truncated, or not JSON of this form");
   } catch (const Malformed& error) {
-    refuse(path, error.what());
+    refuse_progress(path, error.what());
   } catch (const UsageError& error) {
-    refuse(path, error.what());
+    refuse_progress(path, error.what());
   }
 }
 

@@ -258,7 +258,7 @@ Optimum best_of_starts(const FitProblem& problem, const session::SubjectModel& s
       start.weber = weber;
       start.lapse = lapse;
       const std::vector<double> at = problem.numbers_of(start);
-      starts.push_back({at, problem.value(at, {}), 1});
+      starts.push_back({at, problem.value(at, {})});
     }
   }
   std::ranges::stable_sort(starts, std::ranges::greater{}, &Optimum::value);
@@ -287,7 +287,7 @@ SubjectFit fit_subject(const AnswerModel& model, const FitCounts& counts,
   SubjectFit fit = described(counts);
   fit.subject = problem.subject_at(fitted.best.at);
   const Fitted other =
-      fitted_at(otherwise, counts, {otherwise.numbers_of(fit.subject), fitted.best.value, 0});
+      fitted_at(otherwise, counts, {otherwise.numbers_of(fit.subject), fitted.best.value});
   fit.swaps = search.candidates;
   fit.swap_threshold = search.threshold;
   fit.log_likelihood = fitted.best.value;

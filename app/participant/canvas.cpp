@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kSmall = 19.0;
 constexpr double kBody = 24.0;
-constexpr double kTitle = 38.0;
+constexpr double kTitleSize = 38.0;
 /// Letters are made smaller in such steps until they fit, but no smaller than the last.
 constexpr double kSmallerBy = 0.94;
 constexpr double kSmallest = 0.4;
@@ -82,7 +82,7 @@ Fonts load_participant_fonts(double unit) {
   fonts.body = add_font(height(kBody), FontWeight::regular);
   fonts.small = add_font(height(kSmall), FontWeight::regular);
   fonts.strong = add_font(height(kBody), FontWeight::bold);
-  fonts.title = add_font(height(kTitle), FontWeight::bold);
+  fonts.title = add_font(height(kTitleSize), FontWeight::bold);
   return fonts;
 }
 

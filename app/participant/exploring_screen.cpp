@@ -17,7 +17,7 @@ constexpr double kFullForceN = 2.5;
 constexpr double kGoodSpeedMmS[] = {50.0, 150.0};
 constexpr double kFullSpeedMmS = 250.0;
 
-constexpr double kMargin = 40.0;
+constexpr double kExploringMargin = 40.0;
 constexpr double kBelow = 92.0;  ///< for a line of text, and the bars in practice
 
 /// A bar with the good range marked.
@@ -53,7 +53,8 @@ void paint_bar(Canvas& canvas, const Box& room, const Bar& bar) {
 
 PlaneOnScreen place_plane(Vec2 window, Vec2 plane_mm, double mm_per_unit) {
   const double unit = design_unit(window);
-  const Vec2 room = {window.x - 2.0 * kMargin * unit, window.y - (2.0 * kMargin + kBelow) * unit};
+  const Vec2 room = {window.x - 2.0 * kExploringMargin * unit,
+                     window.y - (2.0 * kExploringMargin + kBelow) * unit};
   const double least =
       std::max(plane_mm.x / std::max(room.x, 1.0), plane_mm.y / std::max(room.y, 1.0));
   PlaneOnScreen placed;

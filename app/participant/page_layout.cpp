@@ -6,7 +6,7 @@
 namespace touchtrial::app {
 namespace {
 
-constexpr double kMargin = 56.0;
+constexpr double kPageMargin = 56.0;
 constexpr double kTop = 68.0;
 constexpr double kFooter = 124.0;
 constexpr double kButtonHeight = 64.0;
@@ -35,13 +35,13 @@ void draw_progress(Canvas& canvas, const Progress& progress) {
   canvas.fill({0.0, 0.0, width, 6.0 * unit}, tone::kTrack);
   const double share = std::clamp(static_cast<double>(progress.done) / progress.of, 0.0, 1.0);
   canvas.fill({0.0, 0.0, width * share, 6.0 * unit}, tone::kAccent);
-  canvas.text({kMargin * unit, 22.0 * unit, width - 2.0 * kMargin * unit, 30.0 * unit},
+  canvas.text({kPageMargin * unit, 22.0 * unit, width - 2.0 * kPageMargin * unit, 30.0 * unit},
               Letters::small, tone::kQuiet, progress.text, Align::right);
 }
 
 Box content_area(const Canvas& canvas) {
   const double unit = canvas.unit();
-  return {kMargin * unit, kTop * unit, canvas.size().x - 2.0 * kMargin * unit,
+  return {kPageMargin * unit, kTop * unit, canvas.size().x - 2.0 * kPageMargin * unit,
           canvas.size().y - (kTop + kFooter) * unit};
 }
 

@@ -28,7 +28,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-constexpr const char* kTitle = "Touchtrial";
+constexpr const char* kWindowTitle = "Touchtrial";
 /// The session's thread looks elsewhere this often.
 constexpr milliseconds kAttention{10};
 /// Long enough that only a window that hangs is given up.
@@ -36,7 +36,7 @@ constexpr milliseconds kPictureLimit{300'000};
 /// Enter that is still held from the screen before does not end an exploration.
 constexpr milliseconds kNoAccident{500};
 /// Force that is too much; the tone comes again only after it has been less than the second.
-constexpr double kTooHardN = 2.0;
+constexpr double kPushTooHardN = 2.0;
 constexpr double kSoftAgainN = 1.7;
 constexpr double kBarsTimeS = 0.06;  ///< in which the practice's bars follow
 
@@ -68,7 +68,7 @@ GLFWwindow* make_window(const ParticipantWindowOptions& options, GLFWmonitor* mo
     glfwWindowHint(GLFW_BLUE_BITS, mode->blueBits);
     glfwWindowHint(GLFW_REFRESH_RATE, mode->refreshRate);
   }
-  GLFWwindow* window = glfwCreateWindow(size.first, size.second, kTitle, monitor, nullptr);
+  GLFWwindow* window = glfwCreateWindow(size.first, size.second, kWindowTitle, monitor, nullptr);
   if (window == nullptr) {
     refuse_window("OpenGL 3.2 is needed; install the graphics driver, or Mesa (libgl1-mesa-dri)");
   }
@@ -377,8 +377,8 @@ void ParticipantWindow::exploring(device::ServoControl& servo) {
 void ParticipantWindow::feel(const device::ServoSample& sample) noexcept {
   State& s = *state_;
   const double force_n = norm(sample.force_n);
-  if (force_n > kTooHardN && !s.is_too_hard) s.cue(Cue::too_hard);
-  s.is_too_hard = force_n > (s.is_too_hard ? kSoftAgainN : kTooHardN);
+  if (force_n > kPushTooHardN && !s.is_too_hard) s.cue(Cue::too_hard);
+  s.is_too_hard = force_n > (s.is_too_hard ? kSoftAgainN : kPushTooHardN);
   if (s.last_felt && sample.tick > s.last_felt->tick) {
     const double seconds = static_cast<double>(sample.tick - s.last_felt->tick) / s.options.rate_hz;
     const Vec3 way = sample.position_mm - s.last_felt->position_mm;

@@ -6,7 +6,7 @@
 namespace touchtrial::app {
 namespace {
 
-constexpr std::chrono::milliseconds kPictureLimit{1000};
+constexpr std::chrono::milliseconds kSubjectPictureLimit{1000};
 
 }  // namespace
 
@@ -23,7 +23,7 @@ std::optional<session::StepReply> WindowSubject::attend(const session::Step& ste
   std::optional<session::StepReply> reply = window_.attend(step);
   if (std::holds_alternative<session::PauseStep>(step)) return std::nullopt;
   if (!reply && !meant_) meant_ = subject_.attend(step);
-  if (!reply && meant_ && !typed_ && window_.wait_until_shown(kPictureLimit)) {
+  if (!reply && meant_ && !typed_ && window_.wait_until_shown(kSubjectPictureLimit)) {
     type(step, *meant_);
     typed_ = true;
     reply = window_.attend(step);

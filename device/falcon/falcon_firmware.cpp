@@ -37,7 +37,7 @@ constexpr std::size_t kBlockBytes = kUsbPacketSize - kFtdiStatusSize;
 
 constexpr milliseconds kSendLimit{200};
 /// Well above the latency timer, which sends a packet every 16 ms even if there is nothing in it.
-constexpr milliseconds kPacketLimit{50};
+constexpr milliseconds kBootPacketLimit{50};
 /// Packets without news after which an answer will not come any more.
 constexpr int kPatiencePackets = 2;
 
@@ -49,7 +49,7 @@ void purge(FtdiTransport& transport) {
 /// Appends what the next packet holds. \return whether it held anything
 bool receive_more(FtdiTransport& transport, Bytes& bytes) {
   std::array<std::uint8_t, kUsbPacketSize> packet{};
-  const std::size_t length = transport.receive(packet, kPacketLimit);
+  const std::size_t length = transport.receive(packet, kBootPacketLimit);
   if (length <= kFtdiStatusSize) return false;
   bytes.insert(bytes.end(), packet.begin() + kFtdiStatusSize, packet.begin() + length);
   return true;

@@ -14,7 +14,7 @@ constexpr std::uint32_t kHeaderSizeWithAlphaMask = 56;
 
 enum Compression : std::uint32_t { kNone = 0, kRle8 = 1, kRle4 = 2, kBitFields = 3 };
 
-struct Header {
+struct BmpHeader {
   std::uint32_t size = 0;
   std::int64_t width = 0;
   std::int64_t height = 0;
@@ -26,8 +26,8 @@ struct Header {
   std::uint32_t colours = 0;  ///< entries of the palette; 0: as many as the bits can name
 };
 
-Header read_header(ByteView file) {
-  Header header;
+BmpHeader read_bmp_header(ByteView file) {
+  BmpHeader header;
   header.size = little32(file, kFileHeaderSize);
   if (header.size < kInfoHeaderSize)
     throw_unsupported_image("is an OS/2 BMP, which is not supported");
@@ -49,12 +49,12 @@ bool has_usual_masks(ByteView file) {
          little32(file, kMasksAt + 8) == 0x000000FFU;
 }
 
-bool has_alpha(ByteView file, const Header& header) {
+bool has_alpha(ByteView file, const BmpHeader& header) {
   return header.compression == kBitFields && header.size >= kHeaderSizeWithAlphaMask &&
          little32(file, kMasksAt + 12) == 0xFF000000U;
 }
 
-bool is_supported(ByteView file, const Header& header) {
+bool is_supported(ByteView file, const BmpHeader& header) {
   switch (header.compression) {
     case kNone:
       return header.bits == 1 || header.bits == 4 || header.bits == 8 || header.bits == 24 ||
@@ -70,17 +70,17 @@ bool is_supported(ByteView file, const Header& header) {
   }
 }
 
-bool is_run_length(const Header& header) {
+bool is_run_length(const BmpHeader& header) {
   return header.compression == kRle8 || header.compression == kRle4;
 }
 
 /// Bytes of a row, which is padded to whole groups of four.
-std::uint64_t row_size(const Header& header) {
+std::uint64_t row_size(const BmpHeader& header) {
   return (static_cast<std::uint64_t>(header.width) * header.bits + 31) / 32 * 4;
 }
 
 /// The pixels' bytes; of the compressed kinds as many as the header claims.
-ByteView data_of(ByteView file, const Header& header) {
+ByteView data_of(ByteView file, const BmpHeader& header) {
   const std::uint64_t size = is_run_length(header)
                                  ? header.data_size
                                  : row_size(header) * static_cast<std::uint64_t>(header.height);
@@ -91,7 +91,7 @@ ByteView data_of(ByteView file, const Header& header) {
 /// The grey levels of the palette; what a file leaves out is black.
 using Palette = std::array<std::uint8_t, kMostColours>;
 
-Palette read_palette(ByteView file, const Header& header) {
+Palette read_palette(ByteView file, const BmpHeader& header) {
   Palette palette{};
   if (header.bits > 8) return palette;
   const std::size_t count = header.colours == 0 ? std::size_t{1} << header.bits : header.colours;
@@ -128,7 +128,7 @@ void read_row(ByteView stored, std::size_t bits, Alpha alpha, const Palette& pal
 /// the other.
 class RunLengths {
  public:
-  RunLengths(ByteView data, const Header& header, const Palette& palette)
+  RunLengths(ByteView data, const BmpHeader& header, const Palette& palette)
       : data_(data),
         bits_(header.bits),
         width_(static_cast<std::size_t>(header.width)),
@@ -197,7 +197,7 @@ class RunLengths {
 }  // namespace
 
 GreyImage read_bmp(ByteView file) {
-  const Header header = read_header(file);
+  const BmpHeader header = read_bmp_header(file);
   check_image_size(header.width, header.height);
   if (!is_supported(file, header)) {
     throw_unsupported_image("is a BMP of " + std::to_string(header.bits) +

@@ -177,17 +177,17 @@ void weigh_message(j_common_ptr jpeg, int level) {
 }
 
 /// libjpeg on a file in memory.
-class Decoder {
+class JpegDecoder {
  public:
-  Decoder() {
+  JpegDecoder() {
     jpeg_.err = jpeg_std_error(&errors_);
     jpeg_.client_data = &escape_;
     errors_.error_exit = leave;
     errors_.emit_message = weigh_message;
   }
-  ~Decoder() { jpeg_destroy_decompress(&jpeg_); }
-  Decoder(const Decoder&) = delete;
-  Decoder& operator=(const Decoder&) = delete;
+  ~JpegDecoder() { jpeg_destroy_decompress(&jpeg_); }
+  JpegDecoder(const JpegDecoder&) = delete;
+  JpegDecoder& operator=(const JpegDecoder&) = delete;
 
   GreyImage read(ByteView file) {
     require(reaches_end(escape_, [&] { read_start(file); }));
@@ -233,7 +233,7 @@ GreyImage read_jpeg(ByteView file) {
   while (walk.step()) {
   }
   const Bytes kept = walk.finish();
-  return Decoder().read(kept);
+  return JpegDecoder().read(kept);
 }
 
 }  // namespace touchtrial::engine

@@ -32,14 +32,14 @@ Chunk chunk_at(ByteView file, std::size_t at) {
   return {{type, 4}, whole.subspan(8, length), whole};
 }
 
-struct Header {
+struct PngHeader {
   std::uint32_t width;
   std::uint32_t height;
   int depth;
   int colour;
 };
 
-bool is_legal(const Header& header) {
+bool is_legal(const PngHeader& header) {
   const int depth = header.depth;
   const bool is_small = depth == 1 || depth == 2 || depth == 4;
   switch (header.colour) {
@@ -56,10 +56,10 @@ bool is_legal(const Header& header) {
   }
 }
 
-Header read_header(ByteView file) {
+PngHeader read_png_header(ByteView file) {
   const Chunk first = chunk_at(file, kSignatureSize);
   if (first.type != "IHDR" || first.data.size() != kHeaderSize) throw_truncated_image();
-  const Header header{big32(first.data, 0), big32(first.data, 4), first.data[8], first.data[9]};
+  const PngHeader header{big32(first.data, 0), big32(first.data, 4), first.data[8], first.data[9]};
   check_image_size(header.width, header.height);
   if (!is_legal(header)) {
     throw_unsupported_image("is a PNG of bit depth " + std::to_string(header.depth) +
@@ -70,7 +70,7 @@ Header read_header(ByteView file) {
 }
 
 /// Deflate never packs better than 1032 to 1, so too little data shows before it is unpacked.
-void check_amount(const Header& header, std::uint64_t packed_bytes) {
+void check_amount(const PngHeader& header, std::uint64_t packed_bytes) {
   constexpr std::array<std::uint64_t, 7> kChannels = {1, 0, 3, 1, 2, 0, 4};
   const std::uint64_t row_bits = kChannels.at(static_cast<std::size_t>(header.colour)) *
                                  static_cast<std::uint64_t>(header.depth) * header.width;
@@ -88,7 +88,7 @@ bool is_critical(std::string_view type) {
 
 /// The file without colour profiles, gamma, texts and notes: libpng gets nothing else to see.
 Bytes what_decides_pixels(ByteView file) {
-  const Header header = read_header(file);
+  const PngHeader header = read_png_header(file);
   Bytes kept(file.begin(), file.begin() + kSignatureSize);
   std::uint64_t packed_bytes = 0;
   for (std::size_t at = kSignatureSize;;) {
@@ -120,12 +120,12 @@ void take_bytes(png_structp png, png_bytep to, std::size_t count) {
 }
 
 /// libpng on a file in memory: rows of 8- or 16-bit grey, grey alpha, RGB or RGBA samples.
-class Decoder {
+class PngDecoder {
  public:
-  explicit Decoder(ByteView file) : left_(file) {}
-  ~Decoder() { png_destroy_read_struct(&png_, &info_, nullptr); }
-  Decoder(const Decoder&) = delete;
-  Decoder& operator=(const Decoder&) = delete;
+  explicit PngDecoder(ByteView file) : left_(file) {}
+  ~PngDecoder() { png_destroy_read_struct(&png_, &info_, nullptr); }
+  PngDecoder(const PngDecoder&) = delete;
+  PngDecoder& operator=(const PngDecoder&) = delete;
 
   GreyImage read() {
     require(reaches_end(escape_, [&] { read_start(); }));
@@ -202,7 +202,7 @@ void flush_nothing(png_structp /*png*/) {}
 
 GreyImage read_png(ByteView file) {
   const Bytes kept = what_decides_pixels(file);
-  return Decoder(kept).read();
+  return PngDecoder(kept).read();
 }
 
 Bytes png_of_samples(int height, int width, int channels, std::span<const std::uint8_t> samples) {

@@ -23,14 +23,14 @@ static_assert(sizeof(FieldSample) == 3 * sizeof(float) && alignof(FieldSample) =
                   std::is_trivially_copyable_v<FieldSample>,
               "FieldSample is the file's sample layout");
 
-constexpr std::uint32_t kVersion = 2;
+constexpr std::uint32_t kFieldVersion = 2;
 
 /// What a file's samples are.
 enum class Layout : std::uint32_t { surface_and_force = 1, coefficients = 2 };
 
 struct Header {
   std::array<char, 8> magic = {'T', 'T', 'F', 'I', 'E', 'L', 'D', '1'};
-  std::uint32_t version = kVersion;
+  std::uint32_t version = kFieldVersion;
   Layout layout = Layout::surface_and_force;
   std::uint32_t height_px = 0;
   std::uint32_t width_px = 0;
@@ -54,9 +54,9 @@ Header checked_header(ByteView file, const std::filesystem::path& path) {
   if (file.size() < sizeof header) refuse(path, "is too short for a field file");
   std::memcpy(&header, file.data(), sizeof header);
   if (header.magic != Header{}.magic) refuse(path, "is not a field file");
-  if (header.version != kVersion) {
+  if (header.version != kFieldVersion) {
     refuse(path, "has field version " + std::to_string(header.version) + ", not " +
-                     std::to_string(kVersion));
+                     std::to_string(kFieldVersion));
   }
   if (header.layout != Layout::surface_and_force && header.layout != Layout::coefficients) {
     refuse(path, "has the unknown sample layout " +

@@ -17,7 +17,7 @@ using Json = nlohmann::json;
 using Pointer = Json::json_pointer;
 
 constexpr std::string_view kFormat = "touchtrial-pack";
-constexpr int kVersion = 2;
+constexpr int kManifestVersion = 2;
 constexpr int kDeepest = 4;  // of nesting in a manifest; more is refused while reading
 
 bool is_study_id(std::string_view id) {
@@ -132,8 +132,8 @@ PackEntry entry_from(const Node& node) {
 PackManifest manifest_from(const Node& root) {
   root.check_keys({"fields", "format", "study_id", "version"});
   if (!root.at("format").is(kFormat)) root.at("format").refuse("must be \"touchtrial-pack\"");
-  if (!root.at("version").is(kVersion)) {
-    root.at("version").refuse("is not " + std::to_string(kVersion) +
+  if (!root.at("version").is(kManifestVersion)) {
+    root.at("version").refuse("is not " + std::to_string(kManifestVersion) +
                               ", the only version that this program reads");
   }
   PackManifest manifest;
@@ -186,7 +186,7 @@ std::string manifest_to_json(PackManifest manifest) {
   const Json root = {{"fields", std::move(fields)},
                      {"format", kFormat},
                      {"study_id", manifest.study_id},
-                     {"version", kVersion}};
+                     {"version", kManifestVersion}};
   return root.dump(2) + "\n";
 }
 

@@ -11,7 +11,7 @@
 namespace touchtrial::engine {
 namespace {
 
-constexpr double kRounding = 1e-9;  // relative; what is over the budget by less is on it
+constexpr double kSlackOfGains = 1e-9;  // relative; what is over the budget by less is on it
 
 /// One of the two forces that a gain scales.
 struct Channel {
@@ -61,7 +61,7 @@ ChannelGains channel_gains(std::span<const FieldView> fields, const RenderingOpt
   double factor = stiffness > 0.0 ? budget / stiffness : 0.0;
   if (channel.explicit_gain) {
     factor = *channel.explicit_gain * (equal_rms ? mean_of_nonzero(rms) : 1.0);
-    gains.over_budget = factor * stiffness > budget * (1.0 + kRounding);
+    gains.over_budget = factor * stiffness > budget * (1.0 + kSlackOfGains);
   }
   for (double& gain : gains.of_field) gain *= factor;
   return gains;

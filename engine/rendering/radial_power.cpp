@@ -10,7 +10,7 @@
 namespace touchtrial::engine {
 namespace {
 
-constexpr double kRounding = 1e-9;  // relative
+constexpr double kRoundingOfRadii = 1e-9;  // relative
 
 /// Loads a plane less its mean into the transform, and transforms it.
 void transform(const Plane<double>& plane, RealFft<double>& fft) {
@@ -51,7 +51,7 @@ std::vector<double> power_shares_above(const Plane<double>& x, const Plane<doubl
     for_each_power(fft, x.height(), x.width(), [&](double cycles_per_px, double power) {
       total += power;
       for (std::size_t i = 0; i < shares.size(); ++i) {
-        if (cycles_per_px > limits_cycles_per_px[i] * (1.0 + kRounding)) shares[i] += power;
+        if (cycles_per_px > limits_cycles_per_px[i] * (1.0 + kRoundingOfRadii)) shares[i] += power;
       }
     });
   }

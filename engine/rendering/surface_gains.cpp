@@ -12,8 +12,8 @@ namespace touchtrial::engine {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNearEnough = 2e-7;  // relative; pools have single precision
-constexpr double kRounding = 1e-6;    // relative; what is over the budget by less is on it
+constexpr double kNearEnough = 2e-7;       // relative; pools have single precision
+constexpr double kSlackOfSurfaces = 1e-6;  // relative; what is over the budget by less is on it
 constexpr int kMostTries = 60;
 
 /// The fields of a study, each with the factor that equalises it.
@@ -114,7 +114,7 @@ StudyGains choose_surface_gains(std::span<const FieldView> fields,
     alpha = options.gains->height_mm * (equal_rms ? mean_of_nonzero(surfaces.rms()) : 1.0);
     const double stiffest =
         std::max(surfaces.lateral_stiffness(alpha), alpha * surfaces.normal_stiffness());
-    gains.over_budget = stiffest > budget * (1.0 + kRounding);
+    gains.over_budget = stiffest > budget * (1.0 + kSlackOfSurfaces);
   } else {
     alpha = within_budget(surfaces, budget);
   }

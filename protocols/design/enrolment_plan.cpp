@@ -13,7 +13,7 @@
 namespace touchtrial::design {
 namespace {
 
-constexpr std::size_t kLongestName = 32;
+constexpr std::size_t kLongestStation = 32;
 
 bool is_name_letter(char letter) {
   return (letter >= '0' && letter <= '9') || (letter >= 'A' && letter <= 'Z') ||
@@ -21,7 +21,8 @@ bool is_name_letter(char letter) {
 }
 
 void require_station_name(const std::string& name) {
-  if (!name.empty() && name.size() <= kLongestName && std::ranges::all_of(name, is_name_letter)) {
+  if (!name.empty() && name.size() <= kLongestStation &&
+      std::ranges::all_of(name, is_name_letter)) {
     return;
   }
   throw UsageError(in_quotes(name) +

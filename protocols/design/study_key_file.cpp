@@ -15,7 +15,7 @@ using nlohmann::json;
 
 constexpr std::string_view kFormat = "touchtrial-key";
 constexpr int kVersion = 1;
-constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{64} << 20U;
+constexpr std::uintmax_t kMaxKeyFileBytes = std::uintmax_t{64} << 20U;
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& what) {
   throw FileError(one_line(path.string() + ": " + what));
@@ -136,7 +136,7 @@ void save_study_key(const std::filesystem::path& path, const StudyKey& key) {
 }
 
 StudyKey load_study_key(const std::filesystem::path& path) {
-  const std::string text = text_of(read_file(path, kMaxFileBytes));
+  const std::string text = text_of(read_file(path, kMaxKeyFileBytes));
   const json document = json::parse(text, nullptr, false);
   if (document.is_discarded()) {
     refuse(path, text.find(kFormat) == std::string::npos

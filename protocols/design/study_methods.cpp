@@ -95,8 +95,8 @@ void read_choice(const JsonObject& object, std::string_view key,
   }
 }
 
-void read_number(const JsonObject& object, std::string_view key, const NumberRange& range,
-                 double& number) {
+void read_method_number(const JsonObject& object, std::string_view key, const NumberRange& range,
+                        double& number) {
   if (const auto member = object.find(key)) number = member->number(range);
 }
 
@@ -108,12 +108,12 @@ void read_integer(const JsonObject& object, std::string_view key, int low, int h
 
 engine::TvGaborOptions read_tv_gabor(const JsonObject& object) {
   engine::TvGaborOptions options;
-  read_number(
+  read_method_number(
       object, "lambda",
       {.low = engine::TvGaborOptions::kMinLambda, .high = engine::TvGaborOptions::kMaxLambda},
       options.lambda);
   if (const auto member = object.find("components")) read_components(*member, options);
-  read_number(object, "gap", {.low = 0.0, .high = 1.0, .open_low = true}, options.gap);
+  read_method_number(object, "gap", {.low = 0.0, .high = 1.0, .open_low = true}, options.gap);
   read_integer(object, "max_steps", 1, 1'000'000, options.max_steps);
   return options;
 }
@@ -126,16 +126,17 @@ StudyMethod read_method(const JsonValue& place) {
   options.method = read_name(object.at("name"));
   refuse_foreign_keys(object, options.method);
   read_integer(object, "radius", 1, Options::kMaxRadius, options.radius);
-  read_number(object, "order", {.low = 0.0, .high = 1.0, .open_high = true}, options.order);
+  read_method_number(object, "order", {.low = 0.0, .high = 1.0, .open_high = true}, options.order);
   read_choice(object, "norm", engine::kNormNames, options.norm);
   read_choice(object, "gradient", engine::kGradientNames, options.gradient);
   read_choice(object, "combine", engine::kCombineNames, options.combine);
   read_integer(object, "levels", 1, Options::kMaxLevels, options.levels);
-  read_number(object, "sigma_px", {.low = 0.0, .high = Options::kMaxSigma_px, .open_low = true},
-              options.sigma_px);
-  read_number(object, "threshold", {.low = 0.0, .high = 255.0}, options.threshold_grey);
-  read_number(object, "divisor", {.low = Options::kMinDivisor, .high = Options::kMaxDivisor},
-              options.divisor);
+  read_method_number(object, "sigma_px",
+                     {.low = 0.0, .high = Options::kMaxSigma_px, .open_low = true},
+                     options.sigma_px);
+  read_method_number(object, "threshold", {.low = 0.0, .high = 255.0}, options.threshold_grey);
+  read_method_number(object, "divisor", {.low = Options::kMinDivisor, .high = Options::kMaxDivisor},
+                     options.divisor);
   options.tv_gabor = read_tv_gabor(object);
   read_choice(object, "control", engine::kControlNames, options.control);
   const auto label = object.find("label");

@@ -10,7 +10,7 @@ namespace {
 
 // The servo must not be made to wake anybody, so that the writer looks by itself: often enough for
 // a ring that holds seconds.
-constexpr std::chrono::milliseconds kBetweenLooks{2};
+constexpr std::chrono::milliseconds kBetweenDrains{2};
 constexpr std::size_t kAtOnce = 256;
 
 }  // namespace
@@ -26,7 +26,7 @@ void TraceWriter::finish() noexcept {
 
 void TraceWriter::write() noexcept {
   while (!finishing_.load(std::memory_order_acquire)) {
-    if (!take_some()) std::this_thread::sleep_for(kBetweenLooks);
+    if (!take_some()) std::this_thread::sleep_for(kBetweenDrains);
   }
   while (take_some()) {
   }

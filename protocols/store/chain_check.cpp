@@ -17,7 +17,8 @@
 namespace touchtrial::store {
 namespace {
 
-[[noreturn]] void fault(std::int64_t session, std::int64_t sequence, const std::string& what) {
+[[noreturn]] void fault_of_chain(std::int64_t session, std::int64_t sequence,
+                                 const std::string& what) {
   throw EventFault(session, sequence, what);
 }
 
@@ -38,7 +39,7 @@ class Inspection {
       if (!collected.empty()) inspect_collected(event, collected);
       file_.add(event);
     });
-    if (!file_.commitment()) fault(0, kNoEvent, "the file's chain is empty");
+    if (!file_.commitment()) fault_of_chain(0, kNoEvent, "the file's chain is empty");
     inspect_length(collected);
     inspect_sessions();
     // Exclusions and withdrawals change rows of sessions, which exist only now.
@@ -79,7 +80,7 @@ void Inspection::inspect_structure() const {
   Query query = database_.query("PRAGMA integrity_check(1)");
   if (!query.step()) return;
   const std::string finding = query.text(0);
-  if (finding != "ok") fault(0, kNoEvent, "the file is damaged: " + finding);
+  if (finding != "ok") fault_of_chain(0, kNoEvent, "the file is damaged: " + finding);
 }
 
 /// Every event of a chain held to the one before it.
@@ -88,7 +89,7 @@ ChainLink Inspection::walk(int session, Visit visit) const {
   ChainLink chain(session);
   for_each_event(database_, session, [&](const Event& event) {
     if (const auto broken = chain.broken_by(event)) {
-      fault(session, std::min(event.sequence, chain.length()), *broken);
+      fault_of_chain(session, std::min(event.sequence, chain.length()), *broken);
     }
     chain.extend(event);
     visit(event);
@@ -106,7 +107,7 @@ std::vector<Event> Inspection::inspect_stations() {
   for (int station = 1; station <= -lowest; ++station) {
     stations.push_back(inspect_station(station));
     if (station > 1 && !comes_before(stations[stations.size() - 2], stations.back())) {
-      fault(-station, kNoEvent, "does not come after that of the station before");
+      fault_of_chain(-station, kNoEvent, "does not come after that of the station before");
     }
   }
   if (stations.empty()) return {};
@@ -116,7 +117,7 @@ std::vector<Event> Inspection::inspect_stations() {
   } catch (const EventFault&) {
     throw;
   } catch (const StoreError& error) {
-    fault(0, kNoEvent, error.what());
+    fault_of_chain(0, kNoEvent, error.what());
   }
 }
 
@@ -127,7 +128,7 @@ StationChain Inspection::inspect_station(int station) const {
     file.add(event);
     found.events.push_back(event);
   });
-  if (!station_identity(found.events)) fault(-station, kNoEvent, "opens no session");
+  if (!station_identity(found.events)) fault_of_chain(-station, kNoEvent, "opens no session");
   return found;
 }
 
@@ -135,11 +136,12 @@ StationChain Inspection::inspect_station(int station) const {
 void Inspection::inspect_collected(const Event& event, const std::vector<Event>& collected) const {
   if (event.sequence < static_cast<std::int64_t>(collected.size())) {
     if (event.hash == collected[static_cast<std::size_t>(event.sequence)].hash) return;
-    fault(0, event.sequence, "is not what the stations' chains come to");
+    fault_of_chain(0, event.sequence, "is not what the stations' chains come to");
   }
   if (event.kind == EventKind::session_opened || event.kind == EventKind::session_closed ||
       event.kind == EventKind::participant_replaced) {
-    fault(0, event.sequence, "stands at no station; a collected study has no sessions of its own");
+    fault_of_chain(0, event.sequence,
+                   "stands at no station; a collected study has no sessions of its own");
   }
 }
 
@@ -147,13 +149,14 @@ void Inspection::inspect_length(const std::vector<Event>& collected) const {
   const auto length = static_cast<std::int64_t>(collected.size());
   const std::optional<Event> last =
       length > 0 ? read_event(database_, 0, length - 1) : std::nullopt;
-  if (length > 0 && !last) fault(0, kNoEvent, "lacks events that the stations' chains come to");
+  if (length > 0 && !last)
+    fault_of_chain(0, kNoEvent, "lacks events that the stations' chains come to");
 }
 
 void Inspection::inspect_sessions() {
   for (const auto& [session, on_file] : file_.sessions()) {
     if (on_file.opened.station > 0 && !is_collected_) {
-      fault(0, on_file.opened_at, "a session comes from a station that is not here");
+      fault_of_chain(0, on_file.opened_at, "a session comes from a station that is not here");
     }
     inspect_session(session, on_file);
   }
@@ -161,7 +164,7 @@ void Inspection::inspect_sessions() {
     if (session < 0) continue;
     const bool known = session <= std::numeric_limits<int>::max() &&
                        file_.sessions().count(static_cast<int>(session)) > 0;
-    if (!known) fault(session, kNoEvent, "the file's chain knows no such session");
+    if (!known) fault_of_chain(session, kNoEvent, "the file's chain knows no such session");
   }
 }
 
@@ -183,7 +186,8 @@ void Inspection::inspect_keys() const {
     SessionCheck(session, on_file, *file_.commitment())
         .check_key(key.empty() ? std::nullopt : std::optional(key.mapped()));
   }
-  if (!stored.empty()) fault(stored.begin()->first, kNoEvent, "a participant's key has no session");
+  if (!stored.empty())
+    fault_of_chain(stored.begin()->first, kNoEvent, "a participant's key has no session");
 }
 
 void Inspection::inspect_traces() {
@@ -191,16 +195,18 @@ void Inspection::inspect_traces() {
   auto claim = claims_.begin();
   using Wide = std::pair<std::int64_t, std::int64_t>;
   const auto missing = [&] {
-    fault(claim->first.first, claim->second.sequence, trace_of(claim->first) + " is missing");
+    fault_of_chain(claim->first.first, claim->second.sequence,
+                   trace_of(claim->first) + " is missing");
   };
   while (query.step()) {
     const Wide id(query.integer(0), query.integer(1));
     if (claim != claims_.end() && Wide(claim->first) < id) missing();
     if (claim == claims_.end() || Wide(claim->first) != id) {
-      fault(id.first, kNoEvent, "trace of trial " + std::to_string(id.second) + " has no event");
+      fault_of_chain(id.first, kNoEvent,
+                     "trace of trial " + std::to_string(id.second) + " has no event");
     }
     if (sha256(query.blob(2)) != claim->second.digest) {
-      fault(id.first, claim->second.sequence, trace_of(claim->first) + " was altered");
+      fault_of_chain(id.first, claim->second.sequence, trace_of(claim->first) + " was altered");
     }
     ++claim;
   }
@@ -224,7 +230,8 @@ std::optional<Id> first_difference(const std::map<Id, Row>& expected, const std:
 void Inspection::inspect_session_rows() const {
   const auto differs = first_difference(expected_.sessions, read_sessions(database_),
                                         [](const SessionRow& row) { return row.session; });
-  if (differs) fault(*differs, kNoEvent, "derived table sessions disagrees with the events");
+  if (differs)
+    fault_of_chain(*differs, kNoEvent, "derived table sessions disagrees with the events");
 }
 
 bool same_response(const TrialRow& a, const TrialRow& b) {
@@ -242,9 +249,9 @@ void Inspection::inspect_trial_rows() const {
                                 [&](const TrialRow& r) { return id_of(r) == *differs; });
   const bool in_both = expected != expected_.trials.end() && row != found.end();
   const bool response = in_both && !same_response(expected->second, *row);
-  fault(differs->first, kNoEvent,
-        std::string("derived table ") + (response ? "responses" : "trials") +
-            " disagrees with the events at trial " + std::to_string(differs->second));
+  fault_of_chain(differs->first, kNoEvent,
+                 std::string("derived table ") + (response ? "responses" : "trials") +
+                     " disagrees with the events at trial " + std::to_string(differs->second));
 }
 
 /// Responses to trials that the table of trials does not have.
@@ -253,14 +260,14 @@ void Inspection::inspect_responses() const {
       "SELECT r.session, r.trial FROM responses r LEFT JOIN trials t USING(session, trial) "
       "WHERE t.trial IS NULL LIMIT 1");
   if (!query.step()) return;
-  fault(query.integer(0), kNoEvent,
-        "derived table responses disagrees with the events at trial " +
-            std::to_string(query.integer(1)));
+  fault_of_chain(query.integer(0), kNoEvent,
+                 "derived table responses disagrees with the events at trial " +
+                     std::to_string(query.integer(1)));
 }
 
 /// Last, so that a fault of what is stored is named before that of a trigger that let it happen.
 void Inspection::inspect_schema() const {
-  if (const auto differs = schema_fault(database_)) fault(0, kNoEvent, *differs);
+  if (const auto differs = schema_fault(database_)) fault_of_chain(0, kNoEvent, *differs);
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ void walk(std::span<const Event> chain, Visit visit) {
   }
 }
 
-[[noreturn]] void refuse_taken(const std::filesystem::path& path) {
+[[noreturn]] void refuse_taken_place(const std::filesystem::path& path) {
   throw StoreError(one_line(path.string()) + ": exists already; choose another name");
 }
 
@@ -148,7 +148,7 @@ CollectedDraft::~CollectedDraft() = default;
 CollectedDraft::CollectedDraft(CollectedDraft&&) noexcept = default;
 
 CollectedDraft CollectedDraft::in_file(const std::filesystem::path& target) {
-  if (is_there(target)) refuse_taken(target);
+  if (is_there(target)) refuse_taken_place(target);
   auto draft = std::make_unique<DraftFile>(target.string() + ".new" + std::to_string(::getpid()));
   Database database = Database::create(draft->path());
   return CollectedDraft(std::make_unique<Impl>(std::move(draft), std::move(database), target));
@@ -236,7 +236,7 @@ StudyStore CollectedDraft::finished(TraceFetch fetch) && {
   const std::filesystem::path target = impl_->target;
   const auto file = std::move(impl_->file);
   impl_.reset();  // closes it, so that nothing lies beside it
-  if (!move_to_free_name(file->path(), target)) refuse_taken(target);
+  if (!move_to_free_name(file->path(), target)) refuse_taken_place(target);
   return StudyStore::open(target, StudyStore::Access::read_only);
 }
 

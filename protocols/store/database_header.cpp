@@ -13,10 +13,10 @@
 namespace touchtrial::store {
 namespace {
 
-constexpr char kMagic[] = "SQLite format 3";  // its final zero is part of it
+constexpr char kSqliteMagic[] = "SQLite format 3";  // its final zero is part of it
 using Header = std::array<unsigned char, 100>;
 
-[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
+[[noreturn]] void refuse_file(const std::filesystem::path& path, const std::string& why) {
   throw StoreError(one_line(path.string()) + ": " + why);
 }
 
@@ -28,16 +28,17 @@ Header read_header(const std::filesystem::path& path) {
   std::error_code error;
   const auto status = std::filesystem::status(path, error);
   if (status.type() == std::filesystem::file_type::not_found) {
-    refuse(path, "no such database; check the name, or make one with `touchtrial simulate`");
+    refuse_file(path, "no such database; check the name, or make one with `touchtrial simulate`");
   }
-  if (std::filesystem::is_directory(status)) refuse(path, "is a folder; name a database in it");
+  if (std::filesystem::is_directory(status))
+    refuse_file(path, "is a folder; name a database in it");
   std::ifstream file(path, std::ios::binary);
-  if (!file) refuse(path, "cannot be read; check its permissions");
+  if (!file) refuse_file(path, "cannot be read; check its permissions");
   Header header{};
   file.read(reinterpret_cast<char*>(header.data()), header.size());
   const bool whole = file.gcount() == static_cast<std::streamsize>(header.size());
-  if (!whole || std::memcmp(header.data(), kMagic, sizeof kMagic) != 0) {
-    refuse(path, "is no Touchtrial database; check the name");
+  if (!whole || std::memcmp(header.data(), kSqliteMagic, sizeof kSqliteMagic) != 0) {
+    refuse_file(path, "is no Touchtrial database; check the name");
   }
   return header;
 }
@@ -65,18 +66,20 @@ bool has_log(const std::filesystem::path& path) {
 void check_header(const std::filesystem::path& path, int newest_version) {
   const Header header = read_header(path);
   if (big_endian_32(header, 68) != static_cast<std::uint32_t>(kApplicationId)) {
-    refuse(path, "is an SQLite database, but none of Touchtrial; check the name");
+    refuse_file(path, "is an SQLite database, but none of Touchtrial; check the name");
   }
   const std::uint32_t version = big_endian_32(header, 60);
   if (version > static_cast<std::uint32_t>(newest_version)) {
-    refuse(path, "was written by a newer Touchtrial (schema " + std::to_string(version) +
-                     ", this one knows " + std::to_string(newest_version) + "); use that version");
+    refuse_file(path, "was written by a newer Touchtrial (schema " + std::to_string(version) +
+                          ", this one knows " + std::to_string(newest_version) +
+                          "); use that version");
   }
   if (version == 0) refuse_damaged(path, "has no schema version, so it is damaged");
   if (version < std::uint32_t{kOldestSchemaVersion}) {
-    refuse(path, "was written by an older Touchtrial (schema " + std::to_string(version) +
-                     ", the oldest that this one knows is " + std::to_string(kOldestSchemaVersion) +
-                     "); use the program that wrote it");
+    refuse_file(path, "was written by an older Touchtrial (schema " + std::to_string(version) +
+                          ", the oldest that this one knows is " +
+                          std::to_string(kOldestSchemaVersion) +
+                          "); use the program that wrote it");
   }
   std::error_code error;
   const auto size = std::filesystem::file_size(path, error);

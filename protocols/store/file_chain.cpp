@@ -7,7 +7,7 @@
 namespace touchtrial::store {
 namespace {
 
-[[noreturn]] void refuse(const Event& event, const std::string& why) {
+[[noreturn]] void refuse_link(const Event& event, const std::string& why) {
   throw EventFault(event.session, event.sequence, why);
 }
 
@@ -15,8 +15,8 @@ namespace {
 
 void FileChain::add(const Event& event) {
   if ((event.kind == EventKind::study_committed) != !commitment_) {
-    refuse(event, commitment_ ? "the study is committed twice"
-                              : "the first event does not commit the study");
+    refuse_link(event, commitment_ ? "the study is committed twice"
+                                   : "the first event does not commit the study");
   }
   switch (event.kind) {
     case EventKind::study_committed:
@@ -36,14 +36,14 @@ void FileChain::add(const Event& event) {
       static_cast<void>(known(event, body_of(event, note_from_json).session));
       return;
     case EventKind::study_closed:
-      if (closed_) refuse(event, "the study is closed twice");
+      if (closed_) refuse_link(event, "the study is closed twice");
       closed_ = true;
       return;
     case EventKind::study_unblinded:
       static_cast<void>(body_of(event, unblinding_from_json));
       return;
     default:
-      refuse(event, "an event of this kind belongs to a session");
+      refuse_link(event, "an event of this kind belongs to a session");
   }
 }
 
@@ -53,9 +53,9 @@ void FileChain::commit(const Event& event) {
 
 void FileChain::open_session(const Event& event) {
   const SessionOpenedBody body = body_of(event, session_opened_from_json);
-  if (closed_) refuse(event, "a session is opened after the study was closed");
+  if (closed_) refuse_link(event, "a session is opened after the study was closed");
   if (body.session != static_cast<int>(sessions_.size()) + 1) {
-    refuse(event, "session " + std::to_string(body.session) + " is not opened in its turn");
+    refuse_link(event, "session " + std::to_string(body.session) + " is not opened in its turn");
   }
   if (unique_ == UniquePlaces::always) take_place(event, body);
   sessions_[body.session] = {.opened = body,
@@ -67,10 +67,10 @@ void FileChain::open_session(const Event& event) {
 
 void FileChain::take_place(const Event& event, const SessionOpenedBody& body) {
   if (!participants_.insert(body.participant).second) {
-    refuse(event, "participant " + body.participant + " has a session already");
+    refuse_link(event, "participant " + body.participant + " has a session already");
   }
   if (!enrolments_.insert(body.enrolment).second) {
-    refuse(event, "enrolment " + std::to_string(body.enrolment) + " is taken already");
+    refuse_link(event, "enrolment " + std::to_string(body.enrolment) + " is taken already");
   }
 }
 
@@ -78,7 +78,7 @@ void FileChain::close_session(const Event& event) {
   const SessionClosedBody body = body_of(event, session_closed_from_json);
   SessionOnFile& session = known(event, body.session);
   if (session.closed) {
-    refuse(event, "session " + std::to_string(body.session) + " is closed twice");
+    refuse_link(event, "session " + std::to_string(body.session) + " is closed twice");
   }
   session.closed = body;
 }
@@ -91,7 +91,7 @@ void FileChain::replace(const Event& event) {
   const ReplacementBody body = body_of(event, replacement_from_json);
   SessionOnFile& session = known(event, body.session);
   if (!session.replaced_by.empty()) {
-    refuse(event, "session " + std::to_string(body.session) + " is replaced twice");
+    refuse_link(event, "session " + std::to_string(body.session) + " is replaced twice");
   }
   session.replaced_by = body.by;
   participants_.erase(session.opened.participant);
@@ -101,7 +101,7 @@ void FileChain::replace(const Event& event) {
 SessionOnFile& FileChain::known(const Event& event, int session) {
   const auto found = sessions_.find(session);
   if (found == sessions_.end()) {
-    refuse(event, "session " + std::to_string(session) + " has not been opened");
+    refuse_link(event, "session " + std::to_string(session) + " has not been opened");
   }
   return found->second;
 }

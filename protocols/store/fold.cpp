@@ -9,16 +9,16 @@
 namespace touchtrial::store {
 namespace {
 
-[[noreturn]] void refuse(const Event& event, const std::string& why) {
+[[noreturn]] void refuse_event(const Event& event, const std::string& why) {
   throw EventFault(event.session, event.sequence, why);
 }
 
 [[noreturn]] void refuse_trial(const Event& event, int trial, const char* why) {
-  refuse(event, "trial " + std::to_string(trial) + " " + why);
+  refuse_event(event, "trial " + std::to_string(trial) + " " + why);
 }
 
 void open_session(DerivedRows& rows, const Event& event) {
-  if (event.sequence != 0) refuse(event, "a session is opened by its first event only");
+  if (event.sequence != 0) refuse_event(event, "a session is opened by its first event only");
   const SessionOpening opening = body_of(event, opening_from_json);
   rows.sessions[event.session] = {.session = event.session,
                                   .participant = opening.participant,
@@ -36,8 +36,9 @@ void open_session(DerivedRows& rows, const Event& event) {
 
 SessionRow& open_row(DerivedRows& rows, const Event& event) {
   const auto found = rows.sessions.find(event.session);
-  if (found == rows.sessions.end()) refuse(event, "the session has not been opened");
-  if (found->second.state != SessionState::open) refuse(event, "the session is already closed");
+  if (found == rows.sessions.end()) refuse_event(event, "the session has not been opened");
+  if (found->second.state != SessionState::open)
+    refuse_event(event, "the session is already closed");
   return found->second;
 }
 
@@ -142,7 +143,8 @@ void close_session(DerivedRows& rows, const Event& event) {
 
 SessionRow& named_row(DerivedRows& rows, const Event& event, int session) {
   const auto found = rows.sessions.find(session);
-  if (found == rows.sessions.end()) refuse(event, "there is no session " + std::to_string(session));
+  if (found == rows.sessions.end())
+    refuse_event(event, "there is no session " + std::to_string(session));
   return found->second;
 }
 
@@ -154,7 +156,7 @@ void replace_participant(DerivedRows& rows, const Event& event) {
   const ReplacementBody body = body_of(event, replacement_from_json);
   SessionRow& row = named_row(rows, event, body.session);
   if (!row.replaced_by.empty()) {
-    refuse(event, "session " + std::to_string(body.session) + " is replaced twice");
+    refuse_event(event, "session " + std::to_string(body.session) + " is replaced twice");
   }
   row.replaced_by = body.by;
 }

@@ -19,9 +19,9 @@ namespace {
 
 constexpr int kApplicationId = 0x54545250;  // "TTRP"
 constexpr int kVersion = 1;
-constexpr int kBusyTimeoutMs = 2000;
+constexpr int kPersonalBusyTimeoutMs = 2000;
 
-[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
+[[noreturn]] void refuse_personal_data(const std::filesystem::path& path, const std::string& why) {
   throw StoreError(one_line(path.string() + ": " + why));
 }
 
@@ -31,17 +31,18 @@ void make_private(const std::filesystem::path& path) {
   if (file >= 0) {
     ::close(file);
   } else if (errno != EEXIST) {
-    refuse(path, std::string("cannot be made (") + std::strerror(errno) +
-                     "); check that its folder exists and may be written");
+    refuse_personal_data(path, std::string("cannot be made (") + std::strerror(errno) +
+                                   "); check that its folder exists and may be written");
   }
 }
 
 void require_private(const std::filesystem::path& path) {
   struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) refuse(path, "cannot be read; check its permissions");
+  if (::stat(path.c_str(), &status) != 0)
+    refuse_personal_data(path, "cannot be read; check its permissions");
   if ((status.st_mode & 077U) != 0) {
-    refuse(path, "others may read these personal data; run `chmod 600 " + path.string() +
-                     "`, and ask who has read them");
+    refuse_personal_data(path, "others may read these personal data; run `chmod 600 " +
+                                   path.string() + "`, and ask who has read them");
   }
 }
 
@@ -52,10 +53,10 @@ void set_up(SQLite::Database& connection, const std::filesystem::path& path) {
   const int version = connection.execAndGet("PRAGMA user_version").getInt();
   if (id == kApplicationId && version == kVersion) return;
   if (id == kApplicationId && version > kVersion) {
-    refuse(path, "was written by a newer Touchtrial; use that version");
+    refuse_personal_data(path, "was written by a newer Touchtrial; use that version");
   }
   if (id != 0 || connection.execAndGet("SELECT count(*) FROM sqlite_schema").getInt() != 0) {
-    refuse(path, "is no personal-data file of Touchtrial; move it away");
+    refuse_personal_data(path, "is no personal-data file of Touchtrial; move it away");
   }
   SQLite::Transaction transaction(connection);
   connection.exec(
@@ -75,7 +76,8 @@ std::filesystem::path personal_data_path(const std::filesystem::path& database) 
 
 struct PersonalData::Impl {
   explicit Impl(const std::filesystem::path& file)
-      : path(file), connection(absolute(file).string(), SQLite::OPEN_READWRITE, kBusyTimeoutMs) {
+      : path(file),
+        connection(absolute(file).string(), SQLite::OPEN_READWRITE, kPersonalBusyTimeoutMs) {
     set_up(connection, path);
   }
 
@@ -90,8 +92,9 @@ auto translated(const std::filesystem::path& path, Work&& work) {
   try {
     return work();
   } catch (const SQLite::Exception& error) {
-    refuse(path, std::string("personal data cannot be read or written (") + error.what() +
-                     "); check the disk and that no other program uses the file");
+    refuse_personal_data(path, std::string("personal data cannot be read or written (") +
+                                   error.what() +
+                                   "); check the disk and that no other program uses the file");
   }
 }
 

@@ -33,7 +33,7 @@ bool take(int file, const std::string& participant) {
   return ::fcntl(file, F_OFD_SETLK, &lock) == 0;
 }
 
-[[noreturn]] void refuse(const std::filesystem::path& path, const std::string& why) {
+[[noreturn]] void refuse_lock(const std::filesystem::path& path, const std::string& why) {
   throw StoreError(one_line(path.string() + ": " + why));
 }
 
@@ -43,19 +43,20 @@ SessionLock::SessionLock(const std::filesystem::path& database, const std::strin
   const std::string path = database.string() + ".lock";
   file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (file_ < 0) {
-    refuse(path, std::string("cannot be made (") + std::strerror(errno) +
-                     "); check that its folder may be written");
+    refuse_lock(path, std::string("cannot be made (") + std::strerror(errno) +
+                          "); check that its folder may be written");
   }
   if (take(file_, participant)) return;
   const int error = errno;
   ::close(std::exchange(file_, -1));
   if (error != EAGAIN && error != EACCES) {
-    refuse(path, std::string("cannot be locked (") + std::strerror(error) +
-                     "); lay the database on a disk of this machine");
+    refuse_lock(path, std::string("cannot be locked (") + std::strerror(error) +
+                          "); lay the database on a disk of this machine");
   }
-  refuse(database, "participant " + participant +
-                       " is in a session of another program; go on in that window, or end it there "
-                       "and start again");
+  refuse_lock(database,
+              "participant " + participant +
+                  " is in a session of another program; go on in that window, or end it there "
+                  "and start again");
 }
 
 SessionLock::SessionLock(SessionLock&& other) noexcept : file_(std::exchange(other.file_, -1)) {}

@@ -18,8 +18,9 @@
 namespace touchtrial::store {
 namespace {
 
-constexpr std::array<std::uint8_t, 4> kMagic = {'T', 'T', 'R', '1'};
-constexpr std::size_t kHeaderSize = kMagic.size() + sizeof(std::uint64_t) + sizeof(std::uint32_t);
+constexpr std::array<std::uint8_t, 4> kTraceMagic = {'T', 'T', 'R', '1'};
+constexpr std::size_t kHeaderSize =
+    kTraceMagic.size() + sizeof(std::uint64_t) + sizeof(std::uint32_t);
 constexpr std::size_t kMaxSamples = 10'000'000;
 constexpr unsigned kMaxPlanes = 4;
 
@@ -235,7 +236,7 @@ Bytes encode_trace(const Trace& trace) {
   if (!std::isfinite(trace.rate_hz) || trace.rate_hz <= 0.0) {
     throw StoreError("trace: the sampling rate is not a positive number; check the device");
   }
-  Bytes bytes(kMagic.begin(), kMagic.end());
+  Bytes bytes(kTraceMagic.begin(), kTraceMagic.end());
   bytes.reserve(kHeaderSize + 8 * trace.samples.size() + 4096);
   put(bytes, std::bit_cast<std::uint64_t>(trace.rate_hz));
   put(bytes, static_cast<std::uint32_t>(trace.samples.size()));
@@ -252,8 +253,9 @@ Bytes encode_trace(const Trace& trace) {
 
 Trace decode_trace(ByteView bytes) {
   Cursor cursor(bytes);
-  const ByteView magic = cursor.take(kMagic.size());
-  if (!std::equal(magic.begin(), magic.end(), kMagic.begin())) refuse_bytes("its mark is missing");
+  const ByteView magic = cursor.take(kTraceMagic.size());
+  if (!std::equal(magic.begin(), magic.end(), kTraceMagic.begin()))
+    refuse_bytes("its mark is missing");
   Trace trace;
   trace.rate_hz = std::bit_cast<double>(cursor.number<std::uint64_t>());
   if (!std::isfinite(trace.rate_hz) || trace.rate_hz <= 0.0) refuse_bytes("its rate is no rate");

@@ -119,9 +119,9 @@ std::vector<Pebble> heap_of_pebbles(const Specimen& specimen, int size_px) {
   return heap.pebbles();
 }
 
-class Painter {
+class PebblePainter {
  public:
-  Painter(std::uint64_t seed, Relief& relief)
+  PebblePainter(std::uint64_t seed, Relief& relief)
       : outline_(seed, "pebbles/outline"), mottle_(seed, "pebbles/mottle"), relief_(relief) {}
 
   void sand() {
@@ -181,7 +181,7 @@ class Painter {
 
 GreyImage make_pebbles(const Specimen& specimen, int size_px) {
   Relief relief(size_px);
-  Painter painter(specimen.noise_seed(), relief);
+  PebblePainter painter(specimen.noise_seed(), relief);
   painter.sand();
   for (const Pebble& pebble : heap_of_pebbles(specimen, size_px)) painter.paint(pebble);
   const Lamp lamp{{-0.55, -0.6, 0.7}, 0.34, 40.0, 4.0, 12.0};

@@ -63,9 +63,10 @@ Stalk random_stalk(RandomStream& random, int size_px, const Strewing& strewing, 
   return stalk;
 }
 
-class Painter {
+class StrawPainter {
  public:
-  Painter(std::uint64_t seed, Relief& relief) : fibres_(seed, "straw/fibres"), relief_(relief) {}
+  StrawPainter(std::uint64_t seed, Relief& relief)
+      : fibres_(seed, "straw/fibres"), relief_(relief) {}
 
   void ground() {
     fill(relief_, [&](double x, double y) {
@@ -132,7 +133,7 @@ class Painter {
 GreyImage make_straw(const Specimen& specimen, int size_px) {
   constexpr double kStalksPerPixel = 0.0046;
   Relief relief(size_px);
-  Painter painter(specimen.noise_seed(), relief);
+  StrawPainter painter(specimen.noise_seed(), relief);
   painter.ground();
   const Strewing strewing(specimen);
   RandomStream random(specimen.noise_seed(), "straw/stalks");
