@@ -57,6 +57,7 @@ std::vector<GoalResult> take_goals(const std::vector<std::string>& targets, cons
   for (Goal& goal : tv_gabor_goals()) goals.push_back(std::move(goal));
   for (Goal& goal : error_goals(targets)) goals.push_back(std::move(goal));
   for (Goal& goal : study_goals()) goals.push_back(std::move(goal));
+  for (Goal& goal : start_goals()) goals.push_back(std::move(goal));
   std::vector<GoalResult> results;
   const auto progress = app::progress_bar("goals");
   for (std::size_t i = 0; i < goals.size(); ++i) {

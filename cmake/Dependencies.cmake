@@ -25,6 +25,21 @@ pkg_check_modules(libsodium REQUIRED IMPORTED_TARGET GLOBAL libsodium)
 
 # A newer libpqxx may bring a CMake package; pkg-config finds every version.
 pkg_check_modules(libpqxx REQUIRED IMPORTED_TARGET GLOBAL libpqxx libpq)
+# What one command alone needs should cost the others nothing (decision 47): libpqxx in the program
+# and libpq, with TLS, Kerberos and LDAP behind it, loaded when a server is first asked for. The
+# forwarders name the functions that libpqxx 6.4 calls; any other is linked as it comes.
+find_library(PQXX_ARCHIVE libpqxx.a)
+add_library(touchtrial_pqxx INTERFACE)
+if(PQXX_ARCHIVE AND libpqxx_libpqxx_VERSION MATCHES "^6\\.4\\.")
+  add_library(touchtrial_libpq STATIC)
+  target_include_directories(touchtrial_libpq PRIVATE "${CMAKE_SOURCE_DIR}" ${libpqxx_INCLUDE_DIRS})
+  target_link_libraries(touchtrial_libpq PRIVATE touchtrial_settings ${CMAKE_DL_LIBS})
+  set_target_properties(touchtrial_libpq PROPERTIES CXX_VISIBILITY_PRESET hidden)
+  target_include_directories(touchtrial_pqxx SYSTEM INTERFACE ${libpqxx_INCLUDE_DIRS})
+  target_link_libraries(touchtrial_pqxx INTERFACE "${PQXX_ARCHIVE}" touchtrial_libpq)
+else()
+  target_link_libraries(touchtrial_pqxx INTERFACE PkgConfig::libpqxx)
+endif()
 
 pkg_check_modules(libusb REQUIRED IMPORTED_TARGET GLOBAL libusb-1.0)
 
@@ -33,7 +48,8 @@ find_package(OpenGL REQUIRED)
 # Debian's Dear ImGui holds the GLFW and OpenGL 3 backends, and leaves these two to whoever links it.
 pkg_check_modules(imgui REQUIRED IMPORTED_TARGET GLOBAL imgui)
 pkg_check_modules(freetype REQUIRED IMPORTED_TARGET GLOBAL freetype2)
-pkg_check_modules(portaudio REQUIRED IMPORTED_TARGET GLOBAL portaudio-2.0)
+# For its header: the library is loaded when sound is first wanted.
+pkg_check_modules(portaudio REQUIRED portaudio-2.0)
 
 find_package(hwy QUIET)
 if(TARGET hwy::hwy)
@@ -48,9 +64,39 @@ endif()
 find_path(OPENCV_HEADERS opencv2/imgproc.hpp PATH_SUFFIXES opencv4 REQUIRED)
 find_library(OPENCV_CORE opencv_core REQUIRED)
 find_library(OPENCV_IMGPROC opencv_imgproc REQUIRED)
+# Of the archives, where there are any that link, only what is called comes into the program; BLAS,
+# LAPACK and GLX, which the shared libraries load at every start, are then needed by the benchmark's
+# matrices alone (decision 47).
+find_library(OPENCV_CORE_ARCHIVE libopencv_core.a)
+find_library(OPENCV_IMGPROC_ARCHIVE libopencv_imgproc.a)
+set(OPENCV_ARCHIVES "${OPENCV_IMGPROC_ARCHIVE}" "${OPENCV_CORE_ARCHIVE}" TBB::tbb ZLIB::ZLIB
+    -Wl,--push-state,--as-needed -llapack -lblas -lGLX -Wl,--pop-state
+    Threads::Threads ${CMAKE_DL_LIBS})
+if(OPENCV_CORE_ARCHIVE AND OPENCV_IMGPROC_ARCHIVE)
+  include(CheckCXXSourceCompiles)
+  set(CMAKE_REQUIRED_INCLUDES "${OPENCV_HEADERS}")
+  set(CMAKE_REQUIRED_LIBRARIES ${OPENCV_ARCHIVES})
+  check_cxx_source_compiles("#include <opencv2/imgproc.hpp>
+    int main() {
+      cv::Mat a(9, 9, CV_8UC3, cv::Scalar(1, 2, 3)), b;
+      cv::resize(a, b, cv::Size(4, 4), 0, 0, cv::INTER_AREA);
+      cv::medianBlur(a, b, 3);
+      cv::cvtColor(a, b, cv::COLOR_BGR2GRAY);
+      cv::integral(b, a, CV_64F);
+      cv::arrowedLine(b, {1, 1}, {2, 2}, cv::Scalar(1));
+      cv::filter2D(b, a, CV_32F, b);
+      cv::dft(a, b);
+    }" OPENCV_ARCHIVES_LINK)
+  unset(CMAKE_REQUIRED_INCLUDES)
+  unset(CMAKE_REQUIRED_LIBRARIES)
+endif()
 add_library(touchtrial_opencv INTERFACE)
 target_include_directories(touchtrial_opencv SYSTEM INTERFACE "${OPENCV_HEADERS}")
-target_link_libraries(touchtrial_opencv INTERFACE "${OPENCV_IMGPROC}" "${OPENCV_CORE}")
+if(OPENCV_ARCHIVES_LINK)
+  target_link_libraries(touchtrial_opencv INTERFACE ${OPENCV_ARCHIVES})
+else()
+  target_link_libraries(touchtrial_opencv INTERFACE "${OPENCV_IMGPROC}" "${OPENCV_CORE}")
+endif()
 
 # What reads pictures. libtiff has handlers of errors for each file from 4.5 on.
 find_package(PNG REQUIRED)

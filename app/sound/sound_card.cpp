@@ -1,6 +1,7 @@
 #include "app/sound/sound_card.hpp"
 
 #include "core/errors.hpp"
+#include "device/platform/dynamic_library.hpp"
 
 #include <cstddef>
 #include <cstdio>
@@ -37,11 +38,54 @@ class QuietErrors {
   int kept_;
 };
 
-void insist(PaError error, const char* what) {
-  if (error == paNoError) return;
-  throw DeviceError(std::string("sound: ") + what + ": " + Pa_GetErrorText(error) +
-                    "; connect headphones, and look whether another program has the sound card");
-}
+/// PortAudio, loaded with the first sound: no other command needs it (decision 47).
+class PortAudio {
+ public:
+  PortAudio() { insist(initialize_(), "cannot be initialised"); }
+  ~PortAudio() {
+    const QuietErrors quiet;
+    terminate_();
+  }
+  PortAudio(const PortAudio&) = delete;
+  PortAudio& operator=(const PortAudio&) = delete;
+
+  [[nodiscard]] PaStream* opened(PaStreamCallback* callback, void* data, double rate_hz) const {
+    PaStream* stream = nullptr;
+    // One channel: the system sends it to both ears.
+    insist(open_(&stream, 0, 1, paFloat32, rate_hz, paFramesPerBufferUnspecified, callback, data),
+           "the output cannot be opened");
+    return stream;
+  }
+  void start(PaStream* stream) const {
+    const PaError started = start_(stream);
+    if (started != paNoError) close_(stream);
+    insist(started, "the output cannot be started");
+  }
+  void close(PaStream* stream) const noexcept { close_(stream); }
+  [[nodiscard]] bool is_active(PaStream* stream) const noexcept { return is_active_(stream) == 1; }
+
+ private:
+  void insist(PaError error, const char* what) const {
+    if (error == paNoError) return;
+    throw DeviceError(std::string("sound: ") + what + ": " + error_text_(error) +
+                      "; connect headphones, and look whether another program has the sound card");
+  }
+  template <typename Function>
+  [[nodiscard]] Function* named(const char* name) const {
+    return library_.function<Function>(name);
+  }
+
+  device::DynamicLibrary library_{"libportaudio.so.2", device::Unload::never,
+                                  "for sound install PortAudio (libportaudio2)"};
+  decltype(&Pa_Initialize) initialize_ = named<decltype(Pa_Initialize)>("Pa_Initialize");
+  decltype(&Pa_Terminate) terminate_ = named<decltype(Pa_Terminate)>("Pa_Terminate");
+  decltype(&Pa_GetErrorText) error_text_ = named<decltype(Pa_GetErrorText)>("Pa_GetErrorText");
+  decltype(&Pa_OpenDefaultStream) open_ =
+      named<decltype(Pa_OpenDefaultStream)>("Pa_OpenDefaultStream");
+  decltype(&Pa_StartStream) start_ = named<decltype(Pa_StartStream)>("Pa_StartStream");
+  decltype(&Pa_CloseStream) close_ = named<decltype(Pa_CloseStream)>("Pa_CloseStream");
+  decltype(&Pa_IsStreamActive) is_active_ = named<decltype(Pa_IsStreamActive)>("Pa_IsStreamActive");
+};
 
 int give_samples(const void* /*input*/, void* output, unsigned long frames,
                  const PaStreamCallbackTimeInfo* /*times*/, PaStreamCallbackFlags /*flags*/,
@@ -53,30 +97,15 @@ int give_samples(const void* /*input*/, void* output, unsigned long frames,
 }  // namespace
 
 struct SoundCard::Stream {
-  struct Library {
-    Library() { insist(Pa_Initialize(), "cannot be initialised"); }
-    ~Library() {
-      const QuietErrors quiet;
-      Pa_Terminate();
-    }
-    Library(const Library&) = delete;
-    Library& operator=(const Library&) = delete;
-  };
-  explicit Stream(SoundMixer& mixer) {
-    // One channel: the system sends it to both ears.
-    insist(Pa_OpenDefaultStream(&stream, 0, 1, paFloat32, kRateHz, paFramesPerBufferUnspecified,
-                                give_samples, &mixer),
-           "the output cannot be opened");
-    const PaError started = Pa_StartStream(stream);
-    if (started != paNoError) Pa_CloseStream(stream);
-    insist(started, "the output cannot be started");
+  explicit Stream(SoundMixer& mixer) : stream(library.opened(give_samples, &mixer, kRateHz)) {
+    library.start(stream);
   }
-  ~Stream() { Pa_CloseStream(stream); }
+  ~Stream() { library.close(stream); }
   Stream(const Stream&) = delete;
   Stream& operator=(const Stream&) = delete;
 
-  Library library;
-  PaStream* stream = nullptr;
+  PortAudio library;
+  PaStream* stream;
 };
 
 SoundCard::SoundCard(SoundMixer& mixer) {
@@ -87,7 +116,7 @@ SoundCard::SoundCard(SoundMixer& mixer) {
 SoundCard::~SoundCard() = default;
 
 bool SoundCard::plays() const noexcept {
-  return Pa_IsStreamActive(stream_->stream) == 1;
+  return stream_->library.is_active(stream_->stream);
 }
 
 }  // namespace touchtrial::app

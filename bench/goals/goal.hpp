@@ -52,6 +52,8 @@ using Goal = std::function<std::vector<GoalResult>(const Effort& effort)>;
 [[nodiscard]] std::vector<Goal> tv_gabor_goals();
 /// The time of a simulated study, and what its database takes.
 [[nodiscard]] std::vector<Goal> study_goals();
+/// What a start of the program costs, and a short command.
+[[nodiscard]] std::vector<Goal> start_goals();
 
 /// The table as it is printed and as it stands in the documentation (Markdown, columns aligned).
 [[nodiscard]] std::string goals_table(const std::vector<GoalResult>& results);

@@ -1,8 +1,8 @@
 #include "app/default_subject.hpp"
 #include "bench/goals/goal.hpp"
+#include "bench/inputs/scratch_folder.hpp"
 #include "bench/measure/median.hpp"
 #include "core/cipher.hpp"
-#include "core/errors.hpp"
 #include "engine/pack/pack.hpp"
 #include "protocols/design/prepare.hpp"
 #include "protocols/session/commitment.hpp"
@@ -12,10 +12,8 @@
 
 #include <chrono>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <string>
-#include <system_error>
 
 namespace touchtrial::bench {
 namespace {
@@ -25,29 +23,6 @@ namespace fs = std::filesystem;
 constexpr double kStudyTarget_us = 1e6;
 constexpr double kTrialTarget_bytes = 100e3;
 constexpr int kParticipants = 20;
-
-/// A folder of its own, gone afterwards.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string name = (fs::temp_directory_path() / "touchtrial-bench-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) {
-      throw FileError(name + ": cannot be made; make room or set TMPDIR");
-    }
-    path_ = name;
-  }
-  ~ScratchFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-
-  [[nodiscard]] const fs::path& path() const noexcept { return path_; }
-
- private:
-  fs::path path_;
-};
 
 struct StudyFigures {
   double us = 0.0;

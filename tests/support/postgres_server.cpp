@@ -135,7 +135,8 @@ void PostgresServer::run(const std::vector<std::string>& arguments) const {
 
 bool PostgresServer::answers() const {
   const std::string where = "host=" + socket_folder().string() + " dbname=postgres user=postgres";
-  return PQping(where.c_str()) == PQPING_OK;
+  const Connection connection(PQconnectdb(where.c_str()), PQfinish);
+  return PQstatus(connection.get()) == CONNECTION_OK;
 }
 
 void PostgresServer::start() {
