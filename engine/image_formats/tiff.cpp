@@ -325,8 +325,8 @@ void leave_mapped(thandle_t /*handle*/, void* /*start*/, toff_t /*size*/) {}
 constexpr int kDealtWith = 1;
 
 /// Keeps the first complaint.
-int keep_error(TIFF* /*tiff*/, void* handle, const char* module, const char* format,
-               va_list values) {
+[[gnu::format(printf, 4, 0)]] int keep_error(TIFF* /*tiff*/, void* handle, const char* module,
+                                             const char* format, va_list values) {
   auto& complaint = source_of(handle).complaint;
   if (complaint[0] != 0) return kDealtWith;
   const int used = std::snprintf(complaint.data(), complaint.size(), "%s: ", module);
@@ -338,8 +338,8 @@ int keep_error(TIFF* /*tiff*/, void* handle, const char* module, const char* for
 /// While a file is opened, warnings are about entries that decide no pixel, or that are checked
 /// here. Later they tell of samples that libtiff made up, but for the one about an older kind of
 /// LZW, which it reads all the same.
-int weigh_warning(TIFF* tiff, void* handle, const char* module, const char* format,
-                  va_list values) {
+[[gnu::format(printf, 4, 0)]] int weigh_warning(TIFF* tiff, void* handle, const char* module,
+                                                const char* format, va_list values) {
   const bool is_about_old_lzw = module != nullptr && std::string_view(module) == "LZWPreDecode";
   if (!source_of(handle).decoding || is_about_old_lzw) return kDealtWith;
   return keep_error(tiff, handle, module, format, values);

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 using namespace touchtrial;
+using namespace touchtrial::engine;
 using namespace touchtrial::samples;
 
 namespace {

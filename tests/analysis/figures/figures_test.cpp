@@ -213,9 +213,9 @@ TEST_CASE("figures of an exploration show the path in contact, in newtons, over 
   path.class_label = "it's </text> bark";
   path.texture.geometry = {0.2, 20, 30};
   path.texture.grey = GreyImage(20, 30, 100);
-  path.points = {{0.0, {9.0, 9.0}, {}, 0.0, 0.0, false},
-                 {0.1, {1.5, 2.5}, {}, 0.25, 1.0, true},
-                 {0.2, {2.0, 3.0}, {}, 0.5, 1.0, true}};
+  path.points = {{{9.0, 9.0}, {}, 0.0, 0.0, false},
+                 {{1.5, 2.5}, {}, 0.25, 1.0, true},
+                 {{2.0, 3.0}, {}, 0.5, 1.0, true}};
   const std::vector<Figure> figures = report_figures(StudyReport{}, {.explorations = {&path, 1}});
   REQUIRE(ids_of(figures) == std::vector<std::string>{"exploration-3-7"});
   CHECK(contains(figures[0].script, "$path << EOD\n1.5 2.5 0.25\n2 3 0.5\nEOD\n"));

@@ -212,7 +212,7 @@ class TvGaborCourse<Real>::Admm final : public Solver {
 };
 
 template <typename Real>
-template <typename engine::Method>
+template <typename Method>
 class TvGaborCourse<Real>::OnDual final : public Solver {
  public:
   OnDual(const GreyImage& image, const engine::TvGaborOptions& options)
@@ -230,7 +230,7 @@ class TvGaborCourse<Real>::OnDual final : public Solver {
  private:
   engine::TvGaborProblem<Real> problem_;
   engine::RealFft<Real> fft_;
-  engine::Method method_;
+  Method method_;
 };
 
 template <typename Real>

@@ -52,7 +52,7 @@ class TvGaborCourse {
  private:
   class Solver;
   class Admm;
-  template <typename engine::Method>
+  template <typename Method>
   class OnDual;
 
   int height_, width_;
