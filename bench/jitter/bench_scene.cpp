@@ -8,7 +8,7 @@
 #include <array>
 #include <cmath>
 
-namespace touchtrial::jitter {
+namespace touchtrial::bench::jitter {
 namespace {
 
 constexpr double kStartHeightMm = 2.0;
@@ -62,4 +62,4 @@ device::DeviceStatus LedStylus::read(device::DeviceSample& sample) noexcept {
 BenchScene::BenchScene()
     : field_(bench_field()), plane_(field_.view().geometry), model_(model_of(field_)) {}
 
-}  // namespace touchtrial::jitter
+}  // namespace touchtrial::bench::jitter

@@ -7,7 +7,7 @@
 
 #include <cstdint>
 
-namespace touchtrial::jitter {
+namespace touchtrial::bench::jitter {
 
 /// A device whose stylus comes down on the plane and then strokes it at up to 80 mm/s, 1 mm deep,
 /// whatever the force. Its state is a function of the number of ticks.
@@ -44,4 +44,4 @@ class BenchScene {
   engine::RenderingModel model_;
 };
 
-}  // namespace touchtrial::jitter
+}  // namespace touchtrial::bench::jitter

@@ -11,7 +11,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial::jitter {
+namespace touchtrial::bench::jitter {
 namespace {
 
 /// Distinct for readers with any colour vision (Okabe and Ito).
@@ -134,4 +134,4 @@ std::string histogram_script(Measured what, std::span<const Measurement> all,
   return script + "unset multiplot\n";
 }
 
-}  // namespace touchtrial::jitter
+}  // namespace touchtrial::bench::jitter

@@ -1,6 +1,6 @@
 #include "bench/jitter/load_threads.hpp"
 
-namespace touchtrial::jitter {
+namespace touchtrial::bench::jitter {
 
 LoadThreads::LoadThreads(int count) {
   for (int i = 0; i < count; ++i) {
@@ -16,4 +16,4 @@ LoadThreads::~LoadThreads() {
   for (std::thread& thread : threads_) thread.join();
 }
 
-}  // namespace touchtrial::jitter
+}  // namespace touchtrial::bench::jitter

@@ -5,7 +5,7 @@
 #include <thread>
 #include <vector>
 
-namespace touchtrial::jitter {
+namespace touchtrial::bench::jitter {
 
 /// Threads of ordinary priority that use all the time they get until this is gone.
 class LoadThreads {
@@ -20,4 +20,4 @@ class LoadThreads {
   std::vector<std::thread> threads_;
 };
 
-}  // namespace touchtrial::jitter
+}  // namespace touchtrial::bench::jitter

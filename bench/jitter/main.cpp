@@ -14,7 +14,7 @@
 
 #include <CLI/CLI.hpp>
 
-namespace touchtrial::jitter {
+namespace touchtrial::bench::jitter {
 namespace {
 
 constexpr int kFailed = 1;
@@ -122,8 +122,8 @@ int run_program(int argc, char** argv) noexcept {
 }
 
 }  // namespace
-}  // namespace touchtrial::jitter
+}  // namespace touchtrial::bench::jitter
 
 int main(int argc, char** argv) {
-  return touchtrial::jitter::run_program(argc, argv);
+  return touchtrial::bench::jitter::run_program(argc, argv);
 }

@@ -10,7 +10,7 @@
 #include <atomic>
 #include <optional>
 
-namespace touchtrial::jitter {
+namespace touchtrial::bench::jitter {
 namespace {
 
 /// 16 s at 4 kHz, 3.7 MB.
@@ -113,4 +113,4 @@ Measurement measure_service(const BenchScene& scene, const Conditions& condition
   return rig.run(clock, ticks, nullptr);
 }
 
-}  // namespace touchtrial::jitter
+}  // namespace touchtrial::bench::jitter

@@ -9,7 +9,7 @@
 
 #include <cstdint>
 
-namespace touchtrial::jitter {
+namespace touchtrial::bench::jitter {
 
 /// The conditions of one measurement.
 struct Conditions {
@@ -41,4 +41,4 @@ struct Measurement {
 [[nodiscard]] Measurement measure_service(const BenchScene& scene, const Conditions& conditions,
                                           std::int64_t ticks);
 
-}  // namespace touchtrial::jitter
+}  // namespace touchtrial::bench::jitter

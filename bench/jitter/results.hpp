@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-namespace touchtrial::jitter {
+namespace touchtrial::bench::jitter {
 
 /// Which of the two was measured.
 enum class Measured { lateness, service };
@@ -27,4 +27,4 @@ enum class Measured { lateness, service };
 [[nodiscard]] std::string histogram_script(Measured what, std::span<const Measurement> measurements,
                                            const std::filesystem::path& picture);
 
-}  // namespace touchtrial::jitter
+}  // namespace touchtrial::bench::jitter

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace touchtrial::jitter {
+namespace touchtrial::bench::jitter {
 namespace {
 
 nlohmann::ordered_json json_of(const Measurement& m) {
@@ -40,4 +40,4 @@ std::string results_json(Measured what, std::span<const Measurement> measurement
   return results.dump(2) + "\n";
 }
 
-}  // namespace touchtrial::jitter
+}  // namespace touchtrial::bench::jitter

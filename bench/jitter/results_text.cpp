@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial::jitter {
+namespace touchtrial::bench::jitter {
 namespace {
 
 constexpr const char* kLatenessHead =
@@ -58,4 +58,4 @@ std::string results_text(Measured what, std::span<const Measurement> measurement
   return text;
 }
 
-}  // namespace touchtrial::jitter
+}  // namespace touchtrial::bench::jitter

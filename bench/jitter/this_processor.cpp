@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-namespace touchtrial {
+namespace touchtrial::bench {
 namespace {
 
 std::string model_name() {
@@ -23,4 +23,4 @@ std::string this_processor() {
   return fmt::format("{}, {} logical cores", model_name(), std::thread::hardware_concurrency());
 }
 
-}  // namespace touchtrial
+}  // namespace touchtrial::bench

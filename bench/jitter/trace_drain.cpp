@@ -3,7 +3,7 @@
 #include <chrono>
 #include <vector>
 
-namespace touchtrial::jitter {
+namespace touchtrial::bench::jitter {
 namespace {
 
 constexpr std::size_t kSamplesOfTrace = 60'000;
@@ -55,4 +55,4 @@ void TraceDrain::encode() {
   trace_.samples.clear();
 }
 
-}  // namespace touchtrial::jitter
+}  // namespace touchtrial::bench::jitter

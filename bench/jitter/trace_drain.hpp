@@ -9,7 +9,7 @@
 #include <span>
 #include <thread>
 
-namespace touchtrial::jitter {
+namespace touchtrial::bench::jitter {
 
 /// A thread that takes samples out of a ring and encodes them as a session stores them, in traces
 /// of a minute at 1 kHz. The traces are let go of.
@@ -40,4 +40,4 @@ class TraceDrain {
   std::thread thread_;
 };
 
-}  // namespace touchtrial::jitter
+}  // namespace touchtrial::bench::jitter

@@ -1,7 +1,7 @@
 #include "protocols/store/payload_json.hpp"
 
 #include "core/errors.hpp"
-#include "protocols/store/json_object.hpp"
+#include "protocols/store/payload_object.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <limits>
@@ -27,7 +27,7 @@ json station_object(const StationRecord& station) {
           {"calibration", station.calibration}};
 }
 
-std::optional<StationRecord> station_of(const std::optional<JsonObject>& object) {
+std::optional<StationRecord> station_of(const std::optional<PayloadObject>& object) {
   if (!object) return std::nullopt;
   return StationRecord{.model = object->text("model"),
                        .firmware = object->text("firmware"),
@@ -48,7 +48,7 @@ json servo_object(const ServoHealth& servo) {
           {"held", servo.held}};
 }
 
-std::optional<ServoHealth> servo_of(const std::optional<JsonObject>& object) {
+std::optional<ServoHealth> servo_of(const std::optional<PayloadObject>& object) {
   if (!object) return std::nullopt;
   return ServoHealth{.rate_hz = object->number("rate_hz"),
                      .lateness_p50_us = object->number("lateness_p50_us"),
@@ -76,7 +76,7 @@ std::string to_json(const StudyCommitment& body) {
 }
 
 StudyCommitment commitment_from_json(const std::string& text) {
-  const JsonObject object(text);
+  const PayloadObject object(text);
   return {.study = object.text("study"),
           .protocol = object.text("protocol"),
           .study_id = object.text("study_id"),
@@ -105,7 +105,7 @@ std::string to_json(const SessionOpening& body) {
 }
 
 SessionOpening opening_from_json(const std::string& text) {
-  const JsonObject object(text);
+  const PayloadObject object(text);
   return {.participant = object.text("participant"),
           .enrolment = object.count("enrolment", 1),
           .study_id = object.text("study_id"),
@@ -126,7 +126,7 @@ std::string to_json(const AnswerBody& body) {
 }
 
 AnswerBody answer_from_json(const std::string& text) {
-  const JsonObject object(text);
+  const PayloadObject object(text);
   return {.trial = object.count("trial", 1),
           .position = object.count("position", 0),
           .first_position = object.optional_count("first_position", 0),
@@ -141,7 +141,7 @@ std::string to_json(const PracticeBody& body) {
 }
 
 PracticeBody practice_from_json(const std::string& text) {
-  const JsonObject object(text);
+  const PayloadObject object(text);
   return {.round = object.count("round", 1),
           .presentation = object.count("presentation", 1),
           .position = object.count("position", 0),
@@ -153,7 +153,7 @@ std::string to_json(const DeviationBody& body) {
 }
 
 DeviationBody deviation_from_json(const std::string& text) {
-  const JsonObject object(text);
+  const PayloadObject object(text);
   return {.code = object.text("code"), .text = object.text("text")};
 }
 
@@ -164,7 +164,7 @@ std::string to_json(const ResumedBody& body) {
 }
 
 ResumedBody resumed_from_json(const std::string& text) {
-  const JsonObject object(text);
+  const PayloadObject object(text);
   return {.after = object.text("after"),
           .away_s = object.number("away_s"),
           .program_version = object.text("program_version")};
@@ -183,7 +183,7 @@ std::string to_json(const TraceBody& body) {
 }
 
 TraceBody trace_body_from_json(const std::string& text) {
-  const JsonObject object(text);
+  const PayloadObject object(text);
   return {.trial = object.count("trial", 1),
           .samples = object.integer("samples", 0, kAny),
           .rate_hz = object.number("rate_hz"),
@@ -205,7 +205,7 @@ std::string to_json(const TrialMeasures& body) {
 }
 
 TrialMeasures measures_from_json(const std::string& text) try {
-  const JsonObject object(text);
+  const PayloadObject object(text);
   return {.contact_s = object.number("contact_s"),
           .path_mm = object.number("path_mm"),
           .force_rms_n = object.number("force_rms_n"),
@@ -225,7 +225,7 @@ std::string to_json(const InterruptionDetail& body) {
 }
 
 InterruptionDetail interruption_from_json(const std::string& text) {
-  const JsonObject object(text);
+  const PayloadObject object(text);
   return {.safety_fault = object.text("safety_fault"),
           .device_fault = object.text("device_fault"),
           .ticks = object.integer("ticks", 0, kAny),
@@ -237,7 +237,7 @@ std::string to_json(const ChainEnd& body) {
 }
 
 ChainEnd chain_end_from_json(const std::string& text) {
-  const JsonObject object(text);
+  const PayloadObject object(text);
   return {.length = object.integer("length", 1, kAny), .head = object.digest("head")};
 }
 
@@ -250,7 +250,7 @@ std::string to_json(const SessionOpenedBody& body) {
 }
 
 SessionOpenedBody session_opened_from_json(const std::string& text) {
-  const JsonObject object(text);
+  const PayloadObject object(text);
   return {.session = object.count("session", 1),
           .participant = object.text("participant"),
           .enrolment = object.count("enrolment", 1),
@@ -268,7 +268,7 @@ std::string to_json(const SessionClosedBody& body) {
 }
 
 SessionClosedBody session_closed_from_json(const std::string& text) {
-  const JsonObject object(text);
+  const PayloadObject object(text);
   return {.session = object.count("session", 1),
           .length = object.integer("length", 1, kAny),
           .head = object.digest("head"),
@@ -280,7 +280,7 @@ std::string to_json(const ParticipantBody& body) {
 }
 
 ParticipantBody participant_from_json(const std::string& text) {
-  const JsonObject object(text);
+  const PayloadObject object(text);
   return {.session = object.count("session", 1), .reason = object.text("reason")};
 }
 
@@ -289,7 +289,7 @@ std::string to_json(const ReplacementBody& body) {
 }
 
 ReplacementBody replacement_from_json(const std::string& text) {
-  const JsonObject object(text);
+  const PayloadObject object(text);
   return {.session = object.count("session", 1),
           .by = object.text("by"),
           .reason = object.text("reason")};
@@ -300,7 +300,7 @@ std::string to_json(const NoteBody& body) {
 }
 
 NoteBody note_from_json(const std::string& text) {
-  const JsonObject object(text);
+  const PayloadObject object(text);
   return {.session = object.count("session", 1),
           .code = object.text("code"),
           .text = object.text("text")};
@@ -313,7 +313,7 @@ std::string to_json(const UnblindingBody& body) {
 }
 
 UnblindingBody unblinding_from_json(const std::string& text) {
-  const JsonObject object(text);
+  const PayloadObject object(text);
   return {.reason = object.text("reason"),
           .interim = object.flag("interim"),
           .sessions = object.optional_counts("sessions", 1)};
@@ -332,7 +332,7 @@ std::string block_to_json(int block, int first_trial) {
 }
 
 BlockBody block_from_json(const std::string& text) {
-  const JsonObject object(text);
+  const PayloadObject object(text);
   return {.block = object.count("block", 0), .first_trial = object.count("first_trial", 1)};
 }
 
@@ -341,7 +341,7 @@ std::string trial_to_json(int trial) {
 }
 
 TrialBody trial_from_json(const std::string& text) {
-  const JsonObject object(text);
+  const PayloadObject object(text);
   return {.trial = object.count("trial", 1),
           .block = object.optional_count("block", 0).value_or(0),
           .reason = object.optional_text("reason").value_or("")};
@@ -352,7 +352,7 @@ std::string remark_to_json(const std::string& text) {
 }
 
 std::string remark_from_json(const std::string& text) {
-  return JsonObject(text).text("text");
+  return PayloadObject(text).text("text");
 }
 
 std::string completion_to_json(bool complete) {
@@ -360,19 +360,19 @@ std::string completion_to_json(bool complete) {
 }
 
 bool completion_from_json(const std::string& text) {
-  return JsonObject(text).flag("complete");
+  return PayloadObject(text).flag("complete");
 }
 
 // Not by way of the structs, so that what they gain later changes no collected chain.
 std::string renumbered(const std::string& body, int session) {
-  static_cast<void>(JsonObject(body).count("session", 1));
+  static_cast<void>(PayloadObject(body).count("session", 1));
   json object = json::parse(body);
   object["session"] = session;
   return compact(object);
 }
 
 std::string renumbered_opening(const std::string& body, int session, int station) {
-  const int own_session = JsonObject(body).count("session", 1);
+  const int own_session = PayloadObject(body).count("session", 1);
   json object = json::parse(body);
   object["session"] = session;
   object["own_session"] = own_session;

@@ -10,9 +10,12 @@ namespace {
 
 using Tokens = std::vector<std::string>;
 
-bool in_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
+bool in_word(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+}
 
-/// Cuts a text into words and punctuation; comments and preprocessor lines are gone, literals are "".
+/// Cuts a text into words and punctuation; comments and preprocessor lines are gone, literals are
+/// "".
 class Lexer {
  public:
   explicit Lexer(std::string_view text) : text_(text) {}
@@ -89,7 +92,9 @@ class Lexer {
   Tokens tokens_;
 };
 
-bool is_name(const std::string& token) { return !token.empty() && in_word(token.front()); }
+bool is_name(const std::string& token) {
+  return !token.empty() && in_word(token.front());
+}
 
 bool holds(const Tokens& tokens, const std::string& word) {
   return std::find(tokens.begin(), tokens.end(), word) != tokens.end();
@@ -150,6 +155,7 @@ class Reader {
       return true;
     }
     at_ = closing(tokens_, at_, "{", "}");
+    holds_more(space);
     if (defines_type(statement)) {
       add(Definition::Kind::type, space, type_name(statement), "", false);
       return false;  // a declaration of variables may follow, up to ";"
@@ -157,6 +163,10 @@ class Reader {
     if (function(space, words)) return true;
     variable(space, words);
     return false;
+  }
+
+  void holds_more(const std::string& space) {
+    if (!space.empty()) found_.namespaces[space] = true;
   }
 
   static bool holds_namespace(const Tokens& statement) {
@@ -172,13 +182,15 @@ class Reader {
       return;
     }
     const std::string inner = space.empty() ? name : space + "::" + name;
-    found_.namespaces.push_back(inner);
+    found_.namespaces.try_emplace(inner, false);
     ++at_;
     scope(inner);
   }
 
   void ended(const std::string& space, const Tokens& words) {
     const Tokens statement = without_template(words);
+    if (!statement.empty() && !(defines_type(statement) && statement.size() == 2))
+      holds_more(space);
     if (statement.size() > 2 && statement[0] == "using" && statement[2] == "=") {
       add(Definition::Kind::type, space, statement[1], "", false);
     } else {

@@ -1,7 +1,8 @@
-/// \file What a C++ file defines in its namespaces, read well enough for this project's own sources:
-/// no preprocessing, no templates resolved.
+/// \file What a C++ file defines in its namespaces, read well enough for this project's own
+/// sources: no preprocessing, no templates resolved.
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,7 +22,9 @@ struct Definition {
 
 struct Declarations {
   std::vector<Definition> definitions;
-  std::vector<std::string> namespaces;  ///< qualified; the anonymous ones and what is in them left out
+  /// Qualified, and whether it holds more than forward declarations of types. The anonymous ones
+  /// and what is in them are left out.
+  std::map<std::string, bool> namespaces;
 };
 
 /// Reads a header or a source. What stands in an anonymous namespace belongs to its file alone and

@@ -39,7 +39,9 @@ const Room* room_of(const std::string& path) {
 }
 
 /// The C++ standard library's headers have neither folder nor ending; all others have.
-bool is_third_party(const std::string& header) { return header.find_first_of("/.") != header.npos; }
+bool is_third_party(const std::string& header) {
+  return header.find_first_of("/.") != header.npos;
+}
 
 /// The folder that a header says it is private to: the one it names, else its own; "" for none.
 std::string private_to(const SourceFile& header) {
@@ -57,9 +59,12 @@ std::string private_to(const SourceFile& header) {
 
 std::string kind_of(const Definition& definition) {
   switch (definition.kind) {
-    case Definition::Kind::type: return "type ";
-    case Definition::Kind::function: return "function ";
-    case Definition::Kind::variable: return "variable ";
+    case Definition::Kind::type:
+      return "type ";
+    case Definition::Kind::function:
+      return "function ";
+    case Definition::Kind::variable:
+      return "variable ";
   }
   return "";
 }
@@ -157,7 +162,8 @@ std::vector<std::string> House::third_party_headers_shown() const {
   std::vector<std::string> found;
   for (const SourceFile& file : files_) {
     for (const std::string& name : file.quoted) {
-      if (showing.count(name) == 0 || file.room->sees_inside || room_of(name) == file.room) continue;
+      if (showing.count(name) == 0 || file.room->sees_inside || room_of(name) == file.room)
+        continue;
       found.push_back(file.path + " includes " + name + ", which shows a third-party header");
     }
   }
@@ -205,7 +211,7 @@ std::vector<std::string> House::namespaces_of_other_rooms() const {
   for (const SourceFile& file : files_) {
     const std::string& own = file.room->name_space;
     bool opens_own = false;
-    for (const std::string& name : file.declared.namespaces) {
+    for (const auto& [name, holds_more] : file.declared.namespaces) {
       const Room* other = nullptr;
       for (const Room& room : rooms()) {
         if (&room != file.room && (name + "::").starts_with(room.name_space + "::") &&
@@ -215,7 +221,8 @@ std::vector<std::string> House::namespaces_of_other_rooms() const {
       }
       const bool inside = (name + "::").starts_with(own + "::") && other == nullptr;
       opens_own = opens_own || inside;
-      if (!inside && name != "std") found.push_back(file.path + " opens namespace " + name);
+      if (!inside && holds_more && name != "std")
+        found.push_back(file.path + " opens namespace " + name);
     }
     if (!opens_own && !file.path.ends_with("main.cpp")) {
       found.push_back(file.path + " does not open namespace " + own);

@@ -16,7 +16,7 @@ struct Room {
   std::string folder;
   std::string name_space;
   std::set<std::string> arrows;  ///< folders
-  bool sees_inside = false;      ///< may include what is private in others, and the tests' references
+  bool sees_inside = false;  ///< may include what is private in others, and the tests' references
 };
 
 [[nodiscard]] const std::vector<Room>& rooms();
@@ -49,7 +49,7 @@ class House {
   [[nodiscard]] std::vector<std::string> private_headers_used_elsewhere() const;
   /// Types, inline functions and inline variables that two files define under one qualified name.
   [[nodiscard]] std::vector<std::string> names_defined_twice() const;
-  /// Files that open a namespace that is not their room's.
+  /// Files that declare more in another room's namespace than its types, or open none of their own.
   [[nodiscard]] std::vector<std::string> namespaces_of_other_rooms() const;
   /// Headers that do not guard themselves, or do not say what they are for.
   [[nodiscard]] std::vector<std::string> unguarded_or_unexplained_headers() const;

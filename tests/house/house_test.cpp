@@ -160,6 +160,8 @@ TEST_CASE("a namespace that is another room's, or none, is found") {
   const PlantedHouse planted{
       {"core/plane.hpp", in("touchtrial", "struct Plane {};")},
       {"core/guest.hpp", in("touchtrial::engine", "struct Guest {};")},
+      {"device/forward.hpp",
+       in("touchtrial", "class Plane;") + in("touchtrial::device", "struct Forward {};")},
       {"device/falcon/legs.hpp", in("touchtrial::device::falcon", "struct Legs {};")},
       {"engine/flat.hpp", in("touchtrial", "struct Flat {};")},
       {"analysis/planning/power.hpp", in("touchtrial::analysis", "struct Power {};")},

@@ -21,10 +21,10 @@ namespace touchtrial::store {
 
 /// A parsed object whose members are asked for by key and type. Every member function throws
 /// StoreError, naming the key, if the value is missing or not what is asked for.
-class JsonObject {
+class PayloadObject {
  public:
   /// \throws StoreError if the text is not one JSON object
-  explicit JsonObject(const std::string& text);
+  explicit PayloadObject(const std::string& text);
 
   [[nodiscard]] std::string text(const char* key) const;
   [[nodiscard]] bool flag(const char* key) const;
@@ -43,10 +43,10 @@ class JsonObject {
   /// Whole numbers in [least, largest int], or nothing if the key is absent.
   [[nodiscard]] std::optional<std::vector<int>> optional_counts(const char* key, int least) const;
   /// An object within this one, or nothing if the key is absent. Its errors name both keys.
-  [[nodiscard]] std::optional<JsonObject> optional_object(const char* key) const;
+  [[nodiscard]] std::optional<PayloadObject> optional_object(const char* key) const;
 
  private:
-  JsonObject(nlohmann::json object, std::string place);
+  PayloadObject(nlohmann::json object, std::string place);
   [[nodiscard]] const nlohmann::json& at(const char* key) const;
   [[noreturn]] void refuse(const char* key, const char* why) const;
 

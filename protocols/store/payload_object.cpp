@@ -1,4 +1,4 @@
-#include "protocols/store/json_object.hpp"
+#include "protocols/store/payload_object.hpp"
 
 #include "core/errors.hpp"
 
@@ -24,43 +24,43 @@ double finite(double value, const char* key) {
   return value;
 }
 
-JsonObject::JsonObject(const std::string& text)
+PayloadObject::PayloadObject(const std::string& text)
     : object_(nlohmann::json::parse(text, nullptr, /*allow_exceptions=*/false)) {
   if (!object_.is_object()) throw StoreError("the body is not a JSON object");
 }
 
-JsonObject::JsonObject(nlohmann::json object, std::string place)
+PayloadObject::PayloadObject(nlohmann::json object, std::string place)
     : object_(std::move(object)), place_(std::move(place)) {}
 
-void JsonObject::refuse(const char* key, const char* why) const {
+void PayloadObject::refuse(const char* key, const char* why) const {
   throw StoreError(place_ + "/" + key + " " + why);
 }
 
-const nlohmann::json& JsonObject::at(const char* key) const {
+const nlohmann::json& PayloadObject::at(const char* key) const {
   const auto found = object_.find(key);
   if (found == object_.end()) refuse(key, "is missing");
   return *found;
 }
 
-std::string JsonObject::text(const char* key) const {
+std::string PayloadObject::text(const char* key) const {
   const nlohmann::json& value = at(key);
   if (!value.is_string()) refuse(key, "is not a text");
   return value.get<std::string>();
 }
 
-bool JsonObject::flag(const char* key) const {
+bool PayloadObject::flag(const char* key) const {
   const nlohmann::json& value = at(key);
   if (!value.is_boolean()) refuse(key, "is neither true nor false");
   return value.get<bool>();
 }
 
-double JsonObject::number(const char* key) const {
+double PayloadObject::number(const char* key) const {
   const nlohmann::json& value = at(key);
   if (!value.is_number()) refuse(key, "is not a number");
   return value.get<double>();
 }
 
-Digest JsonObject::digest(const char* key) const {
+Digest PayloadObject::digest(const char* key) const {
   const nlohmann::json& value = at(key);
   const std::optional<Digest> digest =
       value.is_string() ? digest_from_hex(value.get_ref<const std::string&>()) : std::nullopt;
@@ -68,7 +68,7 @@ Digest JsonObject::digest(const char* key) const {
   return *digest;
 }
 
-std::int64_t JsonObject::integer(const char* key, std::int64_t least, std::int64_t most) const {
+std::int64_t PayloadObject::integer(const char* key, std::int64_t least, std::int64_t most) const {
   const nlohmann::json& value = at(key);
   // Beyond 2^63 the parser makes an unsigned number, which a cast would turn negative.
   const bool too_large =
@@ -80,26 +80,26 @@ std::int64_t JsonObject::integer(const char* key, std::int64_t least, std::int64
   return number;
 }
 
-int JsonObject::count(const char* key, int least) const {
+int PayloadObject::count(const char* key, int least) const {
   return static_cast<int>(integer(key, least, std::numeric_limits<int>::max()));
 }
 
-std::optional<int> JsonObject::optional_count(const char* key, int least) const {
+std::optional<int> PayloadObject::optional_count(const char* key, int least) const {
   if (!object_.contains(key)) return std::nullopt;
   return count(key, least);
 }
 
-std::optional<std::string> JsonObject::optional_text(const char* key) const {
+std::optional<std::string> PayloadObject::optional_text(const char* key) const {
   if (!object_.contains(key)) return std::nullopt;
   return text(key);
 }
 
-std::optional<std::int64_t> JsonObject::optional_integer(const char* key) const {
+std::optional<std::int64_t> PayloadObject::optional_integer(const char* key) const {
   if (!object_.contains(key)) return std::nullopt;
   return integer(key, 0, std::numeric_limits<std::int64_t>::max());
 }
 
-std::vector<std::int64_t> JsonObject::optional_integers(const char* key) const {
+std::vector<std::int64_t> PayloadObject::optional_integers(const char* key) const {
   std::vector<std::int64_t> numbers;
   if (!object_.contains(key)) return numbers;
   const nlohmann::json& value = at(key);
@@ -111,7 +111,7 @@ std::vector<std::int64_t> JsonObject::optional_integers(const char* key) const {
   return numbers;
 }
 
-std::optional<std::vector<int>> JsonObject::optional_counts(const char* key, int least) const {
+std::optional<std::vector<int>> PayloadObject::optional_counts(const char* key, int least) const {
   if (!object_.contains(key)) return std::nullopt;
   std::vector<int> counts;
   for (const std::int64_t number : optional_integers(key)) {
@@ -121,11 +121,11 @@ std::optional<std::vector<int>> JsonObject::optional_counts(const char* key, int
   return counts;
 }
 
-std::optional<JsonObject> JsonObject::optional_object(const char* key) const {
+std::optional<PayloadObject> PayloadObject::optional_object(const char* key) const {
   if (!object_.contains(key)) return std::nullopt;
   const nlohmann::json& value = at(key);
   if (!value.is_object()) refuse(key, "is not an object");
-  return JsonObject(value, place_ + "/" + key);
+  return PayloadObject(value, place_ + "/" + key);
 }
 
 }  // namespace touchtrial::store
