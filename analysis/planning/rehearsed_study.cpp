@@ -91,8 +91,7 @@ std::string_view name_of(Hypothesis hypothesis) {
 RehearsedStudy::RehearsedStudy(const design::Study& study, const session::SubjectModel& subject,
                                const PrimaryTest& test, const Feelings& feelings,
                                int most_participants)
-    : study_(study),
-      subject_(subject),
+    : subject_(subject),
       test_(test),
       feelings_(feelings),
       of_method_(stimuli_of(study, test.first)),

@@ -53,7 +53,6 @@ class RehearsedStudy {
                                                     Hypothesis hypothesis,
                                                     std::uint64_t draw) const;
 
-  const design::Study& study_;
   const session::SubjectModel& subject_;
   PrimaryTest test_;
   const Feelings& feelings_;

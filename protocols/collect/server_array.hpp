@@ -45,7 +45,7 @@ class ServerArray {
   void add(std::monostate) { add_bare("NULL"); }
   template <typename... Values>
   void add(const std::variant<std::monostate, Values...>& value) {
-    std::visit([this](const auto& held) { add(held); }, value);
+    std::visit([this](const auto& held) { this->add(held); }, value);
   }
 
   /// How long it is so far, in bytes.

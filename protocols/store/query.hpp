@@ -56,7 +56,7 @@ class Query {
   /// Whatever of these it holds; std::monostate is NULL.
   template <typename... Values>
   Query& bind(const std::variant<std::monostate, Values...>& value) {
-    return std::visit([this](const auto& held) -> Query& { return bind(held); }, value);
+    return std::visit([this](const auto& held) -> Query& { return this->bind(held); }, value);
   }
 
   /// \return whether there is a (further) row
