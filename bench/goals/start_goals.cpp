@@ -24,7 +24,7 @@ using Command = std::vector<std::string>;
 
 constexpr double kStartRatio = 8.0;
 constexpr double kMostLibraries = 45;
-constexpr double kReportRatio = 20.0;
+constexpr double kReportRatio = 14.0;
 /// Starts are short and pages of their files are shared with others: many even that out.
 constexpr int kStartsPerRound = 11;
 
