@@ -239,7 +239,7 @@ class Reader {
     static const std::set<std::string> no_functions = {"requires", "decltype", "noexcept",
                                                        "alignas", "explicit"};
     for (std::size_t i = 1; i < statement.size(); ++i) {
-      if (statement[i] == "=") return false;
+      if (statement[i] == "=" && !names_operator(statement, i)) return false;
       if (statement[i] != "(" || no_functions.count(statement[i - 1]) > 0) continue;
       std::size_t first = i - 1;
       while (first > 0 && !is_name(statement[first])) --first;  // an operator's sign
@@ -247,9 +247,9 @@ class Reader {
       while (first > 1 && statement[first - 1] == "::") first = owner(statement, first - 2);
       std::string name;
       for (std::size_t k = first; k < i; ++k) name += statement[k];
-      std::string parameters;
       const std::size_t end = closing(statement, i, "(", ")");
-      for (std::size_t k = i + 1; k < end; ++k) parameters += statement[k] + " ";
+      std::string parameters = types_of({statement.begin() + static_cast<std::ptrdiff_t>(i) + 1,
+                                         statement.begin() + static_cast<std::ptrdiff_t>(end)});
       for (std::size_t k = end + 1; k < statement.size(); ++k) {
         if (statement[k] == "const") parameters += ") const";
       }
@@ -257,6 +257,46 @@ class Reader {
       return true;
     }
     return false;
+  }
+
+  /// Whether a sign belongs to an operator's name, as in "operator <=".
+  static bool names_operator(const Tokens& statement, std::size_t at) {
+    while (at > 0 && !is_name(statement[at]) && statement[at] != ")") --at;
+    return statement[at] == "operator";
+  }
+
+  /// Parameters without their names and default values, which make no other function.
+  static std::string types_of(const Tokens& parameters) {
+    std::string types;
+    Tokens one;
+    int depth = 0;
+    bool in_default = false;
+    const auto end_parameter = [&] {
+      static const std::set<std::string> no_types = {"const", "volatile", "struct", "class", "enum",
+                                                     "typename", "::"};
+      static const std::set<std::string> no_names = {"int", "char", "long", "short", "double",
+                                                     "unsigned", "signed", "const"};
+      const bool is_named = one.size() > 1 && is_name(one.back()) &&
+                            no_names.count(one.back()) == 0 &&
+                            no_types.count(one[one.size() - 2]) == 0;
+      if (is_named) one.pop_back();
+      for (const std::string& token : one) types += token + " ";
+      one.clear();
+      in_default = false;
+    };
+    for (const std::string& token : parameters) {
+      if (token == "<" || token == "(" || token == "{" || token == "[") ++depth;
+      if (token == ">" || token == ")" || token == "}" || token == "]") --depth;
+      if (depth == 0 && token == ",") {
+        end_parameter();
+        types += ", ";
+      } else {
+        in_default = in_default || (depth == 0 && token == "=");
+        if (!in_default) one.push_back(token);
+      }
+    }
+    end_parameter();
+    return types;
   }
 
   /// The first token of the class before a member's "::", whose last token stands at a place.
@@ -283,7 +323,8 @@ class Reader {
   }
 
   static bool is_inline(const Tokens& words) {
-    return holds(words, "inline") || holds(words, "constexpr") || holds(words, "template");
+    return holds(words, "inline") || holds(words, "constexpr") || holds(words, "consteval") ||
+           holds(words, "template");
   }
 
   void add(Definition::Kind kind, const std::string& space, const std::string& name,

@@ -18,16 +18,6 @@ std::string text_of_file(const fs::path& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-void read_includes(SourceFile& file) {
-  std::istringstream lines(file.text);
-  for (std::string line; std::getline(lines, line);) {
-    if (!line.starts_with("#include ") || line.size() < 11) continue;
-    const char close = line[9] == '<' ? '>' : '"';
-    const std::string name = line.substr(10, line.find(close, 10) - 10);
-    (close == '>' ? file.angled : file.quoted).push_back(name);
-  }
-}
-
 /// The room with the longest folder that a path lies in; null for none.
 const Room* room_of(const std::string& path) {
   const Room* best = nullptr;
@@ -36,6 +26,17 @@ const Room* room_of(const std::string& path) {
     if (best == nullptr || room.folder.size() > best->folder.size()) best = &room;
   }
   return best;
+}
+
+void read_includes(SourceFile& file) {
+  std::istringstream lines(file.text);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("#include ") || line.size() < 11) continue;
+    const char close = line[9] == '<' ? '>' : '"';
+    const std::string name = line.substr(10, line.find(close, 10) - 10);
+    const bool is_ours = close != '>' || room_of(name) != nullptr;
+    (is_ours ? file.quoted : file.angled).push_back(name);
+  }
 }
 
 /// The C++ standard library's headers have neither folder nor ending; all others have.
@@ -54,7 +55,7 @@ std::string private_to(const SourceFile& header) {
   if (!std::regex_search(comment, found, std::regex("Private to\\s+([\\w/]*\\w)"))) return "";
   const std::string own = fs::path(header.path).parent_path().generic_string();
   const std::string named = found[1];
-  return own.starts_with(named) ? named : own;
+  return (own + "/").starts_with(named + "/") ? named : own;
 }
 
 std::string kind_of(const Definition& definition) {
@@ -223,6 +224,10 @@ std::vector<std::string> House::namespaces_of_other_rooms() const {
       opens_own = opens_own || inside;
       if (!inside && holds_more && name != "std")
         found.push_back(file.path + " opens namespace " + name);
+    }
+    for (const Definition& definition : file.declared.definitions) {
+      if (definition.name.find("::") == std::string::npos && one_in_the_program(definition))
+        found.push_back(file.path + " defines " + definition.name + " in no namespace");
     }
     if (!opens_own && !file.path.ends_with("main.cpp")) {
       found.push_back(file.path + " does not open namespace " + own);

@@ -107,7 +107,7 @@ TEST_CASE("a private header that another folder includes is found") {
       {"engine/pack/pack.cpp",
        header("touchtrial::engine", "#include \"engine/rendering/spline.hpp\"")},
       {"device/hand.hpp", header("touchtrial::device", "", "A hand. Private to this folder.")},
-      {"app/window.cpp", header("touchtrial::app", "#include \"device/hand.hpp\"")}};
+      {"app/window.cpp", header("touchtrial::app", "#include <device/hand.hpp>")}};
   CHECK(planted.read().private_headers_used_elsewhere() ==
         Lines{"app/window.cpp includes device/hand.hpp, which is private to device",
               "engine/pack/pack.cpp includes engine/rendering/spline.hpp, which is private to "
@@ -144,12 +144,29 @@ TEST_CASE("a name that two files define is found") {
       {"app/d.cpp", in("touchtrial::app", "namespace {\nstruct Path {};\n}\nstruct Cue {};\n")}};
   const std::string both = " is defined in analysis/a.hpp analysis/b.hpp";
   CHECK(planted.read().names_defined_twice() ==
-        Lines{"function touchtrial::analysis::half(const T & x )" + both,
-              "function touchtrial::analysis::twice(int x )" + both,
+        Lines{"function touchtrial::analysis::half(const T & )" + both,
+              "function touchtrial::analysis::twice(int )" + both,
               "type touchtrial::analysis::Align" + both, "type touchtrial::analysis::Cue" + both,
               "type touchtrial::analysis::Path" + both,
               "type touchtrial::app::Cue is defined in app/c.cpp app/d.cpp",
               "variable touchtrial::analysis::kSides" + both});
+}
+
+TEST_CASE("neither names of parameters nor default values make another function") {
+  const std::string room = "touchtrial::analysis";
+  const PlantedHouse planted{
+      {"analysis/a.hpp", in(room,
+                            "inline int sum(const Cue& first, int times = 3) { return 1; }\n"
+                            "inline bool operator==(const A& x, const A& y) { return true; }\n"
+                            "inline bool operator<=(A x, A y) { return true; }\n")},
+      {"analysis/b.hpp", in(room,
+                            "inline int sum(const Cue& other, int n) { return 2; }\n"
+                            "inline bool operator==(const B& x, const B& y) { return true; }\n"
+                            "inline bool operator<=(A left, A right) { return false; }\n")}};
+  const std::string both = " is defined in analysis/a.hpp analysis/b.hpp";
+  CHECK(planted.read().names_defined_twice() ==
+        Lines{"function touchtrial::analysis::operator<=(A , A )" + both,
+              "function touchtrial::analysis::sum(const Cue & , int )" + both});
 }
 
 TEST_CASE("every file's namespace is its room's") {
@@ -164,6 +181,7 @@ TEST_CASE("a namespace that is another room's, or none, is found") {
        in("touchtrial", "class Plane;") + in("touchtrial::device", "struct Forward {};")},
       {"device/falcon/legs.hpp", in("touchtrial::device::falcon", "struct Legs {};")},
       {"engine/flat.hpp", in("touchtrial", "struct Flat {};")},
+      {"engine/global.hpp", header("touchtrial::engine", "struct Global {};")},
       {"analysis/planning/power.hpp", in("touchtrial::analysis", "struct Power {};")},
       {"stimuli/none.cpp", "int none() { return 0; }\n"}};
   CHECK(planted.read().namespaces_of_other_rooms() ==
@@ -173,6 +191,7 @@ TEST_CASE("a namespace that is another room's, or none, is found") {
               "core/guest.hpp does not open namespace touchtrial",
               "engine/flat.hpp opens namespace touchtrial",
               "engine/flat.hpp does not open namespace touchtrial::engine",
+              "engine/global.hpp defines Global in no namespace",
               "stimuli/none.cpp does not open namespace touchtrial::stimuli"});
 }
 
