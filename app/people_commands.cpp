@@ -177,8 +177,8 @@ void add_people_commands(CLI::App& program, Action& action) {
   noted.command->add_option("TEXT", noted.arguments->text, "What happened")->required();
   run_with(noted, action, note);
   auto database = std::make_shared<fs::path>();
-  CLI::App* command =
-      program.add_subcommand("migrate", "Bring an older database up to date; copy it first");
+  CLI::App* command = program.add_subcommand(
+      "migrate", "Bring an older database up to date; copy it first (none is older yet)");
   command->add_option("DB", *database, "Database of the study")->required();
   command->callback([=, &action] { action = [=] { return migrate_database(*database); }; });
 }

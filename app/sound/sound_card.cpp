@@ -19,7 +19,8 @@ namespace {
 /// there for everything that a machine has not.
 class QuietErrors {
  public:
-  QuietErrors() : kept_(::dup(STDERR_FILENO)) {
+  QuietErrors() : kept_(::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, 0)) {
+    if (kept_ < 0) return;
     std::fflush(stderr);
     const int nowhere = ::open("/dev/null", O_WRONLY | O_CLOEXEC);
     if (nowhere < 0) return;

@@ -329,7 +329,8 @@ constexpr int kDealtWith = 1;
                                              const char* format, va_list values) {
   auto& complaint = source_of(handle).complaint;
   if (complaint[0] != 0) return kDealtWith;
-  const int used = std::snprintf(complaint.data(), complaint.size(), "%s: ", module);
+  const int used = std::snprintf(complaint.data(), complaint.size(),
+                                 "%s: ", module != nullptr ? module : "libtiff");
   const auto start = std::min(static_cast<std::size_t>(std::max(used, 0)), complaint.size());
   std::vsnprintf(complaint.data() + start, complaint.size() - start, format, values);
   return kDealtWith;

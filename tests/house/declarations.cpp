@@ -272,10 +272,10 @@ class Reader {
     int depth = 0;
     bool in_default = false;
     const auto end_parameter = [&] {
-      static const std::set<std::string> no_types = {"const", "volatile", "struct", "class", "enum",
-                                                     "typename", "::"};
-      static const std::set<std::string> no_names = {"int", "char", "long", "short", "double",
-                                                     "unsigned", "signed", "const"};
+      static const std::set<std::string> no_types = {"const", "volatile", "struct", "class",
+                                                     "enum",  "typename", "::"};
+      static const std::set<std::string> no_names = {"int",    "char",     "long",   "short",
+                                                     "double", "unsigned", "signed", "const"};
       const bool is_named = one.size() > 1 && is_name(one.back()) &&
                             no_names.count(one.back()) == 0 &&
                             no_types.count(one[one.size() - 2]) == 0;

@@ -15,9 +15,9 @@ namespace {
 
 [[noreturn]] void refuse() {
   const char* reason = dlerror();
-  throw StoreError(one_line(std::string("libpq.so.5: cannot be loaded (") +
-                            (reason == nullptr ? "no reason given" : reason) +
-                            "); install PostgreSQL's client library (libpq5)"));
+  throw StoreError(one_line(std::string("PostgreSQL's client library cannot be used (") +
+                            (reason == nullptr ? "libpq.so.5: no reason given" : reason) +
+                            "); install or update libpq5"));
 }
 
 /// Never unloaded: connections may outlive everything else.
