@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "support/catch.hpp"
+#include "support/temp_folder.hpp"
 
 #include <string_view>
 
@@ -22,7 +23,8 @@ TEST_CASE("a file that is no library is refused with the linker's reason") {
   const auto content = GENERATE(std::string_view(""), std::string_view("no library"),
                                 std::string_view("\x7f"
                                                  "ELF and nothing more"));
-  const auto file = std::filesystem::temp_directory_path() / "touchtrial-no-library.so";
+  const TempFolder folder;
+  const auto file = folder.path() / "no-library.so";
   replace_file(file, content);
   CHECK_THROWS_WITH(device::DynamicLibrary(file, device::Unload::when_closed, "do this"),
                     holds_text(file.string() + ": cannot be loaded") && holds_text("do this"));
@@ -44,7 +46,8 @@ TEST_CASE("functions are found by name, and a missing one is named") {
 
 TEST_CASE("a library that was cut off is told apart from a whole one without loading it here") {
   const Bytes whole = read_file(TOUCHTRIAL_FAKE_HD);
-  const auto file = std::filesystem::temp_directory_path() / "touchtrial-cut-library.so";
+  const TempFolder folder;
+  const auto file = folder.path() / "cut-library.so";
   replace_file(file, ByteView(whole).first(whole.size() / 4));
   CHECK_THROWS_WITH(device::expect_loading_survived(file, "do this"),
                     holds_text("crashes while it is loaded") && holds_text("; do this"));

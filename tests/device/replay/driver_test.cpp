@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "support/catch.hpp"
+#include "support/temp_folder.hpp"
 
 namespace touchtrial {
 namespace {
@@ -17,7 +18,8 @@ TEST_CASE("replay without a recording says where to name one") {
 }
 
 TEST_CASE("replay is opened through the registry with the recording of the settings") {
-  const auto file = std::filesystem::temp_directory_path() / "touchtrial-replay.csv";
+  const TempFolder folder;
+  const auto file = folder.path() / "motion.csv";
   replace_file(file, "time_s,x_mm,y_mm,z_mm\n0,1,2,3\n0.001,1,2,3\n");
   device::DeviceSettings settings;
   settings.replay.trace = file;

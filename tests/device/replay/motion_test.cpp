@@ -3,6 +3,7 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "support/catch.hpp"
+#include "support/temp_folder.hpp"
 
 #include <string>
 
@@ -12,14 +13,13 @@ namespace {
 /// A file that goes when the test ends.
 class CsvFile {
  public:
-  explicit CsvFile(std::string_view content) { replace_file(path_, content); }
-  ~CsvFile() { std::filesystem::remove(path_); }
-  CsvFile(const CsvFile&) = delete;
-  CsvFile& operator=(const CsvFile&) = delete;
-  [[nodiscard]] device::RecordedMotion read() const { return device::read_motion_csv(path_); }
+  explicit CsvFile(std::string_view content) { replace_file(path(), content); }
+  [[nodiscard]] device::RecordedMotion read() const { return device::read_motion_csv(path()); }
 
  private:
-  std::filesystem::path path_ = std::filesystem::temp_directory_path() / "touchtrial-motion.csv";
+  [[nodiscard]] std::filesystem::path path() const { return folder_.path() / "motion.csv"; }
+
+  TempFolder folder_;
 };
 
 constexpr const char* kHeader = "time_s,x_mm,y_mm,z_mm\n";
@@ -88,7 +88,7 @@ TEST_CASE("a hostile motion file is refused in one line that names the place") {
   const CsvFile file(content);
   CHECK_THROWS_AS(file.read(), FileError);
   CHECK_THROWS_WITH(
-      file.read(), holds_text("touchtrial-motion.csv") && holds_text(message) && !holds_text("\n"));
+      file.read(), holds_text("motion.csv") && holds_text(message) && !holds_text("\n"));
 }
 
 TEST_CASE("a motion file that is not there is refused") {
