@@ -1,5 +1,7 @@
 #include "analysis/json_figures.hpp"
 
+#include "analysis/bibliography.hpp"
+
 #include <cmath>
 
 namespace touchtrial::analysis {
@@ -50,6 +52,29 @@ nlohmann::ordered_json statistics_json(const engine::GlcmStatistics& statistics)
 std::string json_text(const nlohmann::ordered_json& object) {
   using ErrorHandler = nlohmann::ordered_json::error_handler_t;
   return object.dump(2, ' ', false, ErrorHandler::replace) + '\n';
+}
+
+void put_method(nlohmann::ordered_json& object, const std::string& method,
+                const std::vector<std::string>& references) {
+  object["method"] = method;
+  object["references"] = references;
+}
+
+nlohmann::ordered_json references_object() {
+  nlohmann::ordered_json all = nlohmann::ordered_json::object();
+  for (const Publication& one : publications()) {
+    // Only the cues cite Lin, and name the publication themselves.
+    if (one.source != Source::lin) all[std::string(one.key)] = std::string(one.text);
+  }
+  return all;
+}
+
+nlohmann::ordered_json registration_object(const design::Registration& registration) {
+  return {{"hypothesis", registration.hypothesis},
+          {"participants", registration.participants},
+          {"stopping_rule", registration.stopping_rule},
+          {"exclusions", registration.exclusions},
+          {"primary_test", registration.primary_test}};
 }
 
 }  // namespace touchtrial::analysis

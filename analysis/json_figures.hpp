@@ -1,10 +1,10 @@
 /// \file How figures stand in JSON. Not for public headers: it shows the JSON library.
 #pragma once
 
-#include "analysis/report/quality.hpp"
-#include "analysis/report/report.hpp"
+#include "analysis/quality.hpp"
 #include "analysis/statistics/proportion.hpp"
 #include "engine/metrics/glcm.hpp"
+#include "protocols/design/session_plan.hpp"
 
 #include <optional>
 #include <string>
@@ -40,7 +40,12 @@ void put_state(nlohmann::ordered_json& object, const store::StudyState& state, b
 
 /// How sessions were conducted: prescription, flow, deviations, sessions.
 [[nodiscard]] nlohmann::ordered_json collection_object(const Collection& collection);
-[[nodiscard]] nlohmann::ordered_json report_object(const StudyReport& report);
+[[nodiscard]] nlohmann::ordered_json registration_object(const design::Registration& registration);
+/// Every source of the report's statistics, by its key.
+[[nodiscard]] nlohmann::ordered_json references_object();
+/// Adds how a section's numbers were had, and by whose account: keys of references_object.
+void put_method(nlohmann::ordered_json& object, const std::string& method,
+                const std::vector<std::string>& references);
 [[nodiscard]] nlohmann::ordered_json quality_object(const QualityReport& report);
 
 }  // namespace touchtrial::analysis

@@ -3,7 +3,8 @@
 #include "analysis/sealed_sessions.hpp"
 #include "analysis/session_rules.hpp"
 #include "core/errors.hpp"
-#include "protocols/store/event_fault.hpp"
+#include "protocols/design/protocol.hpp"
+#include "protocols/store/damage.hpp"
 
 #include <algorithm>
 #include <map>
@@ -35,7 +36,6 @@ Outcomes labelled(const store::StudyStore& store, const design::Study& study) {
   const store::StudyCommitment& commitment = store.commitment();
   outcomes.study = commitment.study;
   outcomes.design = study;
-  outcomes.protocol = study.protocol;
   outcomes.simulated = commitment.simulated;
   outcomes.pilot = commitment.pilot;
   outcomes.collection = load_collection(store);
@@ -44,6 +44,9 @@ Outcomes labelled(const store::StudyStore& store, const design::Study& study) {
   for (const design::StudyClass& one : study.classes) {
     outcomes.classes.push_back(one.label);
     outcomes.exemplars.push_back(exemplar_names(one));
+  }
+  for (const design::Choice& one : study.protocol->choices(study)) {
+    outcomes.choices.push_back(one.label);
   }
   for (int i = 0; i < study.presented_methods(); ++i) {
     outcomes.methods.emplace_back(study.methods[i].label);
@@ -73,7 +76,7 @@ std::optional<int> response_of(const store::TrialRow& row, const design::Schedul
 }
 
 TrialOutcome outcome_of(const store::TrialRow& row, const SessionOutcome& session,
-                        const design::Schedule& schedule) {
+                        const design::Schedule& schedule, const design::Study& study) {
   const design::Presentation& presentation = presentation_of(row, schedule);
   const bool ended =
       row.state == store::TrialState::answered || row.state == store::TrialState::timed_out;
@@ -85,6 +88,9 @@ TrialOutcome outcome_of(const store::TrialRow& row, const SessionOutcome& sessio
   trial.scored = presentation.kind == design::PresentationKind::scored;
   trial.counted = session.counted && trial.scored && ended;
   trial.response = response_of(row, schedule);
+  if (trial.kind != design::PresentationKind::catch_trial) {
+    trial.right = study.protocol->right_choice(study, presentation);
+  }
   return trial;
 }
 
@@ -129,7 +135,7 @@ Outcomes load_outcomes(const store::StudyStore& store, const design::StudyKey& k
     const auto schedule = schedules.find(row.session);
     if (schedule == schedules.end()) continue;  // withdrawn
     if (!outcomes.state.shows(row.session)) continue;
-    TrialOutcome trial = outcome_of(row, sessions[row.session], schedule->second);
+    TrialOutcome trial = outcome_of(row, sessions[row.session], schedule->second, key.study);
     const auto measured = measures.find({row.session, row.trial});
     if (measured != measures.end()) trial.measures = measured->second;
     outcomes.trials.push_back(std::move(trial));

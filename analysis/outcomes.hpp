@@ -25,11 +25,12 @@ struct TrialOutcome {
   design::PresentationKind kind = design::PresentationKind::scored;
   bool scored = false;          ///< by the schedule: no practice, no lead-in
   bool counted = false;         ///< enters accuracy
-  std::optional<int> response;  ///< class index of the answer; empty: no response
+  std::optional<int> response;  ///< index of the choice that was the answer; empty: no response
+  std::optional<int> right;     ///< index of the right choice; empty: none is
   std::optional<store::TrialMeasures> measures;
 
   /// A trial without a response is wrong.
-  [[nodiscard]] bool correct() const noexcept { return response == stimulus.class_index; }
+  [[nodiscard]] bool correct() const noexcept { return response && response == right; }
   /// By the whole validity rule: its part in clear and its sealed part.
   [[nodiscard]] bool valid() const noexcept {
     return row.valid && (!measures || measures->within_limits);
@@ -39,13 +40,13 @@ struct TrialOutcome {
 /// A study's trials with the labels to read them by.
 struct Outcomes {
   std::string study;
-  design::Protocol protocol = design::Protocol::classification;
   bool simulated = false;
   bool pilot = false;
   bool visual = false;  ///< seen on a screen, not felt
   store::StudyState state;
   std::vector<std::string> classes;                 ///< labels
   std::vector<std::vector<std::string>> exemplars;  ///< of each class: image file names
+  std::vector<std::string> choices;                 ///< labels of what participants chose between
   std::vector<std::string> methods;                 ///< those that the study presents
   std::vector<SessionOutcome> sessions;             ///< by number, withdrawn ones too
   int sessions_unseen =

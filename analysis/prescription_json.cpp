@@ -1,7 +1,8 @@
 /// What a study prescribes, from its configuration in clear.
 #include "analysis/collection.hpp"
 #include "core/errors.hpp"
-#include "protocols/design/schedule.hpp"
+#include "protocols/design/protocol.hpp"
+#include "protocols/design/random_orders.hpp"
 #include "protocols/design/session_plan.hpp"
 
 #include <nlohmann/json.hpp>
@@ -18,12 +19,12 @@ void read_session(const json& session, Prescription& prescription) {
   prescription.masking_dbfs = session.at("masking").at("level_dbfs").get<double>();
 }
 
-/// Only comparisons present several methods, and only in blocks of their own do these have an
-/// order.
+/// Methods have an order only where several are presented, each in a block of its own.
 int method_orders_of(const json& configuration) {
-  const bool compares = configuration.value("protocol", "") == "comparison";
+  const design::Protocol* protocol = design::find_protocol(configuration.value("protocol", ""));
+  const bool several = protocol != nullptr && protocol->presents_all_methods();
   const json trials = configuration.at("trials");
-  if (!compares || trials.value("blocks", "by-method") != "by-method") return 1;
+  if (!several || trials.value("blocks", "by-method") != "by-method") return 1;
   return design::williams_rows(static_cast<int>(configuration.at("methods").size()));
 }
 

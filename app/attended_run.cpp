@@ -1,13 +1,18 @@
 #include "app/attended_run.hpp"
 
+#include "app/device_words.hpp"
 #include "core/errors.hpp"
-#include "device/servo/paced_clock.hpp"
-#include "device/servo/running_servo.hpp"
-#include "device/servo/servo_names.hpp"
+#include "device/mouse/mouse_device.hpp"
+#include "device/registry.hpp"
+#include "device/servo/servo.hpp"
+#include "device/servo/servo_clock.hpp"
+#include "device/servo/servo_thread.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <thread>
 
 #include <fmt/format.h>
 #include <unistd.h>
@@ -17,11 +22,11 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// Between two live lines: a person reads a line that stays in place faster than one that scrolls.
+/// Time between two live lines. A line that stays in place is easier to read than one that scrolls.
 constexpr std::chrono::nanoseconds kOnTerminal = 250ms;
 constexpr std::chrono::nanoseconds kOnPipe = 1s;
 
-class NobodyKeeps final : public device::SampleSink {
+class DiscardingSink final : public device::SampleSink {
  public:
   void record(const device::ServoSample& /*sample*/) noexcept override {}
 };
@@ -41,29 +46,30 @@ device::ServoOptions options_for(const device::SafetyLimits& limits, double rate
   return options;
 }
 
-const char* advice_on(device::DeviceReadiness readiness) {
-  switch (readiness) {
-    case device::DeviceReadiness::needs_homing:
-      return "move the handle slowly through its whole range: to every side, all the way in, all "
-             "the way out";
-    case device::DeviceReadiness::needs_inkwell:
-      return "put the stylus into its inkwell, wait, and take it out again";
-    case device::DeviceReadiness::needs_calibration:
-      return "run the vendor's own calibration, then this again";
-    case device::DeviceReadiness::ready:
-      break;
-  }
-  return "";
-}
-
 }  // namespace
 
-std::string fault_text(const device::ServoReport& report) {
-  std::string text(device::name_of(report.fault));
-  if (report.device_fault != device::DeviceFault::none) {
-    text += " (" + std::string(device::name_of(report.device_fault)) + ")";
+OpenedDevice::OpenedDevice(const std::string& driver, const device::DeviceSettings& settings,
+                           Vec2 plane_mm) {
+  if (driver == device::kMouseDriver) {
+    window_ = std::make_unique<PointerWindow>(exchange_, plane_mm);
+    device_ = std::make_unique<device::MouseDevice>(exchange_, clock_);
+  } else {
+    device_ = device::open_device(driver, settings);
   }
-  return text;
+}
+
+OpenedDevice::~OpenedDevice() = default;
+
+void OpenedDevice::attend() {
+  if (window_) {
+    window_->draw_frame();
+  } else {
+    std::this_thread::sleep_for(std::chrono::milliseconds(16));
+  }
+}
+
+bool OpenedDevice::stop_asked() const {
+  return window_ && (window_->stop_asked() || window_->close_asked());
 }
 
 AttendedRun::AttendedRun(OpenedDevice& opened, device::HapticDevice& device,
@@ -104,11 +110,11 @@ std::optional<device::ServoReport> AttendedRun::run(const PhaseName& phase,
                                  .heat = &heat_,
                                  .parameters = &parameters_};
   device::RunningServo running(thread_, control_, [&] {
-    NobodyKeeps nobody;
+    DiscardingSink discarding;
     device::PacedClock clock(device::PacedClock::usual_spin(thread_.scheduling().policy));
-    report = device::run_servo(device_, force,
-                               sink == nullptr ? static_cast<device::SampleSink&>(nobody) : *sink,
-                               options_, clock, hooks);
+    report = device::run_servo(
+        device_, force, sink == nullptr ? static_cast<device::SampleSink&>(discarding) : *sink,
+        options_, clock, hooks);
   });
   while (running.runs()) {
     opened_.attend();
@@ -118,7 +124,7 @@ std::optional<device::ServoReport> AttendedRun::run(const PhaseName& phase,
   }
   running.finish();
   end_line();
-  // A stop holds for good; an end that was only this run's must not end the next one.
+  // A stop applies to all later runs; the end of this run must not end the next one.
   if (stop_ == AttendedStop::none) control_.reset();
   return report;
 }
@@ -127,19 +133,18 @@ void AttendedRun::wait_until_ready(double limit_s) {
   const device::DeviceReadiness readiness = device_.readiness();
   if (readiness == device::DeviceReadiness::ready) return;
   const std::string name = device_.info().name;
-  const std::string advice = advice_on(readiness);
+  const std::string advice = readiness_in_words(readiness);
   std::fprintf(stderr, "%s: %s\n", name.c_str(), advice.c_str());
   NoForce nothing;
   const auto report = run([](std::int64_t) { return "homing"; }, nothing, limit_s,
                           [&] { return device_.readiness() == device::DeviceReadiness::ready; });
   if (stop_ != AttendedStop::none) return;
   if (report && report->end == device::ServoEnd::fault) {
-    throw DeviceError(name + ": fault while homing: " + fault_text(*report) +
-                      "; look at cable and power, then try again");
+    throw DeviceError(name + ": fault while homing: " + fault_names(*report) +
+                      "; check cable and power, then try again");
   }
   if (device_.readiness() != device::DeviceReadiness::ready) {
-    throw DeviceError(name + ": is not ready after " + fmt::format("{:.0f}", limit_s) + " s; " +
-                      advice);
+    throw DeviceError(fmt::format("{}: is not ready after {:.0f} s; {}", name, limit_s, advice));
   }
 }
 
@@ -184,7 +189,7 @@ void AttendedRun::show(const PhaseName& phase) {
   const double rate_hz = static_cast<double>(newest.tick - shown_tick_) / passed_s;
   const Vec3 p = newest.sample.position_mm;
   const Vec3 f = newest.force_n;
-  // Short of 80 columns: a line that wraps cannot be written over.
+  // Shorter than 80 columns, because a wrapped line cannot be overwritten.
   const std::string line = fmt::format(
       "{:<7} {:3.0f} s {:6.1f} {:6.1f} {:6.1f} mm {:5.2f} {:5.2f} {:5.2f} N {:5.0f}/s {:3.0f} us "
       "late",

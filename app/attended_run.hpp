@@ -1,73 +1,104 @@
-/// \file Runs of the servo that a person attends at a terminal: live figures, keys, watchdog,
-/// signals.
+/// \file A device that a person opens by its name, and runs of its servo that the person attends at
+/// a terminal: live numbers, keys, watchdog, signals.
 #pragma once
 
 #include "app/terminal_keys.hpp"
-#include "app/windows/opened_device.hpp"
+#include "app/windows/pointer_window.hpp"
+#include "device/device_settings.hpp"
+#include "device/haptic_device.hpp"
+#include "device/mouse/mouse_device.hpp"
 #include "device/platform/stop_signals.hpp"
 #include "device/safety/watchdog.hpp"
 #include "device/servo/flight_recorder.hpp"
 #include "device/servo/servo.hpp"
+#include "device/servo/servo_clock.hpp"
 #include "device/servo/servo_thread.hpp"
 
 #include <atomic>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
 namespace touchtrial::app {
 
-/// What the person, or a signal, asked for.
+/// A device of any driver of the registry; "mouse" comes with a PointerWindow. Belongs to the main
+/// thread, which must call `attend` repeatedly while a servo runs the device on another thread: a
+/// window that is not attended to counts as a hand that lets go.
+class OpenedDevice {
+ public:
+  /// \param plane_mm  sides of the plane that a window shows, > 0
+  /// \throws as open_device
+  /// \throws DeviceError if the device needs a window and none can be opened
+  OpenedDevice(const std::string& driver, const device::DeviceSettings& settings, Vec2 plane_mm);
+  ~OpenedDevice();
+  OpenedDevice(const OpenedDevice&) = delete;
+  OpenedDevice& operator=(const OpenedDevice&) = delete;
+
+  [[nodiscard]] device::HapticDevice& device() noexcept { return *device_; }
+  /// Draws one picture of the window. Takes about 16 ms, with or without a window.
+  void attend();
+  /// Whether the person pressed the space bar in the window, or closed it.
+  [[nodiscard]] bool stop_asked() const;
+
+ private:
+  device::PointerExchange exchange_;
+  device::PacedClock clock_{device::PacedClock::Time{}};
+  std::unique_ptr<PointerWindow> window_;
+  std::unique_ptr<device::HapticDevice> device_;
+};
+
+/// Why a person or a signal stopped a run.
 enum class AttendedStop {
   none,
   quit,     ///< q
-  comfort,  ///< the space bar, or the window's own way
-  signal,   ///< Ctrl-C, or the program was asked to end
+  comfort,  ///< the space bar, or closing the window
+  signal,   ///< Ctrl-C, or another signal that ends the program
 };
 
-/// A person needs no longer to home a device.
+/// The time within which a person can home a device.
 inline constexpr double kReadyLimitS = 120.0;
 
-/// One device and everything around its servo. Belongs to the main thread.
+/// One device with everything around its servo. Belongs to the main thread.
 class AttendedRun {
  public:
-  static constexpr double kRecordedS = 10.0;  ///< that the flight recorder holds
-  /// What the live line calls a tick's part of the run; at most 8 letters.
+  static constexpr double kRecordedS = 10.0;  ///< length of the flight record
+  /// The name, at most 8 letters, of the phase that a tick belongs to, for the live line.
   using PhaseName = std::function<std::string(std::int64_t tick)>;
 
-  /// \param opened  what is attended to
-  /// \param device  what the servo runs: that of `opened`, or the same placed; both must outlive
-  ///   this
+  /// \param opened  the device to attend to; must outlive this
+  /// \param device  that of `opened`, or the same placed; must outlive this
   /// \param limits,rate_hz  as ServoOptions
-  /// \param keys  whether q and the space bar are taken from standard input meanwhile
+  /// \param keys  whether q and the space bar are read from standard input
   AttendedRun(OpenedDevice& opened, device::HapticDevice& device,
               const device::SafetyLimits& limits, double rate_hz, bool keys = true);
   ~AttendedRun();
   AttendedRun(const AttendedRun&) = delete;
   AttendedRun& operator=(const AttendedRun&) = delete;
 
-  /// Runs the servo in real time until it ends; meanwhile attends to window and keys, and shows a
-  /// live line on standard error. After a stop was asked for, later runs do not begin.
-  /// \param is_done  asked between; true: the force fades and the run ends
-  /// \param sink  takes the samples; null: nobody does
-  /// \return nothing if a stop had been asked for before
+  /// Runs the servo in real time until it ends. Attends to window and keys, and shows a live line
+  /// on standard error. No run begins after a stop.
+  /// \param is_done  called repeatedly; once it returns true, the force fades and the run ends
+  /// \param sink  receives the samples; may be null
+  /// \return nothing if there was a stop before
   std::optional<device::ServoReport> run(const PhaseName& phase, device::ForceSource& force,
                                          double seconds, const std::function<bool()>& is_done = {},
                                          device::SampleSink* sink = nullptr);
 
-  /// Runs without force until the device is ready, and says what the person is to do. At once if
-  /// it is. \throws DeviceError if it is not ready after `limit_s`, or a fault occurs
+  /// Tells the person what to do and runs without force until the device is ready. Returns at once
+  /// if it is ready already.
+  /// \throws DeviceError if it is not ready after `limit_s`, or a fault occurs
   void wait_until_ready(double limit_s);
 
-  /// The keys + and - make every force stronger and weaker by tenths, from all of it down to one.
+  /// Lets the keys + and - scale all forces in steps of 10 %, from 10 % to 100 %.
   void let_choose_strength() noexcept { chooses_strength_ = true; }
 
   [[nodiscard]] AttendedStop stop() const noexcept { return stop_; }
   [[nodiscard]] const device::SchedulingObtained& scheduling() const noexcept {
     return thread_.scheduling();
   }
-  /// The last seconds of the last run, as CSV.
+  /// The last seconds of the last run as CSV.
   [[nodiscard]] std::string flight_record() const;
 
  private:
@@ -96,8 +127,5 @@ class AttendedRun {
   std::int64_t shown_tick_ = 0;
   std::chrono::nanoseconds shown_at_{};
 };
-
-/// "device (link_lost)"; "none"
-[[nodiscard]] std::string fault_text(const device::ServoReport& report);
 
 }  // namespace touchtrial::app

@@ -45,12 +45,12 @@ std::chrono::nanoseconds utc_now() {
       std::chrono::system_clock::now().time_since_epoch());
 }
 
-std::filesystem::path key_path_for(const std::filesystem::path& database,
-                                   const std::filesystem::path& given) {
-  if (!given.empty()) return given;
-  std::filesystem::path beside = database;
-  beside += ".key";
-  return beside;
+std::string ending_of(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  for (char& letter : ending) {
+    if (letter >= 'A' && letter <= 'Z') letter = static_cast<char>(letter - 'A' + 'a');
+  }
+  return ending;
 }
 
 }  // namespace touchtrial::app

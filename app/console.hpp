@@ -1,25 +1,47 @@
-/// \file What commands share when they talk to a terminal.
+/// \file What commands share to talk to people and programs: output, progress, the time, and how
+/// typed numbers and file names are read.
 #pragma once
 
+#include <charconv>
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <system_error>
 
 namespace touchtrial::app {
 
-/// Prints to standard output. \throws FileError if that fails (a full disk, a closed pipe)
+/// Prints to standard output.
+/// \throws FileError if that fails (a full disk, a closed pipe)
 void print(const std::string& text);
 
-/// A progress bar on standard error: shown only if that is a terminal and the work takes more than
-/// a second, removed when it ends. Call from one thread.
+/// A JSON object as commands print it: indented, ending with a line feed. Bytes that are not UTF-8
+/// become replacement characters.
+template <typename Json>
+[[nodiscard]] std::string json_text(const Json& object) {
+  return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+/// A progress bar on standard error. It appears only on a terminal and after one second, and
+/// disappears when the work ends. Call it from one thread.
 [[nodiscard]] std::function<void(int done, int of)> progress_bar(const std::string& what);
 
 /// Nanoseconds since 1970, UTC.
 [[nodiscard]] std::chrono::nanoseconds utc_now();
 
-/// The key of a database: `--key`, else `<db>.key` beside it.
-[[nodiscard]] std::filesystem::path key_path_for(const std::filesystem::path& database,
-                                                 const std::filesystem::path& given);
+/// The number that a whole text is, whatever the locale; nothing if it is anything else.
+template <typename Number>
+[[nodiscard]] std::optional<Number> number_in(std::string_view text) {
+  Number number{};
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc{} || stop != end) return std::nullopt;
+  return number;
+}
+
+/// The extension of a file name in lower case, with its dot: ".png" of "A.PNG".
+[[nodiscard]] std::string ending_of(const std::filesystem::path& file);
 
 }  // namespace touchtrial::app

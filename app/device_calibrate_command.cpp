@@ -1,12 +1,14 @@
+// device calibrate: a person weighs a device's force with hanging weights.
 #include "app/attended_run.hpp"
+#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/device_words.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/version.hpp"
 #include "device/calibration/certificate.hpp"
 
-#include <charconv>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -20,9 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kLightestG = 10.0;
-/// Of the largest force that may be sent: the rest holds the handle itself.
+/// The share of the force limit that may hold a weight; the rest holds the handle itself.
 constexpr double kWeightShare = 0.6;
-/// 2 s more than is measured, so that a run never ends before its last sample.
+/// 2 s longer than the measurement, so that a run never ends before its last sample.
 constexpr double kRunS = device::HoldMeasurement::kRunS + 2.0;
 constexpr int kNotPassed = 1;
 
@@ -32,7 +34,7 @@ struct CalibrateArguments {
   fs::path certificate;
 };
 
-/// Prompts go where results do not, so that both can be piped.
+/// Writes a prompt to standard error: standard output holds the result only.
 void tell(const std::string& text) {
   std::cerr << text << std::flush;
 }
@@ -41,7 +43,7 @@ std::string answer_to(const std::string& question) {
   tell(question);
   std::string line;
   if (!std::getline(std::cin, line)) {
-    throw UsageError("standard input ended in the middle of the calibration; answer every prompt");
+    throw UsageError("standard input ended during the calibration; answer every prompt");
   }
   return line;
 }
@@ -51,27 +53,25 @@ double mass_asked_for(device::CalibrationAxis axis, double heaviest_g) {
     const std::string line =
         answer_to(fmt::format("mass for axis {} in g ({:.0f} to {:.0f}): ", device::name_of(axis),
                               kLightestG, heaviest_g));
-    double mass_g = 0.0;
-    const char* end = line.data() + line.size();
-    const auto [stop, error] = std::from_chars(line.data(), end, mass_g);
-    if (error == std::errc{} && stop == end && mass_g >= kLightestG && mass_g <= heaviest_g) {
-      return mass_g;
-    }
-    tell("that is no mass in this range\n");
+    const auto mass_g = number_in<double>(line);
+    if (mass_g && *mass_g >= kLightestG && *mass_g <= heaviest_g) return *mass_g;
+    tell("that is not a mass in this range\n");
   }
 }
 
 const char* hanging_on(device::CalibrationAxis axis) {
   switch (axis) {
     case device::CalibrationAxis::x:
-      return "Lead the string level to the right, over a pulley at the handle's height, and hang "
+      return "Lead the string horizontally to the right, over a pulley at the handle's height, and "
+             "hang "
              "the weight on its end.";
     case device::CalibrationAxis::y:
       return "Hang the weight straight down from the handle.";
     case device::CalibrationAxis::z:
       break;
   }
-  return "Lead the string level towards you, over a pulley at the handle's height, and hang the "
+  return "Lead the string horizontally towards you, over a pulley at the handle's height, and hang "
+         "the "
          "weight on its end.";
 }
 
@@ -99,9 +99,9 @@ class Calibration {
         info.name, info.model, info.serial, info.firmware, std::string(program_version()),
         {},        {},         {}};
     answer_to("Let the handle lie or hang still, without a weight, hands off. Then press Enter.\n");
-    const device::HoldFigures rest = figures("rest", device::HoldMeasurement::Mode::rest);
+    const device::HoldFigures rest = held("rest", device::HoldMeasurement::Mode::rest);
     answer_to("Hold the handle in the middle of its range. Press Enter, then let go slowly.\n");
-    const device::HoldFigures empty = figures("empty", device::HoldMeasurement::Mode::hold);
+    const device::HoldFigures empty = held("empty", device::HoldMeasurement::Mode::hold);
     certificate.free_air = device::judge_free_air(rest, empty);
     for (const device::CalibrationAxis axis : device::kCalibrationAxes) {
       certificate.axes.push_back(measure_axis(axis, empty));
@@ -131,21 +131,21 @@ class Calibration {
         "Hold the handle in the middle of its range with the weight on it. Press Enter, "
         "then let go slowly.\n");
     const device::HoldFigures loaded =
-        figures(std::string(device::name_of(axis)), device::HoldMeasurement::Mode::hold);
+        held(std::string(device::name_of(axis)), device::HoldMeasurement::Mode::hold);
     const device::AxisResult result = device::judge_axis(axis, mass_g, empty, loaded);
     tell(fmt::format("axis {}: {:.3f} N commanded for {:.3f} N: {}\n", device::name_of(axis),
                      result.measured_n, result.expected_n, verdict_on(result)));
     return result;
   }
 
-  device::HoldFigures figures(const std::string& phase, device::HoldMeasurement::Mode mode) {
+  device::HoldFigures held(const std::string& phase, device::HoldMeasurement::Mode mode) {
     device::HoldMeasurement hold(mode);
     const auto report = run_.run([&](std::int64_t) { return phase; }, hold, kRunS, {}, &hold);
     if (!report || run_.stop() != AttendedStop::none) {
       throw DeviceError("calibration was stopped; nothing was written");
     }
     if (report->end == device::ServoEnd::fault) {
-      throw DeviceError("fault while calibrating: " + fault_text(*report) +
+      throw DeviceError("fault while calibrating: " + fault_names(*report) +
                         "; nothing was written; try again");
     }
     return hold.figures();
@@ -186,12 +186,12 @@ int calibrate(const CalibrateArguments& arguments) {
 void add_device_calibrate_command(CLI::App& device, Action& action) {
   auto arguments = std::make_shared<CalibrateArguments>();
   CLI::App* command = device.add_subcommand(
-      "calibrate", "Weigh a device's force with hanging weights, axis by axis, and certify it");
-  command->add_option("NAME", arguments->driver, "Driver, as touchtrial device list names it")
-      ->required();
+      "calibrate",
+      "Weigh a device's force with hanging weights, axis by axis, and write a certificate");
+  add_driver_argument(*command, "NAME", arguments->driver);
   add_settings_option(*command, arguments->settings);
   command->add_option("--certificate", arguments->certificate,
-                      "Where the certificate goes (default: NAME-certificate.json)");
+                      "Certificate to write (default: NAME-certificate.json)");
   command->callback([=, &action] { action = [=] { return calibrate(*arguments); }; });
 }
 

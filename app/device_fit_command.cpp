@@ -1,18 +1,163 @@
+// device fit: whether a study's plane fits the devices of a driver, even if none is at hand.
+#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
-#include "app/device_fit/study_fit.hpp"
 #include "core/errors.hpp"
+#include "device/registry.hpp"
+#include "device/workspace_fit.hpp"
+#include "engine/image_file.hpp"
+#include "protocols/design/study.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
 
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
 namespace touchtrial::app {
 namespace {
 
+using nlohmann::ordered_json;
 namespace fs = std::filesystem;
+
+/// The origin of a workspace.
+enum class WorkspaceSource {
+  maker,   ///< the maker's statement about all these devices; none was read
+  device,  ///< the device that is plugged in
+  none,    ///< the device reports positions on the plane, whatever its size
+};
+
+struct StudyFit {
+  std::string study;
+  std::string driver;
+  PlaneGeometry plane;
+  std::optional<device::Workspace> workspace;
+  WorkspaceSource source = WorkspaceSource::none;
+  device::WorkspaceFit fit;
+};
+
+const char* word_for(device::PlaneOrientation orientation) {
+  return orientation == device::PlaneOrientation::horizontal ? "horizontal" : "vertical";
+}
+
+const char* word_for(WorkspaceSource source) {
+  switch (source) {
+    case WorkspaceSource::maker:
+      return "maker";
+    case WorkspaceSource::device:
+      return "device";
+    case WorkspaceSource::none:
+      break;
+  }
+  return "none";
+}
+
+std::string workspace_text(const StudyFit& fit) {
+  if (!fit.workspace) return "accepts any plane: it has no frame of its own\n";
+  const Vec3 size = fit.workspace->greatest_mm - fit.workspace->least_mm;
+  return fmt::format("workspace {:.1f} x {:.1f} x {:.1f} mm{}, {}\n", size.x, size.y, size.z,
+                     fit.workspace->shape == device::WorkspaceShape::ellipsoid ? " (rounded)" : "",
+                     fit.source == WorkspaceSource::device
+                         ? "as the device reports"
+                         : "as its maker states; no device was read");
+}
+
+ordered_json vec_json(Vec3 v) {
+  return ordered_json::array({v.x, v.y, v.z});
+}
+
+ordered_json plane_json(const PlaneGeometry& plane) {
+  return {{"width_px", plane.width_px},
+          {"height_px", plane.height_px},
+          {"width_mm", plane.width_mm()},
+          {"height_mm", plane.height_mm()},
+          {"pitch_mm", plane.pitch_mm}};
+}
+
+ordered_json workspace_json(const StudyFit& fit) {
+  if (!fit.workspace) return nullptr;
+  const bool rounded = fit.workspace->shape == device::WorkspaceShape::ellipsoid;
+  return {{"from", word_for(fit.source)},
+          {"shape", rounded ? "ellipsoid" : "box"},
+          {"least_mm", vec_json(fit.workspace->least_mm)},
+          {"greatest_mm", vec_json(fit.workspace->greatest_mm)}};
+}
+
+/// The part of the plane that all pictures of a study cover, as a session presents it.
+/// \throws FileError if a picture cannot be read
+PlaneGeometry common_plane_of(const design::Study& study) {
+  PlaneGeometry plane{study.rendering.pitch_mm, 0, 0};
+  for (const design::StudyClass& shown : study.classes) {
+    for (const auto& image : shown.images) {
+      const GreyImage picture = engine::read_grey_image(study.folder / image);
+      const bool first = plane.height_px == 0;
+      plane.height_px = first ? picture.height() : std::min(plane.height_px, picture.height());
+      plane.width_px = first ? picture.width() : std::min(plane.width_px, picture.width());
+    }
+  }
+  return plane;
+}
+
+/// \param orientation  nothing: as the settings say
+/// \throws UsageError if there is no such driver
+/// \throws DeviceError if only a device could tell its workspace and none can be opened
+/// \throws FileError as common_plane_of
+StudyFit fit_of(const design::Study& study, const std::string& driver,
+                const device::DeviceSettings& settings,
+                std::optional<device::PlaneOrientation> orientation) {
+  const device::DeviceDriver& known = device::device_driver(driver);
+  StudyFit fit;
+  fit.study = study.name;
+  fit.driver = driver;
+  fit.workspace = known.nominal_workspace;
+  if (fit.workspace) fit.source = WorkspaceSource::maker;
+  if (!known.workspace_is_known) {
+    fit.workspace = known.open(settings)->info().workspace;
+    fit.source = WorkspaceSource::device;
+  }
+  fit.plane = common_plane_of(study);
+  fit.fit = device::fit_plane(fit.plane, fit.workspace, settings.use_of(driver), orientation);
+  return fit;
+}
+
+std::string fit_text(const StudyFit& fit) {
+  std::string text =
+      fmt::format("{}: plane {:.1f} x {:.1f} mm ({} x {} px of {} mm)\n{}: ", fit.study,
+                  fit.plane.width_mm(), fit.plane.height_mm(), fit.plane.width_px,
+                  fit.plane.height_px, fit.plane.pitch_mm, fit.driver);
+  text += workspace_text(fit);
+  if (!fit.fit.fits) return text;
+  if (!fit.fit.placement) return text + "fits\n";
+  const Vec3 origin = fit.fit.placement->origin_mm;
+  return text + fmt::format(
+                    "fits: {}, top-left corner at {:.1f}, {:.1f}, {:.1f} mm (right, up, "
+                    "towards the person), {:.0f} mm around it\n",
+                    word_for(fit.fit.placement->orientation), origin.x, origin.y, origin.z,
+                    device::kWorkspaceMarginMm);
+}
+
+/// The format is documented in docs/devices/README.md.
+std::string fit_json(const StudyFit& fit) {
+  ordered_json object = {{"study", fit.study},
+                         {"driver", fit.driver},
+                         {"fits", fit.fit.fits},
+                         {"margin_mm", device::kWorkspaceMarginMm},
+                         {"plane", plane_json(fit.plane)},
+                         {"workspace", workspace_json(fit)},
+                         {"orientation", nullptr},
+                         {"origin_mm", nullptr},
+                         {"crop", nullptr}};
+  if (fit.fit.placement) {
+    object["orientation"] = word_for(fit.fit.placement->orientation);
+    object["origin_mm"] = vec_json(fit.fit.placement->origin_mm);
+  }
+  if (!fit.fit.fits && fit.fit.largest.width_px > 0) object["crop"] = plane_json(fit.fit.largest);
+  return json_text(object);
+}
 
 struct DeviceFitArguments {
   fs::path study;
@@ -25,7 +170,7 @@ struct DeviceFitArguments {
 int fit(const DeviceFitArguments& arguments) {
   const device::DeviceSettings settings = device::device_settings_for(arguments.settings);
   const design::Study study = design::load_study(arguments.study);
-  const StudyFit fit = fit_study(study, arguments.driver, settings, arguments.orientation);
+  const StudyFit fit = fit_of(study, arguments.driver, settings, arguments.orientation);
   print(arguments.json ? fit_json(fit) : fit_text(fit));
   if (!fit.fit.fits) {
     throw DeviceError(device::misfit_text(arguments.driver, fit.plane, *fit.workspace, fit.fit));
@@ -41,19 +186,19 @@ void add_device_fit_command(CLI::App& device, Action& action) {
       {"vertical", device::PlaneOrientation::vertical}};
   auto arguments = std::make_shared<DeviceFitArguments>();
   CLI::App* command = device.add_subcommand(
-      "fit", "Whether a study's plane fits a device's workspace; if not, the crop that would");
-  command->add_option("STUDY", arguments->study, "Study file")->required();
-  command->add_option("--device", arguments->driver, "Driver, as touchtrial device list names it")
-      ->required();
+      "fit",
+      "Check whether a study's plane fits a device's workspace; if not, give the crop that does");
+  add_study_argument(*command, arguments->study);
+  add_driver_argument(*command, "--device", arguments->driver);
   command
       ->add_option_function<std::string>(
           "--orientation",
           [=](const std::string& word) { arguments->orientation = orientations.at(word); },
-          "horizontal (a table) or vertical (a wall); default: as the device settings say, else "
+          "horizontal (a table) or vertical (a wall); default: that of the device settings, else "
           "horizontal")
       ->check(CLI::IsMember({"horizontal", "vertical"}));
   add_settings_option(*command, arguments->settings);
-  command->add_flag("--json", arguments->json, "One JSON object in place of lines");
+  add_json_flag(*command, arguments->json);
   command->callback([=, &action] { action = [=] { return fit(*arguments); }; });
 }
 

@@ -1,16 +1,18 @@
+// device monitor: a window that shows a device and its servo.
+#include "app/command_options.hpp"
 #include "app/commands.hpp"
+#include "app/device_words.hpp"
 #include "app/monitor/monitor_run.hpp"
 #include "app/monitor/monitor_view.hpp"
 #include "app/windows/glfw_window.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "device/device_settings.hpp"
-#include "device/mouse/driver.hpp"
 #include "device/mouse/mouse_device.hpp"
 #include "device/mouse/pointer_exchange.hpp"
 #include "device/platform/stop_signals.hpp"
 #include "device/registry.hpp"
-#include "device/servo/paced_clock.hpp"
+#include "device/servo/servo_clock.hpp"
 
 #include <chrono>
 #include <cstdio>
@@ -29,14 +31,14 @@ namespace fs = std::filesystem;
 struct MonitorArguments {
   std::string driver;
   fs::path settings;
-  double seconds = 0.0;  ///< 0: until the window is closed
+  double seconds = 0.0;  ///< 0: until the person closes the window
   fs::path screenshot;
   double rate_hz = device::kServoRateHz;
   bool wall = false;
   std::vector<int> size_px = {1200, 800};
 };
 
-/// Shows a device until the person has seen enough.
+/// Shows a device until the person closes the window.
 class Monitor {
  public:
   explicit Monitor(const MonitorArguments& arguments)
@@ -81,7 +83,7 @@ class Monitor {
   using Clock = std::chrono::steady_clock;
 
   std::unique_ptr<device::HapticDevice> open() {
-    // The monitor's own window is where the mouse is.
+    // The monitor's own window provides the pointer.
     if (arguments_.driver == device::kMouseDriver)
       return std::make_unique<device::MouseDevice>(pointer_, clock_);
     return device::open_device(arguments_.driver, settings_);
@@ -114,7 +116,7 @@ class Monitor {
     std::vector<std::string> notes = {
         had.policy == device::SchedulingPolicy::fifo
             ? fmt::format("servo in real time, priority {}", had.priority)
-            : std::string("servo as an ordinary thread")};
+            : std::string("servo on an ordinary thread")};
     if (!had.reason.empty()) notes.push_back(had.reason);
     if (const auto ended = run_.ended()) {
       notes.push_back(fmt::format("last run: {:.1f} ticks/s, {} left out, 99 % within {:.0f} µs",
@@ -136,8 +138,8 @@ class Monitor {
   device::PacedClock clock_{device::PacedClock::Time{}};
   std::unique_ptr<device::HapticDevice> device_;
   MonitorHistory history_;
-  MonitorRun run_;     ///< its servo ends before the device goes
-  GlfwWindow window_;  ///< who sees it can already stop the program by a signal
+  MonitorRun run_;     ///< its servo must end before the device is destroyed
+  GlfwWindow window_;  ///< opens last, when signals can already stop the program
 };
 
 int monitor(const MonitorArguments& arguments) {
@@ -149,15 +151,13 @@ int monitor(const MonitorArguments& arguments) {
 void add_device_monitor_command(CLI::App& device, Action& action) {
   auto arguments = std::make_shared<MonitorArguments>();
   CLI::App* command = device.add_subcommand(
-      "monitor", "A window with a device's position and force, the servo's rate and lateness");
-  command->add_option("driver", arguments->driver, "Driver, as touchtrial device list names it")
-      ->required();
+      "monitor",
+      "Show a device's position and force, and the servo's rate and lateness, in a window");
+  add_driver_argument(*command, "NAME", arguments->driver);
   add_settings_option(*command, arguments->settings);
-  command->add_option("--rate", arguments->rate_hz, "Ticks of the servo a second")
-      ->check(CLI::Range(1000.0, 10'000.0))
-      ->capture_default_str();
+  add_rate_option(*command, arguments->rate_hz);
   command->add_flag("--wall", arguments->wall, "Begin with the wall on");
-  command->add_option("--seconds", arguments->seconds, "Close by itself after this time")
+  command->add_option("--seconds", arguments->seconds, "Close the window after this time, s")
       ->check(CLI::PositiveNumber);
   command->add_option("--screenshot", arguments->screenshot,
                       "Write the last picture as PNG (with --seconds)");

@@ -1,13 +1,19 @@
+// device test: a person feels a plain wall, and then a texture.
 #include "app/attended_run.hpp"
+#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
-#include "app/device_test/test_report.hpp"
-#include "app/device_test/test_texture.hpp"
+#include "app/device_words.hpp"
+#include "app/test_texture.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "device/haptic_device.hpp"
+#include "device/platform/realtime.hpp"
 #include "device/registry.hpp"
+#include "device/servo/force_sequence.hpp"
+#include "device/servo/servo.hpp"
 #include "device/workspace_fit.hpp"
-#include "protocols/session/model_force.hpp"
+#include "protocols/session/exploration.hpp"
 
 #include <cmath>
 #include <cstdio>
@@ -15,17 +21,139 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// In which the texture rises out of the wall.
+struct TestPhase {
+  std::string name;  ///< "wall" or "texture"
+  device::ForceSequence::Part felt;
+};
+
+struct DeviceTest {
+  device::DeviceInfo device;
+  device::SchedulingObtained scheduling;
+  std::optional<device::ServoReport> run;  ///< nothing if it was stopped before it began
+  bool quit = false;                       ///< the person pressed q
+  std::vector<TestPhase> phases;           ///< those that began
+  fs::path fault_record;                   ///< empty unless a fault was recorded
+};
+
+/// Ticks as time at the nominal rate.
+double seconds_of(std::int64_t ticks, const device::ServoReport& report) {
+  return report.rate_hz > 0.0 ? static_cast<double>(ticks) / report.rate_hz : 0.0;
+}
+
+std::string phase_text(const TestPhase& phase, const device::ServoReport& run) {
+  return fmt::format("{:<8} {:5.1f} s, contact {:5.1f} s, greatest force {:.2f} N\n", phase.name,
+                     seconds_of(phase.felt.ticks, run), seconds_of(phase.felt.contact_ticks, run),
+                     phase.felt.greatest_force_n);
+}
+
+const char* words_for(const device::ServoReport& run, bool quit) {
+  if (run.fault == device::SafetyFault::emergency_stop) return "halted";
+  switch (run.end) {
+    case device::ServoEnd::time_limit:
+      return "time was up";
+    case device::ServoEnd::hand_stopped:
+      return quit ? "stopped by q" : "the device had no more motion";
+    case device::ServoEnd::comfort_stop:
+      return "let go on request";
+    case device::ServoEnd::fault:
+      break;
+  }
+  return "fault";
+}
+
+std::string run_text(const device::ServoReport& run, bool quit) {
+  const bool is_fault = run.fault != device::SafetyFault::none;
+  return fmt::format(
+      "ticks:   {:.1f} per second, {} left out; {} forces changed by safety (limit {:.2f} N)\n"
+      "late:    half within {:.0f} us, 99 % {:.0f} us, 99.9 % {:.0f} us, worst {:.0f} us\n"
+      "ended:   {}{}\n",
+      run.rate_hz, run.overruns, run.limited_ticks, run.force_limit_n, run.lateness.p50_us,
+      run.lateness.p99_us, run.lateness.p999_us, run.lateness.worst_us, words_for(run, quit),
+      is_fault ? ", " + fault_names(run) : "");
+}
+
+std::string scheduling_text(const device::SchedulingObtained& had) {
+  const std::string got = had.policy == device::SchedulingPolicy::fifo
+                              ? fmt::format("real time, priority {}", had.priority)
+                              : std::string("as an ordinary thread");
+  return "servo:   " + got + (had.memory_locked ? ", memory locked" : ", memory not locked") +
+         (had.reason.empty() ? "" : "; " + had.reason) + "\n";
+}
+
+nlohmann::ordered_json phase_json(const TestPhase& phase, const device::ServoReport& run) {
+  return {{"phase", phase.name},
+          {"ticks", phase.felt.ticks},
+          {"contact_s", seconds_of(phase.felt.contact_ticks, run)},
+          {"greatest_force_n", phase.felt.greatest_force_n}};
+}
+
+nlohmann::ordered_json run_json(const device::ServoReport& run) {
+  return {{"end", device::name_of(run.end)},
+          {"fault", device::name_of(run.fault)},
+          {"device_fault", device::name_of(run.device_fault)},
+          {"ticks", run.ticks},
+          {"rate_hz", run.rate_hz},
+          {"overruns", run.overruns},
+          {"limited_ticks", run.limited_ticks},
+          {"contact_s", seconds_of(run.contact_ticks, run)},
+          {"force_limit_n", run.force_limit_n},
+          {"lateness_us",
+           {{"p50", run.lateness.p50_us},
+            {"p99", run.lateness.p99_us},
+            {"p999", run.lateness.p999_us},
+            {"worst", run.lateness.worst_us}}}};
+}
+
+std::string test_text(const DeviceTest& test) {
+  const device::DeviceInfo& device = test.device;
+  std::string text = device.name + (device.model.empty() ? "" : ": " + device.model) +
+                     (device.serial.empty() ? "" : ", serial " + device.serial) +
+                     (device.firmware.empty() ? "" : ", firmware " + device.firmware) + "\n" +
+                     scheduling_text(test.scheduling);
+  if (!test.run) return text + "ended:   stopped before the test began\n";
+  for (const TestPhase& phase : test.phases) text += phase_text(phase, *test.run);
+  text += run_text(*test.run, test.quit);
+  if (!test.fault_record.empty()) {
+    text += "flight record of the fault: " + test.fault_record.string() + "\n";
+  }
+  return text;
+}
+
+/// The format is documented in docs/devices/README.md.
+std::string test_json(const DeviceTest& test) {
+  using nlohmann::ordered_json;
+  ordered_json phases = ordered_json::array();
+  for (const TestPhase& phase : test.phases) phases.push_back(phase_json(phase, *test.run));
+  const ordered_json object = {{"driver", test.device.name},
+                               {"model", test.device.model},
+                               {"serial", test.device.serial},
+                               {"firmware", test.device.firmware},
+                               {"scheduling",
+                                {{"policy", device::name_of(test.scheduling.policy)},
+                                 {"priority", test.scheduling.priority},
+                                 {"memory_locked", test.scheduling.memory_locked},
+                                 {"reason", test.scheduling.reason}}},
+                               {"run", test.run ? run_json(*test.run) : ordered_json(nullptr)},
+                               {"phases", phases},
+                               {"fault_record", test.fault_record.string()}};
+  return json_text(object);
+}
+
+/// The time in which the texture replaces the wall.
 constexpr double kBlendS = 0.2;
-/// 40 mm, which every supported device has room for.
+/// 40 mm, which fits the workspace of every supported device.
 constexpr int kPlacedSidePx = 200;
-/// 100 mm, the plane of devices that have all the room of the plane frame.
+/// 100 mm, for devices whose plane may have any size.
 constexpr int kFreeSidePx = 500;
 
 struct TestArguments {
@@ -38,7 +166,7 @@ struct TestArguments {
   fs::path fault_record;
 };
 
-/// The device as the servo wants it: placed, if it has a frame of its own.
+/// The device for the servo: placed, if it has a frame of its own.
 class DeviceForTest {
  public:
   DeviceForTest(const TestArguments& arguments, const device::DeviceSettings& settings)
@@ -73,7 +201,7 @@ fs::path record_path(const TestArguments& arguments) {
                                         : arguments.fault_record;
 }
 
-/// One run: the wall, and then, unless it is to be the wall alone, the texture.
+/// One run: the wall, and then the texture unless only the wall is wanted.
 void feel(const TestArguments& arguments, const TestTexture& shown, AttendedRun& run,
           DeviceTest& test) {
   const engine::RenderingModel wall = shown.wall();
@@ -87,8 +215,9 @@ void feel(const TestArguments& arguments, const TestTexture& shown, AttendedRun&
     return sequence.is_second(tick) ? "texture" : "wall";
   };
   std::fputs(
-      "q ends the test, space lets go, - and + change its strength, Ctrl-C halts at once\n"
-      "shown: time, position (right, down, off the plane), force, ticks a second, lateness\n",
+      "q ends the test, space releases the force, - and + change its strength, Ctrl-C halts at "
+      "once\n"
+      "shown: time, position (right, down, off the plane), force, ticks per second, lateness\n",
       stderr);
   test.run = run.run(phase, sequence, arguments.seconds, {}, &sequence);
   if (!test.run) return;
@@ -96,15 +225,17 @@ void feel(const TestArguments& arguments, const TestTexture& shown, AttendedRun&
   if (sequence.second().ticks > 0) test.phases.push_back({"texture", sequence.second()});
 }
 
-/// What the summary does not say by itself: how the program ends.
+/// How the program ends.
+/// \return the exit code
+/// \throws DeviceError if the run ended with a fault
 int outcome_of(const DeviceTest& test, const AttendedRun& run) {
   if (run.stop() == AttendedStop::signal) {
     std::fprintf(stderr, "touchtrial: %s\n", device::StopOnSignals::message().c_str());
     return device::StopOnSignals::exit_code();
   }
   if (!test.run || test.run->end != device::ServoEnd::fault) return 0;
-  throw DeviceError(one_line(test.device.name + ": fault while the " + test.phases.back().name +
-                             " was felt: " + fault_text(*test.run) + "; the last seconds are in " +
+  throw DeviceError(one_line(test.device.name + ": fault in the phase '" + test.phases.back().name +
+                             "': " + fault_names(*test.run) + "; the last seconds are in " +
                              test.fault_record.string()));
 }
 
@@ -132,20 +263,17 @@ int test_device(const TestArguments& arguments) {
 void add_device_test_command(CLI::App& device, Action& action) {
   auto arguments = std::make_shared<TestArguments>();
   CLI::App* command = device.add_subcommand(
-      "test", "Try a device: homing, then a plain wall, then a texture; q stops, space lets go");
-  command->add_option("NAME", arguments->driver, "Driver, as touchtrial device list names it")
-      ->required();
+      "test", "Try a device: homing, a plain wall, a texture; q stops, space releases the force");
+  add_driver_argument(*command, "NAME", arguments->driver);
   add_settings_option(*command, arguments->settings);
-  command->add_option("--seconds", arguments->seconds, "Wall and texture together, s")
+  command->add_option("--seconds", arguments->seconds, "Duration of wall and texture together, s")
       ->check(CLI::Range(0.1, 3600.0))
       ->capture_default_str();
-  command->add_option("--rate", arguments->rate_hz, "Ticks of the servo a second")
-      ->check(CLI::Range(1000.0, 10'000.0))
-      ->capture_default_str();
+  add_rate_option(*command, arguments->rate_hz);
   command->add_flag("--wall-only", arguments->wall_only, "No texture");
-  command->add_flag("--json", arguments->json, "The summary as one JSON object");
+  add_json_flag(*command, arguments->json);
   command->add_option("--fault-record", arguments->fault_record,
-                      "Where the last seconds before a fault go, CSV (default: "
+                      "CSV file for the last seconds before a fault (default: "
                       "device-test-NAME-fault.csv)");
   command->callback([=, &action] { action = [=] { return test_device(*arguments); }; });
 }

@@ -1,5 +1,6 @@
-#include "analysis/evaluation/evaluation_report.hpp"
 #include "analysis/figures/gnuplot.hpp"
+#include "analysis/measures/evaluation_report.hpp"
+#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "core/errors.hpp"
@@ -31,7 +32,7 @@ analysis::EvaluatedImage evaluated(const fs::path& path, bool sweep,
     return {path.string(), engine::evaluate_image(image, sweep, order_done)};
   } catch (const std::invalid_argument& error) {
     throw FileError(one_line(path.string()) + ": " + error.what() + "; give a larger image" +
-                    (sweep ? " or leave --sweep away" : ""));
+                    (sweep ? " or omit --sweep" : ""));
   }
 }
 
@@ -66,11 +67,13 @@ void add_evaluate_command(CLI::App& program, Action& action) {
       "evaluate", "Co-occurrence statistics of images and their textures; the order sweep");
   command->add_option("IMAGE", arguments->images, "PNG, JPEG, TIFF, BMP or PGM")->required();
   CLI::Option* sweep = command->add_flag("--sweep", arguments->sweep,
-                                         "Compare the adaptive texture with fixed orders by "
-                                         "MS-SSIM: 0.05 to 0.95");
-  command->add_option("--picture", arguments->picture, "Draw the sweep's curves as PNG (gnuplot)")
+                                         "Compare the adaptive texture with fixed orders, 0.05 "
+                                         "to 0.95, by MS-SSIM");
+  command
+      ->add_option("--picture", arguments->picture,
+                   "Draw the curves of the sweep as PNG (needs gnuplot)")
       ->needs(sweep);
-  command->add_flag("--json", arguments->json, "One JSON object in place of tables");
+  add_json_flag(*command, arguments->json);
   command->callback([=, &action] { action = [=] { return evaluate(*arguments); }; });
 }
 

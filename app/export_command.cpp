@@ -3,13 +3,14 @@
 #include "analysis/exports/export_events.hpp"
 #include "analysis/exports/export_json.hpp"
 #include "analysis/exports/export_psych_ds.hpp"
-#include "analysis/exports/r/mixed_model.hpp"
 #include "analysis/outcomes.hpp"
+#include "analysis/results.hpp"
+#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
-#include "app/key_of_database.hpp"
+#include "app/study_inputs.hpp"
 #include "core/errors.hpp"
-#include "protocols/collect/open_study.hpp"
+#include "protocols/collect/collect.hpp"
 #include "protocols/collect/server_address.hpp"
 #include "protocols/store/study_store.hpp"
 
@@ -33,7 +34,7 @@ struct ExportArguments {
   analysis::DatasetOptions dataset;
 };
 
-/// An option that a format has no use for would otherwise be passed over in silence.
+/// Refuses options that the format would silently ignore.
 void require_fitting(const ExportArguments& arguments) {
   const analysis::DatasetOptions& dataset = arguments.dataset;
   const bool for_bids =
@@ -44,9 +45,8 @@ void require_fitting(const ExportArguments& arguments) {
   }
   if (arguments.with_database && collect::is_address(arguments.database.string())) {
     throw UsageError(
-        "--with-database: the study is kept on a server; make a file of it with `touchtrial "
-        "merge`, "
-        "and export that");
+        "--with-database: the study is on a server; make a file of it with `touchtrial merge`, and "
+        "export that");
   }
   const bool for_datasets = !dataset.authors.empty() || !dataset.license.empty();
   if (for_datasets && arguments.format != "bids" && arguments.format != "psych-ds") {
@@ -54,10 +54,11 @@ void require_fitting(const ExportArguments& arguments) {
   }
 }
 
-/// \param what  would tell what was presented, or how it was answered
+/// Refuses an export of a study that is not unblinded.
+/// \param what  why the export reveals stimuli or answers
 void require_outcomes(const std::optional<analysis::Outcomes>& outcomes, const std::string& what) {
   if (outcomes) return;
-  throw StoreError("the study has not been unblinded, and " + what +
+  throw StoreError("the study is not unblinded, and " + what +
                    "; run `touchtrial close` and `touchtrial unblind`");
 }
 
@@ -68,11 +69,11 @@ std::vector<fs::path> write_files(const ExportArguments& arguments, const store:
   if (format == "csv") return analysis::export_csv(store, outcomes, arguments.folder);
   if (format == "json") return {analysis::export_json(store, outcomes, arguments.folder)};
   if (format == "r") {
-    require_outcomes(outcomes, "a model is all outcomes");
-    return analysis::export_mixed_model(store, *outcomes, arguments.folder);
+    require_outcomes(outcomes, "a model contains outcomes");
+    return analysis::analysis_of(outcomes->design).export_model(store, *outcomes, arguments.folder);
   }
   if (format == "events") {
-    require_outcomes(outcomes, "forces before a fault tell what was presented");
+    require_outcomes(outcomes, "forces before a fault reveal what was presented");
     return analysis::export_events(store, *key, *outcomes, arguments.folder);
   }
   const analysis::DatasetSource study{store, outcomes ? &*outcomes : nullptr,
@@ -109,8 +110,8 @@ void add_dataset_options(CLI::App& command, ExportArguments& arguments) {
   command.add_flag("--with-database", arguments.with_database,
                    "bids: a copy of the database in sourcedata/, never its key");
   command.add_option("--author", dataset.authors, "bids, psych-ds: an author; may be repeated");
-  command.add_option("--license", dataset.license, "bids, psych-ds: for instance CC0");
-  command.add_option("--institution", dataset.institution, "bids: where it was collected");
+  command.add_option("--license", dataset.license, "bids, psych-ds: license, for instance CC0");
+  command.add_option("--institution", dataset.institution, "bids: where the data were collected");
 }
 
 }  // namespace
@@ -118,17 +119,14 @@ void add_dataset_options(CLI::App& command, ExportArguments& arguments) {
 void add_export_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<ExportArguments>();
   CLI::App* command = program.add_subcommand("export", "Write a study's data for other programs");
-  command
-      ->add_option("DB", arguments->database, "Database of the study, or its postgresql:// address")
-      ->check(study_place_validator())
-      ->required();
+  add_study_place_argument(*command, arguments->database);
   command->add_option("--format", arguments->format, "What to write")
       ->check(CLI::IsMember({"csv", "json", "bids", "psych-ds", "r", "events"}))
       ->capture_default_str();
   command->add_option("-o,--out", arguments->folder, "Folder to write into")
       ->check(place_validator())
       ->required();
-  command->add_option("--key", arguments->key, "Key of the study (default: DB.key)");
+  add_key_option(*command, arguments->key);
   add_dataset_options(*command, *arguments);
   command->callback([=, &action] { action = [=] { return export_study(*arguments); }; });
 }

@@ -1,13 +1,15 @@
+// extract: the texture of one image, with every stage on request.
+#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/method_arguments.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/npy.hpp"
-#include "engine/entropy.hpp"
 #include "engine/extraction.hpp"
 #include "engine/force_field.hpp"
 #include "engine/image_file.hpp"
+#include "engine/metrics/picture_statistics.hpp"
 #include "engine/pictures/force_arrows.hpp"
 
 #include <algorithm>
@@ -24,7 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// That of the forces which the engine makes along with a texture.
+/// The neighbourhood of the forces that the engine computes along with a texture.
 constexpr int kForceNeighbourhood = 3;
 
 struct ExtractArguments {
@@ -38,7 +40,7 @@ struct ExtractArguments {
   fs::path dump;
 };
 
-/// Writes a plane and lets it go: of a large picture the planes fill most of the memory.
+/// Writes a plane and frees it: the planes of a large picture fill most of the memory.
 template <typename Real>
 void dump_if_made(const fs::path& folder, const std::string& name, Plane<Real>& plane) {
   if (!plane.empty()) write_npy(folder / (name + ".npy"), plane);
@@ -58,7 +60,7 @@ void dump_force(const fs::path& folder, const engine::ForceField<Real>& force) {
                   {force.x.height(), force.x.width(), 2});
 }
 
-/// All but texture, picture and force, which others need after it, is gone then.
+/// Writes all planes, and frees those except texture, picture and force.
 template <typename Real>
 void dump_all(const fs::path& folder, GreyImage& image, engine::Extraction<Real>& extraction) {
   make_folder(folder);
@@ -76,14 +78,15 @@ void dump_all(const fs::path& folder, GreyImage& image, engine::Extraction<Real>
   dump_force(folder, extraction.force);
 }
 
-/// \return what the picture shows
+/// \return a line about the picture
 template <typename Real>
 std::string draw_arrows(const fs::path& path, const engine::Extraction<Real>& extraction) {
   const engine::ArrowPatch patch = engine::write_force_arrows(
       path, extraction.picture,
       {converted<double>(extraction.force.x), converted<double>(extraction.force.y)});
   return fmt::format(
-      "{}: {} x {} px from ({}, {}); an arrow as long as a pixel is {:.3g} grey levels per pixel\n",
+      "{}: {} x {} px from ({}, {}); an arrow of one pixel's length is {:.3g} grey levels per "
+      "pixel\n",
       path.string(), patch.width, patch.height, patch.x, patch.y, patch.force_of_unit_arrow);
 }
 
@@ -104,7 +107,7 @@ std::string summary(const ExtractArguments& arguments, const engine::Extraction<
   return text;
 }
 
-/// An image may be too small for an option ("auto"): the message then needs its name.
+/// \throws FileError with the image's name if it is too small for an option, for instance "auto"
 template <typename Real>
 engine::Extraction<Real> extracted(const fs::path& path, const GreyImage& image,
                                    const engine::ExtractionOptions& options,
@@ -113,7 +116,7 @@ engine::Extraction<Real> extracted(const fs::path& path, const GreyImage& image,
     return engine::extract_texture<Real>(image, options, wanted);
   } catch (const std::invalid_argument& error) {
     throw FileError(one_line(path.string()) + ": " + error.what() +
-                    "; list them or give a larger image");
+                    "; list them, or give a larger image");
   }
 }
 
@@ -126,7 +129,7 @@ engine::WantedPlanes wanted_planes(const ExtractArguments& arguments) {
   return wanted;
 }
 
-/// What the engine does not make along with a texture: another mapping or neighbourhood.
+/// Adds what the engine does not compute along with a texture: other mappings and neighbourhoods.
 template <typename Real>
 void complete(const ExtractArguments& arguments, engine::Extraction<Real>& extraction) {
   if (extraction.picture.empty()) {
@@ -158,20 +161,17 @@ int extract_with(const ExtractArguments& arguments, const engine::ExtractionOpti
   return 0;
 }
 
-/// Pictures are written as PNG, and never over the one they were made from.
+/// Refuses an output that is not a PNG, or that is the input.
 void check_output(const fs::path& image, const fs::path& output, const std::string& option) {
   if (output.empty()) return;
   std::error_code ignored;
   if (fs::equivalent(image, output, ignored)) {
-    throw UsageError("extract: " + output.string() + " is the picture itself; give another " +
+    throw UsageError("extract: " + output.string() + " is the input picture; give another " +
                      option);
   }
-  std::string ending = output.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (ending != ".png") {
+  if (ending_of(output) != ".png") {
     throw UsageError("extract: " + output.string() +
-                     ": pictures are written as PNG; end it in .png");
+                     ": pictures are written as PNG; give a name that ends in .png");
   }
 }
 
@@ -190,10 +190,10 @@ int extract(const CLI::App& command, const ExtractArguments& arguments) {
 
 void add_extract_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<ExtractArguments>();
-  CLI::App* command = program.add_subcommand("extract", "Take the texture from one image");
+  CLI::App* command = program.add_subcommand("extract", "Extract the texture of one image");
   command->add_option("IMAGE", arguments->image, "PNG, JPEG, TIFF, BMP or PGM")->required();
   add_method_options(*command, arguments->method);
-  command->add_option("--mapping", arguments->mapping, "How the texture becomes a picture")
+  command->add_option("--mapping", arguments->mapping, "Mapping of the texture to a picture")
       ->check(CLI::IsMember(words_of(engine::kMappingNames)))
       ->capture_default_str();
   command
@@ -206,7 +206,7 @@ void add_extract_command(CLI::App& program, Action& action) {
                       "Draw the force field over an enlarged patch, as PNG");
   command->add_option("--dump", arguments->dump,
                       "Write every stage as .npy files into this folder");
-  command->add_option("--precision", arguments->precision, "Arithmetic of the extraction")
+  command->add_option("--precision", arguments->precision, "Precision of the extraction")
       ->check(CLI::IsMember({"float", "double"}))
       ->capture_default_str();
   command->callback([=, &action] { action = [=] { return extract(*command, *arguments); }; });

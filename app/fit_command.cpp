@@ -1,29 +1,32 @@
-#include "analysis/cues/study_plane.hpp"
+// fit: estimates a subject model from answers.
 #include "analysis/outcomes.hpp"
-#include "analysis/planning/accuracy_fit.hpp"
-#include "analysis/planning/felt_study.hpp"
+#include "analysis/planning/answer_model.hpp"
 #include "analysis/planning/fit_report.hpp"
 #include "analysis/planning/subject_fit.hpp"
 #include "analysis/sealed_sessions.hpp"
+#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
-#include "app/key_of_database.hpp"
-#include "app/simulated_study.hpp"
+#include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/strict_json.hpp"
-#include "protocols/session/subject_model_json.hpp"
+#include "protocols/design/protocol.hpp"
+#include "protocols/identification/analysis/cues/study_plane.hpp"
+#include "protocols/simulation/subject_model.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <map>
 #include <memory>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <system_error>
-#include <thread>
+#include <utility>
+#include <vector>
 
 namespace touchtrial::app {
 namespace {
@@ -54,19 +57,19 @@ planning::FreeParameters free_of(const FitArguments& arguments) {
 
 engine::Pack pack_for(const store::StudyStore& store, const design::StudyKey& key,
                       const FitArguments& arguments) {
-  std::optional<engine::Pack> pack = analysis::pack_of(store, key, arguments.pack);
+  std::optional<engine::Pack> pack = analysis::identification::pack_of(store, key, arguments.pack);
   if (!pack && key.simulated && arguments.pack.empty()) {
     prepare_simulated_pack(key);
-    pack = analysis::pack_of(store, key, {});
+    pack = analysis::identification::pack_of(store, key, {});
   }
   if (pack) return std::move(*pack);
   const fs::path place = arguments.pack.empty() ? key.pack_folder : arguments.pack;
   throw FileError(one_line(place.string()) +
-                  ": the pack that the study was felt with is not there; name it with --pack");
+                  ": the pack of the study does not exist; name it with --pack");
 }
 
 planning::FitOrigin origin_of(const FitArguments& arguments, const design::Study& study,
-                              const session::SubjectModel& subject) {
+                              const simulation::SubjectModel& subject) {
   planning::FitOrigin origin;
   origin.study = study.name;
   origin.subject = subject.source;
@@ -78,14 +81,14 @@ planning::FitOrigin origin_of(const FitArguments& arguments, const design::Study
 
 bool is_subject_file(const fs::path& path) {
   try {
-    static_cast<void>(session::load_subject_model(path));
+    static_cast<void>(simulation::load_subject_model(path));
     return true;
   } catch (const std::exception&) {
     return false;
   }
 }
 
-/// Also by another name, and where nothing is there yet.
+/// Whether two paths name the same file, which need not exist yet.
 bool same_file(const fs::path& one, const fs::path& other) {
   std::error_code error;
   if (fs::equivalent(one, other, error)) return true;
@@ -93,7 +96,7 @@ bool same_file(const fs::path& one, const fs::path& other) {
   return !error && whole == fs::weakly_canonical(other, error);
 }
 
-/// The subject file replaces what is there, so that may only be another subject file.
+/// Refuses an output that would replace anything but a subject file.
 void refuse_to_replace(const FitArguments& arguments) {
   if (arguments.out.empty()) return;
   const std::string place = "fit: -o " + one_line(arguments.out.string());
@@ -105,23 +108,23 @@ void refuse_to_replace(const FitArguments& arguments) {
     return !input.empty() && same_file(arguments.out, input);
   };
   if (std::ranges::any_of(inputs, is_out)) {
-    throw UsageError(place + ": belongs to what is fitted; name another file");
+    throw UsageError(place + ": is one of the inputs; name another file");
   }
   std::error_code error;
   const fs::file_status status = fs::symlink_status(arguments.out, error);
   if (status.type() != fs::file_type::not_found && !is_subject_file(arguments.out)) {
-    throw UsageError(place + ": is there, and is no subject file; name another file");
+    throw UsageError(place + ": exists, and is not a subject file; name another file");
   }
 }
 
-/// What took a minute to work out is printed before a file may fail.
-void finish(const FitArguments& arguments, const session::SubjectModel& fitted,
+/// Prints the report first: a failure to write the file must not lose it.
+void finish(const FitArguments& arguments, const simulation::SubjectModel& fitted,
             const std::string& report) {
   print(report);
-  if (!arguments.out.empty()) replace_file(arguments.out, session::subject_model_json(fitted));
+  if (!arguments.out.empty()) replace_file(arguments.out, simulation::subject_model_json(fitted));
 }
 
-/// Coarse stages of one bar.
+/// Shows a share of the work on a progress bar.
 planning::FitProgress shares(const std::function<void(int, int)>& bar) {
   constexpr int kWhole = 100;
   return [bar](double share) { bar(static_cast<int>(share * kWhole), kWhole); };
@@ -131,7 +134,7 @@ store::StudyStore unblinded(const fs::path& database) {
   store::StudyStore store = store::StudyStore::open(database, store::StudyStore::Access::read_only);
   if (!store.state().unblinded) {
     throw UsageError(one_line(database.string()) +
-                     ": not unblinded, and a fit is of outcomes; run `touchtrial close` and "
+                     ": not unblinded, and a fit needs outcomes; run `touchtrial close` and "
                      "`touchtrial unblind`");
   }
   return store;
@@ -150,7 +153,8 @@ planning::FitCounts counts_of(const FitArguments& arguments, const design::Study
 int fit_study(const FitArguments& arguments) {
   const store::StudyStore store = unblinded(arguments.source);
   const design::StudyKey key = key_of_database(store, arguments.source, arguments.key);
-  const session::SubjectModel subject = subject_for(arguments.subject, key.study);
+  const simulation::SubjectModel subject = subject_for(arguments.subject, key.study);
+  design::require_choice_of_classes(key.study, "fit");
   const analysis::Outcomes outcomes = analysis::load_outcomes(store, key);
   const planning::FitCounts counts =
       counts_of(arguments, key, outcomes, analysis::open_schedules(store, key));
@@ -173,24 +177,21 @@ int fit_study(const FitArguments& arguments) {
 /// "bark=0.87"
 std::pair<std::string, double> accuracy_of(const std::string& text) {
   const std::size_t equals = text.rfind('=');
-  double share = -1.0;
-  if (equals != std::string::npos) {
-    const char* const end = text.data() + text.size();
-    const auto read = std::from_chars(text.data() + equals + 1, end, share);
-    if (read.ec != std::errc() || read.ptr != end) share = -1.0;
-  }
-  if (!(share >= 0.0 && share <= 1.0)) {
+  const auto share = equals == std::string::npos
+                         ? std::nullopt
+                         : number_in<double>(std::string_view(text).substr(equals + 1));
+  if (!share || !(*share >= 0.0 && *share <= 1.0)) {
     throw UsageError("fit: --accuracies: " + in_quotes(text) +
-                     " is no accuracy; give CLASS=SHARE, for instance bark=0.87");
+                     " is not an accuracy; give CLASS=SHARE, for instance bark=0.87");
   }
-  return {text.substr(0, equals), share};
+  return {text.substr(0, equals), *share};
 }
 
 std::vector<double> accuracies_of(const FitArguments& arguments, const design::Study& study) {
   std::map<std::string, double> given;
   for (const std::string& text : arguments.accuracies) {
     if (!given.insert(accuracy_of(text)).second) {
-      throw UsageError("fit: --accuracies: a class is there twice, in " + in_quotes(text));
+      throw UsageError("fit: --accuracies: a class occurs twice, in " + in_quotes(text));
     }
   }
   std::vector<double> accuracies;
@@ -198,7 +199,7 @@ std::vector<double> accuracies_of(const FitArguments& arguments, const design::S
     const auto found = given.find(one.label);
     if (found == given.end()) {
       throw UsageError("fit: --accuracies: the study's class " + in_quotes(one.label) +
-                       " has none; give one for each class");
+                       " is missing; give one accuracy for each class");
     }
     accuracies.push_back(found->second);
     given.erase(found);
@@ -213,14 +214,15 @@ void refuse_database(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);
   if (file.read(start.data(), static_cast<std::streamsize>(start.size())) && start == kStart) {
     throw UsageError(one_line(path.string()) +
-                     ": is a database; fit --accuracies wants the study file");
+                     ": is a database; fit --accuracies needs the study file");
   }
 }
 
 int fit_published(const FitArguments& arguments) {
   refuse_database(arguments.source);
   const design::Study study = design::load_study(arguments.source);
-  const session::SubjectModel subject = subject_for(arguments.subject, study);
+  design::require_choice_of_classes(study, "fit");
+  const simulation::SubjectModel subject = subject_for(arguments.subject, study);
   const std::vector<double> wanted = accuracies_of(arguments, study);
   const design::StudyKey key = simulated_key(study, arguments.source);
   prepare_simulated_pack(key);
@@ -239,26 +241,24 @@ int fit_published(const FitArguments& arguments) {
 
 void add_fit_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<FitArguments>();
-  arguments->felt.jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   CLI::App* command = program.add_subcommand(
       "fit", "Estimate noise, lapses, biases and label swaps of a subject model from answers");
-  command
-      ->add_option("DB", arguments->source,
-                   "Database of an unblinded study; with --accuracies a study file")
-      ->required();
+  add_database_argument(*command, arguments->source,
+                        "Database of an unblinded study; with --accuracies a study file");
   command->add_option("--subject", arguments->subject,
-                      "Subject model with what is not estimated, and where to start (default: "
+                      "Subject model with the fixed parameters and the starting values (default: "
                       "built in)");
-  auto* key = command->add_option("--key", arguments->key, "Key of the study (default: DB.key)");
-  auto* pack = command->add_option("--pack", arguments->pack, "Pack of the study");
+  CLI::Option* key = add_key_option(*command, arguments->key);
+  CLI::Option* pack = command->add_option("--pack", arguments->pack, "Pack of the study");
   command->add_option("-o,--out", arguments->out, "Subject file to write");
   command
-      ->add_option("--fix", arguments->fixed,
-                   "What stays as the subject model has it: weber, lapse, position, classes, swaps")
+      ->add_option(
+          "--fix", arguments->fixed,
+          "Parameters that keep the subject model's values: weber, lapse, position, classes, swaps")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::IsMember({"weber", "lapse", "position", "classes", "swaps"}));
-  auto* accuracies =
+  CLI::Option* accuracies =
       command
           ->add_option("--accuracies", arguments->accuracies,
                        "Fit to published accuracies instead: CLASS=SHARE for each class")
@@ -267,30 +267,26 @@ void add_fit_command(CLI::App& program, Action& action) {
           ->excludes(key)
           ->excludes(pack);
   command
-      ->add_option("--participants", arguments->participants,
-                   "Whose orders of pictures published accuracies are of")
+      ->add_option(
+          "--participants", arguments->participants,
+          "Number of participants whose orders of pictures the published accuracies average")
       ->check(CLI::Range(1, 1000))
       ->needs(accuracies)
       ->capture_default_str();
   command
       ->add_option("--explorations", arguments->felt.explorations,
-                   "Of each stimulus, felt to work out what is answered")
+                   "Explorations of each stimulus from which answers are predicted")
       ->check(CLI::Range(8, 20000))
       ->capture_default_str();
   command
       ->add_option("--bootstraps", arguments->bootstraps,
-                   "Studies simulated from the fit, for its p and intervals")
+                   "Studies simulated from the fit, for p and intervals")
       ->check(CLI::Range(0, 100000))
       ->capture_default_str();
-  command
-      ->add_option("--seed", arguments->felt.seed,
-                   "Seed of training (as simulate's), explorations and bootstrap")
-      ->check(seed_validator())
-      ->capture_default_str();
-  command->add_option("--jobs", arguments->felt.jobs, "Threads; results do not depend on them")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  command->add_flag("--json", arguments->json, "One JSON object in place of tables");
+  add_seed_option(*command, arguments->felt.seed,
+                  "Seed of training (as in simulate), explorations and bootstrap");
+  add_jobs_option(*command, arguments->felt.jobs);
+  add_json_flag(*command, arguments->json);
   command->callback([=, &action] {
     action = [=] {
       refuse_to_replace(*arguments);

@@ -1,4 +1,129 @@
-#include "app/program.hpp"
+// touchtrial: parses the command line and runs one command.
+#include "app/commands.hpp"
+#include "core/errors.hpp"
+#include "core/nearest_name.hpp"
+#include "core/version.hpp"
+#include "engine/fourier/planning.hpp"
+#include "protocols/registration/registration.hpp"
+#include "protocols/store/damage.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <exception>
+#include <new>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <spdlog/sinks/stdout_color_sinks.h>
+#include <spdlog/spdlog.h>
+
+namespace touchtrial::app {
+namespace {
+
+constexpr int kFailed = 1;
+constexpr int kBadInput = 2;
+
+void add_commands(CLI::App& program, Action& action) {
+  add_extract_command(program, action);
+  add_evaluate_command(program, action);
+  add_stimuli_command(program, action);
+  add_prepare_command(program, action);
+  add_prereg_command(program, action);
+  add_simulate_command(program, action);
+  add_plan_command(program, action);
+  add_run_command(program, action);
+  add_record_commands(program, action);
+  add_sync_command(program, action);
+  add_verify_command(program, action);
+  add_report_command(program, action);
+  add_export_command(program, action);
+  add_fit_command(program, action);
+  add_merge_command(program, action);
+  add_power_command(program, action);
+  add_device_command(program, action);
+}
+
+int complain(int code, const std::string& message) noexcept {
+  std::fprintf(stderr, "touchtrial: %s\n", one_line(message).c_str());
+  return code;
+}
+
+/// Sends warnings to standard error: standard output holds results only.
+void set_up_log() {
+  auto logger = spdlog::stderr_color_mt("touchtrial");
+  logger->set_pattern("touchtrial: %^%l%$: %v");
+  spdlog::set_default_logger(logger);
+}
+
+/// What is wrong with the first word if it should be a command and is not; else empty.
+std::string unknown_command(const CLI::App& program, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-' || argv[1][0] == '\0') return "";
+  std::vector<std::string> names;
+  for (const CLI::App* command : program.get_subcommands({})) names.push_back(command->get_name());
+  const std::vector<std::string_view> known(names.begin(), names.end());
+  if (std::find(known.begin(), known.end(), argv[1]) != known.end()) return "";
+  const auto nearest = nearest_name(argv[1], known);
+  return std::string(argv[1]) + ": is not a command; " +
+         (nearest ? "did you mean " + std::string(*nearest) + "?" : "see touchtrial --help");
+}
+
+/// The command that was parsed so far, for instance "touchtrial stimuli import".
+std::string command_so_far(const CLI::App& program) {
+  std::string words = program.get_name();
+  for (auto commands = program.get_subcommands(); !commands.empty();
+       commands = commands.front()->get_subcommands()) {
+    words += " " + commands.front()->get_name();
+  }
+  return words;
+}
+
+int parse_and_run(int argc, char** argv) {
+  set_up_log();
+  registration::register_protocols();
+  engine::use_measured_plans(engine::user_cache_folder());
+  CLI::App program("A psychophysics runner for textures that are felt.", "touchtrial");
+  program.set_version_flag("--version", std::string(program_version()));
+  program.require_subcommand(1);
+  program.fallthrough(false);
+  Action action;
+  add_commands(program, action);
+  const std::string unknown = unknown_command(program, argc, argv);
+  if (!unknown.empty()) return complain(kBadInput, unknown);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::Success& help) {
+    return program.exit(help);
+  } catch (const CLI::ParseError& error) {
+    return complain(kBadInput,
+                    std::string(error.what()) + "; see " + command_so_far(program) + " --help");
+  }
+  return action();
+}
+
+/// Runs one command, and reports any error as one line on standard error.
+/// \return 0 done, 1 failed, 2 bad arguments or bad study file, 3 verification failed
+int run_program(int argc, char** argv) noexcept {
+  try {
+    return parse_and_run(argc, argv);
+  } catch (const UsageError& error) {
+    return complain(kBadInput, error.what());
+  } catch (const StudyError& error) {
+    return complain(kBadInput, error.what());
+  } catch (const store::DamagedStore& error) {
+    return complain(kNotVerified, error.what());
+  } catch (const VerificationError& error) {
+    return complain(kNotVerified, error.what());
+  } catch (const std::bad_alloc&) {
+    return complain(kFailed,
+                    "there is not enough memory; close other programs or use smaller images");
+  } catch (const std::exception& error) {
+    return complain(kFailed, error.what());
+  }
+}
+
+}  // namespace
+}  // namespace touchtrial::app
 
 int main(int argc, char** argv) {
   return touchtrial::app::run_program(argc, argv);

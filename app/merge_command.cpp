@@ -1,12 +1,14 @@
-// merge: several stations' databases made one.
+// merge: makes one database from those of several stations.
 #include "analysis/text_figures.hpp"
+#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "protocols/collect/collect.hpp"
 #include "protocols/collect/server_address.hpp"
-#include "protocols/collect/server_stations.hpp"
+#include "protocols/collect/stations.hpp"
 #include "protocols/design/study_key.hpp"
 #include "protocols/store/payload_json.hpp"
 
@@ -61,11 +63,11 @@ std::optional<design::StudyKey> simulated_key_beside(const std::vector<fs::path>
   return std::nullopt;
 }
 
-/// The key that is laid beside a database of simulated participants, as `simulate` does: it follows
-/// from the study file, and blinds nobody. That of a study with people stays where it is.
-/// \throws StoreError if another key lies in its place
-std::optional<design::StudyKey> key_to_lay(const MergeArguments& arguments,
-                                           const collect::Stations& stations) {
+/// The key to write beside a merged database of simulated participants, as `simulate` does: it
+/// follows from the study file and blinds nobody. The key of a study with people stays where it is.
+/// \throws StoreError if another key is in its place
+std::optional<design::StudyKey> key_to_write(const MergeArguments& arguments,
+                                             const collect::Stations& stations) {
   if (stations.empty()) return std::nullopt;
   const std::vector<store::Event> chain = stations.front()->file_chain();
   if (chain.empty()) return std::nullopt;
@@ -76,23 +78,23 @@ std::optional<design::StudyKey> key_to_lay(const MergeArguments& arguments,
   if (key && is_there(path) &&
       design::study_seal(design::load_study_key(path)) != commitment.seal) {
     throw StoreError(one_line(path.string()) +
-                     ": is another study's key; give another name with -o, or move it away");
+                     ": is the key of another study; give another name with -o, or move it away");
   }
   return key;
 }
 
 void warn_of(const collect::CollectReport& report) {
   for (const collect::SessionLeftOut& session : report.left_out) {
-    spdlog::warn("{}", one_line(fmt::format(
-                           "{}: session {} (participant {}) {}", session.station, session.session,
-                           session.participant,
-                           session.cut_short
-                               ? "was replaced or withdrawn before it ended: it cannot go on, and "
-                                 "is not in the merged study"
-                               : "has not ended and is left out; merge again when it has")));
+    spdlog::warn(
+        "{}", one_line(fmt::format(
+                  "{}: session {} (participant {}) {}", session.station, session.session,
+                  session.participant,
+                  session.cut_short ? "was replaced or withdrawn before it ended: it cannot be "
+                                      "continued, and is not in the merged study"
+                                    : "has not ended and is left out; merge again when it has")));
   }
   for (const std::string& name : report.superfluous) {
-    spdlog::warn("{}", one_line(name + ": holds no finished session that the others do not hold"));
+    spdlog::warn("{}", one_line(name + ": has no finished session that the others do not have"));
   }
 }
 
@@ -100,11 +102,11 @@ std::string summary_of(const MergeArguments& arguments, const collect::CollectRe
                        bool key) {
   const std::string key_path = key_path_for(arguments.target, {}).string();
   if (!arguments.json) {
-    return fmt::format(
-        "{}: {} of {}\n{}", arguments.target.string(),
-        analysis::counted(report.sessions, "session"),
-        analysis::counted(report.stations, "station"),
-        key ? "key " + key_path + "\n" : "the study's key is where it was: name it with --key\n");
+    return fmt::format("{}: {} of {}\n{}", arguments.target.string(),
+                       analysis::counted(report.sessions, "session"),
+                       analysis::counted(report.stations, "station"),
+                       key ? "key " + key_path + "\n"
+                           : "the key of the study stays where it is: name it with --key\n");
   }
   nlohmann::json left_out = nlohmann::json::array();
   for (const collect::SessionLeftOut& session : report.left_out) {
@@ -117,14 +119,14 @@ std::string summary_of(const MergeArguments& arguments, const collect::CollectRe
       {"database", arguments.target.string()}, {"stations", report.stations},
       {"sessions", report.sessions},           {"left_out", left_out},
       {"superfluous", report.superfluous},     {"key", key ? nlohmann::json(key_path) : nullptr}};
-  return summary.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+  return json_text(summary);
 }
 
 int merge(const MergeArguments& arguments) {
   if (arguments.target.empty()) throw UsageError("merge: -o is empty; give it a file name");
   refuse_existing_output(arguments.target);
   collect::Stations stations = stations_of(arguments.databases);
-  const std::optional<design::StudyKey> key = key_to_lay(arguments, stations);
+  const std::optional<design::StudyKey> key = key_to_write(arguments, stations);
   const collect::CollectReport report =
       collect::collect_into_file(std::move(stations), arguments.target, progress_bar("merging"));
   warn_of(report);
@@ -138,17 +140,17 @@ int merge(const MergeArguments& arguments) {
 void add_merge_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<MergeArguments>();
   CLI::App* command = program.add_subcommand(
-      "merge", "Make one database of several stations' databases of one study");
+      "merge", "Make one database from several stations' databases of one study");
   command
       ->add_option("DB", arguments->databases,
                    "Databases of the stations, or the postgresql:// address of a study")
       ->required();
   command
       ->add_option("-o,--out", arguments->target,
-                   "Database to make; the same for any order of the stations")
+                   "Database to make; the order of the stations does not matter")
       ->check(place_validator())
       ->required();
-  command->add_flag("--json", arguments->json, "Summary as one JSON object");
+  add_json_flag(*command, arguments->json);
   command->callback([=, &action] { action = [=] { return merge(*arguments); }; });
 }
 

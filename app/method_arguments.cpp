@@ -1,6 +1,6 @@
 #include "app/method_arguments.hpp"
 
-#include "app/commands.hpp"
+#include "app/command_options.hpp"
 #include "core/errors.hpp"
 
 #include <algorithm>
@@ -11,21 +11,25 @@
 namespace touchtrial::app {
 namespace {
 
-/// An option and the methods that it means something to.
+/// An option and the methods that use it.
 struct MethodOption {
   const char* name;
   std::vector<engine::Method> methods;
 };
 
 const std::vector<MethodOption>& method_options() {
-  using enum engine::Method;
-  static const std::vector<MethodOption> options = {
-      {"--order", {fixed}},          {"--radius", {adaptive, fixed, median}},
-      {"--norm", {adaptive, fixed}}, {"--gradient", {adaptive}},
-      {"--combine", {adaptive}},     {"--levels", {adaptive}},
-      {"--sigma", {gaussian}},       {"--threshold", {median}},
-      {"--divisor", {edge}},         {"--lambda", {tv_gabor}},
-      {"--components", {tv_gabor}}};
+  using enum engine::Parameter;
+  static const std::vector<MethodOption> options = {{"--order", methods_with(order)},
+                                                    {"--radius", methods_with(radius)},
+                                                    {"--norm", methods_with(norm)},
+                                                    {"--gradient", methods_with(gradient)},
+                                                    {"--combine", methods_with(combine)},
+                                                    {"--levels", methods_with(levels)},
+                                                    {"--sigma", methods_with(sigma)},
+                                                    {"--threshold", methods_with(threshold)},
+                                                    {"--divisor", methods_with(divisor)},
+                                                    {"--lambda", methods_with(lambda)},
+                                                    {"--components", methods_with(components)}};
   return options;
 }
 
@@ -40,7 +44,7 @@ std::string owners_of(const MethodOption& option) {
 
 void refuse_unused_seed(const CLI::App& command, engine::Control control) {
   if (control != engine::Control::none || command.count("--seed") == 0) return;
-  throw UsageError("extract: --seed means nothing here; it goes with --control phase-scrambled");
+  throw UsageError("extract: --seed has no effect here; it belongs to --control phase-scrambled");
 }
 
 void refuse_unused(const CLI::App& command, engine::Method method) {
@@ -49,7 +53,7 @@ void refuse_unused(const CLI::App& command, engine::Method method) {
         std::find(option.methods.begin(), option.methods.end(), method) != option.methods.end();
     if (used || command.count(option.name) == 0) continue;
     throw UsageError(std::string("extract: ") + option.name +
-                     " means nothing here; it goes with --method " + owners_of(option));
+                     " has no effect here; it belongs to --method " + owners_of(option));
   }
 }
 
@@ -58,7 +62,7 @@ void refuse_unused(const CLI::App& command, engine::Method method) {
                    " is not auto or \"frequency,degrees;frequency,degrees\"");
 }
 
-/// The number that begins at `from`, which moves behind it.
+/// Reads the number that begins at `from`, and moves `from` behind it.
 double take_number(const std::string& text, std::size_t& from) {
   double number = 0.0;
   const char* end = text.data() + text.size();
@@ -99,7 +103,7 @@ void check(const engine::ExtractionOptions& options) {
 }
 
 void add_words(CLI::App& command, MethodArguments& arguments) {
-  command.add_option("--method", arguments.method, "How the texture is taken")
+  command.add_option("--method", arguments.method, "Extraction method")
       ->check(CLI::IsMember(engine::method_names()))
       ->capture_default_str();
   command.add_option("--norm", arguments.norm, "Normalisation of the mask (adaptive, fixed)")
@@ -109,15 +113,17 @@ void add_words(CLI::App& command, MethodArguments& arguments) {
       ->check(CLI::IsMember(words_of(engine::kGradientNames)))
       ->capture_default_str();
   command
-      .add_option("--combine", arguments.combine, "One number of all sub-bands' slopes (adaptive)")
+      .add_option("--combine", arguments.combine,
+                  "Combination of the slopes of all sub-bands (adaptive)")
       ->check(CLI::IsMember(words_of(engine::kCombineNames)))
       ->capture_default_str();
-  command.add_option("--components", arguments.components,
-                     "Oscillations that are texture, \"cycles per px,degrees;..\", or auto "
-                     "(tv-gabor)");
+  command.add_option(
+      "--components", arguments.components,
+      "Oscillations that belong to the texture, \"cycles per px,degrees;..\", or auto "
+      "(tv-gabor)");
   command
       .add_option("--control", arguments.control,
-                  "Make of the texture its own control: the same spectrum without structure")
+                  "Turn the texture into its control: the same spectrum without structure")
       ->check(CLI::IsMember(words_of(engine::kControlNames)))
       ->capture_default_str();
 }
@@ -129,7 +135,7 @@ void add_number(CLI::App& command, const char* option, double& number, const cha
 
 void add_numbers(CLI::App& command, engine::ExtractionOptions& numbers) {
   using Options = engine::ExtractionOptions;
-  // Of a half-open range the parser would say that its end is not in it; check_options says why.
+  // The parser has no half-open ranges; check_options checks this one.
   command.add_option("--order", numbers.order, "Fractional order, 0 <= V < 1 (fixed)");
   command
       .add_option("--radius", numbers.radius,
@@ -144,14 +150,12 @@ void add_numbers(CLI::App& command, engine::ExtractionOptions& numbers) {
                   "Standard deviation, pixels, 0 < S <= 1000 (gaussian)")
       ->capture_default_str();
   add_number(command, "--threshold", numbers.threshold_grey,
-             "Difference that is no texture yet, grey levels (median)", 0.0, 255.0);
-  add_number(command, "--divisor", numbers.divisor, "Of the norm of the gradient (edge)",
+             "Smallest difference that counts as texture, grey levels (median)", 0.0, 255.0);
+  add_number(command, "--divisor", numbers.divisor, "Divisor of the norm of the gradient (edge)",
              Options::kMinDivisor, Options::kMaxDivisor);
   add_number(command, "--lambda", numbers.tv_gabor.lambda, "Weight of the texture norm (tv-gabor)",
              engine::TvGaborOptions::kMinLambda, engine::TvGaborOptions::kMaxLambda);
-  command.add_option("--seed", numbers.control_seed, "Of the control's random phases")
-      ->check(seed_validator())
-      ->capture_default_str();
+  add_seed_option(command, numbers.control_seed, "Seed of the control's random phases");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-/// \file The command line's options of the extraction methods. Private to app: it shows the
-/// parser's type.
+/// \file The command-line options of the extraction methods. Private to app: it shows the parser's
+/// type.
 #pragma once
 
 #include "engine/extraction.hpp"
@@ -13,26 +13,27 @@
 
 namespace touchtrial::app {
 
-/// The words as they are typed.
+/// The options as they are typed.
 struct MethodArguments {
   std::string method = "adaptive";
   std::string norm = "additive";
   std::string gradient = "sobel";
   std::string combine = "sum";
-  std::string components;  ///< "auto", "f,theta;f,theta", or nothing for the default
+  std::string components;  ///< "auto", "f,theta;f,theta", or empty for the default
   std::string control = "none";
   engine::ExtractionOptions numbers;
 };
 
-/// Adds --method and one option for each of the methods' parameters.
+/// Adds --method and one option for each parameter of the methods.
 /// \param arguments  must live as long as the command
 void add_method_options(CLI::App& command, MethodArguments& arguments);
 
-/// The options that the parsed words mean.
-/// \throws UsageError for an option that the method does not have, and for values out of range
+/// The options as the engine takes them.
+/// \throws UsageError for an option that the method does not have, and for a value out of range
 [[nodiscard]] engine::ExtractionOptions extraction_options(const CLI::App& command,
                                                            const MethodArguments& arguments);
 
+/// The names as a list for the parser.
 template <std::size_t size>
 [[nodiscard]] std::vector<std::string> words_of(const std::array<std::string_view, size>& names) {
   return {names.begin(), names.end()};

@@ -1,5 +1,6 @@
 #include "analysis/text_figures.hpp"
 #include "analysis/text_table.hpp"
+#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "core/errors.hpp"
@@ -86,29 +87,29 @@ std::string plan_json(const design::Study& study, const design::EnrolmentPlan& p
                                            {"participants", plan.participants()},
                                            {"stations", stations},
                                            {"plan", path.string()}};
-  return document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return json_text(document);
 }
 
-/// The plan that is there, to be extended; or an empty one.
+/// The existing plan with --extend, else an empty one.
 design::EnrolmentPlan plan_to_fill(const PlanArguments& arguments, const design::Study& study,
                                    const fs::path& path) {
   if (!arguments.extend) {
     if (is_there(path)) {
       throw UsageError(path.string() +
-                       ": is there already and stations may go by it; hand out further numbers "
-                       "with --extend, or give another --output");
+                       ": exists already, and stations may use it; hand out more numbers with "
+                       "--extend, or give another --output");
     }
     return design::empty_plan(study, station_names(arguments));
   }
   if (!is_there(path)) {
     throw UsageError(path.string() +
-                     ": is not there to be extended; make it with --stations or --names");
+                     ": does not exist and cannot be extended; make it with --stations or --names");
   }
   design::EnrolmentPlan plan = design::load_plan(path, study);
   if (arguments.participants < plan.participants()) {
     throw UsageError(fmt::format(
-        "{}: has numbers for {} participants, which cannot be taken back; give --participants {} "
-        "or more",
+        "{}: has numbers for {} participants, which cannot be withdrawn; give --participants {} or "
+        "more",
         path.string(), plan.participants(), plan.participants()));
   }
   return plan;
@@ -116,7 +117,7 @@ design::EnrolmentPlan plan_to_fill(const PlanArguments& arguments, const design:
 
 int plan_enrolment(const PlanArguments& arguments) {
   if (!arguments.extend && arguments.stations == 0 && arguments.names.empty()) {
-    throw UsageError("plan: for how many stations? Give --stations N, or their --names");
+    throw UsageError("plan: the stations are missing; give --stations N, or their --names");
   }
   const design::Study study = design::load_study(arguments.study);
   const fs::path path =
@@ -133,26 +134,28 @@ int plan_enrolment(const PlanArguments& arguments) {
 void add_plan_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<PlanArguments>();
   CLI::App* command = program.add_subcommand(
-      "plan", "Hand out enrolment numbers to several stations, before anybody comes");
-  command->add_option("STUDY", arguments->study, "Study file")->required();
-  command->add_option("--participants", arguments->participants, "How many in all")
+      "plan", "Hand out enrolment numbers to several stations before the first participant comes");
+  add_study_argument(*command, arguments->study);
+  command->add_option("--participants", arguments->participants, "Number of participants in all")
       ->check(CLI::Range(1, design::kMostPlanned))
       ->required();
   auto* stations = command
                        ->add_option("--stations", arguments->stations,
-                                    "How many stations, named 1, 2, and so on")
+                                    "Number of stations, which are named 1, 2, and so on")
                        ->check(CLI::Range(1, static_cast<int>(design::kMostStations)));
-  auto* names = command->add_option("--names", arguments->names, "Their names instead")
-                    ->delimiter(',')
-                    ->excludes(stations);
+  auto* names =
+      command
+          ->add_option("--names", arguments->names, "Names of the stations, instead of --stations")
+          ->delimiter(',')
+          ->excludes(stations);
   command
       ->add_flag("--extend", arguments->extend,
-                 "Add numbers to the plan that is there; its own stay where they are")
+                 "Add numbers to the existing plan, and keep its own")
       ->excludes(stations)
       ->excludes(names);
   command->add_option("-o,--output", arguments->output,
                       "File to write (default: <study>.plan.json beside the study file)");
-  command->add_flag("--json", arguments->json, "One JSON object in place of the table");
+  add_json_flag(*command, arguments->json);
   command->callback([=, &action] { action = [=] { return plan_enrolment(*arguments); }; });
 }
 

@@ -1,24 +1,24 @@
-#include "analysis/planning/feelings.hpp"
+// power: simulates a study many times, in one process or in shards.
+#include "analysis/planning/power_progress.hpp"
 #include "analysis/planning/power_report.hpp"
-#include "analysis/planning/power_study.hpp"
+#include "analysis/planning/rehearsed_study.hpp"
+#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/power_files.hpp"
-#include "app/simulated_study.hpp"
+#include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/hash.hpp"
 #include "core/version.hpp"
 #include "engine/pack/pack.hpp"
-#include "protocols/session/labelled_fields.hpp"
 #include "protocols/session/stimulus_source.hpp"
+#include "protocols/simulation/felt_knowledge.hpp"
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include <fmt/format.h>
@@ -45,7 +45,8 @@ struct PowerArguments {
   bool json = false;
 };
 
-/// What a study's stimuli are: every field that may be felt, whatever else the pack holds.
+/// A digest of the study's stimuli: of every field that may be felt, and of nothing else in the
+/// pack.
 std::string fields_digest(const design::StudyKey& key, const engine::Pack& pack) {
   FieldHasher hasher;
   for (const design::KeyedStimulus& keyed : key.stimuli) {
@@ -57,14 +58,14 @@ std::string fields_digest(const design::StudyKey& key, const engine::Pack& pack)
   return to_hex(hasher.finish());
 }
 
-/// Everything that runs are made of.
+/// Everything that the runs need.
 struct PowerPreparation {
   PowerPreparation(const PowerArguments& arguments, design::Study loaded)
       : study(std::move(loaded)),
         test(planning::primary_test_of(study, labels(arguments))),
         subject(subject_for(arguments.subject, study)),
         key(simulated_key(study, arguments.study)) {
-    // Shards begin at the same time, and share the pack.
+    // Shards begin at the same time and share the pack.
     prepare_simulated_pack(key, true);
     pack.emplace(key.pack_folder);
   }
@@ -78,7 +79,7 @@ struct PowerPreparation {
 
   [[nodiscard]] planning::PowerSetting setting() const {
     return {study.name,
-            std::string(name_of(study.protocol)),
+            study.protocol_name(),
             planning::words_of(test, study),
             planning::estimate_words(test),
             to_hex(design::study_seal(key)),
@@ -90,14 +91,14 @@ struct PowerPreparation {
 
   design::Study study;
   planning::PrimaryTest test;
-  session::SubjectModel subject;
+  simulation::SubjectModel subject;
   design::StudyKey key;
   std::optional<engine::Pack> pack;
 };
 
 std::unique_ptr<const planning::Feelings> feelings_for(const PowerPreparation& prepared,
                                                        const planning::PowerPlan& plan, int jobs,
-                                                       const session::LabelledFields& fields) {
+                                                       const simulation::LabelledFields& fields) {
   if (plan.servo) {
     return std::make_unique<planning::ServoFeelings>(fields, prepared.study, prepared.subject);
   }
@@ -116,12 +117,12 @@ void make_missing_runs(const PowerPreparation& prepared, const PowerArguments& a
   std::optional<ProgressKeeper> keeper;
   if (!arguments.folder.empty()) {
     keeper.emplace(file_of(arguments, progress.shard));
-    // A folder that cannot be written is told of now; a shard without runs is a file as well.
+    // This finds out now whether the folder can be written; a shard without runs needs a file too.
     keeper->keep(progress);
   }
   if (planning::is_complete(progress)) return;
   const session::StimulusSource source(*prepared.pack, prepared.key.study.rendering);
-  const session::LabelledFields fields(prepared.key, source);
+  const simulation::LabelledFields fields(prepared.key, source);
   const auto feelings = feelings_for(prepared, progress.plan, arguments.jobs, fields);
   const planning::RehearsedStudy study(prepared.study, prepared.subject, prepared.test, *feelings,
                                        progress.plan.participants.back());
@@ -155,7 +156,7 @@ int combine(const PowerArguments& arguments) {
 int power(PowerArguments arguments) {
   if (!arguments.combine.empty()) return combine(arguments);
   if (arguments.study.empty()) {
-    throw UsageError("power: STUDY is missing; give a study file, or --combine with shards");
+    throw UsageError("power: STUDY is missing; give a study file, or shards with --combine");
   }
   planning::PowerPlan plan = arguments.plan;
   plan.participants = sizes_named(arguments.sizes);
@@ -177,66 +178,68 @@ int power(PowerArguments arguments) {
 
 void add_plan_options(CLI::App& command, PowerArguments& arguments) {
   planning::PowerPlan& plan = arguments.plan;
-  command.add_option("--participants", arguments.sizes, "Sizes of the study, 2 to 10000 each")
+  command
+      .add_option("--participants", arguments.sizes,
+                  "Numbers of participants to try, 2 to 10000 each")
       ->type_name("N,N..")
       ->capture_default_str();
   command
-      .add_option("--runs", plan.runs, "Simulated studies of each size, and as many under the null")
+      .add_option("--runs", plan.runs,
+                  "Simulated studies of each size, and the same number under the null hypothesis")
       ->capture_default_str();
-  command.add_option("--seed", plan.seed, "Seed of everything random")
-      ->check(seed_validator())
-      ->capture_default_str();
-  command.add_option("--subject", arguments.subject,
-                     "Subject model of the population (default: built in)");
+  add_seed_option(command, plan.seed, "Seed of everything random");
+  add_subject_option(command, arguments.subject);
   command
       .add_option("--methods", arguments.methods,
-                  "Of a comparison of three methods or more: the two that are tested, as A,B")
+                  "The two methods to test, as A,B, if a comparison has more than two")
       ->delimiter(',');
   command.add_flag("--no-early-stop", arguments.no_early_stop,
-                   "Make all runs, also where the answer is certain");
+                   "Make all runs, even if the result is already certain");
   command
       .add_option("--explorations", plan.explorations,
-                  "Explorations of each stimulus that trials draw from")
+                  "Explorations of each stimulus from which trials draw")
       ->capture_default_str();
-  command.add_option("--trainings", plan.trainings, "Trainings that studies draw from")
+  command.add_option("--trainings", plan.trainings, "Trainings from which studies draw")
       ->capture_default_str();
-  command.add_flag("--servo", plan.servo,
-                   "Every exploration through the servo, to compare; some hundred times slower");
+  command.add_flag(
+      "--servo", plan.servo,
+      "Run every exploration through the servo, for comparison; some hundred times slower");
 }
 
 }  // namespace
 
 void add_power_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<PowerArguments>();
-  arguments->jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
   CLI::App* command = program.add_subcommand(
-      "power", "Power, type-I error and interval width of a study, given an assumed sensitivity");
+      "power",
+      "Estimate power, type-I error and interval width of a study for an assumed sensitivity");
   command->add_option("STUDY", arguments->study, "Study file");
   add_plan_options(*command, *arguments);
   const std::vector<CLI::Option*> of_a_run = command->get_options(
       [&](const CLI::Option* option) { return option != command->get_help_ptr(); });
-  command->add_option("--jobs", arguments->jobs, "Threads; results do not depend on them")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
-  auto* folder = command->add_option(
+  add_jobs_option(*command, arguments->jobs);
+  CLI::Option* folder = command->add_option(
       "-o,--out", arguments->folder,
-      "Folder for progress, and for the results as JSON, CSV, Markdown, SVG and PDF");
-  auto* resume =
-      command->add_flag("--resume", arguments->resume, "Go on with what --out holds of this run")
+      "Folder for the progress, and for the results as JSON, CSV, Markdown, SVG and PDF");
+  CLI::Option* resume =
+      command
+          ->add_flag("--resume", arguments->resume, "Continue this run from its progress in --out")
           ->needs(folder);
-  auto* shard = command
-                    ->add_option("--shard", arguments->shard,
-                                 "Make one part of the runs, for --combine; never stops early")
-                    ->type_name("I/N")
-                    ->needs(folder);
-  auto* combine = command
-                      ->add_option("--combine", arguments->combine,
-                                   "In place of a study: folders or files of all shards of a run")
-                      ->excludes(shard)
-                      ->excludes(resume);
-  // Shards bring their plan along.
+  CLI::Option* shard =
+      command
+          ->add_option("--shard", arguments->shard,
+                       "Make one part of the runs, for --combine; never stops early")
+          ->type_name("I/N")
+          ->needs(folder);
+  CLI::Option* combine =
+      command
+          ->add_option("--combine", arguments->combine,
+                       "Combine all shards of a run, given as folders or files, instead of a study")
+          ->excludes(shard)
+          ->excludes(resume);
+  // Shards contain their plan.
   for (CLI::Option* option : of_a_run) combine->excludes(option);
-  command->add_flag("--json", arguments->json, "One JSON object in place of tables");
+  add_json_flag(*command, arguments->json);
   command->callback([=, &action] {
     arguments->has_shard = shard->count() > 0;
     action = [=] { return power(*arguments); };

@@ -1,11 +1,10 @@
 #include "app/power_files.hpp"
 
+#include "app/console.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 
 #include <algorithm>
-#include <charconv>
-#include <optional>
 #include <system_error>
 
 #include <fmt/format.h>
@@ -16,15 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostShards = 10'000;
-
-std::optional<int> whole_number(std::string_view text) {
-  int number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  const bool is_whole = error == std::errc{} && end == text.data() + text.size();
-  return is_whole && text.front() != '-' ? std::optional(number) : std::nullopt;
-}
-
 std::vector<fs::path> shards_in(const fs::path& folder) {
   std::vector<fs::path> files;
   std::error_code error;
@@ -33,8 +23,9 @@ std::vector<fs::path> shards_in(const fs::path& folder) {
     if (name.starts_with("shard-") && name.ends_with(".json")) files.push_back(entry.path());
   }
   if (files.empty()) {
-    throw FileError(one_line(folder.string()) +
-                    ": has no shard of a power run (shard-*.json); give the --out of the shards");
+    throw FileError(
+        one_line(folder.string()) +
+        ": contains no shard of a power run (shard-*.json); give the --out folder of the shards");
   }
   std::ranges::sort(files);
   return files;
@@ -50,15 +41,15 @@ void draw(const fs::path& folder, const analysis::Figure& figure, analysis::Figu
 planning::Shard shard_named(std::string_view text) {
   const std::size_t slash = text.find('/');
   if (slash != std::string_view::npos && slash > 0 && slash + 1 < text.size()) {
-    const auto number = whole_number(text.substr(0, slash));
-    const auto count = whole_number(text.substr(slash + 1));
-    if (number && count && *number >= 1 && *number <= *count && *count <= kMostShards) {
+    const auto number = number_in<int>(text.substr(0, slash));
+    const auto count = number_in<int>(text.substr(slash + 1));
+    if (number && count && *number >= 1 && *number <= *count && *count <= planning::kMostShards) {
       return {*number, *count};
     }
   }
-  throw UsageError(
-      one_line(fmt::format("--shard: '{}' is none; give which of how many, from 1/1 to {}/{}",
-                           text.substr(0, 60), kMostShards, kMostShards)));
+  throw UsageError(one_line(
+      fmt::format("--shard: '{}' is not a shard; give its number and the count, from 1/1 to {}/{}",
+                  text.substr(0, 60), planning::kMostShards, planning::kMostShards)));
 }
 
 std::vector<int> sizes_named(std::string_view text) {
@@ -66,11 +57,11 @@ std::vector<int> sizes_named(std::string_view text) {
   for (std::size_t begin = 0; begin <= text.size();) {
     const std::size_t end = std::min(text.find(',', begin), text.size());
     const std::string_view part = text.substr(begin, end - begin);
-    const auto size = part.empty() ? std::nullopt : whole_number(part);
-    if (!size) {
-      throw UsageError(one_line(
-          fmt::format("--participants: '{}' is no number of participants; give some, as 8,12,16",
-                      part.substr(0, 60))));
+    const auto size = number_in<int>(part);
+    if (!size || *size < 0) {
+      throw UsageError(one_line(fmt::format(
+          "--participants: '{}' is not a number of participants; give for instance 8,12,16",
+          part.substr(0, 60))));
     }
     sizes.push_back(*size);
     begin = end + 1;
@@ -90,13 +81,13 @@ planning::PowerProgress taken_up(const fs::path& file, planning::PowerProgress f
   if (!is_there(file)) return fresh;
   if (!resume) {
     throw FileError(one_line(file.string()) +
-                    ": exists already; go on with it by --resume, or give another --out");
+                    ": exists already; continue it with --resume, or give another --out");
   }
   planning::PowerProgress kept = planning::load_progress(file);
   const std::string difference =
       kept.shard == fresh.shard ? planning::first_difference(kept, fresh) : "--shard";
   if (!difference.empty()) {
-    throw FileError(one_line(file.string()) + ": is of another run (" + difference +
+    throw FileError(one_line(file.string()) + ": belongs to another run (" + difference +
                     " differs); resume it with its own arguments, or give another --out");
   }
   return kept;
@@ -104,7 +95,7 @@ planning::PowerProgress taken_up(const fs::path& file, planning::PowerProgress f
 
 void ProgressKeeper::keep(const planning::PowerProgress& progress) {
   constexpr std::chrono::seconds kAtLeast{2};
-  constexpr int kShare = 20;  // of the time at most goes into writing
+  constexpr int kShare = 20;  // writing takes at most 1/20 of the time
   const Clock::time_point begun = Clock::now();
   if (begun < next_ && !planning::is_complete(progress)) return;
   replace_file(file_, planning::progress_json(progress));

@@ -1,4 +1,4 @@
-/// \file Where a power run keeps what it has: progress, shards, results. Format: docs/power.md.
+/// \file The files of a power run: progress, shards, results. Format: docs/power.md.
 #pragma once
 
 #include "analysis/planning/power_progress.hpp"
@@ -13,26 +13,27 @@
 
 namespace touchtrial::app {
 
-/// "3/16" \throws UsageError if it is none, or not 1 <= number <= count <= 10,000
+/// A shard as it is typed: "3/16".
+/// \throws UsageError if the text is anything else, or not 1 <= number <= count <= 10,000
 [[nodiscard]] planning::Shard shard_named(std::string_view text);
 
-/// "8,12,16" \throws UsageError if a part of it is no whole number
+/// Sizes as they are typed: "8,12,16".
+/// \throws UsageError if a part is not a whole number
 [[nodiscard]] std::vector<int> sizes_named(std::string_view text);
 
-/// The file of a run's progress in its folder: "power-progress.json".
+/// The file of a run's progress: "power-progress.json" in its folder.
 [[nodiscard]] std::filesystem::path progress_file(const std::filesystem::path& folder);
-/// Of a shard, also of the only one: "shard-0003-of-0016.json".
+/// The file of a shard, even of the only one: "shard-0003-of-0016.json".
 [[nodiscard]] std::filesystem::path shard_file(const std::filesystem::path& folder,
                                                const planning::Shard& shard);
 
-/// What a file already has of a run.
-/// \param resume  whether there may be one
-/// \return `fresh` if there is none
-/// \throws FileError if there is one and may not be, it is malformed, or of another run
+/// The progress of a run in a file, or `fresh` if there is no file.
+/// \param resume  whether the file may exist
+/// \throws FileError if the file exists and may not, is malformed, or belongs to another run
 [[nodiscard]] planning::PowerProgress taken_up(const std::filesystem::path& file,
                                                planning::PowerProgress fresh, bool resume);
 
-/// Writes progress now and then, and always when it is complete: as often as costs little.
+/// Writes progress as often as it costs little time, and always when it is complete.
 class ProgressKeeper {
  public:
   explicit ProgressKeeper(std::filesystem::path file) : file_(std::move(file)) {}
@@ -43,16 +44,17 @@ class ProgressKeeper {
   using Clock = std::chrono::steady_clock;
 
   std::filesystem::path file_;
-  Clock::time_point next_{};  ///< nothing is written before
+  Clock::time_point next_{};  ///< the earliest time of the next write
 };
 
-/// Files as given, and of folders every "shard-*.json", by name.
-/// \throws FileError if a folder has none, or a file cannot be read
+/// Loads shards from files and from folders, of which it takes every "shard-*.json" by name.
+/// \throws FileError if a folder contains no shard, or a file cannot be read
 [[nodiscard]] std::vector<std::pair<std::filesystem::path, planning::PowerProgress>> load_shards(
     const std::vector<std::filesystem::path>& places);
 
-/// power.json, power.csv, power.md, power.svg and power.pdf. Without gnuplot the last two are left
-/// out, with a line on standard error. \throws FileError
+/// Writes power.json, power.csv, power.md, power.svg and power.pdf. Without gnuplot it warns, and
+/// omits the last two.
+/// \throws FileError if a file cannot be written
 void write_power_results(const std::filesystem::path& folder, const planning::PowerReport& report);
 
 }  // namespace touchtrial::app

@@ -1,24 +1,192 @@
+// prepare: the force fields and the key of a study. Nothing that it prints links a stimulus to its
+// code.
+#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
-#include "app/prepare_explanation.hpp"
+#include "app/study_inputs.hpp"
 #include "core/cipher.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "protocols/design/loop_work_report.hpp"
 #include "protocols/design/prepare.hpp"
+#include "protocols/design/study.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
 namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// Sums over stages, by their state.
+struct Totals {
+  std::array<int, 3> stages{};           ///< by StageState
+  std::array<std::uint64_t, 3> bytes{};  ///< by StageState
+  double seconds = 0.0;
+  std::uint64_t written = 0;  ///< bytes, to the pack's folder
+};
+
+bool is_file(const engine::Stage& stage) {
+  return stage.name == "write field" || stage.name == "pack.json";
+}
+
+void add_stages(const std::vector<engine::Stage>& stages, Totals& totals) {
+  for (const engine::Stage& stage : stages) {
+    const auto state = static_cast<std::size_t>(stage.state);
+    ++totals.stages[state];
+    totals.bytes[state] += stage.bytes;
+    totals.seconds += stage.seconds;
+    if (is_file(stage) && stage.state == engine::StageState::computed)
+      totals.written += stage.bytes;
+  }
+}
+
+Totals totals_of(const design::PrepareReport& report) {
+  Totals totals;
+  for (const design::PreparedStimulus& stimulus : report.stimuli)
+    add_stages(stimulus.stages, totals);
+  add_stages(report.study_stages, totals);
+  const auto skipped = static_cast<std::size_t>(engine::StageState::skipped);
+  for (const design::SkippedWork& work : report.skipped) {
+    ++totals.stages[skipped];
+    totals.bytes[skipped] += work.bytes;
+  }
+  return totals;
+}
+
+std::string bytes_text(std::uint64_t bytes) {
+  constexpr double kKilo = 1e3;
+  const auto number = static_cast<double>(bytes);
+  if (number < 10 * kKilo) return fmt::format("{} B", bytes);
+  if (number < 10 * kKilo * kKilo) return fmt::format("{:.0f} kB", number / kKilo);
+  return fmt::format("{:.0f} MB", number / kKilo / kKilo);
+}
+
+std::string row(std::string_view name, std::string_view state, const std::string& time,
+                std::uint64_t bytes, const std::string& why) {
+  return fmt::format("  {:<15} {:<9} {:>9} {:>9}  {}\n", name, state, time, bytes_text(bytes), why);
+}
+
+std::string rows_of(const std::vector<engine::Stage>& stages) {
+  std::string text;
+  for (const engine::Stage& stage : stages) {
+    const std::string time = stage.state == engine::StageState::skipped
+                                 ? ""
+                                 : fmt::format("{:.1f} ms", 1e3 * stage.seconds);
+    text += row(stage.name, name_of(stage.state), time, stage.bytes, stage.why);
+  }
+  return text;
+}
+
+std::string stimulus_text(const design::PreparedStimulus& stimulus) {
+  return fmt::format("{}, exemplar {}, {}: {}\n", stimulus.class_label, stimulus.exemplar + 1,
+                     stimulus.method, stimulus.reused ? "reused" : "built") +
+         rows_of(stimulus.stages);
+}
+
+std::string totals_text(const Totals& totals) {
+  const auto of = [](engine::StageState state) { return static_cast<std::size_t>(state); };
+  return fmt::format(
+      "computed {} stages in {:.0f} ms, {} written; reused {}, {}; skipped {}, {} not made\n",
+      totals.stages[of(engine::StageState::computed)], 1e3 * totals.seconds,
+      bytes_text(totals.written), totals.stages[of(engine::StageState::reused)],
+      bytes_text(totals.bytes[of(engine::StageState::reused)]),
+      totals.stages[of(engine::StageState::skipped)],
+      bytes_text(totals.bytes[of(engine::StageState::skipped)]));
+}
+
+Json stages_json(const std::vector<engine::Stage>& stages) {
+  Json list = Json::array();
+  for (const engine::Stage& stage : stages) {
+    list.push_back({{"stage", stage.name},
+                    {"state", name_of(stage.state)},
+                    {"why", stage.why},
+                    {"seconds", stage.seconds},
+                    {"bytes", stage.bytes}});
+  }
+  return list;
+}
+
+Json statistics_json(const engine::FieldStatistics& statistics) {
+  return {{"tangential_rms_n", statistics.tangential_rms_n},
+          {"tangential_p999_n", statistics.tangential_p999_n},
+          {"normal_rms_n", statistics.normal_rms_n},
+          {"stiffness_p99_n_per_mm", statistics.stiffness_p99_n_per_mm},
+          {"share_below_1_mm", statistics.share_below_1_mm},
+          {"share_above_250_hz", statistics.share_above_250_hz}};
+}
+
+Json stimulus_json(const design::PreparedStimulus& stimulus) {
+  Json object = {{"class", stimulus.class_label},
+                 {"exemplar", stimulus.exemplar + 1},
+                 {"method", stimulus.method},
+                 {"state", stimulus.reused ? "reused" : "built"},
+                 {"seconds", stimulus.seconds},
+                 {"bytes", stimulus.bytes},
+                 {"gains",
+                  {{"tangential_n", stimulus.gains.tangential_n},
+                   {"normal_n", stimulus.gains.normal_n},
+                   {"height_mm", stimulus.gains.height_mm}}},
+                 {"statistics", statistics_json(stimulus.statistics)}};
+  if (!stimulus.stages.empty()) object["stages"] = stages_json(stimulus.stages);
+  return object;
+}
+
+Json totals_json(const Totals& totals) {
+  Json object = {{"seconds", totals.seconds}, {"bytes_written", totals.written}};
+  for (const engine::StageState state :
+       {engine::StageState::computed, engine::StageState::reused, engine::StageState::skipped}) {
+    const auto i = static_cast<std::size_t>(state);
+    object[std::string(name_of(state))] = {{"stages", totals.stages[i]},
+                                           {"bytes", totals.bytes[i]}};
+  }
+  return object;
+}
+
+/// A block of stages for each stimulus and one for the study, with a line of totals. The report
+/// must have its stages (PrepareOptions::explain).
+std::string explanation_text(const design::PrepareReport& report) {
+  std::string text;
+  for (const design::PreparedStimulus& stimulus : report.stimuli) text += stimulus_text(stimulus);
+  text += "all stimuli\n" + rows_of(report.study_stages);
+  for (const design::SkippedWork& work : report.skipped) {
+    text += row("fields", "skipped", "", work.bytes, work.what + ": " + work.why);
+  }
+  return text + totals_text(totals_of(report));
+}
+
+/// The whole report, with its stages if it has any. Fields: docs/data-dictionary.md,
+/// "prepare --json".
+std::string prepare_json(const design::PrepareReport& report, const design::PackPlace& place) {
+  Json stimuli = Json::array();
+  for (const design::PreparedStimulus& stimulus : report.stimuli)
+    stimuli.push_back(stimulus_json(stimulus));
+  Json skipped = Json::array();
+  for (const design::SkippedWork& work : report.skipped) {
+    skipped.push_back({{"what", work.what}, {"why", work.why}, {"bytes", work.bytes}});
+  }
+  Json object = {{"pack", place.pack.string()},
+                 {"key", place.key.string()},
+                 {"stimuli", stimuli},
+                 {"skipped", skipped},
+                 {"warnings", report.warnings}};
+  if (!report.study_stages.empty()) {
+    object["stages"] = stages_json(report.study_stages);
+    object["totals"] = totals_json(totals_of(report));
+  }
+  return json_text(object);
+}
 
 struct PrepareArguments {
   fs::path study;
@@ -28,19 +196,20 @@ struct PrepareArguments {
   bool loop_work = false;
 };
 
-/// A database that was sealed with the study as it was needs the key as it was.
+/// Keeps the key of an earlier version of the study, which databases that it sealed still need.
 void keep_earlier_key(const design::StudyKey& earlier, const fs::path& path) {
   constexpr std::size_t kSealDigits = 8;
   fs::path kept = path;
   kept += "." + to_hex(design::study_seal(earlier)).substr(0, kSealDigits);
   design::save_study_key(kept, earlier);
   spdlog::warn(
-      "{}: the study has changed since; the earlier key, which databases sealed with it "
-      "need, is kept as {}",
+      "{}: the study has changed; the earlier key is kept as {}, because databases that it sealed "
+      "need it",
       path.string(), kept.string());
 }
 
-/// A study that was prepared before keeps its secrets, so that its codes and fields stay valid.
+/// The key of the study, new or with the secrets of an earlier one, so that codes and fields stay
+/// valid.
 design::StudyKey key_for(const design::Study& study, const fs::path& path) {
   if (!is_there(path)) {
     SystemEntropy entropy;
@@ -61,15 +230,15 @@ design::StudyKey key_for(const design::Study& study, const fs::path& path) {
 }
 
 std::string stimulus_row(const design::PreparedStimulus& stimulus, std::size_t method_width) {
-  const engine::FieldStatistics& figures = stimulus.statistics;
+  const engine::FieldStatistics& statistics = stimulus.statistics;
   return fmt::format(
       "{:<16} {:>8} {:<{}} {:<7} {:>9.4f} {:>9.4f} {:>9.3f} {:>7.1f} % {:>6.1f} {:>6.1f} "
       "{:>6.1f}\n",
       stimulus.class_label, stimulus.exemplar + 1, stimulus.method, method_width,
-      stimulus.reused ? "reused" : "built", figures.tangential_rms_n, figures.tangential_p999_n,
-      figures.stiffness_p99_n_per_mm, 100 * figures.share_below_1_mm,
-      100 * figures.share_above_250_hz[0], 100 * figures.share_above_250_hz[1],
-      100 * figures.share_above_250_hz[2]);
+      stimulus.reused ? "reused" : "built", statistics.tangential_rms_n,
+      statistics.tangential_p999_n, statistics.stiffness_p99_n_per_mm,
+      100 * statistics.share_below_1_mm, 100 * statistics.share_above_250_hz[0],
+      100 * statistics.share_above_250_hz[1], 100 * statistics.share_above_250_hz[2]);
 }
 
 std::string table_of(const design::PrepareReport& report) {
@@ -88,14 +257,14 @@ std::string table_of(const design::PrepareReport& report) {
   return text;
 }
 
-/// One line where all stimuli share their gains, as they do unless they are equalised.
+/// One line: all stimuli share their gains, unless they are equalised.
 std::string gains_of(const design::PrepareReport& report, engine::ModelKind model) {
   if (report.stimuli.empty()) return "";
   const engine::Gains first = report.stimuli.front().gains;
   const bool shared =
       std::all_of(report.stimuli.begin(), report.stimuli.end(),
                   [&](const design::PreparedStimulus& s) { return s.gains == first; });
-  if (!shared) return "gains: each stimulus has its own, so that all are equally strong\n";
+  if (!shared) return "gains: one for each stimulus, so that all are equally strong\n";
   if (model == engine::ModelKind::surface) {
     return fmt::format("gain: height {:.6g} mm per grey level; forces at a load of {} N\n",
                        first.height_mm, engine::kStatedLoadN);
@@ -116,29 +285,27 @@ std::string line_of_totals(const design::PrepareReport& report) {
   return text + "\n";
 }
 
-/// What a hand could gain by going in circles, under the study's model and the other.
+/// The energy that a hand could gain round closed loops, under both models.
 std::string loop_work_table(const design::Study& study) {
   std::string text = fmt::format("\n{:<8} {:>6} {:>12} {:>12} {:>14} {:>14}\n", "model", "loops",
                                  "plane median", "plane worst", "press median", "press worst");
   for (const design::ModelLoopWork& work : design::loop_work_of(study)) {
     text += fmt::format("{:<8} {:>6} {:>9.2g} mJ {:>9.2g} mJ {:>11.2g} mJ {:>11.2g} mJ\n",
-                        work.model == engine::ModelKind::paper ? "paper" : "surface",
-                        work.loops_of_each_kind, work.planar.median_mj, work.planar.worst_mj,
-                        work.press_slide_lift.median_mj, work.press_slide_lift.worst_mj);
+                        design::name_of(work.model), work.loops_of_each_kind, work.planar.median_mj,
+                        work.planar.worst_mj, work.press_slide_lift.median_mj,
+                        work.press_slide_lift.worst_mj);
   }
-  return text + "work round closed loops: circles at a constant depth, and press, slide, lift\n";
+  return text + "work round closed loops: circles at constant depth, and press, slide, lift\n";
 }
 
 int prepare(const PrepareArguments& arguments) {
   const design::Study study = design::load_study(arguments.study);
   design::check_images_exist(study);
   if (study.seed == 0) {
-    spdlog::warn("{}: /seed is 0 or missing; give the study a seed of its own",
+    spdlog::warn("{}: /seed is 0 or missing; give the study its own seed",
                  arguments.study.string());
   }
-  const design::PackPlace place = arguments.pack.empty()
-                                      ? design::default_pack_place(arguments.study)
-                                      : design::pack_place_at(arguments.pack);
+  const design::PackPlace place = pack_place_for(arguments.study, arguments.pack);
   design::StudyKey key = key_for(study, place.key);
   key.pack_folder = place.pack;
   design::save_study_key(place.key, key);
@@ -162,18 +329,17 @@ int prepare(const PrepareArguments& arguments) {
 void add_prepare_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<PrepareArguments>();
   CLI::App* command = program.add_subcommand(
-      "prepare", "Make a study's force fields and its key: only what is missing or changed");
-  command->add_option("STUDY", arguments->study, "Study file")->required();
+      "prepare", "Make a study's force fields and its key, as far as they are missing or changed");
+  add_study_argument(*command, arguments->study);
   command->add_option("--pack", arguments->pack,
-                      "Folder of the pack; the key lies beside it (default: <study>.pack)");
+                      "Folder of the pack; the key is beside it (default: <study>.pack)");
   command->add_flag("--explain", arguments->explain,
-                    "Say stage by stage what was computed, reused or skipped, why, and what it "
+                    "Report for each stage what was computed, reused or skipped, why, and at what "
                     "cost");
-  auto* json =
-      command->add_flag("--json", arguments->json, "One JSON object in place of the tables");
+  CLI::Option* json = add_json_flag(*command, arguments->json);
   command
       ->add_flag("--loop-work", arguments->loop_work,
-                 "Say how much energy a hand could gain round closed loops under each model")
+                 "Report how much energy a hand could gain round closed loops under each model")
       ->excludes(json);
   command->callback([=, &action] { action = [=] { return prepare(*arguments); }; });
 }

@@ -1,9 +1,11 @@
+#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "protocols/design/prepare.hpp"
-#include "protocols/session/registration_page.hpp"
+#include "protocols/session/commitment.hpp"
 
 #include <filesystem>
 #include <memory>
@@ -25,17 +27,17 @@ struct PreregArguments {
 
 int preregister(const PreregArguments& arguments) {
   const design::Study study = design::load_study(arguments.study);
-  design::PackPlace place = arguments.pack.empty() ? design::default_pack_place(arguments.study)
-                                                   : design::pack_place_at(arguments.pack);
+  design::PackPlace place = pack_place_for(arguments.study, arguments.pack);
   if (!arguments.key.empty()) place.key = arguments.key;
   if (!is_there(place.key) || !is_there(place.pack)) {
-    throw UsageError(arguments.study.string() +
-                     ": has not been prepared; run `touchtrial prepare` first, or say where with "
-                     "--pack and --key");
+    throw UsageError(
+        arguments.study.string() +
+        ": is not prepared; run `touchtrial prepare` first, or name the pack and the key "
+        "with --pack and --key");
   }
   if (!arguments.output.empty() && is_there(arguments.output)) {
     throw UsageError(arguments.output.string() +
-                     ": is there already and may have been deposited; choose another name");
+                     ": exists already and may have been deposited; choose another name");
   }
   const design::StudyKey key = design::load_study_key(place.key);
   const engine::Pack pack(place.pack);
@@ -57,10 +59,10 @@ int preregister(const PreregArguments& arguments) {
 
 void add_prereg_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<PreregArguments>();
-  CLI::App* command =
-      program.add_subcommand("prereg", "Write the page to deposit before the first participant");
-  command->add_option("STUDY", arguments->study, "Study file, prepared")->required();
-  command->add_option("--pack", arguments->pack, "Folder of the pack (default: <study>.pack)");
+  CLI::App* command = program.add_subcommand(
+      "prereg", "Write the page to deposit before the first participant comes");
+  add_study_argument(*command, arguments->study);
+  add_pack_option(*command, arguments->pack);
   command->add_option("--key", arguments->key, "Key of the study (default: beside the pack)");
   command->add_option("-o,--output", arguments->output,
                       "Markdown file to write (default: standard output)");

@@ -1,17 +1,14 @@
-#include "analysis/cues/chosen_explorations.hpp"
-#include "analysis/cues/cue_report.hpp"
-#include "analysis/figures/figures.hpp"
 #include "analysis/outcomes.hpp"
-#include "analysis/page/drawn_figures.hpp"
 #include "analysis/page/report_folder.hpp"
 #include "analysis/page/study_document.hpp"
-#include "analysis/report/quality.hpp"
-#include "analysis/report/report.hpp"
+#include "analysis/quality.hpp"
+#include "analysis/results.hpp"
+#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
-#include "app/key_of_database.hpp"
+#include "app/study_inputs.hpp"
 #include "core/errors.hpp"
-#include "protocols/collect/open_study.hpp"
+#include "protocols/collect/collect.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <cstdio>
@@ -22,9 +19,6 @@ namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// More traces than these are read only if somebody asks: it takes seconds.
-constexpr int kTracesUnasked = 2500;
 
 struct ReportArguments {
   fs::path database;
@@ -46,12 +40,12 @@ analysis::Provenance provenance_for(const store::StudyStore& store,
   return analysis::provenance_of(store, collect::study_name(arguments.database.string()));
 }
 
-/// Both show what was presented.
+/// Refuses --trial and --cues yes, which show what was presented.
 void refuse_while_blind(const ReportArguments& arguments) {
   if (arguments.trial.empty() && arguments.cues != "yes") return;
   throw UsageError(one_line(collect::study_name(arguments.database.string())) +
-                   ": not unblinded, and --trial and --cues yes are of outcomes; run `touchtrial "
-                   "close` and `touchtrial unblind`, or leave them out");
+                   ": not unblinded, and --trial and --cues yes show outcomes; run `touchtrial "
+                   "close` and `touchtrial unblind`, or omit them");
 }
 
 int report_quality(const store::StudyStore& store, const ReportArguments& arguments) {
@@ -66,39 +60,29 @@ int report_quality(const store::StudyStore& store, const ReportArguments& argume
   return 0;
 }
 
-bool reads_traces(const ReportArguments& arguments, const analysis::Outcomes& outcomes) {
-  if (arguments.cues != "auto") return arguments.cues == "yes";
-  return !arguments.folder.empty() && analysis::traces_to_read(outcomes) <= kTracesUnasked;
+analysis::ReportWishes wishes_of(const ReportArguments& arguments,
+                                 const analysis::TraceSource& traces) {
+  using Traces = analysis::ReportWishes::Traces;
+  return {.source = &traces,
+          .page = !arguments.folder.empty(),
+          .traces = arguments.cues == "auto"  ? Traces::if_few
+                    : arguments.cues == "yes" ? Traces::yes
+                                              : Traces::no,
+          .trial = arguments.trial,
+          .published_values = arguments.paper_values,
+          .progress = progress_bar("reading traces")};
 }
 
-std::vector<analysis::ExplorationPath> explorations(const store::StudyStore& store,
-                                                    const design::StudyKey& key,
-                                                    const analysis::Outcomes& outcomes,
-                                                    const ReportArguments& arguments) {
-  if (!arguments.trial.empty()) {
-    return {
-        analysis::exploration_named(store, key, outcomes, analysis::trial_name(arguments.trial))};
-  }
-  if (arguments.folder.empty() || !reads_traces(arguments, outcomes)) return {};
-  return analysis::first_explorations(store, key, outcomes);
-}
-
-int write_outcomes(const store::StudyStore& store, const analysis::StudyReport& report,
-                   const std::vector<analysis::ExplorationPath>& paths,
-                   const ReportArguments& arguments) {
-  const analysis::FigureOptions options{
-      .paper_values = arguments.paper_values,
-      .cues = report.cues ? &*report.cues : nullptr,
-      .explorations = paths,
-      .stamp = analysis::further_stamp(report, provenance_for(store, arguments))};
-  const analysis::DrawnFigures figures =
-      analysis::draw_report_figures(analysis::report_figures(report, options));
+int write_outcomes(const store::StudyStore& store, const analysis::Outcomes& outcomes,
+                   const analysis::Results& results, const ReportArguments& arguments) {
+  const analysis::Provenance provenance = provenance_for(store, arguments);
+  const analysis::DrawnFigures figures = analysis::draw_report_figures(
+      results.figures(analysis::further_stamp(outcomes.pilot, provenance)));
   if (!figures.missing.empty()) {
     std::fputs(("touchtrial: warning: without figures: " + figures.missing + "\n").c_str(), stderr);
   }
-  const analysis::Document document =
-      analysis::study_document(report, provenance_for(store, arguments), figures.pictures);
-  analysis::ReportFiles files = analysis::report_files(document, analysis::report_json(report));
+  analysis::ReportFiles files =
+      analysis::report_files(results.document(provenance, figures.pictures), results.json());
   files.insert(figures.files.begin(), figures.files.end());
   write_report(arguments, files);
   return 0;
@@ -116,16 +100,11 @@ int report(const ReportArguments& arguments) {
   }
   const design::StudyKey key = key_of_database(store, arguments.database, arguments.key);
   const analysis::Outcomes outcomes = analysis::load_outcomes(store, key);
-  // First what may be refused.
-  const std::vector<analysis::ExplorationPath> paths =
-      explorations(store, key, outcomes, arguments);
-  analysis::StudyReport study = analysis::make_report(outcomes);
-  if (reads_traces(arguments, outcomes)) {
-    study.cues =
-        analysis::make_cues(store, key, outcomes, {.progress = progress_bar("reading traces")});
-  }
-  if (!arguments.folder.empty()) return write_outcomes(store, study, paths, arguments);
-  print(arguments.json ? analysis::report_json(study) : analysis::report_text(study));
+  const analysis::TraceSource traces{store, key};
+  const auto results =
+      analysis::analysis_of(outcomes.design).results(outcomes, wishes_of(arguments, traces));
+  if (!arguments.folder.empty()) return write_outcomes(store, outcomes, *results, arguments);
+  print(arguments.json ? results->json() : results->text());
   return 0;
 }
 
@@ -134,33 +113,32 @@ int report(const ReportArguments& arguments) {
 void add_report_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<ReportArguments>();
   CLI::App* command = program.add_subcommand(
-      "report", "Accuracy tables; before unblinding, the quality of the data alone");
-  command
-      ->add_option("DB", arguments->database, "Database of the study, or its postgresql:// address")
-      ->check(study_place_validator())
-      ->required();
-  command->add_option("--key", arguments->key, "Key of the study (default: DB.key)");
-  auto* json = command->add_flag("--json", arguments->json, "One JSON object in place of tables");
-  auto* folder = command->add_option(
-      "-o,--out", arguments->folder,
-      "Folder for a page with all tables and figures, the tables as Markdown and "
-      "LaTeX, the figures as SVG and PDF, and results.json");
+      "report", "Accuracy tables; before unblinding, only the quality of the data");
+  add_study_place_argument(*command, arguments->database);
+  add_key_option(*command, arguments->key);
+  CLI::Option* json = add_json_flag(*command, arguments->json);
+  CLI::Option* folder = command->add_option("-o,--out", arguments->folder,
+                                            "Folder for a page with all tables and figures, the "
+                                            "tables as Markdown and LaTeX, the figures "
+                                            "as SVG and PDF, and results.json");
   folder->check(place_validator())->excludes(json);
   command
-      ->add_option("--cues", arguments->cues,
-                   "Read all traces for ideal observers; auto: with --out, up to 2,500 traces")
+      ->add_option(
+          "--cues", arguments->cues,
+          "Read all traces for ideal observers; auto: with --out, if there are at most 2,500")
       ->check(CLI::IsMember({"auto", "yes", "no"}))
       ->capture_default_str();
   command
-      ->add_option("--trial", arguments->trial,
-                   "Trial whose exploration is drawn over its texture, as P01:3; else, if traces "
-                   "are read, each method's first counted one")
+      ->add_option(
+          "--trial", arguments->trial,
+          "Trial whose exploration is drawn over its texture, as P01:3 (default: if traces "
+          "are read, the first counted trial of each method)")
       ->type_name("PARTICIPANT:N")
       ->needs(folder);
   command
       ->add_flag("--paper-values", arguments->paper_values,
-                 "The source paper's accuracies as marks in the figure by class: other images, "
-                 "another device")
+                 "Mark the source paper's accuracies, of other images and another device, in the "
+                 "figure by class")
       ->needs(folder);
   command->callback([=, &action] { action = [=] { return report(*arguments); }; });
 }

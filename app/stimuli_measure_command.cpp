@@ -1,9 +1,11 @@
+// stimuli measure: numbers that describe pictures.
 #include "analysis/measures/picture_set.hpp"
+#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "core/errors.hpp"
 #include "engine/image_file.hpp"
-#include "engine/metrics/spectrum_slope.hpp"
+#include "engine/metrics/picture_statistics.hpp"
 #include "protocols/design/study.hpp"
 
 #include <algorithm>
@@ -27,10 +29,10 @@ struct MeasureArguments {
   bool json = false;
 };
 
-/// Pictures, and by whose rules forces are made of them.
+/// Pictures, and the rules by which forces are made of them.
 struct MeasureJob {
   std::vector<analysis::LabelledPicture> pictures;
-  std::optional<design::Study> rules;  ///< the first study that was given
+  std::optional<design::Study> rules;  ///< the first study of the command line
 };
 
 bool is_folder(const fs::path& path) {
@@ -38,19 +40,10 @@ bool is_folder(const fs::path& path) {
   return fs::is_directory(path, error);
 }
 
-bool has_ending(const fs::path& path, std::string_view wanted) {
-  std::string ending = path.extension().string();
-  std::ranges::transform(ending, ending.begin(), [](unsigned char letter) {
-    return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a')
-                                          : static_cast<char>(letter);
-  });
-  return ending == wanted;
-}
-
 bool is_picture(const fs::path& path) {
   constexpr std::array<std::string_view, 9> kEndings = {".png", ".jpg", ".jpeg", ".tif", ".tiff",
                                                         ".bmp", ".pgm", ".ppm",  ".pnm"};
-  return std::ranges::any_of(kEndings, [&](auto ending) { return has_ending(path, ending); });
+  return std::ranges::find(kEndings, ending_of(path)) != kEndings.end();
 }
 
 void add_picture(MeasureJob& job, const std::string& set, const std::string& label,
@@ -84,7 +77,7 @@ std::vector<fs::path> sorted_entries(const fs::path& folder) {
   return entries;
 }
 
-/// A folder in it is a class of its name; a picture in it is a class by itself.
+/// Adds the pictures of a folder: each folder in it is a class, and each picture in it is a class.
 void add_folder(MeasureJob& job, const fs::path& folder, const std::string& set) {
   const std::size_t before = job.pictures.size();
   for (const fs::path& entry : sorted_entries(folder)) {
@@ -97,7 +90,8 @@ void add_folder(MeasureJob& job, const fs::path& folder, const std::string& set)
     }
   }
   if (job.pictures.size() == before) {
-    throw FileError(one_line(folder.string()) + ": holds no picture; give a folder of photographs");
+    throw FileError(one_line(folder.string()) +
+                    ": contains no picture; give a folder of photographs");
   }
 }
 
@@ -106,7 +100,7 @@ MeasureJob job_of(const MeasureArguments& arguments) {
   for (const fs::path& input : arguments.inputs) {
     if (is_folder(input)) {
       add_folder(job, input, input.string());
-    } else if (has_ending(input, ".json")) {
+    } else if (ending_of(input) == ".json") {
       add_study(job, input);
     } else {
       add_picture(job, "pictures", input.stem().string(), input);
@@ -144,19 +138,18 @@ void add_stimuli_measure_command(CLI::App& stimuli, Action& action) {
   auto arguments = std::make_shared<MeasureArguments>();
   CLI::App* command = stimuli.add_subcommand(
       "measure",
-      "Figures of pictures: co-occurrence, spectrum, likeness, force, and how well force "
-      "alone tells classes apart");
+      "Measure pictures: co-occurrence, spectrum, similarity, force, and how well force alone "
+      "distinguishes classes");
   command
       ->add_option("STUDY|IMAGE|FOLDER", arguments->inputs,
-                   "Study files, pictures (each a class), or folders of them (folders in a folder "
-                   "are classes)")
+                   "Study files, pictures (each a class), or folders of pictures (folders in a "
+                   "folder are classes)")
       ->required()
       ->check(CLI::ExistingPath);
   command
-      ->add_option("--photographs", arguments->photographs,
-                   "A folder of photographs to put beside them")
+      ->add_option("--photographs", arguments->photographs, "Folder of photographs to compare with")
       ->check(CLI::ExistingDirectory);
-  command->add_flag("--json", arguments->json, "One JSON object in place of tables");
+  add_json_flag(*command, arguments->json);
   command->callback([=, &action] { action = [=] { return measure(*arguments); }; });
 }
 

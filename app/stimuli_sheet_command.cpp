@@ -1,12 +1,14 @@
+// stimuli sheet: a contact sheet of a prepared study.
 #include "analysis/figures/gnuplot.hpp"
 #include "analysis/sheet/stimulus_sheet.hpp"
+#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "protocols/design/prepare.hpp"
 
-#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -17,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Side of the pictures; smaller where there are many, for documents that open.
+/// Side of the pictures; smaller for many pictures, so that the document opens.
 constexpr int kSidePx = 480;
 constexpr int kSideOfManyPx = 240;
 constexpr std::size_t kMany = 100;
@@ -30,29 +32,27 @@ struct SheetArguments {
 };
 
 std::string kind_of(const fs::path& output) {
-  std::string ending = output.extension().string();
-  std::ranges::transform(ending, ending.begin(),
-                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const std::string ending = ending_of(output);
   if (ending == ".png" || ending == ".pdf" || ending == ".html") return ending;
   throw UsageError("stimuli sheet: " + one_line(output.string()) +
-                   ": sheets are PNG, PDF or HTML; end it in .png, .pdf or .html");
+                   ": sheets are PNG, PDF or HTML; give a name that ends in .png, .pdf or .html");
 }
 
 void refuse_input(const fs::path& output, const fs::path& input) {
   std::error_code ignored;
   if (!fs::equivalent(output, input, ignored)) return;
   throw UsageError("stimuli sheet: " + one_line(output.string()) +
-                   " is a file that the sheet is made of; give another -o");
+                   " is an input of the sheet; give another -o");
 }
 
 design::StudyKey key_of(const design::Study& study, const fs::path& path) {
   if (!is_there(path)) {
     throw FileError(one_line(path.string()) +
-                    ": there is no key, and a sheet is made with the study's key only; run "
-                    "touchtrial prepare, or name it with --key");
+                    ": there is no key, which a sheet needs; run touchtrial prepare, or name the "
+                    "key with --key");
   }
   const design::StudyKey stored = design::load_study_key(path);
-  // The key may lie elsewhere by now, on a stick in a drawer: pictures are found from the study.
+  // The key may be elsewhere, for instance on a USB stick: pictures are found from the study file.
   design::StudyKey key = design::rekeyed(stored, study);
   if (design::study_seal(key) != design::study_seal(stored)) {
     throw VerificationError(one_line(path.string()) + ": is not the key of " + study.source +
@@ -61,7 +61,7 @@ design::StudyKey key_of(const design::Study& study, const fs::path& path) {
   return key;
 }
 
-/// Whatever is missing is said before hours are spent on pictures.
+/// Checks everything that may be missing before the pictures take hours.
 void check_output(const SheetArguments& arguments, const design::Study& study,
                   const fs::path& key) {
   const std::string kind = kind_of(arguments.output);
@@ -75,9 +75,7 @@ void check_output(const SheetArguments& arguments, const design::Study& study,
 
 int draw_sheet(const SheetArguments& arguments) {
   const design::Study study = design::load_study(arguments.study);
-  const design::PackPlace place = arguments.pack.empty()
-                                      ? design::default_pack_place(arguments.study)
-                                      : design::pack_place_at(arguments.pack);
+  const design::PackPlace place = pack_place_for(arguments.study, arguments.pack);
   const fs::path key_path = arguments.key.empty() ? place.key : arguments.key;
   check_output(arguments, study, key_path);
   const design::StudyKey key = key_of(study, key_path);
@@ -91,7 +89,7 @@ int draw_sheet(const SheetArguments& arguments) {
   if (kind == ".html")
     replace_file(arguments.output, analysis::sheet_html(sheet), FileMode::owner_only);
   print("sheet " + arguments.output.string() +
-        " (unblinds whoever reads it; keep it with the key)\n");
+        " (it unblinds everybody who reads it; keep it with the key)\n");
   return 0;
 }
 
@@ -100,12 +98,12 @@ int draw_sheet(const SheetArguments& arguments) {
 void add_stimuli_sheet_command(CLI::App& stimuli, Action& action) {
   auto arguments = std::make_shared<SheetArguments>();
   CLI::App* command = stimuli.add_subcommand(
-      "sheet", "A contact sheet of a prepared study for the lab book; it unblinds");
-  command->add_option("STUDY", arguments->study, "Study file")->required();
+      "sheet", "Draw a contact sheet of a prepared study for the lab book; it unblinds");
+  add_study_argument(*command, arguments->study);
   command->add_option("-o,--output", arguments->output, "PNG, PDF or HTML file to write")
       ->required();
-  command->add_option("--key", arguments->key, "Key of the study (default: the pack's)");
-  command->add_option("--pack", arguments->pack, "Folder of the pack (default: <study>.pack)");
+  command->add_option("--key", arguments->key, "Key of the study (default: beside the pack)");
+  add_pack_option(*command, arguments->pack);
   command->callback([=, &action] { action = [=] { return draw_sheet(*arguments); }; });
 }
 

@@ -1,26 +1,151 @@
-// sync: a station's finished sessions, into a PostgreSQL database.
+// sync: pushes a station's finished sessions into a PostgreSQL database.
 #include "analysis/collection.hpp"
+#include "analysis/text_figures.hpp"
+#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
-#include "app/key_of_database.hpp"
-#include "app/sync_summary.hpp"
+#include "app/study_inputs.hpp"
 #include "core/errors.hpp"
+#include "core/files.hpp"
 #include "protocols/collect/collect.hpp"
+#include "protocols/collect/enrolment_balance.hpp"
 #include "protocols/collect/server_address.hpp"
 #include "protocols/collect/station_push.hpp"
-#include "protocols/store/damaged_store.hpp"
+#include "protocols/store/damage.hpp"
 #include "protocols/store/study_store.hpp"
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
-#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace touchtrial::app {
 namespace {
 
+using nlohmann::json;
 namespace fs = std::filesystem;
+
+struct StationSummary {
+  std::string file;
+  collect::PushReport report;
+};
+
+struct SyncSummary {
+  std::string server;  ///< without the user
+  bool dry_run = false;
+  std::vector<StationSummary> stations{};
+  collect::EnrolmentBalance balance{};  ///< of all sessions on the server
+  std::string balance_unknown{};        ///< why the balance is unknown; empty if it is known
+};
+
+json sessions_json(const std::vector<collect::PushedSession>& sessions) {
+  json list = json::array();
+  for (const collect::PushedSession& session : sessions) {
+    list.push_back({{"session", session.session},
+                    {"participant", session.participant},
+                    {"enrolment", session.enrolment}});
+  }
+  return list;
+}
+
+json station_json(const StationSummary& summary) {
+  const collect::PushReport& report = summary.report;
+  return {{"file", summary.file},
+          {"station", report.station},
+          {"pushed", sessions_json(report.pushed)},
+          {"already_there", report.already_there},
+          {"left_open", sessions_json(report.left_open)},
+          {"cut_short", sessions_json(report.cut_short)},
+          {"chain_events", report.chain_events},
+          {"ahead", report.ahead},
+          {"keys_restored", report.keys_restored},
+          {"reconnections", report.reconnections}};
+}
+
+json balance_json(const collect::EnrolmentBalance& balance) {
+  json stations = json::object();
+  for (const auto& [station, count] : balance.stations) stations[std::to_string(station)] = count;
+  return {{"stations", stations},       {"method_rows", balance.rows},
+          {"gaps", balance.gaps},       {"gap_count", balance.gap_count},
+          {"highest", balance.highest}, {"imbalances", collect::imbalances(balance)}};
+}
+
+std::string sync_json(const SyncSummary& summary) {
+  json stations = json::array();
+  for (const StationSummary& station : summary.stations) stations.push_back(station_json(station));
+  const json object = {
+      {"server", summary.server},
+      {"dry_run", summary.dry_run},
+      {"stations", stations},
+      {"balance", summary.balance_unknown.empty() ? balance_json(summary.balance)
+                                                  : json{{"unknown", summary.balance_unknown}}}};
+  return json_text(object);
+}
+
+std::string participants(const std::vector<collect::PushedSession>& sessions) {
+  std::string names;
+  for (const collect::PushedSession& session : sessions) {
+    names += (names.empty() ? "" : ", ") + session.participant;
+  }
+  return names;
+}
+
+std::string counted(const std::vector<collect::PushedSession>& sessions) {
+  return analysis::counted(static_cast<std::int64_t>(sessions.size()), "session");
+}
+
+std::string station_text(const StationSummary& summary, bool dry_run) {
+  const collect::PushReport& report = summary.report;
+  std::string text = fmt::format("{}: {} {}, {} there before", summary.file, counted(report.pushed),
+                                 dry_run ? "to push" : "pushed", report.already_there);
+  if (report.station > 0) text += fmt::format(" (station {})", report.station);
+  text += "\n";
+  if (!report.left_open.empty()) {
+    text += fmt::format("{}: {} not finished and left for later: {}\n", summary.file,
+                        counted(report.left_open), participants(report.left_open));
+  }
+  if (!report.cut_short.empty()) {
+    text += fmt::format(
+        "{}: {} replaced or withdrawn before the end; {} not pushed and cannot be continued: {}\n",
+        summary.file, counted(report.cut_short),
+        report.cut_short.size() == 1 ? "it was" : "they were", participants(report.cut_short));
+  }
+  if (report.ahead > 0) {
+    text += fmt::format(
+        "{}: is an older copy: the server has {} more events of its file chain; do not record in "
+        "it any more\n",
+        summary.file, report.ahead);
+  }
+  if (report.keys_restored > 0) {
+    text +=
+        fmt::format("{}: restored {} key{} that somebody had deleted or changed on the server\n",
+                    summary.file, report.keys_restored, report.keys_restored == 1 ? "" : "s");
+  }
+  if (report.reconnections > 0) {
+    text += fmt::format("{}: lost the connection; {} attempt{} to reconnect\n", summary.file,
+                        report.reconnections, report.reconnections == 1 ? "" : "s");
+  }
+  return text;
+}
+
+std::string sync_text(const SyncSummary& summary) {
+  std::string text =
+      summary.server + (summary.dry_run ? " (dry run: nothing was changed)\n" : "\n");
+  for (const StationSummary& station : summary.stations) {
+    text += station_text(station, summary.dry_run);
+  }
+  if (!summary.balance_unknown.empty()) {
+    return text + "balance: unknown (" + summary.balance_unknown + ")\n";
+  }
+  for (const std::string& line : collect::imbalances(summary.balance))
+    text += "imbalance: " + line + "\n";
+  return text;
+}
 
 struct SyncArguments {
   fs::path database;
@@ -30,7 +155,7 @@ struct SyncArguments {
   bool json = false;
 };
 
-/// What does not hold here must not be passed on.
+/// Refuses to push a database whose chains do not hold.
 void verify(const store::StudyStore& store, const fs::path& database) {
   const std::optional<store::ChainFault> fault = store.first_fault();
   if (!fault) return;
@@ -38,20 +163,19 @@ void verify(const store::StudyStore& store, const fs::path& database) {
                                                 : "session " + std::to_string(fault->session);
   throw VerificationError(one_line(database.string() + ": " + place + ", event " +
                                    std::to_string(fault->sequence) + ": " + fault->what) +
-                          "; nothing was pushed, restore the file from a backup");
+                          "; nothing was pushed; restore the file from a backup");
 }
 
-/// The key that is named, or the one beside the database if it is there.
+/// The key that is named, or the one beside the database if it exists.
 std::optional<design::StudyKey> key_for(const store::StudyStore& store,
                                         const SyncArguments& arguments) {
-  std::error_code error;
-  const bool is_there = fs::exists(key_path_for(arguments.database, arguments.key), error);
-  if (arguments.key.empty() && !is_there) return std::nullopt;
+  if (arguments.key.empty() && !is_there(key_path_for(arguments.database, {}))) return std::nullopt;
   return key_of_database(store, arguments.database, arguments.key);
 }
 
-/// All is pushed when this is asked: a connection that is lost now must not hide that.
-/// \throws DamagedStore if what is there cannot be believed
+/// Sets the summary's balance. A connection that is lost now must not hide that everything has been
+/// pushed.
+/// \throws DamagedStore if the server's data are damaged
 void ask_balance(const collect::ServerAddress& server, int method_orders, SyncSummary& summary) {
   for (int attempt = 0; attempt < 2; ++attempt) {
     try {
@@ -93,7 +217,7 @@ int sync(const SyncArguments& arguments) {
     ask_balance(server, method_orders, summary);
   } catch (const store::DamagedStore& error) {
     summary.balance_unknown = error.what();
-    print_summary();  // what was pushed is there
+    print_summary();  // the sessions have been pushed
     throw;
   }
   print_summary();
@@ -106,17 +230,18 @@ void add_sync_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<SyncArguments>();
   CLI::App* command =
       program.add_subcommand("sync", "Push finished sessions into a PostgreSQL database");
-  command->add_option("DB", arguments->database, "Database of the station")->required();
+  add_database_argument(*command, arguments->database, "Database of the station");
   command
       ->add_option("--to", arguments->to,
-                   "postgresql://USER@HOST/DATABASE, without a password: that is taken from "
+                   "postgresql://USER@HOST/DATABASE, without a password, which comes from "
                    "~/.pgpass, PGPASSWORD or a service file")
       ->required();
   command->add_option("--key", arguments->key,
                       "Key of the study, to open the sealed ends of sessions (default: DB.key, if "
-                      "there)");
-  command->add_flag("--dry-run", arguments->dry_run, "Look what would be pushed; change nothing");
-  command->add_flag("--json", arguments->json, "Summary as one JSON object");
+                      "it exists)");
+  command->add_flag("--dry-run", arguments->dry_run,
+                    "Show what would be pushed, and change nothing");
+  add_json_flag(*command, arguments->json);
   command->callback([=, &action] { action = [=] { return sync(*arguments); }; });
 }
 

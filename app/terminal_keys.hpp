@@ -1,26 +1,27 @@
-/// \file Keys as they are pressed, without waiting for the end of a line. One source file a
-/// platform.
+/// \file Keys as they are pressed, without waiting for the end of a line. Each platform has its own
+/// source file.
 #pragma once
 
 #include <optional>
 
 namespace touchtrial::app {
 
-/// Reads standard input without ever waiting. On a terminal that the program has to itself, keys
-/// come one by one and are not shown, until this is destroyed; Ctrl-C stays a signal, Ctrl-Z is
-/// none, because a program that sleeps cannot let go. From a pipe or file come its characters; its
-/// end is no key. One at a time in a program.
+/// Reads standard input and never waits. While this object lives, keys on the program's own
+/// terminal come one by one and are not shown. Ctrl-C remains a signal; Ctrl-Z does not, because a
+/// suspended program cannot release a force. A pipe or file yields its characters, and nothing
+/// after its end. One object at a time.
 class TerminalKeys {
  public:
   TerminalKeys();
-  /// The terminal is as it was.
+  /// Restores the terminal.
   ~TerminalKeys();
-  /// The same for whoever dies before: safe in a signal handler, and when there is nothing to do.
+  /// Restores the terminal before the program is killed. Safe in a signal handler, and without an
+  /// object.
   static void restore() noexcept;
   TerminalKeys(const TerminalKeys&) = delete;
   TerminalKeys& operator=(const TerminalKeys&) = delete;
 
-  /// The next key that was pressed, if there is one.
+  /// The next key, if one was pressed.
   [[nodiscard]] std::optional<char> next();
 
  private:

@@ -10,7 +10,7 @@ namespace touchtrial::app {
 
 namespace {
 
-/// What a signal handler sees: written before `is_changed`, read after it.
+/// Read by signal handlers: written before `is_changed` is set, and read after it.
 termios terminal_before;
 std::atomic<bool> is_changed{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
@@ -18,7 +18,7 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 }  // namespace
 
 TerminalKeys::TerminalKeys() {
-  // In the background a change of the terminal would stop the program.
+  // A program in the background would be stopped if it changed the terminal.
   if (::isatty(STDIN_FILENO) == 0 || ::tcgetpgrp(STDIN_FILENO) != ::getpgrp()) return;
   if (::tcgetattr(STDIN_FILENO, &terminal_before) != 0) return;
   termios keys = terminal_before;
@@ -26,7 +26,7 @@ TerminalKeys::TerminalKeys() {
   keys.c_cc[VMIN] = 0;
   keys.c_cc[VTIME] = 0;
   keys.c_cc[VSUSP] = _POSIX_VDISABLE;
-  // Before the change: a signal between the two restores what is still so.
+  // Set before the change: a signal in between restores the unchanged terminal.
   is_changed.store(true);
   if (::tcsetattr(STDIN_FILENO, TCSANOW, &keys) != 0) is_changed.store(false);
 }

@@ -1,9 +1,11 @@
 #include "analysis/verification/study_files.hpp"
+#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/hash.hpp"
-#include "protocols/collect/open_study.hpp"
+#include "protocols/collect/collect.hpp"
 #include "protocols/collect/server_address.hpp"
 
 #include <filesystem>
@@ -29,12 +31,12 @@ std::optional<Digest> head_of(const VerifyArguments& arguments) {
   const std::optional<Digest> head = digest_from_hex(arguments.head);
   if (!head) {
     throw UsageError(
-        "--head: is no hash of 64 hexadecimal digits; give the one that verify printed");
+        "--head: is not a hash of 64 hexadecimal digits; give one that verify printed");
   }
   return head;
 }
 
-/// On a server there is no key beside a study.
+/// The key file; empty for a study on a server, which has none beside it.
 fs::path key_for(const VerifyArguments& arguments) {
   if (arguments.key.empty() && collect::is_address(arguments.database.string())) return {};
   return key_path_for(arguments.database, arguments.key);
@@ -60,16 +62,14 @@ int verify(const VerifyArguments& arguments) {
 void add_verify_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<VerifyArguments>();
   CLI::App* command = program.add_subcommand(
-      "verify", "Hold chain, seal, schedule, payloads and pack against each other");
-  command
-      ->add_option("DB", arguments->database, "Database of the study, or its postgresql:// address")
-      ->check(study_place_validator())
-      ->required();
-  command->add_option("--key", arguments->key, "Key of the study (default: DB.key, if there)");
-  command->add_option("--pack", arguments->pack, "Pack of the study (default: where the key says)");
+      "verify", "Check chain, seal, schedule, payloads and pack against each other");
+  add_study_place_argument(*command, arguments->database);
+  command->add_option("--key", arguments->key, "Key of the study (default: DB.key, if it exists)");
+  command->add_option("--pack", arguments->pack,
+                      "Pack of the study (default: the one that the key names)");
   command->add_option("--head", arguments->head,
-                      "A hash that was once the head of the file's chain, and must still be on it");
-  command->add_flag("--json", arguments->json, "One JSON object in place of lines");
+                      "A former head of the file's chain, which the chain must still contain");
+  add_json_flag(*command, arguments->json);
   command->callback([=, &action] { action = [=] { return verify(*arguments); }; });
 }
 

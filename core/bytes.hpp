@@ -1,4 +1,4 @@
-/// \file Plain byte buffers and their hexadecimal form.
+/// \file Byte buffers, and bytes written as text: hexadecimal and base64, both by libsodium.
 #pragma once
 
 #include <cstddef>
@@ -14,12 +14,12 @@ namespace touchtrial {
 using Bytes = std::vector<std::uint8_t>;
 using ByteView = std::span<const std::uint8_t>;
 
-/// The bytes of a text, not copied.
+/// The bytes of a text, without a copy.
 [[nodiscard]] inline ByteView bytes_of(std::string_view text) noexcept {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
 }
 
-/// The text of some bytes.
+/// The bytes as text, unchanged.
 [[nodiscard]] inline std::string text_of(ByteView bytes) {
   return {bytes.begin(), bytes.end()};
 }
@@ -27,7 +27,11 @@ using ByteView = std::span<const std::uint8_t>;
 /// Lower-case hexadecimal, two digits a byte.
 [[nodiscard]] std::string to_hex(ByteView bytes);
 
-/// \return the bytes, or nothing if `hex` has an odd length or any other character
+/// \return the bytes, or nothing if `hex` has an odd length or a character that is no hexadecimal
+///   digit
 [[nodiscard]] std::optional<Bytes> from_hex(std::string_view hex);
+
+/// Base64 with the standard alphabet, padded (RFC 4648, section 4).
+[[nodiscard]] std::string to_base64(ByteView bytes);
 
 }  // namespace touchtrial

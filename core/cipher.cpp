@@ -13,7 +13,7 @@ constexpr std::size_t kTagSize = crypto_aead_xchacha20poly1305_ietf_ABYTES;
 
 Bytes padded(ByteView plaintext, std::size_t multiple) {
   if (multiple == 0) throw std::invalid_argument("seal: padded_size must be at least 1");
-  // One mark byte, then zeros (ISO/IEC 7816-4), so that the padding can be told from the text.
+  // One mark byte, then zeros (ISO/IEC 7816-4): the padding can then be removed without doubt.
   const std::size_t size = (plaintext.size() / multiple + 1) * multiple;
   Bytes bytes(size, 0);
   std::copy(plaintext.begin(), plaintext.end(), bytes.begin());

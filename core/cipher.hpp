@@ -1,5 +1,5 @@
-/// \file Sealed boxes for what must not be read before unblinding, and where secrets come from.
-/// XChaCha20-Poly1305 (IETF) from libsodium. All functions may be called from any thread.
+/// \file Encrypts what must stay hidden until unblinding, and draws the secrets for it.
+/// XChaCha20-Poly1305 (IETF) by libsodium. All functions are thread-safe.
 #pragma once
 
 #include "core/bytes.hpp"
@@ -12,37 +12,40 @@ namespace touchtrial {
 using SecretKey = Digest;  ///< 32 secret bytes
 
 /// Encrypts and authenticates. The nonce is a keyed hash of context and plaintext, so equal input
-/// gives equal output and no nonce is ever used for two different messages under one key; callers
-/// give every message its own context (chain, sequence), so equal messages stay unlinkable.
-/// \param context  authenticated, not stored: the same bytes must be given to `unseal`
-/// \param padded_size  the plaintext is padded to a multiple of this many bytes, >= 1, so that the
-///   length tells nothing finer
+/// gives equal output, and two different messages under one key never share a nonce. Callers give
+/// every message its own context (chain, sequence), so equal messages stay unlinkable.
+/// \param context  authenticated, not stored: `unseal` needs the same bytes
+/// \param padded_size  bytes, >= 1: the plaintext is padded to a multiple of it, so that the length
+///   reveals nothing finer
 /// \return nonce, ciphertext and tag in one buffer
+/// \throws std::invalid_argument if padded_size is 0
 [[nodiscard]] Bytes seal(const SecretKey& key, std::string_view context, ByteView plaintext,
                          std::size_t padded_size = 256);
 
+/// Opens what `seal` returned.
 /// \return the plaintext, or nothing if key, context, padding or a byte of the box is wrong
+/// \throws std::invalid_argument if padded_size is 0
 [[nodiscard]] std::optional<Bytes> unseal(const SecretKey& key, std::string_view context,
                                           ByteView box, std::size_t padded_size = 256);
 
-/// A key for one purpose, derived from another; `purpose` is part of the file formats.
+/// Derives the key for one purpose from another key. The purposes are part of the file formats.
 [[nodiscard]] SecretKey derive_key(const SecretKey& key, std::string_view purpose);
 
-/// Where codes and secrets come from.
+/// A source of codes and secrets.
 class Entropy {
  public:
   virtual ~Entropy() = default;
-  /// 32 fresh bytes; `purpose` separates draws of a seeded source.
+  /// 32 fresh bytes. A seeded source gives different bytes for different purposes.
   [[nodiscard]] virtual SecretKey secret(std::string_view purpose) = 0;
 };
 
-/// The operating system's generator: what real studies use.
+/// The operating system's generator, for real studies.
 class SystemEntropy final : public Entropy {
  public:
   [[nodiscard]] SecretKey secret(std::string_view purpose) override;
 };
 
-/// A function of a seed and the purpose alone: what simulated studies use, and tests.
+/// Depends on a seed and the purpose alone. For simulated studies and tests.
 class SeededEntropy final : public Entropy {
  public:
   explicit SeededEntropy(std::uint64_t seed) : seed_(seed) {}

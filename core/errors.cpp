@@ -11,8 +11,8 @@ unsigned byte_at(std::string_view text, std::size_t at) {
   return static_cast<unsigned char>(text[at]);
 }
 
-/// Lead bytes of one length, and the second bytes that may follow them: the others are overlong,
-/// surrogates, or beyond Unicode (Unicode 15, table 3-7).
+/// A range of lead bytes, and the range of second bytes that may follow them. All other pairs are
+/// overlong, surrogates, or beyond Unicode (Unicode 15, table 3-7).
 struct LeadBytes {
   unsigned first, last;
   unsigned second_first, second_last;
@@ -40,7 +40,7 @@ bool continues(std::string_view rest, const LeadBytes& lead) {
   return true;
 }
 
-/// \return bytes of the character that `rest` begins with; 0 if that is not UTF-8
+/// \return the length in bytes of the character at the start of `rest`; 0 if it is not UTF-8
 std::size_t character_length(std::string_view rest) {
   const unsigned first = byte_at(rest, 0);
   for (const LeadBytes& lead : kLeadBytes) {

@@ -1,4 +1,4 @@
-/// \file Every error that a user can cause or meet. One line each: what, where, remedy.
+/// \file The errors that a user can cause or meet. Each is one line: what, where, remedy.
 #pragma once
 
 #include <stdexcept>
@@ -13,45 +13,46 @@ class Error : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A command called with arguments that cannot be meant. Exit code 2.
+/// A command was called with invalid arguments. Exit code 2.
 class UsageError : public Error {
  public:
   using Error::Error;
 };
 
-/// A study or subject file that breaks its schema. The message holds the file and the JSON
-/// pointer. Exit code 2.
+/// A study or subject file violates its schema. The message names the file and the JSON pointer.
+/// Exit code 2.
 class StudyError : public Error {
  public:
   using Error::Error;
 };
 
-/// A file that is missing, unreadable, truncated, of the wrong kind, or cannot be written.
+/// A file is missing, unreadable, truncated, of the wrong kind, or cannot be written.
 class FileError : public Error {
  public:
   using Error::Error;
 };
 
-/// A database that cannot be opened, belongs to another study, or refuses a write.
+/// A database cannot be opened, belongs to another study, or refuses a write.
 class StoreError : public Error {
  public:
   using Error::Error;
 };
 
-/// A device that is absent, faulty or not calibrated.
+/// A device is absent, faulty or not calibrated.
 class DeviceError : public Error {
  public:
   using Error::Error;
 };
 
-/// Evidence that does not hold: a broken chain, seal, key, pack or schedule. Exit code 3.
+/// Evidence fails its check: a broken chain, seal, key, pack or schedule. Exit code 3.
 class VerificationError : public Error {
  public:
   using Error::Error;
 };
 
-/// \return `text` on one line of UTF-8: control characters become spaces, bytes that are not UTF-8
-///   `\xNN`, so that no file name or value can break a message, or the JSON that it is put into.
+/// Makes a text safe for a message and for JSON, whatever file name or value it contains.
+/// \return `text` on one line of UTF-8: control characters become spaces, and bytes that are not
+///   UTF-8 become `\xNN`
 [[nodiscard]] std::string one_line(const std::string& text);
 
 }  // namespace touchtrial

@@ -22,7 +22,7 @@ namespace {
                   std::generic_category().message(error) + "); " + remedy);
 }
 
-/// An open descriptor that is closed on every way out.
+/// Closes a descriptor at the end of its scope.
 class Descriptor {
  public:
   explicit Descriptor(int number) noexcept : number_(number) {}
@@ -47,7 +47,7 @@ bool write_all(int descriptor, ByteView content) {
   return true;
 }
 
-/// What is to be replaced: the file that a link leads to, never a link, device or pipe itself.
+/// The file to replace: the target of a link, never a link, device or pipe itself.
 std::filesystem::path replaceable(const std::filesystem::path& path) {
   std::error_code error;
   const auto status = std::filesystem::symlink_status(path, error);
@@ -55,14 +55,14 @@ std::filesystem::path replaceable(const std::filesystem::path& path) {
   if (std::filesystem::is_symlink(status)) {
     const std::filesystem::path target = std::filesystem::canonical(path, error);
     if (!error) return replaceable(target);
-    fail(path, "is a link that leads nowhere", error.value(), "give the path of a file");
+    fail(path, "is a link to a file that does not exist", error.value(), "give the path of a file");
   }
   if (std::filesystem::is_regular_file(status)) return path;
   throw FileError(one_line(path.string()) +
-                  ": is a folder, device or pipe and is not replaced; give the path of a file");
+                  ": is a folder, device or pipe, not a file; give the path of a file");
 }
 
-/// Makes the rename itself survive a power cut.
+/// Makes a rename in the folder survive a power cut.
 void sync_folder(const std::filesystem::path& folder) {
   const Descriptor descriptor(
       ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY));
@@ -121,7 +121,7 @@ void replace_file(const std::filesystem::path& path, std::string_view content, F
 bool move_to_free_name(const std::filesystem::path& file, const std::filesystem::path& name) {
   int failed = ::renameat2(AT_FDCWD, file.c_str(), AT_FDCWD, name.c_str(), RENAME_NOREPLACE);
   if (failed != 0 && (errno == EINVAL || errno == ENOSYS)) {
-    // A file system without such a rename: an empty file takes the name first.
+    // The file system has no such rename: an empty file claims the name first.
     const Descriptor claim(::open(name.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
     failed = claim.number() < 0 ? -1 : std::rename(file.c_str(), name.c_str());
   }
@@ -138,9 +138,9 @@ void make_folder(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder, error);
   std::error_code ignored;
   if (std::filesystem::is_directory(folder, ignored)) return;
-  const std::string reason = error ? error.message() : "a file of that name is there";
-  throw FileError(one_line(folder.string()) + ": cannot be made a folder (" + reason +
-                  "); give another path, or change its permissions");
+  const std::string reason = error ? error.message() : "a file of that name exists";
+  throw FileError(one_line(folder.string()) + ": cannot be created as a folder (" + reason +
+                  "); give another path, or change the permissions");
 }
 
 bool is_there(const std::filesystem::path& path) noexcept {
@@ -154,7 +154,7 @@ MappedFile::MappedFile(const std::filesystem::path& path) {
     fail(path, "cannot be opened", errno, "check that it exists and its permissions");
   struct stat status {};
   if (::fstat(file.number(), &status) != 0 || !S_ISREG(status.st_mode) || status.st_size <= 0) {
-    throw FileError(one_line(path.string()) + ": is empty or not a file; make it anew");
+    throw FileError(one_line(path.string()) + ": is empty or not a file; create it again");
   }
   size_ = static_cast<std::size_t>(status.st_size);
   void* mapped = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, file.number(), 0);

@@ -1,4 +1,4 @@
-/// \file Whole files: read, replaced without a moment of half-written content, mapped read-only.
+/// \file Reads whole files, replaces them atomically, and maps them read-only.
 #pragma once
 
 #include "core/bytes.hpp"
@@ -14,33 +14,34 @@ namespace touchtrial {
 /// Who may read a file that the program writes.
 enum class FileMode { everyone, owner_only };
 
-/// \param limit_bytes  refuses a larger file before reading it
+/// \param limit_bytes  a larger file is refused before it is read
 /// \throws FileError if the file is missing, a folder, unreadable or larger than the limit
 [[nodiscard]] Bytes read_file(const std::filesystem::path& path,
                               std::uintmax_t limit_bytes = std::uintmax_t{1} << 32U);
 
-/// Writes beside the target, syncs, and renames over it: after a crash the file is the old one or
-/// the new one, never half of it. A link is followed; devices and pipes are refused. \throws
-/// FileError with the system's reason
+/// Writes a draft beside the target, syncs it, and renames it over the target: after a crash the
+/// file has its old or its new content, never half of it. Follows a link; refuses devices and
+/// pipes.
+/// \throws FileError with the system's reason
 void replace_file(const std::filesystem::path& path, ByteView content,
                   FileMode mode = FileMode::everyone);
 void replace_file(const std::filesystem::path& path, std::string_view content,
                   FileMode mode = FileMode::everyone);
 
-/// Makes a folder, and those above it, where it is missing.
-/// \throws FileError if there is no such folder afterwards
+/// Creates a folder and its missing parents.
+/// \throws FileError if the folder does not exist afterwards
 void make_folder(const std::filesystem::path& folder);
 
-/// Gives a whole file its name, if nothing else has that name, and syncs the folder.
+/// Renames a complete file, unless something already has the new name, and syncs the folder.
 /// \return whether the name was free
 /// \throws FileError with the system's reason
 [[nodiscard]] bool move_to_free_name(const std::filesystem::path& file,
                                      const std::filesystem::path& name);
 
-/// Whether something is there; false also where one cannot look.
+/// Whether the path exists; false as well if the system does not let the program look.
 [[nodiscard]] bool is_there(const std::filesystem::path& path) noexcept;
 
-/// A file mapped read-only; only the pages that are touched are read from disk.
+/// A file mapped read-only: the system reads only those pages from disk that the program touches.
 class MappedFile {
  public:
   MappedFile() = default;

@@ -1,5 +1,5 @@
-/// \file SHA-256 for chains, seals and checksums; keyed BLAKE2b for tags that outsiders must not be
-/// able to look up. Both from libsodium. All functions may be called from any thread.
+/// \file SHA-256 for chains, seals and checksums; keyed BLAKE2b for tags that only the holder of
+/// the key can compute. Both by libsodium. All functions are thread-safe.
 #pragma once
 
 #include "core/bytes.hpp"
@@ -17,11 +17,12 @@ using Digest = std::array<std::uint8_t, 32>;
 /// SHA-256 (FIPS 180-4) of one buffer.
 [[nodiscard]] Digest sha256(ByteView bytes);
 
-/// SHA-256 of a file's content. \throws FileError if it cannot be read
+/// SHA-256 of a file's content.
+/// \throws FileError if it cannot be read
 [[nodiscard]] Digest sha256_of_file(const std::filesystem::path& path);
 
-/// SHA-256 over a sequence of fields, each preceded by its length in eight little-endian bytes, so
-/// that no two different sequences give the same input.
+/// SHA-256 over a sequence of fields. Each field is preceded by its length in eight little-endian
+/// bytes, so that two different sequences never give the same input.
 class FieldHasher {
  public:
   FieldHasher();
@@ -33,7 +34,7 @@ class FieldHasher {
   FieldHasher& add(std::string_view field) { return add(bytes_of(field)); }
   FieldHasher& add(std::int64_t number);
 
-  /// The digest of all fields so far; the hasher must not be used afterwards.
+  /// The digest of all fields so far. The hasher must not be used afterwards.
   [[nodiscard]] Digest finish();
 
  private:

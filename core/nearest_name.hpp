@@ -1,4 +1,4 @@
-/// \file "Did you mean": the known name that a misspelt one is closest to.
+/// \file The known name nearest to a misspelt one, for messages that say "did you mean".
 #pragma once
 
 #include <optional>
@@ -9,11 +9,11 @@ namespace touchtrial {
 
 /// The fewest insertions, deletions, replacements and swaps of neighbouring characters that turn
 /// one name into the other (optimal string alignment). Capitals equal small letters, and `_`, `-`
-/// and blanks equal each other, because people mix those up without misspelling anything.
+/// and blanks equal each other, because people confuse them without misspelling a word.
 [[nodiscard]] int edit_distance(std::string_view a, std::string_view b);
 
-/// \return the nearest known name, the first of several; nothing if more than a third of its
-///   characters (and more than one) would have to change
+/// \return the nearest known name, the first if several are equally near; nothing if more than a
+///   third of its characters (and more than one) would have to change
 [[nodiscard]] std::optional<std::string_view> nearest_name(std::string_view name,
                                                            std::span<const std::string_view> known);
 

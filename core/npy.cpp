@@ -14,10 +14,10 @@ namespace touchtrial {
 namespace {
 
 static_assert(std::endian::native == std::endian::little,
-              "samples are written as they lie in memory");
+              "the samples are written as they lie in memory");
 
 constexpr std::string_view kMagic("\x93NUMPY", 6);
-constexpr std::size_t kAlignment = 64;  // of the data, by the format's definition
+constexpr std::size_t kAlignment = 64;  // of the data, in bytes; the format prescribes it
 
 template <typename Sample>
 constexpr std::string_view descr() {

@@ -9,8 +9,9 @@
 
 namespace touchtrial {
 
-/// Writes an array; `shape` has the product of its members equal to the number of samples.
-/// Sample is std::uint8_t, float or double. \throws FileError if the file cannot be written
+/// Writes an array. Sample is std::uint8_t, float or double.
+/// \param shape  its product is the number of samples
+/// \throws FileError if the file cannot be written
 template <typename Sample>
 void write_npy(const std::filesystem::path& path, std::span<const Sample> samples,
                const std::vector<int>& shape);

@@ -1,23 +1,26 @@
 /// \file An owning row-major image of any sample type.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace touchtrial {
 
 /// A dense rectangle of samples, indexed [row y][column x], row-major, no padding.
-/// A plane may be empty (0 x 0); the engine's functions refuse empty planes.
+/// A plane may be empty (0 x 0); the functions of the engine refuse an empty one.
 template <typename Sample>
 class Plane {
  public:
   Plane() = default;
 
-  /// \param height,width  samples, >= 0; every sample starts as `fill`
-  /// \throws std::invalid_argument if one is negative
+  /// \param height,width  in samples, >= 0
+  /// \param fill  the initial value of every sample
+  /// \throws std::invalid_argument if a side is negative
   Plane(int height, int width, Sample fill = Sample{})
       : height_(checked(height)),
         width_(checked(width)),
@@ -62,7 +65,7 @@ class Plane {
 /// An 8-bit grey image; 0 is black, 255 is white.
 using GreyImage = Plane<std::uint8_t>;
 
-/// A plane converted sample by sample, for instance grey levels to double.
+/// The plane with every sample converted, for instance from grey levels to double.
 template <typename To, typename From>
 [[nodiscard]] Plane<To> converted(const Plane<From>& from) {
   Plane<To> to(from.height(), from.width());
@@ -70,6 +73,28 @@ template <typename To, typename From>
     to.samples()[i] = static_cast<To>(from.samples()[i]);
   }
   return to;
+}
+
+/// A temporary plane that has the wanted type already is passed on.
+template <typename Sample>
+[[nodiscard]] Plane<Sample> converted(Plane<Sample>&& plane) {
+  return std::move(plane);
+}
+
+/// The mean of all samples, added up in double, row by row. NaN if the plane is empty.
+template <typename Sample>
+[[nodiscard]] double mean_of(const Plane<Sample>& plane) {
+  double sum = 0.0;
+  for (const Sample sample : plane.samples()) sum += static_cast<double>(sample);
+  return sum / static_cast<double>(plane.size());
+}
+
+/// Whether all samples are equal.
+/// \pre the plane is not empty
+template <typename Sample>
+[[nodiscard]] bool is_flat(const Plane<Sample>& plane) {
+  const Sample level = plane.samples().front();
+  return std::ranges::all_of(plane.samples(), [level](Sample sample) { return sample == level; });
 }
 
 }  // namespace touchtrial

@@ -16,7 +16,7 @@ struct PlaneGeometry {
   [[nodiscard]] constexpr double width_mm() const noexcept { return width_px * pitch_mm; }
   [[nodiscard]] constexpr double height_mm() const noexcept { return height_px * pitch_mm; }
 
-  /// Continuous pixel coordinates in which pixel centres are whole numbers.
+  /// Continuous pixel coordinates; pixel centres are at whole numbers.
   [[nodiscard]] constexpr Vec2 to_px(double x_mm, double y_mm) const noexcept {
     return {x_mm / pitch_mm - 0.5, y_mm / pitch_mm - 0.5};
   }
@@ -29,7 +29,7 @@ struct PlaneGeometry {
   }
 };
 
-/// An image length that is given in millimetres, in pixels.
+/// A length on the image, converted from millimetres to pixels.
 [[nodiscard]] constexpr double to_px(double length_mm, double pitch_mm) noexcept {
   return length_mm / pitch_mm;
 }

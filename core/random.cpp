@@ -30,7 +30,7 @@ RandomStream::RandomStream(std::uint64_t seed, std::string_view purpose, std::ui
     : engine_(seeded_engine(seed, purpose, index)) {}
 
 std::uint64_t RandomStream::below(std::uint64_t bound) {
-  // Draws past the last whole multiple of the bound are thrown away, so that none is likelier.
+  // The lowest 2^64 mod bound draws are rejected, so that every number is equally likely.
   const std::uint64_t excess = (0 - bound) % bound;  // 2^64 mod bound
   std::uint64_t draw = bits();
   while (draw < excess) draw = bits();

@@ -1,4 +1,4 @@
-/// \file Seeded random numbers that are the same on every platform and standard library.
+/// \file Seeded random numbers, the same on every platform and with every standard library.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,15 @@ namespace touchtrial {
 /// between implementations. Not thread-safe; give each thread a stream of its own.
 class RandomStream {
  public:
-  /// A stream of its own for each (seed, purpose, index): streams of different purposes are
-  /// unrelated, so that adding a draw to one leaves the others as they were.
+  /// Each (seed, purpose, index) gives a different stream. Streams of different purposes are
+  /// unrelated, so an additional draw from one leaves the others unchanged.
   RandomStream(std::uint64_t seed, std::string_view purpose, std::uint64_t index = 0);
 
   /// The next 64 random bits.
   [[nodiscard]] std::uint64_t bits() { return engine_(); }
 
-  /// A whole number in [0, bound), each equally likely (by rejection). \pre bound >= 1
+  /// A whole number in [0, bound), each equally likely (by rejection).
+  /// \param bound  >= 1
   [[nodiscard]] std::uint64_t below(std::uint64_t bound);
 
   /// A number in [0, 1) with 53 random bits.
@@ -36,7 +37,7 @@ class RandomStream {
   std::mt19937_64 engine_;
 };
 
-/// Puts the elements into an order drawn uniformly from all (Fisher-Yates, from the back).
+/// Shuffles the elements; every order is equally likely (Fisher-Yates, from the back).
 template <typename T>
 void shuffle(std::span<T> elements, RandomStream& random) {
   for (std::size_t left = elements.size(); left > 1; --left) {

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::json;
 
-/// The longest beginning of a UTF-8 text that has at most `limit` bytes and no half character.
+/// The longest start of a UTF-8 text with at most `limit` bytes and no incomplete character.
 std::string_view beginning(std::string_view text, std::size_t limit) {
   if (text.size() <= limit) return text;
   while (limit > 0 && (static_cast<unsigned char>(text[limit]) & 0xc0U) == 0x80U) --limit;
@@ -42,7 +42,7 @@ std::string escaped_token(std::string_view token) {
   throw StudyError(one_line(source + ": " + (place.empty() ? "/" : place) + ": " + what));
 }
 
-/// Follows the parser and knows at any moment where in the document it is.
+/// Follows the parser and knows its place in the document.
 class PlaceTracker {
  public:
   explicit PlaceTracker(const std::string& source) : source_(source) {}
@@ -51,7 +51,7 @@ class PlaceTracker {
     using Event = json::parse_event_t;
     if (event == Event::object_start || event == Event::array_start) {
       if (levels_.size() == kMaxJsonDepth) {
-        refuse_at(source_, pointer(), "is nested too deeply; such a file has few levels");
+        refuse_at(source_, pointer(), "is nested too deeply; use fewer levels");
       }
       levels_.push_back({event == Event::array_start, 0, {}, {}});
     } else if (event == Event::key) {
@@ -96,7 +96,7 @@ class PlaceTracker {
   const std::string_view before = text.substr(0, at);
   const auto line = std::count(before.begin(), before.end(), '\n') + 1;
   const std::size_t column = at - (before.rfind('\n') + 1) + 1;  // npos + 1 is 0
-  // The library's own words, without its prefix and without the bytes it was reading.
+  // The library's message without its prefix and without the bytes that it last read.
   std::string what = error.what();
   what.erase(0, std::min(what.find("syntax error"), what.size()));
   what = what.substr(0, what.find("; last read"));
@@ -105,8 +105,7 @@ class PlaceTracker {
                             "; give plain JSON, without comments or trailing commas"));
 }
 
-/// The value as a whole number, those beyond 64 bits as the nearest that has 64; nothing if it is
-/// none.
+/// The value as a whole number, limited to 64 bits; nothing if it is not a whole number.
 std::optional<std::int64_t> whole_number(const json& value) {
   using Limits = std::numeric_limits<std::int64_t>;
   if (value.is_number_unsigned()) {

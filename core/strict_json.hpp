@@ -1,5 +1,5 @@
-/// \file JSON files that people write, read strictly: whatever is not understood is refused with
-/// its place.
+/// \file A strict reader for JSON files that people write: it refuses whatever it does not
+/// understand, and names the place.
 #pragma once
 
 #include <array>
@@ -16,10 +16,10 @@
 
 namespace touchtrial {
 
-/// Containers within containers that a file may have.
+/// The deepest nesting of containers that a file may have.
 inline constexpr std::size_t kMaxJsonDepth = 16;
 
-/// An interval of numbers; bounds belong to it unless said to be open.
+/// An interval of numbers. A bound belongs to it unless it is open.
 struct NumberRange {
   double low = 0.0;
   double high = 0.0;
@@ -32,7 +32,7 @@ struct NumberRange {
   }
 };
 
-/// One word of a file and what it stands for.
+/// A word of a file, and its meaning.
 template <typename Value>
 struct Named {
   std::string_view name;
@@ -41,13 +41,15 @@ struct Named {
 
 class JsonObject;
 
-/// A value and where it stands. All reads throw StudyError "SOURCE: POINTER: what; remedy" if the
-/// value is not what they ask for. Shares the document with all its other values.
+/// A value and its place in the document. Every read throws StudyError
+/// "SOURCE: POINTER: what; remedy" if the value is not what the caller asks for. All values of a
+/// document share it.
 class JsonValue {
  public:
-  /// \throws StudyError always. \param what  what is wrong, and the remedy
+  /// \param what  what is wrong, and the remedy
+  /// \throws StudyError always
   [[noreturn]] void refuse(const std::string& what) const;
-  /// The same for a place below this one, whether it is there or missing.
+  /// The same for a place below this one, which may be missing.
   /// \param pointer  from here, for instance "/trials/repeats"
   [[noreturn]] void refuse_below(std::string_view pointer, const std::string& what) const;
 
@@ -56,13 +58,13 @@ class JsonValue {
   /// true or false.
   [[nodiscard]] bool truth() const;
   [[nodiscard]] double number(const NumberRange& range) const;
-  /// A whole number; 5.0 is one.
+  /// A whole number; 5.0 counts as one.
   [[nodiscard]] std::int64_t integer(std::int64_t low, std::int64_t high) const;
   [[nodiscard]] std::vector<JsonValue> items(std::size_t fewest, std::size_t most) const;
-  /// An object that has no other keys than these.
+  /// An object; a key that is not among these is refused.
   [[nodiscard]] JsonObject object(std::span<const std::string_view> known) const;
   [[nodiscard]] JsonObject object(std::initializer_list<std::string_view> known) const;
-  /// The place of a text in `names`.
+  /// The index of a text in `names`; any other text is refused.
   [[nodiscard]] std::size_t choice(std::span<const std::string_view> names) const;
 
   template <typename Value, std::size_t size>
@@ -83,7 +85,7 @@ class JsonValue {
   std::shared_ptr<const Node> node_;
 };
 
-/// An object whose keys are all known.
+/// An object that has only known keys.
 class JsonObject {
  public:
   explicit JsonObject(JsonValue place) : place_(std::move(place)) {}
@@ -97,17 +99,17 @@ class JsonObject {
   JsonValue place_;
 };
 
-/// Parses plain JSON (RFC 8259). Besides what breaks the grammar, refuses a key that an object has
-/// twice, deeper nesting than kMaxJsonDepth, and numbers that no double can hold.
-/// \param source  the file's name, for errors
+/// Parses plain JSON (RFC 8259). Besides errors of grammar, it refuses a key that appears twice in
+/// an object, nesting deeper than kMaxJsonDepth, and numbers that exceed a double.
+/// \param source  the file's name, for messages
 /// \return the whole document
 /// \throws StudyError with line and column, or with the JSON pointer
 [[nodiscard]] JsonValue parse_strict_json(std::string_view text, const std::string& source);
 
-/// A number as JSON writes it: shortest, with a decimal dot whatever the locale.
+/// A number as JSON writes it: the shortest form, with a decimal point in every locale.
 [[nodiscard]] std::string number_text(double number);
 
-/// A user's text for a message: in quotes, on one line, not longer than some 60 bytes.
+/// A user's text for a message: in quotes, on one line, cut after about 60 bytes.
 [[nodiscard]] std::string in_quotes(std::string_view text);
 
 }  // namespace touchtrial

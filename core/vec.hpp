@@ -1,4 +1,4 @@
-/// \file Small vectors of doubles; units are in the names of the variables that hold them.
+/// \file Small vectors of doubles. The names of variables tell the units.
 #pragma once
 
 #include <cmath>
@@ -30,11 +30,14 @@ struct Vec3 {
   friend constexpr bool operator==(Vec3, Vec3) noexcept = default;
 };
 
+[[nodiscard]] constexpr double dot(Vec3 a, Vec3 b) noexcept {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
 [[nodiscard]] inline double norm(Vec2 a) noexcept {
   return std::hypot(a.x, a.y);
 }
 [[nodiscard]] inline double norm(Vec3 a) noexcept {
-  return std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
+  return std::sqrt(dot(a, a));
 }
 [[nodiscard]] inline bool is_finite(Vec3 a) noexcept {
   return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);

@@ -1,4 +1,4 @@
-/// \file Which program this is; recorded with every study.
+/// \file The program's version, which every study records.
 #pragma once
 
 #include <string_view>

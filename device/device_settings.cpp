@@ -2,6 +2,7 @@
 
 #include "core/files.hpp"
 #include "core/strict_json.hpp"
+#include "device/registry.hpp"
 
 #include <algorithm>
 #include <cstdlib>
@@ -29,7 +30,7 @@ Vec3 read_vec3(const JsonValue& place, const NumberRange& range) {
   return {items[0].number(range), items[1].number(range), items[2].number(range)};
 }
 
-/// A text that goes to the system, or to a vendor's library: to them a zero within it is its end.
+/// \return a text for the system or a vendor's library, both of which take a zero for its end
 const std::string& plain_text(const JsonValue& place) {
   const std::string& text = place.text();
   const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
@@ -43,14 +44,14 @@ void read_text(const JsonObject& object, std::string_view key, std::string& text
   if (const auto member = object.find(key)) text = plain_text(*member);
 }
 
-/// A file of the user's; an empty text is none.
+/// A file of the user; an empty text names none.
 void read_path(const JsonObject& object, std::string_view key, const fs::path& folder,
                fs::path& path) {
   const auto member = object.find(key);
   if (member && !plain_text(*member).empty()) path = folder / member->text();
 }
 
-/// A library: a path if there is a slash in it, else a name that the system looks up.
+/// A library: a path if it has a slash, else a name that the system looks up.
 void read_library(const JsonObject& object, const fs::path& folder, fs::path& path) {
   const auto member = object.find("library");
   if (!member) return;
@@ -162,18 +163,18 @@ DeviceUse read_replay(const JsonValue& place, const fs::path& folder, DeviceSett
   return read_use(object);
 }
 
-DeviceUse read_limits_alone(const JsonValue& place, const fs::path& /*folder*/,
-                            DeviceSettings& /*settings*/) {
-  return read_use(place.object({"limits"}));
-}
-
+/// Drivers with settings of their own; the others have limits alone.
 using ReadDriver = DeviceUse (*)(const JsonValue&, const fs::path&, DeviceSettings&);
-constexpr std::array kDrivers = {Named<ReadDriver>{"falcon", read_falcon},
-                                 Named<ReadDriver>{"openhaptics", read_openhaptics},
-                                 Named<ReadDriver>{"dhd", read_dhd},
-                                 Named<ReadDriver>{"mouse", read_limits_alone},
-                                 Named<ReadDriver>{"simulated", read_limits_alone},
-                                 Named<ReadDriver>{"replay", read_replay}};
+constexpr std::array kReaders = {
+    Named<ReadDriver>{"falcon", read_falcon}, Named<ReadDriver>{"openhaptics", read_openhaptics},
+    Named<ReadDriver>{"dhd", read_dhd}, Named<ReadDriver>{"replay", read_replay}};
+
+DeviceUse read_driver(const std::string& driver, const JsonValue& place, const fs::path& folder,
+                      DeviceSettings& settings) {
+  const auto reader = std::ranges::find(kReaders, driver, &Named<ReadDriver>::name);
+  if (reader == kReaders.end()) return read_use(place.object({"limits"}));
+  return reader->value(place, folder, settings);
+}
 
 std::optional<fs::path> absolute_path_in(const char* variable) {
   const char* text = std::getenv(variable);
@@ -208,12 +209,12 @@ SafetyLimits stricter_of(SafetyLimits limits, const LabLimits& lab) noexcept {
 DeviceSettings parse_device_settings(std::string_view text, const fs::path& folder,
                                      const std::string& source) {
   std::vector<std::string_view> names;
-  for (const auto& driver : kDrivers) names.push_back(driver.name);
+  for (const DeviceDriver& driver : device_drivers()) names.push_back(driver.name);
   const JsonObject root = parse_strict_json(text, source).object(names);
   DeviceSettings settings;
-  for (const auto& driver : kDrivers) {
+  for (const DeviceDriver& driver : device_drivers()) {
     if (const auto member = root.find(driver.name)) {
-      settings.uses[std::string(driver.name)] = driver.value(*member, folder, settings);
+      settings.uses[driver.name] = read_driver(driver.name, *member, folder, settings);
     }
   }
   return settings;

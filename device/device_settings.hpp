@@ -1,4 +1,4 @@
-/// \file What a lab sets of its devices: paths, colours, masses. One JSON file for all drivers.
+/// \file A lab's settings of its devices: paths, colours, masses. One JSON file for all drivers.
 #pragma once
 
 #include "core/vec.hpp"
@@ -16,14 +16,14 @@ namespace touchtrial::device {
 
 struct FalconSettings {
   std::filesystem::path firmware;  ///< the vendor's image; needed unless it is already loaded
-  std::string serial;              ///< of the one to use; empty: the only one
+  std::string serial;              ///< of the device to use; empty: the only one
   Vec3 gravity_bias_n;             ///< added to every force, device frame; norm <= 1
-  std::array<int, 3> led_order = {0, 1, 2};  ///< bits of red, green, blue: sources disagree
+  std::array<int, 3> led_order = {0, 1, 2};  ///< bits of red, green, blue, on which sources differ
 };
 
 struct OpenHapticsSettings {
   std::filesystem::path library = "libHD.so";
-  std::string device;            ///< the vendor's configuration name; empty: its default
+  std::string device;            ///< its name in the vendor's configuration; empty: the default
   unsigned long rate_hz = 1000;  ///< of the vendor's scheduler
 };
 
@@ -32,10 +32,10 @@ struct DhdSettings {
   int index = 0;  ///< among the connected devices, >= 0
   bool gravity_compensation = true;
   double effector_mass_kg = 0.0;    ///< 0: as the device knows it
-  double max_force_n = 8.0;         ///< the library does not tell; > 0
-  double continuous_force_n = 0.0;  ///< 0: no limit known
-  /// Width, height and depth of the ellipsoid that it reaches, which the library does not tell
-  /// either; each > 0. An omega.3's.
+  double max_force_n = 8.0;         ///< which the library does not tell; > 0
+  double continuous_force_n = 0.0;  ///< 0: no limit is known
+  /// Width, height and depth of the ellipsoid that the device reaches, which the library does not
+  /// tell either; each > 0. The default is that of an omega.3.
   Vec3 workspace_mm = {160.0, 160.0, 110.0};
 };
 
@@ -43,8 +43,8 @@ struct ReplaySettings {
   std::filesystem::path trace;  ///< CSV: time_s, x_mm, y_mm, z_mm; plane frame
 };
 
-/// Limits that a lab sets for one of its devices. They only ever make a limit stricter: those of
-/// the study and of the device hold as well. Nothing: no limit of the lab's own.
+/// Limits that a lab sets for one of its devices, in addition to those of the study and of the
+/// device: they only make a limit stricter. Nothing: the lab sets none.
 struct LabLimits {
   std::optional<double> max_force_n;         ///< SafetyLimits::max_force_n, > 0
   std::optional<double> continuous_force_n;  ///< SafetyLimits::continuous_force_n, > 0
@@ -57,7 +57,7 @@ struct DeviceUse {
   LabLimits limits;
   /// How planes stand on it; nothing: horizontal.
   std::optional<PlaneOrientation> orientation;
-  /// Where the middle of a plane lies, device frame; nothing: in the middle of the workspace.
+  /// The middle of a plane, device frame; nothing: the middle of the workspace.
   std::optional<Vec3> centre_mm;
 };
 
@@ -66,33 +66,35 @@ struct DeviceSettings {
   OpenHapticsSettings openhaptics;
   DhdSettings dhd;
   ReplaySettings replay;
-  std::map<std::string, DeviceUse> uses;  ///< by driver; those that the file speaks of
+  std::map<std::string, DeviceUse> uses;  ///< by driver; those that the file mentions
 
-  /// \return the defaults for a driver that the file does not speak of
+  /// \return the defaults for a driver that the file does not mention
   [[nodiscard]] DeviceUse use_of(const std::string& driver) const;
 };
 
-/// The stricter of each limit; the slew limit not below what lets go in kLongestLetGoS.
+/// \return the stricter of each limit; the slew limit stays high enough to let go in kLongestLetGoS
 [[nodiscard]] SafetyLimits stricter_of(SafetyLimits limits, const LabLimits& lab) noexcept;
 
-/// Reads a settings file, by the schema config/schema/devices.schema.json; paths are relative to
-/// it. \throws StudyError with the JSON pointer if it breaks the schema, FileError if it cannot be
-/// read
+/// Reads a settings file of the schema config/schema/devices.schema.json. Paths in it are relative
+/// to its folder.
+/// \throws StudyError with the JSON pointer if it breaks the schema, FileError if it cannot be read
 [[nodiscard]] DeviceSettings read_device_settings(const std::filesystem::path& file);
 
 /// The same from text.
-/// \param folder  that paths are relative to
+/// \param folder  to which paths are relative
 /// \param source  names the origin in errors
+/// \throws StudyError with the JSON pointer if the text breaks the schema
 [[nodiscard]] DeviceSettings parse_device_settings(std::string_view text,
                                                    const std::filesystem::path& folder,
                                                    const std::string& source);
 
-/// Where the settings are unless the user names another file: the user's configuration folder
-/// (XDG_CONFIG_HOME, else ~/.config), touchtrial/devices.json. Empty if the system knows no home.
+/// \return the settings file of a user who names none: touchtrial/devices.json in the user's
+///   configuration folder (XDG_CONFIG_HOME, else ~/.config); empty if the system knows no home
 [[nodiscard]] std::filesystem::path default_device_settings_path();
 
-/// What commands use: the file that the user named, else the one at the default path, else the
-/// defaults. \param named  empty if the user named none \throws as read_device_settings
+/// Reads the settings that a command uses: the file that the user named, else the one at the
+/// default path, else the defaults. \param named  empty if the user named none \throws as
+/// read_device_settings
 [[nodiscard]] DeviceSettings device_settings_for(const std::filesystem::path& named);
 
 }  // namespace touchtrial::device

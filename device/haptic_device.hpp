@@ -1,4 +1,4 @@
-/// \file What the servo knows of a device. Every driver implements this.
+/// \file The interface between the servo and a device. Every driver implements it.
 #pragma once
 
 #include "core/vec.hpp"
@@ -12,15 +12,15 @@ namespace touchtrial::device {
 /// One reading. A driver gives it in the device frame: right-handed, x to the right, y up, z
 /// towards the person, origin in the middle of the workspace. A PlacedDevice turns it into the
 /// plane frame: x and y along the texture from its top-left corner, z out of the plane towards the
-/// hand. Devices that have no frame of their own (simulated, mouse, replay) speak the plane frame
-/// from the start.
+/// hand. Devices without a frame of their own (simulated, mouse, replay) use the plane frame
+/// themselves.
 struct DeviceSample {
   Vec3 position_mm;
   Vec3 velocity_mm_s;
-  /// Counts the device's own readings: the same number again means that nothing newer has come.
+  /// Counts the device's own readings: the same number again means that there is no newer one.
   std::uint64_t sequence = 0;
   std::uint32_t buttons = 0;  ///< bit i is button i, set while it is down
-  bool ready = true;          ///< homed and calibrated: the position holds and force may be sent
+  bool ready = true;          ///< homed and calibrated: the position is valid and force may be sent
 };
 
 /// The outcome of talking to a device inside the servo, where nothing may throw.
@@ -30,23 +30,23 @@ enum class DeviceStatus { ok, stopped, fault };
 enum class DeviceFault {
   none,
   link_lost,     ///< unplugged, or no answer
-  bad_data,      ///< it answers, but not sense
+  bad_data,      ///< its answers make no sense
   warm_motors,   ///< the vendor's library or the device says that its motors are too warm
-  limit_passed,  ///< the vendor's library tripped on force, velocity or impulse
+  limit_passed,  ///< the vendor's library stopped at a limit of force, velocity or impulse
   driver,        ///< any other failure of the vendor's library or the operating system
 };
 
-/// What a device still needs from the person before force may be sent.
+/// What a person still has to do before force may be sent.
 enum class DeviceReadiness {
   ready,
   needs_homing,       ///< move the handle through its whole range until every axis is homed
   needs_inkwell,      ///< put the stylus into its inkwell
-  needs_calibration,  ///< the vendor's own calibration has to be run
+  needs_calibration,  ///< run the vendor's own calibration
 };
 
 enum class WorkspaceShape {
   box,        ///< everything between the two corners
-  ellipsoid,  ///< the one that touches the box from inside: devices that reach a ball
+  ellipsoid,  ///< the one that touches the box from inside, for devices that reach a ball
 };
 
 /// Extent of the positions that a device can reach, in the device frame.
@@ -62,20 +62,21 @@ struct DeviceInfo {
   std::string serial;        ///< empty if the device has none
   double max_force_n = 0.0;  ///< peak
   bool simulated = false;
-  double continuous_force_n = 0.0;  ///< that it can hold for ever; 0 if no limit is known
-  double max_rate_hz = 1000.0;      ///< of useful servo ticks
-  std::string model{};              ///< as the device or its library tells it; may be empty
+  double continuous_force_n = 0.0;  ///< which it can hold for ever; 0: no limit is known
+  double max_rate_hz = 1000.0;      ///< of servo ticks; a higher rate is of no use
+  std::string model{};              ///< as the device or its library gives it; may be empty
   std::string firmware{};           ///< version, likewise
-  /// Nothing: the device speaks the plane frame and reaches all of any plane.
+  /// Nothing: the device uses the plane frame and reaches all of any plane.
   std::optional<Workspace> workspace = std::nullopt;
-  /// Shown on a screen instead of felt: not blind, so for pilot sessions and demonstration alone.
+  /// The texture is seen on a screen instead of felt: not blind, so only for pilot sessions and
+  /// demonstrations.
   bool visual = false;
-  /// Of a wall that it renders stably, by its maker's word; 0 if not told.
+  /// Of a wall that it renders stably, by its maker's word; 0: not known.
   double max_stiffness_n_per_mm = 0.0;
 };
 
-/// A force-feedback device. It is open once constructed (constructors throw DeviceError) and closes
-/// in its destructor, with zero force sent last.
+/// A force-feedback device. The constructor opens it and throws DeviceError if it cannot; the
+/// destructor sends zero force and closes it.
 ///
 /// `read` and `write` belong to the servo thread alone and never block, allocate, lock, log or do
 /// I/O: a driver with a link talks to it on a thread of its own and exchanges with the servo
@@ -86,15 +87,17 @@ class HapticDevice {
 
   [[nodiscard]] virtual DeviceInfo info() const = 0;
 
-  /// The newest state. \return stopped when the hand is done, fault when the device is lost
+  /// Reads the newest state.
+  /// \return stopped when the hand is done, fault when the device is lost
   [[nodiscard]] virtual DeviceStatus read(DeviceSample& sample) noexcept = 0;
 
-  /// The force on the hand for this tick, N; the servo has checked and limited it.
+  /// Sets the force on the hand for this tick.
+  /// \param force_n  N, checked and limited by the servo
   [[nodiscard]] virtual DeviceStatus write(Vec3 force_n) noexcept = 0;
 
   /// Zero force at once and until `rearm`, whatever `write` is given. Safe in a signal handler.
   virtual void halt() noexcept = 0;
-  /// Lets forces pass again after `halt`; a person's decision.
+  /// Lets forces pass again after `halt`; a person decides it.
   virtual void rearm() noexcept = 0;
 
   [[nodiscard]] virtual DeviceFault fault() const noexcept { return DeviceFault::none; }

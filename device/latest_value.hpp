@@ -1,4 +1,4 @@
-/// \file The newest of a row of values, handed from one thread to another without a lock.
+/// \file The newest of a series of values, handed from one thread to another without a lock.
 #pragma once
 
 #include <array>
@@ -8,8 +8,8 @@
 
 namespace touchtrial::device {
 
-/// A triple buffer: one writer, one reader, each on a thread of its own, neither ever waiting for
-/// the other. The reader sees whole values only, the newest one, and may miss those between.
+/// A triple buffer for one writer and one reader, each on its own thread. Neither ever waits for
+/// the other. The reader gets the newest value, always a whole one, and may miss earlier ones.
 template <typename T>
 class LatestValue {
   static_assert(std::is_trivially_copyable_v<T>, "copies must not allocate");
@@ -24,7 +24,8 @@ class LatestValue {
     back_ = shared_.exchange(back_ | kFresh, std::memory_order_acq_rel) & kIndex;
   }
 
-  /// Reader's thread: the newest value; the same one again if nothing came since.
+  /// Reader's thread.
+  /// \return the newest value; the same one again if there is no newer one
   [[nodiscard]] const T& get() noexcept {
     if ((shared_.load(std::memory_order_relaxed) & kFresh) != 0) {
       front_ = shared_.exchange(front_, std::memory_order_acq_rel) & kIndex;
@@ -38,7 +39,7 @@ class LatestValue {
 
   std::array<T, 3> slots_;
   std::uint8_t back_ = 0;                ///< the writer's slot
-  std::atomic<std::uint8_t> shared_{1};  ///< the slot between them, and whether it is news
+  std::atomic<std::uint8_t> shared_{1};  ///< the slot between them, and whether it is fresh
   std::uint8_t front_ = 2;               ///< the reader's slot
 };
 

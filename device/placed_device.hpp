@@ -1,4 +1,4 @@
-/// \file Where the virtual plane lies in a device's workspace.
+/// \file The virtual plane's place in a device's workspace, and the device as seen from the plane.
 #pragma once
 
 #include "device/haptic_device.hpp"
@@ -17,12 +17,26 @@ struct PlanePlacement {
   Vec3 origin_mm;  ///< the plane's top-left corner, device frame
 };
 
-[[nodiscard]] Vec3 to_plane_position_mm(Vec3 device_mm, const PlanePlacement& placement) noexcept;
-/// Velocities and forces: directions alone.
-[[nodiscard]] Vec3 to_plane_direction(Vec3 device, PlaneOrientation orientation) noexcept;
-[[nodiscard]] Vec3 to_device_direction(Vec3 plane, PlaneOrientation orientation) noexcept;
+/// \name Turns velocities and forces, of which only the direction matters
+///@{
+[[nodiscard]] constexpr Vec3 to_plane_direction(Vec3 device,
+                                                PlaneOrientation orientation) noexcept {
+  if (orientation == PlaneOrientation::horizontal) return {device.x, device.z, device.y};
+  return {device.x, -device.y, device.z};
+}
+[[nodiscard]] constexpr Vec3 to_device_direction(Vec3 plane,
+                                                 PlaneOrientation orientation) noexcept {
+  // Either orientation is its own inverse.
+  return to_plane_direction(plane, orientation);
+}
+///@}
 
-/// A device as the servo wants it: the same device in the plane frame. Lengths and forces keep
+[[nodiscard]] constexpr Vec3 to_plane_position_mm(Vec3 device_mm,
+                                                  const PlanePlacement& placement) noexcept {
+  return to_plane_direction(device_mm - placement.origin_mm, placement.orientation);
+}
+
+/// A device as the servo needs it: the same device in the plane frame. Lengths and forces keep
 /// their size. Threads as HapticDevice.
 class PlacedDevice final : public HapticDevice {
  public:
@@ -31,8 +45,15 @@ class PlacedDevice final : public HapticDevice {
       : device_(device), placement_(placement) {}
 
   [[nodiscard]] DeviceInfo info() const override { return device_.info(); }
-  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override;
-  [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override;
+  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override {
+    const DeviceStatus status = device_.read(sample);
+    sample.position_mm = to_plane_position_mm(sample.position_mm, placement_);
+    sample.velocity_mm_s = to_plane_direction(sample.velocity_mm_s, placement_.orientation);
+    return status;
+  }
+  [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override {
+    return device_.write(to_device_direction(force_n, placement_.orientation));
+  }
   void halt() noexcept override { device_.halt(); }
   void rearm() noexcept override { device_.rearm(); }
   [[nodiscard]] DeviceFault fault() const noexcept override { return device_.fault(); }

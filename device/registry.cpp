@@ -2,12 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/nearest_name.hpp"
-#include "device/dhd/driver.hpp"
-#include "device/falcon/driver.hpp"
-#include "device/mouse/driver.hpp"
-#include "device/openhaptics/driver.hpp"
-#include "device/replay/driver.hpp"
-#include "device/simulated/driver.hpp"
+#include "device/drivers.hpp"
 
 #include <string_view>
 
@@ -20,7 +15,7 @@ std::vector<std::string_view> driver_names() {
   return names;
 }
 
-/// A driver that cannot even list says why, in place of its devices.
+/// \return the driver's devices, or one entry that says why it cannot list them
 std::vector<DeviceListing> listings_of(const DeviceDriver& driver, const DeviceSettings& settings) {
   try {
     return driver.list(settings);
@@ -32,9 +27,7 @@ std::vector<DeviceListing> listings_of(const DeviceDriver& driver, const DeviceS
 }  // namespace
 
 const std::vector<DeviceDriver>& device_drivers() {
-  static const std::vector<DeviceDriver> kDrivers = {falcon_driver(),    openhaptics_driver(),
-                                                     dhd_driver(),       mouse_driver(),
-                                                     simulated_driver(), replay_driver()};
+  static const std::vector<DeviceDriver> kDrivers = all_drivers();
   return kDrivers;
 }
 

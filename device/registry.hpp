@@ -1,4 +1,4 @@
-/// \file Every driver by its name: what is plugged in, what is missing, and how to open it.
+/// \file The drivers by name: what is plugged in, what is missing, and how to open it.
 #pragma once
 
 #include "device/device_settings.hpp"
@@ -12,35 +12,36 @@
 
 namespace touchtrial::device {
 
-/// One device that is there, or a driver that has none.
+/// One device that is plugged in, or a driver that found none.
 struct DeviceListing {
   std::string driver;  ///< the name that opens it
-  std::string model;   ///< "Novint Falcon"; empty if none is there
+  std::string model;   ///< "Novint Falcon"; empty if there is no device
   std::string serial;
   std::string where;  ///< bus and address, or the library's path
   bool present = false;
-  /// What stands between it and use, a line each with its remedy (permission, firmware, library);
-  /// empty: `open_device` will do.
+  /// What keeps it from use (permission, firmware, library), a line each with its remedy; empty:
+  /// `open_device` will open it.
   std::vector<std::string> missing;
 };
 
-/// What one driver offers the registry; each driver's folder defines one in its `driver.hpp`.
+/// What one driver offers the registry.
 struct DeviceDriver {
   std::string name;
   std::string what;  ///< a line for help
   std::function<std::vector<DeviceListing>(const DeviceSettings&)> list;
   std::function<std::unique_ptr<HapticDevice>(const DeviceSettings&)> open;
-  /// The workspace that its maker states, for planning while no device is there. Nothing: any
-  /// plane, as for a DeviceInfo without one, or that `workspace_is_known` is false.
+  /// The workspace by its maker's word, for planning without a device. Nothing: any plane, as for a
+  /// DeviceInfo without one, unless `workspace_is_known` is false.
   std::optional<Workspace> nominal_workspace = std::nullopt;
   /// False where models differ and only the device itself can tell.
   bool workspace_is_known = true;
 };
 
-/// All drivers, in the order in which they are listed.
+/// \return all drivers, in the order in which the program lists them
 [[nodiscard]] const std::vector<DeviceDriver>& device_drivers();
 
-/// What is plugged in, and what each driver misses. Never throws for a device's sake.
+/// \return what is plugged in, and what each driver lacks; a driver's DeviceError or other Error
+///   becomes a line of its listing
 [[nodiscard]] std::vector<DeviceListing> list_devices(const DeviceSettings& settings);
 
 /// \throws UsageError naming the nearest driver if there is none of this name

@@ -16,8 +16,8 @@ Vec3 middle_of(const Workspace& workspace) {
   return 0.5 * (workspace.least_mm + workspace.greatest_mm);
 }
 
-/// The workspace as one octant sees it that holds the point furthest from the middle: it is
-/// symmetric about its middle, so of a box's corners only that one matters.
+/// The workspace reduced to one octant. It is symmetric about its middle, so only the corner of a
+/// box that is furthest from the middle matters.
 struct Reach {
   Vec3 offset_mm;  ///< of the plane's middle from the workspace's, each >= 0
   Vec3 half_mm;    ///< of the workspace
@@ -43,7 +43,7 @@ Reach reach_about(Vec3 centre_mm, const Workspace& workspace) {
           workspace.shape};
 }
 
-/// Half of the plane's box with its margins, device frame; a direction without its sign.
+/// \return half the size of the plane's box with its margins, device frame, each >= 0
 Vec3 half_extent_mm(const PlaneGeometry& plane, PlaneOrientation orientation) {
   const Vec3 half =
       to_device_direction({plane.width_mm() / 2.0, plane.height_mm() / 2.0, 0.0}, orientation);
@@ -55,8 +55,8 @@ std::int64_t pixels_of(const PlaneGeometry& plane) {
   return std::int64_t{plane.width_px} * plane.height_px;
 }
 
-/// Of all parts with whole pixels that fit, the one of the largest area. The wider, the lower: one
-/// walk along the border of what fits finds it.
+/// \return the part of the largest area, in whole pixels, that fits. A wider part is never higher,
+///   so one walk along the border of what fits finds it.
 PlaneGeometry largest_part(const PlaneGeometry& plane, const Reach& reach,
                            PlaneOrientation orientation) {
   PlaneGeometry best{plane.pitch_mm, 0, 0};
@@ -105,9 +105,9 @@ std::string misfit_text(const std::string& device, const PlaneGeometry& plane,
                         const Workspace& workspace, const WorkspaceFit& fit) {
   const std::string offer =
       fit.largest.width_px == 0
-          ? "nothing fits about that middle; move placement/centre_mm in the device settings"
+          ? "no part of it fits around that middle; move placement/centre_mm in the device settings"
           : "crop the pictures to " + std::to_string(fit.largest.width_px) + " x " +
-                std::to_string(fit.largest.height_px) + " px about their middle (" +
+                std::to_string(fit.largest.height_px) + " px around their middle (" +
                 rounded_text(fit.largest.width_mm()) + " x " +
                 rounded_text(fit.largest.height_mm()) +
                 " mm), turn the plane, or use a larger device";

@@ -1,4 +1,4 @@
-/// \file Whether a study's plane fits a device's workspace, and where it then lies. Source:
+/// \file Whether a study's plane fits a device's workspace, and where it lies in it. Source:
 /// docs/decisions/0025-placement-never-rescales.md.
 #pragma once
 
@@ -12,17 +12,17 @@
 
 namespace touchtrial::device {
 
-/// Room that is kept on every side of the plane, above it and below it, mm: a hand overshoots the
-/// edge, lifts off, and presses into the wall.
+/// Free room on every side of the plane, above it and below it, mm: a hand overshoots the edge,
+/// lifts off, and presses into the wall.
 inline constexpr double kWorkspaceMarginMm = 5.0;
 
-/// Where a plane would lie, and how much of it the device reaches.
+/// Where a plane lies, and how much of it the device reaches.
 struct WorkspaceFit {
   bool fits = false;
-  /// Nothing: the device speaks the plane frame itself and is not to be wrapped.
+  /// Nothing: the device uses the plane frame itself, so do not wrap it in a PlacedDevice.
   std::optional<PlanePlacement> placement;
-  /// The largest part of the plane that fits, about the same middle, at the same pitch: the plane
-  /// itself if it fits; of no pixels if not even one fits.
+  /// The largest part of the plane that fits, with the same middle and pitch: the plane itself if
+  /// it fits; without pixels if not even one fits.
   PlaneGeometry largest;
 };
 
@@ -36,14 +36,16 @@ struct WorkspaceFit {
                                      const DeviceUse& use = {},
                                      std::optional<PlaneOrientation> orientation = std::nullopt);
 
-/// The same, for who needs it to fit: a session, before its first trial.
+/// The same for a session, which needs the plane to fit.
 /// \param device  names the device in the error
-/// \throws DeviceError with the plane's size, the workspace's, and the crop that would fit
+/// \return WorkspaceFit::placement
+/// \throws DeviceError with the sizes of plane and workspace, and the crop that would fit
 [[nodiscard]] std::optional<PlanePlacement> placement_of(const PlaneGeometry& plane,
                                                          const DeviceInfo& device,
                                                          const DeviceUse& use);
 
-/// One line: why the plane does not fit, in numbers, and what would. \pre not fit.fits
+/// \pre not fit.fits
+/// \return one line: why the plane does not fit, in numbers, and what would fit
 [[nodiscard]] std::string misfit_text(const std::string& device, const PlaneGeometry& plane,
                                       const Workspace& workspace, const WorkspaceFit& fit);
 

@@ -1,13 +1,13 @@
 /// \file One level of the Daubechies wavelet transform with four taps.
-/// Source: docs/method.md, "DAUB4 sub-bands" (paper Eq. 1).
+/// Source: docs/method.md, "Sub-bands" (paper Eq. 1).
 #pragma once
 
 #include "core/plane.hpp"
 
 namespace touchtrial::engine {
 
-/// The four sub-bands of an H x W image, each ceil(H/2) x ceil(W/2), in grey levels times 2 at
-/// most: a constant c gives ll = 2c. The first letter is the filter along x, the second along y.
+/// The four sub-bands of an H x W image, each ceil(H/2) x ceil(W/2). A constant c gives ll = 2c and
+/// no details. The first letter is the filter along x, the second along y.
 struct SubBands {
   Plane<double> ll;
   Plane<double> lh;  ///< low in x, high in y: horizontal edges
@@ -15,11 +15,11 @@ struct SubBands {
   Plane<double> hh;
 };
 
-/// In double: what the kernels in single precision are held against.
+/// The first level, of an image. The kernels in single precision are tested against this.
 /// \throws std::invalid_argument if the image is empty
 /// Thread-safe.
 [[nodiscard]] SubBands daub4_sub_bands(const GreyImage& image);
-/// The next level, of the ll of the one before.
+/// The next level, of the ll of the level before.
 [[nodiscard]] SubBands daub4_sub_bands(const Plane<double>& ll);
 
 }  // namespace touchtrial::engine

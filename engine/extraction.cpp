@@ -1,16 +1,16 @@
 #include "engine/extraction.hpp"
 
 #include "engine/cited_textures.hpp"
-#include "engine/controls/phase_scramble.hpp"
-#include "engine/csgv.hpp"
 #include "engine/daub4.hpp"
-#include "engine/force_field.hpp"
-#include "engine/gl_norm.hpp"
+#include "engine/finite_plane.hpp"
 #include "engine/gl_texture.hpp"
 #include "engine/kernels/float_extraction.hpp"
 #include "engine/order_map.hpp"
+#include "engine/phase_scramble.hpp"
 #include "engine/tv_gabor/tv_gabor.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
@@ -24,13 +24,12 @@ namespace {
 constexpr int kForceNeighbourhood = 3;
 
 /// \param orders  one order, or a plane of orders at half resolution
-template <typename Real, typename Orders>
-Plane<Real> normed_texture(const GreyImage& image, const ExtractionOptions& options,
-                           const Orders& orders) {
-  if (options.norm == Norm::additive) return gl_texture<Real>(image, options.radius, orders);
+template <typename Orders>
+Plane<double> normed_texture(const GreyImage& image, const ExtractionOptions& options,
+                             const Orders& orders) {
   Plane<double> texture = gl_texture<double>(image, options.radius, orders);
   apply_norm(options.norm, image, options.radius, orders, texture);
-  return converted<Real>(texture);
+  return texture;
 }
 
 std::vector<SubBands> sub_band_levels(const GreyImage& image, int levels) {
@@ -46,7 +45,7 @@ std::uint64_t bytes_of(const Plane<Sample>& plane) {
   return plane.size() * sizeof(Sample);
 }
 
-/// What a method that knows no local order leaves out; bytes as the adaptive one would need.
+/// Logs the stages that a method without local orders skips, with the adaptive method's bytes.
 void note_no_order_map(const GreyImage& image, const ExtractionOptions& options, StageLog* log) {
   if (log == nullptr) return;
   const std::string why = options.method == Method::fixed
@@ -56,7 +55,8 @@ void note_no_order_map(const GreyImage& image, const ExtractionOptions& options,
   log->skip("order map", why, image.size() / 4 * sizeof(double));
 }
 
-/// CSGV at half resolution. The sub-bands live no longer than they are needed, unless wanted.
+/// CSGV at half resolution. Frees the sub-bands as early as possible.
+/// \param keep  copies those of the first level to `result`
 template <typename Real>
 Plane<double> half_gradient(const GreyImage& image, const ExtractionOptions& options, bool keep,
                             Extraction<Real>& result, StageTimer& timer) {
@@ -80,7 +80,9 @@ Extraction<Real> adaptive(const GreyImage& image, const ExtractionOptions& optio
   const Plane<double> orders = order_map(gradient);
   if (wanted.order) result.order = doubled<Real>(orders, image.height(), image.width());
   timer.done("order map", "each pixel has an order of its own", bytes_of(orders));
-  result.texture = normed_texture<Real>(image, options, orders);
+  result.texture = options.norm == Norm::additive
+                       ? gl_texture<Real>(image, options.radius, orders)
+                       : converted<Real>(normed_texture(image, options, orders));
   return result;
 }
 
@@ -91,7 +93,7 @@ Extraction<Real> fixed(const GreyImage& image, const ExtractionOptions& options,
   if (wanted.order) {
     result.order = Plane<Real>(image.height(), image.width(), static_cast<Real>(options.order));
   }
-  result.texture = normed_texture<Real>(image, options, options.order);
+  result.texture = converted<Real>(normed_texture(image, options, options.order));
   return result;
 }
 
@@ -139,8 +141,8 @@ Extraction<Real> by_method(const GreyImage& image, const ExtractionOptions& opti
   return adaptive<Real>(image, options, wanted, timer);
 }
 
-/// The methods' defaults have kernels in single precision; in double the plain way is the truth
-/// that they are held against.
+/// The default adaptive and fixed methods have kernels in float. In double the plain code below is
+/// the truth that the kernels are tested against.
 bool extracted_by_kernel(const GreyImage&, const ExtractionOptions&, const WantedPlanes&,
                          Extraction<double>&) {
   return false;
@@ -159,7 +161,7 @@ bool extracted_by_kernel(const GreyImage& image, const ExtractionOptions& option
   return true;
 }
 
-/// What can be made of any texture, where it was not made along with it.
+/// Adds the wanted by-products that any texture has and that the method did not compute itself.
 template <typename Real>
 void add_by_products(const GreyImage& image, const WantedPlanes& wanted, Extraction<Real>& result) {
   if (wanted.picture && result.picture.empty()) result.picture = texture_picture(result.texture);
@@ -179,10 +181,33 @@ std::string what_was_taken(const ExtractionOptions& options, const Extraction<Re
   return what;
 }
 
-/// Planes that a control would make stale are left for later.
+/// What to ask the method for: not the planes that have to be those of the control.
 WantedPlanes wanted_of_method(const ExtractionOptions& options, WantedPlanes wanted) {
   if (options.control != Control::none) wanted.picture = wanted.force = false;
   return wanted;
+}
+
+/// In double for either precision: in float, 128 + T would be rounded to ties.
+std::uint8_t rounded_to_grey(double level) {
+  return static_cast<std::uint8_t>(std::clamp(std::floor(level + 0.5), 0.0, 255.0));
+}
+
+template <typename Real, typename LevelOf>
+GreyImage picture_by(const Plane<Real>& texture, LevelOf level_of) {
+  GreyImage picture(texture.height(), texture.width());
+  std::ranges::transform(texture.samples(), picture.samples().begin(), [&](Real sample) {
+    return rounded_to_grey(level_of(static_cast<double>(sample)));
+  });
+  return picture;
+}
+
+template <typename Real>
+GreyImage stretched(const Plane<Real>& texture) {
+  const auto [least, most] = std::ranges::minmax_element(texture.samples());
+  const auto low = static_cast<double>(*least);
+  const double range = static_cast<double>(*most) - low;
+  if (!(range > 0.0)) return GreyImage(texture.height(), texture.width());
+  return picture_by(texture, [=](double sample) { return (sample - low) * 255.0 / range; });
 }
 
 }  // namespace
@@ -219,6 +244,21 @@ Extraction<Real> extract_texture(const GreyImage& image, const ExtractionOptions
   return result;
 }
 
+template <typename Real>
+GreyImage texture_picture(const Plane<Real>& texture, Mapping mapping) {
+  if (texture.empty()) throw std::invalid_argument("texture_picture: the texture is empty");
+  require_finite(texture, "texture_picture", "texture");
+  switch (mapping) {
+    case Mapping::abs:
+      return picture_by(texture, [](double sample) { return std::abs(sample); });
+    case Mapping::stretch:
+      return stretched(texture);
+    case Mapping::offset:
+      break;
+  }
+  return picture_by(texture, [](double sample) { return 128.0 + sample; });
+}
+
 template void apply_control<float>(const ExtractionOptions&, Plane<float>&, StageLog*);
 template void apply_control<double>(const ExtractionOptions&, Plane<double>&, StageLog*);
 template void extract_texture_into<float>(const GreyImage&, const ExtractionOptions&,
@@ -229,5 +269,7 @@ template Extraction<float> extract_texture<float>(const GreyImage&, const Extrac
                                                   const WantedPlanes&, StageLog*);
 template Extraction<double> extract_texture<double>(const GreyImage&, const ExtractionOptions&,
                                                     const WantedPlanes&, StageLog*);
+template GreyImage texture_picture<float>(const Plane<float>&, Mapping);
+template GreyImage texture_picture<double>(const Plane<double>&, Mapping);
 
 }  // namespace touchtrial::engine

@@ -1,95 +1,134 @@
-#include "engine/extraction.hpp"
+#include "engine/extraction_options.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <locale>
 #include <sstream>
 #include <stdexcept>
-#include <string>
 
 namespace touchtrial::engine {
 namespace {
 
-/// \throws std::invalid_argument unless `holds`: "<option>: must be <range>, not <value>"
+struct MethodEntry {
+  std::string_view name;
+  std::vector<Parameter> parameters;  ///< in the order in which they are checked
+};
+
+/// An entry for each method, in the order of the enumeration.
+const std::vector<MethodEntry>& method_table() {
+  using enum Parameter;
+  static const std::vector<MethodEntry> table = {
+      {"adaptive", {levels, radius, norm, gradient, combine}},
+      {"fixed", {order, radius, norm}},
+      {"tv-gabor", {lambda, gap, max_steps, components}},
+      {"gaussian", {sigma}},
+      {"median", {threshold, radius}},
+      {"edge", {divisor}},
+      {"luminance", {}},
+  };
+  return table;
+}
+
+/// \throws std::invalid_argument unless `holds`: "<parameter>: must be <range>, not <value>"
 template <typename Value>
-void require(bool holds, std::string_view option, std::string_view range, Value value) {
+void require(bool holds, std::string_view parameter, std::string_view range, Value value) {
   if (holds) return;
   std::ostringstream message;
   message.imbue(std::locale::classic());
-  message << option << ": must be " << range << ", not " << value;
+  message << parameter << ": must be " << range << ", not " << value;
   throw std::invalid_argument(message.str());
 }
 
-void check_component(const GaborComponent& component) {
-  const double frequency = component.frequency_cycles_per_px;
-  require(frequency > 0.0 && frequency <= 0.5, "frequency_cycles_per_px", "in (0, 0.5]", frequency);
-  require(std::isfinite(component.direction_deg), "direction_deg", "a finite number",
-          component.direction_deg);
-}
-
-void check_tv_gabor(const TvGaborOptions& options) {
-  require(
-      options.lambda >= TvGaborOptions::kMinLambda && options.lambda <= TvGaborOptions::kMaxLambda,
-      "lambda", "from 1e-6 to 1e6", options.lambda);
-  require(options.gap > 0.0 && std::isfinite(options.gap), "gap", "a finite number above 0",
-          options.gap);
-  require(options.max_steps >= 1, "max_steps", "at least 1", options.max_steps);
+void check_components(const TvGaborOptions& options) {
   if (options.automatic) return;
   if (options.components.empty()) {
     throw std::invalid_argument("components: at least one is needed");
   }
-  for (const GaborComponent& component : options.components) check_component(component);
+  for (const auto& [frequency, direction_deg] : options.components) {
+    require(frequency > 0.0 && frequency <= 0.5, "frequency_cycles_per_px", "in (0, 0.5]",
+            frequency);
+    require(std::isfinite(direction_deg), "direction_deg", "a finite number", direction_deg);
+  }
 }
 
-void check_radius(int radius) {
-  require(radius >= 1 && radius <= ExtractionOptions::kMaxRadius, "radius", "from 1 to 63", radius);
-}
-
-void check_order(double order) {
-  require(order >= 0.0 && order < 1.0, "order", "in [0, 1)", order);
-}
-
-void check_levels(int levels) {
-  require(levels >= 1 && levels <= ExtractionOptions::kMaxLevels, "levels", "from 1 to 8", levels);
-}
-
-void check_sigma(double sigma_px) {
-  require(sigma_px > 0.0 && sigma_px <= ExtractionOptions::kMaxSigma_px, "sigma", "in (0, 1000]",
-          sigma_px);
-}
-
-void check_threshold(double threshold_grey) {
-  require(threshold_grey >= 0.0 && threshold_grey <= 255.0, "threshold", "from 0 to 255",
-          threshold_grey);
-}
-
-void check_divisor(double divisor) {
-  require(divisor >= ExtractionOptions::kMinDivisor && divisor <= ExtractionOptions::kMaxDivisor,
-          "divisor", "from 0.001 to 1e6", divisor);
+void check_parameter(Parameter parameter, const ExtractionOptions& options) {
+  using Options = ExtractionOptions;
+  const TvGaborOptions& tv_gabor = options.tv_gabor;
+  switch (parameter) {
+    case Parameter::radius:
+      return require(options.radius >= 1 && options.radius <= Options::kMaxRadius, "radius",
+                     "from 1 to 63", options.radius);
+    case Parameter::order:
+      return require(options.order >= 0.0 && options.order < 1.0, "order", "in [0, 1)",
+                     options.order);
+    case Parameter::levels:
+      return require(options.levels >= 1 && options.levels <= Options::kMaxLevels, "levels",
+                     "from 1 to 8", options.levels);
+    case Parameter::sigma:
+      return require(options.sigma_px > 0.0 && options.sigma_px <= Options::kMaxSigma_px, "sigma",
+                     "in (0, 1000]", options.sigma_px);
+    case Parameter::threshold:
+      return require(options.threshold_grey >= 0.0 && options.threshold_grey <= 255.0, "threshold",
+                     "from 0 to 255", options.threshold_grey);
+    case Parameter::divisor:
+      return require(
+          options.divisor >= Options::kMinDivisor && options.divisor <= Options::kMaxDivisor,
+          "divisor", "from 0.001 to 1e6", options.divisor);
+    case Parameter::lambda:
+      return require(tv_gabor.lambda >= TvGaborOptions::kMinLambda &&
+                         tv_gabor.lambda <= TvGaborOptions::kMaxLambda,
+                     "lambda", "from 1e-6 to 1e6", tv_gabor.lambda);
+    case Parameter::gap:
+      return require(tv_gabor.gap > 0.0 && std::isfinite(tv_gabor.gap), "gap",
+                     "a finite number above 0", tv_gabor.gap);
+    case Parameter::max_steps:
+      return require(tv_gabor.max_steps >= 1, "max_steps", "at least 1", tv_gabor.max_steps);
+    case Parameter::components:
+      return check_components(tv_gabor);
+    case Parameter::norm:
+    case Parameter::gradient:
+    case Parameter::combine:
+      return;
+  }
 }
 
 }  // namespace
 
-void check_options(const ExtractionOptions& options) {
-  switch (options.method) {
-    case Method::adaptive:
-      check_levels(options.levels);
-      return check_radius(options.radius);
-    case Method::fixed:
-      check_order(options.order);
-      return check_radius(options.radius);
-    case Method::tv_gabor:
-      return check_tv_gabor(options.tv_gabor);
-    case Method::gaussian:
-      return check_sigma(options.sigma_px);
-    case Method::median:
-      check_threshold(options.threshold_grey);
-      return check_radius(options.radius);
-    case Method::edge:
-      return check_divisor(options.divisor);
-    case Method::luminance:
-      return;
+std::string_view name_of(Method method) {
+  return method_table().at(static_cast<std::size_t>(method)).name;
+}
+
+std::optional<Method> method_from_name(std::string_view name) {
+  const auto& table = method_table();
+  const auto found = std::ranges::find(table, name, &MethodEntry::name);
+  if (found == table.end()) return std::nullopt;
+  return static_cast<Method>(found - table.begin());
+}
+
+std::vector<std::string> method_names() {
+  std::vector<std::string> names;
+  for (const MethodEntry& entry : method_table()) names.emplace_back(entry.name);
+  return names;
+}
+
+std::vector<Method> methods_with(Parameter parameter) {
+  std::vector<Method> methods;
+  const auto& table = method_table();
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const bool has_it = std::ranges::count(table[i].parameters, parameter) > 0;
+    if (has_it) methods.push_back(static_cast<Method>(i));
   }
-  throw std::invalid_argument("method: not one of the enumeration");
+  return methods;
+}
+
+void check_options(const ExtractionOptions& options) {
+  const auto index = static_cast<std::size_t>(options.method);
+  if (index >= method_table().size()) {
+    throw std::invalid_argument("method: not one of the enumeration");
+  }
+  for (const Parameter parameter : method_table()[index].parameters) {
+    check_parameter(parameter, options);
+  }
 }
 
 }  // namespace touchtrial::engine

@@ -1,4 +1,4 @@
-/// \file Planes of real numbers from outside hold numbers.
+/// \file Checks that planes from callers have no NaN and no infinity.
 #pragma once
 
 #include "core/plane.hpp"
@@ -10,7 +10,7 @@
 
 namespace touchtrial::engine {
 
-/// Whether every sample is finite. Reads all of them, several at a time.
+/// Whether every sample is finite. Always reads all samples, so that the loop vectorises.
 template <typename Real>
 [[nodiscard]] bool all_finite(const Plane<Real>& plane) noexcept {
   unsigned outside = 0;

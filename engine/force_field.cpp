@@ -1,7 +1,7 @@
 #include "engine/force_field.hpp"
 
 #include "engine/finite_plane.hpp"
-#include "engine/kernels/force_rows.hpp"
+#include "engine/kernels/field_rows.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -11,8 +11,7 @@
 namespace touchtrial::engine {
 namespace {
 
-/// Adds to one row of forces what the neighbours at (dy, dx) exert, where they
-/// exist.
+/// Adds the forces from the existing neighbours at (dy, dx) to one row of forces.
 template <typename Real>
 void add_neighbours(std::span<const Real> row, std::span<const Real> neighbours, int dy, int dx,
                     std::span<Real> force_x, std::span<Real> force_y) {
@@ -28,7 +27,7 @@ void add_neighbours(std::span<const Real> row, std::span<const Real> neighbours,
   }
 }
 
-/// The usual neighbourhood in single precision has its own kernel.
+/// The usual neighbourhood has its own kernel in float.
 bool made_by_kernel(const Plane<double>&, int, ForceField<double>&) {
   return false;
 }
@@ -36,7 +35,7 @@ bool made_by_kernel(const Plane<float>& surface, int neighbourhood, ForceField<f
   if (neighbourhood != 3) return false;
   ForceRows rows(surface.width());
   for (int y = 0; y < surface.height(); ++y) {
-    std::copy_n(surface.row(y).data(), surface.width(), rows.next_surface());
+    std::ranges::copy(surface.row(y), rows.next_surface());
     const int before = std::max(y - 1, 0);
     rows.add_row(force.x.row(before).data(), force.y.row(before).data());
   }

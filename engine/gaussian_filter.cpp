@@ -14,8 +14,8 @@ namespace {
 
 constexpr double kSmallestWeight = 1e-12;  // relative to the middle one
 
-/// The mirrored axis has period 2n, and from a standard deviation of 3n on the Gaussian wrapped
-/// round that period is uniform to 1e-19: a wider one would only cost time.
+/// The mirrored axis has period 2n. From a standard deviation of 3n on, the Gaussian wrapped around
+/// that period is uniform to 1e-19; a wider one would only cost time.
 double effective_sigma(double sigma_px, int n) {
   return std::min(sigma_px, 3.0 * n);
 }
@@ -34,8 +34,8 @@ std::vector<double> half_kernel(double sigma_px) {
   return weights;
 }
 
-/// Adds one pair of taps. The kernel's sum is 1, so it may be applied to the differences from the
-/// middle sample, which are exactly zero where the plane is flat.
+/// Adds one pair of taps. As the kernel's sum is 1, it can be applied to the differences from the
+/// middle sample, which are exactly 0 where the plane is flat.
 template <typename Sample>
 void add_pair(std::span<double> out, const Sample* middle, const Sample* before,
               const Sample* after, double weight) {
@@ -79,10 +79,7 @@ void GaussianRows<Sample>::filter_along_x() {
   const int width = plane_.width();
   const auto radius = static_cast<int>(weights_x_.size()) - 1;
   double* const middle = extended_.data() + radius;
-  for (int i = 1; i <= radius; ++i) {
-    middle[-i] = middle[symmetric_index(-i, width)];
-    middle[width - 1 + i] = middle[symmetric_index(width - 1 + i, width)];
-  }
+  mirror_ends(middle, width, radius);
   std::copy_n(middle, width, filtered_.begin());
   for (int k = 1; k <= radius; ++k) {
     add_pair<double>(filtered_, middle, middle - k, middle + k,
@@ -103,8 +100,7 @@ Plane<double> gaussian_filtered(const Plane<double>& plane, double sigma_px) {
   Plane<double> out(plane.height(), plane.width());
   GaussianRows rows(plane, sigma_px);
   for (int y = 0; y < plane.height(); ++y) {
-    const std::span<const double> row = rows.row(y);
-    std::copy(row.begin(), row.end(), out.row(y).begin());
+    std::ranges::copy(rows.row(y), out.row(y).begin());
   }
   return out;
 }

@@ -1,5 +1,5 @@
-/// \file The Gaussian: takes from a surface what no device could render, and from an image what is
-/// texture. Source: docs/method.md, "Rendering" and "Other extractors".
+/// \file The Gaussian filter: removes the detail of a surface that no device can render, and
+/// separates the texture of an image. Source: docs/method.md, "Rendering" and "Other extractors".
 #pragma once
 
 #include "core/plane.hpp"
@@ -9,13 +9,14 @@
 
 namespace touchtrial::engine {
 
-/// A filtered plane row by row, for those who need no plane of it: memory is that of two rows and
-/// of the weights. Sample is double or std::uint8_t; results are those of gaussian_filtered() to
-/// the last bit. Keeps a reference to the plane; not thread-safe.
+/// Filters a plane row by row, for callers that need no plane of the result: needs memory for two
+/// rows and the weights. Sample is double or std::uint8_t. The results are those of
+/// gaussian_filtered() to the last bit. Keeps a reference to the plane. Not thread-safe.
 template <typename Sample>
 class GaussianRows {
  public:
-  /// \param plane  not empty  \param sigma_px  > 0, may be infinite
+  /// \param plane  not empty
+  /// \param sigma_px  > 0, may be infinite
   GaussianRows(const Plane<Sample>& plane, double sigma_px);
 
   /// Row y of the filtered plane; valid until the next call.
@@ -28,14 +29,14 @@ class GaussianRows {
   const Plane<Sample>& plane_;
   std::vector<double> weights_y_;
   std::vector<double> weights_x_;
-  std::vector<double> extended_;  ///< a row filtered along y, mirrored at both ends
+  std::vector<double> extended_;  ///< one row, filtered along y and mirrored at both ends
   std::vector<double> filtered_;
 };
 
-/// Convolves a plane with a sampled Gaussian of sum 1, mirrored at the edges (half-sample symmetric
-/// extension, however far the kernel reaches out). Weights below 1e-12 of the middle one are left
-/// out; otherwise exact to double rounding. Flat areas keep their exact value, and the plane keeps
-/// its mean. Thread-safe. Cost: about 30 * sigma_px multiplications a pixel.
+/// Convolves a plane with a sampled Gaussian of sum 1, with half-sample symmetric extension at the
+/// edges. Omits weights below 1e-12 of the middle one; otherwise exact to double rounding. Flat
+/// areas keep their exact value, and the plane keeps its mean. Thread-safe.
+/// Cost: about 30 * sigma_px multiplications per pixel.
 /// \param plane  at least 1 x 1, any unit
 /// \param sigma_px  standard deviation, >= 0; 0 gives the plane itself, infinity its mean
 /// \throws std::invalid_argument if the plane is empty or not finite, or sigma_px negative or NaN

@@ -13,9 +13,9 @@
 namespace touchtrial::engine {
 namespace {
 
-/// Up to here a file is read as a whole, which turns a failing disk into an error. A larger one is
-/// mapped: then a huge file that is no picture, or holds little of one, costs the few pages that
-/// its checks look at.
+/// Up to this size a file is read as a whole, which turns a failing disk into an error. A larger
+/// file is mapped: if it is no picture, or holds only a small one, it costs the few pages that are
+/// checked.
 constexpr std::uintmax_t kLargestReadWhole = std::uintmax_t{1} << 26U;
 
 GreyImage decode_file(ByteView file) {

@@ -1,6 +1,7 @@
 #include "engine/image_notes.hpp"
 
 #include "engine/image_formats/image_format.hpp"
+#include "engine/image_formats/tiff_directory.hpp"
 
 #include <algorithm>
 #include <array>
@@ -22,7 +23,7 @@ bool is_placeholder(double pixels_per_mm) {
 
 std::optional<double> resolution(double x, double y, double unit_mm) {
   const bool is_square = std::abs(x - y) <= 0.01 * std::max(x, y);
-  // A whole picture within a micrometre, or a pixel wider than a hand, is nobody's measurement.
+  // A pixel below 1 um or above 100 mm is no measurement.
   if (!is_square || !(x / unit_mm >= 0.01) || !(x / unit_mm <= 1000.0)) return std::nullopt;
   if (is_placeholder(x / unit_mm)) return std::nullopt;
   return x / unit_mm;
@@ -42,14 +43,14 @@ ImageNotes notes_of_tiff(ByteView file) {
   return notes;
 }
 
-/// Exif is a TIFF directory within another file.
+/// Exif notes are a TIFF directory within another file.
 void take_exif(ByteView exif, ImageNotes& notes) {
   try {
     const ImageNotes said = notes_of_tiff(exif);
     notes.orientation = said.orientation;
     if (said.pixels_per_mm) notes.pixels_per_mm = said.pixels_per_mm;
   } catch (const ImageFault&) {
-    // Damaged notes count as not there; the rest of the file may still have some.
+    // Damaged notes count as absent; the rest of the file may still have some.
   }
 }
 
@@ -64,7 +65,7 @@ void take_jfif(ByteView data, ImageNotes& notes) {
   if (data[7] == 2) notes.pixels_per_mm = resolution(x, y, kMmPerCm);
 }
 
-/// Segments before the first scan.
+/// Reads the segments before the first scan.
 void take_jpeg(ByteView file, ImageNotes& notes) {
   using namespace std::string_view_literals;
   constexpr std::uint32_t kScan = 0xFFDA;
@@ -116,7 +117,7 @@ ImageNotes notes_of_image(ByteView file) {
   try {
     take_notes(file, notes);
   } catch (const ImageFault&) {
-    // What was said before the damage stands.
+    // Notes before the damage stay valid.
   }
   if (notes.orientation < 1 || notes.orientation > 8) notes.orientation = 1;
   return notes;

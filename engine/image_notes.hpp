@@ -1,4 +1,4 @@
-/// \file What a picture file says beside its pixels: which way up it is, and how large it was.
+/// \file The metadata of a picture file: its orientation and its resolution.
 /// Source: Exif 2.32, TIFF 6.0, PNG (pHYs, eXIf), JFIF 1.02.
 #pragma once
 
@@ -10,21 +10,21 @@
 namespace touchtrial::engine {
 
 struct ImageNotes {
-  /// As in Exif and TIFF, 1 to 8: 1 upright, 3 upside down, 6 to be turned clockwise, 8
-  /// anticlockwise, 2, 4, 5 and 7 mirrored as well.
+  /// 1 to 8 as in Exif and TIFF: 1 is upright, 3 upside down, 6 has to be turned clockwise, 8
+  /// anticlockwise; 2, 4, 5 and 7 are mirrored as well.
   int orientation = 1;
-  /// Nothing if the file does not say, says it differently for the two axes, or says 72 or 96 dots
-  /// an inch, which cameras and programs write when they do not know.
+  /// Nothing if the file states no resolution, different ones for the two axes, or 72 or 96 dots
+  /// per inch, which cameras and programs write when they do not know it.
   std::optional<double> pixels_per_mm;
 };
 
-/// Notes never decide whether a picture can be read: what is damaged in them counts as not said.
-/// \param file  all its bytes
+/// Reads the metadata. Damaged metadata counts as absent, so that the picture stays readable.
+/// \param file  all bytes of the file
 /// Thread-safe.
 [[nodiscard]] ImageNotes notes_of_image(ByteView file);
 
-/// The picture turned and mirrored so that it is upright.
-/// \param orientation  see ImageNotes; anything but 2 to 8 leaves it as it is
+/// Turns and mirrors a picture so that it is upright.
+/// \param orientation  see ImageNotes; any number but 2 to 8 returns the picture unchanged
 [[nodiscard]] GreyImage upright(const GreyImage& image, int orientation);
 
 }  // namespace touchtrial::engine

@@ -1,5 +1,5 @@
-/// \file What was computed, what was reused and what was skipped, and why: the work behind a
-/// result, stage by stage, for people who ask.
+/// \file A log of the stages of a computation, for users who ask for it: what was computed, reused
+/// or skipped, and why.
 #pragma once
 
 #include <chrono>
@@ -13,20 +13,23 @@ namespace touchtrial::engine {
 
 enum class StageState { computed, reused, skipped };
 
-/// "computed", "reused", "skipped"
-[[nodiscard]] std::string_view name_of(StageState state);
+/// The state as a word, for instance "computed".
+[[nodiscard]] constexpr std::string_view name_of(StageState state) {
+  if (state == StageState::computed) return "computed";
+  return state == StageState::reused ? "reused" : "skipped";
+}
 
 /// One stage of one stimulus, or of the whole study.
 struct Stage {
   std::string name;
   StageState state = StageState::computed;
   std::string why;
-  double seconds = 0.0;     ///< spent; 0 if skipped
-  std::uint64_t bytes = 0;  ///< of the result: made, found again, or not made
+  double seconds = 0.0;     ///< 0 if reused or skipped
+  std::uint64_t bytes = 0;  ///< size of the stage's result, even if it was skipped
 };
 
-/// Stages in the order in which they were met. Not thread-safe: one log for one thread's work.
-/// Where nobody asks there is no log, and a null pointer costs nothing.
+/// Stages in the order in which they were added. Not thread-safe: each thread has a log of its own.
+/// A function that takes a pointer to a log accepts nullptr, which costs nothing.
 class StageLog {
  public:
   void add(Stage stage) { stages_.push_back(std::move(stage)); }
@@ -43,14 +46,15 @@ class StageLog {
   std::vector<Stage> stages_;
 };
 
-/// Measures a stage from its construction on.
+/// Measures stages that follow one another.
 class StageTimer {
  public:
+  /// \param log  may be nullptr; then nothing is measured
   explicit StageTimer(StageLog* log) : log_(log) {
     if (log_ != nullptr) start_ = Clock::now();
   }
 
-  /// The stage that began with the timer, or with the last one done, is computed.
+  /// Adds the computed stage that began at the timer's construction or at the last call.
   void done(std::string_view name, std::string_view why, std::uint64_t bytes) {
     if (log_ == nullptr) return;
     const Clock::time_point now = Clock::now();

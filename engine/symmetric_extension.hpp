@@ -1,10 +1,11 @@
-/// \file Half-sample symmetric extension: the image mirrored at its edges, edge samples repeated.
-/// Source: docs/method.md, "Symmetric extension".
+/// \file Half-sample symmetric extension: an image mirrored at its edges, with the edge samples
+/// repeated.
+/// Source: docs/method.md, "Borders".
 #pragma once
 
 namespace touchtrial::engine {
 
-/// The sample that stands at index i of the endlessly mirrored sequence 0 .. n-1:
+/// The index of the sample at place i of the endlessly mirrored sequence 0 .. n-1:
 /// .. 1 0 | 0 1 .. n-1 | n-1 n-2 ..
 /// \param i  any index, however far outside (|i| < 2^30)
 /// \param n  length of the sequence, 1 .. 2^28
@@ -14,6 +15,18 @@ namespace touchtrial::engine {
   const int remainder = i % period;
   const int folded = remainder < 0 ? remainder + period : remainder;
   return folded < n ? folded : period - 1 - folded;
+}
+
+/// Writes `margin` mirrored samples before and behind a row. The row may be shorter than the
+/// margin.
+/// \param row  its first sample; the memory on both sides must hold the margin
+/// \param width  of the row, >= 1
+template <typename Sample>
+void mirror_ends(Sample* row, int width, int margin) noexcept {
+  for (int i = 1; i <= margin; ++i) {
+    row[-i] = row[symmetric_index(-i, width)];
+    row[width - 1 + i] = row[symmetric_index(width - 1 + i, width)];
+  }
 }
 
 }  // namespace touchtrial::engine

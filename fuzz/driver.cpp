@@ -1,4 +1,4 @@
-// What libFuzzer calls. Compiled once for each entry, with its name.
+// The entry point of libFuzzer. It is compiled once for each entry, with the entry's name.
 #include "fuzz/entries.hpp"
 
 #include <cstddef>

@@ -5,7 +5,8 @@
 #include "device/falcon/falcon_packet.hpp"
 #include "engine/image_file.hpp"
 #include "protocols/design/study.hpp"
-#include "protocols/session/subject_model.hpp"
+#include "protocols/registration/registration.hpp"
+#include "protocols/simulation/subject_model.hpp"
 #include "protocols/store/trace.hpp"
 
 #include <algorithm>
@@ -22,7 +23,7 @@ void require(bool holds, const char* law) {
   if (!holds) throw std::logic_error(law);
 }
 
-/// What the program would show is one line.
+/// Requires a refusal of one line.
 void check_refusal(const Error& error) {
   const std::string text = error.what();
   require(!text.empty() && text.find('\n') == std::string::npos, "a refusal is one line");
@@ -46,8 +47,9 @@ bool equal(const store::Trace& a, const store::Trace& b) {
   return true;
 }
 
-/// A still stylus packs so well that a few bytes may rightly stand for millions of samples: slow,
-/// not wrong, and nothing for a fuzzer. The number stands behind the mark and the rate.
+/// Whether the bytes announce a long trace. A motionless stylus compresses so well that a few bytes
+/// may validly stand for millions of samples, which is slow but not wrong. The count follows the
+/// magic number and the rate.
 bool claims_a_long_trace(ByteView bytes) {
   constexpr std::size_t kCountAt = 12;
   constexpr std::uint32_t kLong = 20'000;
@@ -58,7 +60,7 @@ bool claims_a_long_trace(ByteView bytes) {
   return count > kLong && count <= kRefused;
 }
 
-/// Counts replies by looking at every place, not only where the stream would look.
+/// Counts replies at every position, not only where the stream looks.
 std::uint64_t replies_in(ByteView payload) {
   std::uint64_t found = 0;
   for (std::size_t at = 0; at + device::falcon::kPacketSize <= payload.size(); ++at) {
@@ -68,7 +70,7 @@ std::uint64_t replies_in(ByteView payload) {
   return found;
 }
 
-/// Whatever the counts are, a pose and what it would send to the motors are sensible.
+/// Requires a finite pose for any counts, and torques only for poses that can be held.
 void check_pose(const device::falcon::Reply& reply) {
   const device::falcon::Pose pose =
       device::falcon::forward_kinematics(device::falcon::theta1_of_counts(reply.counts));
@@ -90,6 +92,7 @@ void read_as_image(ByteView bytes) {
 }
 
 void read_as_study(ByteView bytes) {
+  registration::register_protocols();
   accept_or_refuse([&] {
     const design::Study study = design::parse_study(text_of(bytes), "folder", "study.json");
     require(!study.classes.empty() && !study.methods.empty(), "a study has classes and methods");
@@ -99,8 +102,8 @@ void read_as_study(ByteView bytes) {
 
 void read_as_subject(ByteView bytes) {
   accept_or_refuse([&] {
-    const session::SubjectModel model =
-        session::parse_subject_model(text_of(bytes), "subject.json");
+    const simulation::SubjectModel model =
+        simulation::parse_subject_model(text_of(bytes), "subject.json");
     require(model.weber >= 0.0 && model.explore_s > 0.0, "a subject's numbers are in range");
   });
 }

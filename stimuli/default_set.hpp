@@ -1,38 +1,77 @@
-/// \file The default pictures as files in a folder.
+/// \file The default pictures as files in a folder, and manifest.json, which says what they are and
+/// how to make them again.
 #pragma once
 
+#include "core/hash.hpp"
 #include "stimuli/generator.hpp"
-#include "stimuli/manifest.hpp"
 
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
 
 namespace touchtrial::stimuli {
 
-/// Told after each picture, for a progress bar: how many are done, of how many.
+inline constexpr std::string_view kStimulusManifestFile = "manifest.json";
+/// Generated pictures are in the public domain.
+inline constexpr std::string_view kStimuliLicence = "CC0-1.0";
+
+/// One picture of the set.
+struct StimulusEntry {
+  std::string label;
+  StimulusKind kind = StimulusKind::texture;
+  int exemplar = 1;
+  std::string file;  ///< path within the folder
+  std::uint64_t seed = 0;
+  int size_px = 0;
+  Digest sha256{};         ///< of the file
+  Digest pixels_sha256{};  ///< of the grey levels, row-major: the same on every machine
+
+  friend bool operator==(const StimulusEntry&, const StimulusEntry&) = default;
+};
+
+struct StimulusManifest {
+  int generator_version = kGeneratorVersion;
+  std::string licence{kStimuliLicence};
+  std::vector<StimulusEntry> entries;
+
+  friend bool operator==(const StimulusManifest&, const StimulusManifest&) = default;
+};
+
+/// Writes the manifest; an older one is replaced only when the new one is complete.
+/// \param path  of the file
+/// \throws FileError if it cannot be written
+void write_stimulus_manifest(const std::filesystem::path& path, const StimulusManifest& manifest);
+
+/// \param path  of the file
+/// \throws FileError if the file is missing or not JSON, or a key is missing or misspelt; the
+///   message holds the JSON pointer
+[[nodiscard]] StimulusManifest read_stimulus_manifest(const std::filesystem::path& path);
+
+/// Called after each picture, for a progress bar.
 using StimuliProgress = std::function<void(int done, int total)>;
 
 /// Which pictures to make.
 struct StimuliChoice {
   std::uint64_t seed = kDefaultStimuliSeed;
   int size_px = kDefaultStimulusSizePx;
-  /// Of every label but a flat one, of which one is enough; empty: as many as come with the
-  /// program.
+  /// Exemplars of each label; empty: as many as the shipped set has. A flat label has one only.
   std::optional<int> exemplars;
 };
 
-/// Makes every recipe and writes <label>.png files, further exemplars as
-/// exemplars/<label>-<number>.png, and manifest.json. Each file replaces an older one of the same
-/// set only when it is complete, the manifest last; then what the older set had more is removed,
-/// where nobody has changed it. Other files in the folder stay.
+/// Makes every recipe and writes it as <label>.png, further exemplars as
+/// exemplars/<label>-<number>.png, and manifest.json last. Each file replaces an older one of the
+/// same set only when it is complete. Then removes the pictures that only the older set had, unless
+/// somebody has changed them. Other files in the folder stay.
 /// \param folder  is made if it does not exist
 /// \return the manifest that was written; its entries are in the order of `stimulus_recipes()`,
 ///   exemplars of a label together
-/// \throws FileError if the folder or a file cannot be written, its manifest cannot be read, or a
-///   picture is in the way that the manifest does not list; UsageError if the size or the number of
-///   exemplars is out of range
+/// \throws FileError if the folder or a file cannot be written, an older manifest cannot be read,
+///   or a picture that it does not list is in the way
+/// \throws UsageError if the size or the number of exemplars is out of range
 StimulusManifest generate_default_stimuli(const std::filesystem::path& folder,
                                           const StimuliChoice& choice = {},
                                           const StimuliProgress& progress = {});

@@ -8,7 +8,7 @@
 namespace touchtrial::stimuli {
 namespace {
 
-/// A direction without sine and cosine, whose last digit differs between mathematical libraries.
+/// Avoids sine and cosine, whose last digit differs between mathematical libraries.
 Vec2 random_direction(RandomStream& random) {
   while (true) {
     const Vec2 v{random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)};
@@ -57,7 +57,7 @@ double Noise::fractal(double x, double y, int octaves) const noexcept {
   for (int octave = 0; octave < octaves; ++octave) {
     sum += strength * at(x, y);
     strength *= 0.5;
-    // Not quite doubled, and shifted, so that the lattices of two octaves never line up.
+    // Not quite a doubling, and a shift, so that the lattices of two octaves never line up.
     x = 2.03 * x + 17.3;
     y = 2.03 * y + 31.7;
   }

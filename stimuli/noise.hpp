@@ -1,6 +1,6 @@
-/// \file Irregularity: gradient noise and cells, the same on every machine for a seed.
+/// \file Irregularity: gradient noise and cells, identical on every machine for the same seed.
 /// Sources: K. Perlin, "Improving noise", 2002; S. Worley, "A cellular texture basis function",
-/// 1996. Everything is additions, products and square roots, which every processor rounds alike.
+/// 1996. They use only additions, products and square roots, which every processor rounds alike.
 #pragma once
 
 #include "core/vec.hpp"
@@ -12,7 +12,7 @@
 
 namespace touchtrial::stimuli {
 
-/// A lattice of random numbers that is hashed, so that it repeats only after a thousand cells.
+/// A hashed lattice of random numbers, which repeats only after a thousand cells.
 class Lattice {
  public:
   Lattice(std::uint64_t seed, std::string_view purpose);
@@ -41,7 +41,7 @@ class Noise {
   Noise(std::uint64_t seed, std::string_view purpose) : lattice_(seed, purpose) {}
 
   [[nodiscard]] double at(double x, double y) const noexcept;
-  /// Octaves of noise, each about half as wide and half as strong as the one before.
+  /// A sum of octaves of noise, each about half as wide and half as strong as the one before.
   [[nodiscard]] double fractal(double x, double y, int octaves) const noexcept;
   /// The same with sharp crests: 1 on a crest, about 0 between.
   [[nodiscard]] double ridged(double x, double y, int octaves) const noexcept;
@@ -50,10 +50,10 @@ class Noise {
   Lattice lattice_;
 };
 
-/// Where a point lies among cells of about one unit.
+/// The place of a point among cells about one unit wide.
 struct CellPlace {
   double to_centre = 0.0;  ///< distance to the nearest centre
-  double to_border = 0.0;  ///< distance to the second nearest, minus the former; 0 on a border
+  double to_border = 0.0;  ///< distance to the second nearest, minus to_centre; 0 on a border
   std::uint32_t cell = 0;  ///< a random number that belongs to the cell, in [0, Lattice::kSize)
 };
 
@@ -65,7 +65,7 @@ class Cells {
       : lattice_(seed, purpose), jitter_(jitter) {}
 
   [[nodiscard]] CellPlace at(double x, double y) const noexcept;
-  /// A number in [0, 1) for a cell; `trait` tells one of its numbers from another.
+  /// A number in [0, 1) for a cell, another for each `trait`.
   [[nodiscard]] double value(std::uint32_t cell, std::uint32_t trait = 0) const noexcept {
     return lattice_.value(cell * 7 + trait * 131);
   }
@@ -75,7 +75,7 @@ class Cells {
   double jitter_;
 };
 
-/// 0 up to `start`, 1 from `end` on, smooth between; `end` may be the smaller one.
+/// 0 up to `start`, 1 from `end` on, smooth in between; `end` may be the smaller one.
 [[nodiscard]] constexpr double smooth_step(double start, double end, double x) noexcept {
   const double t = std::clamp((x - start) / (end - start), 0.0, 1.0);
   return t * t * (3.0 - 2.0 * t);

@@ -20,10 +20,6 @@ Vec3 normalised(Vec3 v) {
   return (1.0 / norm(v)) * v;
 }
 
-double dot(Vec3 a, Vec3 b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
 Vec3 normal_at(const Plane<double>& height, int y, int x) {
   constexpr double kSpan = 2.0 / kOversampling;
   const double dx = (clamped(height, y, x + 1) - clamped(height, y, x - 1)) / kSpan;
@@ -74,7 +70,7 @@ class ShadowCaster {
   std::vector<Step> path_;
 };
 
-/// Running mean along one line, edges repeated.
+/// Running mean along one line; edges repeat.
 void box_line(const double* from, double* to, int count, std::ptrdiff_t stride, int radius) {
   const auto sample = [&](int i) { return from[std::clamp(i, 0, count - 1) * stride]; };
   double sum = 0.0;
@@ -98,8 +94,8 @@ Plane<double> box(const Plane<double>& plane, int radius) {
   return result;
 }
 
-/// A curve through (0, 0) and (1, 1) that lifts (a > 0.5) or lowers the middle; a rational one,
-/// because powers differ in their last digit between mathematical libraries.
+/// A curve through (0, 0) and (1, 1) that raises (a > 0.5) or lowers the middle. It is a rational
+/// function, because powers differ in their last digit between mathematical libraries.
 double bent(double t, double a) {
   return t / ((1.0 / a - 2.0) * (1.0 - t) + 1.0);
 }
@@ -114,6 +110,21 @@ double find_bend(const std::vector<double>& tones, double mean) {
     (sum < mean * static_cast<double>(tones.size()) ? low : high) = middle;
   }
   return (low + high) / 2;
+}
+
+/// The ground is as light as this quantile of the object.
+constexpr double kGroundQuantile = 0.85;
+
+void dim_ground(Plane<double>& light, const Plane<double>& covered, double light_on_ground) {
+  std::vector<double> of_object;
+  for (std::size_t i = 0; i < light.size(); ++i) {
+    if (covered.samples()[i] > 0.5) of_object.push_back(light.samples()[i]);
+  }
+  if (of_object.empty()) return;
+  const double albedo = light_quantile(of_object, kGroundQuantile) / light_on_ground;
+  for (std::size_t i = 0; i < light.size(); ++i) {
+    if (covered.samples()[i] < 0.5) light.samples()[i] *= albedo;
+  }
 }
 
 }  // namespace
@@ -208,6 +219,30 @@ Print print_for(const Specimen& specimen, Print print) {
 GreyImage photographed(const Specimen& specimen, const Relief& relief, const Lamp& lamp,
                        const Print& print) {
   return developed(averaged(lit(relief, lamp_for(specimen, lamp))), print_for(specimen, print));
+}
+
+View object_view(const Specimen& specimen) {
+  View view = view_of(specimen, {0.0, 0.12, 0.15});
+  view.scale = 1.0 / (1.0 + 0.15 * std::abs(specimen.shift("view/scale", 1.0)));
+  view.middle = {kObjectUnits / 2, kObjectUnits / 2};
+  return view;
+}
+
+GreyImage photographed(const Specimen& specimen, const StillLife& scene, Lamp lamp,
+                       const Print& print) {
+  const double scale = scene.relief.side() / (kOversampling * kObjectUnits);
+  lamp.shadow_reach_px *= scale;
+  lamp.shadow_blur_px *= scale;
+  lamp.hollow_px *= scale;
+  lamp = lamp_for(specimen, lamp);
+  Plane<double> light = lit(scene.relief, lamp);
+  dim_ground(light, scene.covered, light_on_level(lamp));
+  const Plane<double> share = averaged(scene.covered);
+  GreyImage counts(share.height(), share.width());
+  for (std::size_t i = 0; i < share.size(); ++i) {
+    counts.samples()[i] = share.samples()[i] > 0.5 ? 1 : 0;
+  }
+  return developed(averaged(light), print_for(specimen, print), counts);
 }
 
 }  // namespace touchtrial::stimuli

@@ -1,4 +1,4 @@
-/// \file One piece of a material, and how it came before the camera.
+/// \file One piece of a material, and the camera's view of it.
 #pragma once
 
 #include "core/vec.hpp"
@@ -8,9 +8,9 @@
 
 namespace touchtrial::stimuli {
 
-/// The pieces of one seed: exemplar 1 is as its recipe describes it; each further one has noise of
-/// its own and departs from the recipe as photographs of one material depart from each other.
-/// The same seed and exemplar are the same piece. Thread-safe.
+/// One of the pieces that belong to a seed. Exemplar 1 follows its recipe exactly; each further one
+/// has its own noise, and departs from the recipe as photographs of one material differ from each
+/// other. The same seed and exemplar give the same piece. Thread-safe.
 class Specimen {
  public:
   /// \param exemplar  from 1
@@ -19,8 +19,8 @@ class Specimen {
   /// Seed of this piece's noise.
   [[nodiscard]] std::uint64_t noise_seed() const noexcept { return noise_seed_; }
 
-  /// A departure between -spread and spread, 0 for exemplar 1. Successive exemplars are spread
-  /// evenly, so that five of them cover the range.
+  /// A departure between -spread and spread, 0 for exemplar 1. Successive exemplars spread evenly,
+  /// so that five of them cover the range.
   [[nodiscard]] double shift(std::string_view trait, double spread) const;
   /// A factor between 1 / (1 + spread) and 1 + spread, 1 for exemplar 1.
   [[nodiscard]] double factor(std::string_view trait, double spread) const;
@@ -33,12 +33,12 @@ class Specimen {
   int exemplar_;
 };
 
-/// Where the camera stands.
+/// The view of the camera.
 struct View {
-  double scale = 1.0;     ///< pixels that a pixel of the recipe takes
+  double scale = 1.0;     ///< size of a recipe's pixel in the picture, pixels
   Vec2 along{1.0, 0.0};   ///< the picture's x on the surface, length 1
-  double relief = 1.0;    ///< how much of the recipe's depth there is: worn below 1
-  Vec2 middle{0.0, 0.0};  ///< point that scaling and turning leave in place, pixels
+  double relief = 1.0;    ///< depth relative to the recipe's; worn below 1
+  Vec2 middle{0.0, 0.0};  ///< centre of scaling and rotation, pixels
 
   /// The point of the surface that is seen at a pixel coordinate.
   [[nodiscard]] Vec2 on_surface(double x_px, double y_px) const noexcept {
@@ -49,7 +49,7 @@ struct View {
   }
 };
 
-/// How far the views of a material's pieces lie apart.
+/// Spread of the views of a material's pieces, as in Specimen::factor and Specimen::turn.
 struct ViewSpread {
   double scale = 0.2;
   double turn = 0.1;

@@ -4,6 +4,7 @@
 #include "analysis/exports/export_folder.hpp"
 #include "analysis/exports/export_tables.hpp"
 #include "analysis/json_figures.hpp"
+#include "analysis/results.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -39,11 +40,12 @@ std::vector<std::filesystem::path> export_csv(const store::StudyStore& store,
   add("participants.csv", participants_table(store, collection));
   add("deviations.csv", deviations_table(collection, commitment.simulated));
   add("servo.csv", servo_table(collection, commitment.simulated));
-  for (std::size_t i = 0; outcomes && i < outcomes->methods.size(); ++i) {
-    add("confusion_" + outcomes->methods[i] + ".csv",
-        confusion_table(*outcomes, static_cast<int>(i)));
+  if (outcomes) {
+    for (const auto& [file, table] : analysis_of(outcomes->design).tables(*outcomes)) {
+      add(file, table);
+    }
+    add("unscored_trials.csv", unscored_table(*outcomes));
   }
-  if (outcomes) add("unscored_trials.csv", unscored_table(*outcomes));
   add("study.csv", study_table(store, outcomes, collection));
   if (outcomes) files.push_back(text_file("study_file.json", outcomes->design.text));
   files.push_back(text_file("export.json", contents_json(commitment, !outcomes, files)));

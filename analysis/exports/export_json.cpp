@@ -4,6 +4,7 @@
 #include "analysis/exports/export_folder.hpp"
 #include "analysis/exports/export_tables.hpp"
 #include "analysis/json_figures.hpp"
+#include "analysis/results.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -45,7 +46,7 @@ std::filesystem::path export_json(const store::StudyStore& store,
   put_stamp(document, commitment.simulated);
   document["study_id"] = commitment.study_id;
   if (outcomes) {
-    document["report"] = report_object(make_report(*outcomes));
+    document["report"] = Json::parse(analysis_of(outcomes->design).results(*outcomes, {})->json());
   } else {
     document["quality"] = quality_object(make_quality(store));
   }

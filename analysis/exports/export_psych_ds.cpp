@@ -5,8 +5,8 @@
 #include "analysis/exports/export_folder.hpp"
 #include "analysis/exports/export_tables.hpp"
 #include "analysis/exports/psych_ds_description_json.hpp"
-#include "analysis/report/quality.hpp"
-#include "analysis/report/report.hpp"
+#include "analysis/quality.hpp"
+#include "analysis/results.hpp"
 
 #include <algorithm>
 
@@ -59,7 +59,8 @@ std::vector<std::filesystem::path> export_psych_ds(const DatasetSource& study,
   if (outcomes) add_data("unscored", unscored_table(*outcomes));
   add_data("participants", people_table(study.store, collection_of(study.store, outcomes)));
   files.push_back(outcomes
-                      ? text_file("results/report.json", report_json(make_report(*outcomes)))
+                      ? text_file("results/report.json",
+                                  analysis_of(outcomes->design).results(*outcomes, {})->json())
                       : text_file("results/quality.json", quality_json(make_quality(study.store))));
   files.push_back(text_file("README.md", psych_ds_readme(study)));
   files.push_back(text_file("CHANGES.md", changes_text(commitment)));

@@ -2,7 +2,6 @@
 
 #include "analysis/exports/collection_tables.hpp"
 #include "analysis/exports/trial_columns.hpp"
-#include "analysis/statistics/confusion.hpp"
 
 #include <map>
 
@@ -68,27 +67,6 @@ DataTable trials_table(const store::StudyStore& store, const std::optional<Outco
 
 DataTable unscored_table(const Outcomes& outcomes) {
   return trials_that_are(false, outcomes);
-}
-
-DataTable confusion_table(const Outcomes& outcomes, int method) {
-  const auto classes = static_cast<int>(outcomes.classes.size());
-  ConfusionMatrix confusion(classes);
-  for (const TrialOutcome& trial : outcomes.trials) {
-    if (!trial.counted || trial.stimulus.method != method) continue;
-    confusion.add({trial.stimulus.class_index, trial.response});
-  }
-  DataTable table{{"presented"}, {}};
-  table.columns.insert(table.columns.end(), outcomes.classes.begin(), outcomes.classes.end());
-  table.columns.emplace_back("no_response");
-  table.columns.emplace_back("simulated");
-  for (int i = 0; i < classes; ++i) {
-    std::vector<DataCell> row{outcomes.classes[i]};
-    for (int j = 0; j < classes; ++j) row.emplace_back(std::int64_t{confusion.count(i, j)});
-    row.emplace_back(std::int64_t{confusion.no_response(i)});
-    row.push_back(flag(outcomes.simulated));
-    table.rows.push_back(std::move(row));
-  }
-  return table;
 }
 
 DataTable study_table(const store::StudyStore& store, const std::optional<Outcomes>& outcomes,

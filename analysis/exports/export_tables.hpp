@@ -20,10 +20,6 @@ namespace touchtrial::analysis {
 /// what came before a scored trial is found here. A catch trial has neither class nor method.
 [[nodiscard]] DataTable unscored_table(const Outcomes& outcomes);
 
-/// Counts of one method's counted trials: a row a presented class, a column an answer, then
-/// the trials without a response.
-[[nodiscard]] DataTable confusion_table(const Outcomes& outcomes, int method);
-
 /// What holds for the study as a whole: rows of a key, what it is of (of an exemplar: its class),
 /// and a value. Classes, exemplars and methods, in their order, only with outcomes.
 [[nodiscard]] DataTable study_table(const store::StudyStore& store,

@@ -19,7 +19,7 @@ DataCell time_between(const std::optional<std::chrono::nanoseconds>& from,
 
 DataCell response_of(const TrialView& trial) {
   if (!trial.outcome->response) return std::monostate{};
-  return trial.study->classes[*trial.outcome->response];
+  return trial.study->choices[*trial.outcome->response];
 }
 
 /// Empty for a trial that never ended, so that a mean over the column is an accuracy.

@@ -1,4 +1,4 @@
-/// \file What trials.csv and its kin hold of a trial, column by column. Private to exports.
+/// \file What trials.csv and its kin hold of a trial, column by column.
 /// Columns: docs/data-dictionary.md, "Exports".
 #pragma once
 

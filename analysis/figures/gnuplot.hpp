@@ -1,29 +1,54 @@
-/// \file Figures by gnuplot, which is needed only when one is asked for.
+/// \file Running gnuplot, which must be installed only if a figure is wanted.
 #pragma once
 
 #include "core/files.hpp"
 
 #include <filesystem>
+#include <memory>
 #include <string>
+#include <string_view>
 
 namespace touchtrial::analysis {
 
-/// For before long work whose figure would come last.
-/// \throws Error if gnuplot is not there or does not start, with the remedy
+/// One run of gnuplot. It starts on construction; several may run at the same time. gnuplot starts
+/// from its defaults, whatever the user's own settings are.
+class GnuplotProcess {
+ public:
+  /// \param argument  of the command line; may be empty
+  /// \param script  its standard input
+  /// \throws Error if gnuplot cannot be started
+  /// \throws FileError if temporary files cannot be made
+  GnuplotProcess(std::string argument, std::string_view script);
+  /// Waits for its end.
+  ~GnuplotProcess();
+  GnuplotProcess(GnuplotProcess&&) noexcept;
+  GnuplotProcess& operator=(GnuplotProcess&&) = delete;
+
+  /// Waits for its end.
+  /// \return what it printed
+  /// \throws Error if gnuplot failed
+  [[nodiscard]] std::string result();
+
+ private:
+  struct Run;
+  std::unique_ptr<Run> run_;
+};
+
+/// Called before long work that ends in a figure.
+/// \throws Error, with the remedy, if gnuplot is not installed or does not start
 void require_gnuplot();
 
 /// Runs a script and writes the picture that it prints to its standard output.
-/// gnuplot starts from its defaults, whatever the user's own settings.
 /// \param script  sets a terminal, and no output file
 /// \param mode  who may read the picture
-/// \throws Error if gnuplot is not there or refuses the script
+/// \throws Error if gnuplot is not installed or refuses the script
 /// \throws FileError if the picture cannot be written
 /// Thread-safe.
 void draw_with_gnuplot(const std::string& script, const std::filesystem::path& picture,
                        FileMode mode = FileMode::everyone);
 
-/// A text as a gnuplot string: on one line, in quotes. What gnuplot makes of
-/// mark-up is up to the script ("noenhanced").
+/// A text as a gnuplot string: on one line, in quotes. Whether gnuplot interprets mark-up is up to
+/// the script ("noenhanced").
 [[nodiscard]] std::string gnuplot_string(const std::string& text);
 
 }  // namespace touchtrial::analysis

@@ -18,7 +18,7 @@ constexpr std::array<std::string_view, 6> kColours = {"#0072b2", "#d55e00", "#00
                                                       "#cc79a7", "#56b4e9", "#1a1a1a"};
 constexpr std::array<int, 5> kMarks = {7, 5, 9, 13, 11};
 
-/// Of an average letter of 8 points, in the widest of the usual fonts.
+/// The width of an average letter of 8 points, in the widest of the usual fonts.
 constexpr double kLetter_cm = 0.17;
 constexpr double kSlant = 0.707;  ///< sine of 45 degrees
 
@@ -33,7 +33,7 @@ unset key
 constexpr double kLegendRow_cm = 0.42;
 constexpr double kSample_cm = 0.6;
 constexpr double kLegendLetter_cm = 0.145;
-constexpr double kStamp_cm = 2.2;  ///< the stamp's room in the upper right corner
+constexpr double kStamp_cm = 2.2;  ///< the stamp's width, in the upper right corner
 constexpr std::size_t kLegendColumns = 48;
 
 std::string line_entry(const Sheet& sheet, const LegendEntry& entry, double x_cm, double y_cm) {
@@ -76,6 +76,15 @@ std::string_view series_colour(std::size_t n) noexcept {
 
 int series_mark(std::size_t n) noexcept {
   return kMarks[n % kMarks.size()];
+}
+
+Figure figure_on(const Sheet& sheet, std::string id, std::string alt) {
+  return {.id = std::move(id),
+          .caption = {},
+          .alt = std::move(alt),
+          .script = {},
+          .width_cm = sheet.width_cm,
+          .height_cm = sheet.height_cm};
 }
 
 std::string sheet_head(const Sheet& sheet) {
@@ -124,11 +133,34 @@ std::string accuracy_axis(const std::string& label) {
       gnuplot_string(label));
 }
 
-std::string chance_line(int classes) {
+std::vector<double> evenly_chosen(const std::vector<double>& sorted, std::size_t most) {
+  if (sorted.size() <= most) return sorted;
+  std::vector<double> chosen;
+  for (std::size_t i = 0; i < most; ++i) {
+    chosen.push_back(sorted[i * (sorted.size() - 1) / (most - 1)]);
+  }
+  return chosen;
+}
+
+void add_dots(std::vector<std::vector<double>>& rows, double x, double width,
+              const std::vector<double>& sorted) {
+  constexpr double kGoldenSection = 0.618033988749895;
+  const std::vector<double> chosen = evenly_chosen(sorted, kMostDots);
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    const double aside = std::fmod(kGoldenSection * static_cast<double>(i), 1.0) - 0.5;
+    rows.push_back({x + width * aside, chosen[i]});
+  }
+}
+
+std::string dashed_line(double height) {
   return fmt::format(
       "set arrow from graph 0, first {0:.6g} to graph 1, first {0:.6g} nohead dt (6, 5) lw 1.2 "
       "lc rgb '{1}' back\n",
-      100.0 / std::max(classes, 1), kInk);
+      height, kInk);
+}
+
+std::string chance_line(int classes) {
+  return dashed_line(100.0 / std::max(classes, 1));
 }
 
 std::string chance_words(int classes) {
@@ -185,6 +217,36 @@ Legend::Legend(const Sheet& sheet, double left_cm, std::span<const LegendEntry> 
     x_cm += width_cm;
   }
   room_cm_ = y_cm + 0.3;
+}
+
+Panels::Panels(std::size_t count, std::size_t across, double height_cm, const Margins& around,
+               bool simulated)
+    : count_(count),
+      across_(std::min(count, across)),
+      height_cm_(height_cm),
+      around_(around),
+      sheet_{16.0, kLegend_cm, simulated} {
+  const std::size_t rows = (count_ + across_ - 1) / across_;
+  sheet_.height_cm += height_cm_ * static_cast<double>(rows);
+}
+
+double Panels::axis_cm() const noexcept {
+  return sheet_.width_cm / static_cast<double>(across_) - around_.left_cm - around_.right_cm;
+}
+
+std::string Panels::begin(std::size_t panel, const std::string& title) const {
+  const double share_cm = sheet_.width_cm / static_cast<double>(across_);
+  const double left_cm = share_cm * static_cast<double>(panel % across_);
+  const double top_cm = kLegend_cm + height_cm_ * static_cast<double>(panel / across_);
+  const Margins margins{
+      left_cm + around_.left_cm, sheet_.width_cm - left_cm - share_cm + around_.right_cm,
+      top_cm + around_.top_cm, sheet_.height_cm - top_cm - height_cm_ + around_.bottom_cm};
+  std::string script = panel_at(sheet_, margins);
+  if (count_ > 1) {
+    const auto columns = static_cast<std::size_t>(std::max(axis_cm() / kLetter_cm, 8.0));
+    script += text_at(fitted(title, columns), "graph 0, graph 1 left offset 0.2, 0.6");
+  }
+  return script;
 }
 
 std::string stamped(bool simulated, const std::string& sentence) {

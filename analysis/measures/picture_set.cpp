@@ -1,6 +1,6 @@
 #include "analysis/measures/picture_set.hpp"
 
-#include "engine/metrics/spectrum_slope.hpp"
+#include "engine/metrics/picture_statistics.hpp"
 #include "engine/metrics/ssim.hpp"
 #include "engine/perception/texture_sense.hpp"
 #include "engine/rendering/field_statistics.hpp"
@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kLargestSet = 5;
 
-/// A picture with what is made of it.
+/// A picture with its texture and field.
 struct Worked {
   const LabelledPicture* picture;
   GreyImage texture;

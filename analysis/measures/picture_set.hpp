@@ -1,5 +1,5 @@
-/// \file A set of pictures in figures: each by itself, how alike they are, and what their strength
-/// gives away. Definitions: docs/stimuli.md, "Figures".
+/// \file Measures of sets of pictures: of each picture, of how alike pictures are, and of what
+/// their strength gives away. Definitions: docs/stimuli.md, "Figures".
 #pragma once
 
 #include "analysis/measures/rms_alone.hpp"
@@ -18,13 +18,13 @@ namespace touchtrial::analysis {
 
 /// A picture to be measured.
 struct LabelledPicture {
-  std::string set;    ///< which set it belongs to: figures of sets never mix sets
-  std::string label;  ///< its class in the set
-  std::string name;   ///< to report it by
+  std::string set;    ///< measures of a set never include other sets
+  std::string label;  ///< the picture's class in the set
+  std::string name;   ///< for reports
   GreyImage image;
 };
 
-/// One picture in figures.
+/// The measures of one picture.
 struct PictureMeasures {
   std::string set, label, name;
   double mean = 0.0;                  ///< grey levels
@@ -42,7 +42,7 @@ struct PairMean {
   double mean = 0.0;  ///< 0 without a pair
 };
 
-/// How alike pictures of one class are, and pictures of two.
+/// How alike two pictures of one class are, and two of different classes.
 struct Likeness {
   PairMean original_within, original_between;
   PairMean texture_within, texture_between;
@@ -63,11 +63,12 @@ struct MeasuredPictures {
   std::vector<SetMeasures> sets;          ///< by first appearance
 };
 
-/// Measures pictures under a method and rendering. The gain is what the stiffness budget (or the
-/// rendering) gives the first picture's set; `equalise` is left out of account, since it would hide
-/// what is measured. Pairs of different size are compared where they overlap, laid corner to
-/// corner. \throws std::invalid_argument if there is no picture or one is below kSlopeSmallestSide
-/// Thread-safe. A pair of 500 x 500 pictures takes some 20 ms.
+/// Measures pictures under a method and rendering. The gain is that of the first picture's set, by
+/// the stiffness budget or as the rendering sets it; `equalise` is ignored, since it would hide
+/// what is measured. Pairs of different sizes are compared where they overlap, laid corner to
+/// corner. \param progress  told after each pair how many are done, of how many; may be empty
+/// \throws std::invalid_argument if there is no picture, or one is below kSlopeSmallestSide
+/// Thread-safe. A pair of 500 x 500 pictures takes about 20 ms.
 [[nodiscard]] MeasuredPictures measure_pictures(
     std::span<const LabelledPicture> pictures, const engine::ExtractionOptions& method,
     engine::RenderingOptions rendering, const std::function<void(int done, int of)>& progress = {});

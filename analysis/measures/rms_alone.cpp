@@ -51,7 +51,7 @@ class Strengths {
     return std::ranges::all_of(pictures_of_class_, [](int count) { return count >= 2; });
   }
 
-  /// Mean over the set's classes of the share of patches that are answered rightly.
+  /// The mean over the set's classes of the share of patches with the right answer.
   [[nodiscard]] double right_share(std::span<const int> set, bool picture_unseen) const {
     std::vector<Sum> right(classes_.size());
     for (const PatchStrengths& picture : pictures_) {
@@ -82,7 +82,8 @@ class Strengths {
   std::vector<int> pictures_of_class_;
 };
 
-/// The next set of rising numbers below `limit`, in lexical order. \return whether there is one
+/// Moves to the next set of ascending numbers below `limit`, in lexical order.
+/// \return whether there is one
 bool advance(std::vector<int>& set, int limit) {
   const auto size = static_cast<int>(set.size());
   int place = size - 1;

@@ -1,8 +1,9 @@
-/// \file A report as a document: what it says, before it is HTML, Markdown or LaTeX. All texts are
-/// plain UTF-8 that may hold anything (labels and reasons are the user's); renderings escape them.
+/// \file A report as a document, and its renderings as HTML, Markdown and LaTeX. All texts are
+/// plain UTF-8 that may contain anything (labels and reasons are the user's); renderings escape
+/// them. Equal documents give equal bytes. All functions are thread-safe.
 #pragma once
 
-#include "analysis/page/sources.hpp"
+#include "analysis/bibliography.hpp"
 
 #include <cstddef>
 #include <string>
@@ -12,7 +13,7 @@
 
 namespace touchtrial::analysis {
 
-/// A sentence or more, and what it rests on.
+/// One sentence or more, with the publications that support it.
 struct Cited {
   std::string text;
   std::vector<Source> sources{};
@@ -27,28 +28,28 @@ struct Column {
 
 struct Cell {
   std::string text;
-  bool strong = false;  ///< what the eye is to find first: right answers of a confusion matrix
+  bool strong = false;  ///< emphasised, like the right answers of a confusion matrix
 
-  Cell(std::string shown, bool found_first = false)  // NOLINT(google-explicit-constructor)
-      : text(std::move(shown)), strong(found_first) {}
+  Cell(std::string shown, bool emphasised = false)  // NOLINT(google-explicit-constructor)
+      : text(std::move(shown)), strong(emphasised) {}
   Cell(const char* shown) : text(shown) {}  // NOLINT(google-explicit-constructor)
 };
 
 /// The first cell of a row is its header.
 struct Table {
-  std::string id;  ///< unique; [a-z0-9-]: anchor and file name
+  std::string id;  ///< unique, of [a-z0-9-]: anchor and file name
   std::string caption;
   std::vector<Column> columns;
   std::vector<std::vector<Cell>> rows{};
-  std::vector<Cited> notes{};  ///< below it: what its figures are
+  std::vector<Cited> notes{};  ///< below the table: what its numbers are
 };
 
-/// A picture that somebody drew.
+/// A drawn picture.
 struct Picture {
   std::string id;       ///< unique, as a table's
-  std::string caption;  ///< stamped already, if it is
+  std::string caption;  ///< with its stamp, if any
   std::string alt;      ///< what it shows, in words
-  std::string svg;      ///< a whole SVG file; empty: it could not be drawn
+  std::string svg;      ///< a whole SVG file; empty if it could not be drawn
 };
 
 struct Subheading {
@@ -56,17 +57,17 @@ struct Subheading {
   std::string title;
 };
 
-/// What a reader could take a figure for, wrongly.
+/// Warnings against misreadings.
 struct Warnings {
   std::vector<std::string> sentences;
 };
 
-/// Names and what they stand for.
+/// Names and their meanings.
 struct Definitions {
   std::vector<std::pair<std::string, std::string>> entries;
 };
 
-/// Participants on their way, each step with those who leave before the next.
+/// One step of the participants' flow, with those who leave before the next.
 struct FlowStep {
   std::string text;
   std::vector<std::string> leaving{};
@@ -85,33 +86,50 @@ struct Section {
   std::vector<Block> blocks;
 };
 
-/// Whether anything of a section is told in a file of tables.
+/// Tells whether a section has a part in a file of tables.
 [[nodiscard]] bool has_tables_or_warnings(const Section& section);
 
 struct Document {
   std::string title;
-  std::string stamp;                 ///< "SIMULATED" or empty: goes on every table
-  std::vector<std::string> banners;  ///< what has to be known before anything is read
-  Definitions header;                ///< which study, which program, which evidence
+  std::string stamp;                 ///< "SIMULATED" or empty; stands on every table
+  std::vector<std::string> banners;  ///< what readers must know first
+  Definitions header;                ///< study, program and evidence
   std::vector<Section> sections;
   std::string colophon;  ///< last line
 };
 
-/// Every source that is cited, in the order of the first citation: reference n is element n - 1.
+/// Every cited source in the order of first citations: reference n is element n - 1.
 [[nodiscard]] std::vector<Source> references_of(const Document& document);
-/// The same of one table.
+/// Every source that one table cites, in the same order.
 [[nodiscard]] std::vector<Source> references_of(const Table& table);
 
-/// "[1, 3]" with a space before it, or nothing.
+/// " [1, 3]", or nothing without a source.
 [[nodiscard]] std::string citation_mark(const Cited& cited, const std::vector<Source>& references);
 
-/// Place of a source in a list of references, from 1; 0: it is not there.
+/// The place of a source in a list of references, from 1; 0 if it is not there.
 [[nodiscard]] std::size_t reference_number(Source source, const std::vector<Source>& references);
 
-/// A caption with the document's stamp, once.
+/// A caption with every word of the document's stamp, each once.
 [[nodiscard]] std::string stamped(const std::string& caption, const std::string& stamp);
 
 /// Every table of a document, in order.
 [[nodiscard]] std::vector<const Table*> tables_of(const Document& document);
+
+/// One HTML page without scripts and without references to other files.
+[[nodiscard]] std::string page_html(const Document& document);
+
+/// One table as GitHub's Markdown, with its notes and their references.
+[[nodiscard]] std::string table_markdown(const Table& table, const std::string& stamp);
+/// Every table of the document under its section's title, and the references at the end.
+[[nodiscard]] std::string tables_markdown(const Document& document);
+
+/// One table as LaTeX for \input: a float, or a longtable if it is long. The preamble needs
+/// booktabs, longtable, and for pdfLaTeX T1 fonts and UTF-8 input.
+[[nodiscard]] std::string table_latex(const Table& table, const std::string& stamp);
+/// Every table of the document in sections, and the references at the end; also for \input.
+[[nodiscard]] std::string tables_latex(const Document& document);
+
+/// The document for a terminal of 100 columns: sentences, tables and warnings; no pictures.
+[[nodiscard]] std::string document_text(const Document& document);
 
 }  // namespace touchtrial::analysis

@@ -1,6 +1,7 @@
-#include "analysis/page/inline_svg.hpp"
+#include "analysis/escaping.hpp"
+#include "analysis/figures/svg.hpp"
+#include "analysis/page/document.hpp"
 #include "analysis/page/page_style.hpp"
-#include "analysis/page/renderings.hpp"
 
 #include <algorithm>
 
@@ -9,10 +10,9 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// Longer tables are folded away, and may break across printed pages.
-constexpr std::size_t kFoldedRows = 60;
-constexpr std::size_t kWholeRows = 30;
-/// Text columns with longer cells keep a width that reads well.
+constexpr std::size_t kFoldedRows = 60;  ///< longer tables are folded away
+constexpr std::size_t kWholeRows = 30;   ///< longer tables may break across printed pages
+/// Text columns with longer cells get a minimum width.
 constexpr std::size_t kWideHtmlCell = 40;
 
 constexpr const char* kHead = R"(<!doctype html>
@@ -23,30 +23,7 @@ constexpr const char* kHead = R"(<!doctype html>
 <meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:">
 )";
 
-/// Text for elements and quoted attributes; control characters that HTML forbids become spaces.
-std::string escaped_html(const std::string& text) {
-  std::string safe;
-  safe.reserve(text.size());
-  for (const char c : text) {
-    const auto code = static_cast<unsigned char>(c);
-    if (c == '&') {
-      safe += "&amp;";
-    } else if (c == '<') {
-      safe += "&lt;";
-    } else if (c == '>') {
-      safe += "&gt;";
-    } else if (c == '"') {
-      safe += "&quot;";
-    } else if (c == '\'') {
-      safe += "&#39;";
-    } else {
-      safe += code < 0x20 || code == 0x7f ? ' ' : c;
-    }
-  }
-  return safe;
-}
-
-/// Counts tables and figures while the page is written.
+/// The document with its references, and the numbers of tables and figures written so far.
 struct Writer {
   const Document& document;
   std::vector<Source> references;
@@ -55,7 +32,7 @@ struct Writer {
 };
 
 std::string cited_html(const Writer& writer, const Cited& cited) {
-  std::string text = escaped_html(cited.text);
+  std::string text = xml_escaped(cited.text);
   for (std::size_t i = 0; i < cited.sources.size(); ++i) {
     const std::size_t number = reference_number(cited.sources[i], writer.references);
     text += fmt::format("{}<a href=\"#reference-{}\" aria-label=\"reference {}\">{}</a>",
@@ -69,19 +46,19 @@ std::string html_of(Writer& writer, const Cited& paragraph) {
 }
 
 std::string html_of(Writer& /*writer*/, const Subheading& heading) {
-  return "<h3 id=\"" + heading.id + "\">" + escaped_html(heading.title) + "</h3>\n";
+  return "<h3 id=\"" + heading.id + "\">" + xml_escaped(heading.title) + "</h3>\n";
 }
 
 std::string html_of(Writer& /*writer*/, const Warnings& warnings) {
   std::string html = "<ul class=\"warnings\">\n";
-  for (const std::string& one : warnings.sentences) html += "<li>" + escaped_html(one) + "</li>\n";
+  for (const std::string& one : warnings.sentences) html += "<li>" + xml_escaped(one) + "</li>\n";
   return warnings.sentences.empty() ? "" : html + "</ul>\n";
 }
 
 std::string html_of(Writer& /*writer*/, const Definitions& definitions) {
   std::string html = "<dl>\n";
   for (const auto& [name, meaning] : definitions.entries) {
-    html += "<dt>" + escaped_html(name) + "</dt><dd>" + escaped_html(meaning) + "</dd>\n";
+    html += "<dt>" + xml_escaped(name) + "</dt><dd>" + xml_escaped(meaning) + "</dd>\n";
   }
   return definitions.entries.empty() ? "" : html + "</dl>\n";
 }
@@ -91,7 +68,7 @@ std::string header_row(const Table& table) {
   for (const Column& column : table.columns) {
     html +=
         fmt::format("<th scope=\"col\"{}>{}</th>",
-                    column.align == Align::left ? " class=\"l\"" : "", escaped_html(column.title));
+                    column.align == Align::left ? " class=\"l\"" : "", xml_escaped(column.title));
   }
   return html + "</tr></thead>\n";
 }
@@ -100,7 +77,7 @@ std::string cell_html(const Column& column, const Cell& cell, bool wide) {
   std::string kinds = column.align == Align::left ? "l" : "";
   if (wide) kinds += " wide";
   if (cell.strong) kinds += kinds.empty() ? "s" : " s";
-  return (kinds.empty() ? "<td>" : "<td class=\"" + kinds + "\">") + escaped_html(cell.text) +
+  return (kinds.empty() ? "<td>" : "<td class=\"" + kinds + "\">") + xml_escaped(cell.text) +
          "</td>";
 }
 
@@ -116,7 +93,7 @@ std::string body_rows(const Table& table) {
   for (std::size_t i = 0; i < table.columns.size(); ++i) wide.push_back(is_wide(table, i));
   std::string html = "<tbody>\n";
   for (const std::vector<Cell>& row : table.rows) {
-    html += "<tr><th scope=\"row\">" + escaped_html(row[0].text) + "</th>";
+    html += "<tr><th scope=\"row\">" + xml_escaped(row[0].text) + "</th>";
     for (std::size_t i = 1; i < row.size(); ++i) {
       html += cell_html(table.columns[i], row[i], wide[i]);
     }
@@ -135,7 +112,7 @@ std::string notes_html(const Writer& writer, const Table& table) {
 std::string html_of(Writer& writer, const Table& table) {
   const std::string caption =
       fmt::format("<b>Table {}.</b> {}", ++writer.tables,
-                  escaped_html(stamped(table.caption, writer.document.stamp)));
+                  xml_escaped(stamped(table.caption, writer.document.stamp)));
   std::string html = fmt::format(
       "<div class=\"scroll\" role=\"region\" tabindex=\"0\" "
       "aria-labelledby=\"table-{0}-caption\">\n"
@@ -160,38 +137,38 @@ std::string html_of(Writer& writer, const Picture& picture) {
     html += fmt::format(
         "<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"Figure {}\">"
         "<div class=\"plot\" role=\"img\" aria-label=\"{}\">\n{}\n</div></div>\n",
-        number, escaped_html(picture.alt), svg);
+        number, xml_escaped(picture.alt), svg);
   }
   if (svg.empty()) {
-    // The caption tells of marks and bars that are not there.
+    // The caption describes marks and bars that are not there.
     return html +
            fmt::format("<figcaption><b>Figure {}, not drawn.</b> {}</figcaption>\n</figure>\n",
-                       number, escaped_html(stamped(picture.alt, writer.document.stamp)));
+                       number, xml_escaped(stamped(picture.alt, writer.document.stamp)));
   }
   html += fmt::format("<figcaption><b>Figure {}.</b> {}</figcaption>\n", number,
-                      escaped_html(stamped(picture.caption, writer.document.stamp)));
+                      xml_escaped(stamped(picture.caption, writer.document.stamp)));
   return html +
          fmt::format("<details><summary>Figure {} in words</summary><p>{}</p></details>\n", number,
-                     escaped_html(picture.alt)) +
+                     xml_escaped(picture.alt)) +
          "</figure>\n";
 }
 
 std::string html_of(Writer& writer, const Flow& flow) {
   std::string html = "<figure class=\"flow\" id=\"figure-" + flow.id + "\">\n<ol>\n";
   for (const FlowStep& step : flow.steps) {
-    html += "<li><div class=\"box\">" + escaped_html(step.text) + "</div>";
+    html += "<li><div class=\"box\">" + xml_escaped(step.text) + "</div>";
     if (!step.leaving.empty()) html += "<ul class=\"leaving\">";
-    for (const std::string& one : step.leaving) html += "<li>" + escaped_html(one) + "</li>";
+    for (const std::string& one : step.leaving) html += "<li>" + xml_escaped(one) + "</li>";
     html += step.leaving.empty() ? "</li>\n" : "</ul></li>\n";
   }
   return html + fmt::format("</ol>\n<figcaption><b>Figure {}.</b> {}</figcaption>\n</figure>\n",
                             ++writer.figures,
-                            escaped_html(stamped(flow.caption, writer.document.stamp)));
+                            xml_escaped(stamped(flow.caption, writer.document.stamp)));
 }
 
 std::string section_html(Writer& writer, const Section& section) {
   std::string html = fmt::format("<section aria-labelledby=\"{0}\">\n<h2 id=\"{0}\">{1}</h2>\n",
-                                 section.id, escaped_html(section.title));
+                                 section.id, xml_escaped(section.title));
   for (const Block& block : section.blocks) {
     html += std::visit([&](const auto& one) { return html_of(writer, one); }, block);
   }
@@ -205,7 +182,7 @@ std::string references_html(const Writer& writer) {
       "<ol class=\"references\">\n";
   for (std::size_t i = 0; i < writer.references.size(); ++i) {
     html += fmt::format("<li id=\"reference-{}\">{}</li>\n", i + 1,
-                        escaped_html(std::string(citation_of(writer.references[i]))));
+                        xml_escaped(std::string(citation_of(writer.references[i]))));
   }
   return html + "</ol>\n</section>\n";
 }
@@ -214,7 +191,7 @@ std::string navigation(const Writer& writer) {
   std::string html =
       "<nav aria-labelledby=\"contents\">\n<h2 id=\"contents\">Contents</h2>\n<ul>\n";
   for (const Section& section : writer.document.sections) {
-    html += "<li><a href=\"#" + section.id + "\">" + escaped_html(section.title) + "</a></li>\n";
+    html += "<li><a href=\"#" + section.id + "\">" + xml_escaped(section.title) + "</a></li>\n";
   }
   if (!writer.references.empty()) html += "<li><a href=\"#references\">References</a></li>\n";
   return html + "</ul>\n</nav>\n";
@@ -223,9 +200,9 @@ std::string navigation(const Writer& writer) {
 std::string header_html(Writer& writer) {
   std::string html = "<header>\n";
   for (const std::string& banner : writer.document.banners) {
-    html += "<p class=\"banner\">" + escaped_html(banner) + "</p>\n";
+    html += "<p class=\"banner\">" + xml_escaped(banner) + "</p>\n";
   }
-  return html + "<h1>" + escaped_html(writer.document.title) + "</h1>\n" +
+  return html + "<h1>" + xml_escaped(writer.document.title) + "</h1>\n" +
          html_of(writer, writer.document.header) + "</header>\n";
 }
 
@@ -233,13 +210,13 @@ std::string header_html(Writer& writer) {
 
 std::string page_html(const Document& document) {
   Writer writer{document, references_of(document)};
-  const std::string title = escaped_html(stamped(document.title, document.stamp));
+  const std::string title = xml_escaped(stamped(document.title, document.stamp));
   std::string html = kHead + ("<title>" + title + "</title>\n<style>") + kPageStyle +
                      "</style>\n</head>\n<body>\n"
                      "<a class=\"skip\" href=\"#main\">Skip to the results</a>\n";
   html += header_html(writer) + navigation(writer) + "<main id=\"main\" tabindex=\"-1\">\n";
   for (const Section& section : document.sections) html += section_html(writer, section);
-  html += references_html(writer) + "</main>\n<footer>" + escaped_html(document.colophon) +
+  html += references_html(writer) + "</main>\n<footer>" + xml_escaped(document.colophon) +
           "</footer>\n";
   return html + "</body>\n</html>\n";
 }

@@ -1,4 +1,4 @@
-#include "analysis/page/sections.hpp"
+#include "analysis/page/frame_sections.hpp"
 #include "analysis/page/study_document.hpp"
 #include "analysis/page/wording.hpp"
 #include "analysis/statistics/confusion.hpp"

@@ -1,6 +1,6 @@
 #include "analysis/page/report_folder.hpp"
 
-#include "analysis/page/renderings.hpp"
+#include "analysis/figures/gnuplot.hpp"
 #include "core/bytes.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
@@ -8,6 +8,8 @@
 #include <set>
 #include <sstream>
 #include <system_error>
+
+#include <nlohmann/json.hpp>
 
 namespace touchtrial::analysis {
 namespace {
@@ -17,7 +19,8 @@ namespace fs = std::filesystem;
 constexpr const char* kList = "report-files.txt";
 constexpr std::uintmax_t kLongestList = 1U << 20U;
 
-/// A name that a report could have written: nothing else may be taken away, whatever a list says.
+/// Tells whether a report could have written this name: nothing else may be removed, whatever a
+/// list says.
 bool could_be_ours(const std::string& path) {
   if (!path.starts_with("tables/") && !path.starts_with("figures/")) return false;
   const std::string name = path.substr(path.find('/') + 1);
@@ -25,7 +28,7 @@ bool could_be_ours(const std::string& path) {
          name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-.") == std::string::npos;
 }
 
-/// Every line of an earlier report's list, as it stands there.
+/// Every line of an earlier report's list.
 std::set<std::string> claimed_in(const fs::path& folder) {
   std::set<std::string> paths;
   if (!is_there(folder / kList)) return paths;
@@ -35,7 +38,7 @@ std::set<std::string> claimed_in(const fs::path& folder) {
   return paths;
 }
 
-/// What may be taken away.
+/// The paths that may be removed.
 std::set<std::string> removable(const std::set<std::string>& claimed) {
   std::set<std::string> paths;
   for (const std::string& path : claimed) {
@@ -48,14 +51,24 @@ void require_own(const fs::path& folder, const std::set<std::string>& claimed,
                  const std::string& path) {
   if (claimed.contains(path) || !is_there(folder / path)) return;
   throw FileError(one_line((folder / path).string()) +
-                  ": is there already, and no report wrote it; give another folder with --out, or "
-                  "move it away");
+                  ": exists already, and no report wrote it; choose another folder with --out, or "
+                  "move the file");
 }
 
 std::string list_of(const ReportFiles& files) {
   std::string list;
   for (const auto& [path, content] : files) list += path + '\n';
   return list;
+}
+
+/// Why gnuplot cannot be used; empty if it can.
+std::string gnuplot_complaint() {
+  try {
+    require_gnuplot();
+    return "";
+  } catch (const Error& error) {
+    return error.what();
+  }
 }
 
 }  // namespace
@@ -83,7 +96,7 @@ void write_report_folder(const fs::path& folder, const ReportFiles& files) {
   const std::set<std::string> claimed = claimed_in(folder);
   for (const auto& [path, content] : files) require_own(folder, claimed, path);
   const std::set<std::string> before = removable(claimed);
-  // The list comes first: after a crash the next report still knows what is its own.
+  // The list is written first: after a crash the next report still knows its own files.
   std::string list = list_of(files);
   for (const std::string& path : before) {
     if (!files.contains(path)) list += path + '\n';
@@ -98,6 +111,38 @@ void write_report_folder(const fs::path& folder, const ReportFiles& files) {
     if (!files.contains(path)) fs::remove(folder / path, ignored);
   }
   replace_file(folder / kList, list_of(files));
+}
+
+DrawnFigures draw_report_figures(const std::vector<Figure>& figures) {
+  DrawnFigures drawn;
+  drawn.missing = gnuplot_complaint();
+  std::vector<std::string> svg(figures.size());
+  if (drawn.missing.empty()) {
+    svg = all_drawn(figures, FigureFormat::svg);
+    const std::vector<std::string> pdf = all_drawn(figures, FigureFormat::pdf);
+    for (std::size_t i = 0; i < figures.size(); ++i) {
+      drawn.files["figures/" + figures[i].id + ".svg"] = svg[i];
+      drawn.files["figures/" + figures[i].id + ".pdf"] = pdf[i];
+    }
+  }
+  for (std::size_t i = 0; i < figures.size(); ++i) {
+    drawn.pictures.push_back({figures[i].id, figures[i].caption, figures[i].alt, svg[i]});
+  }
+  return drawn;
+}
+
+void refuse_other_study(const fs::path& folder, const std::string& study) {
+  const fs::path file = folder / "results.json";
+  if (!is_there(file)) return;
+  const Bytes bytes = read_file(file);
+  const auto json = nlohmann::json::parse(bytes.begin(), bytes.end(), nullptr, false);
+  const bool named = json.is_object() && json.contains("study") && json["study"].is_string();
+  if (named && json["study"].get<std::string>() == study) return;
+  const std::string what = named
+                               ? "is of the study \"" + one_line(json["study"].get<std::string>()) +
+                                     "\", not \"" + one_line(study) + "\""
+                               : "is not the results of a report";
+  throw FileError(one_line(file.string()) + ": " + what + "; choose another folder with --out");
 }
 
 }  // namespace touchtrial::analysis

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "analysis/page/document.hpp"
-#include "analysis/report/quality.hpp"
-#include "analysis/report/report.hpp"
+#include "analysis/quality.hpp"
+#include "analysis/study_head.hpp"
 
 #include <string>
 #include <vector>
@@ -23,14 +23,19 @@ struct Provenance {
 [[nodiscard]] Provenance provenance_of(const store::StudyStore& store, const std::string& database);
 
 /// What stands on every table and figure beside SIMULATED: PILOT, INTERIM LOOK, or nothing.
-[[nodiscard]] std::string further_stamp(const StudyReport& report, const Provenance& provenance);
+[[nodiscard]] std::string further_stamp(bool pilot, const Provenance& provenance);
 
 /// A picture for a report, whose id says to which section it belongs (docs/report.md).
 using Pictures = std::vector<Picture>;
 
-/// The report after unblinding. \param pictures  in the order in which they are to stand
-[[nodiscard]] Document study_document(const StudyReport& report, const Provenance& provenance,
-                                      const Pictures& pictures = {});
+/// The frame of every protocol's report: title, banners, header, and the sections on warnings,
+/// people and registration.
+/// \param headline  the result in a few sentences: stands first
+/// \param results  the protocol's other sections, in their order; those without blocks are left out
+/// \param figures_missing  whether the header says that figures could not be drawn
+[[nodiscard]] Document framed_document(const StudyHead& head, Section headline,
+                                       std::vector<Section> results, const Provenance& provenance,
+                                       bool figures_missing = false);
 
 /// The report before unblinding: how collection goes, and nothing of outcomes.
 [[nodiscard]] Document quality_document(const QualityReport& report, const Collection& collection,

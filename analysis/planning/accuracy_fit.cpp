@@ -1,5 +1,4 @@
-#include "analysis/planning/accuracy_fit.hpp"
-
+#include "analysis/planning/fit_search.hpp"
 #include "analysis/planning/subject_fit.hpp"
 
 #include <algorithm>
@@ -9,8 +8,76 @@
 namespace touchtrial::planning {
 namespace {
 
-/// What they are out of matters little: the accuracies alone decide.
+/// Scales the likelihood and its tolerance; the accuracies alone decide where its maximum lies.
 constexpr double kTrialsAClass = 100.0;
+
+/// Accuracies by class; which wrong answers were given is unknown. Layouts, images and methods are
+/// presented equally often.
+class AccuracyEvidence final : public FitEvidence {
+ public:
+  /// \param accuracies  by class, 0 .. 1
+  AccuracyEvidence(const std::vector<double>& accuracies, std::vector<PictureLayout> layouts,
+                   const std::vector<design::StimulusIndex>& stimuli)
+      : accuracies_(accuracies),
+        layouts_(std::move(layouts)),
+        stimuli_(stimuli),
+        stimuli_of_class_(accuracies.size(), 0) {
+    for (const design::StimulusIndex& stimulus : stimuli_)
+      ++stimuli_of_class_[stimulus.class_index];
+  }
+
+  [[nodiscard]] std::span<const PictureLayout> layouts() const noexcept override {
+    return layouts_;
+  }
+  [[nodiscard]] double log_likelihood(const AnswerTable& table, Cells* slopes) const override;
+
+  /// The accuracy with each class, over all layouts and stimuli of the class.
+  [[nodiscard]] std::vector<double> accuracies_of(const AnswerTable& table) const;
+
+ private:
+  [[nodiscard]] double share_of(const design::StimulusIndex& stimulus) const noexcept {
+    return 1.0 / (static_cast<double>(layouts_.size()) * stimuli_of_class_[stimulus.class_index]);
+  }
+
+  const std::vector<double>& accuracies_;
+  std::vector<PictureLayout> layouts_;
+  const std::vector<design::StimulusIndex>& stimuli_;
+  std::vector<int> stimuli_of_class_;
+};
+
+std::vector<double> AccuracyEvidence::accuracies_of(const AnswerTable& table) const {
+  std::vector<double> right(accuracies_.size(), 0.0);
+  for (std::size_t layout = 0; layout < layouts_.size(); ++layout) {
+    for (std::size_t place = 0; place < stimuli_.size(); ++place) {
+      const int own = stimuli_[place].class_index;
+      right[own] += share_of(stimuli_[place]) *
+                    table.answers(static_cast<int>(layout), static_cast<int>(place))[own];
+    }
+  }
+  return right;
+}
+
+double AccuracyEvidence::log_likelihood(const AnswerTable& table, Cells* slopes) const {
+  const std::vector<double> right = accuracies_of(table);
+  double sum = 0.0;
+  std::vector<double> slope(right.size());
+  for (std::size_t c = 0; c < right.size(); ++c) {
+    const double correct = believed(right[c]);
+    const double wrong = believed(1.0 - right[c]);
+    sum += kTrialsAClass *
+           (accuracies_[c] * std::log(correct) + (1.0 - accuracies_[c]) * std::log(wrong));
+    slope[c] = kTrialsAClass * (accuracies_[c] / correct - (1.0 - accuracies_[c]) / wrong);
+  }
+  if (slopes == nullptr) return sum;
+  *slopes = zeros(layouts_.size(), table);
+  for (std::vector<double>& cells : *slopes) {
+    for (std::size_t place = 0; place < stimuli_.size(); ++place) {
+      const int own = stimuli_[place].class_index;
+      cells[place * right.size() + own] = slope[own] * share_of(stimuli_[place]);
+    }
+  }
+  return sum;
+}
 
 double saturated(const std::vector<double>& wanted) {
   double sum = 0.0;
@@ -54,13 +121,13 @@ void warn_of_bounds(const FitProblem& problem, const std::vector<double>& at, Ac
 }  // namespace
 
 AccuracyFit fit_accuracies(const AnswerModel& model, std::vector<double> wanted,
-                           std::vector<PictureLayout> layouts, const session::SubjectModel& subject,
-                           const FreeParameters& free) {
+                           std::vector<PictureLayout> layouts,
+                           const simulation::SubjectModel& subject, const FreeParameters& free) {
   const auto impossible = [](double p) { return !(p >= 0.0 && p <= 1.0); };
   if (wanted.size() != model.classes().size() || std::ranges::any_of(wanted, impossible)) {
-    throw std::invalid_argument("fit_accuracies: one accuracy from 0 to 1 a class");
+    throw std::invalid_argument("fit_accuracies: give one accuracy from 0 to 1 for each class");
   }
-  const AccuracyEvidence evidence(wanted, kTrialsAClass, std::move(layouts), model.stimuli());
+  const AccuracyEvidence evidence(wanted, std::move(layouts), model.stimuli());
   const FitProblem problem(model, evidence, subject, free);
   const Optimum best = best_of_starts(problem, subject);
   AccuracyFit fit;
@@ -70,7 +137,7 @@ AccuracyFit fit_accuracies(const AnswerModel& model, std::vector<double> wanted,
   fit.parameters = static_cast<int>(best.at.size());
   fit.log_likelihood = best.value;
   fit.best_log_likelihood = saturated(wanted);
-  fit.wanted = std::move(wanted);
+  fit.wanted = wanted;
   warn_of_misses(fit);
   warn_of_bounds(problem, best.at, fit);
   return fit;

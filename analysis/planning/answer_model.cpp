@@ -1,10 +1,9 @@
 #include "analysis/planning/answer_model.hpp"
 
-#include "analysis/planning/fit_jobs.hpp"
-#include "analysis/planning/linear_supports.hpp"
 #include "analysis/planning/noise_lines.hpp"
-#include "analysis/planning/noise_points.hpp"
-#include "analysis/planning/radial_distribution.hpp"
+#include "analysis/planning/on_threads.hpp"
+#include "protocols/session/stimulus_source.hpp"
+#include "protocols/simulation/felt_knowledge.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -16,25 +15,17 @@ namespace touchtrial::planning {
 namespace {
 
 constexpr int kAcuityGroups = 8;
-/// Pieces of a stimulus's explorations, which threads share; sums are added up in their order.
+/// The number of pieces of a stimulus's explorations that threads share. Their sums are added in a
+/// fixed order.
 constexpr int kPieces = 4;
 
-/// What a layout adds to the support of each class's picture.
+/// What a layout adds to the supports of the pictures.
 struct LayoutBias {
-  std::vector<double> of_class;  ///< log odds that everybody has
-  std::vector<double> nearness;  ///< of each class's picture to the first position, 0 .. 1
+  std::vector<double> of_class;  ///< log odds, equal for everybody
+  std::vector<double> nearness;  ///< nearness_of
 };
 
-std::vector<double> nearness_of(const PictureLayout& layout) {
-  std::vector<double> nearness(layout.size(), 0.0);
-  const double last = std::max(1.0, static_cast<double>(layout.size()) - 1.0);
-  for (std::size_t i = 0; i < layout.size(); ++i) {
-    nearness[layout[i]] = 1.0 - static_cast<double>(i) / last;
-  }
-  return nearness;
-}
-
-std::vector<LayoutBias> biases(const session::SubjectModel& subject,
+std::vector<LayoutBias> biases(const simulation::SubjectModel& subject,
                                const std::vector<std::string>& classes,
                                std::span<const PictureLayout> layouts) {
   std::vector<LayoutBias> all;
@@ -42,7 +33,7 @@ std::vector<LayoutBias> biases(const session::SubjectModel& subject,
     LayoutBias bias{std::vector<double>(classes.size()), nearness_of(layout)};
     for (std::size_t c = 0; c < classes.size(); ++c) {
       bias.of_class[c] = subject.position_bias * bias.nearness[c];
-      for (const session::ClassBias& preferred : subject.class_bias) {
+      for (const simulation::ClassBias& preferred : subject.class_bias) {
         if (preferred.label == classes[c]) bias.of_class[c] += preferred.log_odds;
       }
     }
@@ -51,7 +42,7 @@ std::vector<LayoutBias> biases(const session::SubjectModel& subject,
   return all;
 }
 
-/// By layout and prototype, of the picture that the prototype is matched to.
+/// Biases by layout and prototype: those of the prototype's picture.
 std::vector<std::vector<double>> by_prototype(const std::vector<LayoutBias>& layouts,
                                               const std::vector<int>& pictures) {
   std::vector<std::vector<double>> biases;
@@ -62,7 +53,7 @@ std::vector<std::vector<double>> by_prototype(const std::vector<LayoutBias>& lay
   return biases;
 }
 
-/// Of length 1. \param normals  independent standard normals
+/// Scales independent standard normals to a vector of length 1.
 void set_direction(std::span<const double> normals, std::vector<double>& direction) {
   double square = 0.0;
   for (std::size_t n = 0; n < direction.size(); ++n) square += normals[n] * normals[n];
@@ -74,12 +65,12 @@ void set_direction(std::span<const double> normals, std::vector<double>& directi
 std::size_t place_in(const std::vector<std::string>& classes, const std::string& label) {
   const auto found = std::ranges::find(classes, label);
   if (found == classes.end()) {
-    throw std::invalid_argument("AnswerModel: a class of the subject is none of the study");
+    throw std::invalid_argument("AnswerModel: the study has no class of this name: " + label);
   }
   return static_cast<std::size_t>(found - classes.begin());
 }
 
-/// The pieces' sums as probabilities, lapses included.
+/// Turns the pieces' sums into probabilities that include lapses.
 void settle(std::span<const AnswerTable> pieces, int row, double lapse, std::span<double> answers,
             std::span<double> slopes) {
   for (const AnswerTable& piece : pieces) {
@@ -95,7 +86,16 @@ void settle(std::span<const AnswerTable> pieces, int row, double lapse, std::spa
 
 }  // namespace
 
-double mean_lapse(const session::SubjectModel& subject) {
+std::vector<double> nearness_of(const PictureLayout& layout) {
+  std::vector<double> nearness(layout.size(), 0.0);
+  const double last = std::max(1.0, static_cast<double>(layout.size()) - 1.0);
+  for (std::size_t i = 0; i < layout.size(); ++i) {
+    nearness[layout[i]] = 1.0 - static_cast<double>(i) / last;
+  }
+  return nearness;
+}
+
+double mean_lapse(const simulation::SubjectModel& subject) {
   if (subject.lapse_spread == 0.0 || subject.lapse <= 0.0 || subject.lapse >= 1.0) {
     return subject.lapse;
   }
@@ -114,52 +114,32 @@ AnswerTable::AnswerTable(int layouts, int stimuli, int classes, bool slopes)
   if (slopes) slopes_.assign(cells * classes, 0.0);
 }
 
-std::span<double> AnswerTable::answers(int layout, int stimulus) noexcept {
-  return {answers_.data() + row(layout, stimulus) * classes_, static_cast<std::size_t>(classes_)};
-}
-
-std::span<const double> AnswerTable::answers(int layout, int stimulus) const noexcept {
-  return {answers_.data() + row(layout, stimulus) * classes_, static_cast<std::size_t>(classes_)};
-}
-
-std::span<double> AnswerTable::slopes(int layout, int stimulus) noexcept {
-  if (slopes_.empty()) return {};
-  const auto square = static_cast<std::size_t>(classes_) * classes_;
-  return {slopes_.data() + row(layout, stimulus) * square, square};
-}
-
-std::span<const double> AnswerTable::slopes(int layout, int stimulus) const noexcept {
-  if (slopes_.empty()) return {};
-  const auto square = static_cast<std::size_t>(classes_) * classes_;
-  return {slopes_.data() + row(layout, stimulus) * square, square};
-}
-
 struct AnswerModel::State {
-  State(const session::FeltKnowledge& learnt, const session::FeltBank& bank,
+  State(const simulation::FeltKnowledge& learnt, const simulation::FeltBank& bank,
         std::vector<std::string> labels, const AnswerModelOptions& chosen);
 
-  /// All lines of noise of one piece of a stimulus's explorations, each in every layout.
-  void add_piece(int place, int piece, const session::SubjectModel& subject,
+  /// Adds all noise lines of one piece of a stimulus's explorations, in every layout.
+  void add_piece(int place, int piece, const simulation::SubjectModel& subject,
                  const std::vector<LinearSupports>& groups, const std::vector<LayoutBias>& layouts,
                  BankPart part, AnswerTable& sums) const;
-  void add_likings(const session::SubjectModel& subject, std::span<const double> numbers,
+  void add_likings(const simulation::SubjectModel& subject, std::span<const double> numbers,
                    const LayoutBias& layout, const std::vector<int>& pictures,
                    std::vector<double>& at) const;
-  [[nodiscard]] std::vector<int> pictures_of(const session::SubjectModel& subject) const;
-  [[nodiscard]] std::vector<LinearSupports> acuities(const session::SubjectModel& subject) const;
+  [[nodiscard]] std::vector<int> pictures_of(const simulation::SubjectModel& subject) const;
+  [[nodiscard]] std::vector<LinearSupports> acuities(const simulation::SubjectModel& subject) const;
 
-  session::FeltKnowledge knowledge;
+  simulation::FeltKnowledge knowledge;
   std::vector<std::string> classes;
   AnswerModelOptions options;
   std::vector<design::StimulusIndex> stimuli;
   std::vector<std::vector<engine::FeltFeatures>> felt;  ///< by stimulus
   std::vector<NoisePoints> points;                      ///< by stimulus
-  std::vector<std::vector<std::uint8_t>> acuity;  ///< group of each line's person, by stimulus
+  std::vector<std::vector<std::uint8_t>> acuity;  ///< by stimulus, group of each line's person
   int dimensions;                                 ///< of noise
   RadialDistribution radial;
 };
 
-AnswerModel::State::State(const session::FeltKnowledge& learnt, const session::FeltBank& bank,
+AnswerModel::State::State(const simulation::FeltKnowledge& learnt, const simulation::FeltBank& bank,
                           std::vector<std::string> labels, const AnswerModelOptions& chosen)
     : knowledge(learnt),
       classes(std::move(labels)),
@@ -167,9 +147,9 @@ AnswerModel::State::State(const session::FeltKnowledge& learnt, const session::F
       dimensions(noise_dimensions(static_cast<int>(learnt.label_of_prototype.size()))),
       radial(dimensions) {
   if (options.directions < 1 || options.jobs < 1) {
-    throw std::invalid_argument("AnswerModel: directions and jobs start at 1");
+    throw std::invalid_argument("AnswerModel: directions and jobs must be at least 1");
   }
-  // After the noise's own, a point has numbers for a person: position bias, class biases, acuity.
+  // A point holds the noise, then numbers of a person: position bias, class biases, acuity.
   const int numbers = dimensions + 2 + static_cast<int>(classes.size());
   for (int place = 0; place < bank.stimuli(); ++place) {
     const std::span<const engine::FeltFeatures> own = bank.felt(place);
@@ -187,7 +167,7 @@ AnswerModel::State::State(const session::FeltKnowledge& learnt, const session::F
   }
 }
 
-std::vector<int> AnswerModel::State::pictures_of(const session::SubjectModel& subject) const {
+std::vector<int> AnswerModel::State::pictures_of(const simulation::SubjectModel& subject) const {
   std::vector<int> matched(classes.size());
   for (std::size_t c = 0; c < classes.size(); ++c) matched[c] = static_cast<int>(c);
   for (const auto& [one, other] : subject.label_swap) {
@@ -201,7 +181,7 @@ std::vector<int> AnswerModel::State::pictures_of(const session::SubjectModel& su
 }
 
 std::vector<LinearSupports> AnswerModel::State::acuities(
-    const session::SubjectModel& subject) const {
+    const simulation::SubjectModel& subject) const {
   std::vector<LinearSupports> groups;
   for (const double z : normal_groups(subject.weber_spread > 0.0 ? kAcuityGroups : 1)) {
     groups.emplace_back(knowledge, subject.weber * std::exp(subject.weber_spread * z));
@@ -209,8 +189,8 @@ std::vector<LinearSupports> AnswerModel::State::acuities(
   return groups;
 }
 
-/// What this line's person prefers beside what everybody does.
-void AnswerModel::State::add_likings(const session::SubjectModel& subject,
+/// Adds the preferences of this line's person to those that everybody has.
+void AnswerModel::State::add_likings(const simulation::SubjectModel& subject,
                                      std::span<const double> numbers, const LayoutBias& layout,
                                      const std::vector<int>& pictures,
                                      std::vector<double>& at) const {
@@ -222,7 +202,7 @@ void AnswerModel::State::add_likings(const session::SubjectModel& subject,
   }
 }
 
-void AnswerModel::State::add_piece(int place, int piece, const session::SubjectModel& subject,
+void AnswerModel::State::add_piece(int place, int piece, const simulation::SubjectModel& subject,
                                    const std::vector<LinearSupports>& groups,
                                    const std::vector<LayoutBias>& layouts, BankPart part,
                                    AnswerTable& sums) const {
@@ -235,7 +215,7 @@ void AnswerModel::State::add_piece(int place, int piece, const session::SubjectM
   const bool people_differ =
       subject.position_bias_spread != 0.0 || subject.class_bias_spread != 0.0;
   const std::vector<std::vector<double>> bias = by_prototype(layouts, pictures);
-  // Runs of Sobol's points are spread as evenly as the whole.
+  // Consecutive Sobol points are spread as evenly as the whole sequence.
   const std::size_t pieces = static_cast<std::size_t>(part.of) * kPieces;
   const std::size_t own = static_cast<std::size_t>(part.part) * kPieces + piece;
   const std::size_t last = felt[place].size() * (own + 1) / pieces;
@@ -257,8 +237,9 @@ void AnswerModel::State::add_piece(int place, int piece, const session::SubjectM
   }
 }
 
-AnswerModel::AnswerModel(const session::FeltKnowledge& knowledge, const session::FeltBank& bank,
-                         std::vector<std::string> classes, const AnswerModelOptions& options)
+AnswerModel::AnswerModel(const simulation::FeltKnowledge& knowledge,
+                         const simulation::FeltBank& bank, std::vector<std::string> classes,
+                         const AnswerModelOptions& options)
     : state_(std::make_unique<State>(knowledge, bank, std::move(classes), options)) {}
 AnswerModel::~AnswerModel() = default;
 AnswerModel::AnswerModel(AnswerModel&&) noexcept = default;
@@ -271,13 +252,13 @@ const std::vector<design::StimulusIndex>& AnswerModel::stimuli() const noexcept 
   return state_->stimuli;
 }
 
-AnswerTable AnswerModel::answers(const session::SubjectModel& subject,
+AnswerTable AnswerModel::answers(const simulation::SubjectModel& subject,
                                  std::span<const PictureLayout> layouts, bool slopes,
                                  BankPart part) const {
   const State& state = *state_;
   const auto classes = static_cast<int>(state.classes.size());
   const auto stimuli = static_cast<int>(state.stimuli.size());
-  // Where positions are nothing to anybody, all layouts are one.
+  // Without a preference for positions, all layouts are alike.
   const bool alike = subject.position_bias == 0.0 && subject.position_bias_spread == 0.0;
   const std::vector<LayoutBias> bias =
       biases(subject, state.classes, alike ? layouts.first(1) : layouts);
@@ -299,6 +280,41 @@ AnswerTable AnswerModel::answers(const session::SubjectModel& subject,
     }
   }
   return table;
+}
+
+AnswerModel answer_model_of(const design::StudyKey& key, const engine::Pack& pack,
+                            const simulation::SubjectModel& subject,
+                            const FeltStudyOptions& options, const design::Progress& progress) {
+  subject.check_labels(key.study);
+  const session::StimulusSource source(pack, key.study.rendering);
+  const simulation::LabelledFields fields(key, source);
+  const simulation::FeltKnowledge knowledge = simulation::learn_by_feeling(
+      fields, subject, key.study.rendering.max_force_n, options.seed, options.jobs);
+  const simulation::FeltBank bank(
+      fields, key.study, subject,
+      {.explorations = options.explorations, .seed = options.seed, .jobs = options.jobs}, progress);
+  std::vector<std::string> classes;
+  for (const design::StudyClass& one : key.study.classes) classes.push_back(one.label);
+  return {knowledge,
+          bank,
+          std::move(classes),
+          {.directions = options.directions, .seed = options.seed, .jobs = options.jobs}};
+}
+
+std::vector<design::StimulusIndex> stimuli_of(const design::StudyKey& key) {
+  std::vector<design::StimulusIndex> stimuli;
+  for (const design::KeyedStimulus& keyed : key.stimuli) stimuli.push_back(keyed.stimulus);
+  std::ranges::sort(stimuli);
+  return stimuli;
+}
+
+std::vector<PictureLayout> layouts_of(const design::Study& study, int participants) {
+  std::vector<PictureLayout> layouts;
+  for (int number = 1; number <= participants; ++number) {
+    PictureLayout layout = design::make_schedule(study, number).layout;
+    if (std::ranges::find(layouts, layout) == layouts.end()) layouts.push_back(std::move(layout));
+  }
+  return layouts;
 }
 
 }  // namespace touchtrial::planning

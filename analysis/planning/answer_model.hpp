@@ -1,11 +1,15 @@
-/// \file How likely each answer is to each stimulus, given a subject model: from felt explorations,
-/// without drawing answers. Source: docs/fitting.md, "Probabilities of answers".
+/// \file How likely each answer to each stimulus is, given a subject model: computed from felt
+/// explorations, without drawing answers. Source: docs/fitting.md, "Probabilities of answers".
 #pragma once
 
-#include "protocols/session/felt_bank.hpp"
-#include "protocols/session/felt_knowledge.hpp"
-#include "protocols/session/subject_model.hpp"
+#include "engine/pack/pack.hpp"
+#include "protocols/design/prepare.hpp"
+#include "protocols/design/study_key.hpp"
+#include "protocols/simulation/felt_bank.hpp"
+#include "protocols/simulation/felt_knowledge.hpp"
+#include "protocols/simulation/subject_model.hpp"
 
+#include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
@@ -16,23 +20,39 @@ namespace touchtrial::planning {
 /// Class index of the picture at each position.
 using PictureLayout = std::vector<int>;
 
-/// Probabilities of answers by layout, stimulus (place in the bank) and class that is answered.
+/// \return by class, how near its picture lies to the first position: 1 at the first, 0 at the last
+[[nodiscard]] std::vector<double> nearness_of(const PictureLayout& layout);
+
+/// Probabilities of answers by layout, stimulus (place in the bank) and answered class.
 class AnswerTable {
  public:
+  /// \param slopes  whether the table has derivatives
   AnswerTable(int layouts, int stimuli, int classes, bool slopes);
 
   [[nodiscard]] int classes() const noexcept { return classes_; }
   [[nodiscard]] int stimuli() const noexcept { return stimuli_; }
-  /// Of one layout and stimulus, by answer; they add up to 1.
-  [[nodiscard]] std::span<double> answers(int layout, int stimulus) noexcept;
-  [[nodiscard]] std::span<const double> answers(int layout, int stimulus) const noexcept;
-  /// d P(answer) / d bias(picture), [answer x classes + picture]; empty if not asked for.
-  [[nodiscard]] std::span<double> slopes(int layout, int stimulus) noexcept;
-  [[nodiscard]] std::span<const double> slopes(int layout, int stimulus) const noexcept;
+  /// Probabilities for one layout and stimulus, by answer; their sum is 1.
+  [[nodiscard]] std::span<double> answers(int layout, int stimulus) noexcept {
+    return part(std::span(answers_), classes_, layout, stimulus);
+  }
+  [[nodiscard]] std::span<const double> answers(int layout, int stimulus) const noexcept {
+    return part(std::span(answers_), classes_, layout, stimulus);
+  }
+  /// d P(answer) / d bias(picture), [answer x classes + picture]; empty without derivatives.
+  [[nodiscard]] std::span<double> slopes(int layout, int stimulus) noexcept {
+    return part(std::span(slopes_), classes_ * classes_, layout, stimulus);
+  }
+  [[nodiscard]] std::span<const double> slopes(int layout, int stimulus) const noexcept {
+    return part(std::span(slopes_), classes_ * classes_, layout, stimulus);
+  }
 
  private:
-  [[nodiscard]] std::size_t row(int layout, int stimulus) const noexcept {
-    return static_cast<std::size_t>(layout) * stimuli_ + stimulus;
+  /// \param numbers  of all layouts and stimuli, `size` each; may be empty
+  template <typename Number>
+  [[nodiscard]] std::span<Number> part(std::span<Number> numbers, int size, int layout,
+                                       int stimulus) const noexcept {
+    const std::size_t row = static_cast<std::size_t>(layout) * stimuli_ + stimulus;
+    return numbers.empty() ? numbers : numbers.subspan(row * size, size);
   }
 
   int stimuli_;
@@ -42,38 +62,41 @@ class AnswerTable {
 };
 
 struct AnswerModelOptions {
-  int directions = 4;      ///< of noise on each exploration, >= 1
-  std::uint64_t seed = 1;  ///< of the shift of the quasi-random points
+  int directions = 4;      ///< of noise for each exploration, >= 1
+  std::uint64_t seed = 1;  ///< shifts the quasi-random points
   int jobs = 1;            ///< threads, >= 1; results do not depend on them
 };
 
-/// Which run of explorations to use, of so many equal ones. All by default.
+/// One of several equal parts of a bank's explorations. The default is the whole bank.
 struct BankPart {
   int part = 0;
   int of = 1;
 };
 
-/// P(answer | stimulus, layout; subject): the mean over the bank's explorations, and over people of
-/// the subject's population, of the probability that FeltDecision gives the answer. The
-/// classifier's supports are linear in what is perceived, so that noise moves them along straight
-/// lines: each of a fixed set of directions of noise (Sobol's points, shifted at random) is
-/// integrated in closed form over all amounts of noise. The same numbers in every call make the
-/// result a continuous, almost smooth function of the parameters. Differences between people are
-/// among the quasi-random points; Weber fractions come from eight equally likely groups. Immutable;
-/// refers to nothing.
+/// P(answer | stimulus, layout; subject): the probability that FeltDecision gives the answer,
+/// averaged over the bank's explorations and over the people of the subject's population.
+///
+/// The classifier's supports are linear in the perceived features, so noise moves them along
+/// straight lines. Each exploration has a fixed set of noise directions (shifted Sobol points); the
+/// model integrates over all amounts of noise along a direction in closed form. Every call uses the
+/// same points, so the result is a continuous, almost smooth function of the parameters. The points
+/// also represent differences between people, except that Weber fractions come in eight equally
+/// likely groups. Immutable, thread-safe; refers to none of its arguments.
 class AnswerModel {
  public:
-  /// \param classes  labels of the study, in its order
-  AnswerModel(const session::FeltKnowledge& knowledge, const session::FeltBank& bank,
+  /// \param classes  labels, in the study's order
+  /// \throws std::invalid_argument if an option is out of range
+  AnswerModel(const simulation::FeltKnowledge& knowledge, const simulation::FeltBank& bank,
               std::vector<std::string> classes, const AnswerModelOptions& options);
   ~AnswerModel();
   AnswerModel(AnswerModel&&) noexcept;
 
-  /// Cost: explorations x directions x stimuli x layouts x some 0.1 us a thread; layouts count
-  /// only if positions are preferred.
-  /// \param subject  weber > 0; labels are the study's
-  /// \param slopes  whether to work out the derivatives by pictures' biases, without lapses
-  [[nodiscard]] AnswerTable answers(const session::SubjectModel& subject,
+  /// Cost: explorations x directions x stimuli x layouts x some 0.1 us on one thread; the number of
+  /// layouts matters only if positions are preferred.
+  /// \param subject  weber > 0; its labels are the study's
+  /// \param slopes  whether to compute the derivatives by the pictures' biases, without lapses
+  /// \throws std::invalid_argument if a label is not the study's
+  [[nodiscard]] AnswerTable answers(const simulation::SubjectModel& subject,
                                     std::span<const PictureLayout> layouts, bool slopes = false,
                                     BankPart part = {}) const;
 
@@ -85,7 +108,29 @@ class AnswerModel {
   std::unique_ptr<State> state_;
 };
 
-/// The mean over the population of the probability of a lapse.
-[[nodiscard]] double mean_lapse(const session::SubjectModel& subject);
+/// \return the probability of a lapse, averaged over the population
+[[nodiscard]] double mean_lapse(const simulation::SubjectModel& subject);
+
+struct FeltStudyOptions {
+  int explorations = 1000;  ///< of each stimulus
+  int directions = 1;       ///< of noise for each exploration
+  /// Of the training, where a seed has the same effect as in `simulate`, and of the bank's paths.
+  std::uint64_t seed = 1;
+  int jobs = 1;  ///< threads, >= 1; results do not depend on them
+};
+
+/// Trains the subject, feels a bank of explorations, and makes the model. Cost: as FeltBank.
+/// \throws StudyError if the subject names a class that the study does not have
+/// \throws FileError if the pack lacks a stimulus
+[[nodiscard]] AnswerModel answer_model_of(const design::StudyKey& key, const engine::Pack& pack,
+                                          const simulation::SubjectModel& subject,
+                                          const FeltStudyOptions& options,
+                                          const design::Progress& progress = {});
+
+/// \return the study's stimuli, in the order of banks
+[[nodiscard]] std::vector<design::StimulusIndex> stimuli_of(const design::StudyKey& key);
+
+/// \return the different layouts of the first participants
+[[nodiscard]] std::vector<PictureLayout> layouts_of(const design::Study& study, int participants);
 
 }  // namespace touchtrial::planning

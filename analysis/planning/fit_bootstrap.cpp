@@ -1,8 +1,6 @@
-#include "analysis/planning/fit_bootstrap.hpp"
-
-#include "analysis/planning/fit_jobs.hpp"
-#include "analysis/planning/local_answers.hpp"
-#include "analysis/planning/noise_points.hpp"
+#include "analysis/planning/fit_uncertainty.hpp"
+#include "analysis/planning/noise_lines.hpp"
+#include "analysis/planning/on_threads.hpp"
 #include "core/random.hpp"
 
 #include <algorithm>
@@ -11,21 +9,139 @@
 namespace touchtrial::planning {
 namespace {
 
+/// A fitted model's neighbourhood: log-linear in the changes of the numbers, and normalised.
+/// Probabilities and their slopes at the fit are the fitted model's, and the likelihood has one
+/// maximum. Immutable, thread-safe.
+class LocalAnswers {
+ public:
+  explicit LocalAnswers(const Fitted& fitted);
+
+  /// \return the most likely numbers
+  [[nodiscard]] std::vector<double> fitted_to(const Cells& counts) const;
+  /// \return the probabilities at some numbers
+  [[nodiscard]] AnswerTable at(std::span<const double> numbers) const;
+
+ private:
+  [[nodiscard]] double log_likelihood(const Cells& counts, std::span<const double> change,
+                                      std::span<double> slopes) const;
+  /// Writes the probabilities of one layout and stimulus to `answers`.
+  void answers_at(std::size_t layout, std::size_t place, std::span<const double> change,
+                  std::span<double> answers) const;
+
+  std::size_t classes_;
+  std::size_t stimuli_;
+  std::vector<double> at_;
+  Bounds changes_;
+  Cells probability_;
+  std::vector<Cells> log_slopes_;  ///< [layout][cell][number]
+};
+
+/// Rarer answers keep their probability: their slopes say nothing about the neighbourhood.
+constexpr double kRare = 1e-6;
+
+LocalAnswers::LocalAnswers(const Fitted& fitted)
+    : classes_(fitted.counts.classes.size()),
+      stimuli_(fitted.counts.stimuli.size()),
+      at_(fitted.best.at),
+      changes_(fitted.problem.bounds()) {
+  const auto& [table, tangent_slopes] = fitted.tangent;
+  for (std::size_t i = 0; i < at_.size(); ++i) {
+    changes_.lower[i] -= at_[i];
+    changes_.upper[i] -= at_[i];
+  }
+  for (std::size_t layout = 0; layout < fitted.counts.layouts.size(); ++layout) {
+    auto& own = probability_.emplace_back();
+    auto& slopes = log_slopes_.emplace_back();
+    for (std::size_t cell = 0; cell < stimuli_ * classes_; ++cell) {
+      const auto answers =
+          table.answers(static_cast<int>(layout), static_cast<int>(cell / classes_));
+      own.push_back(answers[cell % classes_]);
+      auto& of_cell = slopes.emplace_back(at_.size(), 0.0);
+      for (std::size_t i = 0; i < at_.size() && own.back() > kRare; ++i) {
+        of_cell[i] = tangent_slopes[i][layout][cell] / own.back();
+      }
+    }
+  }
+}
+
+void LocalAnswers::answers_at(std::size_t layout, std::size_t place, std::span<const double> change,
+                              std::span<double> answers) const {
+  double sum = 0.0;
+  for (std::size_t c = 0; c < classes_; ++c) {
+    const std::size_t cell = place * classes_ + c;
+    double log_change = 0.0;
+    for (std::size_t i = 0; i < change.size(); ++i) {
+      log_change += log_slopes_[layout][cell][i] * change[i];
+    }
+    answers[c] = probability_[layout][cell] * std::exp(std::clamp(log_change, -300.0, 300.0));
+    sum += answers[c];
+  }
+  for (double& answer : answers) answer /= sum;
+}
+
+AnswerTable LocalAnswers::at(std::span<const double> numbers) const {
+  std::vector<double> change(numbers.begin(), numbers.end());
+  for (std::size_t i = 0; i < change.size(); ++i) change[i] -= at_[i];
+  AnswerTable table(static_cast<int>(probability_.size()), static_cast<int>(stimuli_),
+                    static_cast<int>(classes_), false);
+  for (std::size_t layout = 0; layout < probability_.size(); ++layout) {
+    for (std::size_t place = 0; place < stimuli_; ++place) {
+      answers_at(layout, place, change,
+                 table.answers(static_cast<int>(layout), static_cast<int>(place)));
+    }
+  }
+  return table;
+}
+
+double LocalAnswers::log_likelihood(const Cells& counts, std::span<const double> change,
+                                    std::span<double> slopes) const {
+  std::ranges::fill(slopes, 0.0);
+  std::vector<double> answers(classes_);
+  double sum = 0.0;
+  for (std::size_t layout = 0; layout < counts.size(); ++layout) {
+    for (std::size_t place = 0; place < stimuli_; ++place) {
+      const std::size_t row = place * classes_;
+      const double presented = presentations(counts[layout], row, classes_);
+      if (presented == 0.0) continue;
+      answers_at(layout, place, change, answers);
+      for (std::size_t c = 0; c < classes_; ++c) {
+        const double count = counts[layout][row + c];
+        if (count > 0.0) sum += count * std::log(std::max(answers[c], kLeastProbability));
+        for (std::size_t i = 0; i < slopes.size(); ++i) {
+          slopes[i] += (count - presented * answers[c]) * log_slopes_[layout][row + c][i];
+        }
+      }
+    }
+  }
+  return sum;
+}
+
+std::vector<double> LocalAnswers::fitted_to(const Cells& counts) const {
+  const SmoothFunction function = [&](std::span<const double> change, std::span<double> slopes) {
+    return log_likelihood(counts, change, slopes);
+  };
+  std::vector<double> numbers =
+      maximise(function, std::vector<double>(at_.size(), 0.0), changes_, {.tolerance = 1e-8}).at;
+  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] += at_[i];
+  return numbers;
+}
+
+/// The number of people who represent the population.
 constexpr int kPool = 32;
 
-bool people_differ(const session::SubjectModel& subject) {
+bool people_differ(const simulation::SubjectModel& subject) {
   return subject.weber_spread > 0.0 || subject.lapse_spread > 0.0 ||
          subject.position_bias_spread > 0.0 || subject.class_bias_spread > 0.0;
 }
 
-/// Deviates of the pool's people: the same ones, in an order of their own for each difference.
+/// Deviates of the pool's people: always the same ones, in a random order.
 std::vector<double> deviates(RandomStream& random) {
   std::vector<double> groups = normal_groups(kPool);
   shuffle(std::span(groups), random);
   return groups;
 }
 
-session::SubjectModel without_spreads(session::SubjectModel subject) {
+simulation::SubjectModel without_spreads(simulation::SubjectModel subject) {
   subject.weber_spread = 0.0;
   subject.lapse_spread = 0.0;
   subject.position_bias_spread = 0.0;
@@ -33,13 +149,13 @@ session::SubjectModel without_spreads(session::SubjectModel subject) {
   return subject;
 }
 
-/// People who together are like the population.
-std::vector<session::SubjectModel> pool_of(const session::SubjectModel& population,
-                                           const std::vector<std::string>& classes,
-                                           std::uint64_t seed) {
+/// People who together represent the population.
+std::vector<simulation::SubjectModel> pool_of(const simulation::SubjectModel& population,
+                                              const std::vector<std::string>& classes,
+                                              std::uint64_t seed) {
   if (!people_differ(population)) return {population};
   RandomStream random(seed, "fit: people of the bootstrap");
-  std::vector<session::SubjectModel> pool(kPool, without_spreads(population));
+  std::vector<simulation::SubjectModel> pool(kPool, without_spreads(population));
   const std::vector<double> acuity = deviates(random);
   const std::vector<double> lapse = deviates(random);
   const std::vector<double> position = deviates(random);
@@ -79,8 +195,7 @@ std::vector<CountedPerson> drawn_study(const FitCounts& counts,
     CountedPerson drawn{person.layout, std::vector<double>(person.counts.size(), 0.0)};
     const AnswerTable& own = pool[random.below(pool.size())];
     for (std::size_t row = 0; row < person.counts.size(); row += classes) {
-      double presented = 0.0;
-      for (std::size_t c = 0; c < classes; ++c) presented += person.counts[row + c];
+      const double presented = presentations(person.counts, row, classes);
       const auto answers = own.answers(person.layout, static_cast<int>(row / classes));
       for (int trial = 0; trial < std::lround(presented); ++trial) {
         drawn.counts[row + static_cast<std::size_t>(drawn_answer(answers, random))] += 1.0;
@@ -93,14 +208,14 @@ std::vector<CountedPerson> drawn_study(const FitCounts& counts,
 
 }  // namespace
 
-FitBootstrap bootstrap_fit(const FitProblem& problem, const FitCounts& counts,
-                           const std::vector<double>& at, int draws, std::uint64_t seed, int jobs) {
-  const session::SubjectModel fitted = problem.subject_at(at);
+FitBootstrap bootstrap_fit(const Fitted& fitted, int draws, std::uint64_t seed, int jobs) {
+  const FitCounts& counts = fitted.counts;
+  const simulation::SubjectModel subject = fitted.problem.subject_at(fitted.best.at);
   std::vector<AnswerTable> pool;
-  for (const session::SubjectModel& person : pool_of(fitted, counts.classes, seed)) {
-    pool.push_back(problem.model().answers(person, counts.layouts));
+  for (const simulation::SubjectModel& person : pool_of(subject, counts.classes, seed)) {
+    pool.push_back(fitted.problem.model().answers(person, counts.layouts));
   }
-  const LocalAnswers local(counts, problem.tangent(at), at, problem.bounds());
+  const LocalAnswers local(fitted);
   FitBootstrap bootstrap;
   bootstrap.numbers.resize(static_cast<std::size_t>(draws));
   bootstrap.g_squared.resize(static_cast<std::size_t>(draws));

@@ -1,27 +1,140 @@
 #include "analysis/planning/fit_evidence.hpp"
 
+#include "core/errors.hpp"
+
 #include <algorithm>
 #include <cmath>
 
 namespace touchtrial::planning {
 namespace {
 
-std::vector<std::vector<double>> zeros(std::size_t layouts, const AnswerTable& table) {
-  const auto cells = static_cast<std::size_t>(table.stimuli()) * table.classes();
-  return {layouts, std::vector<double>(cells, 0.0)};
+int place_of_layout(std::vector<PictureLayout>& layouts, const PictureLayout& layout) {
+  const auto found = std::ranges::find(layouts, layout);
+  const auto place = static_cast<int>(found - layouts.begin());
+  if (found == layouts.end()) layouts.push_back(layout);
+  return place;
+}
+
+std::size_t place_of_stimulus(const std::vector<design::StimulusIndex>& stimuli,
+                              const design::StimulusIndex& stimulus) {
+  const auto found = std::ranges::lower_bound(stimuli, stimulus);
+  if (found == stimuli.end() || *found != stimulus) {
+    throw StudyError("the database presents a stimulus that its study does not have");
+  }
+  return static_cast<std::size_t>(found - stimuli.begin());
+}
+
+Confusions empty_confusions(const FitCounts& counts) {
+  const auto classes = counts.classes.size();
+  return {counts.methods.size(),
+          std::vector<std::vector<double>>(classes, std::vector<double>(classes, 0.0))};
+}
+
+}  // namespace
+
+FitCounts count_answers(const analysis::Outcomes& outcomes,
+                        const std::map<int, design::Schedule>& schedules,
+                        const std::vector<design::StimulusIndex>& stimuli) {
+  FitCounts counts;
+  counts.classes = outcomes.classes;
+  counts.methods = outcomes.methods;
+  counts.stimuli = stimuli;
+  std::map<int, std::size_t> person_of_session;
+  const std::size_t cells = stimuli.size() * counts.classes.size();
+  for (const analysis::TrialOutcome& trial : outcomes.trials) {
+    if (!trial.counted || trial.kind != design::PresentationKind::scored) continue;
+    if (!trial.response) {
+      ++counts.no_response;
+      continue;
+    }
+    const int session = trial.row.session;
+    const auto [entry, is_new] = person_of_session.emplace(session, counts.people.size());
+    if (is_new) {
+      const int layout = place_of_layout(counts.layouts, schedules.at(session).layout);
+      counts.people.push_back({layout, std::vector<double>(cells, 0.0)});
+    }
+    const std::size_t row = place_of_stimulus(stimuli, trial.stimulus) * counts.classes.size();
+    counts.people[entry->second].counts[row + static_cast<std::size_t>(*trial.response)] += 1.0;
+    ++counts.trials;
+  }
+  if (counts.trials == 0) {
+    throw StudyError(
+        "no counted trial has an answer, so there is nothing to fit; collect sessions that count, "
+        "or check the exclusions");
+  }
+  return counts;
+}
+
+double presentations(const std::vector<double>& cells, std::size_t row, std::size_t classes) {
+  double sum = 0.0;
+  for (std::size_t c = 0; c < classes; ++c) sum += cells[row + c];
+  return sum;
+}
+
+Cells by_layout(const FitCounts& counts, std::span<const CountedPerson> people) {
+  const std::size_t cells = counts.stimuli.size() * counts.classes.size();
+  Cells sums(counts.layouts.size(), std::vector<double>(cells, 0.0));
+  for (const CountedPerson& person : people) {
+    for (std::size_t i = 0; i < cells; ++i) sums[person.layout][i] += person.counts[i];
+  }
+  return sums;
+}
+
+Confusions observed_confusions(const FitCounts& counts, std::span<const CountedPerson> people) {
+  Confusions table = empty_confusions(counts);
+  const std::size_t classes = counts.classes.size();
+  for (const CountedPerson& person : people) {
+    for (std::size_t i = 0; i < person.counts.size(); ++i) {
+      const design::StimulusIndex& stimulus = counts.stimuli[i / classes];
+      table[stimulus.method][stimulus.class_index][i % classes] += person.counts[i];
+    }
+  }
+  return table;
+}
+
+Confusions expected_confusions(const FitCounts& counts, const AnswerTable& table) {
+  Confusions expected = empty_confusions(counts);
+  const std::size_t classes = counts.classes.size();
+  for (const CountedPerson& person : counts.people) {
+    for (std::size_t place = 0; place < counts.stimuli.size(); ++place) {
+      const double presented = presentations(person.counts, place * classes, classes);
+      const design::StimulusIndex& stimulus = counts.stimuli[place];
+      const auto answers = table.answers(person.layout, static_cast<int>(place));
+      for (std::size_t c = 0; c < classes; ++c) {
+        expected[stimulus.method][stimulus.class_index][c] += presented * answers[c];
+      }
+    }
+  }
+  return expected;
+}
+
+double g_squared(const Confusions& observed, const Confusions& expected) {
+  constexpr double kLeast = 1e-12;
+  double sum = 0.0;
+  for (std::size_t m = 0; m < observed.size(); ++m) {
+    for (std::size_t c = 0; c < observed[m].size(); ++c) {
+      for (std::size_t a = 0; a < observed[m][c].size(); ++a) {
+        const double seen = observed[m][c][a];
+        if (seen > 0.0) sum += seen * std::log(seen / std::max(expected[m][c][a], kLeast));
+      }
+    }
+  }
+  return std::max(0.0, 2.0 * sum);
 }
 
 double believed(double probability) noexcept {
   return std::clamp(probability, kLeastProbability, 1.0);
 }
 
-}  // namespace
+Cells zeros(std::size_t layouts, const AnswerTable& table) {
+  const auto cells = static_cast<std::size_t>(table.stimuli()) * table.classes();
+  return {layouts, std::vector<double>(cells, 0.0)};
+}
 
 CountsEvidence::CountsEvidence(const FitCounts& counts, std::span<const CountedPerson> people)
     : counts_(counts), sums_(by_layout(counts, people)) {}
 
-double CountsEvidence::log_likelihood(const AnswerTable& table,
-                                      std::vector<std::vector<double>>* slopes) const {
+double CountsEvidence::log_likelihood(const AnswerTable& table, Cells* slopes) const {
   const auto classes = static_cast<std::size_t>(table.classes());
   if (slopes != nullptr) *slopes = zeros(sums_.size(), table);
   double sum = 0.0;
@@ -37,104 +150,6 @@ double CountsEvidence::log_likelihood(const AnswerTable& table,
     }
   }
   return sum;
-}
-
-std::vector<double> CountsEvidence::information(const AnswerTable& table,
-                                                const CellSlopes& slopes) const {
-  const auto classes = static_cast<std::size_t>(table.classes());
-  std::vector<double> information(slopes.size() * slopes.size(), 0.0);
-  for (std::size_t layout = 0; layout < sums_.size(); ++layout) {
-    for (std::size_t cell = 0; cell < sums_[layout].size(); ++cell) {
-      const std::size_t row = cell - cell % classes;
-      double presented = 0.0;
-      for (std::size_t c = 0; c < classes; ++c) presented += sums_[layout][row + c];
-      const auto answers =
-          table.answers(static_cast<int>(layout), static_cast<int>(cell / classes));
-      const double weight = presented / believed(answers[cell % classes]);
-      for (std::size_t i = 0; i < slopes.size(); ++i) {
-        for (std::size_t j = 0; j < slopes.size(); ++j) {
-          information[i * slopes.size() + j] +=
-              weight * slopes[i][layout][cell] * slopes[j][layout][cell];
-        }
-      }
-    }
-  }
-  return information;
-}
-
-AccuracyEvidence::AccuracyEvidence(std::vector<double> accuracies, double trials_a_class,
-                                   std::vector<PictureLayout> layouts,
-                                   std::vector<design::StimulusIndex> stimuli)
-    : accuracies_(std::move(accuracies)),
-      trials_(trials_a_class),
-      layouts_(std::move(layouts)),
-      stimuli_(std::move(stimuli)),
-      stimuli_of_class_(accuracies_.size(), 0) {
-  for (const design::StimulusIndex& stimulus : stimuli_) ++stimuli_of_class_[stimulus.class_index];
-}
-
-double AccuracyEvidence::share_of(const design::StimulusIndex& stimulus) const noexcept {
-  return 1.0 / (static_cast<double>(layouts_.size()) * stimuli_of_class_[stimulus.class_index]);
-}
-
-std::vector<double> AccuracyEvidence::accuracies_of(const AnswerTable& table) const {
-  std::vector<double> right(accuracies_.size(), 0.0);
-  for (std::size_t layout = 0; layout < layouts_.size(); ++layout) {
-    for (std::size_t place = 0; place < stimuli_.size(); ++place) {
-      const int own = stimuli_[place].class_index;
-      right[own] += share_of(stimuli_[place]) *
-                    table.answers(static_cast<int>(layout), static_cast<int>(place))[own];
-    }
-  }
-  return right;
-}
-
-double AccuracyEvidence::log_likelihood(const AnswerTable& table,
-                                        std::vector<std::vector<double>>* slopes) const {
-  const std::vector<double> right = accuracies_of(table);
-  double sum = 0.0;
-  std::vector<double> slope(right.size());
-  for (std::size_t c = 0; c < right.size(); ++c) {
-    const double correct = believed(right[c]);
-    const double wrong = believed(1.0 - right[c]);
-    sum +=
-        trials_ * (accuracies_[c] * std::log(correct) + (1.0 - accuracies_[c]) * std::log(wrong));
-    slope[c] = trials_ * (accuracies_[c] / correct - (1.0 - accuracies_[c]) / wrong);
-  }
-  if (slopes == nullptr) return sum;
-  *slopes = zeros(layouts_.size(), table);
-  for (std::vector<double>& cells : *slopes) {
-    for (std::size_t place = 0; place < stimuli_.size(); ++place) {
-      const int own = stimuli_[place].class_index;
-      cells[place * right.size() + own] = slope[own] * share_of(stimuli_[place]);
-    }
-  }
-  return sum;
-}
-
-std::vector<double> AccuracyEvidence::information(const AnswerTable& table,
-                                                  const CellSlopes& slopes) const {
-  const std::vector<double> right = accuracies_of(table);
-  std::vector<double> information(slopes.size() * slopes.size(), 0.0);
-  // By parameter and class, the derivative of the accuracy.
-  std::vector<std::vector<double>> slope(slopes.size(), std::vector<double>(right.size(), 0.0));
-  for (std::size_t i = 0; i < slopes.size(); ++i) {
-    for (const std::vector<double>& cells : slopes[i]) {
-      for (std::size_t place = 0; place < stimuli_.size(); ++place) {
-        const int own = stimuli_[place].class_index;
-        slope[i][own] += share_of(stimuli_[place]) * cells[place * right.size() + own];
-      }
-    }
-  }
-  for (std::size_t i = 0; i < slopes.size(); ++i) {
-    for (std::size_t j = 0; j < slopes.size(); ++j) {
-      for (std::size_t c = 0; c < right.size(); ++c) {
-        const double variance = believed(right[c]) * believed(1.0 - right[c]);
-        information[i * slopes.size() + j] += trials_ * slope[i][c] * slope[j][c] / variance;
-      }
-    }
-  }
-  return information;
 }
 
 }  // namespace touchtrial::planning

@@ -1,83 +1,102 @@
-/// \file What a subject model is held against: answers of participants, or published accuracies.
+/// \file What a subject model is fitted to: counts of answers by stimulus, layout and class, and
+/// how likely they are given probabilities of answers.
 #pragma once
 
+#include "analysis/outcomes.hpp"
 #include "analysis/planning/answer_model.hpp"
-#include "analysis/planning/fit_counts.hpp"
+#include "protocols/design/schedule.hpp"
 
+#include <map>
 #include <span>
+#include <string>
 #include <vector>
 
 namespace touchtrial::planning {
 
-/// Derivatives of probabilities by parameters, [parameter][layout][stimulus x classes + answer].
-using CellSlopes = std::vector<std::vector<std::vector<double>>>;
+/// One participant's answers. Counts are whole numbers unless they stand for a population.
+struct CountedPerson {
+  int layout = 0;              ///< index into FitCounts::layouts
+  std::vector<double> counts;  ///< [stimulus x classes + answer]
+};
 
-/// How likely something that was observed is, given probabilities of answers.
+struct FitCounts {
+  std::vector<std::string> classes;            ///< labels
+  std::vector<std::string> methods;            ///< of the study
+  std::vector<design::StimulusIndex> stimuli;  ///< in the bank's order
+  std::vector<PictureLayout> layouts;          ///< each once
+  std::vector<CountedPerson> people;
+  int trials = 0;       ///< with an answer
+  int no_response = 0;  ///< counted trials without an answer, which are left out
+};
+
+/// Counts the trials with an answer that enter accuracy (Outcomes leaves out withdrawn, excluded,
+/// replaced, stopped and other-kind sessions). Catch trials do not count.
+/// \param schedules  of the sessions, for their layouts
+/// \param stimuli  of the study, sorted
+/// \throws StudyError if no trial remains
+[[nodiscard]] FitCounts count_answers(const analysis::Outcomes& outcomes,
+                                      const std::map<int, design::Schedule>& schedules,
+                                      const std::vector<design::StimulusIndex>& stimuli);
+
+/// Numbers by layout and cell of a table, [layout][stimulus x classes + answer].
+using Cells = std::vector<std::vector<double>>;
+
+/// How often one stimulus was presented: the sum of its answers.
+/// \param row  the stimulus's first cell
+[[nodiscard]] double presentations(const std::vector<double>& cells, std::size_t row,
+                                   std::size_t classes);
+
+/// \return sums over people
+[[nodiscard]] Cells by_layout(const FitCounts& counts, std::span<const CountedPerson> people);
+
+/// A table by method, presented class and answer, summed over images and layouts.
+using Confusions = std::vector<std::vector<std::vector<double>>>;
+
+[[nodiscard]] Confusions observed_confusions(const FitCounts& counts,
+                                             std::span<const CountedPerson> people);
+/// \return the answers that the table's probabilities predict for the same presentations
+[[nodiscard]] Confusions expected_confusions(const FitCounts& counts, const AnswerTable& table);
+
+/// G^2 = 2 sum O ln(O / E), over cells with O > 0: twice the difference in log likelihood from the
+/// saturated model.
+[[nodiscard]] double g_squared(const Confusions& observed, const Confusions& expected);
+
+/// The likelihood of an observation, given probabilities of answers.
 class FitEvidence {
  public:
   virtual ~FitEvidence() = default;
 
   [[nodiscard]] virtual std::span<const PictureLayout> layouts() const noexcept = 0;
-  /// \param table  of those layouts
-  /// \param slopes  gets d value / d P, [layout][stimulus x classes + answer], unless null
-  [[nodiscard]] virtual double log_likelihood(const AnswerTable& table,
-                                              std::vector<std::vector<double>>* slopes) const = 0;
-  /// Fisher's information about parameters, row-major.
-  /// \param slopes  d P / d parameter, [parameter][layout][cell]
-  [[nodiscard]] virtual std::vector<double> information(const AnswerTable& table,
-                                                        const CellSlopes& slopes) const = 0;
+  /// \param table  for those layouts
+  /// \param slopes  null, or receives the derivatives by the table's probabilities
+  [[nodiscard]] virtual double log_likelihood(const AnswerTable& table, Cells* slopes) const = 0;
 };
 
-/// Below this no probability of an answer that was given is believed.
+/// The least probability that an observed answer is taken to have.
 inline constexpr double kLeastProbability = 1e-12;
 
-/// Independent multinomial answers, given stimulus and layout. Constants are left out.
+/// \return the probability, between kLeastProbability and 1
+[[nodiscard]] double believed(double probability) noexcept;
+
+/// \return a zero for every cell of the table
+[[nodiscard]] Cells zeros(std::size_t layouts, const AnswerTable& table);
+
+/// Multinomial answers, independent given stimulus and layout. The log likelihood leaves out
+/// constants.
 class CountsEvidence final : public FitEvidence {
  public:
-  /// \param counts  layouts, classes and stimuli; must outlive this
-  /// \param people  whose answers they are
+  /// \param counts  layouts, classes and stimuli; must outlive this object
+  /// \param people  whose answers count
   CountsEvidence(const FitCounts& counts, std::span<const CountedPerson> people);
 
   [[nodiscard]] std::span<const PictureLayout> layouts() const noexcept override {
     return counts_.layouts;
   }
-  [[nodiscard]] double log_likelihood(const AnswerTable& table,
-                                      std::vector<std::vector<double>>* slopes) const override;
-  [[nodiscard]] std::vector<double> information(const AnswerTable& table,
-                                                const CellSlopes& slopes) const override;
+  [[nodiscard]] double log_likelihood(const AnswerTable& table, Cells* slopes) const override;
 
  private:
   const FitCounts& counts_;
-  std::vector<std::vector<double>> sums_;  ///< [layout][cell]
-};
-
-/// Accuracies by class, from so many trials each, and nothing else: which wrong answers were given
-/// is not known. Layouts, images and methods are presented equally often.
-class AccuracyEvidence final : public FitEvidence {
- public:
-  /// \param accuracies  by class, 0 .. 1  \param trials_a_class  > 0
-  AccuracyEvidence(std::vector<double> accuracies, double trials_a_class,
-                   std::vector<PictureLayout> layouts, std::vector<design::StimulusIndex> stimuli);
-
-  [[nodiscard]] std::span<const PictureLayout> layouts() const noexcept override {
-    return layouts_;
-  }
-  [[nodiscard]] double log_likelihood(const AnswerTable& table,
-                                      std::vector<std::vector<double>>* slopes) const override;
-  [[nodiscard]] std::vector<double> information(const AnswerTable& table,
-                                                const CellSlopes& slopes) const override;
-
-  /// The accuracy with each class in a table, over all layouts and stimuli of the class.
-  [[nodiscard]] std::vector<double> accuracies_of(const AnswerTable& table) const;
-
- private:
-  [[nodiscard]] double share_of(const design::StimulusIndex& stimulus) const noexcept;
-
-  std::vector<double> accuracies_;
-  double trials_;
-  std::vector<PictureLayout> layouts_;
-  std::vector<design::StimulusIndex> stimuli_;
-  std::vector<int> stimuli_of_class_;
+  Cells sums_;  ///< by_layout
 };
 
 }  // namespace touchtrial::planning

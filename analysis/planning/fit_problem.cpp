@@ -6,24 +6,24 @@
 namespace touchtrial::planning {
 namespace {
 
-// Beyond these the answers are perfect, or at chance, or all the same.
+// Beyond these bounds, answers are perfect, at chance, or all the same.
 constexpr double kLeastWeber = 1e-3;
 constexpr double kMostWeber = 10.0;
 constexpr double kMostLapse = 0.98;
 constexpr double kMostLogOdds = 20.0;
-/// Of ln(weber), for its derivative.
+/// The step of ln(weber) for the derivative.
 constexpr double kStep = 2e-4;
 
-double bias_of(const session::SubjectModel& subject, const std::string& label) {
+double bias_of(const simulation::SubjectModel& subject, const std::string& label) {
   double bias = 0.0;
-  for (const session::ClassBias& preferred : subject.class_bias) {
+  for (const simulation::ClassBias& preferred : subject.class_bias) {
     if (preferred.label == label) bias += preferred.log_odds;
   }
   return bias;
 }
 
 /// d mean lapse / d lapse.
-double lapse_slope(session::SubjectModel subject) {
+double lapse_slope(simulation::SubjectModel subject) {
   if (subject.lapse_spread == 0.0) return 1.0;
   constexpr double kLapseStep = 1e-5;
   const double here = mean_lapse(subject);
@@ -34,13 +34,13 @@ double lapse_slope(session::SubjectModel subject) {
 }  // namespace
 
 FitProblem::FitProblem(const AnswerModel& model, const FitEvidence& evidence,
-                       session::SubjectModel subject, const FreeParameters& free, int eliminated)
+                       simulation::SubjectModel subject, const FreeParameters& free, int eliminated)
     : model_(model),
       evidence_(evidence),
       subject_(std::move(subject)),
       eliminated_(eliminated),
       classes_free_(free.classes) {
-  // Nobody feels without any noise here: the probabilities would be steps.
+  // Without any noise, the probabilities would be step functions.
   subject_.weber = std::max(subject_.weber, kLeastWeber);
   if (free.weber) add({ParameterKind::weber}, std::log(kLeastWeber), std::log(kMostWeber));
   if (free.lapse) add({ParameterKind::lapse}, 0.0, kMostLapse);
@@ -49,13 +49,7 @@ FitProblem::FitProblem(const AnswerModel& model, const FitEvidence& evidence,
   for (int c = 0; free.classes && c < classes; ++c) {
     if (c != eliminated_) add({ParameterKind::class_bias, c}, -kMostLogOdds, kMostLogOdds);
   }
-  for (const PictureLayout& layout : evidence_.layouts()) {
-    std::vector<double>& nearness = nearness_.emplace_back(layout.size(), 0.0);
-    const double last = std::max(1.0, static_cast<double>(layout.size()) - 1.0);
-    for (std::size_t i = 0; i < layout.size(); ++i) {
-      nearness[layout[i]] = 1.0 - static_cast<double>(i) / last;
-    }
-  }
+  for (const PictureLayout& layout : evidence_.layouts()) nearness_.push_back(nearness_of(layout));
 }
 
 void FitProblem::add(Parameter parameter, double lower, double upper) {
@@ -77,8 +71,8 @@ std::vector<double> FitProblem::scales() const {
   return scales;
 }
 
-session::SubjectModel FitProblem::subject_at(std::span<const double> at) const {
-  session::SubjectModel subject = subject_;
+simulation::SubjectModel FitProblem::subject_at(std::span<const double> at) const {
+  simulation::SubjectModel subject = subject_;
   std::vector<double> biases(model_.classes().size(), 0.0);
   for (std::size_t i = 0; i < parameters_.size(); ++i) {
     const Parameter& parameter = parameters_[i];
@@ -98,7 +92,7 @@ session::SubjectModel FitProblem::subject_at(std::span<const double> at) const {
   return subject;
 }
 
-std::vector<double> FitProblem::numbers_of(const session::SubjectModel& subject) const {
+std::vector<double> FitProblem::numbers_of(const simulation::SubjectModel& subject) const {
   double mean = 0.0;
   for (const std::string& label : model_.classes()) {
     mean += bias_of(subject, label) / static_cast<double>(model_.classes().size());
@@ -143,8 +137,15 @@ double FitProblem::slope_of(const Parameter& parameter, const AnswerTable& table
   return sum;
 }
 
+Optimum FitProblem::maximised(std::vector<double> start, const Bounds& bounds,
+                              const OptimiserOptions& options) const {
+  return maximise(
+      [this](std::span<const double> at, std::span<double> slopes) { return value(at, slopes); },
+      std::move(start), bounds, options);
+}
+
 FitProblem::Tangent FitProblem::tangent(std::span<const double> at, BankPart part) const {
-  const session::SubjectModel subject = subject_at(at);
+  const simulation::SubjectModel subject = subject_at(at);
   const std::span<const PictureLayout> layouts = evidence_.layouts();
   Tangent tangent{model_.answers(subject, layouts, true, part), {}};
   const AnswerTable& table = tangent.table;
@@ -152,7 +153,7 @@ FitProblem::Tangent FitProblem::tangent(std::span<const double> at, BankPart par
   const auto cells = static_cast<std::size_t>(table.stimuli()) * classes;
   const double rate = lapse_slope(subject);
   const double lapse = mean_lapse(subject);
-  session::SubjectModel noisier = subject;
+  simulation::SubjectModel noisier = subject;
   noisier.weber *= std::exp(kStep);
   const bool by_weber = std::ranges::count(parameters_, Parameter{ParameterKind::weber}) > 0;
   const AnswerTable more = by_weber ? model_.answers(noisier, layouts, false, part) : table;
@@ -178,7 +179,7 @@ double FitProblem::value(std::span<const double> at, std::span<double> slopes) c
     return evidence_.log_likelihood(model_.answers(subject_at(at), evidence_.layouts()), nullptr);
   }
   const Tangent here = tangent(at);
-  std::vector<std::vector<double>> by_cell;
+  Cells by_cell;
   const double value = evidence_.log_likelihood(here.table, &by_cell);
   for (std::size_t i = 0; i < slopes.size(); ++i) {
     slopes[i] = 0.0;

@@ -1,7 +1,6 @@
 /// \file A fit in words and in JSON. Format: docs/data-dictionary.md, "Fit".
 #pragma once
 
-#include "analysis/planning/accuracy_fit.hpp"
 #include "analysis/planning/subject_fit.hpp"
 
 #include <cstdint>
@@ -9,11 +8,11 @@
 
 namespace touchtrial::planning {
 
-/// What a fit was made with.
+/// What a fit was made from.
 struct FitOrigin {
   std::string study;
-  std::string subject;     ///< file of the subject model that it started from
-  bool simulated = false;  ///< whether the answers are simulated participants'
+  std::string subject;     ///< file of the subject model that the search started from
+  bool simulated = false;  ///< the answers are those of simulated participants
   bool pilot = false;
   bool interim = false;
   int explorations = 0;
@@ -21,10 +20,11 @@ struct FitOrigin {
   std::uint64_t seed = 0;
 };
 
+/// Tables for a terminal; ends with a line feed.
 [[nodiscard]] std::string fit_text(const SubjectFit& fit, const FitOrigin& origin);
 [[nodiscard]] std::string fit_text(const AccuracyFit& fit, const FitOrigin& origin);
 
-/// One JSON object, indented, ending with a line feed. What does not exist is null.
+/// One indented JSON object; ends with a line feed. Missing values are null.
 [[nodiscard]] std::string fit_json(const SubjectFit& fit, const FitOrigin& origin);
 [[nodiscard]] std::string fit_json(const AccuracyFit& fit, const FitOrigin& origin);
 

@@ -1,12 +1,192 @@
 #include "analysis/planning/noise_lines.hpp"
 
+#include "core/random.hpp"
+#include "engine/perception/felt_classifier.hpp"
+
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
+#include <stdexcept>
+
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/normal.hpp>
+#include <boost/random/sobol.hpp>
 
 namespace touchtrial::planning {
 namespace {
 
-/// The largest for much negative noise: the one that falls the least, or rises the most backwards.
+engine::FeltFeatures mean_of(const std::vector<engine::FeltExample>& examples) {
+  engine::FeltFeatures mean{};
+  for (const engine::FeltExample& example : examples) {
+    for (int i = 0; i < engine::kFeltFeatures; ++i) mean[i] += example.features[i];
+  }
+  for (double& value : mean) value /= static_cast<double>(examples.size());
+  return mean;
+}
+
+double product(const double* a, const double* b, int count) noexcept {
+  double sum = 0.0;
+  for (int i = 0; i < count; ++i) sum += a[i] * b[i];
+  return sum;
+}
+
+}  // namespace
+
+int noise_dimensions(int prototypes) noexcept {
+  return std::clamp(prototypes - 1, 1, engine::kFeltFeatures);
+}
+
+LinearSupports::LinearSupports(const simulation::FeltKnowledge& knowledge, double weber)
+    : middle_(mean_of(knowledge.examples)) {
+  const engine::FeltClassifier classifier(knowledge.examples, weber);
+  constant_ = classifier.log_likelihoods(middle_);
+  dimensions_ = noise_dimensions(static_cast<int>(constant_.size()));
+  gradient_.resize(constant_.size() * engine::kFeltFeatures);
+  for (int feature = 0; feature < engine::kFeltFeatures; ++feature) {
+    engine::FeltFeatures moved = middle_;
+    moved[feature] += 1.0;
+    const std::vector<double> logs = classifier.log_likelihoods(moved);
+    for (std::size_t k = 0; k < logs.size(); ++k) {
+      gradient_[k * engine::kFeltFeatures + feature] =
+          (logs[k] - constant_[k]) - (logs[0] - constant_[0]);
+    }
+  }
+  const double first = constant_.front();
+  for (double& value : constant_) value -= first;
+  factorise_noise(weber);
+}
+
+/// The Cholesky factor of the noise's covariance, which is weber^2 times the products of the
+/// gradients. A prototype that depends linearly on the previous ones (equal stimuli, or more
+/// stimuli than features) gets no column.
+void LinearSupports::factorise_noise(double weber) {
+  const auto rows = static_cast<int>(constant_.size());
+  factor_.assign(static_cast<std::size_t>(rows) * dimensions_, 0.0);
+  int column = 0;
+  for (int pivot = 1; pivot < rows && column < dimensions_; ++pivot) {
+    const double* own = &gradient_[static_cast<std::size_t>(pivot) * engine::kFeltFeatures];
+    const double* own_row = &factor_[static_cast<std::size_t>(pivot) * dimensions_];
+    const double variance = weber * weber * product(own, own, engine::kFeltFeatures);
+    const double left = variance - product(own_row, own_row, column);
+    constexpr double kNothing = 1e-12;
+    if (!(left > kNothing * variance)) continue;
+    const double root = std::sqrt(left);
+    for (int k = pivot; k < rows; ++k) {
+      const double* other = &gradient_[static_cast<std::size_t>(k) * engine::kFeltFeatures];
+      double* row = &factor_[static_cast<std::size_t>(k) * dimensions_];
+      const double covariance = weber * weber * product(own, other, engine::kFeltFeatures);
+      row[column] = (covariance - product(own_row, row, column)) / root;
+    }
+    ++column;
+  }
+}
+
+void LinearSupports::at(const engine::FeltFeatures& felt,
+                        std::span<double> supports) const noexcept {
+  engine::FeltFeatures apart{};
+  for (int i = 0; i < engine::kFeltFeatures; ++i) apart[i] = felt[i] - middle_[i];
+  for (std::size_t k = 0; k < supports.size(); ++k) {
+    supports[k] = constant_[k] + product(&gradient_[k * engine::kFeltFeatures], apart.data(),
+                                         engine::kFeltFeatures);
+  }
+}
+
+void LinearSupports::noise(std::span<const double> normals,
+                           std::span<double> supports) const noexcept {
+  for (std::size_t k = 0; k < supports.size(); ++k) {
+    supports[k] =
+        product(&factor_[k * static_cast<std::size_t>(dimensions_)], normals.data(), dimensions_);
+  }
+}
+
+namespace {
+
+/// Uses the middle of the bits' cell of width 2^-53, so that the uniform number is never 0 or 1.
+double normal_of(std::uint64_t bits) {
+  constexpr int kUnused = 11;
+  const double uniform = (static_cast<double>(bits >> kUnused) + 0.5) * 0x1.0p-53;
+  // The upper tail by symmetry: doubles are coarser near 1 than near 0.
+  const boost::math::normal standard;
+  return uniform < 0.5 ? boost::math::quantile(standard, uniform)
+                       : boost::math::quantile(boost::math::complement(standard, 1.0 - uniform));
+}
+
+}  // namespace
+
+NoisePoints::NoisePoints(int dimensions, std::size_t count, std::uint64_t seed, std::uint64_t index)
+    : dimensions_(static_cast<std::size_t>(dimensions)) {
+  RandomStream random(seed, "answer model: shift of the noise points", index);
+  std::vector<std::uint64_t> shift(dimensions_);
+  for (std::uint64_t& bits : shift) bits = random.bits();
+  boost::random::sobol sequence(dimensions_);
+  normals_.reserve(dimensions_ * count);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (const std::uint64_t bits : shift) normals_.push_back(normal_of(sequence() ^ bits));
+  }
+}
+
+std::vector<double> normal_groups(int groups) {
+  const boost::math::normal standard;
+  std::vector<double> means;
+  double from = 0.0;  // density at the group's lower end
+  double squares = 0.0;
+  for (int i = 1; i <= groups; ++i) {
+    const double to =
+        i < groups ? boost::math::pdf(
+                         standard, boost::math::quantile(standard, static_cast<double>(i) / groups))
+                   : 0.0;
+    means.push_back(groups * (from - to));
+    squares += means.back() * means.back();
+    from = to;
+  }
+  const double scale = squares > 0.0 ? std::sqrt(groups / squares) : 0.0;
+  for (double& mean : means) mean *= scale;
+  return means;
+}
+
+namespace {
+
+constexpr int kCells = 2048;
+/// A length beyond sqrt(d) + kFarTail has a probability of about 1e-16.
+constexpr double kFarTail = 8.5;
+
+}  // namespace
+
+RadialDistribution::RadialDistribution(int dimensions) {
+  if (dimensions < 1) throw std::invalid_argument("RadialDistribution: dimensions start at 1");
+  reach_ = std::sqrt(static_cast<double>(dimensions)) + kFarTail;
+  step_ = reach_ / kCells;
+  const boost::math::chi_squared squared(dimensions);
+  for (int i = 0; i <= kCells; ++i) {
+    const double r = i * step_;
+    beyond_.push_back(boost::math::cdf(boost::math::complement(squared, r * r)));
+    // The density of r is 2 r times that of r^2, which is infinite at 0 for d = 1.
+    const double near = r > 0.0 ? r : 1e-9 * step_;
+    density_.push_back(2.0 * near * boost::math::pdf(squared, near * near) * step_);
+  }
+}
+
+RadialDistribution::Value RadialDistribution::at(double t) const noexcept {
+  const double r = std::abs(t);
+  if (!(r < reach_)) return {t > 0.0 ? 1.0 : 0.0, 0.0};
+  const int cell = static_cast<int>(r / step_);
+  const double x = r / step_ - cell;
+  const double from = beyond_[cell];
+  const double to = beyond_[cell + 1];
+  const double slope_from = -density_[cell];
+  const double slope_to = -density_[cell + 1];
+  // Cubic Hermite, and its derivative.
+  const double c2 = 3.0 * (to - from) - 2.0 * slope_from - slope_to;
+  const double c3 = 2.0 * (from - to) + slope_from + slope_to;
+  const double more = from + x * (slope_from + x * (c2 + x * c3));
+  const double density = -(slope_from + x * (2.0 * c2 + 3.0 * x * c3)) / step_;
+  return {t > 0.0 ? 1.0 - 0.5 * more : 0.5 * more, 0.5 * density};
+}
+
+namespace {
+
+/// The largest support at t = -infinity: the one with the smallest slope.
 std::size_t first_winner(std::span<const double> at, std::span<const double> slope) noexcept {
   std::size_t best = 0;
   for (std::size_t k = 1; k < at.size(); ++k) {
@@ -21,7 +201,7 @@ struct Crossing {
   double t = std::numeric_limits<double>::infinity();
 };
 
-/// Where the next one overtakes.
+/// The next prototype that overtakes the winner, and where.
 Crossing next_winner(std::span<const double> at, std::span<const double> slope,
                      std::size_t winner) noexcept {
   Crossing next{winner};
@@ -34,7 +214,7 @@ Crossing next_winner(std::span<const double> at, std::span<const double> slope,
   return next;
 }
 
-/// Shares a probability among the pictures of all prototypes that are as strong everywhere.
+/// Shares a probability among the pictures of all prototypes that equal the winner everywhere.
 void share(std::span<const double> at, std::span<const double> slope, std::span<const int> picture,
            std::size_t winner, double probability, std::span<double> answers) noexcept {
   const auto stands_for_its_picture = [&](std::size_t k) {
@@ -52,14 +232,13 @@ void share(std::span<const double> at, std::span<const double> slope, std::span<
   }
 }
 
-/// Whether another prototype's picture is as strong everywhere: stimuli that feel the same.
+/// Whether another prototype equals the winner everywhere: stimuli that feel the same.
 bool has_equal(std::span<const double> at, std::span<const double> slope,
                std::size_t winner) noexcept {
-  bool equal = false;
   for (std::size_t k = 0; k < at.size(); ++k) {
-    equal |= k != winner && slope[k] == slope[winner] && at[k] == at[winner];
+    if (k != winner && slope[k] == slope[winner] && at[k] == at[winner]) return true;
   }
-  return equal;
+  return false;
 }
 
 }  // namespace

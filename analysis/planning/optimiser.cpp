@@ -14,7 +14,7 @@ namespace {
 
 using Solver = std::unique_ptr<nlopt_opt_s, decltype(&nlopt_destroy)>;
 
-/// What passes through the C library and back. The library sees numbers in units of their scales.
+/// State that passes through the C library, which sees numbers divided by their scales.
 struct Search {
   const SmoothFunction& function;
   std::vector<double> scales;
@@ -46,7 +46,6 @@ double evaluate(unsigned count, const double* at, double* slopes, void* data) no
   }
 }
 
-/// In units of the scales.
 std::vector<double> divided(std::vector<double> numbers, const std::vector<double>& scales) {
   for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] /= scales[i];
   return numbers;
@@ -75,7 +74,7 @@ Optimum maximise(const SmoothFunction& function, std::vector<double> start, cons
   nlopt_set_maxeval(solver.get(), options.most_evaluations);
   std::vector<double> scaled = divided(start, search.scales);
   double value = 0.0;
-  // Whether it converged or ran out of digits, the best point is the answer.
+  // The best point is the answer, whether the search converged or not.
   static_cast<void>(nlopt_optimize(solver.get(), scaled.data(), &value));
   if (search.failure) std::rethrow_exception(search.failure);
   return search.best;

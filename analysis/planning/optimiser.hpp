@@ -1,4 +1,4 @@
-/// \file The largest value of a smooth function between bounds. The method is NLopt's.
+/// \file The maximum of a smooth function within bounds, by NLopt.
 #pragma once
 
 #include <functional>
@@ -7,7 +7,7 @@
 
 namespace touchtrial::planning {
 
-/// \param slopes  gets the derivatives unless empty
+/// \param slopes  empty, or receives the derivatives
 using SmoothFunction = std::function<double(std::span<const double> at, std::span<double> slopes)>;
 
 struct Bounds {
@@ -23,12 +23,12 @@ struct Optimum {
 struct OptimiserOptions {
   double tolerance = 1e-7;  ///< of the value, relative, > 0
   int most_evaluations = 200;
-  std::vector<double> scales{};  ///< by how much a number matters, > 0 each; empty: 1
+  std::vector<double> scales{};  ///< typical size of each number's changes, > 0; empty: 1
 };
 
 /// Sequential quadratic programming (NLopt's LD_SLSQP; Kraft 1994), from one start, deterministic.
-/// The best point seen is returned, also where rounding or the evaluations' number ended it.
-/// \param start  is moved between the bounds; without numbers, the function is evaluated once
+/// \param start  is clamped to the bounds; if it is empty, the function is evaluated once
+/// \return the best point seen, also if rounding or the number of evaluations ended the search
 /// \throws what the function throws
 [[nodiscard]] Optimum maximise(const SmoothFunction& function, std::vector<double> start,
                                const Bounds& bounds, const OptimiserOptions& options = {});

@@ -1,5 +1,5 @@
-#include "analysis/figures/panels.hpp"
-#include "analysis/planning/power_words.hpp"
+#include "analysis/figures/style.hpp"
+#include "analysis/planning/power_report.hpp"
 #include "analysis/statistics/chance_test.hpp"
 
 #include <algorithm>
@@ -14,8 +14,8 @@ constexpr double kHeight_cm = 6.2;
 struct Axis {
   const char* title;
   const char* label;
-  std::vector<std::vector<double>> rows;  ///< participants, figure, low, high; per cent
-  std::vector<double> lines;              ///< dashed, across
+  std::vector<std::vector<double>> rows;  ///< participants, value, low, high; per cent
+  std::vector<double> lines;              ///< heights of dashed lines
   double top = 104.0;
   double step = 20.0;
 };
@@ -27,9 +27,9 @@ std::string line_at(double height) {
       height, analysis::kInk);
 }
 
-/// From 0 to a round figure above everything that is drawn.
+/// Lets the axis run from 0 to a little above everything that is drawn.
 void fit(Axis& axis) {
-  double highest = 1.0;  // also where everybody is right and intervals have no width
+  double highest = 1.0;  // if all intervals have no width
   for (const auto& row : axis.rows) highest = std::max(highest, row[3]);
   for (const double line : axis.lines) highest = std::max(highest, line);
   for (const double step : {0.5, 1.0, 2.0, 5.0, 10.0, 20.0}) {
@@ -42,7 +42,7 @@ void fit(Axis& axis) {
 Axis power_axis(const PowerReport& report) {
   Axis axis{"power", "significant studies, %", {}, {}, 104.0, 20.0};
   for (const PowerRow& row : report.rows) {
-    axis.rows.push_back({1.0 * row.participants, 100.0 * row.significant.share().value_or(0.0),
+    axis.rows.push_back({1.0 * row.participants, 100.0 * row.estimated_power(),
                          100.0 * row.power.low, 100.0 * row.power.high});
   }
   for (const double target : kPowerTargets) axis.lines.push_back(100.0 * target);
@@ -53,7 +53,7 @@ Axis error_axis(const PowerReport& report) {
   Axis axis{
       "type-I error", "significant under the null, %", {}, {100.0 * analysis::kSignificanceLevel}};
   for (const PowerRow& row : report.rows) {
-    axis.rows.push_back({1.0 * row.participants, 100.0 * row.false_alarms.share().value_or(0.0),
+    axis.rows.push_back({1.0 * row.participants, 100.0 * row.estimated_error(),
                          100.0 * row.type_one.low, 100.0 * row.type_one.high});
   }
   fit(axis);
@@ -95,9 +95,9 @@ std::string alt_of(const PowerReport& report) {
   for (const PowerRow& row : report.rows) {
     alt += fmt::format(
         " {} participants: power {} % {}, type-I error {} % {}, interval width {} points.",
-        row.participants, power_per_cent(row.significant.share().value_or(0.0)),
-        power_range(row.power), power_per_cent(row.false_alarms.share().value_or(0.0)),
-        power_range(row.type_one), power_per_cent(row.width.mean));
+        row.participants, power_per_cent(row.estimated_power()), power_range(row.power),
+        power_per_cent(row.estimated_error()), power_range(row.type_one),
+        power_per_cent(row.width.mean));
   }
   return alt;
 }

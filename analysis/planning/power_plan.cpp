@@ -29,7 +29,7 @@ void settle_sizes(PowerPlan& plan) {
                                  plan.participants.size(), kMostPowerSizes));
   }
   for (const int size : plan.participants) {
-    // Of one participant there is no interval over participants.
+    // One participant gives no interval over participants.
     require_range("--participants", size, 2, kMostPowerParticipants);
   }
   std::ranges::sort(plan.participants);
@@ -39,7 +39,7 @@ void settle_sizes(PowerPlan& plan) {
   }
 }
 
-/// Bonferroni over the looks: together they are wrong no more often than one would be.
+/// Bonferroni over the looks: together they err no more often than one look at the usual level.
 double level_of_a_look(const PowerPlan& plan) {
   return 1.0 - (1.0 - analysis::kConfidenceLevel) / static_cast<double>(looks_of(plan).size());
 }

@@ -15,7 +15,6 @@ using nlohmann::ordered_json;
 constexpr const char* kFormat = "touchtrial power progress";
 constexpr int kVersion = 1;
 constexpr std::uintmax_t kLargestFile = std::uintmax_t{1} << 29U;
-constexpr int kMostShards = 10'000;
 
 ordered_json setting_object(const PowerSetting& setting) {
   return {{"study", setting.study},
@@ -65,7 +64,7 @@ std::string digest_of(const ordered_json& object) {
   return to_hex(sha256(bytes_of(object.dump())));
 }
 
-/// What makes no sense in a file that nobody altered.
+/// Thrown for content that no version of the program writes.
 struct Malformed : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -96,12 +95,12 @@ PowerPlan plan_of(const ordered_json& object) {
 }
 
 PowerRun run_of(const ordered_json& row) {
-  require(row.is_array() && row.size() == 5, "a run has not five figures");
+  require(row.is_array() && row.size() == 5, "a run does not have five numbers");
   const PowerRun run{row[0], row[1], row[2], row[3], row[4]};
   const bool finite = std::isfinite(run.p) && std::isfinite(run.attainable) &&
                       std::isfinite(run.estimate) && std::isfinite(run.low) &&
                       std::isfinite(run.high);
-  require(finite && run.p >= 0.0 && run.p <= 1.0, "a run's figures are impossible");
+  require(finite && run.p >= 0.0 && run.p <= 1.0, "a run's numbers are impossible");
   return run;
 }
 
@@ -117,13 +116,13 @@ void read_cell(const ordered_json& object, int most_runs, PowerCell& cell) {
 
 PowerProgress progress_of(const ordered_json& object) {
   require(object.at("format") == kFormat && object.at("version") == kVersion,
-          "it is of another format or version");
+          "it has another format or version");
   const ordered_json& shard = object.at("shard");
-  require(shard.is_array() && shard.size() == 2, "its shard is none");
+  require(shard.is_array() && shard.size() == 2, "it names no shard");
   const Shard place{shard[0], shard[1]};
   require(place.count >= 1 && place.count <= kMostShards && place.number >= 1 &&
               place.number <= place.count,
-          "its shard is none");
+          "it names no shard");
   PowerProgress progress =
       new_progress(setting_of(object.at("setting")), plan_of(object.at("plan")), place);
   const ordered_json& cells = object.at("cells");
@@ -136,8 +135,8 @@ PowerProgress progress_of(const ordered_json& object) {
 }
 
 [[noreturn]] void refuse_progress(const std::filesystem::path& path, const std::string& what) {
-  throw FileError(one_line(path.string() + ": is no progress of a power run (" + what +
-                           "); give the folder or files that power wrote"));
+  throw FileError(one_line(path.string() + ": is not the progress of a power run (" + what +
+                           "); give a folder or file that power wrote"));
 }
 
 }  // namespace

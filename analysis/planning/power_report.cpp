@@ -1,7 +1,7 @@
 #include "analysis/planning/power_report.hpp"
 
 #include "analysis/statistics/chance_test.hpp"
-#include "analysis/statistics/quantiles.hpp"
+#include "analysis/statistics/descriptive.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -65,7 +65,7 @@ PowerRow row_of(const PowerProgress& progress, const PowerCell& population, cons
   return row;
 }
 
-/// The smallest size from which on every one holds.
+/// The smallest size of which, and of all larger ones, `holds` is true.
 template <typename Holds>
 std::optional<int> from_which_on(const std::vector<PowerRow>& rows, const Holds& holds) {
   std::optional<int> smallest;
@@ -77,9 +77,7 @@ std::optional<int> from_which_on(const std::vector<PowerRow>& rows, const Holds&
 
 TargetSize target_size(const std::vector<PowerRow>& rows, double target) {
   return {target,
-          from_which_on(
-              rows,
-              [&](const PowerRow& row) { return row.significant.share().value_or(0.0) >= target; }),
+          from_which_on(rows, [&](const PowerRow& row) { return row.estimated_power() >= target; }),
           from_which_on(rows, [&](const PowerRow& row) { return row.power.low >= target; })};
 }
 

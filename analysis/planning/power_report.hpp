@@ -1,5 +1,5 @@
-/// \file What a power run found. Everything in it is of simulated participants: power given the
-/// assumed sensitivity. Source: docs/power.md.
+/// \file The results of a power run, all from simulated participants: power given the assumed
+/// sensitivity. Source: docs/power.md.
 #pragma once
 
 #include "analysis/figures/figure.hpp"
@@ -12,45 +12,48 @@
 
 namespace touchtrial::planning {
 
-/// Over the runs of one size.
+/// Widths of the 95 % t interval, over the runs of one size.
 struct WidthFigures {
   double mean = 0.0;
   double standard_error = 0.0;  ///< Monte Carlo, of the mean
-  double lower = 0.0;           ///< a tenth of the runs is narrower
+  double lower = 0.0;           ///< one tenth of the runs is narrower
   double median = 0.0;
-  double upper = 0.0;  ///< a tenth is wider
+  double upper = 0.0;  ///< one tenth of the runs is wider
 };
 
-/// One size.
+/// The results for one size.
 struct PowerRow {
   int participants = 0;
-  analysis::Proportion significant;  ///< of the runs with the population
+  analysis::Proportion significant;  ///< runs with the population
   analysis::Interval power{};        ///< power_interval
   bool stopped_early = false;
-  double estimate = 0.0;              ///< mean over runs
-  double estimate_sd = 0.0;           ///< from run to run
-  WidthFigures width;                 ///< of the 95 % t interval
-  analysis::Proportion false_alarms;  ///< of the runs under the null
+  double estimate = 0.0;     ///< mean over runs
+  double estimate_sd = 0.0;  ///< from run to run
+  WidthFigures width;
+  analysis::Proportion false_alarms;  ///< significant runs under the null
   analysis::Interval type_one{};      ///< Wilson, 95 %
-  double attainable = 0.0;       ///< what the test's error is exactly, as data are whole numbers
+  double attainable = 0.0;       ///< the test's exact error, given that counts are whole numbers
   bool has_fixed_counts = true;  ///< PowerSetting
+
+  [[nodiscard]] double estimated_power() const { return significant.share().value_or(0.0); }
+  [[nodiscard]] double estimated_error() const { return false_alarms.share().value_or(0.0); }
 };
 
-/// The type-I error against its level.
+/// How the type-I error compares with the test's level.
 enum class ErrorVerdict {
-  holds,         ///< the interval reaches from what is attainable to the level, or into it
-  conservative,  ///< the interval lies below what is attainable
+  holds,         ///< the interval overlaps the range from attainable to the level
+  conservative,  ///< the interval lies below the attainable error
   excessive,     ///< the interval lies above the level
-  conditional,   ///< none is given: the error is that of the orders of this study's seed
+  conditional,   ///< no verdict: the error depends on the orders of this study's seed
 };
 [[nodiscard]] ErrorVerdict verdict_of(const PowerRow& row) noexcept;
 [[nodiscard]] std::string_view name_of(ErrorVerdict verdict);
 
-/// Which sizes reach a power.
+/// The sizes that reach a power.
 struct TargetSize {
   double target = 0.0;
-  std::optional<int> smallest;  ///< it and all larger ones reach it, going by the estimates
-  std::optional<int> surely;    ///< it and all larger ones reach it with their whole intervals
+  std::optional<int> smallest;  ///< this and all larger sizes reach it by their estimates
+  std::optional<int> surely;    ///< this and all larger sizes reach it by their whole intervals
 };
 
 struct PowerReport {
@@ -58,19 +61,27 @@ struct PowerReport {
   PowerPlan plan;
   std::vector<PowerRow> rows;  ///< by size
   std::vector<TargetSize> targets;
-  std::vector<std::string> warnings;  ///< what a reader could take a figure for, wrongly
+  std::vector<std::string> warnings;  ///< against misreadings, one line each
 };
 
-/// \param progress  a complete one of all shards
-/// \throws std::invalid_argument if it is not
+/// \param progress  complete, and of all shards
+/// \throws std::invalid_argument otherwise
 [[nodiscard]] PowerReport make_power_report(const PowerProgress& progress);
 
-/// Tables for a terminal; ends with a line feed, and so do the others.
+/// Stamp of everything that comes from a power run.
+inline constexpr const char* kPowerStamp = "SIMULATED: power given the assumed sensitivity";
+
+/// \return a share in per cent: "84.3"
+[[nodiscard]] std::string power_per_cent(double share);
+/// \return an interval of shares in per cent: "[80.9, 87.3]"
+[[nodiscard]] std::string power_range(const analysis::Interval& interval);
+
+/// Tables for a terminal. This and the other texts end with a line feed.
 [[nodiscard]] std::string power_text(const PowerReport& report);
 [[nodiscard]] std::string power_json(const PowerReport& report);
 [[nodiscard]] std::string power_csv(const PowerReport& report);
 [[nodiscard]] std::string power_markdown(const PowerReport& report);
-/// Power, type-I error and interval width against the number of participants.
+/// A figure of power, type-I error and interval width against the number of participants.
 [[nodiscard]] analysis::Figure power_figure(const PowerReport& report);
 
 }  // namespace touchtrial::planning

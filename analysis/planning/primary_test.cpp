@@ -1,8 +1,9 @@
 #include "analysis/planning/primary_test.hpp"
 
-#include "analysis/report/primary_figures.hpp"
 #include "core/errors.hpp"
 #include "core/strict_json.hpp"
+#include "protocols/design/protocol.hpp"
+#include "protocols/identification/analysis/chance.hpp"
 
 #include <algorithm>
 
@@ -11,7 +12,7 @@
 namespace touchtrial::planning {
 namespace {
 
-/// 0.05 times the drawings and the study itself is a whole number: the level is reached exactly.
+/// 0.05 times (drawings + the study itself) is a whole number, so that p can equal the level.
 constexpr int kMostDeals = 999;
 
 std::string labels_of(const design::Study& study) {
@@ -51,7 +52,8 @@ PrimaryTest pair_test(const design::Study& study, const std::optional<MethodLabe
 
 PrimaryTest primary_test_of(const design::Study& study,
                             const std::optional<MethodLabels>& methods) {
-  if (study.protocol == design::Protocol::comparison) return pair_test(study, methods);
+  design::require_choice_of_classes(study, "power");
+  if (study.presented_methods() > 1) return pair_test(study, methods);
   if (methods) {
     throw UsageError("--methods: the study presents one method; leave the option out");
   }
@@ -72,19 +74,19 @@ std::string words_of(const PrimaryTest& test, const design::Study& study) {
 }
 
 std::string estimate_words(const PrimaryTest& test) {
-  return test.kind == PrimaryTest::Kind::above_chance ? "accuracy" : "difference of accuracies";
+  return test.kind == PrimaryTest::Kind::above_chance ? "accuracy" : std::string(kDifferenceWords);
 }
 
 PowerRun judged(const PrimaryTest& test, const analysis::Outcomes& outcomes, bool with_attainable) {
   if (test.kind == PrimaryTest::Kind::above_chance) {
-    const analysis::ChanceFigures figures =
-        analysis::chance_figures(outcomes, test.first, kMostDeals);
+    const analysis::identification::ChanceFigures figures =
+        analysis::identification::chance_figures(outcomes, test.first, kMostDeals);
     return {figures.chance ? figures.chance->p : 1.0,
             with_attainable && figures.chance ? figures.chance->attainable : 0.0,
             figures.mean.mean.value_or(0.0), figures.mean.interval.low, figures.mean.interval.high};
   }
-  const analysis::PairFigures figures =
-      analysis::pair_figures(outcomes, test.first, test.second, with_attainable);
+  const analysis::identification::PairFigures figures =
+      analysis::identification::pair_figures(outcomes, test.first, test.second, with_attainable);
   const analysis::MethodComparison& overall = figures.overall;
   return {overall.p.value_or(1.0), figures.attainable, overall.difference.value_or(0.0),
           overall.interval.low, overall.interval.high};

@@ -2,32 +2,39 @@
 
 #include "core/errors.hpp"
 #include "core/random.hpp"
-#include "protocols/session/felt_decision.hpp"
+#include "protocols/simulation/felt_decision.hpp"
+
+#include <algorithm>
 
 #include <fmt/format.h>
 
 namespace touchtrial::planning {
 namespace {
 
+/// Trainings have other seeds than the studies that use them.
+std::uint64_t training_seed(std::uint64_t seed, int training) {
+  return RandomStream(seed, "power: training", static_cast<std::uint64_t>(training)).bits();
+}
+
 std::string participant_name(int number) {
   return fmt::format("P{:03}", number);
 }
 
-/// A study's outcomes before anybody took part.
+/// The outcomes of a study without participants.
 analysis::Outcomes nobody_yet(const design::Study& study) {
   analysis::Outcomes outcomes;
   outcomes.study = study.name;
-  outcomes.protocol = study.protocol;
   outcomes.simulated = true;
   outcomes.design = study;
   for (const design::StudyClass& one : study.classes) outcomes.classes.push_back(one.label);
+  outcomes.choices = outcomes.classes;
   for (int i = 0; i < study.presented_methods(); ++i) {
     outcomes.methods.push_back(study.methods[i].label);
   }
   return outcomes;
 }
 
-std::vector<design::StimulusIndex> stimuli_of(const design::Study& study, int method) {
+std::vector<design::StimulusIndex> stimuli_of_method(const design::Study& study, int method) {
   std::vector<design::StimulusIndex> stimuli;
   for (int c = 0; c < static_cast<int>(study.classes.size()); ++c) {
     for (int e = 0; e < static_cast<int>(study.classes[c].images.size()); ++e) {
@@ -37,8 +44,8 @@ std::vector<design::StimulusIndex> stimuli_of(const design::Study& study, int me
   return stimuli;
 }
 
-/// Who explores until time is up, in a study that then takes no answer, answers nothing.
-void require_answers(const design::Study& study, const session::SubjectModel& subject) {
+/// Refuses participants who explore until the time is up in a study that then takes no answer.
+void require_answers(const design::Study& study, const simulation::SubjectModel& subject) {
   const bool in_time = subject.explore_s < study.trials.explore_limit_s;
   if (in_time || study.trials.on_timeout != design::OnTimeout::no_response) return;
   throw StudyError(one_line(fmt::format(
@@ -72,14 +79,54 @@ analysis::TrialOutcome answered_trial(int number, const design::Presentation& pr
   trial.scored = true;
   trial.counted = true;
   trial.response = schedule.layout[position];
+  trial.right = trial.stimulus.class_index;
   return trial;
 }
 
 }  // namespace
 
-/// What all participants of one simulated study share.
+BankedFeelings::BankedFeelings(const simulation::LabelledFields& fields, const design::Study& study,
+                               const simulation::SubjectModel& subject,
+                               const BankedFeelingsOptions& options,
+                               const design::Progress& progress)
+    : bank_(fields, study, subject, {options.explorations, options.seed, options.jobs}, progress) {
+  for (int i = 0; i < options.trainings; ++i) {
+    trainings_.push_back(std::make_shared<const simulation::FeltKnowledge>(
+        simulation::learn_by_feeling(fields, subject, study.rendering.max_force_n,
+                                     training_seed(options.seed, i), options.jobs)));
+  }
+}
+
+std::shared_ptr<const simulation::FeltKnowledge> BankedFeelings::knowledge(
+    std::uint64_t study_seed) const {
+  RandomStream random(study_seed, "power: which training");
+  return trainings_[random.below(trainings_.size())];
+}
+
+engine::FeltFeatures BankedFeelings::felt(const design::StimulusIndex& stimulus,
+                                          const FeltTrial& trial) const {
+  // With 64 random bits, the bias of the modulo is negligible.
+  const auto explorations = static_cast<std::uint64_t>(bank_.explorations());
+  return bank_.felt(bank_.place_of(stimulus))[trial.draw % explorations];
+}
+
+std::shared_ptr<const simulation::FeltKnowledge> ServoFeelings::knowledge(
+    std::uint64_t study_seed) const {
+  return std::make_shared<const simulation::FeltKnowledge>(
+      simulation::learn_by_feeling(fields_, subject_, study_.rendering.max_force_n, study_seed, 1));
+}
+
+engine::FeltFeatures ServoFeelings::felt(const design::StimulusIndex& stimulus,
+                                         const FeltTrial& trial) const {
+  const auto& all = fields_.all();
+  const auto field = std::ranges::find(all, stimulus, &simulation::LabelledField::stimulus);
+  return simulation::feel_trial(*field, fields_.plane(), study_, subject_, trial.study_seed,
+                                trial.participant, trial.nth);
+}
+
+/// What the participants of one simulated study share.
 struct RehearsedStudy::Answering {
-  const session::FeltKnowledge& knowledge;
+  const simulation::FeltKnowledge& knowledge;
   Hypothesis hypothesis;
   std::uint64_t study_seed;
 };
@@ -88,13 +135,13 @@ std::string_view name_of(Hypothesis hypothesis) {
   return hypothesis == Hypothesis::null ? "null" : "population";
 }
 
-RehearsedStudy::RehearsedStudy(const design::Study& study, const session::SubjectModel& subject,
+RehearsedStudy::RehearsedStudy(const design::Study& study, const simulation::SubjectModel& subject,
                                const PrimaryTest& test, const Feelings& feelings,
                                int most_participants)
     : subject_(subject),
       test_(test),
       feelings_(feelings),
-      of_method_(stimuli_of(study, test.first)),
+      of_method_(stimuli_of_method(study, test.first)),
       empty_(nobody_yet(study)) {
   require_answers(study, subject);
   for (int number = 1; number <= most_participants; ++number) {
@@ -121,11 +168,11 @@ design::StimulusIndex RehearsedStudy::felt_stimulus(const design::StimulusIndex&
 void RehearsedStudy::add_participant(int number, const Answering& answering,
                                      analysis::Outcomes& outcomes) const {
   const auto& [schedule, pictures] = schedules_[static_cast<std::size_t>(number) - 1];
-  const session::Individual individual(subject_, answering.study_seed, number);
-  const session::FeltDecision decision(individual, answering.knowledge);
-  const session::SeenPictures seen =
-      session::see(pictures, subject_, individual, answering.knowledge);
-  // One stream a participant: making one takes longer than all else of a trial.
+  const simulation::Individual individual(subject_, answering.study_seed, number);
+  const simulation::FeltDecision decision(individual, answering.knowledge);
+  const simulation::SeenPictures seen =
+      simulation::see(pictures, subject_, individual, answering.knowledge);
+  // One stream for each participant: making a stream takes longer than the rest of a trial.
   RandomStream draws(answering.study_seed, "power: feelings", static_cast<std::uint64_t>(number));
   FeltTrial trial{answering.study_seed, number, 0, 0};
   for (const design::Presentation& presentation : schedule.presentations) {
@@ -135,8 +182,8 @@ void RehearsedStudy::add_participant(int number, const Answering& answering,
     if (presentation.kind != design::PresentationKind::scored) continue;
     const design::StimulusIndex felt =
         felt_stimulus(presentation.stimulus, answering.hypothesis, instead);
-    RandomStream random = session::stream_of_trial(trial.study_seed, session::kAnswerPurpose,
-                                                   trial.participant, trial.nth);
+    RandomStream random = simulation::stream_of_trial(trial.study_seed, simulation::kAnswerPurpose,
+                                                      trial.participant, trial.nth);
     const int position = decision.answer(feelings_.felt(felt, trial), seen, random).position;
     outcomes.trials.push_back(answered_trial(number, presentation, schedule, position));
   }
@@ -145,7 +192,8 @@ void RehearsedStudy::add_participant(int number, const Answering& answering,
 analysis::Outcomes RehearsedStudy::outcomes(int participants, Hypothesis hypothesis,
                                             std::uint64_t study_seed) const {
   analysis::Outcomes outcomes = empty_;
-  const std::shared_ptr<const session::FeltKnowledge> knowledge = feelings_.knowledge(study_seed);
+  const std::shared_ptr<const simulation::FeltKnowledge> knowledge =
+      feelings_.knowledge(study_seed);
   const Answering answering{*knowledge, hypothesis, study_seed};
   for (int number = 1; number <= participants; ++number) {
     outcomes.sessions.push_back(completed_session(number));

@@ -1,41 +1,117 @@
-/// \file A study with simulated participants, straight to its outcomes: its own schedules, pictures
-/// and orders, and no session, database or trace. Source: docs/power.md, "The fast path".
+/// \file A study with simulated participants, straight to its outcomes: with its own schedules,
+/// pictures and orders, but without sessions, a database or traces; and where the participants'
+/// feelings come from. Source: docs/power.md, "The fast path".
 #pragma once
 
 #include "analysis/outcomes.hpp"
-#include "analysis/planning/feelings.hpp"
 #include "analysis/planning/primary_test.hpp"
+#include "engine/perception/felt_features.hpp"
+#include "protocols/simulation/felt_bank.hpp"
+#include "protocols/simulation/felt_knowledge.hpp"
+#include "protocols/simulation/subject_model.hpp"
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace touchtrial::planning {
 
-/// Whom a study is simulated with.
+/// One presentation to one participant of one simulated study.
+struct FeltTrial {
+  std::uint64_t study_seed = 0;  ///< as in `simulate --seed`
+  int participant = 0;           ///< number, from 1
+  std::uint64_t nth = 0;         ///< the participant's presentation, from 1
+  std::uint64_t draw = 0;        ///< the presentation's own random bits
+};
+
+/// What participants learn and feel: functions of the arguments alone. Thread-safe.
+class Feelings {
+ public:
+  virtual ~Feelings() = default;
+  Feelings() = default;
+  Feelings(const Feelings&) = delete;
+  Feelings& operator=(const Feelings&) = delete;
+
+  /// What the participants of a study have learnt before it.
+  [[nodiscard]] virtual std::shared_ptr<const simulation::FeltKnowledge> knowledge(
+      std::uint64_t study_seed) const = 0;
+  /// What a stimulus feels like in a presentation, before noise.
+  [[nodiscard]] virtual engine::FeltFeatures felt(const design::StimulusIndex& stimulus,
+                                                  const FeltTrial& trial) const = 0;
+};
+
+struct BankedFeelingsOptions {
+  int explorations = 1000;  ///< of each stimulus, for trials to draw from
+  int trainings = 16;       ///< for studies to draw from
+  std::uint64_t seed = 1;   ///< of the paths
+  int jobs = 1;             ///< threads; feelings do not depend on them
+};
+
+/// Explorations and trainings that are felt once. Each trial draws one of the explorations, and
+/// each study one of the trainings. Refers to none of its arguments.
+class BankedFeelings final : public Feelings {
+ public:
+  /// \param study  of the fields
+  /// \param progress  called from one thread at a time
+  BankedFeelings(const simulation::LabelledFields& fields, const design::Study& study,
+                 const simulation::SubjectModel& subject, const BankedFeelingsOptions& options,
+                 const design::Progress& progress = {});
+
+  [[nodiscard]] std::shared_ptr<const simulation::FeltKnowledge> knowledge(
+      std::uint64_t study_seed) const override;
+  [[nodiscard]] engine::FeltFeatures felt(const design::StimulusIndex& stimulus,
+                                          const FeltTrial& trial) const override;
+
+ private:
+  simulation::FeltBank bank_;
+  std::vector<std::shared_ptr<const simulation::FeltKnowledge>> trainings_;
+};
+
+/// Feels every exploration anew through hand, device and servo, exactly as `simulate` does. Some
+/// hundred times slower. Refers to its arguments, which must outlive it.
+class ServoFeelings final : public Feelings {
+ public:
+  ServoFeelings(const simulation::LabelledFields& fields, const design::Study& study,
+                const simulation::SubjectModel& subject)
+      : fields_(fields), study_(study), subject_(subject) {}
+
+  [[nodiscard]] std::shared_ptr<const simulation::FeltKnowledge> knowledge(
+      std::uint64_t study_seed) const override;
+  [[nodiscard]] engine::FeltFeatures felt(const design::StimulusIndex& stimulus,
+                                          const FeltTrial& trial) const override;
+
+ private:
+  const simulation::LabelledFields& fields_;
+  const design::Study& study_;
+  const simulation::SubjectModel& subject_;
+};
+
+/// The population that a study is simulated with.
 enum class Hypothesis {
-  population,  ///< people as the subject file says
-  /// The same people, for whom there is nothing to find. Against chance: whatever is presented,
-  /// they feel any stimulus of the method, each as likely. Between methods: with either of the two
-  /// methods they feel one of both, each as likely, of what is presented.
+  population,  ///< people as in the subject file
+  /// The same people, with no effect to find. For a test against chance, they feel a random
+  /// stimulus of the method, whatever is presented. For a test between two methods, they feel the
+  /// presented stimulus with one of the two methods at random.
   null,
 };
 [[nodiscard]] std::string_view name_of(Hypothesis hypothesis);
 
 /// Makes outcomes of one study again and again. Refers to study, subject and feelings, which must
-/// outlive it. Thread-safe once made.
+/// outlive it. Thread-safe once constructed.
 class RehearsedStudy {
  public:
-  /// \param most_participants  of any simulated study, >= 1: that many schedules are made
-  /// \throws StudyError if the study's orders are impossible, or participants who explore as long
-  ///   as the subject file says would never answer
-  RehearsedStudy(const design::Study& study, const session::SubjectModel& subject,
+  /// \param most_participants  of any simulated study, >= 1: the number of schedules that are made
+  /// \throws StudyError if the study's orders are impossible, or if participants explore so long
+  /// that
+  ///   they would never answer
+  RehearsedStudy(const design::Study& study, const simulation::SubjectModel& subject,
                  const PrimaryTest& test, const Feelings& feelings, int most_participants);
 
-  /// Participants with the numbers and enrolment numbers 1 .. `participants`. With `population` and
-  /// ServoFeelings the scored trials are those of `simulate --seed study_seed`, to the bit; places
-  /// in time, evidence and unscored trials are left out.
+  /// Outcomes of participants with the numbers and enrolment numbers 1 .. `participants`. With
+  /// `population` and ServoFeelings, the scored trials are exactly those of
+  /// `simulate --seed study_seed`; times, evidence and unscored trials are left out.
   [[nodiscard]] analysis::Outcomes outcomes(int participants, Hypothesis hypothesis,
                                             std::uint64_t study_seed) const;
 
@@ -53,7 +129,7 @@ class RehearsedStudy {
                                                     Hypothesis hypothesis,
                                                     std::uint64_t draw) const;
 
-  const session::SubjectModel& subject_;
+  const simulation::SubjectModel& subject_;
   PrimaryTest test_;
   const Feelings& feelings_;
   std::vector<PlannedSchedule> schedules_;

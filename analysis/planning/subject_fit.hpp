@@ -1,7 +1,8 @@
-/// \file A subject model fitted to a study's answers. Source: docs/fitting.md.
+/// \file A subject model fitted to a study's answers, or to published accuracies.
+/// Source: docs/fitting.md.
 #pragma once
 
-#include "analysis/planning/fit_counts.hpp"
+#include "analysis/planning/fit_evidence.hpp"
 #include "analysis/planning/fit_problem.hpp"
 #include "analysis/statistics/proportion.hpp"
 
@@ -17,37 +18,36 @@ namespace touchtrial::planning {
 struct FitOptions {
   FreeParameters free{};
   int bootstraps = 499;    ///< studies simulated from the fit, for p and intervals; 0: none
-  std::uint64_t seed = 1;  ///< of theirs
+  std::uint64_t seed = 1;  ///< of the simulated studies
   int jobs = 1;            ///< threads, >= 1; results do not depend on them
 };
 
-/// An end of an interval, or nothing where the data set none.
+/// An interval; an end is missing where the data set none.
 struct OpenInterval {
   std::optional<double> lower;
   std::optional<double> upper;
 };
 
-/// One estimated parameter.
 struct ParameterEstimate {
-  std::string name;   ///< "weber", "lapse", "position"; of a class bias "class"
-  std::string label;  ///< of the class, else empty
+  std::string name;   ///< "weber", "lapse", "position" or "class"
+  std::string label;  ///< of the class; empty for the other parameters
   double value = 0.0;
-  std::optional<double> standard_error;         ///< by Fisher's information; of weber, of ln(weber)
-  OpenInterval profile{};                       ///< 95 % by the profile of the likelihood
+  std::optional<double> standard_error;         ///< by Fisher's information; of ln(weber) for weber
+  OpenInterval profile{};                       ///< 95 %, by the profile likelihood
   std::optional<analysis::Interval> bootstrap;  ///< 95 % of the studies simulated from the fit
   double monte_carlo_error = 0.0;  ///< standard error that the bank's finite size leaves
-  bool at_bound = false;           ///< the largest likelihood lies at a bound of the search
+  bool at_bound = false;           ///< the estimate lies at a bound of the search
 };
 
 /// A label swap that was considered.
 struct SwapCandidate {
   std::pair<std::string, std::string> labels;
-  double gain = 0.0;  ///< log likelihood over that without it, all else fitted anew
+  double gain = 0.0;  ///< of log likelihood, everything else fitted anew
   bool taken = false;
 };
 
 struct SubjectFit {
-  session::SubjectModel subject;  ///< fitted; what is fixed is the given one's
+  simulation::SubjectModel subject;  ///< fitted; fixed parameters are the given subject's
   std::vector<ParameterEstimate> estimates;
   std::vector<SwapCandidate> swaps;  ///< the most likely ones, best first
   double swap_threshold = 0.0;       ///< gain that a swap needs
@@ -60,28 +60,54 @@ struct SubjectFit {
   Confusions observed;
   Confusions expected;
   double g_squared = 0.0;      ///< of the confusions against the saturated model
-  int degrees_of_freedom = 0;  ///< cells free to vary, less estimated parameters
+  int degrees_of_freedom = 0;  ///< cells that are free to vary, minus estimated parameters
   std::optional<double> p;     ///< of g_squared, by bootstrap
   int bootstraps = 0;
   std::optional<double> weber_lapse_correlation;  ///< of the two estimates
-  std::vector<std::string> warnings;              ///< what these data cannot tell
+  std::vector<std::string> warnings;              ///< one line each
 };
 
-/// Stages of a fit and how far they are, 0 .. 1.
+/// Receives the finished share of a fit, 0 .. 1.
 using FitProgress = std::function<void(double share)>;
 
-/// Maximum likelihood over the counts, from several fixed starts; a label swap is taken where it
-/// makes the answers 20 times likelier than every other account, pairs sharing the odds. Cost: some
-/// 200 to 1,000 evaluations of the model; a bootstrap draw refits a log-linear model that has the
-/// fitted one's values and slopes. A function of its arguments.
-/// \param model  made from the same study and from `subject`'s hand and training
-/// \param subject  where the search starts, and what is fixed
+/// Maximises the likelihood of the counts, from several fixed starts. A label swap is taken if it
+/// makes the answers 20 times likelier than any other explanation, all pairs together. Cost: some
+/// 200 to 1,000 evaluations of the model; a bootstrap draw refits a log-linear model with the fit's
+/// probabilities and slopes. The result depends on the arguments alone.
+/// \param model  of the same study, with `subject`'s hand and training
+/// \param subject  start of the search, and values of the fixed parameters
 [[nodiscard]] SubjectFit fit_subject(const AnswerModel& model, const FitCounts& counts,
-                                     const session::SubjectModel& subject,
+                                     const simulation::SubjectModel& subject,
                                      const FitOptions& options, const FitProgress& progress = {});
 
-/// The best of several deterministic starts: the subject itself, and a grid of noise and lapse.
-[[nodiscard]] Optimum best_of_starts(const FitProblem& problem,
-                                     const session::SubjectModel& subject);
+/// What the data of a finished fit cannot tell, one line each.
+/// \param free  parameters that were to be estimated
+/// \param used  parameters that could be estimated
+[[nodiscard]] std::vector<std::string> fit_warnings(const FitCounts& counts, const SubjectFit& fit,
+                                                    const FreeParameters& free,
+                                                    const FreeParameters& used);
+
+struct AccuracyFit {
+  simulation::SubjectModel subject;
+  std::vector<std::string> classes;
+  std::vector<double> wanted;   ///< by class, 0 .. 1
+  std::vector<double> reached;  ///< by class, expected of the fitted subject
+  int parameters = 0;           ///< number of estimated parameters
+  double log_likelihood = 0.0;
+  double best_log_likelihood = 0.0;  ///< of a model that reaches the accuracies exactly
+  std::vector<std::string> warnings;
+};
+
+/// The subject whose accuracies are the most likely, by a binomial likelihood with equally many
+/// trials for each class. With as many parameters as classes, many subjects usually reach the
+/// accuracies exactly, and this is one of them. Label swaps are not searched.
+/// Source: docs/fitting.md, "Published accuracies".
+/// \param wanted  by class, 0 .. 1
+/// \param layouts  of the participants
+/// \throws std::invalid_argument unless there is one accuracy in range for each class
+[[nodiscard]] AccuracyFit fit_accuracies(const AnswerModel& model, std::vector<double> wanted,
+                                         std::vector<PictureLayout> layouts,
+                                         const simulation::SubjectModel& subject,
+                                         const FreeParameters& free);
 
 }  // namespace touchtrial::planning

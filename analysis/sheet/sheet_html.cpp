@@ -1,5 +1,6 @@
+#include "analysis/escaping.hpp"
 #include "analysis/sheet/sheet_rows.hpp"
-#include "core/base64.hpp"
+#include "core/bytes.hpp"
 
 #include <fmt/format.h>
 
@@ -53,41 +54,19 @@ img { display: block; width: 100%; max-width: 300px; height: auto; border: 1px s
 </style>
 )";
 
-std::string escaped(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        safe += "&amp;";
-        break;
-      case '<':
-        safe += "&lt;";
-        break;
-      case '>':
-        safe += "&gt;";
-        break;
-      case '"':
-        safe += "&quot;";
-        break;
-      default:
-        safe += c;
-    }
-  }
-  return safe;
-}
-
 std::string figure(const Bytes& png, const std::string& what, const std::string& caption) {
-  return "<td><figure><img alt=\"" + escaped(what) + "\" src=\"data:image/png;base64," +
-         to_base64(png) + "\"><figcaption>" + escaped(caption) + "</figcaption></figure></td>";
+  return "<td><figure><img alt=\"" + xml_escaped(what) + "\" src=\"data:image/png;base64," +
+         to_base64(png) + "\"><figcaption>" + xml_escaped(caption) + "</figcaption></figure></td>";
 }
 
 std::string head_of(const SheetCard& card) {
-  return "<th scope=\"col\"><strong>" + escaped(title_of(card)) + "</strong>" +
-         escaped(card.method) + "<small>" + escaped(card.image) + "</small><code>" + card.code +
-         "</code></th>";
+  return "<th scope=\"col\"><strong>" + xml_escaped(title_of(card)) + "</strong>" +
+         xml_escaped(card.method) + "<small>" + xml_escaped(card.image) + "</small><code>" +
+         card.code + "</code></th>";
 }
 
-/// A row of pictures; `cell` makes one of a card.
+/// A row of pictures.
+/// \param cell  makes one from a card
 template <typename Cell>
 std::string picture_row(const std::vector<SheetCard>& line, const char* name, const char* note,
                         const Cell& cell) {
@@ -118,7 +97,7 @@ std::string picture_rows(const std::vector<SheetCard>& line) {
 
 std::string table_of(const std::vector<SheetCard>& line) {
   std::string table = "<table>\n<colgroup><col class=\"names\">";
-  // Short lines keep the columns of long ones.
+  // Short lines have as many columns as long ones.
   for (std::size_t i = 0; i < kMaxSheetColumns; ++i) table += "<col>";
   table += "</colgroup>\n<thead><tr><td></td>";
   for (const SheetCard& card : line) table += head_of(card);
@@ -136,11 +115,11 @@ std::string table_of(const std::vector<SheetCard>& line) {
 }  // namespace
 
 std::string sheet_html(const StimulusSheet& sheet) {
-  const std::string heading = escaped(heading_of(sheet));
+  const std::string heading = xml_escaped(heading_of(sheet));
   std::string html = kHead;
   html += "<title>" + heading + "</title>\n</head>\n<body>\n<h1>" + heading + "</h1>\n";
-  html += "<p class=\"about\">" + escaped(sheet.protocol + "; " + sheet.rendering) + "<br>seal " +
-          sheet.seal + "</p>\n";
+  html += "<p class=\"about\">" + xml_escaped(sheet.protocol + "; " + sheet.rendering) +
+          "<br>seal " + sheet.seal + "</p>\n";
   html += "<p class=\"unblinds\" role=\"note\">" + std::string(kUnblinds) + "</p>\n";
   for (const auto& line : sheet.lines) html += table_of(line);
   return html + "</body>\n</html>\n";

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A page has the shape of A4, landscape. Everything is laid out in its units.
+// A page has the shape of A4 in landscape. These are its units, in which everything is laid out.
 constexpr int kPageWidth = 1830;
 constexpr int kPageHeight = 1294;
 constexpr int kMargin = 40;
@@ -31,13 +31,13 @@ constexpr int kPanelTop = 204;
 constexpr int kPanelStep = 296;
 constexpr int kFiguresTop = kPanelTop + 3 * kPanelStep + 14;
 constexpr int kFigureStep = 20;
-/// Pixels of a PNG a unit: enough for a wall's projector.
+/// Pixels of a PNG per unit: enough for a projector.
 constexpr double kPixelsOfPage = 480.0 / kPanel;
-constexpr double kPointsOfPage = 29.7 / 2.54 * 72 / kPageWidth;  // in a PDF
-/// Programs refuse pictures with longer sides.
+constexpr double kPointsOfPage = 29.7 / 2.54 * 72 / kPageWidth;  ///< points of a PDF per unit
+/// Many programs refuse pictures with longer sides.
 constexpr std::size_t kMostPagesOfPng = 12;
 
-/// A folder for the pictures that gnuplot reads, for the owner's eyes alone, gone at the end.
+/// A temporary folder for the pictures that gnuplot reads, which only the owner may open.
 class ScratchFolder {
  public:
   ScratchFolder() {
@@ -55,7 +55,8 @@ class ScratchFolder {
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;
 
-  /// Writes three bytes a pixel. \return the file
+  /// Writes an image with three bytes per pixel.
+  /// \return the file
   fs::path add(const engine::ColourImage& image) {
     Bytes bytes;
     bytes.reserve(3 * image.size());
@@ -86,7 +87,7 @@ enum class Weight { plain, bold, code };
 /// Collects the labels and pictures of a page as gnuplot's commands.
 class Page {
  public:
-  /// \param scale  points of a font whose capitals are a unit of the page high
+  /// \param scale  points of a font whose capitals are one unit high
   Page(ScratchFolder& scratch, double scale) : scratch_(scratch), scale_(scale) {}
 
   void text(double x, double y, double size, const std::string& words,
@@ -107,7 +108,7 @@ class Page {
         kMargin, kPageWidth - kMargin, top_ + y, scale_);
   }
 
-  /// In the middle of a square of kPanel units.
+  /// Centres a picture in a square of kPanel units.
   void picture(double x, double y, const engine::ColourImage& image, int side_px) {
     const double step = static_cast<double>(kPanel) / side_px;
     const double left = x + (kPanel - step * image.width()) / 2 + step / 2;
@@ -119,7 +120,7 @@ class Page {
         image.width(), image.height(), left, first, step, step);
   }
 
-  /// Where the next text and picture count from.
+  /// Sets the height from which the next texts and pictures count.
   void start_at(double top) { top_ = top; }
 
   [[nodiscard]] std::string take() {
@@ -135,17 +136,18 @@ class Page {
   std::string pictures_;
 };
 
-/// Mean advance of a character, in sizes of the font as the page draws it.
+/// The mean advance of a character, as a share of the font's size.
 constexpr double kAdvance = 0.72;
 
-/// The size, or as much less, down to the smallest that is read on paper, as lets the words fit.
+/// The size, or a smaller one with which the words fit, down to the smallest that is legible on
+/// paper.
 double fitting(const std::string& words, double width, double size) {
   constexpr double kSmallest = 9.5;
   const double length = std::max(1.0, static_cast<double>(words.size()));
   return std::clamp(width / (kAdvance * length), std::min(kSmallest, size), size);
 }
 
-/// So many characters of a size fit between a column and the next.
+/// Cuts words to the characters that fit into a width.
 std::string shortened(const std::string& words, double width, double size) {
   const auto most = static_cast<std::size_t>(width / (kAdvance * size) + 1e-6);
   if (words.size() <= most) return words;
@@ -228,7 +230,7 @@ void draw_sheet_png(const StimulusSheet& sheet, const fs::path& path) {
   if (pages > kMostPagesOfPng) {
     throw UsageError(one_line(path.string()) + ": would be a picture of " + std::to_string(pages) +
                      " pages, more than " + std::to_string(kMostPagesOfPng) +
-                     "; end it in .pdf or .html");
+                     "; choose a name that ends in .pdf or .html");
   }
   ScratchFolder scratch;
   Page page(scratch, kPixelsOfPage);

@@ -24,7 +24,7 @@ std::string entropies(const SheetCard& card) {
   return fmt::format("{:.2f} / {:.2f}", card.picture_entropy, card.texture_entropy);
 }
 
-/// Of the model that the study has: height, or forces.
+/// The gains of the study's model: of height, or of forces.
 std::string gains(const SheetCard& card) {
   constexpr double kMicrometres = 1000;
   if (card.gains.height_mm > 0.0) {

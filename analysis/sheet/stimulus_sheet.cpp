@@ -2,10 +2,10 @@
 
 #include "core/errors.hpp"
 #include "core/strict_json.hpp"
-#include "engine/entropy.hpp"
 #include "engine/image_file.hpp"
-#include "engine/rendering/lateral_field.hpp"
-#include "protocols/design/stimulus_origin.hpp"
+#include "engine/metrics/picture_statistics.hpp"
+#include "engine/rendering/field_statistics.hpp"
+#include "protocols/design/stimulus_field.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ namespace {
 
 constexpr engine::Rgb kFrameColour{230, 60, 0};
 
-/// With the option that people mean when they say which method it was.
+/// A method with its main option.
 std::string options_in_words(const engine::ExtractionOptions& method) {
   const std::string name(name_of(method.method));
   switch (method.method) {
@@ -49,7 +49,7 @@ std::string in_words(const design::StudyMethod& method) {
 }
 
 std::string in_words(const engine::RenderingOptions& rendering) {
-  const char* model = rendering.model == engine::ModelKind::surface ? "surface" : "paper";
+  const std::string_view model = design::name_of(rendering.model);
   return fmt::format("model {}, {:g} mm a pixel, filter {:g} mm, wall {:g} N/mm, gains {}{}", model,
                      rendering.pitch_mm, rendering.filter_mm, rendering.stiffness_n_per_mm,
                      rendering.gains ? "explicit"
@@ -58,7 +58,7 @@ std::string in_words(const engine::RenderingOptions& rendering) {
                      rendering.equalise == engine::Equalise::rms ? ", rms force equalised" : "");
 }
 
-/// The patch in which the force is strongest, but small enough for arrows to be seen.
+/// The patch of the strongest force, small enough to show arrows.
 engine::ArrowPatch shown_patch(const engine::ForceField<double>& force) {
   constexpr int kSide_px = 16;
   engine::ArrowPatch patch = engine::strongest_patch(force);
@@ -69,14 +69,14 @@ engine::ArrowPatch shown_patch(const engine::ForceField<double>& force) {
   return patch;
 }
 
-/// The texture as the sheet shows it, its contrast enlarged alike for all stimuli.
+/// The texture with its contrast enlarged, equally for all stimuli.
 GreyImage enhanced_picture(Plane<float> texture) {
   constexpr float kContrast = 3.0F;
   for (float& grey : texture.samples()) grey *= kContrast;
   return engine::texture_picture(texture);
 }
 
-/// How many pixels of the sheet a pixel of an image is wide.
+/// The width of an image's pixel in pixels of the sheet.
 double fitting_scale(int height, int width, int side_px) {
   return static_cast<double>(side_px) / std::max(height, width);
 }
@@ -173,8 +173,7 @@ class Cards {
   void draw(SheetCard& card, const GreyImage& image, engine::FieldView field,
             const design::StimulusIndex& stimulus) const {
     Plane<float> plane =
-        engine::extract_texture<float>(image, design::presented_method(key_.study, stimulus))
-            .texture;
+        engine::extract_texture<float>(image, design::method_of(key_.study, stimulus)).texture;
     const GreyImage texture = engine::texture_picture(plane);
     const auto [force, n_per_grey] = engine::lateral_field(field, card.gains);
     const double scale = fitting_scale(image.height(), image.width(), side_px_);
@@ -192,8 +191,7 @@ class Cards {
   int side_px_;
 };
 
-/// Stimuli that belong beside one another: of one method, and of one class where classes have
-/// several images.
+/// Groups of stimuli for one line: of one method, and of one class if classes have several images.
 std::vector<std::vector<design::KeyedStimulus>> groups_of(const design::StudyKey& key) {
   const bool several = std::ranges::any_of(
       key.study.classes, [](const design::StudyClass& one) { return one.images.size() > 1; });
@@ -247,7 +245,7 @@ StimulusSheet make_stimulus_sheet(const design::StudyKey& key, const engine::Pac
                                   const std::function<void(int done, int of)>& progress) {
   check(key, pack, side_px);
   StimulusSheet sheet{key.study.name,
-                      std::string(name_of(key.study.protocol)),
+                      key.study.protocol_name(),
                       in_words(key.study.rendering),
                       to_hex(design::study_seal(key)),
                       key.simulated,

@@ -1,36 +1,86 @@
 #include "analysis/statistics/chance_test.hpp"
 
-#include "analysis/statistics/match_counts.hpp"
+#include "analysis/statistics/common.hpp"
 #include "core/random.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numeric>
 #include <stdexcept>
-#include <string_view>
 
 #include <boost/math/distributions/binomial.hpp>
+#include <boost/multiprecision/cpp_int.hpp>
 
 namespace touchtrial::analysis {
 namespace {
 
-/// Orders of longer blocks are not counted: it would take too long.
+using Integer = boost::multiprecision::cpp_int;
+using Polynomial = std::vector<Integer>;
+
+void require_fitting(const ClassCounts& counts, int trials) {
+  int presented = 0;
+  int answered = 0;
+  for (const auto& [shown, chosen] : counts) {
+    if (shown < 0 || chosen < 0) throw std::invalid_argument("a count cannot be negative");
+    presented += shown;
+    answered += chosen;
+  }
+  if (presented != trials || answered > trials) {
+    throw std::invalid_argument("presentations and answers do not fit the number of trials");
+  }
+}
+
+/// The ways to place 0, 1, .. rooks that do not attack each other on a board of `rows` x `columns`.
+Polynomial rooks_on(int rows, int columns) {
+  Polynomial ways{1};
+  for (int k = 0; k < std::min(rows, columns); ++k) {
+    ways.push_back(ways.back() * (rows - k) * (columns - k) / (k + 1));
+  }
+  return ways;
+}
+
+Polynomial product(const Polynomial& a, const Polynomial& b) {
+  Polynomial result(a.size() + b.size() - 1);
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    for (std::size_t j = 0; j < b.size(); ++j) result[i + j] += a[i] * b[j];
+  }
+  return result;
+}
+
+/// Turns the coefficients of a polynomial in t - 1 into those in t.
+void shift_by_one(Polynomial& coefficients) {
+  const std::size_t n = coefficients.size();
+  for (std::size_t from = 0; from + 1 < n; ++from) {
+    for (std::size_t k = n - 1; k > from; --k) coefficients[k - 1] -= coefficients[k];
+  }
+}
+
+double ratio(const Integer& part, const Integer& whole) {
+  if (part == 0) return 0.0;
+  const int bits_short =
+      std::max(0, static_cast<int>(msb(whole)) - static_cast<int>(msb(part)) + 66);
+  const Integer quotient = (part << bits_short) / whole;
+  return std::ldexp(quotient.convert_to<double>(), -bits_short);
+}
+
+/// Counting the orders of longer blocks would take too long.
 constexpr int kLongestCountedBlock = 400;
-/// A probability so small that what it adds is lost, and small enough to keep p meaningful at all.
+/// Probabilities below this at a distribution's ends are left out.
 constexpr double kNegligible = 1e-290;
-/// A p is never 0. What was left out as negligible is less than this, whatever the blocks.
+/// A p is never 0. All probabilities left out as negligible add up to less than this.
 constexpr double kSmallestP = 1e-280;
 
 void require_in_range(int classes, int index) {
   if (index < 0 || index >= classes) {
-    throw std::invalid_argument("a chance test has no such class");
+    throw std::invalid_argument("a chance test got a class that is out of range");
   }
 }
 
 void require_valid(int classes, std::span<const AnsweredBlock> blocks) {
   for (const AnsweredBlock& block : blocks) {
     if (block.presented.size() != block.answered.size()) {
-      throw std::invalid_argument("a chance test needs an answer, or its absence, of every trial");
+      throw std::invalid_argument("a chance test needs an answer, or none, for every trial");
     }
     for (const int shown : block.presented) require_in_range(classes, shown);
     for (const std::optional<int>& answer : block.answered) {
@@ -51,11 +101,11 @@ ClassCounts counts_of(int classes, const AnsweredBlock& block) {
   for (const std::optional<int>& answer : block.answered) {
     if (answer) ++counts[*answer].second;
   }
-  std::sort(counts.begin(), counts.end());  // which class is which does not matter
+  std::sort(counts.begin(), counts.end());  // the classes' order does not matter
   return counts;
 }
 
-/// The distribution of a sum of counts; what is negligible at its ends is left out.
+/// The distribution of a sum of counts, without negligible probabilities at its ends.
 struct Distribution {
   int first = 0;  ///< the count of the first probability
   std::vector<double> probability{1.0};
@@ -76,11 +126,11 @@ struct Distribution {
   [[nodiscard]] double at_least(int count) const {
     const auto from = static_cast<std::size_t>(std::max(0, count - first));
     if (from >= probability.size()) return 0.0;
-    // The smallest first, so that none is lost.
+    // Adds the smallest first, so that none is lost to rounding.
     return std::min(1.0, std::accumulate(probability.rbegin(), probability.rend() - from, 0.0));
   }
 
-  /// The largest upper tail that does not pass the level.
+  /// The largest upper tail that does not exceed the level.
   [[nodiscard]] double largest_tail(double level) const {
     double tail = 0.0;
     for (auto one = probability.rbegin(); one != probability.rend(); ++one) {
@@ -108,10 +158,10 @@ void count_orders(int classes, std::span<const AnsweredBlock> blocks, ChanceTest
   test.attainable = right.largest_tail(kSignificanceLevel);
 }
 
-/// The largest of above(0), above(1), .., above(most) that does not pass the level; they fall.
+/// The largest of the falling above(0), above(1), .., above(most) that does not exceed the level.
 template <typename Tail>
 double largest_tail_of(const Tail& above, int most) {
-  int low = -1;  // its tail passes the level
+  int low = -1;  // its tail exceeds the level
   int high = most;
   while (high - low > 1) {
     const int middle = low + (high - low) / 2;
@@ -135,13 +185,13 @@ void take_binomial(int classes, std::span<const AnsweredBlock> blocks, ChanceTes
   if (test.correct > 0) test.p = above(test.correct - 1);
 }
 
-/// Of the p values (b + 1) / (deals + 1), the largest that does not pass the level.
+/// The largest of the p values (b + 1) / (deals + 1) that does not exceed the level.
 double largest_share_below_level(const std::map<int, int>& counts, int deals) {
   int tail = 0;
   double share = 0.0;
   for (auto one = counts.rbegin(); one != counts.rend(); ++one) {
     tail += one->second;
-    const double next = (tail + 1.0) / (deals + 1.0);
+    const double next = p_of_draws(tail, deals);
     if (next > kSignificanceLevel) break;
     share = next;
   }
@@ -159,7 +209,7 @@ void deal_anew(int classes, std::span<const AnsweredBlock> blocks, const Redrawn
     for (std::size_t block = 0; block < blocks.size(); ++block) {
       const std::vector<int> presented = redraw(block, deal);
       if (presented.size() != blocks[block].answered.size()) {
-        throw std::invalid_argument("a block that is dealt anew keeps its length");
+        throw std::invalid_argument("a redrawn block must keep its length");
       }
       for (const int shown : presented) require_in_range(classes, shown);
       right += matches(presented, blocks[block].answered);
@@ -170,12 +220,12 @@ void deal_anew(int classes, std::span<const AnsweredBlock> blocks, const Redrawn
   }
   test.attainable = largest_share_below_level(counts, deals);
   test.expected = sum / deals;
-  test.p = (as_many + 1.0) / (deals + 1.0);
+  test.p = p_of_draws(as_many, deals);
   test.exact = false;
   test.deals = deals;
 }
 
-/// Any order of a block's presentations; a function of block and deal as long as the deals rise.
+/// Shuffles a block's presentations. Repeatable if it is asked for the deals in ascending order.
 RedrawnBlock any_order(std::span<const AnsweredBlock> blocks, RandomStream& random) {
   return [blocks, &random](std::size_t block, int /*deal*/) {
     std::vector<int> presented = blocks[block].presented;
@@ -199,11 +249,28 @@ void test_permuted(int classes, std::span<const AnsweredBlock> blocks, int deals
 
 }  // namespace
 
+std::vector<double> match_probabilities(const ClassCounts& counts, int trials) {
+  require_fitting(counts, trials);
+  Polynomial ways{1};
+  for (const auto& [shown, chosen] : counts) ways = product(ways, rooks_on(shown, chosen));
+  // Orders that match in at least k chosen places: the rest stands in any of (trials - k)! ways.
+  Integer rest = 1;
+  for (int i = 2; i <= trials - static_cast<int>(ways.size()) + 1; ++i) rest *= i;
+  for (std::size_t k = ways.size(); k-- > 0;) {
+    ways[k] *= rest;
+    if (k > 0) rest *= trials - static_cast<int>(k) + 1;
+  }
+  shift_by_one(ways);
+  std::vector<double> probabilities;
+  for (const Integer& orders : ways) probabilities.push_back(ratio(orders, rest));
+  return probabilities;
+}
+
 std::optional<ChanceTest> chance_test(int classes, std::span<const AnsweredBlock> blocks,
                                       DealtOrder order, const RedrawnBlock& redraw, int deals) {
   require_valid(classes, blocks);
   if (order == DealtOrder::redrawn && !redraw) {
-    throw std::invalid_argument("a chance test of redrawn blocks needs a rule to redraw them");
+    throw std::invalid_argument("a chance test of redrawn blocks needs the rule that redraws them");
   }
   ChanceTest test;
   for (const AnsweredBlock& block : blocks) {

@@ -13,18 +13,14 @@ constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 bool every_class_occurs(const ConfusionMatrix& confusion) {
   for (int i = 0; i < confusion.classes(); ++i) {
-    int row = 0;
-    int column = 0;
-    for (int j = 0; j < confusion.classes(); ++j) {
-      row += confusion.count(i, j);
-      column += confusion.count(j, i);
-    }
-    if (row == 0 || column == 0) return false;
+    const int with_response = confusion.presented(i) - confusion.no_response(i);
+    if (with_response == 0 || confusion.answered(i) == 0) return false;
   }
   return true;
 }
 
-/// Whether wrong answers lead from one class to another, over any number of steps.
+/// Tells whether wrong answers lead from one class to another in any number of steps (1) or not
+/// (0).
 Plane<int> reachable(const ConfusionMatrix& confusion) {
   const int classes = confusion.classes();
   Plane<int> ways(classes, classes);
@@ -58,10 +54,10 @@ bool fitted_together(const ChoiceModel& model, int i, int j) {
   return i != j && model.group[i] == model.group[j];
 }
 
-/// The weight of each answer against the others. With the total of every pair of cells (i, j),
-/// (j, i) given, the quasi-symmetric table is Bradley and Terry's model of "j was answered, not i",
-/// whose maximum exists within a group: Zermelo's problem, by Newman's iteration (2023, Journal of
-/// Machine Learning Research 24), each step of which scales one class to its margins.
+/// The weight of each answer against the others. Given the total of every pair of cells (i, j) and
+/// (j, i), the quasi-symmetric table is Bradley and Terry's model of "j was answered, not i", whose
+/// maximum exists within a group. This is Zermelo's problem, solved by Newman's iteration (2023,
+/// Journal of Machine Learning Research 24), each step of which scales one class to its margins.
 class Weights {
  public:
   Weights(const ConfusionMatrix& confusion, const ChoiceModel& model)
@@ -87,7 +83,7 @@ class Weights {
     return largest;
   }
 
-  /// Answers j that were wrong, over answers that were wrong where j was right.
+  /// Wrong answers j over wrong answers to presentations of j, both weighted.
   [[nodiscard]] double scale_of(int j) const {
     double chosen = 0.0;
     double passed_over = 0.0;
@@ -100,7 +96,7 @@ class Weights {
     return passed_over > 0.0 ? chosen / passed_over : 1.0;
   }
 
-  /// Only their ratios matter: the largest of a group is 1.
+  /// Only the weights' ratios matter: scales the largest of each group to 1.
   void keep_in_range() {
     std::vector<double> largest(static_cast<std::size_t>(model_.groups), 0.0);
     for (std::size_t i = 0; i < weights_.size(); ++i) {
@@ -116,7 +112,7 @@ class Weights {
   bool converged_ = false;
 };
 
-/// Cells on the diagonal, and those across groups, are fitted exactly.
+/// Fits cells on the diagonal and across groups exactly.
 void expect_counts(const ConfusionMatrix& confusion, const Weights& weights, ChoiceModel& model) {
   const int classes = confusion.classes();
   model.expected = Plane<double>(classes, classes);
@@ -171,7 +167,7 @@ void judge_fit(const ConfusionMatrix& confusion, ChoiceModel& model) {
       if (i < j && confusion.count(i, j) + confusion.count(j, i) > 0) ++pairs;
     }
   }
-  model.g_squared = std::max(0.0, model.g_squared);  // rounding may leave a hair below
+  model.g_squared = std::max(0.0, model.g_squared);  // rounding may leave it just below 0
   model.degrees_of_freedom = pairs - (confusion.classes() - model.groups);
   if (model.degrees_of_freedom == 0) return;
   const boost::math::chi_squared_distribution<> chi_squared(model.degrees_of_freedom);

@@ -1,4 +1,5 @@
-/// \file The similarity choice model: what looks alike, and what is preferred whatever is felt.
+/// \file The similarity choice model: which classes feel alike, and which answers are preferred
+/// whatever is felt.
 /// P(answer j | class i) = bias_j similarity_ij / sum_k bias_k similarity_ik, similarity symmetric
 /// with 1 on its diagonal. Source: docs/statistics.md, "Choice model"; Luce 1963; Townsend, Landon
 /// 1982; why zeros matter: docs/decisions/0037.
@@ -12,25 +13,25 @@
 
 namespace touchtrial::analysis {
 
-/// Zeros leave some parameters without a value; those are NaN, the counts expected exist always.
-/// Classes between which answers go both ways, directly or by others, form a group: only within it
-/// can biases be compared.
+/// Zeros leave some parameters without a value, which are then NaN; the expected counts always
+/// exist. Classes between which wrong answers lead both ways, directly or over others, form a
+/// group: biases can be compared only within a group.
 struct ChoiceModel {
-  /// K x K, 0 .. : 0 of classes never taken for each other. NaN where one of the two was never
-  /// answered right, and where only the one was taken for the other across groups.
+  /// K x K, >= 0; 0 for classes that were never taken for each other. NaN where one of the two was
+  /// never answered right, and where across groups only one was taken for the other.
   Plane<double> similarity;
   std::vector<double> bias;    ///< of each answer, sums to 1 in a group; NaN if never right
-  std::vector<int> group;      ///< of each class, from 0 in order of its first class
-  int groups = 1;              ///< 1: all biases can be compared
-  Plane<double> expected;      ///< K x K: counts that the model expects
+  std::vector<int> group;      ///< of each class, numbered from 0 in the order of first classes
+  int groups = 1;              ///< with 1, all biases can be compared
+  Plane<double> expected;      ///< K x K: the counts that the model expects
   double g_squared = 0.0;      ///< likelihood ratio against the saturated model
   int degrees_of_freedom = 0;  ///< (K - 1)(K - 2) / 2, fewer where zeros leave nothing to fit
   std::optional<double> p;     ///< of g_squared under chi-square; nothing at 0 degrees
-  bool converged = false;      ///< bias settled to 1e-12
+  bool converged = false;      ///< the biases changed by less than 1e-12 in the last step
 };
 
 /// Maximum likelihood over trials with a response, by iterative scaling of the quasi-symmetric
-/// table; where the maximum lies at infinity, of what exists of it.
+/// table. Where the maximum lies at infinity, only the parameters that exist are estimated.
 /// \return nothing if a class was never presented with a response, or never answered
 [[nodiscard]] std::optional<ChoiceModel> choice_model(const ConfusionMatrix& confusion);
 

@@ -1,14 +1,12 @@
 #include "analysis/statistics/cluster_bootstrap.hpp"
 
-#include "analysis/statistics/rounding_noise.hpp"
+#include "analysis/statistics/common.hpp"
 #include "core/random.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-#include <string_view>
-#include <vector>
 
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
@@ -18,17 +16,15 @@ namespace {
 
 void require_arguments(std::size_t participants, int draws, double level) {
   if (draws < 1) throw std::invalid_argument("a bootstrap needs at least one draw");
-  if (!(level > 0.0 && level < 1.0)) {
-    throw std::invalid_argument("a confidence level lies between 0 and 1");
-  }
+  require_level(level);
   if (participants > std::numeric_limits<std::uint32_t>::max()) {
     throw std::invalid_argument("a bootstrap takes fewer than 2^32 participants");
   }
 }
 
-/// Indices below a bound, each equally likely, two of every 64 random bits: a study of a thousand
-/// participants needs ten million. Lemire 2019, ACM Transactions on Modeling and Computer
-/// Simulation 29(1).
+/// Draws indices below a bound, all equally likely, two from every 64 random bits: a study of a
+/// thousand participants needs ten million. Source: Lemire 2019, ACM Transactions on Modeling and
+/// Computer Simulation 29(1).
 class IndexDraws {
  public:
   IndexDraws(RandomStream& random, std::size_t bound)
@@ -58,18 +54,19 @@ class IndexDraws {
   bool second_ = false;
 };
 
-/// The value that a share of the statistic's distribution lies below: the ((draws + 1) share)-th of
-/// the sorted draws, between two of them where that is no whole number.
+/// The ((draws + 1) share)-th of the sorted draws, interpolated where that is not a whole number:
+/// about this share of the statistic's distribution lies below it.
 double percentile(const std::vector<double>& sorted, double share) {
   const auto draws = static_cast<double>(sorted.size());
   const double place = std::clamp((draws + 1.0) * share, 1.0, draws) - 1.0;
-  const double below = std::floor(place + 1e-9);  // 10,000 * 0.025 is the 250th, not a hair before
+  const double below =
+      std::floor(place + 1e-9);  // 10,000 * 0.025 is the 250th in spite of rounding
   const auto at = static_cast<std::size_t>(below);
   if (at + 1 >= sorted.size()) return sorted.back();
   return sorted[at] + std::max(0.0, place - below) * (sorted[at + 1] - sorted[at]);
 }
 
-/// The share of a statistic's distribution to leave out at either end.
+/// The share of a statistic's distribution that the interval omits at each end.
 double expanded_tail(std::size_t participants, double level) {
   const auto n = static_cast<double>(participants);
   const double t = boost::math::quantile(boost::math::students_t(n - 1.0), 0.5 * (1.0 + level));
@@ -80,7 +77,7 @@ double expanded_tail(std::size_t participants, double level) {
 
 Interval expanded_percentiles(std::vector<double> draws, std::size_t participants, double level) {
   require_arguments(participants, static_cast<int>(draws.size()), level);
-  if (participants < 2) throw std::invalid_argument("a bootstrap takes two participants or more");
+  if (participants < 2) throw std::invalid_argument("a bootstrap needs at least two participants");
   std::sort(draws.begin(), draws.end());
   const double tail = expanded_tail(participants, level);
   return {without_noise(percentile(draws, tail)), without_noise(percentile(draws, 1.0 - tail))};
@@ -90,9 +87,8 @@ std::optional<Interval> cluster_bootstrap(std::span<const Proportion> participan
                                           std::uint64_t index, int draws, double level) {
   require_arguments(participants.size(), draws, level);
   for (const Proportion& one : participants) {
-    if (one.n < 1 || one.correct < 0 || one.correct > one.n) {
-      throw std::invalid_argument("a bootstrap needs participants with 0 <= correct <= n, n >= 1");
-    }
+    if (one.n < 1) throw std::invalid_argument("a bootstrap needs participants with n >= 1");
+    require_possible(one);
   }
   if (participants.size() < 2) return std::nullopt;
   RandomStream random(0, "cluster bootstrap", index);
@@ -114,9 +110,7 @@ std::optional<Interval> cluster_bootstrap(std::span<const Proportion> participan
 std::optional<Interval> bootstrap_mean(std::span<const double> values, std::uint64_t index,
                                        int draws, double level) {
   require_arguments(values.size(), draws, level);
-  if (!std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); })) {
-    throw std::invalid_argument("a bootstrap needs finite values");
-  }
+  require_finite(values, "a bootstrap");
   if (values.size() < 2) return std::nullopt;
   RandomStream random(0, "bootstrap of a mean", index);
   IndexDraws drawn(random, values.size());

@@ -1,6 +1,7 @@
-/// \file Intervals that take participants, not trials, as what a study has a sample of: whole
-/// participants are drawn again and again. Source: docs/statistics.md, "Participants as clusters";
-/// Davison, Hinkley 1997, section 5.2 (percentiles); Hesterberg 2015 (which ones).
+/// \file Bootstrap intervals over participants: a study samples participants, not trials, so whole
+/// participants are drawn with replacement. Sources: docs/statistics.md, "Participants as
+/// clusters"; Davison, Hinkley 1997, section 5.2 (percentiles); Hesterberg 2015 (which
+/// percentiles).
 #pragma once
 
 #include "analysis/statistics/proportion.hpp"
@@ -15,11 +16,11 @@ namespace touchtrial::analysis {
 
 inline constexpr int kBootstrapDraws = 9999;
 
-/// The ends of a bootstrap interval: expanded percentiles. Plain ones take the spread between
-/// participants for known; these are further out, at Phi(-t sqrt(n / (n - 1))) on either side with
-/// Student's t of n - 1 degrees, and hold their level from some eight participants on.
-/// \param draws  of a statistic, in any order, >= 1 \param participants  n, >= 2
-/// \throws std::invalid_argument if an argument is out of range
+/// The ends of a bootstrap interval: expanded percentiles. Plain percentiles treat the spread
+/// between participants as known; expanded ones lie further out, at Phi(-t sqrt(n / (n - 1))) on
+/// either side with Student's t of n - 1 degrees, and hold their level from about eight
+/// participants on. \param draws  of a statistic, in any order, at least one \param participants n,
+/// >= 2 \throws std::invalid_argument if an argument is out of range
 [[nodiscard]] Interval expanded_percentiles(std::vector<double> draws, std::size_t participants,
                                             double level = kConfidenceLevel);
 
@@ -35,8 +36,10 @@ inline constexpr int kBootstrapDraws = 9999;
                                                         int draws = kBootstrapDraws,
                                                         double level = kConfidenceLevel);
 
-/// The same of the mean of one figure a participant, for instance of a difference.
-/// \throws std::invalid_argument if a value is not finite, or an argument is out of range
+/// The interval of the mean of one number per participant, for instance of a difference, by the
+/// same method. \param index  chooses the stream of random numbers \param draws  >= 1 \return
+/// nothing with fewer than two values \throws std::invalid_argument if a value is not finite, or an
+/// argument is out of range
 [[nodiscard]] std::optional<Interval> bootstrap_mean(std::span<const double> values,
                                                      std::uint64_t index = 0,
                                                      int draws = kBootstrapDraws,

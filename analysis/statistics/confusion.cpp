@@ -1,5 +1,7 @@
 #include "analysis/statistics/confusion.hpp"
 
+#include <cstdint>
+#include <limits>
 #include <numeric>
 #include <stdexcept>
 
@@ -11,10 +13,82 @@ int checked_classes(int classes) {
   return classes;
 }
 
+/// The solution of an assignment problem by the Hungarian method with shortest augmenting paths:
+/// one row is added after another. Rows and columns count from 1; 0 means none.
+class Assignment {
+ public:
+  explicit Assignment(const Plane<std::int64_t>& cost)
+      : cost_(cost),
+        size_(cost.height()),
+        of_row_(size_ + 1),
+        of_column_(size_ + 1),
+        row_of_column_(size_ + 1) {
+    for (int row = 1; row <= size_; ++row) add(row);
+  }
+
+  [[nodiscard]] std::vector<int> column_of_row() const {
+    std::vector<int> columns(size_);
+    for (int column = 1; column <= size_; ++column)
+      columns[row_of_column_[column] - 1] = column - 1;
+    return columns;
+  }
+
+ private:
+  void add(int row) {
+    row_of_column_[0] = row;
+    shortest_.assign(size_ + 1, std::numeric_limits<std::int64_t>::max());
+    reached_.assign(size_ + 1, false);
+    before_.assign(size_ + 1, 0);
+    int column = 0;
+    while (row_of_column_[column] != 0) column = advance(column);
+    for (; column != 0; column = before_[column]) {
+      row_of_column_[column] = row_of_column_[before_[column]];
+    }
+  }
+
+  /// Settles `column`, shortens the paths over its row and updates the potentials.
+  /// \return the nearest column that is not settled
+  int advance(int column) {
+    reached_[column] = true;
+    const int row = row_of_column_[column];
+    int nearest = 0;
+    for (int j = 1; j <= size_; ++j) {
+      if (reached_[j]) continue;
+      const std::int64_t way = cost_.at(row - 1, j - 1) - of_row_[row] - of_column_[j];
+      if (way < shortest_[j]) {
+        shortest_[j] = way;
+        before_[j] = column;
+      }
+      if (nearest == 0 || shortest_[j] < shortest_[nearest]) nearest = j;
+    }
+    move_potentials(shortest_[nearest]);
+    return nearest;
+  }
+
+  void move_potentials(std::int64_t step) {
+    for (int j = 0; j <= size_; ++j) {
+      if (reached_[j]) {
+        of_row_[row_of_column_[j]] += step;
+        of_column_[j] -= step;
+      } else {
+        shortest_[j] -= step;
+      }
+    }
+  }
+
+  const Plane<std::int64_t>& cost_;
+  int size_;
+  std::vector<std::int64_t> of_row_, of_column_, shortest_;
+  std::vector<int> row_of_column_, before_;
+  std::vector<bool> reached_;
+};
+
 }  // namespace
 
-ConfusionMatrix::ConfusionMatrix(int classes)
-    : counts_(checked_classes(classes), classes), no_response_(classes) {}
+ConfusionMatrix::ConfusionMatrix(int classes, std::span<const Choice> choices)
+    : counts_(checked_classes(classes), classes), no_response_(classes) {
+  for (const Choice& choice : choices) add(choice);
+}
 
 void ConfusionMatrix::add(const Choice& choice) {
   const auto known = [this](int index) { return index >= 0 && index < classes(); };
@@ -31,6 +105,12 @@ void ConfusionMatrix::add(const Choice& choice) {
 int ConfusionMatrix::presented(int presented) const noexcept {
   const auto row = counts_.row(presented);
   return std::accumulate(row.begin(), row.end(), no_response_[presented]);
+}
+
+int ConfusionMatrix::answered(int answered) const noexcept {
+  int trials = 0;
+  for (int i = 0; i < classes(); ++i) trials += count(i, answered);
+  return trials;
 }
 
 int ConfusionMatrix::answered() const noexcept {
@@ -55,6 +135,22 @@ Proportion ConfusionMatrix::accuracy() const noexcept {
 std::optional<double> percentage(int part, int whole) noexcept {
   if (whole == 0) return std::nullopt;
   return 100.0 * part / whole;
+}
+
+LabelMatching best_label_matching(const ConfusionMatrix& confusion) {
+  const int classes = confusion.classes();
+  Plane<std::int64_t> cost(classes, classes);
+  for (int i = 0; i < classes; ++i) {
+    for (int j = 0; j < classes; ++j) {
+      // One trial weighs more than all labels that keep their place together.
+      cost.at(i, j) = -(std::int64_t{confusion.count(i, j)} * (classes + 1) + (i == j ? 1 : 0));
+    }
+  }
+  LabelMatching best;
+  best.answer_of = Assignment(cost).column_of_row();
+  best.accuracy.n = confusion.accuracy().n;
+  for (int i = 0; i < classes; ++i) best.accuracy.correct += confusion.count(i, best.answer_of[i]);
+  return best;
 }
 
 }  // namespace touchtrial::analysis

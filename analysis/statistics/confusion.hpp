@@ -1,10 +1,12 @@
-/// \file Which class was taken for which.
+/// \file Which class was taken for which, and the accuracy that the best exchange of labels gives.
+/// Source of the latter: docs/statistics.md, "Swapped labels"; Kuhn 1955.
 #pragma once
 
 #include "analysis/statistics/proportion.hpp"
 #include "core/plane.hpp"
 
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace touchtrial::analysis {
@@ -15,12 +17,12 @@ struct Choice {
   std::optional<int> answered;
 };
 
-/// Counts of trials: rows are the presented class, columns the answer, and beside them the trials
-/// without a response.
+/// Counts of trials: rows are the presented class, columns the answer; trials without a response
+/// are counted beside them.
 class ConfusionMatrix {
  public:
-  /// \throws std::invalid_argument if there is no class
-  explicit ConfusionMatrix(int classes);
+  /// \throws std::invalid_argument if there is no class, or a choice's class is out of range
+  explicit ConfusionMatrix(int classes, std::span<const Choice> choices = {});
 
   /// \throws std::invalid_argument if a class is out of range
   void add(const Choice& choice);
@@ -31,13 +33,15 @@ class ConfusionMatrix {
   }
   [[nodiscard]] int no_response(int presented) const noexcept { return no_response_[presented]; }
 
-  /// Trials of a class, those without a response included.
+  /// Trials that presented a class, those without a response included.
   [[nodiscard]] int presented(int presented) const noexcept;
+  /// Trials with one answer, whatever was presented.
+  [[nodiscard]] int answered(int answered) const noexcept;
   /// All trials with a response.
   [[nodiscard]] int answered() const noexcept;
-  /// Of a class: the trials, those without a response as wrong.
+  /// Of the trials of one class; a trial without a response is wrong.
   [[nodiscard]] Proportion accuracy(int presented) const noexcept;
-  /// Of all classes.
+  /// Of all trials; a trial without a response is wrong.
   [[nodiscard]] Proportion accuracy() const noexcept;
 
   friend bool operator==(const ConfusionMatrix&, const ConfusionMatrix&) = default;
@@ -49,5 +53,16 @@ class ConfusionMatrix {
 
 /// \return 100 * part / whole, or nothing if the whole is 0
 [[nodiscard]] std::optional<double> percentage(int part, int whole) noexcept;
+
+/// The one-to-one matching of classes and answers that the most trials agree with.
+struct LabelMatching {
+  Proportion accuracy;         ///< of all trials, those with the matched answer
+  std::vector<int> answer_of;  ///< by presented class; keeps its own label where matchings tie
+};
+
+/// Tells whether somebody who answers wrongly distinguishes the classes nevertheless. Biased upward
+/// by the choice of the matching: with few trials the best one is above chance even for random
+/// answers. Cost: O(K^3) for K classes.
+[[nodiscard]] LabelMatching best_label_matching(const ConfusionMatrix& confusion);
 
 }  // namespace touchtrial::analysis

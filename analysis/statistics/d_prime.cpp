@@ -14,7 +14,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// Beyond this distance from its mean nothing of a normal variable is left in double precision.
+/// Beyond this distance from the mean a normal density is 0 in double precision.
 constexpr double kReach = 12.0;
 /// No proportion of counts needs a larger d'.
 constexpr double kLargest = 50.0;
@@ -38,12 +38,12 @@ double proportion_correct_of(double d_prime, int alternatives) {
   require_alternatives(alternatives);
   if (!std::isfinite(d_prime)) throw std::invalid_argument("d' must be finite");
   const boost::math::normal_distribution<> normal;
-  // The integral over z with z = u + d': its weight stays where it is whatever d' is.
+  // The integral over z with z = u + d': the weight's place does not depend on d'.
   const auto all_others_are_weaker = [&](double u) {
     return boost::math::pdf(normal, u) *
            std::pow(boost::math::cdf(normal, u + d_prime), alternatives - 1);
   };
-  // A bell that has vanished at both ends: the trapezoidal rule converges exponentially.
+  // The integrand vanishes at both ends, so the trapezoidal rule converges exponentially.
   const double share =
       boost::math::quadrature::trapezoidal(all_others_are_weaker, -kReach, kReach, 1e-13);
   return std::clamp(share, 0.0, 1.0);

@@ -1,5 +1,5 @@
-/// \file Nominal sensitivity of an m-alternative choice: what d' an unbiased observer of m equally
-/// distant alternatives needs for a proportion correct. Source: docs/statistics.md, "d'";
+/// \file Nominal sensitivity in an m-alternative choice: the d' with which an unbiased observer of
+/// m equally distant alternatives reaches a proportion correct. Source: docs/statistics.md, "d'";
 /// Green, Swets 1966; Hacker, Ratcliff 1979.
 #pragma once
 
@@ -9,17 +9,17 @@
 
 namespace touchtrial::analysis {
 
-/// Integral over z of phi(z - d) Phi(z)^(m - 1).
+/// The integral over z of phi(z - d) Phi(z)^(m - 1).
 /// \param alternatives  >= 2
 /// \return 0 .. 1; error below 1e-10
 /// \throws std::invalid_argument if d is not finite or alternatives < 2
 [[nodiscard]] double proportion_correct_of(double d_prime, int alternatives);
 
-/// A nominal d'. Never infinite: where nothing or everything is correct there is a bound instead.
+/// A nominal d'. Where nothing or everything is correct, a bound replaces the infinite estimate.
 struct DPrime {
   std::optional<double> estimate;  ///< nothing at 0 % and 100 %
-  std::optional<double> low;       ///< of the Clopper-Pearson interval's lower end; nothing at 0
-  std::optional<double> high;      ///< of its upper end; nothing at 1
+  std::optional<double> low;  ///< at the Clopper-Pearson interval's lower end; nothing if that is 0
+  std::optional<double> high;  ///< at its upper end; nothing if that is 1
 };
 
 /// \throws std::invalid_argument if alternatives < 2 or the proportion is impossible

@@ -10,7 +10,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// Presented and answered classes of one participant's trials with a response.
+/// Presented and answered classes of one participant's trials that have a response.
 struct Answers {
   std::vector<int> presented;
   std::vector<int> answered;
@@ -55,22 +55,17 @@ std::optional<double> raw_information_transfer(const ConfusionMatrix& confusion)
   const double n = confusion.answered();
   if (n == 0.0) return std::nullopt;
   const int classes = confusion.classes();
-  std::vector<double> of_row(classes);
   std::vector<double> of_column(classes);
-  for (int i = 0; i < classes; ++i) {
-    for (int j = 0; j < classes; ++j) {
-      of_row[i] += confusion.count(i, j);
-      of_column[j] += confusion.count(i, j);
-    }
-  }
+  for (int j = 0; j < classes; ++j) of_column[j] = confusion.answered(j);
   double bits = 0.0;
   for (int i = 0; i < classes; ++i) {
+    const double of_row = confusion.presented(i) - confusion.no_response(i);
     for (int j = 0; j < classes; ++j) {
       const double here = confusion.count(i, j);
-      if (here > 0.0) bits += here / n * std::log2(here * n / (of_row[i] * of_column[j]));
+      if (here > 0.0) bits += here / n * std::log2(here * n / (of_row * of_column[j]));
     }
   }
-  return std::max(0.0, bits);  // rounding may leave a hair below
+  return std::max(0.0, bits);  // rounding may leave it just below 0
 }
 
 InformationTransfer information_transfer(int classes,

@@ -1,4 +1,4 @@
-/// \file How much an answer tells of what was presented, in bits. Source: docs/statistics.md,
+/// \file How much an answer tells about what was presented, in bits. Source: docs/statistics.md,
 /// "Information transfer"; Tan, Reed, Durlach 2010, IEEE Transactions on Haptics 3(2).
 #pragma once
 
@@ -11,26 +11,26 @@
 
 namespace touchtrial::analysis {
 
-/// Over trials with a response; all three are absent without any.
+/// Over trials with a response; without any, all three numbers are absent.
 struct InformationTransfer {
   std::optional<double> raw;        ///< estimate from the counts, bits, >= 0, biased upward
-  std::optional<double> corrected;  ///< Miller and Madow's bias taken off; may be below 0
-  std::optional<double> null_mean;  ///< mean of raw when answers are dealt at random
-  int deals = 0;                    ///< that null_mean is of
+  std::optional<double> corrected;  ///< raw less Miller and Madow's bias; may be below 0
+  std::optional<double> null_mean;  ///< mean of raw over random permutations of the answers
+  int deals = 0;                    ///< permutations behind null_mean
 };
 
-/// Fewer trials than this make an estimate for K classes that misleads: 5 K^2.
+/// The trials below which an estimate for K classes misleads: 5 K^2.
 [[nodiscard]] constexpr int trials_for_information_transfer(int classes) noexcept {
   return 5 * classes * classes;
 }
 
-/// The estimate from the counts alone: sum of n_ij/n log2(n_ij n / (n_i. n_.j)).
+/// The estimate from the counts alone: the sum of n_ij/n log2(n_ij n / (n_i. n_.j)).
 /// \return bits, or nothing if no trial has a response
 [[nodiscard]] std::optional<double> raw_information_transfer(const ConfusionMatrix& confusion);
 
 /// \param by_participant  every participant's trials; answers are permuted within a participant
 /// \param index  chooses the stream of random numbers, so that methods do not share one
-/// \param permutations  how many random deals the null mean is taken over, >= 1
+/// \param permutations  over which the null mean is taken, >= 1
 /// \throws std::invalid_argument if a class is out of range or permutations < 1
 [[nodiscard]] InformationTransfer information_transfer(
     int classes, std::span<const std::vector<Choice>> by_participant, std::uint64_t index = 0,

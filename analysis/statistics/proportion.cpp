@@ -1,7 +1,8 @@
 #include "analysis/statistics/proportion.hpp"
 
+#include "analysis/statistics/common.hpp"
+
 #include <cmath>
-#include <stdexcept>
 
 #include <boost/math/distributions/beta.hpp>
 #include <boost/math/distributions/normal.hpp>
@@ -9,13 +10,9 @@
 namespace touchtrial::analysis {
 namespace {
 
-void require_valid(Proportion proportion, double level) {
-  if (proportion.correct < 0 || proportion.correct > proportion.n) {
-    throw std::invalid_argument("a proportion needs 0 <= correct <= n");
-  }
-  if (!(level > 0.0 && level < 1.0)) {
-    throw std::invalid_argument("a confidence level lies between 0 and 1");
-  }
+void require_arguments_of_interval(Proportion proportion, double level) {
+  require_possible(proportion);
+  require_level(level);
 }
 
 double beta_quantile(double a, double b, double probability) {
@@ -30,7 +27,7 @@ std::optional<double> Proportion::share() const noexcept {
 }
 
 Interval wilson_interval(Proportion proportion, double level) {
-  require_valid(proportion, level);
+  require_arguments_of_interval(proportion, level);
   if (proportion.n == 0) return {};
   const double n = proportion.n;
   const double p = proportion.correct / n;
@@ -38,13 +35,13 @@ Interval wilson_interval(Proportion proportion, double level) {
   const double scale = 1.0 + z * z / n;
   const double centre = (p + z * z / (2.0 * n)) / scale;
   const double half = z * std::sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n)) / scale;
-  // Centre and half-width are equal at the ends of the scale, but only to rounding.
+  // At the ends of the scale, centre and half-width are equal except for rounding.
   return {proportion.correct == 0 ? 0.0 : centre - half,
           proportion.correct == proportion.n ? 1.0 : centre + half};
 }
 
 Interval clopper_pearson_interval(Proportion proportion, double level) {
-  require_valid(proportion, level);
+  require_arguments_of_interval(proportion, level);
   if (proportion.n == 0) return {};
   const double tail = (1.0 - level) / 2.0;
   const double correct = proportion.correct;
@@ -54,7 +51,7 @@ Interval clopper_pearson_interval(Proportion proportion, double level) {
 }
 
 Interval jeffreys_interval(Proportion proportion, double level) {
-  require_valid(proportion, level);
+  require_arguments_of_interval(proportion, level);
   if (proportion.n == 0) return {};
   const double tail = (1.0 - level) / 2.0;
   const double a = proportion.correct + 0.5;

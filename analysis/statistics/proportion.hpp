@@ -1,4 +1,4 @@
-/// \file Proportions and how far they can be trusted. Source: docs/statistics.md, "Proportions";
+/// \file Proportions and their confidence intervals. Source: docs/statistics.md, "Proportions";
 /// Brown, Cai, DasGupta 2001, Statistical Science 16(2).
 #pragma once
 
@@ -27,19 +27,19 @@ struct Proportion {
   friend bool operator==(const Proportion&, const Proportion&) = default;
 };
 
-/// Wilson's score interval: close to its level on average, for independent trials.
+/// Wilson's score interval: covers close to its level on average, for independent trials.
 /// \param level  in (0, 1)
 /// \return within [0, 1]; [0, 1] if n is 0
 /// \throws std::invalid_argument if not 0 <= correct <= n, or the level is not in (0, 1)
 [[nodiscard]] Interval wilson_interval(Proportion proportion, double level = kConfidenceLevel);
 
-/// Clopper and Pearson's exact interval: never below its level, for independent trials.
-/// Same arguments, result and errors as wilson_interval.
+/// Clopper and Pearson's exact interval: never covers less than its level, for independent trials.
+/// Arguments, result and errors are those of wilson_interval.
 [[nodiscard]] Interval clopper_pearson_interval(Proportion proportion,
                                                 double level = kConfidenceLevel);
 
 /// Jeffreys' interval: quantiles of Beta(correct + 1/2, n - correct + 1/2), with 0 where nothing
-/// and 1 where everything is correct. Same arguments, result and errors as wilson_interval.
+/// and 1 where everything is correct. Arguments, result and errors are those of wilson_interval.
 [[nodiscard]] Interval jeffreys_interval(Proportion proportion, double level = kConfidenceLevel);
 
 }  // namespace touchtrial::analysis

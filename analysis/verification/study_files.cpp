@@ -1,7 +1,7 @@
 #include "analysis/verification/study_files.hpp"
 
 #include "core/errors.hpp"
-#include "protocols/store/damaged_store.hpp"
+#include "protocols/store/damage.hpp"
 
 #include <algorithm>
 #include <array>

@@ -5,6 +5,7 @@
 #include "analysis/text_figures.hpp"
 #include "analysis/verification/session_course.hpp"
 #include "core/errors.hpp"
+#include "protocols/design/protocol.hpp"
 #include "protocols/store/payload_json.hpp"
 
 #include <algorithm>
@@ -54,9 +55,9 @@ std::string check_configuration(const store::StudyStore& store, const design::St
   };
   require(design::blinded_configuration(key) == commitment.configuration, "the configuration");
   require(key.study.name == commitment.study, "the study's name");
-  require(name_of(key.study.protocol) == commitment.protocol, "the protocol");
+  require(key.study.protocol_name() == commitment.protocol, "the protocol");
   require(key.study.scored_trials() == commitment.scored_trials, "the number of scored trials");
-  require(static_cast<int>(key.study.classes.size()) == commitment.positions,
+  require(static_cast<int>(key.study.protocol->choices(key.study).size()) == commitment.positions,
           "the number of pictures");
   // A prepared study may be rehearsed with simulated participants, in a database of its own; a
   // simulated study is nothing for people.

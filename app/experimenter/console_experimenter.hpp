@@ -1,16 +1,16 @@
-/// \file What the experimenter's own window shows and asks for.
+/// \file The experimenter's window as the session sees it: what it shows, and what it requests.
 ///
-/// How a session gets that window, beside the participant's:
+/// A session opens that window beside the participant's like this:
 ///
 ///     TerminalExperimenter terminal(standard_terminal());
 ///     ConsoleExperimenter console(terminal);  // the session's Experimenter from now on
 ///     ParticipantWindowOptions options;
 ///     options.console = &console;
-///     options.console_monitor = 2;  // or leave it: wherever the system puts a window
+///     options.console_monitor = 2;  // without it, the system chooses the place
 ///     ParticipantWindow window(options);
 ///
-/// Day sheet, consent to force and spoken answers stay at the terminal: the terminal goes on being
-/// the session's Attendant and SpokenEntry.
+/// Day sheet, consent to force and spoken answers stay at the terminal, which remains the session's
+/// Attendant and SpokenEntry.
 #pragma once
 
 #include "protocols/session/experimenter.hpp"
@@ -24,8 +24,8 @@
 
 namespace touchtrial::app {
 
-/// Passes everything on to another experimenter, and has room for a window's requests beside. Never
-/// knows what is presented, nor whether an answer was right.
+/// Forwards everything to another experimenter and adds the requests of a window. Never knows what
+/// is presented, nor whether an answer was right.
 class ConsoleExperimenter final : public session::Experimenter {
  public:
   /// \param inner  must outlive this
@@ -34,7 +34,7 @@ class ConsoleExperimenter final : public session::Experimenter {
   /// \name The session's thread
   ///@{
   void show(const session::SessionStatus& status) override;
-  /// What the window asked for first, then the inner one's.
+  /// The window's requests first, then those of the inner experimenter.
   [[nodiscard]] std::optional<session::ExperimenterRequest> request() override;
   [[nodiscard]] std::optional<std::vector<session::Tick>> day_sheet(
       const std::vector<session::DaySheetItem>& items) override {
@@ -46,9 +46,9 @@ class ConsoleExperimenter final : public session::Experimenter {
   /// \name Any thread
   ///@{
   void add(const session::ExperimenterRequest& request);
-  /// As it was shown last.
+  /// The status that was shown last.
   [[nodiscard]] session::SessionStatus status() const;
-  /// Called whenever the status reads otherwise than before; null: nobody is. Must call nothing of
+  /// Sets a function that is called whenever the status line changes; null: none. It must not call
   /// this object.
   void on_change(std::function<void()> listener);
   ///@}

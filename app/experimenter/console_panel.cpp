@@ -1,7 +1,6 @@
 #include "app/experimenter/console_panel.hpp"
 
-#include "app/monitor/palette.hpp"
-#include "app/windows/fonts.hpp"
+#include "app/windows/look.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -22,11 +21,7 @@ constexpr float kButtonHeight = 44.0F;
 constexpr std::size_t kAskedShown = 6;
 constexpr const char* kPaused = "paused";
 
-ImVec2 to_imgui(Vec2 size) {
-  return {static_cast<float>(size.x), static_cast<float>(size.y)};
-}
-
-/// Light, as the participant's window is.
+/// Light, like the participant's window.
 class Look {
  public:
   explicit Look(float density) {
@@ -102,7 +97,7 @@ void draw_progress(const session::SessionStatus& status, float density) {
 
 void fact(const char* name, const std::string& value) {
   ImGui::TableNextColumn();
-  // Closer to its value than to the row above.
+  // The name is closer to its value than to the row above.
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0.0F, 2.0F});
   grey(name);
   ImGui::PopStyleVar();
@@ -116,7 +111,7 @@ void draw_facts(const session::SessionStatus& status) {
   fact("elapsed", fmt::format("{}:{:02}", seconds / 60, seconds % 60));
   fact("interruptions", std::to_string(status.interruptions));
   fact("device", status.device.empty() ? "-" : status.device);
-  fact("servo's rate", is_measured ? fmt::format("{:.0f} per s", status.rate_hz) : "-");
+  fact("servo rate", is_measured ? fmt::format("{:.0f} per s", status.rate_hz) : "-");
   fact("lateness, 99 %", is_measured ? fmt::format("{:.0f} us", status.lateness_p99_us) : "-");
   fact("overruns", is_measured ? std::to_string(status.overruns) : "-");
   ImGui::EndTable();
@@ -165,7 +160,7 @@ void ConsolePanel::draw(const session::SessionStatus& status, Vec2 size, float d
                         bool may_write) {
   const Look look(density);
   ImGui::SetNextWindowPos({0.0F, 0.0F});
-  ImGui::SetNextWindowSize(to_imgui(size));
+  ImGui::SetNextWindowSize(imgui_vec(size));
   ImGui::Begin("console", nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
   draw_heading(status);
   draw_progress(status, density);
@@ -208,11 +203,11 @@ void ConsolePanel::draw_draft(float density, bool may_write) {
   const ImVec2 size = {150.0F * density, 0.0F};
   static constexpr std::array<const char*, 6> kAsks = {
       "",
-      "Paused. The reason, if it is to be noted:",
-      "Stopped. The reason, which must tell nothing about the texture:",
+      "Paused. The reason, if it should be noted:",
+      "Stopped. The reason, which must say nothing about the texture:",
       "Note:",
-      "Deviation: its code, and what was otherwise:",
-      "Abort: ends this session for good; it cannot be taken up again. The reason:"};
+      "Deviation: its code, and what was different:",
+      "Abort: ends this session for good; it cannot be resumed. The reason:"};
   ImGui::TextUnformatted(kAsks[static_cast<std::size_t>(draft_)]);
   bool is_sent = false;
   ImGui::BeginDisabled(!may_write);
@@ -230,17 +225,17 @@ void ConsolePanel::draw_draft(float density, bool may_write) {
   is_writing_ = is_writing_ || ImGui::IsItemActive();
   ImGui::EndDisabled();
   is_begun_ = false;
-  // Whoever wants to go on writing after the plane says so: the next keys are an answer's.
+  // After the plane, the experimenter selects the field again: the next keys may be an answer.
   if (is_writing_ && !may_write) ImGui::SetWindowFocus(nullptr);
   is_writing_ = is_writing_ && may_write;
-  // A session is not ended by Enter.
+  // Enter does not end a session.
   if (draft_ == Draft::abort) {
     is_sent = coloured_button("End the session", kVermillion, size);
   } else {
     is_sent = ImGui::Button("Enter it", size) || is_sent;
   }
   ImGui::SameLine();
-  const bool is_left = ImGui::Button(draft_ == Draft::abort ? "Go on" : "Leave it", size);
+  const bool is_left = ImGui::Button(draft_ == Draft::abort ? "Go on" : "Discard it", size);
   if (!may_write) {
     ImGui::SameLine();
     grey("A plane is on: the keyboard is the participant's.");
@@ -252,7 +247,7 @@ void ConsolePanel::draw_draft(float density, bool may_write) {
 void ConsolePanel::draw_asked() {
   if (asked_.empty()) return;
   ImGui::Spacing();
-  grey("asked of the session, newest first");
+  grey("requests to the session, newest first");
   for (const std::string& words : asked_) ImGui::TextWrapped("%s", words.c_str());
 }
 

@@ -1,4 +1,4 @@
-/// \file What stands in the experimenter's window.
+/// \file The contents of the experimenter's window.
 #pragma once
 
 #include "core/vec.hpp"
@@ -11,20 +11,20 @@
 
 namespace touchtrial::app {
 
-/// Status, buttons, and a line to write in. Pause and comfort stop are asked for at once; their
-/// reason is written after it and becomes a note. Belongs to one thread at a time; `draw` between
+/// Status, buttons, and a field for text. Pause and comfort stop take effect at once; the reason is
+/// written afterwards and becomes a note. Belongs to one thread at a time. Call `draw` between
 /// ImGui::NewFrame and ImGui::Render, with the fonts of load_fonts.
 class ConsolePanel {
  public:
   using Ask = std::function<void(const session::ExperimenterRequest&)>;
-  /// \param ask  called from `draw` with each request, once
+  /// \param ask  `draw` calls it once with each request
   explicit ConsolePanel(Ask ask) : ask_(std::move(ask)) {}
 
-  /// \param size  window units, all of which are covered
-  /// \param density  window units for each at 96 per inch
-  /// \param may_write  otherwise text waits: the keyboard is the participant's
+  /// \param size  size of the window, which the panel fills, in window units
+  /// \param density  as ScreenScale::density
+  /// \param may_write  false while the keyboard is the participant's
   void draw(const session::SessionStatus& status, Vec2 size, float density, bool may_write);
-  /// A field takes letters.
+  /// Whether a field takes letters.
   [[nodiscard]] bool is_writing() const noexcept { return is_writing_; }
 
  private:
@@ -39,7 +39,7 @@ class ConsolePanel {
 
   Ask ask_;
   Draft draft_ = Draft::none;
-  bool is_begun_ = false;  ///< the field is to take the letters
+  bool is_begun_ = false;  ///< the field needs the keyboard focus
   bool is_writing_ = false;
   std::array<char, 64> code_{};
   std::array<char, 501> text_{};

@@ -1,10 +1,8 @@
 #include "app/experimenter/console_window.hpp"
 
 #include "app/experimenter/console_panel.hpp"
-#include "app/windows/fonts.hpp"
-#include "app/windows/gl_picture.hpp"
-#include "app/windows/imgui_turn.hpp"
-#include "app/windows/screen_scale.hpp"
+#include "app/windows/glfw_support.hpp"
+#include "app/windows/look.hpp"
 #include "core/errors.hpp"
 
 #include <algorithm>
@@ -27,10 +25,10 @@ namespace {
 constexpr const char* kTitle = "Touchtrial console";
 constexpr int kWidth = 920;
 constexpr int kHeight = 640;
-/// ImGui's layout has settled after so many pictures.
+/// After this number of pictures, ImGui's layout no longer changes.
 constexpr int kSettling = 3;
 
-/// Keys that a line of text knows, as GLFW and ImGui call them.
+/// The editing keys of a line of text in GLFW and in ImGui.
 constexpr std::array<std::pair<int, int>, 11> kTextKeys = {{
     {GLFW_KEY_ENTER, ImGuiKey_Enter},
     {GLFW_KEY_KP_ENTER, ImGuiKey_Enter},
@@ -87,7 +85,7 @@ void tell(ImGuiIO& io, const Event& event) {
       return io.AddInputCharacter(event.letter);
   }
 }
-/// Each by its own number.
+/// Maps each of ImGui's keys to its own number.
 void name_keys(ImGuiIO& io) {
   for (const auto& [glfw, key] : kTextKeys) io.KeyMap[key] = key;
 }
@@ -99,7 +97,7 @@ void name_keys(ImGuiIO& io) {
                     ": connect another, or choose one of these");
 }
 
-/// In the middle of the monitor, cut to what it has room for.
+/// Moves the window to the middle of the monitor, and limits its size.
 void place(GLFWwindow* window, int wanted) {
   int count = 0;
   GLFWmonitor** monitors = glfwGetMonitors(&count);
@@ -120,11 +118,8 @@ void place(GLFWwindow* window, int wanted) {
 
 GLFWwindow* make_window() {
   glfwDefaultWindowHints();
-  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 2);
-  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-  // The keyboard stays the participant's.
+  hint_opengl_3_2();
+  // The keyboard remains the participant's.
   glfwWindowHint(GLFW_FOCUSED, GLFW_FALSE);
   glfwWindowHint(GLFW_FOCUS_ON_SHOW, GLFW_FALSE);
   glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);
@@ -146,7 +141,8 @@ struct Surface {
   float density = 1.0F;
 };
 
-/// Letters grow with the window, by quarters: their pictures are made anew each time.
+/// The factor by which letters grow with the window: in steps of a quarter, because each step
+/// renders the fonts again.
 float enlargement(const Surface& surface) {
   const float room = std::min(static_cast<float>(surface.width) / (kWidth * surface.density),
                               static_cast<float>(surface.height) / (kHeight * surface.density));
@@ -211,7 +207,7 @@ struct ConsoleWindow::State {
     if (!takes_text() && !is_release) return options.key(key, action, modifiers);
     for (const auto& [glfw, named] : kTextKeys) {
       if (glfw != key) continue;
-      // A key that is held is a key that goes down again.
+      // A key that repeats goes up and down again.
       if (action == GLFW_REPEAT) push({.kind = Event::Kind::key, .key = named, .is_down = false});
       push({.kind = Event::Kind::key,
             .key = named,
@@ -241,7 +237,7 @@ struct ConsoleWindow::State {
     Surface now;
     glfwGetWindowSize(window, &now.width, &now.height);
     glfwGetFramebufferSize(window, &now.width_px, &now.height_px);
-    // Nothing is drawn while it is iconified.
+    // Nothing is drawn while the window is iconified.
     if (now.height_px <= 0) now.width_px = 0;
     now.density = screen_scale(window).density;
     now.density *= enlargement(now);
@@ -252,7 +248,7 @@ struct ConsoleWindow::State {
     redraw();
   }
 
-  /// Up to the first button or key: each is seen in a picture of its own.
+  /// Takes events up to the first button or key, because each needs a picture of its own.
   void take_events(ImGuiIO& io) {
     const std::lock_guard lock(mutex);
     while (!events.empty()) {
@@ -300,7 +296,7 @@ struct ConsoleWindow::State {
   const ConsoleWindowOptions options;
   GLFWwindow* window = nullptr;
 
-  // Between threads.
+  // Shared between threads.
   std::atomic<bool> is_writing{false};
   mutable std::mutex mutex;
   std::condition_variable for_picture;
@@ -328,7 +324,7 @@ ConsoleWindow::~ConsoleWindow() {
 
 void ConsoleWindow::begin_drawing() {
   glfwMakeContextCurrent(state_->window);
-  // It never waits for its screen: that would hold up the participant's.
+  // No wait for this screen: it would delay the participant's.
   glfwSwapInterval(0);
   const std::lock_guard turn(imgui_turn());
   ImGuiContext* const others = ImGui::GetCurrentContext();

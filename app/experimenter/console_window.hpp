@@ -1,4 +1,4 @@
-/// \file The experimenter's window. GLFW is somebody else's: who makes this has started it.
+/// \file The experimenter's window. Its owner has started GLFW.
 #pragma once
 
 #include "app/experimenter/console_experimenter.hpp"
@@ -12,29 +12,32 @@
 namespace touchtrial::app {
 
 struct ConsoleWindowOptions {
-  /// From 1 as the system counts them; none: wherever the system puts a window.
+  /// From 1, as the system counts monitors; nothing: the system chooses the place.
   std::optional<int> monitor;
-  /// The participant is under force: every key is the participant's. Asked on both threads.
+  /// Whether the participant is under force; then every key is the participant's. Called on both
+  /// threads.
   std::function<bool()> keyboard_is_participants;
-  /// Takes, on the main thread, what GLFW's key callback has of a key that is not written here.
+  /// Takes the arguments of GLFW's key callback for every key that is not text of this window.
+  /// Called on the main thread.
   std::function<void(int key, int action, int modifiers)> key;
-  /// Makes the drawing thread look whether this wants a picture. Any thread.
+  /// Makes the drawing thread check whether this window needs a picture. Called on any thread.
   std::function<void()> stir;
 };
 
-/// Takes no focus when it comes up, and is not closed by its window manager: a session is ended
-/// by the participant's window or by Abort.
+/// Takes no focus when it opens, and the window manager cannot close it: only the participant's
+/// window or Abort ends a session.
 class ConsoleWindow {
  public:
-  /// Main thread, GLFW running. \param console  must outlive this
+  /// Main thread, GLFW running.
+  /// \param console  must outlive this
   /// \throws DeviceError with the remedy if there is no such monitor, or no OpenGL 3.2
   ConsoleWindow(ConsoleExperimenter& console, const ConsoleWindowOptions& options);
-  /// Main thread, when nothing draws any more.
+  /// Main thread, after drawing has ended.
   ~ConsoleWindow();
   ConsoleWindow(const ConsoleWindow&) = delete;
   ConsoleWindow& operator=(const ConsoleWindow&) = delete;
 
-  /// \name Drawing thread. The OpenGL context that was current is not afterwards.
+  /// \name Drawing thread. These functions change the current OpenGL context.
   ///@{
   void begin_drawing();
   [[nodiscard]] bool wants_picture() const;
@@ -42,7 +45,8 @@ class ConsoleWindow {
   void end_drawing();
   ///@}
 
-  /// Waits for the next picture; any other thread. \return nothing if none comes
+  /// Waits for the next picture. Any thread except the drawing thread.
+  /// \return nothing if no picture comes in time
   [[nodiscard]] std::optional<engine::ColourImage> picture(std::chrono::milliseconds longest);
 
  private:

@@ -10,28 +10,27 @@
 
 namespace touchtrial::app {
 
-/// What the experimenter entered.
+/// An answer as the experimenter enters it.
 struct SpokenAnswer {
-  std::size_t label = 0;             ///< index into the labels that were shown
-  std::optional<std::size_t> first;  ///< before a change
+  std::size_t label = 0;             ///< index of the label that was chosen
+  std::optional<std::size_t> first;  ///< the previous choice, if the participant changed it
   std::optional<int> confidence;
 };
 
-/// Where spoken answers are entered: a terminal.
+/// Where spoken answers are entered, for instance a terminal.
 class SpokenEntry {
  public:
   virtual ~SpokenEntry() = default;
-  /// Called over and over until there is an answer; the session's thread. May block for a moment.
-  /// \param labels  in alphabetical order, the same for every participant: says nothing of what is
-  ///   presented
+  /// The session's thread calls this repeatedly until there is an answer. May block for a moment.
+  /// \param labels  in alphabetical order, so that they reveal nothing about the presentation
   [[nodiscard]] virtual std::optional<SpokenAnswer> spoken_answer(
       const session::AnswerStep& step, const std::vector<std::string>& labels) = 0;
-  /// What was entered and not confirmed counts no more: a plane is on.
+  /// Discards an entry that is not confirmed, because a plane is on.
   virtual void forget_spoken_answer() = 0;
 };
 
-/// Shows each step to `participant`, and takes the replies to answers that are to be spoken (sight
-/// "blindfold") from `entry`. Everything else is the participant's own.
+/// Shows each step to `participant`, and takes the replies to spoken answers (sight "blindfold")
+/// from `entry`. Everything else comes from the participant.
 class SpokenAnswers final : public session::Participant {
  public:
   /// \param participant,entry  must outlive this
@@ -51,7 +50,7 @@ class SpokenAnswers final : public session::Participant {
   session::Participant& participant_;
   SpokenEntry& entry_;
   std::vector<std::string> sorted_;
-  std::vector<int> positions_;  ///< of the sorted labels, in the participant's layout
+  std::vector<int> positions_;  ///< positions of the sorted labels in the participant's layout
 };
 
 }  // namespace touchtrial::app

@@ -1,4 +1,4 @@
-/// \file How a session stands, in one line.
+/// \file The status of a session in one line.
 #pragma once
 
 #include "protocols/session/experimenter.hpp"
@@ -7,14 +7,14 @@
 
 namespace touchtrial::app {
 
-/// Participant, stage, trial, time, device, servo; what is not known yet is left out. Nothing in
-/// it depends on a stimulus or on an outcome.
+/// Participant, stage, trial, time, device and servo, as far as they are known. Nothing in it
+/// depends on a stimulus or an outcome.
 [[nodiscard]] std::string status_line(const session::SessionStatus& status);
 
-/// The part that changes with what happens, and not with every second.
+/// The part of the status that does not change every second.
 [[nodiscard]] std::string progress_words(const session::SessionStatus& status);
 
-/// \name At most `columns` characters of a UTF-8 text
+/// \name The first or last characters of a UTF-8 text, at most `columns`
 ///@{
 [[nodiscard]] std::string first_of(const std::string& text, int columns);
 [[nodiscard]] std::string last_of(const std::string& text, int columns);

@@ -88,7 +88,7 @@ void TerminalExperimenter::write_line(const std::string& line) {
 }
 
 void TerminalExperimenter::rewrite(const std::string& line) {
-  // A line that wraps cannot be written over, and of one that is typed the end matters.
+  // A wrapped line cannot be overwritten; of a typed line, the end is what matters.
   const std::string cut = last_of(line, terminal_.columns - 1);
   if (cut == shown_) return;
   shown_ = cut;
@@ -114,7 +114,7 @@ void TerminalExperimenter::show(const session::SessionStatus& status) {
 std::optional<session::ExperimenterRequest> TerminalExperimenter::request() {
   take_keys();
   if (auto typed = typing_.next()) {
-    // Force comes on only after the line that says so was shown anew.
+    // The force may only come on after the line that announces it is shown again.
     is_ready_shown_ = false;
     arm_asked_ = false;
     return typed;
@@ -151,14 +151,14 @@ void TerminalExperimenter::show_item(const std::string& text) {
 }
 
 session::Attendant::Says TerminalExperimenter::attend(const std::string& need) {
-  spoken_.reset();  // of a trial that was interrupted: its line would hide what is needed
+  spoken_.reset();  // its line, of an interrupted trial, would hide what is needed
   take_keys();
   const Says says = said(need.empty());
   is_ready_shown_ = says == Says::wait && need.empty();
   arm_asked_ = false;
   need_.clear();
   if (says != Says::wait) return says;
-  need_ = need.empty() ? "ready: g lets the force on, once the hand is at the pen"
+  need_ = need.empty() ? "ready: g switches the force on, once the hand is at the pen"
                        : "the device waits: " + need;
   rewrite(line_now());
   if (terminal_.pause) terminal_.pause();
@@ -167,7 +167,7 @@ session::Attendant::Says TerminalExperimenter::attend(const std::string& need) {
 
 session::Attendant::Says TerminalExperimenter::said(bool is_ready) {
   bool stops = false;
-  // The session records the abort, its reason, and whatever else was typed, once it asks.
+  // The session records the abort, its reason and everything else that was typed when it asks.
   while (const auto request = typing_.next()) {
     stops = stops || request->kind == session::ExperimenterRequest::Kind::abort;
     add(*request);

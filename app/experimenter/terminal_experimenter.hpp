@@ -1,10 +1,8 @@
 /// \file The experimenter at a terminal: a status line, keys, and consent to force.
 #pragma once
 
-#include "app/experimenter/answer_typing.hpp"
-#include "app/experimenter/request_typing.hpp"
 #include "app/experimenter/spoken_answers.hpp"
-#include "app/experimenter/tick_list.hpp"
+#include "app/experimenter/typing.hpp"
 #include "protocols/session/device_station.hpp"
 #include "protocols/session/experimenter.hpp"
 
@@ -16,23 +14,23 @@
 
 namespace touchtrial::app {
 
-/// What a terminal is to the experimenter's side of a session.
+/// The terminal of an experimenter.
 struct ExperimenterTerminal {
-  /// The next key, if one was pressed; never waits. Nothing: nobody types, and nobody is asked.
+  /// The next key, if one was pressed; never waits. Null if nobody types; then nobody is asked.
   std::function<std::optional<char>()> key;
   std::function<void(const std::string&)> write;
-  /// A line can be written over; else every change is a line of its own.
+  /// Whether a line can be overwritten; else every change is a line of its own.
   bool rewrites = false;
   int columns = 80;
-  /// Between two calls that wait for somebody. Null: no pause, as tests want it.
+  /// Pauses between two calls that wait for a person. Null, as in tests: no pause.
   std::function<void()> pause;
 };
 
-/// Standard input and standard error. Its keys are taken one by one as long as a copy of it lives.
+/// Standard input and standard error. Keys are read one by one while a copy of it lives.
 [[nodiscard]] ExperimenterTerminal standard_terminal();
 
-/// Never shows what is presented, nor whether an answer was right. All functions but `add` belong
-/// to the session's thread.
+/// Never shows what is presented, nor whether an answer was right. All functions except `add`
+/// belong to the session's thread.
 class TerminalExperimenter final : public session::Experimenter,
                                    public session::Attendant,
                                    public SpokenEntry {
@@ -43,15 +41,15 @@ class TerminalExperimenter final : public session::Experimenter,
   TerminalExperimenter(const TerminalExperimenter&) = delete;
   TerminalExperimenter& operator=(const TerminalExperimenter&) = delete;
 
-  /// A request that something else makes: another window, the sound. Any thread.
+  /// Adds a request of another source, such as a window or the sound. Any thread.
   void add(const session::ExperimenterRequest& request);
 
   void show(const session::SessionStatus& status) override;
   [[nodiscard]] std::optional<session::ExperimenterRequest> request() override;
-  /// At once and empty if nobody types.
+  /// Returns an empty list at once if nobody types.
   [[nodiscard]] std::optional<std::vector<session::Tick>> day_sheet(
       const std::vector<session::DaySheetItem>& items) override;
-  /// Key g arms, if it comes after the line that says so; a, after a question, stops.
+  /// Key g arms if it is pressed after the line that says so; a stops after a question.
   [[nodiscard]] Says attend(const std::string& need) override;
   [[nodiscard]] std::optional<SpokenAnswer> spoken_answer(
       const session::AnswerStep& step, const std::vector<std::string>& labels) override;
@@ -59,9 +57,9 @@ class TerminalExperimenter final : public session::Experimenter,
 
  private:
   void take_keys();
-  /// To whatever the key is for: a line that is being typed, the day sheet, a spoken answer.
+  /// Passes a key to the line that is being typed, the day sheet or a spoken answer.
   void take(char key);
-  /// What stands in the line: a question, else the status.
+  /// The content of the line: a question, else the status.
   [[nodiscard]] std::string line_now() const;
   void rewrite(const std::string& line);
   void show_item(const std::string& text);
@@ -73,11 +71,11 @@ class TerminalExperimenter final : public session::Experimenter,
   RequestTyping typing_;
   std::optional<TickList> sheet_;
   std::optional<AnswerTyping> spoken_;
-  bool is_ready_shown_ = false;  ///< the line asks for the key that lets the force on
+  bool is_ready_shown_ = false;  ///< the line asks for the key that switches the force on
   bool arm_asked_ = false;
-  std::string need_;  ///< what the line says meanwhile
+  std::string need_;  ///< what the device waits for, while it waits
   std::string status_;
-  std::string item_;  ///< of the day sheet, shown last
+  std::string item_;  ///< the item of the day sheet that was shown last
   std::string shown_;
   std::string progress_;
   std::mutex mutex_;

@@ -5,7 +5,7 @@
 namespace touchtrial::app {
 namespace {
 
-/// Bins that a rate is taken over.
+/// The number of bins for one rate.
 constexpr std::size_t kRateBins = 5;
 
 }  // namespace

@@ -11,7 +11,7 @@
 
 namespace touchtrial::app {
 
-/// The least and the greatest of a time; nothing was there if least > greatest.
+/// The least and the greatest value of an interval; empty if least > greatest.
 struct Extent {
   double least = std::numeric_limits<double>::infinity();
   double greatest = -std::numeric_limits<double>::infinity();
@@ -20,7 +20,7 @@ struct Extent {
   [[nodiscard]] bool is_empty() const noexcept { return least > greatest; }
 };
 
-/// What is plotted, in this order: position in mm, force in N.
+/// The plotted channels: position in mm, force in N.
 enum class Channel : std::size_t { x, y, z, force_x, force_y, force_z };
 
 /// Not thread-safe.
@@ -30,18 +30,19 @@ class MonitorHistory {
   static constexpr double kBinS = 1.0 / kBinsPerS;
   static constexpr std::size_t kBins = 250;
 
-  /// \param rate_hz  of the servo, > 0: what its ticks mean
+  /// \param rate_hz  the servo's rate, > 0
   explicit MonitorHistory(double rate_hz);
 
-  /// Samples in the order of their ticks. One whose tick is before the last begins a new run.
+  /// Adds samples in the order of their ticks. A tick that is not greater than the last begins a
+  /// new run.
   void add(const device::ServoSample& sample);
-  /// How late a tick began at worst since the last call, µs; belongs to the bins since then.
+  /// Adds the worst lateness of a tick since the last call, in µs, to the bins since then.
   void add_lateness(double late_us);
 
-  /// \name From the oldest to the newest, kBins of them
+  /// \name kBins values each, from the oldest to the newest
   ///@{
   [[nodiscard]] std::vector<Extent> values(Channel channel) const;
-  /// Ticks a second, over the last tenth of a second at each time.
+  /// Ticks per second, each over the preceding tenth of a second.
   [[nodiscard]] std::vector<Extent> rates_hz() const;
   [[nodiscard]] std::vector<Extent> lateness_us() const;
   ///@}
@@ -57,9 +58,9 @@ class MonitorHistory {
 
   double rate_hz_;
   std::vector<Bin> bins_;     ///< a ring
-  std::int64_t newest_ = -1;  ///< number of the newest bin, from the run's beginning
+  std::int64_t newest_ = -1;  ///< number of the newest bin since the run began
   std::int64_t last_tick_ = -1;
-  std::int64_t told_until_ = -1;  ///< the newest bin when lateness was told last
+  std::int64_t told_until_ = -1;  ///< the newest bin when lateness was last added
 };
 
 }  // namespace touchtrial::app

@@ -1,6 +1,6 @@
 #include "app/monitor/monitor_run.hpp"
 
-#include "device/servo/paced_clock.hpp"
+#include "device/servo/servo_clock.hpp"
 
 #include <array>
 #include <cstdint>
@@ -8,13 +8,13 @@
 namespace touchtrial::app {
 namespace {
 
-/// As long as anybody looks.
+/// Longer than anybody watches.
 constexpr double kLongestRunS = 7.0 * 86'400.0;
 constexpr double kFadeS = 0.1;
-/// A window that stands still for two seconds loses nothing.
+/// A window that is blocked for two seconds loses no sample.
 constexpr double kRingS = 2.0;
 
-/// A clock that keeps how late it was at worst.
+/// A clock that records its worst lateness.
 class WatchedClock final : public device::ServoClock {
  public:
   WatchedClock(device::ServoClock& clock, std::atomic<std::int64_t>& worst_ns) noexcept
@@ -24,7 +24,7 @@ class WatchedClock final : public device::ServoClock {
   void wait_until(Time time) noexcept override {
     clock_.wait_until(time);
     const std::int64_t late_ns = (clock_.now() - time).count();
-    // Who takes the worst away may do so in between; then this one is the first of the next.
+    // The reader may take the worst value at any moment; this one then counts for the next period.
     std::int64_t worst_ns = worst_ns_.load(std::memory_order_relaxed);
     while (late_ns > worst_ns &&
            !worst_ns_.compare_exchange_weak(worst_ns, late_ns, std::memory_order_relaxed)) {

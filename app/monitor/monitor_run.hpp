@@ -1,22 +1,61 @@
-/// \file The servo behind a monitor: on a thread of its own, started and stopped by a person.
+/// \file The servo behind the monitor, which a person starts and stops, and the wall that it feels.
 #pragma once
 
 #include "app/monitor/monitor_history.hpp"
-#include "app/monitor/test_wall.hpp"
 #include "device/platform/stop_signals.hpp"
 #include "device/safety/watchdog.hpp"
 #include "device/servo/sample_ring.hpp"
 #include "device/servo/servo.hpp"
 #include "device/servo/servo_thread.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <cstdint>
 #include <optional>
 
 namespace touchtrial::app {
 
-/// Runs a device against the test wall, under a watchdog, and halts it by signals as long as this
-/// lives. Belongs to one thread; none of its functions waits for the servo but the destructor.
+/// A gentle wall at z = 0, which acts from the front (z > 0) only: if the stylus is behind it when
+/// it is switched on, it waits until the stylus has come to the front. Its force rises and falls
+/// within 100 ms.
+class TestWall final : public device::ForceSource {
+ public:
+  static constexpr double kStiffness_n_per_mm = 0.4;
+  static constexpr double kMaxForceN = 1.0;
+
+  /// \param rate_hz  the servo's rate, > 0
+  explicit TestWall(double rate_hz) noexcept : share_of_tick_(10.0 / rate_hz) {}
+
+  /// \name Any thread
+  ///@{
+  void put(bool on) noexcept { on_.store(on, std::memory_order_release); }
+  [[nodiscard]] bool is_on() const noexcept { return on_.load(std::memory_order_acquire); }
+  /// Whether the wall is on but waits for the stylus.
+  [[nodiscard]] bool waits() const noexcept {
+    return is_on() && !met_.load(std::memory_order_acquire);
+  }
+  ///@}
+
+  [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override {
+    const bool on = is_on();
+    const double depth_mm = -sample.position_mm.z;
+    const bool met = on && (met_.load(std::memory_order_relaxed) || depth_mm <= 0.0);
+    // A wall that is switched off still acts while its force falls.
+    if (met != met_.load(std::memory_order_relaxed)) met_.store(met, std::memory_order_release);
+    share_ = std::clamp(share_ + (met ? share_of_tick_ : -share_of_tick_), 0.0, 1.0);
+    const double force_n = std::clamp(kStiffness_n_per_mm * depth_mm, 0.0, kMaxForceN);
+    return {0.0, 0.0, share_ * force_n};
+  }
+
+ private:
+  double share_of_tick_;
+  double share_ = 0.0;
+  std::atomic<bool> on_{false};
+  std::atomic<bool> met_{false};
+};
+
+/// Runs a device against the test wall on a thread of its own, under a watchdog. Signals halt the
+/// device while this object lives. Belongs to one thread; only its destructor waits for the servo.
 class MonitorRun {
  public:
   /// \param device  must outlive this
@@ -29,12 +68,12 @@ class MonitorRun {
   MonitorRun(const MonitorRun&) = delete;
   MonitorRun& operator=(const MonitorRun&) = delete;
 
-  /// A person's decision: re-arms the device and runs the servo. Does nothing while it runs, or
-  /// once a signal has asked the program to end.
+  /// Re-arms the device and runs the servo; only a person may decide to do so. Does nothing while
+  /// it runs, or after a signal has asked the program to end.
   void start();
   void comfort_stop() noexcept { control_.comfort_stop(); }
   [[nodiscard]] bool running();
-  /// How the last run ended; nothing while one runs, or before the first.
+  /// The report of the last run; nothing while one runs, or before the first.
   [[nodiscard]] std::optional<device::ServoReport> ended();
 
   [[nodiscard]] TestWall& wall() noexcept { return wall_; }
@@ -42,7 +81,7 @@ class MonitorRun {
   [[nodiscard]] const device::SchedulingObtained& scheduling() const noexcept {
     return thread_.scheduling();
   }
-  /// Moves what has come since the last time into the history.
+  /// Moves the samples since the last call into the history.
   void collect(MonitorHistory& history);
 
  private:
@@ -62,7 +101,7 @@ class MonitorRun {
   device::ServoReport report_;
   bool waited_for_ = true;
   bool has_run_ = false;
-  device::ServoThread thread_;  ///< last: it ends before what it uses, and before what guards it
+  device::ServoThread thread_;  ///< last: it must end before the members that it uses
 };
 
 }  // namespace touchtrial::app

@@ -1,17 +1,114 @@
 #include "app/monitor/monitor_view.hpp"
 
-#include "app/monitor/palette.hpp"
-#include "app/monitor/plane_view.hpp"
+#include "app/device_words.hpp"
 #include "app/monitor/plot.hpp"
-#include "app/windows/fonts.hpp"
+#include "app/windows/look.hpp"
+#include "device/mouse/mouse_device.hpp"
 
 #include <algorithm>
+#include <string>
 
 #include <fmt/format.h>
 #include <imgui.h>
 
 namespace touchtrial::app {
 namespace {
+
+/// The end of the square view of devices that name no workspace; it covers the simulated hand's
+/// path.
+constexpr Vec2 kUnnamedEndMm = {80.0, 80.0};
+/// The greatest height that the bar beside the plane shows, mm.
+constexpr double kHighestMm = 10.0;
+
+/// The visible part of the plane, and its place on the screen.
+struct Sight {
+  Vec2 middle_mm;
+  Vec2 middle_at;  ///< window units
+  double mm_per_unit = 1.0;
+  bool y_up = false;
+
+  [[nodiscard]] Vec2 at(Vec3 position_mm) const {
+    const Vec2 from = Vec2{position_mm.x, position_mm.y} - middle_mm;
+    return middle_at + (1.0 / mm_per_unit) * Vec2{from.x, y_up ? -from.y : from.y};
+  }
+  [[nodiscard]] Vec2 mm_at(Vec2 at) const {
+    const Vec2 from = mm_per_unit * (at - middle_at);
+    return middle_mm + Vec2{from.x, y_up ? -from.y : from.y};
+  }
+};
+
+/// The plane of a mouse has its true size on the screen; other planes fit the view.
+Sight sight_of(const MonitorPicture& picture, const GlfwWindow& window, Vec2 corner, Vec2 size) {
+  Sight sight;
+  sight.middle_at = corner + 0.5 * size;
+  if (picture.device.name == device::kMouseDriver) {
+    sight.mm_per_unit = window.mm_per_unit();
+    sight.middle_mm = 0.5 * sight.mm_per_unit * size;
+    return sight;
+  }
+  Vec2 least_mm;
+  Vec2 end_mm = kUnnamedEndMm;
+  if (const auto& workspace = picture.device.workspace) {
+    // In a device's own frame, y points upwards.
+    sight.y_up = true;
+    least_mm = {workspace->least_mm.x, workspace->least_mm.y};
+    end_mm = {workspace->greatest_mm.x, workspace->greatest_mm.y};
+  }
+  sight.middle_mm = 0.5 * (least_mm + end_mm);
+  sight.mm_per_unit = std::max((end_mm.x - least_mm.x) / size.x, (end_mm.y - least_mm.y) / size.y);
+  return sight;
+}
+
+/// A bar from the plane up or down to the stylus.
+void draw_height(ImDrawList& list, Vec2 corner, Vec2 size, double height_mm, float density) {
+  const double middle = corner.y + size.y / 2.0;
+  const double share = std::clamp(height_mm / kHighestMm, -1.0, 1.0);
+  const double tip = middle - share * size.y / 2.0;
+  list.AddRectFilled(imgui_vec(corner), imgui_vec(corner + size), kWhite);
+  list.AddRectFilled(imgui_vec({corner.x, std::min(middle, tip)}),
+                     imgui_vec({corner.x + size.x, std::max(middle, tip)}),
+                     height_mm < 0.0 ? kVermillion : kBlue);
+  list.AddLine(imgui_vec({corner.x, middle}), imgui_vec({corner.x + size.x, middle}), kBlack,
+               2.0F * density);
+  list.AddRect(imgui_vec(corner), imgui_vec(corner + size), kGrey);
+}
+
+void take_pointer(const Sight& sight, Vec2 corner, Vec2 size, MonitorRequests& requests) {
+  ImGui::InvisibleButton("plane", imgui_vec(size));
+  requests.pressed = ImGui::IsItemActive();
+  if (!ImGui::IsMousePosValid()) return;
+  // A pointer outside the plane counts as a hand at its edge.
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  const Vec2 end = corner + size;
+  requests.pointer_mm = sight.mm_at({std::clamp(static_cast<double>(mouse.x), corner.x, end.x),
+                                     std::clamp(static_cast<double>(mouse.y), corner.y, end.y)});
+}
+
+/// Draws the stylus from the front of the plane and its height beside it, at ImGui's cursor. Takes
+/// the pointer as the position of a mouse.
+/// \param width,height  window units
+void draw_plane(const MonitorPicture& picture, const GlfwWindow& window, float width, float height,
+                MonitorRequests& requests) {
+  const float density = window.density();
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  const Vec2 corner = {at.x, at.y};
+  const double bar = 18.0 * static_cast<double>(density);
+  const double gap = 10.0 * static_cast<double>(density);
+  const Vec2 size = {static_cast<double>(width) - bar - gap, static_cast<double>(height)};
+  const Sight sight = sight_of(picture, window, corner, size);
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.AddRectFilled(at, imgui_vec(corner + size), kWhite);
+  list.AddRect(at, imgui_vec(corner + size), kGrey);
+  const Vec3 position_mm = picture.newest.sample.position_mm;
+  list.PushClipRect(at, imgui_vec(corner + size), true);
+  draw_stylus(sight.at(position_mm), position_mm.z < 0.0, picture.running, density);
+  list.PopClipRect();
+  draw_height(list, corner + Vec2{size.x + gap, 0.0}, {bar, size.y}, position_mm.z, density);
+  take_pointer(sight, corner, size, requests);
+  const std::string caption = fmt::format("{:.0f} x {:.0f} mm; bar: z, -10 to 10 mm",
+                                          size.x * sight.mm_per_unit, size.y * sight.mm_per_unit);
+  ImGui::TextColored({0.43F, 0.43F, 0.43F, 1.0F}, "%s", caption.c_str());
+}
 
 constexpr int kValueTicks = 4;
 constexpr float kLeftWidth = 330.0F;
@@ -37,7 +134,7 @@ void draw_state(const StateLine& state, float width, float density) {
   ImGui::GetWindowDrawList()->AddRectFilled(at, {at.x + width, at.y + height},
                                             colour_of(state.tone));
   ImFont* font = ImGui::GetIO().Fonts->Fonts[kLargeFont];
-  // A long line is made to fit rather than cut.
+  // A long line is scaled down to fit.
   const float wide = font->CalcTextSizeA(font->FontSize, width * 8.0F, 0.0F, state.text.c_str()).x;
   const float size = font->FontSize * std::min(1.0F, (width - 32.0F * density) / wide);
   ImGui::GetWindowDrawList()->AddText(font, size,
@@ -89,7 +186,7 @@ void draw_facts(const MonitorPicture& picture) {
   ImGui::PushTextWrapPos(0.0F);
   const auto line = [](const std::string& text) { ImGui::TextUnformatted(text.c_str()); };
   line(device_name(picture.device));
-  if (picture.device.visual) line("visual, not blind: demonstration and pilot sessions alone");
+  if (picture.device.visual) line("visual, not blind: for demonstration and pilot sessions only");
   line("position  " + vector(now.sample.position_mm, "{:.1f}  {:.1f}  {:.1f} mm"));
   line("force  " + vector(now.force_n, "{:.2f}  {:.2f}  {:.2f} N"));
   line(fmt::format("speed  {:.0f} mm/s", norm(now.sample.velocity_mm_s)));
@@ -148,6 +245,26 @@ void begin_canvas(Vec2 size, float density) {
 
 }  // namespace
 
+StateLine state_line(const MonitoredState& state) {
+  if (state.ended && state.ended->end == device::ServoEnd::fault) {
+    return {StateTone::fault, "Fault: " + fault_in_words(*state.ended) + ". Force is zero."};
+  }
+  if (state.ended) {
+    const bool by_person = state.ended->end == device::ServoEnd::comfort_stop;
+    return {StateTone::stopped,
+            by_person ? "Stopped. Force is zero." : "Ended: the hand has stopped. Force is zero."};
+  }
+  if (state.readiness != device::DeviceReadiness::ready) {
+    return {StateTone::waiting, "Waiting: " + readiness_in_words(state.readiness) + "."};
+  }
+  if (!state.ready) return {StateTone::waiting, "Waiting: the device is not ready. Force is zero."};
+  if (!state.wall_on) return {StateTone::running, "Running without force."};
+  if (state.wall_waits) {
+    return {StateTone::running, "Running. The wall waits until the stylus is in front of it."};
+  }
+  return {StateTone::running, "Running, wall on."};
+}
+
 MonitorRequests draw_monitor(GlfwWindow& window, const MonitorPicture& picture) {
   const float density = window.density();
   MonitorRequests requests;
@@ -158,7 +275,7 @@ MonitorRequests draw_monitor(GlfwWindow& window, const MonitorPicture& picture) 
   ImGui::BeginChild("controls", {left, room.y});
   const float inside = ImGui::GetContentRegionAvail().x;
   draw_controls(picture, inside, density, requests);
-  // What is said below it needs this much room.
+  // The facts below the plane need the rest of the height.
   const float plane = room.y - (90.0F + kFactsHeight) * density;
   draw_plane(picture, window, inside,
              std::clamp(plane, 120.0F * density, std::max(inside, 120.0F * density)), requests);

@@ -1,6 +1,6 @@
 #include "app/participant/canvas.hpp"
 
-#include "app/windows/fonts.hpp"
+#include "app/windows/look.hpp"
 
 #include <algorithm>
 #include <cfloat>
@@ -14,7 +14,7 @@ namespace {
 constexpr double kSmall = 19.0;
 constexpr double kBody = 24.0;
 constexpr double kTitleSize = 38.0;
-/// Letters are made smaller in such steps until they fit, but no smaller than the last.
+/// Letters shrink by this factor until they fit, down to the smallest size.
 constexpr double kSmallerBy = 0.94;
 constexpr double kSmallest = 0.4;
 
@@ -22,7 +22,7 @@ ImVec2 to_imgui(double x, double y) {
   return {static_cast<float>(x), static_cast<float>(y)};
 }
 
-/// Lines of text, as ImGui wraps it.
+/// The lines of a text, as ImGui wraps it.
 std::vector<std::string> wrapped(const ImFont& font, const std::string& text, float scale,
                                  float width) {
   std::vector<std::string> lines;
@@ -32,7 +32,7 @@ std::vector<std::string> wrapped(const ImFont& font, const std::string& text, fl
     const char* stop = font.CalcWordWrapPositionA(scale, at, end, width);
     const char* const newline = std::find(at, stop, '\n');
     if (newline != stop) stop = newline;
-    // At least one letter, however narrow the room.
+    // Take at least one letter, however narrow the room is.
     if (stop == at && *at != '\n') {
       ++stop;
       while (stop < end && (static_cast<unsigned char>(*stop) & 0xC0U) == 0x80U) ++stop;
@@ -48,7 +48,7 @@ std::vector<std::string> wrapped(const ImFont& font, const std::string& text, fl
   return lines;
 }
 
-/// As few lines as the width allows, and as even as they can be: no word is alone in the last.
+/// As few lines as the width allows, of similar widths, so that no word is alone on the last line.
 std::vector<std::string> balanced(const ImFont& font, const std::string& text, float scale,
                                   double width) {
   std::vector<std::string> lines = wrapped(font, text, scale, static_cast<float>(width));

@@ -1,4 +1,4 @@
-/// \file What the participant's screens are drawn with: text that is measured, buttons, pictures.
+/// \file The drawing functions of the participant's screens: measured text, buttons, pictures.
 #pragma once
 
 #include "core/vec.hpp"
@@ -30,13 +30,14 @@ struct Box {
   }
 };
 
-/// As ImGui packs colours: 0xAABBGGRR.
+/// Colours as ImGui packs them: 0xAABBGGRR.
 namespace tone {
-inline constexpr std::uint32_t kGround = 0xFFECEAE8;  ///< of every screen: no flash between two
+inline constexpr std::uint32_t kGround =
+    0xFFECEAE8;  ///< the same for all screens, so that none flashes
 inline constexpr std::uint32_t kCard = 0xFFFFFFFF;
 inline constexpr std::uint32_t kEdge = 0xFFD2CDC8;
 inline constexpr std::uint32_t kText = 0xFF332A22;
-inline constexpr std::uint32_t kQuiet = 0xFF6B6158;  ///< 5 : 1 on the ground
+inline constexpr std::uint32_t kQuiet = 0xFF6B6158;  ///< contrast of 5 : 1 on the ground
 inline constexpr std::uint32_t kAccent = 0xFF99580B;
 inline constexpr std::uint32_t kAccentPale = 0xFFF6E9DC;
 inline constexpr std::uint32_t kAccentDark = 0xFF754308;
@@ -53,10 +54,10 @@ enum class ButtonKind {
   primary,
   plain,
   choice,
-  line,  ///< a choice with its words at the left
+  line,  ///< a choice with left-aligned text
 };
 
-/// The sizes of one scale, in ImGui's current context.
+/// Fonts for one scale, in ImGui's current context.
 struct Fonts {
   ImFont* small = nullptr;
   ImFont* body = nullptr;
@@ -64,23 +65,25 @@ struct Fonts {
   ImFont* title = nullptr;
 };
 
-/// Window units for one of the design, which is 1280 x 720.
+/// \return window units per unit of the design, whose window is 1280 x 720
 [[nodiscard]] double design_unit(Vec2 size) noexcept;
 
-/// Adds the fonts to the current context's atlas, in place of all others; it is to be built anew.
+/// Replaces the fonts of the current context's atlas, which must then be built again.
 [[nodiscard]] Fonts load_participant_fonts(double unit);
 
-/// Brings pictures to the screen's memory.
+/// Provides pictures as textures.
 class PictureShelf {
  public:
   virtual ~PictureShelf() = default;
-  /// In mm. \param label  of the picture
+  /// \param label  of the picture
+  /// \return width and height, mm
   [[nodiscard]] virtual Vec2 size_mm(const std::string& label) const = 0;
-  /// ImGui's texture of a picture at this size in window units; null: draw a blank.
+  /// \param width,height  window units
+  /// \return ImGui's texture of the picture at this size; null: draw a blank
   [[nodiscard]] virtual void* texture(const std::string& label, int width, int height) = 0;
 };
 
-/// Something that can be clicked, or chosen by keys.
+/// Something that can be clicked or chosen by keys.
 struct Target {
   int id = 0;
   Box box;
@@ -88,18 +91,18 @@ struct Target {
 
 struct PlacedText {
   std::string text;
-  Box box;   ///< what its letters take
-  Box room;  ///< what they may take
+  Box box;   ///< used by the letters
+  Box room;  ///< available
 };
 
-/// What is under the pointer, held, and chosen by keys; -1: nothing.
+/// Targets that have attention; -1: none.
 struct Attention {
-  int focus = -1;
-  int hover = -1;
-  int held = -1;
+  int focus = -1;  ///< chosen by keys
+  int hover = -1;  ///< under the pointer
+  int held = -1;   ///< pressed by the mouse button
 };
 
-/// One picture of the window, while ImGui's frame is begun. The drawing thread's.
+/// One picture of the window, within a frame of ImGui. Belongs to the drawing thread.
 class Canvas {
  public:
   Canvas(ImDrawList& list, const Fonts& fonts, Vec2 size, const Attention& attention);
@@ -107,13 +110,14 @@ class Canvas {
   [[nodiscard]] Vec2 size() const noexcept { return size_; }
   [[nodiscard]] double unit() const noexcept { return unit_; }
 
-  /// \return the height that it takes
+  /// \return the height of the wrapped text
   double measure(Letters letters, const std::string& text, double width, double shrink = 1.0) const;
   [[nodiscard]] double width_of(Letters letters, const std::string& text) const;
-  /// Wrapped at the room's width, from its top. \return the height that it takes
+  /// Draws text from the top of the room, wrapped at its width.
+  /// \return the height of the text
   double text(const Box& room, Letters letters, std::uint32_t colour, const std::string& text,
               Align align = Align::centre, double shrink = 1.0);
-  /// One or more lines in the middle of the room's height; smaller letters if it is too small.
+  /// Draws lines in the middle of the room's height; letters shrink if the room is too small.
   void label(const Box& room, Letters letters, std::uint32_t colour, const std::string& text,
              Align align = Align::centre);
 
@@ -121,7 +125,7 @@ class Canvas {
   void outline(const Box& box, std::uint32_t colour, double thickness, double rounding = 0.0);
   void button(int id, const Box& box, const std::string& label, ButtonKind kind,
               bool enabled = true, bool chosen = false);
-  /// A ring around what the keys have chosen.
+  /// Draws a ring around the box if the target has the focus.
   void focus_ring(int id, const Box& box, double rounding);
   void target(int id, const Box& box) { targets_.push_back({id, box}); }
   void picture(PictureShelf& shelf, const std::string& label, const Box& box);

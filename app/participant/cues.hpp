@@ -1,19 +1,19 @@
-/// \file Sounds that a participant's window asks for.
+/// \file Sounds that a participant's window asks for; app/sound plays them.
 #pragma once
 
 namespace touchtrial::app {
 
 enum class Cue {
   plane_on,   ///< the plane can be touched
-  plane_off,  ///< it no longer can: an answer is due
-  too_hard,   ///< more force than is good for hand and device
+  plane_off,  ///< the plane is off: an answer is due
+  too_hard,   ///< too much force for hand and device
 };
 
-/// Whoever has a loudspeaker.
+/// Plays cues.
 class Cues {
  public:
   virtual ~Cues() = default;
-  /// Begins to sound and returns at once. Any thread but the servo's; never waits.
+  /// Starts the sound and returns at once. Any thread but the servo's.
   virtual void tone(Cue cue) noexcept = 0;
 };
 

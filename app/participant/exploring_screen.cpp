@@ -1,7 +1,7 @@
 #include "app/participant/exploring_screen.hpp"
 
 #include "app/participant/page_layout.hpp"
-#include "app/windows/stylus_mark.hpp"
+#include "app/windows/look.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,8 @@
 namespace touchtrial::app {
 namespace {
 
-// What instructions ask for, and where bars end. Source: docs/participant-window.md.
+// The ranges that the instructions ask for, and the ends of the bars.
+// Source: docs/participant-window.md.
 constexpr double kGoodForceN[] = {0.5, 0.8};
 constexpr double kTooHardN = 2.0;
 constexpr double kFullForceN = 2.5;
@@ -18,9 +19,9 @@ constexpr double kGoodSpeedMmS[] = {50.0, 150.0};
 constexpr double kFullSpeedMmS = 250.0;
 
 constexpr double kExploringMargin = 40.0;
-constexpr double kBelow = 92.0;  ///< for a line of text, and the bars in practice
+constexpr double kBelow = 92.0;  ///< height of a line of text, or of the bars in practice
 
-/// A bar with the good range marked.
+/// A bar with a marked good range; all values are shares of its length.
 struct Bar {
   std::string name;
   double share = 0.0;

@@ -1,4 +1,4 @@
-/// \file The screen while a plane is on. Nothing on it depends on what is presented.
+/// \file The screen while a plane is on. Nothing on it depends on the stimulus.
 #pragma once
 
 #include "app/participant/screen.hpp"
@@ -9,25 +9,25 @@
 
 namespace touchtrial::app {
 
-/// What the practice's bars show. Written behind the servo, read by the drawing thread.
+/// Values of the bars in practice. Written by the servo's listener, read by the drawing thread.
 struct FeltNow {
   std::atomic<float> force_n{0.0F};
   std::atomic<float> speed_mm_s{0.0F};
 };
 
-/// Where the plane of the device "mouse" lies in the window.
+/// The place of the mouse device's plane in the window.
 struct PlaneOnScreen {
   Vec2 corner;
   double mm_per_unit = 1.0;
-  double shown = 1.0;  ///< of its true size
+  double shown = 1.0;  ///< scale: 1 is true size
 };
 [[nodiscard]] PlaneOnScreen place_plane(Vec2 window, Vec2 plane_mm, double mm_per_unit);
 
-/// What a plane is explored with.
+/// What the exploring screen shows.
 struct ExploringView {
-  const FeltNow* bars = nullptr;               ///< in practice
-  device::PointerExchange* pointer = nullptr;  ///< the mouse's plane and stylus
-  const std::atomic<bool>* pressed = nullptr;  ///< the mouse's button, with `pointer`
+  const FeltNow* bars = nullptr;               ///< in practice; null: no bars
+  device::PointerExchange* pointer = nullptr;  ///< of the mouse device; null: no plane or stylus
+  const std::atomic<bool>* pressed = nullptr;  ///< the mouse button; set if `pointer` is
   PlaneGeometry plane;
 };
 

@@ -1,15 +1,18 @@
-/// \file What a participant did with keyboard, mouse or gamepad, and when.
+/// \file What a participant did with keyboard, mouse or gamepad, and when; made from what GLFW
+/// says.
 #pragma once
 
 #include "core/vec.hpp"
 
+#include <array>
 #include <chrono>
+#include <functional>
 
 namespace touchtrial::app {
 
 enum class Key {
   none,
-  enter,  ///< keypad's too, and a gamepad's A
+  enter,  ///< also the keypad's, and A of a gamepad
   space,
   left,
   right,
@@ -21,14 +24,14 @@ enum class Key {
   remove,
   home,
   end,
-  digit,  ///< keypad's too
+  digit,  ///< also the keypad's
 };
 
 struct InputEvent {
   using Time = std::chrono::steady_clock::time_point;
   enum class Kind {
     key,     ///< went down
-    repeat,  ///< is held, as the system repeats it
+    repeat,  ///< held down: the system repeats it
     letter,  ///< typed
     moved,
     pressed,  ///< left button
@@ -40,6 +43,25 @@ struct InputEvent {
   int digit = 0;        ///< 0 to 9
   char32_t letter = 0;  ///< Unicode
   Vec2 position;        ///< of the pointer, window units from the top-left corner
+};
+
+/// Main thread.
+/// \param key,action,modifiers  as GLFW's key callback receives them
+/// \return an event of Key::none for a key without meaning or a key that is released
+[[nodiscard]] InputEvent event_of_key(int key, int action, int modifiers);
+
+/// Turns buttons of gamepads into pressed keys: the cross moves, A is Enter, B is the space bar.
+/// GLFW has no events for gamepads, so the time of a key is that of the poll. Main thread.
+class Gamepads {
+ public:
+  /// Reads all gamepads.
+  /// \param tell  called for each button that was pressed since the last poll
+  void poll(const std::function<void(Key)>& tell);
+
+ private:
+  static constexpr int kPads = 16;
+  static constexpr int kButtons = 6;
+  std::array<std::array<bool, kButtons>, kPads> held_{};
 };
 
 }  // namespace touchtrial::app

@@ -2,11 +2,9 @@
 
 #include "app/experimenter/console_window.hpp"
 #include "app/participant/exploring_screen.hpp"
-#include "app/participant/glfw_input.hpp"
-#include "app/participant/simple_screens.hpp"
+#include "app/participant/input_event.hpp"
 #include "app/participant/window_drawing.hpp"
-#include "app/windows/glfw_library.hpp"
-#include "app/windows/screen_scale.hpp"
+#include "app/windows/glfw_support.hpp"
 #include "core/errors.hpp"
 #include "device/platform/stop_signals.hpp"
 #include "device/servo/servo.hpp"
@@ -29,16 +27,18 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
 constexpr const char* kWindowTitle = "Touchtrial";
-/// The session's thread looks elsewhere this often.
+/// The longest time for which the session's thread waits for a reply.
 constexpr milliseconds kAttention{10};
-/// Long enough that only a window that hangs is given up.
+/// So long that only a window that hangs exceeds it.
 constexpr milliseconds kPictureLimit{300'000};
-/// Enter that is still held from the screen before does not end an exploration.
+/// Within this time after the plane comes on, Enter does not end the exploration: it may still be
+/// held from the previous screen.
 constexpr milliseconds kNoAccident{500};
-/// Force that is too much; the tone comes again only after it has been less than the second.
+// A tone signals a force above the first limit. It comes again only after the force was below the
+// second limit.
 constexpr double kPushTooHardN = 2.0;
 constexpr double kSoftAgainN = 1.7;
-constexpr double kBarsTimeS = 0.06;  ///< in which the practice's bars follow
+constexpr double kBarsTimeS = 0.06;  ///< time constant of the bars in practice
 
 GLFWmonitor* monitor_of(const ParticipantWindowOptions& options) {
   if (options.size_px) return nullptr;
@@ -57,7 +57,7 @@ GLFWwindow* make_window(const ParticipantWindowOptions& options, GLFWmonitor* mo
   glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 2);
   glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
   glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
-  // The experimenter's window takes the focus now and then.
+  // The experimenter's window sometimes takes the focus.
   glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);
   std::pair<int, int> size = options.size_px.value_or(std::pair(1280, 720));
   if (monitor != nullptr) {
@@ -88,7 +88,6 @@ struct ParticipantWindow::State {
     glfwSetWindowUserPointer(window, this);
     take_callbacks();
     tell_surface();
-    exchange.show(std::make_shared<BlankScreen>());
     if (options.console != nullptr) open_console();
     drawing =
         std::thread([this] { draw_until_ended(window, exchange, glass, shelf, console.get()); });
@@ -157,7 +156,7 @@ struct ParticipantWindow::State {
     return event;
   }
 
-  /// Where keys and buttons of every kind come together.
+  /// Takes the events of keyboards, mouse and gamepads.
   void take(const InputEvent& event) {
     if (!exploring) return exchange.push(event);
     if (event.kind != InputEvent::Kind::key) return;
@@ -181,7 +180,7 @@ struct ParticipantWindow::State {
     take(event);
   }
 
-  /// The device "mouse" wants to hear of its window even if nothing has moved.
+  /// Called regularly, because the mouse device needs to know that its window is alive.
   void publish_pointer() {
     if (options.pointer == nullptr) return;
     const WindowSurface surface = exchange.surface();
@@ -206,8 +205,7 @@ struct ParticipantWindow::State {
     int width = 0;
     int height = 0;
     glfwGetWindowSize(window, &width, &height);
-    surface.size = {static_cast<double>(std::max(width, 1)),
-                    static_cast<double>(std::max(height, 1))};
+    surface.size = {1.0 * std::max(width, 1), 1.0 * std::max(height, 1)};
     glfwGetFramebufferSize(window, &surface.width_px, &surface.height_px);
     const ScreenScale scale = screen_scale(window);
     surface.glass = {scale.mm_per_unit, scale.is_known};
@@ -220,7 +218,7 @@ struct ParticipantWindow::State {
     gone.compare_exchange_strong(nobody, static_cast<int>(why));
   }
 
-  /// The pointer is hidden while a plane is on: it would tell where the hand of a mouse user is.
+  /// Hides the pointer while a plane is on: it would show where a mouse user's hand is.
   void hide_pointer() {
     const bool hide = exploring;
     if (hide == pointer_hidden) return;
@@ -245,6 +243,12 @@ struct ParticipantWindow::State {
     exchange.show(screen);
   }
 
+  [[nodiscard]] engine::ColourImage existing(std::optional<engine::ColourImage> picture) const {
+    exchange.check();
+    if (!picture) throw DeviceError("window: no picture came; look at the graphics driver");
+    return std::move(*picture);
+  }
+
   void cue(Cue which) noexcept {
     if (options.cues != nullptr) options.cues->tone(which);
   }
@@ -253,12 +257,12 @@ struct ParticipantWindow::State {
   GlfwLibrary library;
   GLFWmonitor* monitor;  ///< null: a window
   GLFWwindow* window;
-  Glass glass;  ///< the drawing thread's
+  Glass glass;  ///< belongs to the drawing thread
   GlPictureShelf shelf;
   ScreenContext context;
   WindowExchange exchange;
   std::unique_ptr<ConsoleWindow> console;
-  static inline State* newest = nullptr;  ///< GLFW's monitor callback has no other
+  static inline State* newest = nullptr;  ///< for GLFW's monitor callback, which has no user data
 
   // Main thread.
   Vec2 pointer_at;
@@ -284,7 +288,7 @@ struct ParticipantWindow::State {
   bool replied = false;
   bool practice = false;
 
-  // Behind the servo.
+  // The servo's listener.
   std::optional<device::ServoSample> last_felt;
   bool is_too_hard = false;
 
@@ -302,7 +306,7 @@ void ParticipantWindow::pump(milliseconds longest) {
   s.gamepads.poll([&s](Key key) {
     InputEvent event = State::event_now(InputEvent::Kind::key);
     event.key = key;
-    // Its B stops forces and chooses nothing.
+    // B stops forces but chooses nothing.
     if (key != Key::space || s.exploring) s.take(event);
   });
   s.hide_pointer();
@@ -351,11 +355,7 @@ void ParticipantWindow::show_exploring(const PlaneGeometry& plane) {
   s.is_too_hard = false;
   s.felt.force_n = 0.0F;
   s.felt.speed_mm_s = 0.0F;
-  ExploringView view;
-  view.plane = plane;
-  view.pointer = s.options.pointer;
-  view.pressed = &s.pressed;
-  if (s.practice) view.bars = &s.felt;
+  const ExploringView view{s.practice ? &s.felt : nullptr, s.options.pointer, &s.pressed, plane};
   s.screen = std::make_shared<ExploringScreen>(view, s.context);
   s.exchange.show(s.screen);
   s.comfort_asked = false;
@@ -368,7 +368,7 @@ void ParticipantWindow::show_exploring(const PlaneGeometry& plane) {
 
 void ParticipantWindow::exploring(device::ServoControl& servo) {
   State& s = *state_;
-  s.exchange.check();  // nobody explores before a window that is dead
+  s.exchange.check();  // a dead window must not allow exploring
   if (gone()) servo.emergency_stop();
   if (s.comfort_asked) servo.comfort_stop();
   if (s.finish_asked) servo.finish();
@@ -413,18 +413,12 @@ bool ParticipantWindow::wait_until_shown(milliseconds longest) {
 }
 
 engine::ColourImage ParticipantWindow::picture() {
-  std::optional<engine::ColourImage> picture = state_->exchange.picture(kPictureLimit);
-  check();
-  if (!picture) throw DeviceError("window: no picture came; look at the graphics driver");
-  return std::move(*picture);
+  return state_->existing(state_->exchange.picture(kPictureLimit));
 }
 
 engine::ColourImage ParticipantWindow::console_picture() {
   if (!state_->console) throw std::logic_error("ParticipantWindow: no experimenter's window");
-  std::optional<engine::ColourImage> picture = state_->console->picture(kPictureLimit);
-  check();
-  if (!picture) throw DeviceError("window: no picture came; look at the graphics driver");
-  return std::move(*picture);
+  return state_->existing(state_->console->picture(kPictureLimit));
 }
 
 void run_beside(ParticipantWindow& window, const std::function<void()>& session) {
@@ -443,7 +437,7 @@ void run_beside(ParticipantWindow& window, const std::function<void()>& session)
   try {
     while (!ended) window.pump(kBetweenLooks);
   } catch (...) {
-    window.close();  // the session leaves off
+    window.close();  // makes the session end
     thread.join();
     throw;
   }

@@ -1,4 +1,4 @@
-/// \file The window that a participant sits before.
+/// \file The participant's window.
 #pragma once
 
 #include "app/participant/cues.hpp"
@@ -22,45 +22,47 @@ namespace touchtrial::app {
 class ConsoleExperimenter;
 
 struct ParticipantWindowOptions {
-  /// Full screen on this monitor, from 1 as the system counts them; not with `size_px`.
+  /// Number of the monitor for full screen, from 1 as the system counts; ignored with `size_px`.
   int monitor = 1;
-  /// A window of this size instead.
+  /// Size of a window, instead of full screen.
   std::optional<std::pair<int, int>> size_px;
-  std::string language = "en";  ///< "en" or "de"; others are English
+  std::string language = "en";  ///< "en" or "de"; any other language is shown in English
   design::Sight sight = design::Sight::curtain;
-  /// Pictures of the originals by label, the practice's too.
+  /// Pictures of the originals by label, including those of practice.
   std::map<std::string, GreyImage> pictures;
-  double pitch_mm = 0.2;    ///< of the study; with a picture's pixels its size on the screen
+  double pitch_mm = 0.2;    ///< of the study; gives the pictures' true size
   double rate_hz = 1000.0;  ///< of the servo
-  /// The device that is explored, asked for as each plane comes on.
+  /// Returns the explored device; called when each plane comes on.
   std::function<device::HapticDevice&()> device;
-  Cues* cues = nullptr;  ///< null: silent; must outlive the window
-  /// Of the device "mouse": the window then shows the plane and the stylus. Must outlive the
-  /// window.
+  /// Null: silent. Must outlive the window.
+  Cues* cues = nullptr;
+  /// Of the mouse device, for which the window shows plane and stylus; null: another device. Must
+  /// outlive the window.
   device::PointerExchange* pointer = nullptr;
-  /// A second window, for whoever runs the session. Must outlive the window; null: none.
+  /// Shows a second window for the experimenter; null: none. Must outlive the window.
   ConsoleExperimenter* console = nullptr;
-  /// Where it comes up, from 1; none: wherever the system puts it.
+  /// Number of that window's monitor, from 1; none: the system decides.
   std::optional<int> console_monitor;
 };
 
-/// Why there is no participant any more.
+/// Why the window is gone.
 enum class WindowGone {
   closed,        ///< by the window manager
   monitor_lost,  ///< unplugged
   signal,        ///< the program was asked to end
 };
 
-/// Three threads meet here. The main one makes it, calls `pump` and destroys it: events are taken
-/// there and stamped with steady_clock, the servo's clock, as they arrive. A thread of the window's
-/// own draws. The session's calls the functions of Participant and waits for no picture.
+/// Three threads use the window. The main thread constructs it, calls `pump` and destroys it; it
+/// takes events and stamps them on arrival with steady_clock, which is the servo's clock. A thread
+/// of the window's own draws. The session's thread calls the functions of Participant and does not
+/// wait for pictures.
 ///
-/// While a plane is on, the space bar is a comfort stop and Enter ends the exploration; both are
-/// seen without the drawing thread. Escape does nothing.
+/// While a plane is on, the space bar is a comfort stop and Enter ends the exploration; neither
+/// needs the drawing thread. Escape does nothing.
 ///
-/// The experimenter's window, if there is one, lives on the same threads. Keys that are not text
-/// written there are the participant's, whichever window has the focus; while a plane is on, all
-/// are.
+/// The experimenter's window, if there is one, uses the same threads. Whichever window has the
+/// focus, keys belong to the participant unless they are text typed into the experimenter's window;
+/// while a plane is on, all keys do.
 class ParticipantWindow final : public session::Participant {
  public:
   /// \throws DeviceError with the remedy if there is no display, no OpenGL 3.2, or no such monitor
@@ -71,7 +73,7 @@ class ParticipantWindow final : public session::Participant {
 
   /// \name Main thread
   ///@{
-  /// Takes events until `longest` has gone by, or something came.
+  /// Takes events until `longest` has passed or something came.
   void pump(std::chrono::milliseconds longest);
   /// \throws what the drawing thread threw
   void check() const;
@@ -80,14 +82,14 @@ class ParticipantWindow final : public session::Participant {
   /// \name The session's thread
   ///@{
   void see_pictures(const std::vector<std::string>& labels) override;
-  /// Blocks for up to 10 ms. Nothing once the window is gone, and as long as a pause lasts; a step
-  /// that a pause interrupted goes on as it was.
+  /// Blocks for up to 10 ms. A step that a pause interrupts later continues in its previous state.
+  /// \return nothing yet; always so during a pause and once the window is gone
   [[nodiscard]] std::optional<session::StepReply> attend(const session::Step& step) override;
   /// \throws std::logic_error if the options have no device
   [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& plane) override;
-  /// The screen while a plane is on, for a device that somebody else brings.
+  /// Shows the screen for a plane, for a device that the caller provides.
   void show_exploring(const PlaneGeometry& plane);
-  /// Hands on what the person asks for; an emergency stop once the window is gone.
+  /// Passes on the participant's requests; an emergency stop once the window is gone.
   void exploring(device::ServoControl& servo) override;
   ///@}
   void feel(const device::ServoSample& sample) noexcept override;
@@ -95,16 +97,18 @@ class ParticipantWindow final : public session::Participant {
   /// \name Any thread
   ///@{
   [[nodiscard]] std::optional<WindowGone> gone() const noexcept;
-  /// As if the window manager had closed it.
+  /// Acts as if the window manager had closed the window.
   void close() noexcept;
-  /// What is now to happen: as if the event had come by itself.
+  /// Acts as if the event had just arrived.
   void inject(const InputEvent& event);
-  /// Waits until the newest step has been on the screen for a picture. \return false if it is not
-  /// within the time, or the window is gone
+  /// Waits until the newest step is visible.
+  /// \return false if that does not happen in time, or if the window is gone
   [[nodiscard]] bool wait_until_shown(std::chrono::milliseconds longest);
-  /// What is on the screen: waits for a picture. \throws DeviceError if none comes within 5 min
+  /// Waits for the next picture of the window.
+  /// \throws DeviceError if none comes within 5 min
   [[nodiscard]] engine::ColourImage picture();
-  /// What is in the experimenter's window, likewise. \throws std::logic_error if there is none
+  /// The same for the experimenter's window.
+  /// \throws std::logic_error if there is none
   [[nodiscard]] engine::ColourImage console_picture();
   ///@}
 
@@ -113,8 +117,9 @@ class ParticipantWindow final : public session::Participant {
   std::unique_ptr<State> state_;
 };
 
-/// Runs a session on a thread of its own; this one, the main thread, takes the window's events
-/// until it has ended. \throws what the session threw, or the drawing of the window
+/// Runs a session on a new thread. Meanwhile the calling thread, the main one, takes the window's
+/// events.
+/// \throws what the session or the drawing thread threw
 void run_beside(ParticipantWindow& window, const std::function<void()>& session);
 
 }  // namespace touchtrial::app

@@ -16,8 +16,7 @@ bool is_of_number(char32_t letter) {
   return (letter >= U'0' && letter <= U'9') || letter == U'.' || letter == U',' || letter == U'-';
 }
 
-}  // namespace
-
+/// UTF-8; invalid code points are left out.
 std::string utf8_of(const std::u32string& text) {
   std::string bytes;
   const auto put = [&bytes](char32_t value) { bytes += static_cast<char>(value); };
@@ -40,6 +39,8 @@ std::string utf8_of(const std::u32string& text) {
   }
   return bytes;
 }
+
+}  // namespace
 
 QuestionScreen::QuestionScreen(const design::Questionnaire& questionnaire,
                                const ScreenContext& context)
@@ -164,7 +165,7 @@ std::vector<std::string> QuestionScreen::answers() const {
         all.push_back(chosen_[i] < 0 ? "" : std::to_string(chosen_[i]));
         break;
       case design::QuestionKind::number: {
-        // Numbers never depend on the language.
+        // Stored numbers do not depend on the language.
         std::string number = utf8_of(typed_[i]);
         std::replace(number.begin(), number.end(), ',', '.');
         all.push_back(std::move(number));

@@ -10,7 +10,7 @@ namespace touchtrial::app {
 
 class QuestionScreen final : public Screen {
  public:
-  /// \param questionnaire  outlives this
+  /// \param questionnaire  must outlive this object
   QuestionScreen(const design::Questionnaire& questionnaire, const ScreenContext& context);
 
  private:
@@ -33,12 +33,9 @@ class QuestionScreen final : public Screen {
   const design::Questionnaire& questionnaire_;
   ScreenContext context_;
   std::size_t page_ = 0;
-  std::vector<int> chosen_;            ///< option of each question; -1: none
-  std::vector<std::u32string> typed_;  ///< text of each
+  std::vector<int> chosen_;            ///< by question, the option; -1: none
+  std::vector<std::u32string> typed_;  ///< by question
   std::size_t caret_ = 0;
 };
-
-/// UTF-8. Invalid code points are left out.
-[[nodiscard]] std::string utf8_of(const std::u32string& text);
 
 }  // namespace touchtrial::app

@@ -58,7 +58,7 @@ std::optional<session::StepReply> Screen::take_pointer(const InputEvent& event) 
 
 std::optional<session::StepReply> Screen::take_key(const InputEvent& event) {
   if (takes_key(event)) return std::nullopt;
-  // A key that is held down does nothing twice.
+  // A key that is held down acts once.
   if (event.kind != InputEvent::Kind::key) return std::nullopt;
   switch (event.key) {
     case Key::enter:
@@ -86,7 +86,7 @@ Vec2 centre(const Box& box) {
   return {box.x + box.width / 2.0, box.y + box.height / 2.0};
 }
 
-/// How far to go from here to there in a direction; infinite if it lies elsewhere.
+/// The distance between two boxes in a direction; infinite if the other one lies elsewhere.
 double way(const Box& from, const Box& to, Key direction) {
   const Vec2 step = centre(to) - centre(from);
   const bool across = direction == Key::left || direction == Key::right;

@@ -1,11 +1,11 @@
-/// \file One screen of the participant's window: what it shows, and what it makes of keys and
-/// clicks. Knows neither window nor threads; one thread at a time has it.
+/// \file One screen of the participant's window: what it shows, and how it handles keys and clicks.
+/// A screen knows neither window nor threads; one thread at a time uses it.
 #pragma once
 
 #include "app/participant/canvas.hpp"
 #include "app/participant/input_event.hpp"
 #include "app/participant/words.hpp"
-#include "protocols/session/step.hpp"
+#include "protocols/session/participant.hpp"
 
 #include <memory>
 #include <optional>
@@ -14,19 +14,19 @@
 
 namespace touchtrial::app {
 
-/// How large things are on the screen.
+/// The physical scale of the screen.
 struct Glass {
   double mm_per_unit = 25.4 / 96.0;
-  bool is_known = false;
+  bool is_known = false;  ///< false: the scale is a guess
 };
 
-/// What all screens of a session share; outlives them.
+/// What all screens of a session share. The objects it points to must outlive the screens.
 struct ScreenContext {
   const Words* words = nullptr;
   std::string language = "en";
   design::Sight sight = design::Sight::curtain;
-  bool mouse = false;             ///< the device is a mouse
-  PictureShelf* shelf = nullptr;  ///< of the pictures below
+  bool mouse = false;  ///< the device is a mouse
+  PictureShelf* shelf = nullptr;
   const Glass* glass = nullptr;
 };
 
@@ -36,28 +36,29 @@ class Screen {
 
   virtual ~Screen() = default;
 
-  /// Draws one picture of it, and remembers where things are.
+  /// Draws the screen and remembers the places of its targets.
   void draw(Canvas& canvas);
-  /// Attention that `draw` is to show: give it to the canvas.
+  /// What the canvas for `draw` must show as focused, hovered and held.
   [[nodiscard]] const Attention& attention() const noexcept { return attention_; }
-  /// \return the reply, once: whatever comes after it is ignored
+  /// Handles an event. Events after the reply are ignored.
+  /// \return the reply, once
   [[nodiscard]] std::optional<session::StepReply> take(const InputEvent& event);
-  /// Whether its picture changes by itself.
+  /// Whether the screen changes without events.
   [[nodiscard]] virtual bool is_alive() const noexcept { return false; }
   [[nodiscard]] bool is_done() const noexcept { return done_; }
 
  protected:
   virtual void paint(Canvas& canvas) = 0;
-  /// A target was clicked, or chosen by keys.
+  /// Called when a target is clicked or chosen by keys.
   [[nodiscard]] virtual std::optional<session::StepReply> activate(int id, Time at) = 0;
-  /// \return the target that Enter stands for where none has the focus; -1: none
+  /// \return the target that Enter activates if no target has the focus; -1: none
   [[nodiscard]] virtual int default_target() const noexcept { return -1; }
-  /// Keys that mean something else than elsewhere. \return whether it was one
+  /// Handles keys that have a special meaning on this screen.
+  /// \return whether the event was such a key
   virtual bool takes_key(const InputEvent& /*event*/) { return false; }
 
   void focus(int id) noexcept { attention_.focus = id; }
   [[nodiscard]] bool has_target(int id) const noexcept;
-  [[nodiscard]] const std::vector<Target>& targets() const noexcept { return targets_; }
 
  private:
   [[nodiscard]] std::optional<session::StepReply> take_key(const InputEvent& event);
@@ -70,15 +71,16 @@ class Screen {
   bool done_ = false;
 };
 
+/// Makes the screen of a step.
 /// \param labels  of the pictures, by position
 [[nodiscard]] std::shared_ptr<Screen> screen_for(const session::Step& step,
                                                  const ScreenContext& context,
                                                  const std::vector<std::string>& labels);
 
-/// Whether a step is the one that is shown already, asked for again.
+/// Whether two steps are the same, so that their screen stays.
 [[nodiscard]] bool is_same_step(const session::Step& a, const session::Step& b);
 
-/// Targets of every screen.
+/// Targets that screens have in common.
 inline constexpr int kNextTarget = 100;
 inline constexpr int kBackTarget = 101;
 

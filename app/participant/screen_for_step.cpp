@@ -1,8 +1,7 @@
 #include "app/participant/answer_screen.hpp"
-#include "app/participant/feedback_screen.hpp"
+#include "app/participant/page_layout.hpp"
 #include "app/participant/question_screen.hpp"
 #include "app/participant/screen.hpp"
-#include "app/participant/simple_screens.hpp"
 
 #include <type_traits>
 #include <utility>
@@ -10,9 +9,84 @@
 namespace touchtrial::app {
 namespace {
 
+/// A card with at most one button.
+class NoteScreen final : public Screen {
+ public:
+  struct Content {
+    Progress progress;
+    std::string title;
+    std::string body;
+    std::string note;
+    std::string button;  ///< empty: no button; the session goes on by itself
+  };
+  explicit NoteScreen(Content content) : content_(std::move(content)) {}
+
+ private:
+  void paint(Canvas& canvas) override {
+    draw_progress(canvas, content_.progress);
+    draw_card(canvas, content_.title, content_.body, content_.note);
+    if (!content_.button.empty()) draw_footer(canvas, {{kNextTarget, content_.button}});
+  }
+  [[nodiscard]] std::optional<session::StepReply> activate(int /*id*/, Time /*at*/) override {
+    return session::StepReply{};
+  }
+  [[nodiscard]] int default_target() const noexcept override { return kNextTarget; }
+
+  Content content_;
+};
+
+/// Pages that can be turned in both directions; the button of the last page replies.
+class PagesScreen final : public Screen {
+ public:
+  PagesScreen(std::vector<std::string> pages, const Words& words)
+      : pages_(std::move(pages)), words_(words) {
+    if (pages_.empty()) pages_.emplace_back();
+  }
+
+ private:
+  void paint(Canvas& canvas) override;
+  [[nodiscard]] std::optional<session::StepReply> activate(int id, Time at) override;
+  [[nodiscard]] int default_target() const noexcept override { return kNextTarget; }
+
+  std::vector<std::string> pages_;
+  const Words& words_;
+  std::size_t page_ = 0;
+};
+
+void PagesScreen::paint(Canvas& canvas) {
+  const int count = static_cast<int>(pages_.size());
+  const int page = static_cast<int>(page_) + 1;
+  if (count > 1) draw_progress(canvas, {page, count, with_numbers(words_.page_of, {page, count})});
+  // A short first line is the page's heading.
+  std::string title;
+  std::string body = pages_[page_];
+  const std::size_t line = body.find('\n');
+  constexpr std::size_t kLongestHeading = 60;
+  if (line != body.npos && line <= kLongestHeading) {
+    title = body.substr(0, line);
+    body.erase(0, body.find_first_not_of('\n', line));
+  }
+  draw_card(canvas, title, body, "", Align::left);
+  std::vector<FooterButton> buttons;
+  if (page_ > 0) buttons.push_back({kBackTarget, words_.back, false});
+  buttons.push_back({kNextTarget, words_.next});
+  draw_footer(canvas, buttons);
+}
+
+std::optional<session::StepReply> PagesScreen::activate(int id, Time /*at*/) {
+  focus(-1);
+  if (id == kBackTarget) {
+    if (page_ > 0) --page_;
+    return std::nullopt;
+  }
+  if (++page_ < pages_.size()) return std::nullopt;
+  page_ = pages_.size() - 1;
+  return session::StepReply{};
+}
+
 using Made = std::shared_ptr<Screen>;
 
-/// A screen for each kind of step.
+/// Makes the screen for each kind of step.
 class Maker {
  public:
   Maker(const ScreenContext& context, const std::vector<std::string>& labels)
@@ -31,11 +105,9 @@ class Maker {
                 words_.practice_start);
   }
   Made operator()(const session::ReadyStep& step) const {
-    Progress progress;
-    progress.done = step.trial - 1;
-    progress.of = step.of;
-    progress.text =
-        with_numbers(step.practice ? words_.practice_of : words_.trial_of, {step.trial, step.of});
+    const Progress progress{
+        step.trial - 1, step.of,
+        with_numbers(step.practice ? words_.practice_of : words_.trial_of, {step.trial, step.of})};
     return note(words_.ready_title, context_.mouse ? words_.ready_text_mouse : words_.ready_text,
                 words_.ready_keys, words_.go_on, progress);
   }
@@ -46,12 +118,10 @@ class Maker {
     return std::make_shared<FeedbackScreen>(step, context_, labels_);
   }
   Made operator()(const session::BreakStep& step) const {
-    Progress progress;
-    progress.done = step.done;
-    progress.of = step.of;
     const std::string done =
         step.of > 0 ? with_numbers(words_.break_done, {step.done, step.of}) : "";
-    return note(words_.break_title, words_.break_text, done, words_.go_on, progress);
+    return note(words_.break_title, words_.break_text, done, words_.go_on,
+                {step.done, step.of, ""});
   }
   Made operator()(const session::PauseStep& /*step*/) const {
     return note(words_.pause_title, words_.pause_text, "", "");
@@ -63,13 +133,7 @@ class Maker {
  private:
   [[nodiscard]] static Made note(const char* title, const char* body, const std::string& small,
                                  const char* button, const Progress& progress = Progress()) {
-    NoteScreen::Content content;
-    content.progress = progress;
-    content.title = title;
-    content.body = body;
-    content.note = small;
-    content.button = button;
-    return std::make_shared<NoteScreen>(std::move(content));
+    return std::make_shared<NoteScreen>(NoteScreen::Content{progress, title, body, small, button});
   }
 
   const ScreenContext& context_;

@@ -1,11 +1,14 @@
 #include "app/participant/window_drawing.hpp"
 
 #include "app/experimenter/console_window.hpp"
-#include "app/windows/gl_picture.hpp"
-#include "app/windows/imgui_turn.hpp"
+#include "app/windows/glfw_support.hpp"
+#include "app/windows/look.hpp"
+#include "engine/pictures/colour_image.hpp"
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <cstdint>
 #include <deque>
 #include <thread>
 #include <utility>
@@ -18,10 +21,61 @@
 namespace touchtrial::app {
 namespace {
 
+// Since OpenGL 1.2; missing in some systems' gl.h.
+constexpr GLint kClampToEdge = 0x812F;
+
+void upload(const GreyImage& image) {
+  std::vector<std::uint8_t> pixels;
+  pixels.reserve(image.size() * 4);
+  for (const std::uint8_t grey : image.samples())
+    pixels.insert(pixels.end(), {grey, grey, grey, 255});
+  glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+  glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, kClampToEdge);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, kClampToEdge);
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA, image.width(), image.height(), 0, GL_RGBA,
+               GL_UNSIGNED_BYTE, pixels.data());
+}
+
+}  // namespace
+
+void GlPictureShelf::clear() {
+  for (const auto& [label, texture] : textures_) glDeleteTextures(1, &texture.name);
+  textures_.clear();
+}
+
+Vec2 GlPictureShelf::size_mm(const std::string& label) const {
+  constexpr double kBlankMm = 40.0;
+  const auto found = pictures_.find(label);
+  if (found == pictures_.end() || found->second.empty()) return {kBlankMm, kBlankMm};
+  return {pitch_mm_ * found->second.width(), pitch_mm_ * found->second.height()};
+}
+
+void* GlPictureShelf::texture(const std::string& label, int width, int height) {
+  const auto found = pictures_.find(label);
+  if (found == pictures_.end() || found->second.empty()) return nullptr;
+  const int across = std::max(1, static_cast<int>(std::lround(width * density_)));
+  const int down = std::max(1, static_cast<int>(std::lround(height * density_)));
+  Texture& texture = textures_[label];
+  if (texture.name == 0) glGenTextures(1, &texture.name);
+  if (texture.width != across || texture.height != down) {
+    glBindTexture(GL_TEXTURE_2D, texture.name);
+    upload(engine::resized(found->second, down, across));
+    texture.width = across;
+    texture.height = down;
+  }
+  // ImGui's renderer takes texture names as pointers.
+  return reinterpret_cast<void*>(static_cast<std::intptr_t>(texture.name));
+}
+
+namespace {
+
 using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
-/// A picture now and then even if nothing changes: some systems lose what is hidden.
+/// The time between pictures if nothing changes: some systems lose the content of hidden windows.
 constexpr milliseconds kIdle{500};
 
 ImVec2 to_imgui(Vec2 point) {
@@ -32,7 +86,7 @@ bool is_transition(const InputEvent& event) {
   return event.kind != InputEvent::Kind::moved && event.kind != InputEvent::Kind::letter;
 }
 
-/// OpenGL and ImGui of one window, for as long as its thread draws.
+/// OpenGL and ImGui for one window, while its thread draws.
 class Drawing {
  public:
   Drawing(GLFWwindow* window, WindowExchange& exchange, Glass& glass, GlPictureShelf& shelf,
@@ -85,7 +139,7 @@ class Drawing {
     return screen_ && screen_->is_alive() ? milliseconds(0) : kIdle;
   }
 
-  /// Not for what the console alone has to show.
+  /// Whether the window needs a picture. The console's wishes do not count.
   [[nodiscard]] bool is_due(const WindowExchange::Work& work) const {
     if (work.surface.width_px <= 0 || work.surface.height_px <= 0) return false;
     return work.is_new || !waiting_.empty() || !is_shown_ || (screen_ && screen_->is_alive()) ||
@@ -103,14 +157,13 @@ class Drawing {
     is_shown_ = false;
   }
 
-  /// Up to the first key or button; what came before the screen was on the glass is not for it.
+  /// Passes events to the screen, up to the first key or button. An event from before the screen
+  /// was visible is dropped.
   void take_events() {
     while (!waiting_.empty()) {
       const InputEvent event = waiting_.front();
-      if (!is_shown_ && is_transition(event)) {
-        // What comes later is for it: that is seen once it is shown.
-        if (screen_) return;
-      }
+      // Whether the event came after the screen is known once the screen is shown.
+      if (!is_shown_ && screen_ && is_transition(event)) return;
       waiting_.pop_front();
       if (!screen_) continue;
       if (event.kind != InputEvent::Kind::moved && event.at < shown_at_) continue;
@@ -130,7 +183,7 @@ class Drawing {
     if (!is_shown_) shown_at_ = drawn_at_;
     is_shown_ = true;
     exchange_.shown(screen_, !waiting_.empty());
-    // Where nothing paces the screen.
+    // In case the system does not pace the pictures.
     if (screen_ && screen_->is_alive()) {
       const std::chrono::duration<double> each(0.9 / std::max(work.surface.refresh_hz, 30.0));
       std::this_thread::sleep_until(began + std::chrono::duration_cast<Clock::duration>(each));
@@ -159,7 +212,7 @@ class Drawing {
     ImGui::SetCurrentContext(others);
   }
 
-  /// Letters are made for the size at which they are seen.
+  /// Renders the fonts for the size at which they are shown.
   void fit_fonts(const WindowSurface& surface) {
     const double unit = design_unit(surface.size);
     if (unit == unit_) return;
@@ -172,7 +225,7 @@ class Drawing {
   void paint(const WindowSurface& surface) {
     ImGui::SetNextWindowPos({0.0F, 0.0F});
     ImGui::SetNextWindowSize(to_imgui(surface.size));
-    // Padding would cut a rim off what is drawn.
+    // Padding would cut off the edges.
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0F, 0.0F});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0F);
     ImGui::Begin("screen", nullptr,

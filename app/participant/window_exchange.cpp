@@ -9,7 +9,7 @@ void WindowExchange::show(std::shared_ptr<Screen> screen) {
   screen_ = std::move(screen);
   reply_.reset();
   replied_by_.reset();
-  // A screen that comes back must be seen again before it counts as shown.
+  // A screen that returns must be drawn again before it counts as shown.
   shown_.reset();
   dirty_ = true;
   for_drawing_.notify_all();
@@ -77,7 +77,7 @@ void WindowExchange::shown(const std::shared_ptr<Screen>& screen, bool events_le
 void WindowExchange::replied(const std::shared_ptr<Screen>& screen,
                              const session::StepReply& reply) {
   const std::lock_guard lock(mutex_);
-  if (screen != screen_) return;  // the session has gone on meanwhile
+  if (screen != screen_) return;  // the session has moved on
   replied_by_ = screen;
   reply_ = reply;
   for_others_.notify_all();

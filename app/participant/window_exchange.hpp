@@ -1,5 +1,5 @@
-/// \file What the session's thread, the main thread and the drawing thread of a participant's
-/// window tell each other.
+/// \file The exchange between the session's thread, the main thread and the drawing thread of a
+/// participant's window.
 #pragma once
 
 #include "app/participant/screen.hpp"
@@ -24,25 +24,24 @@ struct WindowSurface {
   double refresh_hz = 60.0;
 };
 
-/// Every function may be called from any thread; none waits for a picture but those that say so.
+/// All functions may be called from any thread. Only those that say so wait.
 class WindowExchange {
  public:
-  using Time = std::chrono::steady_clock::time_point;
-
-  /// What is to be drawn next.
+  /// The next work of the drawing thread.
   struct Work {
     std::shared_ptr<Screen> screen;
     WindowSurface surface;
     std::vector<InputEvent> events;
     bool picture_wanted = false;
     bool ending = false;
-    bool is_new = true;  ///< something of this came since the last time
+    bool is_new = true;  ///< something came since the last call
   };
 
   /// \name Session's thread
   ///@{
   void show(std::shared_ptr<Screen> screen);
-  /// The reply that the screen has given, once; waits for it.
+  /// Waits for the screen's reply.
+  /// \return the reply, once; nothing if none comes in time
   [[nodiscard]] std::optional<session::StepReply> reply(const Screen& of,
                                                         std::chrono::milliseconds longest);
   ///@}
@@ -57,21 +56,23 @@ class WindowExchange {
 
   /// \name Drawing thread
   ///@{
-  /// Waits until there is something new, or `longest` has gone by.
+  /// Waits until there is something new, or until `longest` has passed.
   [[nodiscard]] Work wait_for_work(std::chrono::milliseconds longest);
-  /// \param events_left  that have not been taken to the screen yet
+  /// \param events_left  whether the screen has yet to take events
   void shown(const std::shared_ptr<Screen>& screen, bool events_left);
   void replied(const std::shared_ptr<Screen>& screen, const session::StepReply& reply);
   void keep(engine::ColourImage picture);
   void failed(std::exception_ptr failure);
   ///@}
 
-  /// Something else that the drawing thread draws is to be looked at.
+  /// Wakes the drawing thread for something else that it draws.
   void stir();
   [[nodiscard]] WindowSurface surface() const;
-  /// Waits until the newest screen is on the glass, with all events that came taken.
+  /// Waits until the newest screen is visible and has taken all events.
+  /// \return false if that does not happen in time
   [[nodiscard]] bool wait_until_shown(std::chrono::milliseconds longest);
-  /// Waits for the next picture. \return nothing if none comes
+  /// Waits for the next picture.
+  /// \return nothing if none comes in time
   [[nodiscard]] std::optional<engine::ColourImage> picture(std::chrono::milliseconds longest);
   /// \throws what drawing threw
   void check() const;
@@ -91,7 +92,7 @@ class WindowExchange {
   bool picture_wanted_ = false;
   bool dirty_ = true;
   bool stirred_ = false;
-  bool settled_ = false;  ///< no event is left that a picture must show
+  bool settled_ = false;  ///< the last picture shows the effect of all events
   bool ending_ = false;
 };
 

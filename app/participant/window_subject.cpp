@@ -4,12 +4,6 @@
 #include <cstddef>
 
 namespace touchtrial::app {
-namespace {
-
-constexpr std::chrono::milliseconds kSubjectPictureLimit{1000};
-
-}  // namespace
-
 WindowSubject::WindowSubject(ParticipantWindow& window, session::Participant& subject,
                              bool real_time)
     : window_(window), subject_(subject), real_time_(real_time) {}
@@ -23,7 +17,8 @@ std::optional<session::StepReply> WindowSubject::attend(const session::Step& ste
   std::optional<session::StepReply> reply = window_.attend(step);
   if (std::holds_alternative<session::PauseStep>(step)) return std::nullopt;
   if (!reply && !meant_) meant_ = subject_.attend(step);
-  if (!reply && meant_ && !typed_ && window_.wait_until_shown(kSubjectPictureLimit)) {
+  constexpr std::chrono::milliseconds kPictureLimit{1000};
+  if (!reply && meant_ && !typed_ && window_.wait_until_shown(kPictureLimit)) {
     type(step, *meant_);
     typed_ = true;
     reply = window_.attend(step);
@@ -74,7 +69,7 @@ void WindowSubject::type(const session::Step& step, const session::StepReply& re
   }
   if (const auto* const asked = std::get_if<session::QuestionStep>(&step)) {
     for (const design::Question& question : asked->questionnaire->questions) {
-      // Whatever must be answered gets the first option, or a 1.
+      // A required question gets the first option, or a 1.
       if (question.required && question.kind == design::QuestionKind::choice) press(Key::digit, 1);
       if (question.required && question.kind != design::QuestionKind::choice) {
         InputEvent event;
@@ -92,10 +87,9 @@ void WindowSubject::type(const session::Step& step, const session::StepReply& re
     if (reply.first_position) press(Key::digit, *reply.first_position + 1);
     press(Key::digit, reply.position + 1);
     press(Key::enter);
-    if (answer->confidence_levels > 0) {
-      press(Key::digit, reply.confidence.value_or(1));
-    }
-    if (answer->confidence_levels > 0) press(Key::enter);
+    if (answer->confidence_levels == 0) return;
+    press(Key::digit, reply.confidence.value_or(1));
+    press(Key::enter);
     return;
   }
   press(Key::enter);

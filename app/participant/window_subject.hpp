@@ -1,4 +1,4 @@
-/// \file A simulated participant before the same window as people.
+/// \file A simulated participant who uses the same window as people do.
 #pragma once
 
 #include "app/participant/participant_window.hpp"
@@ -10,12 +10,12 @@
 
 namespace touchtrial::app {
 
-/// Asks the participant for each reply, and gives it with the window's keys; what the window makes
-/// of them is what the session gets. All functions belong to the session's thread, but `feel`.
+/// Asks the participant for each reply and types it into the window; the session gets the window's
+/// reply. All functions but `feel` belong to the session's thread.
 class WindowSubject final : public session::Participant {
  public:
-  /// \param window,subject  must outlive this
-  /// \param real_time  false: replies bear no time of their own, but the subject's thinking time
+  /// \param window,subject  must outlive this object
+  /// \param real_time  false: replies have no time stamp, but the subject's thinking time
   WindowSubject(ParticipantWindow& window, session::Participant& subject, bool real_time);
 
   void see_pictures(const std::vector<std::string>& labels) override;
@@ -32,8 +32,8 @@ class WindowSubject final : public session::Participant {
   ParticipantWindow& window_;
   session::Participant& subject_;
   bool real_time_;
-  std::optional<session::StepReply> meant_;  ///< the window has not replied yet
-  bool typed_ = false;                       ///< what is meant, into the window
+  std::optional<session::StepReply> meant_;  ///< the subject's reply, until the window replies
+  bool typed_ = false;                       ///< whether it was typed
 };
 
 }  // namespace touchtrial::app

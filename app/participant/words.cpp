@@ -69,7 +69,6 @@ constexpr Words kEnglish = {
 
     .number_hint = "Type a number",
     .text_hint = "Type your answer",
-    .required = "Please answer this question to go on.",
 };
 
 constexpr Words kGerman = {
@@ -139,7 +138,6 @@ constexpr Words kGerman = {
 
     .number_hint = "Zahl eingeben",
     .text_hint = "Antwort eingeben",
-    .required = "Bitte beantworten Sie diese Frage, um weiterzugehen.",
 };
 
 }  // namespace

@@ -1,19 +1,19 @@
-/// \file What the participant's window says, in German and English. UTF-8.
+/// \file The texts of the participant's window, in German and English. UTF-8.
 #pragma once
 
 #include <string>
 
 namespace touchtrial::app {
 
-/// All the window's own words in one language. Where a number goes, "{}" stands.
+/// All texts of the window in one language. "{}" stands for a number.
 struct Words {
-  const char* trial_of;     ///< progress: of, all
-  const char* practice_of;  ///< progress in practice: of, all
+  const char* trial_of;     ///< progress: trial, number of trials
+  const char* practice_of;  ///< the same in practice
   const char* page_of;
   const char* question_of;
   const char* next;
   const char* back;
-  const char* skip;  ///< a question that may be left out
+  const char* skip;  ///< an optional question
   const char* go_on;
 
   const char* practice_title;
@@ -36,9 +36,9 @@ struct Words {
   const char* answer_spoken_title;
   const char* answer_spoken_text;
   const char* time_is_up;
-  const char* choose_hint;   ///< nothing chosen yet; the range of keys
-  const char* changes_once;  ///< chosen; may be changed once
-  const char* now_fixed;     ///< changed
+  const char* choose_hint;   ///< before the choice; the last key
+  const char* changes_once;  ///< after the choice, which may be changed once
+  const char* now_fixed;     ///< after the change
   const char* feel_again;
   const char* scale_true;
   const char* scale_shrunk;   ///< per cent
@@ -56,7 +56,7 @@ struct Words {
 
   const char* break_title;
   const char* break_text;
-  const char* break_done;  ///< done, of
+  const char* break_done;  ///< finished trials, number of trials
 
   const char* pause_title;
   const char* pause_text;
@@ -67,7 +67,6 @@ struct Words {
 
   const char* number_hint;
   const char* text_hint;
-  const char* required;
 };
 
 /// \param language  "de..." is German, anything else English

@@ -1,11 +1,13 @@
 #include "app/run/run_study.hpp"
 
 #include "app/console.hpp"
-#include "app/simulated_study.hpp"
+#include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "protocols/design/prepare.hpp"
+#include "protocols/session/commitment.hpp"
 
+#include <string>
 #include <utility>
 
 namespace touchtrial::app {
@@ -47,11 +49,36 @@ RunStudy simulated_study(const RunOptions& options, const design::Study& study) 
   const fs::path path = key_path_for(options.database, {});
   refuse_other_key(path, key);
   prepare_simulated_pack(key);
-  // Before there is a database: one without its key would be of no use to anybody. Nor would one
-  // beside another study's key.
+  // Before there is a database, because a database without its key is useless. A database that
+  // already exists is another key's.
   if (!is_there(path) && !is_there(options.database)) design::save_study_key(path, key);
   engine::Pack pack(key.pack_folder);
   return {std::move(key), std::move(pack)};
+}
+
+[[noreturn]] void refuse(const RunOptions& options, const std::string& why) {
+  throw StoreError(options.database.string() + ": " + why);
+}
+
+void require_same(const store::StudyCommitment& stored, const store::StudyCommitment& ours,
+                  const RunOptions& options) {
+  if (stored.study_id != ours.study_id || stored.seal != ours.seal) {
+    refuse(options,
+           "is the database of another study, or of this one before it was prepared anew; "
+           "give another --db");
+  }
+  if (stored.pack != ours.pack) {
+    refuse(options, "was begun with another pack; name that pack with --pack");
+  }
+  if (stored.pilot != ours.pilot) {
+    refuse(options, stored.pilot ? "is the database of a pilot; give --pilot, or another --db"
+                                 : "is not a pilot's database; give pilot sessions another --db");
+  }
+  if (stored.simulated != ours.simulated) {
+    refuse(options, stored.simulated
+                        ? "holds simulated participants; give people another --db"
+                        : "holds people's sessions; give simulated participants another --db");
+  }
 }
 
 }  // namespace
@@ -77,6 +104,22 @@ RunStudy run_study_for(const RunOptions& options) {
                                                                       : place.pack);
   require_intact(pack, key);
   return {std::move(key), std::move(pack)};
+}
+
+store::StudyStore run_database_for(const RunOptions& options, const RunStudy& study) {
+  const store::StudyCommitment ours =
+      session::commitment_of(study.key, study.pack, options.is_simulated(), options.pilot);
+  if (!is_there(options.database))
+    return store::StudyStore::create(options.database, ours, utc_now());
+  store::StudyStore store =
+      store::StudyStore::open(options.database, store::StudyStore::Access::read_write);
+  require_same(store.commitment(), ours, options);
+  if (store.stations() > 0) {
+    refuse(options,
+           "was merged from several stations' databases and takes no sessions of its own; run them "
+           "in this station's database, and merge again");
+  }
+  return store;
 }
 
 }  // namespace touchtrial::app

@@ -3,7 +3,6 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "device/calibration/certificate.hpp"
-#include "device/mouse/driver.hpp"
 #include "device/mouse/mouse_device.hpp"
 #include "device/registry.hpp"
 #include "device/workspace_fit.hpp"
@@ -19,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Drivers that need no device in the room are never chosen by themselves.
+/// Whether a driver may be chosen automatically: those without a physical device may not.
 bool is_a_rig(const device::DeviceListing& listing) {
   return listing.present && listing.driver != device::kMouseDriver &&
          listing.driver != "simulated" && listing.driver != "replay";
@@ -54,7 +53,7 @@ SessionDevice::SessionDevice(const RunOptions& options, const PlaneGeometry& pla
   first_->halt();
   info_ = first_->info();
   const auto placement = device::placement_of(plane, info_, settings_.use_of(driver_));
-  look_at_certificate(options);
+  check_certificate(options);
   station_.emplace([this] { return first_ ? std::move(first_) : open(); }, placement,
                    info_.visual ? static_cast<session::Attendant&>(consent_) : attendant);
 }
@@ -65,7 +64,7 @@ std::unique_ptr<device::HapticDevice> SessionDevice::open() {
   return device::open_device(driver_, settings_);
 }
 
-void SessionDevice::look_at_certificate(const RunOptions& options) {
+void SessionDevice::check_certificate(const RunOptions& options) {
   if (info_.visual || info_.simulated) return;
   using Kind = session::ExperimenterRequest::Kind;
   const fs::path usual = driver_ + "-certificate.json";

@@ -1,12 +1,12 @@
-/// \file The device of a session with a person: which one, where the plane lies on it, how it is
-/// calibrated, and who lets its force on.
+/// \file The device of a session with a person: its choice, the plane's placement on it, its
+/// calibration, and the consent to its force.
 #pragma once
 
 #include "app/run/run_options.hpp"
 #include "core/plane_geometry.hpp"
 #include "device/device_settings.hpp"
 #include "device/mouse/pointer_exchange.hpp"
-#include "device/servo/paced_clock.hpp"
+#include "device/servo/servo_clock.hpp"
 #include "protocols/session/device_station.hpp"
 #include "protocols/session/experimenter.hpp"
 
@@ -17,43 +17,44 @@
 
 namespace touchtrial::app {
 
-/// Opened when it is made, so that whoever opens the session knows what the hand will be on.
-/// Made on the main thread; then it belongs to the session's.
+/// The constructor opens the device, so that its properties are known before the session is opened.
+/// Constructed on the main thread; then it belongs to the session's thread.
 class SessionDevice {
  public:
-  /// \param attendant  asked for consent to force, but for the mouse, which has none
-  /// \throws UsageError if no device is named and not exactly one is plugged in; DeviceError with
-  ///   the remedy if it cannot be opened, its room does not hold the plane, or its certificate does
-  ///   not hold; as read_certificate
+  /// \param attendant  asked for consent to force, except for the mouse, which has none
+  /// \throws UsageError if no device is named and not exactly one is plugged in
+  /// \throws DeviceError with the remedy if the device cannot be opened, if its workspace does not
+  ///   hold the plane, or if its certificate is not valid
+  /// \throws as read_certificate
   SessionDevice(const RunOptions& options, const PlaneGeometry& plane,
                 session::Attendant& attendant);
 
   [[nodiscard]] session::DeviceStation& station() noexcept { return *station_; }
-  /// In the plane frame, once the station is ready.
+  /// The device in the plane's frame, once the station is ready.
   [[nodiscard]] device::HapticDevice& device() { return station_->device(); }
   [[nodiscard]] const device::DeviceInfo& info() const noexcept { return info_; }
   [[nodiscard]] const std::string& driver() const noexcept { return driver_; }
   [[nodiscard]] device::LabLimits limits() const { return settings_.use_of(driver_).limits; }
-  /// SHA-256 of the certificate, hexadecimal; empty: there is none.
+  /// SHA-256 of the certificate, hexadecimal; empty without a certificate.
   [[nodiscard]] const std::string& certificate() const noexcept { return certificate_; }
-  /// What the session's record is to say of the device, each once.
+  /// What the session's record must say about the device.
   [[nodiscard]] const std::vector<session::ExperimenterRequest>& to_record() const noexcept {
     return to_record_;
   }
-  /// Of the device "mouse": the window's; null for all others.
+  /// The mouse device's exchange with the window; null for other devices.
   [[nodiscard]] device::PointerExchange* pointer() noexcept {
     return info_.visual ? &pointer_ : nullptr;
   }
 
  private:
-  /// There is no force that anybody would have to consent to.
+  /// Consents at once, for a device without force.
   class Consent final : public session::Attendant {
    public:
     [[nodiscard]] Says attend(const std::string& need) override;
   };
 
   [[nodiscard]] std::unique_ptr<device::HapticDevice> open();
-  void look_at_certificate(const RunOptions& options);
+  void check_certificate(const RunOptions& options);
 
   device::DeviceSettings settings_;
   std::string driver_;

@@ -1,13 +1,16 @@
 #include "app/run/session_entry.hpp"
 
 #include "app/console.hpp"
-#include "app/run/enrolment_of.hpp"
 #include "core/cipher.hpp"
 #include "core/errors.hpp"
+#include "core/files.hpp"
 #include "core/version.hpp"
+#include "protocols/design/enrolment_plan.hpp"
 #include "protocols/store/payload_json.hpp"
 
 #include <algorithm>
+#include <filesystem>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -19,8 +22,62 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-/// How the study's blocks come again in this participant's session.
-session::BlockRestart block_restart_of(const design::StudyKey& key, int enrolment) {
+/// Includes numbers that are reserved for a replacement: their first session is still stored.
+std::set<int> taken_numbers(const store::StudyStore& store) {
+  std::set<int> taken;
+  for (const store::SessionRow& row : store.sessions()) taken.insert(row.enrolment);
+  return taken;
+}
+
+/// Two stations without a plan would take the same free numbers.
+void require_station(const RunOptions& options, const std::filesystem::path& plan) {
+  if (!options.station.empty() && !is_there(plan)) {
+    throw UsageError(plan.string() +
+                     ": does not exist, and --station takes numbers from it; copy it here, or "
+                     "make it with `touchtrial plan`");
+  }
+  if (!options.station.empty() || options.pilot || !is_there(plan)) return;
+  throw UsageError(plan.string() +
+                   ": assigns enrolment numbers to stations; name this one with --station");
+}
+
+/// A database with another station's numbers belongs to that station, or the name is wrong.
+void require_own_file(const RunOptions& options, const design::EnrolmentPlan& plan,
+                      const std::set<int>& taken) {
+  for (const int number : taken) {
+    const std::string* const owner = design::station_of(plan, number);
+    if (owner == nullptr || *owner == options.station) continue;
+    throw UsageError(one_line(options.database.string()) + ": has number " +
+                     std::to_string(number) + ", which is station " + *owner +
+                     "'s; every station has a file of its own: give another --db, or the station's "
+                     "right name");
+  }
+}
+
+/// The enrolment number of a participant without a session: the one that the options name, or else
+/// the number of the person whom the participant replaces, or else the station's next number of the
+/// study's plan (the smallest free number without a plan).
+/// \throws UsageError if there is a plan but no station is named, or the other way round (a pilot
+///   needs no plan), or if the database has numbers of another station
+/// \throws as load_plan and next_of_station
+int enrolment_of(const RunOptions& options, const design::Study& study,
+                 const store::StudyStore& store) {
+  if (options.enrolment > 0) return options.enrolment;
+  const int free_or_inherited = store.enrolment_for(options.participant);
+  const std::set<int> taken = taken_numbers(store);
+  if (taken.contains(free_or_inherited)) return free_or_inherited;
+  const std::filesystem::path plan =
+      options.plan.empty() ? design::plan_path_for(options.study) : options.plan;
+  require_station(options, plan);
+  if (options.station.empty()) return free_or_inherited;
+  const design::EnrolmentPlan dealt = design::load_plan(plan, study);
+  const int next = design::next_of_station(dealt, options.station, taken, plan.string());
+  require_own_file(options, dealt, taken);
+  return next;
+}
+
+/// How blocks of this participant's session are restarted.
+session::BlockDrawing block_restart_of(const design::StudyKey& key, int enrolment) {
   return {[&key, enrolment](int block, int restarts_before, int first_trial) {
             return design::restarted_block(key.study, enrolment, block, restarts_before,
                                            first_trial);
@@ -55,7 +112,7 @@ EnteredSession new_session(const RunOptions& options, const RunStudy& study,
   return entered;
 }
 
-/// How long ago the session's last event was.
+/// The time since the session's last event.
 nanoseconds away(const store::StudyStore& store, const store::SessionRow& row,
                  const store::Event& last) {
   nanoseconds opened{};
@@ -67,13 +124,10 @@ nanoseconds away(const store::StudyStore& store, const store::SessionRow& row,
 
 std::string standing(const store::StudyStore& store, const store::SessionRow& row,
                      nanoseconds away) {
-  int done = 0;
-  for (const store::TrialRow& trial : store.trials()) {
-    if (trial.session == row.session && trial.state == store::TrialState::answered) ++done;
-  }
   const auto minutes = std::chrono::duration_cast<std::chrono::minutes>(away).count();
   return fmt::format("participant {} has session {}, with {} trials answered, left {} h {} min ago",
-                     row.participant, row.session, done, minutes / 60, minutes % 60);
+                     row.participant, row.session, answered_trials(store, row.session),
+                     minutes / 60, minutes % 60);
 }
 
 session::Session restored(const RunStudy& study, const store::StudyStore& store,
@@ -95,7 +149,7 @@ session::Session restored(const RunStudy& study, const store::StudyStore& store,
   return session;
 }
 
-/// In virtual time nothing goes by between two runs of the program.
+/// In virtual time, no time passes between two runs of the program.
 nanoseconds time_after(const RunOptions& options, nanoseconds last, nanoseconds away) {
   return options.is_simulated() && !options.real_time ? last : last + away;
 }
@@ -106,7 +160,6 @@ EnteredSession resumed_session(const RunOptions& options, const RunStudy& study,
   EnteredSession entered;
   entered.number = row.session;
   entered.enrolment = row.enrolment;
-  entered.resumed = true;
   entered.sink = store.continue_session(row.session);
   entered.session = std::make_unique<session::Session>(restored(study, store, row, *entered.sink));
   session::Session& session = *entered.session;
@@ -122,7 +175,7 @@ void require_young(const RunOptions& options, const RunStudy& study, const std::
   const double limit_h = study.key.study.trials.resume_within_h;
   if (std::chrono::duration<double, std::ratio<3600>>(away).count() <= limit_h) return;
   throw StoreError(
-      fmt::format("{}: {}; the study lets sessions be taken up within {} h; begin anew with "
+      fmt::format("{}: {}; the study lets sessions be resumed within {} h; begin anew with "
                   "--on-existing restart",
                   options.database.string(), standing, limit_h));
 }
@@ -131,17 +184,17 @@ bool is_visual(const store::SessionOpening& opening) {
   return opening.station && opening.station->visual;
 }
 
-/// Of another kind of device it would be two sessions, and one that is seen is not blind.
+/// Refuses to resume a session on another kind of device: a session that is seen is not blind.
 void require_same_kind(const RunOptions& options, const store::SessionRow& row,
                        const store::SessionOpening& then, const store::SessionOpening& now) {
   if (is_visual(now) == is_visual(then)) return;
   throw StoreError(fmt::format(
-      "{}: session {} was begun with device '{}', and '{}' is {}: go on with the former",
+      "{}: session {} was begun with device '{}', and '{}' is {}: continue with the former",
       options.database.string(), row.session, then.device, now.device,
       is_visual(now) ? "seen on a screen and not felt" : "felt and not seen"));
 }
 
-/// The hand is on something else than before: said once it is taken up.
+/// Records that the resumed session uses another device or certificate.
 void record_other_station(EnteredSession& entered, const store::SessionOpening& then,
                           const store::SessionOpening& now) {
   const auto certificate = [](const store::SessionOpening& opening) {
@@ -156,7 +209,7 @@ void record_other_station(EnteredSession& entered, const store::SessionOpening& 
   }
 }
 
-/// The session ends as it stands.
+/// Ends the session in its present state.
 void give_up(const RunStudy& study, store::StudyStore& store, const store::SessionRow& row) {
   const std::unique_ptr<store::EventSink> sink = store.continue_session(row.session);
   session::Session session = restored(study, store, row, *sink);
@@ -164,7 +217,7 @@ void give_up(const RunStudy& study, store::StudyStore& store, const store::Sessi
   session.close(session.last());
 }
 
-/// In the same place of the order. The session has ended.
+/// Opens a new session with the enrolment number of the previous one, which has ended.
 EnteredSession begin_anew(const RunOptions& options, const RunStudy& study,
                           store::StudyStore& store, const store::SessionRow& row,
                           const DescribeOpening& describe) {
@@ -207,6 +260,12 @@ EnteredSession existing_session(const RunOptions& options, const RunStudy& study
 }
 
 }  // namespace
+
+int answered_trials(const store::StudyStore& store, int session) {
+  return static_cast<int>(std::ranges::count_if(store.trials(), [&](const store::TrialRow& trial) {
+    return trial.session == session && trial.state == store::TrialState::answered;
+  }));
+}
 
 EnteredSession enter_session(const RunOptions& options, const RunStudy& study,
                              store::StudyStore& store, const DescribeOpening& describe) {

@@ -1,18 +1,37 @@
 #include "app/sound/sound_mixer.hpp"
 
+#include "core/random.hpp"
+
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <numbers>
 #include <utility>
 
 namespace touchtrial::app {
 namespace {
 
-/// Three at once and the loudest noise stay within full scale.
+constexpr int kOctaves = 16;
+constexpr std::size_t kSamples = std::size_t{1} << 18;
+
+/// The sum of all rows; the slowest takes four steps in a loop.
+std::vector<double> sum_of_steps(RandomStream& random) {
+  std::vector<double> sum(kSamples);
+  for (int octave = 0; octave <= kOctaves; ++octave) {
+    const std::size_t hold = std::size_t{1} << octave;
+    for (std::size_t first = 0; first < kSamples; first += hold) {
+      const double step = random.uniform(-1.0, 1.0);
+      for (std::size_t i = first; i < first + hold; ++i) sum[i] += step;
+    }
+  }
+  return sum;
+}
+
+/// Three tones and the loudest noise together stay within full scale.
 constexpr double kToneAmplitude = 0.06;
 constexpr double kToneRampS = 0.01;
 
-/// A glide from one frequency to another between two ramps; silent before and after.
+/// A glide from one frequency to another, between two ramps.
 void add_tone(std::vector<float>& samples, double rate_hz, double from_hz, double to_hz,
               double seconds) {
   const auto count = static_cast<std::size_t>(std::lround(seconds * rate_hz));
@@ -33,7 +52,7 @@ void add_silence(std::vector<float>& samples, double rate_hz, double seconds) {
   samples.resize(samples.size() + static_cast<std::size_t>(std::lround(seconds * rate_hz)));
 }
 
-/// Told apart by their course, and not by their height alone.
+/// The tones differ in their course and not only in their pitch.
 std::vector<float> tone_of(Cue cue, double rate_hz) {
   std::vector<float> samples;
   switch (cue) {
@@ -53,6 +72,23 @@ std::vector<float> tone_of(Cue cue, double rate_hz) {
 }
 
 }  // namespace
+
+std::vector<float> masking_noise(double level_dbfs, std::uint64_t seed) {
+  RandomStream random(seed, "masking noise");
+  const std::vector<double> sum = sum_of_steps(random);
+  double mean = 0.0;
+  for (const double value : sum) mean += value;
+  mean /= static_cast<double>(kSamples);
+  double power = 0.0;
+  for (const double value : sum) power += (value - mean) * (value - mean);
+  const double rms = std::sqrt(power / static_cast<double>(kSamples));
+  const double wanted = std::pow(10.0, std::min(level_dbfs, kHighestMaskingDbfs) / 20.0);
+  std::vector<float> noise(kSamples);
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    noise[i] = static_cast<float>((sum[i] - mean) * wanted / rms);
+  }
+  return noise;
+}
 
 SoundMixer::SoundMixer(double sample_rate_hz, std::vector<float> noise)
     : noise_(std::move(noise)), gain_step_(static_cast<float>(1.0 / (kRampS * sample_rate_hz))) {

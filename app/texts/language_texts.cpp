@@ -1,7 +1,7 @@
 #include "app/texts/language_texts.hpp"
 
-#include "app/texts/built_in_texts.hpp"
 #include "core/strict_json.hpp"
+#include "protocols/design/protocol.hpp"
 
 #include <array>
 #include <span>
@@ -9,14 +9,12 @@
 namespace touchtrial::app {
 namespace {
 
-constexpr std::array<std::string_view, 12> kInstructions{
-    "welcome",   "classification",   "comparison", "hand",     "curtain", "blindfold",
-    "time_fade", "time_no_response", "confidence", "practice", "masking", "comfort"};
+constexpr std::array<std::string_view, 10> kInstructions{
+    "welcome",          "hand",       "curtain",  "blindfold", "time_fade",
+    "time_no_response", "confidence", "practice", "masking",   "comfort"};
 constexpr std::array<std::string_view, 12> kDaySheet{
     "warm_up", "calibration", "gravity",    "fixture",       "placement", "curtain",
     "labels",  "blindfold",   "headphones", "masking_level", "consent",   "consent_version"};
-constexpr std::array<std::string_view, 3> kDaySheetAfter{"fixture_after", "questions_after",
-                                                         "cleaned"};
 constexpr std::size_t kMost = 16;
 
 std::string read_text(const JsonValue& value) {
@@ -33,6 +31,15 @@ std::map<std::string, std::string> read_parts(const JsonValue& value,
     parts.emplace(std::string(name), read_text(object.at(name)));
   }
   return parts;
+}
+
+/// What every study says, and a page for each protocol that does not bring its own.
+std::vector<std::string_view> instruction_names() {
+  std::vector<std::string_view> names(kInstructions.begin(), kInstructions.end());
+  for (const design::Protocol* protocol : design::protocols()) {
+    if (protocol->instruction().empty()) names.push_back(protocol->name());
+  }
+  return names;
 }
 
 std::vector<std::string> read_options(const JsonValue& value) {
@@ -68,18 +75,16 @@ QuestionText read_pen_hand(const JsonValue& value) {
 }  // namespace
 
 LanguageTexts parse_language_texts(std::string_view text, const std::string& source) {
-  const JsonObject object =
-      parse_strict_json(text, source)
-          .object({"language", "instructions", "handedness", "handedness_options", "pen_hand",
-                   "closing", "day_sheet", "day_sheet_after"});
+  const JsonObject object = parse_strict_json(text, source)
+                                .object({"language", "instructions", "handedness",
+                                         "handedness_options", "pen_hand", "closing", "day_sheet"});
   LanguageTexts texts;
   texts.language = read_text(object.at("language"));
-  texts.instructions = read_parts(object.at("instructions"), kInstructions);
+  texts.instructions = read_parts(object.at("instructions"), instruction_names());
   texts.handedness = read_inventory(object);
   texts.pen_hand = read_pen_hand(object.at("pen_hand"));
   texts.closing = read_questions(object.at("closing"));
   texts.day_sheet = read_parts(object.at("day_sheet"), kDaySheet);
-  texts.day_sheet_after = read_parts(object.at("day_sheet_after"), kDaySheetAfter);
   return texts;
 }
 

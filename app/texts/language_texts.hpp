@@ -1,4 +1,5 @@
-/// \file The program's own texts in one language: a file of config/texts, read strictly.
+/// \file The program's own texts in each language: the files of config/texts, built in and read
+/// strictly.
 #pragma once
 
 #include <map>
@@ -11,11 +12,11 @@ namespace touchtrial::app {
 struct QuestionText {
   std::string id;
   std::string text;
-  std::vector<std::string> options;  ///< empty: answered in one's own words
+  std::vector<std::string> options;  ///< empty: a free answer
 };
 
-/// All texts of a language. Keys are those of the file; words in braces ("{limit}") are filled in
-/// for a study.
+/// All texts of a language. Keys are those of the file. Words in braces ("{limit}") stand for
+/// values of a study.
 struct LanguageTexts {
   std::string language;  ///< "en"
   std::map<std::string, std::string> instructions;
@@ -23,17 +24,23 @@ struct LanguageTexts {
   QuestionText pen_hand;
   std::vector<QuestionText> closing;
   std::map<std::string, std::string> day_sheet;
-  std::map<std::string, std::string> day_sheet_after;  ///< once the participant has left
 };
 
-/// Every part must be there and nothing else.
+/// Reads a language file, in which every part must be present, and nothing else.
 /// \throws StudyError with the source, the JSON pointer and the remedy
 [[nodiscard]] LanguageTexts parse_language_texts(std::string_view text, const std::string& source);
 
-/// The languages that are built in, English first. Parsed once; thread-safe.
+/// \name The files of config/texts as they were when the program was built
+///@{
+[[nodiscard]] std::string_view english_texts_json() noexcept;
+[[nodiscard]] std::string_view german_texts_json() noexcept;
+///@}
+
+/// The built-in languages, English first. Parsed once; thread-safe.
 [[nodiscard]] const std::vector<LanguageTexts>& built_in_languages();
 
-/// That of the code ("de", "de-AT"); English if there is none.
+/// \param language  a code ("de", "de-AT")
+/// \return its texts; English if the program does not have the language
 [[nodiscard]] const LanguageTexts& texts_in(std::string_view language);
 
 }  // namespace touchtrial::app

@@ -1,6 +1,7 @@
 #include "app/texts/study_texts.hpp"
 
 #include "app/texts/language_texts.hpp"
+#include "protocols/design/protocol.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -14,12 +15,11 @@ namespace {
 
 using Words = std::map<std::string, std::string>;
 
-/// A text with its words in braces filled in.
+/// Replaces the words in braces.
 std::string filled(std::string text, const Words& words) {
   for (const auto& [name, word] : words) {
     const std::string place = "{" + name + "}";
-    for (auto at = text.find(place); at != std::string::npos;
-         at = text.find(place, at + word.size())) {
+    for (auto at = text.find(place); at != text.npos; at = text.find(place, at + word.size())) {
       text.replace(at, place.size(), word);
     }
   }
@@ -39,7 +39,7 @@ Words words_for(const design::Study& study, const LanguageTexts& texts) {
           {"consent", study.session.consent_version}};
 }
 
-/// Which parts of the instructions stand on which page.
+/// The parts of the instructions on each page.
 std::vector<std::vector<std::string>> pages_for(const design::Study& study) {
   std::vector<std::string> rules{
       study.trials.on_timeout == design::OnTimeout::fade ? "time_fade" : "time_no_response"};
@@ -47,13 +47,20 @@ std::vector<std::vector<std::string>> pages_for(const design::Study& study) {
   if (study.session.masking.wanted) rules.push_back("masking");
   std::vector<std::vector<std::string>> pages{
       {"welcome"},
-      {study.protocol == design::Protocol::classification ? "classification" : "comparison"},
+      {study.protocol_name()},
       {"hand"},
       {study.session.sight == design::Sight::blindfold ? "blindfold" : "curtain"},
       rules};
   if (study.trials.practice > 0) pages.push_back({"practice"});
   pages.push_back({"comfort"});
   return pages;
+}
+
+/// A part of the language's texts, or what the protocol says itself.
+std::string part_of(const design::Study& study, const LanguageTexts& texts,
+                    const std::string& part) {
+  const auto found = texts.instructions.find(part);
+  return found == texts.instructions.end() ? study.protocol->instruction() : found->second;
 }
 
 std::vector<std::string> own_instructions(const design::Study& study, const LanguageTexts& texts) {
@@ -63,7 +70,7 @@ std::vector<std::string> own_instructions(const design::Study& study, const Lang
     std::string& page = pages.emplace_back();
     for (const std::string& part : parts) {
       if (!page.empty()) page += "\n\n";
-      page += filled(texts.instructions.at(part), words);
+      page += filled(part_of(study, texts, part), words);
     }
   }
   return pages;
@@ -75,8 +82,8 @@ std::vector<std::string> instructions(const design::Study& study, const Language
   return own_instructions(study, texts);
 }
 
-/// The same question in every language that the program has.
-/// \param of  a language's wording
+/// One question in all built-in languages.
+/// \param of  returns a language's wording
 template <typename Wording>
 design::Question question_in_all(Wording of) {
   design::Question question;
@@ -112,8 +119,7 @@ design::Questionnaire handedness_inventory() {
 }
 
 void join(std::vector<design::Question>& questions, const design::Question& given) {
-  const auto same = std::find_if(questions.begin(), questions.end(),
-                                 [&](const design::Question& own) { return own.id == given.id; });
+  const auto same = std::ranges::find(questions, given.id, &design::Question::id);
   if (same == questions.end()) {
     questions.push_back(given);
   } else {
@@ -129,7 +135,7 @@ std::optional<design::Questionnaire> closing_questions(const design::SessionPlan
   return closing;
 }
 
-/// Items' keys in a language file, and the deviation that skipping each of them is.
+/// Each item's deviation code (for skipping it) and its key in a language file.
 std::vector<std::pair<std::string, std::string>> items_for(const design::SessionPlan& plan) {
   std::vector<std::pair<std::string, std::string>> items{
       {"consent", plan.consent_version.empty() ? "consent" : "consent_version"},
@@ -174,27 +180,6 @@ session::SessionTexts session_texts(const design::Study& study) {
   session.closing = closing_questions(study.session);
   session.day_sheet = day_sheet(study, texts);
   return session;
-}
-
-std::vector<session::DaySheetItem> day_sheet_after(const design::Study& study) {
-  const LanguageTexts& texts = texts_in(study.session.language);
-  return {{"no-fixture-touch-after", texts.day_sheet_after.at("fixture_after")},
-          {"no-questions-after", texts.day_sheet_after.at("questions_after")},
-          {"not-cleaned", texts.day_sheet_after.at("cleaned")}};
-}
-
-std::optional<double> laterality_quotient(const std::vector<std::string>& answers) {
-  constexpr std::size_t kItems = 4;
-  constexpr std::string_view kOptions = "01234";
-  if (answers.size() < kItems) return std::nullopt;
-  double sum = 0.0;
-  for (std::size_t i = 0; i < kItems; ++i) {
-    if (answers[i].size() != 1 || kOptions.find(answers[i]) == std::string_view::npos) {
-      return std::nullopt;
-    }
-    sum += 100.0 - 50.0 * (answers[i].front() - '0');
-  }
-  return sum / static_cast<double>(kItems);
 }
 
 }  // namespace touchtrial::app

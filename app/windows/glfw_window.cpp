@@ -1,14 +1,12 @@
 #include "app/windows/glfw_window.hpp"
 
-#include "app/windows/fonts.hpp"
-#include "app/windows/glfw_library.hpp"
-#include "app/windows/screen_scale.hpp"
+#include "app/windows/glfw_support.hpp"
+#include "app/windows/look.hpp"
 
 #include <algorithm>
 #include <chrono>
 #include <stdexcept>
 #include <utility>
-#include <vector>
 
 #include <GLFW/glfw3.h>
 #include <backends/imgui_impl_glfw.h>
@@ -18,11 +16,11 @@
 namespace touchtrial::app {
 namespace {
 
-/// Of a frame's time that is spent waiting for events; the screen itself paces the rest, where it
-/// can.
+/// The share of a frame's time that is spent waiting for events; the screen paces the rest, where
+/// it can.
 constexpr double kShareForEvents = 0.8;
 
-/// The size asked for at this density, cut to what the screen has room for.
+/// The requested size at this density, limited to the screen.
 std::pair<int, int> size_on_screen(const WindowOptions& options, float density) {
   int width = static_cast<int>(static_cast<float>(options.width_px) * density);
   int height = static_cast<int>(static_cast<float>(options.height_px) * density);
@@ -39,10 +37,7 @@ std::pair<int, int> size_on_screen(const WindowOptions& options, float density) 
 }
 
 GLFWwindow* make_window(const WindowOptions& options) {
-  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 2);
-  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+  hint_opengl_3_2();
   const auto [width, height] = size_on_screen(options, primary_density());
   GLFWwindow* window = glfwCreateWindow(width, height, options.title.c_str(), nullptr, nullptr);
   if (window == nullptr) {
@@ -59,7 +54,7 @@ struct GlfwWindow::State {
     glfwSwapInterval(1);
     if (options.hide_cursor) glfwSetInputMode(window, GLFW_CURSOR, GLFW_CURSOR_HIDDEN);
     glfwSetWindowUserPointer(window, this);
-    // ImGui's backend passes events on to the callbacks that it finds.
+    // ImGui's backend forwards events to callbacks that were set before it.
     glfwSetCursorPosCallback(window, [](GLFWwindow* w, double, double) { tell_pointer(w); });
     glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int, int, int) { tell_pointer(w); });
     glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int, int action, int) {
@@ -67,7 +62,7 @@ struct GlfwWindow::State {
     });
     ImGui::CreateContext();
     ImGui::GetIO().IniFilename = nullptr;
-    // ImGui's backend would show the cursor again with every picture.
+    // Without this flag, ImGui's backend shows the cursor again with every picture.
     if (options.hide_cursor) {
       ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NoMouseCursorChange;
     }
@@ -106,19 +101,6 @@ struct GlfwWindow::State {
       glfwWaitEventsTimeout(left_s);
     }
     frame_began_s = glfwGetTime();
-  }
-
-  void read_picture(int width, int height) {
-    std::vector<unsigned char> bytes(static_cast<std::size_t>(width) * height * 3);
-    glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glReadPixels(0, 0, width, height, GL_RGB, GL_UNSIGNED_BYTE, bytes.data());
-    picture = engine::ColourImage(height, width);
-    for (int y = 0; y < height; ++y) {
-      const unsigned char* row =
-          bytes.data() + static_cast<std::size_t>(height - 1 - y) * width * 3;
-      for (int x = 0; x < width; ++x)
-        picture.at(y, x) = {row[3 * x], row[3 * x + 1], row[3 * x + 2]};
-    }
   }
 
   GlfwLibrary library;
@@ -160,7 +142,7 @@ void GlfwWindow::end_frame() {
   glClearColor(1.0F, 1.0F, 1.0F, 1.0F);
   glClear(GL_COLOR_BUFFER_BIT);
   ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
-  if (state_->keeps_pictures) state_->read_picture(width, height);
+  if (state_->keeps_pictures) state_->picture = drawn_picture(width, height);
   glfwSwapBuffers(state_->window);
 }
 

@@ -1,4 +1,4 @@
-/// \file A window with an OpenGL picture and Dear ImGui in it. Neither library shows here.
+/// \file A window in which Dear ImGui draws with OpenGL. Neither library shows here.
 #pragma once
 
 #include "core/vec.hpp"
@@ -12,22 +12,22 @@ namespace touchtrial::app {
 
 struct WindowOptions {
   std::string title;
-  int width_px = 1280;  ///< >= 1, before scaling for the screen's density; cut to the screen
+  int width_px = 1280;  ///< >= 1, before scaling for the screen's density; limited to the screen
   int height_px = 800;
-  bool hide_cursor = false;  ///< something else is drawn in the pointer's place
+  bool hide_cursor = false;  ///< for windows that draw their own pointer
 };
 
-/// Where the pointer is and whether its left button is held, in window units.
+/// The pointer's position in window units, and whether its left button is held.
 struct WindowPointer {
   Vec2 position;
   bool pressed = false;
 };
 
-/// One window at a time. All functions belong to the program's main thread, which windowing systems
-/// ask for; whatever must not wait for a screen (a servo) runs on other threads.
+/// One window at a time. All functions belong to the program's main thread, as windowing systems
+/// require; work that must not wait for a screen, such as a servo, runs on other threads.
 ///
-/// Window units are what the windowing system counts in; they are pixels but on screens where the
-/// system hides their density.
+/// Window units are the windowing system's: pixels, except on screens whose density the system
+/// hides.
 class GlfwWindow {
  public:
   /// \throws DeviceError with the remedy if there is no display, or no OpenGL 3
@@ -36,31 +36,32 @@ class GlfwWindow {
   GlfwWindow(const GlfwWindow&) = delete;
   GlfwWindow& operator=(const GlfwWindow&) = delete;
 
-  /// Called from `begin_frame` for every motion and press as it comes, and once a frame.
+  /// Sets a function that `begin_frame` calls for every motion and press, and once per frame.
   void on_pointer(std::function<void(const WindowPointer&)> listener);
 
-  /// Called from `begin_frame` whenever the space bar goes down, however short: every window that
-  /// may stop a force stops it by this key.
+  /// Sets a function that `begin_frame` calls whenever the space bar goes down, however briefly:
+  /// this key stops the force in every window.
   void on_stop_key(std::function<void()> listener);
 
-  /// Takes events until the next picture is due on the screen, then begins it: what ImGui is told
-  /// between this and `end_frame` is shown.
+  /// Takes events until the next picture is due, then begins it: the picture shows what ImGui draws
+  /// between this call and `end_frame`.
   void begin_frame();
   void end_frame();
 
-  /// The person has closed the window.
+  /// Whether the person has closed the window.
   [[nodiscard]] bool close_asked() const;
   /// Window units.
   [[nodiscard]] Vec2 size() const;
-  /// Millimetres of the screen for one window unit, as the monitor states its size.
+  /// Millimetres on the screen for one window unit, as the monitor states its size.
   [[nodiscard]] double mm_per_unit() const;
-  /// Whether the monitor stated a size that can be true; else 96 units to the inch are assumed.
+  /// Whether the monitor states a size that can be true; else 96 units per inch are assumed.
   [[nodiscard]] bool scale_is_known() const;
-  /// Sizes on screen are to be multiplied by this, 1 at 96 units to the inch.
+  /// The factor for all sizes on the screen, 1 at 96 units per inch.
   [[nodiscard]] float density() const;
-  /// The picture that was shown last. \throws std::logic_error before the first
+  /// The picture that was shown last.
+  /// \throws std::logic_error if none was kept
   [[nodiscard]] const engine::ColourImage& picture();
-  /// Pictures are only kept once this is asked for.
+  /// From now on, keeps a copy of each picture.
   void keep_pictures();
 
  private:

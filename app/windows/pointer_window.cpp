@@ -1,6 +1,6 @@
 #include "app/windows/pointer_window.hpp"
 
-#include "app/windows/stylus_mark.hpp"
+#include "app/windows/look.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@ constexpr const char* kTitle = "Touchtrial: pilot with a mouse, visual and not b
 constexpr const char* kHint = "Hold the left button to touch the plane. Space: stop.";
 constexpr double kMarginUnits = 40.0;
 constexpr double kHintUnits = 40.0;  ///< two lines
-/// Frames after which a stylus that has not moved on belongs to no running servo.
+/// After this number of frames without news of the stylus, no servo is running.
 constexpr int kFramesUntilStale = 30;
 
 constexpr ImU32 kSurround = IM_COL32(214, 214, 214, 255);
@@ -23,22 +23,18 @@ constexpr ImU32 kPlane = IM_COL32(244, 244, 244, 255);
 constexpr ImU32 kEdge = IM_COL32(120, 120, 120, 255);
 constexpr ImU32 kText = IM_COL32(60, 60, 60, 255);
 
-/// Size that shows the plane at 96 units to the inch; the window's own scale is only known later.
+/// The size that shows the plane at 96 units per inch; the scale of the window is known only later.
 WindowOptions options_for(Vec2 plane_mm) {
   const auto units = [](double mm) { return static_cast<int>(std::ceil(mm * 96.0 / 25.4)); };
   return {kTitle, std::max(640, units(plane_mm.x) + static_cast<int>(2 * kMarginUnits)),
           units(plane_mm.y) + static_cast<int>(2 * kMarginUnits + kHintUnits), true};
 }
 
-ImVec2 to_imgui(Vec2 point) {
-  return {static_cast<float>(point.x), static_cast<float>(point.y)};
-}
-
-/// ImGui's own window, as large as the system's and without anything.
+/// An empty ImGui window that fills the system's window.
 void begin_canvas(Vec2 size) {
   ImGui::SetNextWindowPos({0.0F, 0.0F});
-  ImGui::SetNextWindowSize(to_imgui(size));
-  // Padding would cut a rim off what is drawn.
+  ImGui::SetNextWindowSize(imgui_vec(size));
+  // Padding would clip a margin of the drawing.
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0F, 0.0F});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0F);
   ImGui::Begin("canvas", nullptr,
@@ -51,7 +47,7 @@ void begin_canvas(Vec2 size) {
 double draw_centred(ImDrawList& list, Vec2 top, const std::string& text) {
   const ImVec2 size = ImGui::CalcTextSize(text.c_str());
   const Vec2 at = {std::round(top.x - static_cast<double>(size.x) / 2.0), std::round(top.y)};
-  list.AddText(to_imgui(at), kText, text.c_str());
+  list.AddText(imgui_vec(at), kText, text.c_str());
   return static_cast<double>(size.y);
 }
 
@@ -92,10 +88,10 @@ void PointerWindow::draw_frame() {
   const Vec2 size = window_.size();
   begin_canvas(size);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled({0.0F, 0.0F}, to_imgui(size), kSurround);
+  list.AddRectFilled({0.0F, 0.0F}, imgui_vec(size), kSurround);
   const Vec2 end = corner_ + (1.0 / mm_per_unit_) * plane_mm_;
-  list.AddRectFilled(to_imgui(corner_), to_imgui(end), kPlane);
-  list.AddRect(to_imgui(corner_), to_imgui(end), kEdge);
+  list.AddRectFilled(imgui_vec(corner_), imgui_vec(end), kPlane);
+  list.AddRect(imgui_vec(corner_), imgui_vec(end), kEdge);
   const double density = window_.density();
   const Vec2 below = {size.x / 2.0, end.y + 20.0 * density};
   const double line = draw_centred(list, below, kHint);
@@ -117,8 +113,8 @@ void PointerWindow::draw_pointer() {
 std::string PointerWindow::scale_in_words() const {
   const double shrunk = mm_per_unit_ / window_.mm_per_unit();
   std::string scale = "true size";
-  if (!window_.scale_is_known()) scale = "size not known: the monitor does not tell its own";
-  if (shrunk >= 1.005) scale = fmt::format("shown at 1 : {:.2f}, for want of room", shrunk);
+  if (!window_.scale_is_known()) scale = "true size unknown: the monitor does not state its size";
+  if (shrunk >= 1.005) scale = fmt::format("shown at 1 : {:.2f} to fit the screen", shrunk);
   return fmt::format("{:.0f} x {:.0f} mm, {}", plane_mm_.x, plane_mm_.y, scale);
 }
 

@@ -1,4 +1,4 @@
-/// \file The plane on a screen, for the device "mouse": demonstration and pilot sessions.
+/// \file The plane on a screen for the device "mouse", in demonstration and pilot sessions.
 #pragma once
 
 #include "app/windows/glfw_window.hpp"
@@ -10,31 +10,31 @@
 
 namespace touchtrial::app {
 
-/// A blank plane at its true size, and the stylus on it. Nothing else that is drawn depends on a
-/// texture. A plane larger than the screen is shown smaller, and a line below it says so.
+/// Shows a blank plane at its true size, and the stylus on it. Only the stylus' position depends on
+/// a texture. A plane that is larger than the screen is shown smaller, and a line below it says so.
 /// Main thread, as GlfwWindow.
 class PointerWindow {
  public:
-  /// \param exchange  what a MouseDevice was made with; must outlive this, and is told when this
-  ///   goes
-  /// \param plane_mm  its sides, > 0
+  /// \param exchange  that of a MouseDevice; must outlive this
+  /// \param plane_mm  sides of the plane, > 0
   /// \throws DeviceError as GlfwWindow
   PointerWindow(device::PointerExchange& exchange, Vec2 plane_mm);
-  /// The device is told that the window has closed.
+  /// Tells the device that the window has closed.
   ~PointerWindow();
   PointerWindow(const PointerWindow&) = delete;
   PointerWindow& operator=(const PointerWindow&) = delete;
 
-  /// Hands the pointer on and draws one picture; waits until it is due. Call again at once.
+  /// Publishes the pointer and draws one picture, for which it waits until it is due. Call it again
+  /// without delay.
   void draw_frame();
 
-  /// The person has pressed the space bar since the window opened.
+  /// Whether the person has pressed the space bar.
   [[nodiscard]] bool stop_asked() const noexcept { return stop_asked_; }
   [[nodiscard]] bool close_asked() const { return window_.close_asked(); }
   [[nodiscard]] GlfwWindow& window() noexcept { return window_; }
-  /// Where the plane's top-left corner is drawn, window units.
+  /// The plane's top-left corner on the screen, window units.
   [[nodiscard]] Vec2 plane_corner() const noexcept { return corner_; }
-  /// Millimetres of the plane for one window unit.
+  /// Millimetres on the plane for one window unit.
   [[nodiscard]] double mm_per_unit() const noexcept { return mm_per_unit_; }
 
  private:
@@ -46,10 +46,10 @@ class PointerWindow {
   device::PointerExchange& exchange_;
   Vec2 plane_mm_;
   GlfwWindow window_;
-  double mm_per_unit_ = 1.0;  ///< of the plane, as drawn
+  double mm_per_unit_ = 1.0;  ///< of the plane as drawn
   Vec2 corner_;               ///< the plane's, window units
   WindowPointer pointer_;
-  std::uint64_t shown_ = 0;  ///< the stylus' last number
+  std::uint64_t shown_ = 0;  ///< sequence number of the stylus that was shown last
   int frames_without_news_ = 0;
   bool stop_asked_ = false;
 };

@@ -1,6 +1,6 @@
 #include "bench/cases/cases.hpp"
 
-#include "bench/inputs/simd_name.hpp"
+#include "bench/measure/simd_target.hpp"
 
 namespace touchtrial::bench {
 namespace {

@@ -2,31 +2,30 @@
 #pragma once
 
 #include "bench/case.hpp"
-#include "bench/peers/opencv_daub4.hpp"
-#include "bench/peers/opencv_ring_sums.hpp"
+#include "bench/peers/opencv_extraction.hpp"
 
 #include <string>
 #include <vector>
 
 namespace touchtrial::bench {
 
-/// What to go through.
+/// Sizes, radii and targets of the cases.
 struct Scope {
   std::vector<int> sizes_px = {256, 500, 1024, 4096};
-  /// Of whole extractions alone, besides.
+  /// Further sizes, of whole extractions only.
   std::vector<int> more_sizes_px = {64, 128, 2048, 8192};
   std::vector<int> radii = {1, 2, 3, 7};
   std::vector<std::string> targets;  ///< SIMD targets of the adaptive filter, best first
 };
 
-/// The side of a usual stimulus.
+/// The side of a default stimulus.
 inline constexpr int kUsualSize_px = 500;
 /// The method's default K.
 inline constexpr int kUsualRadius = 2;
-/// The fixed order that stands for all.
+/// The order of all cases with a fixed order.
 inline constexpr double kFixedOrder = 0.55;
 
-/// "touchtrial", or "touchtrial AVX-512" if a SIMD target is given.
+/// "touchtrial", or for instance "touchtrial AVX-512" with a SIMD target.
 [[nodiscard]] std::string our_name(const std::string& target = {});
 
 [[nodiscard]] Case adaptive_filter_case(int size_px, int radius, const std::string& target);
@@ -37,7 +36,7 @@ inline constexpr double kFixedOrder = 0.55;
 [[nodiscard]] Case opencv_daub4_case(int size_px, Daub4Way way);
 [[nodiscard]] Cases daub4_cases(const Scope& scope);
 
-/// What an extraction gives besides the texture.
+/// What an extraction computes besides the texture.
 enum class Extras { none, picture, force };
 [[nodiscard]] Case extraction_case(int size_px, int radius, Extras extras);
 [[nodiscard]] Case ring_sums_case(int size_px, int radius, Extras extras, RingSums how);
@@ -54,7 +53,7 @@ template <typename Real>
 
 [[nodiscard]] Cases fft_cases(const Scope& scope);
 
-/// ADMM in single precision, set-up included, and so many steps.
+/// ADMM in single precision: set-up and this number of steps.
 [[nodiscard]] Case admm_case(int size_px, int steps);
 [[nodiscard]] Case fixed_point_case(int size_px, int steps);
 [[nodiscard]] Cases tv_gabor_cases(const Scope& scope);
@@ -63,7 +62,7 @@ template <typename Real>
 [[nodiscard]] Case surface_force_case();
 [[nodiscard]] Cases force_cases();
 
-/// What a Falcon's driver computes for each of its readings.
+/// The computations of a Falcon's driver for each reading.
 [[nodiscard]] Cases falcon_cases();
 
 /// All of the above.

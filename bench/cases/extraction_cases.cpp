@@ -1,9 +1,8 @@
 #include "bench/cases/cases.hpp"
-#include "bench/inputs/difference.hpp"
-#include "bench/inputs/extraction_truth.hpp"
 #include "bench/inputs/pictures.hpp"
+#include "bench/inputs/truth.hpp"
 #include "bench/peers/mat_view.hpp"
-#include "bench/peers/opencv_ring_sums.hpp"
+#include "bench/peers/opencv_extraction.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,10 +11,9 @@
 namespace touchtrial::bench {
 namespace {
 
-constexpr double kOurTolerance = 4e-5;
-constexpr double kPeerTolerance = 2e-3;
-/// Larger images have no error of their own: the same rows are computed, and double would need
-/// gigabytes.
+constexpr double kOurExtractionTolerance = 4e-5;
+constexpr double kPeerExtractionTolerance = 2e-3;
+/// Larger images get no error: they compute the same rows, and double would need gigabytes.
 constexpr int kLargestWithError_px = 4096;
 
 std::string work_of(Extras extras) {
@@ -101,7 +99,7 @@ void add_all(int size_px, int radius, Extras extras, Cases& cases) {
 }  // namespace
 
 Case extraction_case(int size_px, int radius, Extras extras) {
-  Case one = extraction_case_of(extras, our_name(), size_px, radius, kOurTolerance);
+  Case one = extraction_case_of(extras, our_name(), size_px, radius, kOurExtractionTolerance);
   one.make = [=] {
     const auto ours = std::make_shared<OurExtraction>(size_px, radius, extras);
     return Job{[=] {
@@ -115,7 +113,7 @@ Case extraction_case(int size_px, int radius, Extras extras) {
 
 Case ring_sums_case(int size_px, int radius, Extras extras, RingSums how) {
   const std::string who = how == RingSums::tuned ? "OpenCV ring sums, tuned" : "OpenCV ring sums";
-  Case one = extraction_case_of(extras, who, size_px, radius, kPeerTolerance);
+  Case one = extraction_case_of(extras, who, size_px, radius, kPeerExtractionTolerance);
   one.make = [=] {
     const auto peer = std::make_shared<PeerExtraction>(size_px, how);
     return Job{[=] { peer->run(radius, extras); },

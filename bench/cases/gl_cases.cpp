@@ -1,12 +1,10 @@
 #include "bench/cases/cases.hpp"
-#include "bench/inputs/adaptive_filter.hpp"
-#include "bench/inputs/difference.hpp"
 #include "bench/inputs/pictures.hpp"
-#include "bench/peers/fixed_mask.hpp"
+#include "bench/peers/gl_filters.hpp"
 #include "bench/peers/mat_view.hpp"
-#include "bench/peers/naive_mask.hpp"
 #include "engine/extraction.hpp"
 #include "engine/gl_texture.hpp"
+#include "tests/engine/plane_comparison.hpp"
 
 #include <memory>
 
@@ -15,14 +13,14 @@
 namespace touchtrial::bench {
 namespace {
 
-/// The naive mask takes 40 ms for the usual picture; larger ones teach nothing more.
+/// The naive mask takes 40 ms for the usual picture; larger ones would show nothing new.
 constexpr int kLargestNaive_px = 500;
 constexpr int kLargestNaiveRadius = 3;
-/// Grey levels; filter2D goes through Fourier space from 11 x 11 on.
+/// Grey levels; filter2D uses the Fourier transform for masks of 11 x 11 and more.
 constexpr double kOurTolerance = 4e-5;
 constexpr double kPeerTolerance = 2e-3;
 
-/// An image with the orders that the adaptive method gives it.
+/// An image with its orders by the adaptive method.
 struct OrderedImage {
   explicit OrderedImage(int size_px) : image(square_of(timed_picture(), size_px)) {
     engine::WantedPlanes wanted;
@@ -122,7 +120,7 @@ Job filter2d_job(int size_px, int radius, const std::string& input) {
       [=] { return filter->error(radius); }};
 }
 
-/// Filters for the enhanced image and takes the image off: twice the rounding.
+/// Computes the enhanced image and subtracts the image: twice the rounding error.
 Case enhanced_first_case(int size_px, int radius) {
   Case one = gl_case("G-L fixed", "OpenCV filter2D, I + T less I", "f32", size_px, radius);
   one.make = [=] {
@@ -162,7 +160,7 @@ Case naive_case(const std::string& who, int size_px, int radius) {
   return one;
 }
 
-/// What the engine gives in double.
+/// The engine in double.
 Case double_case(int size_px, int radius) {
   Case one = gl_case("G-L adaptive", our_name() + ", double", "u8", size_px, radius);
   one.make = [=] {

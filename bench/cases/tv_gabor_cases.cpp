@@ -1,6 +1,6 @@
 #include "bench/cases/cases.hpp"
 #include "bench/inputs/pictures.hpp"
-#include "bench/inputs/tv_gabor_truth.hpp"
+#include "bench/inputs/truth.hpp"
 #include "engine/tv_gabor/tv_gabor.hpp"
 #include "tests/engine/plane_comparison.hpp"
 #include "tests/engine/reference/tv_gabor_course.hpp"
@@ -10,10 +10,10 @@
 namespace touchtrial::bench {
 namespace {
 
-/// In double, a larger image takes a minute.
+/// A larger image takes a minute in double.
 constexpr int kLargest_px = 1024;
 constexpr int kFistaSteps = 200;
-/// Relative to v; solvers that are stopped before the end are far from it.
+/// Relative to v; solvers that stop early are far from it.
 constexpr double kTolerance = 0.2;
 
 struct Decomposition {
@@ -23,7 +23,7 @@ struct Decomposition {
   Plane<float> v;
 };
 
-/// \param decompose  from an image to v
+/// \param decompose  computes v of an image
 template <class Decompose>
 Case tv_gabor_case_of(const std::string& who, int size_px, Decompose decompose) {
   Case one = case_on_image("TV-Gabor", who, "u8", size_px, 0, {"of v, relative", kTolerance});
@@ -45,7 +45,7 @@ Case solver_case(const std::string& who, reference::TvGaborAlgorithm algorithm, 
                           });
 }
 
-/// As extraction calls it, until the gap is 1e-5.
+/// As an extraction calls it: until the gap is 1e-5.
 Case default_stop_case(int size_px) {
   return tv_gabor_case_of(our_name() + ", default stop", size_px, [](const GreyImage& image) {
     return engine::tv_gabor<float>(image, {}).texture;

@@ -1,7 +1,8 @@
-// Sweeps of the closed loop of hand and plane: tables on the terminal, pictures into a folder.
+// Sweeps of the closed loop of hand and plane: prints tables and draws pictures into a folder.
 #include "analysis/figures/gnuplot.hpp"
 #include "bench/closed_loop/sampled_wall.hpp"
 #include "bench/closed_loop/texture_loop.hpp"
+#include "bench/gnuplot_terminal.hpp"
 #include "engine/extraction.hpp"
 #include "engine/image_file.hpp"
 
@@ -26,22 +27,16 @@ constexpr std::array kTextureNPerMm = {0.1, 0.2, 0.4, 0.8, 1.2, 1.6, 3.2, 6.4, 1
 constexpr double kUsualMmPerS = 100.0;
 constexpr std::array kTextures = {"bark", "cloth", "pebbles", "straw", "brick"};
 constexpr std::array kColours = {"#0072b2", "#d55e00", "#009e73", "#cc79a7"};
-/// Heavy against the samples: K T^2 / m.
+/// K T^2 / m of a mass that moves slowly between two samples.
 constexpr double kHeaviness = 0.01;
 
 std::string head(bool png, int width, int height) {
-  const std::string terminal =
-      png ? fmt::format("set terminal pngcairo size {}, {} font 'DejaVu Sans,13'\n", width, height)
-          : fmt::format(
-                "set terminal svg size {}, {} dynamic font 'DejaVu Sans,Arial,sans-serif,13' "
-                "background '#ffffff'\n",
-                width, height);
-  return terminal +
+  return gnuplot_terminal(png, width, height) +
          "set encoding utf8\nset border 3 lw 1.2\nset tics nomirror out scale 0.6\n"
          "set grid lc rgb '#e4e4e4' lw 1\nset key left top Left reverse samplen 2 spacing 1.25\n";
 }
 
-/// Rate by stiffness: the bound, and what two ways in the time domain find.
+/// For each rate and stiffness, the bound and the results of two methods in the time domain.
 std::string sweep_wall() {
   std::string data;
   std::puts("rate_hz  K N/mm  bound N s/m  by energy  by a mass at rest");
@@ -106,7 +101,7 @@ std::string draw_wall_damping(bool png) {
 
 struct Worst {
   double slow_mm_s = 0.0;     ///< vibration of a slow stroke, median over textures
-  double slowest_mm_s = 0.0;  ///< the same, largest
+  double slowest_mm_s = 0.0;  ///< the same, maximum over textures
   double lost_per_s = 0.0;    ///< contacts lost in a usual stroke, median
   double most_lost_per_s = 0.0;
 };
@@ -156,7 +151,7 @@ std::string sweep_texture(const std::vector<Plane<double>>& textures) {
   return data;
 }
 
-/// Median and largest of both models, from these columns.
+/// Median and maximum of both models, from these columns.
 std::string both_models(int median_column, int largest_column) {
   std::string plot = "plot ";
   for (const auto& [name, colour] : {std::pair{"paper", kColours[1]}, {"surface", kColours[0]}}) {

@@ -8,9 +8,9 @@
 namespace touchtrial::bench {
 namespace {
 
-/// b that makes up for the energy of one triangular motion with so many samples a side.
+/// The damping b that absorbs the energy of one triangular motion with `side` samples on each side.
 double damping_for_triangle(const SampledWall& wall, int side) {
-  const double speed_m_s = 1.0 / wall.period_s;  // one metre a sample: all here is linear
+  const double speed_m_s = 1.0 / wall.period_s;  // one metre per sample: the wall is linear
   const int period = 2 * side;
   const auto position_m = [&](int k) {
     const int at = ((k % period) + period) % period;
@@ -34,11 +34,11 @@ class HeldMass {
     left_ = -std::expm1(-wall.period_s / time_s_);
   }
 
-  /// From sample to sample.
+  /// Moves on to the next sample.
   void step() {
     const double rate_m_s = (x_m_ - before_m_) / wall_.period_s;
     const double force_n = -(wall_.stiffness_n_per_m * x_m_ + wall_.damping_n_s_per_m * rate_m_s);
-    const double last_m_s = force_n / damping_;  // where the velocity would come to
+    const double last_m_s = force_n / damping_;  // the final velocity under a constant force
     const double extra_m_s = v_m_s_ - last_m_s;
     before_m_ = x_m_;
     x_m_ += last_m_s * wall_.period_s + extra_m_s * time_s_ * left_;
@@ -56,7 +56,7 @@ class HeldMass {
   double v_m_s_ = 0.0;
 };
 
-/// Whether the swings of the second half are smaller than those of the first.
+/// Whether the second half of the motion has smaller oscillations than the first.
 bool comes_to_rest(const SampledWall& wall, double mass_kg, double damping_n_s_per_m) {
   constexpr int kSamples = 40'000;
   HeldMass mass(wall, mass_kg, damping_n_s_per_m);

@@ -1,11 +1,10 @@
 #include "bench/closed_loop/texture_loop.hpp"
 
 #include "device/servo/servo.hpp"
-#include "device/servo/servo_names.hpp"
 #include "device/simulated/simulated_hand.hpp"
 #include "engine/rendering/gains.hpp"
 #include "engine/rendering/rendering_model.hpp"
-#include "protocols/session/model_force.hpp"
+#include "protocols/session/exploration.hpp"
 
 #include <algorithm>
 #include <array>
@@ -20,7 +19,7 @@ namespace {
 constexpr double kCutHz = 30.0;
 constexpr double kLandingS = 1.0;
 
-/// Two first-order high passes, one after the other.
+/// Two first-order high-pass filters in series.
 class HighPass {
  public:
   [[nodiscard]] Vec3 of(Vec3 value) noexcept {
@@ -96,7 +95,7 @@ Chatter stroke_texture(const Plane<double>& texture, const engine::RenderingOpti
   ChatterSink sink(stroke.push_n);
   const device::ServoReport report = device::run_servo_in_virtual_time(hand, force, sink, {});
   if (report.end == device::ServoEnd::fault) {
-    throw std::runtime_error("closed loop: the run ended as a fault: " +
+    throw std::runtime_error("closed loop: the run ended with the fault: " +
                              std::string(device::name_of(report.fault)));
   }
   return sink.chatter();

@@ -1,4 +1,4 @@
-/// \file A simulated hand that strokes a texture slowly through the servo: does it chatter?
+/// \file How much a simulated hand chatters while it strokes a texture through the servo.
 /// Source: docs/benchmarks/closed-loop.md.
 #pragma once
 
@@ -12,22 +12,23 @@ namespace touchtrial::bench {
 /// How a hand strokes.
 struct TextureStroke {
   double push_n = 0.7;
-  double speed_mm_s = 2.0;  ///< so slow that no detail of a texture passes 30 times a second
-  double time_s = 6.0;      ///< the first second, of landing, is not looked at
+  double speed_mm_s = 2.0;  ///< no detail of a texture passes 30 times per second
+  double time_s = 6.0;      ///< the first second, in which the hand lands, is not analysed
   std::uint64_t seed = 1;
 };
 
-/// What the hand does that its stroke does not explain.
+/// Motion and force of the hand that its stroke does not explain.
 struct Chatter {
-  double vibration_mm_s = 0.0;  ///< rms of the velocity above 30 Hz, all three directions
+  double vibration_mm_s = 0.0;  ///< rms velocity above 30 Hz, in all three directions
   double lost_contacts_per_s = 0.0;
-  double normal_deviation_n = 0.0;  ///< largest difference of the normal force from the push
+  double normal_deviation_n = 0.0;  ///< greatest difference between normal force and push
 };
 
 /// Runs the servo at 1 kHz in virtual time with the safety chain's defaults.
-/// \param texture  T, as extracted; \param options  whose gains come from the stiffness budget
+/// \param texture  T, as extracted
+/// \param options  its stiffness budget decides the gains
 /// \throws std::invalid_argument as make_texture_field and choose_gains
-/// \throws std::runtime_error if the run ended as a fault, which is named
+/// \throws std::runtime_error if the run ended with a fault; the message names it
 [[nodiscard]] Chatter stroke_texture(const Plane<double>& texture,
                                      const engine::RenderingOptions& options,
                                      const TextureStroke& stroke = {});

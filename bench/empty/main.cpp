@@ -1,4 +1,4 @@
-// What starting any C++ program costs: the peer of touchtrial's start.
+// The cost of starting any C++ program: the peer of touchtrial's start.
 #include <string>
 
 int main(int argc, char** argv) {

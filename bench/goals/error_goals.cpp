@@ -1,7 +1,7 @@
 #include "bench/cases/cases.hpp"
 #include "bench/goals/goal.hpp"
-#include "bench/inputs/extraction_truth.hpp"
 #include "bench/inputs/pictures.hpp"
+#include "bench/inputs/truth.hpp"
 #include "bench/measure/simd_target.hpp"
 #include "engine/extraction.hpp"
 #include "engine/metrics/ssim.hpp"
@@ -20,14 +20,14 @@ constexpr double kHardSsimTarget = 1e-4;
 constexpr int kHardSize_px = 256;
 constexpr int kHardRadii[] = {1, 2, 3, 7, 63};
 
-struct TextureFigures {
+struct TextureErrors {
   double error_grey = 0.0;
   int unlike_pixels = 0;
 };
 
-/// The worst over all targets.
-void look_at(const GreyImage& image, int radius, const std::vector<std::string>& targets,
-             TextureFigures& figures) {
+/// Raises the errors to the largest over all targets.
+void add_errors(const GreyImage& image, int radius, const std::vector<std::string>& targets,
+                TextureErrors& errors) {
   const ExtractionTruth truth(image, radius, false);
   engine::ExtractionOptions options;
   options.radius = radius;
@@ -36,8 +36,8 @@ void look_at(const GreyImage& image, int radius, const std::vector<std::string>&
   for (const std::string& target : targets) {
     const ForcedTarget forced(target);
     const auto result = engine::extract_texture<float>(image, options, wanted);
-    figures.error_grey = std::max(figures.error_grey, truth.texture_error(result.texture));
-    figures.unlike_pixels = std::max(figures.unlike_pixels, truth.unlike_pixels(result.picture));
+    errors.error_grey = std::max(errors.error_grey, truth.texture_error(result.texture));
+    errors.unlike_pixels = std::max(errors.unlike_pixels, truth.unlike_pixels(result.picture));
   }
 }
 
@@ -53,27 +53,27 @@ GoalResult error_result(const std::string& name, double error, const std::string
 }
 
 std::vector<GoalResult> picture_errors(const std::vector<std::string>& targets) {
-  TextureFigures figures;
+  TextureErrors errors;
   for (const Picture& picture : shipped_pictures()) {
-    look_at(picture.image, kUsualRadius, targets, figures);
+    add_errors(picture.image, kUsualRadius, targets, errors);
   }
   GoalResult unlike;
   unlike.goal = "pixels of 8-bit textures that differ from double's";
-  unlike.count = figures.unlike_pixels;
+  unlike.count = errors.unlike_pixels;
   unlike.count_unit = "pixels";
   unlike.limit = Limit::count;
   unlike.target = 0.0;
-  return {error_result("texture, pictures, K = 2", figures.error_grey, "grey levels",
+  return {error_result("texture, pictures, K = 2", errors.error_grey, "grey levels",
                        kPictureTarget_grey),
           unlike};
 }
 
 std::vector<GoalResult> hard_errors(const std::vector<std::string>& targets) {
-  TextureFigures figures;
+  TextureErrors errors;
   for (const Picture& picture : hard_images(kHardSize_px)) {
-    for (const int radius : kHardRadii) look_at(picture.image, radius, targets, figures);
+    for (const int radius : kHardRadii) add_errors(picture.image, radius, targets, errors);
   }
-  return {error_result("texture, hard images, K = 1 .. 63", figures.error_grey, "grey levels",
+  return {error_result("texture, hard images, K = 1 .. 63", errors.error_grey, "grey levels",
                        kAnyTarget_grey)};
 }
 

@@ -1,10 +1,78 @@
 #include "bench/goals/goal.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
+
+#include <fmt/format.h>
 
 namespace touchtrial::bench {
+namespace {
 
-double limited_figure(const GoalResult& result) noexcept {
+constexpr std::size_t kColumns = 8;
+using Line = std::array<std::string, kColumns>;
+
+std::string time_text(double us) {
+  if (std::isnan(us)) return {};
+  if (us < 1.0) return fmt::format("{:.1f} ns", 1e3 * us);
+  if (us < 1e4) return fmt::format("{:.{}f} us", us, us < 100.0 ? 1 : 0);
+  if (us < 1e6) return fmt::format("{:.{}f} ms", 1e-3 * us, us < 1e5 ? 1 : 0);
+  return fmt::format("{:.2f} s", 1e-6 * us);
+}
+
+std::string error_text(double error, const std::string& unit) {
+  if (std::isnan(error)) return {};
+  return fmt::format("{:.1e}{}{}", error, unit.empty() ? "" : " ", unit);
+}
+
+std::string target_text(const GoalResult& result) {
+  if (!has_target(result)) return {};
+  switch (result.limit) {
+    case Limit::time_us:
+      return "<= " + time_text(result.target);
+    case Limit::error:
+      return fmt::format("error <= {:.0e}", result.target);
+    case Limit::count:
+      return fmt::format("<= {:g} {}", result.target, result.count_unit);
+    case Limit::ratio:
+      break;
+  }
+  return fmt::format("<= {:g}", result.target);
+}
+
+std::string met_text(const GoalResult& result) {
+  if (!has_target(result)) return {};
+  return is_met(result) ? "yes" : "**no**";
+}
+
+std::string ours_text(const GoalResult& result) {
+  const std::string time = time_text(result.ours_us);
+  if (std::isnan(result.count)) return time;
+  const std::string count = fmt::format("{:g} {}", result.count, result.count_unit);
+  return time.empty() ? count : time + ", " + count;
+}
+
+Line line_of(const GoalResult& result) {
+  return {result.goal,
+          ours_text(result),
+          result.peer,
+          time_text(result.peer_us),
+          std::isnan(result.ratio) ? std::string() : fmt::format("{:.3f}", result.ratio),
+          target_text(result),
+          error_text(result.error, result.error_unit),
+          met_text(result)};
+}
+
+std::string joined(const Line& line, const std::array<std::size_t, kColumns>& widths) {
+  std::string text = "|";
+  for (std::size_t i = 0; i < kColumns; ++i) text += fmt::format(" {:<{}} |", line[i], widths[i]);
+  return text + "\n";
+}
+
+}  // namespace
+
+double limited_number(const GoalResult& result) noexcept {
   switch (result.limit) {
     case Limit::time_us:
       return result.ours_us;
@@ -23,7 +91,23 @@ bool has_target(const GoalResult& result) noexcept {
 }
 
 bool is_met(const GoalResult& result) noexcept {
-  return limited_figure(result) <= result.target;
+  return limited_number(result) <= result.target;
+}
+
+std::string goals_table(const std::vector<GoalResult>& results) {
+  std::vector<Line> lines = {
+      {"goal", "ours", "peer", "peer's time", "ratio", "target", "our error", "met"}};
+  for (const GoalResult& result : results) lines.push_back(line_of(result));
+  std::array<std::size_t, kColumns> widths{};
+  for (const Line& line : lines) {
+    for (std::size_t i = 0; i < kColumns; ++i) widths[i] = std::max(widths[i], line[i].size());
+  }
+  Line rule;
+  for (std::size_t i = 0; i < kColumns; ++i) rule[i] = std::string(widths[i], '-');
+  lines.insert(lines.begin() + 1, rule);
+  std::string table;
+  for (const Line& line : lines) table += joined(line, widths);
+  return table;
 }
 
 }  // namespace touchtrial::bench

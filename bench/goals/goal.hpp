@@ -1,8 +1,8 @@
-/// \file The goals: how fast and how exact the engine is to be, and how it does.
+/// \file The goals: how fast and how accurate the engine should be, and what it achieves.
 #pragma once
 
 #include "bench/case.hpp"
-#include "bench/measure/effort.hpp"
+#include "bench/measure/timing.hpp"
 
 #include <functional>
 #include <string>
@@ -10,12 +10,12 @@
 
 namespace touchtrial::bench {
 
-/// What a goal's target is the upper limit of.
+/// The quantity that a target limits from above.
 enum class Limit {
   ratio,    ///< our time / the peer's time
   time_us,  ///< our time
   error,    ///< our error against double, in `error_unit`
-  count     ///< of what `count_unit` says
+  count     ///< `count`, in `count_unit`
 };
 
 struct GoalResult {
@@ -29,33 +29,29 @@ struct GoalResult {
   double count = kNotTaken;
   std::string count_unit;
   Limit limit = Limit::ratio;
-  double target = kNotTaken;  ///< kNotTaken: no goal, said for the record
+  double target = kNotTaken;  ///< kNotTaken: not a goal, listed for the record
 };
 
-/// The figure that the target limits.
-[[nodiscard]] double limited_figure(const GoalResult& result) noexcept;
+/// The number that the target limits.
+[[nodiscard]] double limited_number(const GoalResult& result) noexcept;
 /// Whether there is a target at all.
 [[nodiscard]] bool has_target(const GoalResult& result) noexcept;
-/// Whether the figure was taken and keeps to the target.
+/// Whether the number was taken and does not exceed the target.
 [[nodiscard]] bool is_met(const GoalResult& result) noexcept;
 
-/// One goal, or a few that come from the same work.
+/// Measures one goal, or several that share their work.
 using Goal = std::function<std::vector<GoalResult>(const Effort& effort)>;
 
-/// Every kernel beside its peer.
+/// Every kernel beside its peer, and how soon TV-Gabor comes close to its texture.
 /// \param targets  this machine's SIMD targets, best first
 [[nodiscard]] std::vector<Goal> kernel_goals(const std::vector<std::string>& targets);
-/// How exact textures and MS-SSIM are, on every one of the targets.
+/// The accuracy of textures and MS-SSIM on every target.
 [[nodiscard]] std::vector<Goal> error_goals(const std::vector<std::string>& targets);
 
-/// How soon TV-Gabor is close to its texture.
-[[nodiscard]] std::vector<Goal> tv_gabor_goals();
-/// The time of a simulated study, and what its database takes.
-[[nodiscard]] std::vector<Goal> study_goals();
-/// What a start of the program costs, and a short command.
-[[nodiscard]] std::vector<Goal> start_goals();
+/// The time and database size of a simulated study, and the cost of a start and a short command.
+[[nodiscard]] std::vector<Goal> program_goals();
 
-/// The table as it is printed and as it stands in the documentation (Markdown, columns aligned).
+/// The table for the terminal and the documentation: Markdown with aligned columns.
 [[nodiscard]] std::string goals_table(const std::vector<GoalResult>& results);
 
 }  // namespace touchtrial::bench

@@ -1,7 +1,8 @@
 #include "analysis/figures/gnuplot.hpp"
+#include "bench/gnuplot_terminal.hpp"
 #include "bench/jitter/results.hpp"
 #include "core/errors.hpp"
-#include "device/servo/servo_names.hpp"
+#include "device/servo/servo.hpp"
 
 #include <algorithm>
 #include <array>
@@ -14,11 +15,11 @@
 namespace touchtrial::bench::jitter {
 namespace {
 
-/// Distinct for readers with any colour vision (Okabe and Ito).
+/// Distinct for readers with any colour vision (Okabe and Ito, 2008).
 constexpr std::array<const char*, 6> kColours = {"#0072b2", "#d55e00", "#009e73",
                                                  "#cc79a7", "#e69f00", "#000000"};
 constexpr int kBarsOfDecade = 10;
-/// All that is shorter stands in the first bar: a logarithmic axis has no zero.
+/// The first bar holds all shorter times: a logarithmic axis has no zero.
 constexpr double kShortestUs = 0.1;
 constexpr int kPanelPx = 330;
 constexpr int kMarginPx = 60;
@@ -38,19 +39,12 @@ set rmargin 3
 
 std::string terminal_for(const std::filesystem::path& picture, int panels) {
   const int height = panels * kPanelPx + kMarginPx;
-  if (picture.extension() == ".png") {
-    return fmt::format("set terminal pngcairo size 1000, {} font 'DejaVu Sans,13'\n", height);
-  }
-  if (picture.extension() == ".svg") {
-    return fmt::format(
-        "set terminal svg size 1000, {} dynamic font 'DejaVu Sans,Arial,sans-serif,13' "
-        "background '#ffffff'\n",
-        height);
-  }
+  const bool png = picture.extension() == ".png";
+  if (png || picture.extension() == ".svg") return gnuplot_terminal(png, 1000, height);
   throw UsageError("--picture " + picture.string() + ": must end in .svg or .png");
 }
 
-/// Percent of the ticks in each bar, by the bar's number on the logarithmic axis.
+/// Percentage of the ticks in each bar, by the number of the bar on the logarithmic axis.
 std::map<int, double> bars_of(const device::DurationHistogram& histogram) {
   std::map<int, double> bars;
   for (std::size_t i = 0; i < device::DurationHistogram::kBins; ++i) {

@@ -4,6 +4,7 @@
 #include "bench/jitter/measurement.hpp"
 #include "bench/jitter/results.hpp"
 #include "core/errors.hpp"
+#include "stimuli/generator.hpp"
 
 #include <cstdio>
 #include <exception>
@@ -33,25 +34,27 @@ struct Arguments {
 void set_up(CLI::App& program, Arguments& a) {
   const std::map<std::string, device::SchedulingPolicy> policies = {
       {"other", device::SchedulingPolicy::other}, {"fifo", device::SchedulingPolicy::fifo}};
-  program.add_option("--rate", a.rates_hz, "Ticks a second, 1000 to 10000; several: 1000,4000")
+  program.add_option("--rate", a.rates_hz, "Ticks per second, 1000 to 10000; several as 1000,4000")
       ->check(CLI::Range(1000.0, 10'000.0))
       ->delimiter(',');
-  program.add_option("--policy", a.policies, "Scheduling to ask for: other, fifo; or other,fifo")
+  program
+      .add_option("--policy", a.policies,
+                  "Scheduling to request: other or fifo; both as other,fifo")
       ->transform(CLI::CheckedTransformer(policies))
       ->delimiter(',');
-  program.add_option("--load", a.loads, "Threads that spin meanwhile; several: 0,4")
+  program.add_option("--load", a.loads, "Busy threads beside the servo; several as 0,4")
       ->check(CLI::Range(0, 1000))
       ->delimiter(',');
   CLI::Option* const seconds =
-      program.add_option("--seconds", a.seconds, "How long to measure, each")
+      program.add_option("--seconds", a.seconds, "Duration of each measurement, s")
           ->check(CLI::Range(0.01, 86'400.0));
   program
       .add_option("--unpaced", a.unpaced_ticks,
-                  "Take the time that this many ticks need, one straight after the other")
+                  "Measure the time of this many ticks that follow one another without a pause")
       ->check(CLI::Range(std::int64_t{1}, std::int64_t{1'000'000'000}))
       ->excludes(seconds);
   program.add_flag("--json", a.json, "Print JSON");
-  program.add_option("--picture", a.picture, "Draw the histograms into FILE, .svg or .png");
+  program.add_option("--picture", a.picture, "Draw the histograms into this file, .svg or .png");
 }
 
 std::vector<Conditions> conditions_of(const Arguments& a) {
@@ -65,13 +68,14 @@ std::vector<Conditions> conditions_of(const Arguments& a) {
 }
 
 std::vector<Measurement> measure(const Arguments& a, const std::vector<Conditions>& all) {
-  const BenchScene scene;
+  const app::TestTexture texture(stimuli::kDefaultStimulusSizePx);
   const auto progress = app::progress_bar("servo_jitter");
   std::vector<Measurement> measurements;
   for (const Conditions& conditions : all) {
     progress(static_cast<int>(measurements.size()), static_cast<int>(all.size()));
-    measurements.push_back(a.unpaced_ticks > 0 ? measure_service(scene, conditions, a.unpaced_ticks)
-                                               : measure_lateness(scene, conditions, a.seconds));
+    measurements.push_back(a.unpaced_ticks > 0
+                               ? measure_service(texture, conditions, a.unpaced_ticks)
+                               : measure_lateness(texture, conditions, a.seconds));
   }
   progress(static_cast<int>(all.size()), static_cast<int>(all.size()));
   return measurements;

@@ -1,17 +1,18 @@
 #include "bench/measure/tv_gabor_courses.hpp"
 
-#include "bench/inputs/tv_gabor_truth.hpp"
-#include "bench/measure/cpu_clock.hpp"
+#include "bench/inputs/truth.hpp"
+#include "bench/measure/timing.hpp"
 #include "tests/engine/plane_comparison.hpp"
+#include "tests/engine/reference/tv_gabor_course.hpp"
 
 namespace touchtrial::bench {
 namespace {
 
-/// ADMM looks at its own gap every tenth step: no other rhythm is free.
+/// ADMM computes its own gap at every tenth step, so that only this interval costs nothing extra.
 constexpr int kAdmmRhythm = 10;
 constexpr int kMostAdmmLooks = 30;
 
-/// A solver under a stop-watch.
+/// A solver whose steps are timed.
 template <typename Real>
 class TimedCourse {
  public:
@@ -36,8 +37,8 @@ class TimedCourse {
   double us_;
 };
 
-}  // namespace
-
+/// \param steps  between two points
+/// \param looks  how many points
 template <typename Real>
 std::vector<CoursePoint> watch_course(const GreyImage& image, reference::TvGaborAlgorithm algorithm,
                                       int steps, int looks) {
@@ -46,6 +47,8 @@ std::vector<CoursePoint> watch_course(const GreyImage& image, reference::TvGabor
   for (int look = 0; look < looks; ++look) points.push_back(course.after(steps));
   return points;
 }
+
+}  // namespace
 
 std::optional<CoursePoint> admm_until(const GreyImage& image, double error) {
   TimedCourse<float> course(image, reference::TvGaborAlgorithm::admm);
@@ -63,10 +66,5 @@ std::vector<SolverCourse> solver_courses(const GreyImage& image) {
           {"FISTA", watch_course<float>(image, fista, 50, 20)},
           {"fixed point", watch_course<float>(image, fixed_point, 50, 20)}};
 }
-
-template std::vector<CoursePoint> watch_course<float>(const GreyImage&, reference::TvGaborAlgorithm,
-                                                      int, int);
-template std::vector<CoursePoint> watch_course<double>(const GreyImage&,
-                                                       reference::TvGaborAlgorithm, int, int);
 
 }  // namespace touchtrial::bench

@@ -1,8 +1,7 @@
-/// \file How TV-Gabor's solvers go towards the texture, step by step.
+/// \file How TV-Gabor's solvers converge to the texture, step by step.
 #pragma once
 
 #include "core/plane.hpp"
-#include "tests/engine/reference/tv_gabor_course.hpp"
 
 #include <optional>
 #include <string>
@@ -10,10 +9,11 @@
 
 namespace touchtrial::bench {
 
-/// Where a solver is after some time.
+/// The state of a solver after some time.
 struct CoursePoint {
   int steps = 0;
-  double us = 0.0;     ///< of its own steps, set-up included; looking on costs nothing
+  double us =
+      0.0;  ///< of the solver's own steps, set-up included; taking this point is not counted
   double error = 0.0;  ///< of v, relative, in the Euclidean norm
   double gap = 0.0;    ///< relative primal-dual gap
 };
@@ -23,17 +23,11 @@ struct SolverCourse {
   std::vector<CoursePoint> points;
 };
 
-/// \param steps  between two looks \param looks  how many \param image  not flat
-template <typename Real>
-[[nodiscard]] std::vector<CoursePoint> watch_course(const GreyImage& image,
-                                                    reference::TvGaborAlgorithm algorithm,
-                                                    int steps, int looks);
-
-/// Steps that ADMM in single precision takes to come this close, in tens; nothing if a few hundred
-/// do not do.
+/// The first point, in steps of ten, at which ADMM in single precision reaches this error.
+/// \return nothing if it needs more than 300 steps
 [[nodiscard]] std::optional<CoursePoint> admm_until(const GreyImage& image, double error);
 
-/// All solvers on one image.
+/// The courses of all solvers on one image, which must not be flat.
 [[nodiscard]] std::vector<SolverCourse> solver_courses(const GreyImage& image);
 
 }  // namespace touchtrial::bench

@@ -1,4 +1,4 @@
-/// \file Planes as OpenCV sees them, without a copy.
+/// \file Planes as OpenCV matrices, and back.
 #pragma once
 
 #include "core/plane.hpp"
@@ -16,12 +16,13 @@ template <typename Sample>
                  plane.samples().data());
 }
 
-/// The same for an input, which OpenCV's functions do not write to.
+/// A view of an input image, to which OpenCV's functions do not write.
 [[nodiscard]] inline cv::Mat mat_of(const GreyImage& image) {
   return mat_of(const_cast<GreyImage&>(image));
 }
 
-/// A copy of a matrix of one channel. \param mat  of the type that belongs to Sample
+/// A copy of a matrix of one channel.
+/// \param mat  of the type that belongs to Sample
 template <typename Sample>
 [[nodiscard]] Plane<Sample> plane_of(const cv::Mat& mat) {
   Plane<Sample> plane(mat.rows, mat.cols);

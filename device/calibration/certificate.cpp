@@ -1,9 +1,15 @@
 #include "device/calibration/certificate.hpp"
 
 #include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/strict_json.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <cstdio>
+
+#include <nlohmann/json.hpp>
 
 namespace touchtrial::device {
 namespace {
@@ -13,13 +19,122 @@ Vec3 direction_of(CalibrationAxis axis) noexcept {
           axis == CalibrationAxis::z ? 1.0 : 0.0};
 }
 
-double along(Vec3 a, Vec3 b) noexcept {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-/// Whether the handle stood still.
+/// \return whether the handle stood still
 bool is_steady(const HoldFigures& figures) noexcept {
   return figures.measured && figures.noise_mm <= kMostNoiseMm && figures.drift_mm <= kMostDriftMm;
+}
+
+constexpr std::string_view kKind = "touchtrial device calibration 1";
+constexpr std::array kAxisNames = {Named<CalibrationAxis>{"x", CalibrationAxis::x},
+                                   Named<CalibrationAxis>{"y", CalibrationAxis::y},
+                                   Named<CalibrationAxis>{"z", CalibrationAxis::z}};
+constexpr NumberRange kFigure{.low = 0.0, .high = 1e6};
+
+std::string date_text(std::chrono::sys_seconds time) {
+  const auto day = std::chrono::floor<std::chrono::days>(time);
+  const std::chrono::year_month_day date(day);
+  const std::chrono::hh_mm_ss clock(time - day);
+  char text[32];
+  std::snprintf(text, sizeof text, "%04d-%02u-%02uT%02d:%02d:%02dZ", static_cast<int>(date.year()),
+                static_cast<unsigned>(date.month()), static_cast<unsigned>(date.day()),
+                static_cast<int>(clock.hours().count()), static_cast<int>(clock.minutes().count()),
+                static_cast<int>(clock.seconds().count()));
+  return text;
+}
+
+/// \return the number at this place of the text, or -1
+int number_at(const std::string& text, std::size_t at, std::size_t digits) {
+  int number = -1;
+  const char* end = text.data() + at + digits;
+  const auto [stop, error] = std::from_chars(text.data() + at, end, number);
+  return error == std::errc{} && stop == end ? number : -1;
+}
+
+std::chrono::sys_seconds read_date(const JsonValue& place) {
+  const std::string& text = place.text();
+  const std::string form = "0000-00-00T00:00:00Z";
+  if (text.size() == form.size()) {
+    const std::chrono::year_month_day date{
+        std::chrono::year(number_at(text, 0, 4)),
+        std::chrono::month(static_cast<unsigned>(number_at(text, 5, 2))),
+        std::chrono::day(static_cast<unsigned>(number_at(text, 8, 2)))};
+    const auto time = std::chrono::sys_seconds(std::chrono::sys_days(date)) +
+                      std::chrono::hours(number_at(text, 11, 2)) +
+                      std::chrono::minutes(number_at(text, 14, 2)) +
+                      std::chrono::seconds(number_at(text, 17, 2));
+    if (date.ok() && date_text(time) == text) return time;
+  }
+  place.refuse(in_quotes(text) + " is not a date of the form 2026-01-31T12:00:00Z");
+}
+
+bool is_weight_of(double force_n, double mass_g) {
+  const double weight_n = 0.001 * mass_g * kStandardGravityMS2;
+  return std::abs(force_n - weight_n) <= 1e-6 * weight_n;
+}
+
+/// Refuses a result that passed although its measurements do not.
+void expect_earned(bool earned, const JsonObject& object) {
+  if (!earned && object.at("passed").truth()) {
+    object.at("passed").refuse(
+        "does not follow from the measurements; the file was changed by hand");
+  }
+}
+
+AxisResult read_axis(const JsonValue& place) {
+  const JsonObject object =
+      place.object({"axis", "mass_g", "expected_n", "measured_n", "cross_n", "passed"});
+  const AxisResult result{
+      object.at("axis").choice(kAxisNames),    object.at("mass_g").number(kFigure),
+      object.at("expected_n").number(kFigure), object.at("measured_n").number(kFigure),
+      object.at("cross_n").number(kFigure),    object.at("passed").truth()};
+  if (!is_weight_of(result.expected_n, result.mass_g)) {
+    object.at("expected_n").refuse("is not the weight of mass_g; the file was changed by hand");
+  }
+  expect_earned(is_within_tolerance(result), object);
+  return result;
+}
+
+std::vector<AxisResult> read_axes(const JsonValue& place) {
+  std::vector<AxisResult> axes;
+  for (const JsonValue& item : place.items(kCalibrationAxes.size(), kCalibrationAxes.size())) {
+    const AxisResult result = read_axis(item);
+    if (std::ranges::find(axes, result.axis, &AxisResult::axis) != axes.end()) {
+      item.refuse_below("/axis", "occurs twice; give each of x, y and z once");
+    }
+    axes.push_back(result);
+  }
+  return axes;
+}
+
+FreeAirResult read_free_air(const JsonValue& place) {
+  const JsonObject object = place.object({"noise_mm", "drift_mm", "residual_n", "passed"});
+  const FreeAirResult result{object.at("noise_mm").number(kFigure),
+                             object.at("drift_mm").number(kFigure),
+                             object.at("residual_n").number(kFigure), object.at("passed").truth()};
+  expect_earned(result.noise_mm <= kMostNoiseMm && result.drift_mm <= kMostDriftMm, object);
+  return result;
+}
+
+Certificate read_object(const JsonValue& place) {
+  const JsonObject object = place.object({"kind", "driver", "model", "serial", "firmware",
+                                          "program", "made", "axes", "free_air", "passed"});
+  if (object.at("kind").text() != kKind) {
+    object.at("kind").refuse("must be " + in_quotes(kKind) +
+                             "; give a file that touchtrial device calibrate wrote");
+  }
+  Certificate certificate;
+  certificate.driver = object.at("driver").text();
+  certificate.model = object.at("model").text();
+  certificate.serial = object.at("serial").text();
+  certificate.firmware = object.at("firmware").text();
+  certificate.program = object.at("program").text();
+  certificate.made = read_date(object.at("made"));
+  certificate.axes = read_axes(object.at("axes"));
+  certificate.free_air = read_free_air(object.at("free_air"));
+  if (object.at("passed").truth() != certificate.passed()) {
+    object.at("passed").refuse("does not follow from the results; the file was changed by hand");
+  }
+  return certificate;
 }
 
 }  // namespace
@@ -42,7 +157,7 @@ bool Certificate::passed() const noexcept {
 AxisResult judge_axis(CalibrationAxis axis, double mass_g, const HoldFigures& empty,
                       const HoldFigures& loaded) noexcept {
   const Vec3 more_n = loaded.force_n - empty.force_n;
-  const double along_n = along(more_n, direction_of(axis));
+  const double along_n = dot(more_n, direction_of(axis));
   AxisResult result;
   result.axis = axis;
   result.mass_g = mass_g;
@@ -62,7 +177,7 @@ std::string check_certificate(const Certificate& certificate, const DeviceInfo& 
                               std::chrono::sys_seconds now) {
   constexpr const char* kRemedy = "; run touchtrial device calibrate ";
   if (certificate.driver != device.name || certificate.serial != device.serial) {
-    throw DeviceError(one_line("the certificate is of " + certificate.driver + " " +
+    throw DeviceError(one_line("the certificate is for " + certificate.driver + " " +
                                certificate.serial + ", the device is " + device.name + " " +
                                device.serial + kRemedy + device.name));
   }
@@ -74,6 +189,41 @@ std::string check_certificate(const Certificate& certificate, const DeviceInfo& 
   const auto days = std::chrono::duration_cast<std::chrono::days>(now - certificate.made).count();
   return device.name + ": its certificate is " + std::to_string(days) + " days old" + kRemedy +
          device.name;
+}
+
+std::string certificate_json(const Certificate& certificate) {
+  using nlohmann::ordered_json;
+  ordered_json axes = ordered_json::array();
+  for (const AxisResult& r : certificate.axes) {
+    axes.push_back({{"axis", name_of(r.axis)},
+                    {"mass_g", r.mass_g},
+                    {"expected_n", r.expected_n},
+                    {"measured_n", r.measured_n},
+                    {"cross_n", r.cross_n},
+                    {"passed", r.passed}});
+  }
+  const FreeAirResult& air = certificate.free_air;
+  const ordered_json object = {{"kind", kKind},
+                               {"driver", certificate.driver},
+                               {"model", certificate.model},
+                               {"serial", certificate.serial},
+                               {"firmware", certificate.firmware},
+                               {"program", certificate.program},
+                               {"made", date_text(certificate.made)},
+                               {"axes", axes},
+                               {"free_air",
+                                {{"noise_mm", air.noise_mm},
+                                 {"drift_mm", air.drift_mm},
+                                 {"residual_n", air.residual_n},
+                                 {"passed", air.passed}}},
+                               {"passed", certificate.passed()}};
+  return object.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+ReadCertificate read_certificate(const std::filesystem::path& path) {
+  constexpr std::uintmax_t kLargest = 1U << 20U;
+  const Bytes content = read_file(path, kLargest);
+  return {read_object(parse_strict_json(text_of(content), path.string())), sha256(content)};
 }
 
 }  // namespace touchtrial::device

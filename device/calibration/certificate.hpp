@@ -1,4 +1,5 @@
-/// \file What a calibration found, judged, and kept as a file that sessions refer to by its hash.
+/// \file The certificate of a calibration: its results, their judgement, and its file, to which
+/// sessions refer by its hash.
 #pragma once
 
 #include "core/hash.hpp"
@@ -15,16 +16,16 @@
 namespace touchtrial::device {
 
 inline constexpr double kStandardGravityMS2 = 9.80665;
-/// A force constant that is further off than this share fails.
+/// A force that is further off than this share fails.
 inline constexpr double kForceTolerance = 0.10;
-/// A handle that lies still may show this much.
+/// Greatest noise and drift of a handle that lies still.
 inline constexpr double kMostNoiseMm = 0.1;
 inline constexpr double kMostDriftMm = 0.5;
-/// An older certificate is warned of.
+/// An older certificate causes a warning.
 inline constexpr std::chrono::hours kCertificateAge{24 * 180};
 
-/// Axes of the device frame, in the order in which they are calibrated: y hangs straight down, the
-/// others pull over a pulley.
+/// Axes of the device frame, in the order of their calibration: along y the weight hangs straight
+/// down, along the others it pulls over a pulley.
 enum class CalibrationAxis { y, x, z };
 inline constexpr std::array kCalibrationAxes = {CalibrationAxis::y, CalibrationAxis::x,
                                                 CalibrationAxis::z};
@@ -35,12 +36,12 @@ struct AxisResult {
   CalibrationAxis axis = CalibrationAxis::y;
   double mass_g = 0.0;
   double expected_n = 0.0;  ///< the weight
-  double measured_n = 0.0;  ///< that the program had to command more than without the weight
-  double cross_n = 0.0;     ///< the same across the axis: a string that pulls askew
+  double measured_n = 0.0;  ///< commanded with the weight, beyond that without it
+  double cross_n = 0.0;     ///< the same across the axis, from a string that pulls askew
   bool passed = false;
 };
 
-/// Whether the force that was measured is the weight, within kForceTolerance.
+/// \return whether the measured force is the weight, within kForceTolerance
 [[nodiscard]] bool is_within_tolerance(const AxisResult& result) noexcept;
 
 struct FreeAirResult {
@@ -60,18 +61,20 @@ struct Certificate {
   std::vector<AxisResult> axes;     ///< all three
   FreeAirResult free_air;
 
-  /// All three axes and the free-air hold did.
+  /// \return whether all three axes and the free-air hold passed
   [[nodiscard]] bool passed() const noexcept;
 };
 
-/// \param mass_g  > 0  \param empty,loaded  holds without and with the weight
+/// \param mass_g  > 0
+/// \param empty,loaded  holds without and with the weight
 [[nodiscard]] AxisResult judge_axis(CalibrationAxis axis, double mass_g, const HoldFigures& empty,
                                     const HoldFigures& loaded) noexcept;
-/// \param rest  without force  \param empty  a hold without a weight
+/// \param rest  a run without force
+/// \param empty  a hold without a weight
 [[nodiscard]] FreeAirResult judge_free_air(const HoldFigures& rest,
                                            const HoldFigures& empty) noexcept;
 
-/// As a file holds it: JSON, indented. Format: docs/data-dictionary.md.
+/// \return the content of its file: JSON, indented. Format: docs/data-dictionary.md.
 [[nodiscard]] std::string certificate_json(const Certificate& certificate);
 
 /// A certificate and the SHA-256 of its file, which a session stores.
@@ -80,13 +83,13 @@ struct ReadCertificate {
   Digest hash{};
 };
 
-/// \throws FileError if it cannot be read, StudyError with the JSON pointer if it is none, or says
-///   more than its figures do
+/// \throws FileError if it cannot be read, StudyError with the JSON pointer if it is not a
+///   certificate, or claims more than its measurements show
 [[nodiscard]] ReadCertificate read_certificate(const std::filesystem::path& path);
 
-/// Holds a certificate against the device that a session is about to use.
-/// \return a warning if it is older than kCertificateAge, else nothing to say
-/// \throws DeviceError if it did not pass, or is of another driver or serial
+/// Compares a certificate with the device of a session.
+/// \return a warning if the certificate is older than kCertificateAge, else ""
+/// \throws DeviceError if it did not pass, or has another driver or serial number
 [[nodiscard]] std::string check_certificate(const Certificate& certificate,
                                             const DeviceInfo& device, std::chrono::sys_seconds now);
 

@@ -9,12 +9,8 @@ namespace {
 constexpr double kSpringNPerMm = 0.4;
 constexpr double kDamperNSPerMm = 0.008;
 constexpr double kIntegralNPerMmS = 1.0;
-/// What the integral may hold on its own: a weight, not a fight with a hand.
+/// The integral's greatest force: enough for a weight, too little to fight a hand.
 constexpr double kMostIntegralN = 3.0;
-
-double squared(Vec3 v) noexcept {
-  return v.x * v.x + v.y * v.y + v.z * v.z;
-}
 
 }  // namespace
 
@@ -44,7 +40,7 @@ void HoldMeasurement::record(const ServoSample& sample) noexcept {
   ++half.ticks;
   half.position_mm = half.position_mm + offset_mm;
   half.force_n = half.force_n + sample.force_n;
-  squares_mm2_ += squared(offset_mm);
+  squares_mm2_ += dot(offset_mm, offset_mm);
 }
 
 HoldFigures HoldMeasurement::figures() const noexcept {
@@ -56,7 +52,7 @@ HoldFigures HoldMeasurement::figures() const noexcept {
   const Vec3 mean_mm = (1.0 / ticks) * (halves_[0].position_mm + halves_[1].position_mm);
   figures.measured = true;
   figures.force_n = (1.0 / ticks) * (halves_[0].force_n + halves_[1].force_n);
-  figures.noise_mm = std::sqrt(std::max(squares_mm2_ / ticks - squared(mean_mm), 0.0));
+  figures.noise_mm = std::sqrt(std::max(squares_mm2_ / ticks - dot(mean_mm, mean_mm), 0.0));
   figures.drift_mm = norm((1.0 / static_cast<double>(halves_[1].ticks)) * halves_[1].position_mm -
                           (1.0 / static_cast<double>(halves_[0].ticks)) * halves_[0].position_mm);
   return figures;

@@ -1,5 +1,5 @@
-/// \file Holding a device's tip at one place, and what that takes: the measurement behind a
-/// calibration. Source: docs/devices/README.md, "Calibrate".
+/// \file The measurement behind a calibration: holds a device's tip at one place and measures the
+/// force that it takes. Source: docs/devices/README.md, "Calibrate".
 #pragma once
 
 #include "core/vec.hpp"
@@ -10,22 +10,22 @@ namespace touchtrial::device {
 /// Means over the steady end of a run, device frame.
 struct HoldFigures {
   bool measured = false;  ///< the run lasted long enough, and the device was ready
-  Vec3 force_n;           ///< mean of the forces that were sent
+  Vec3 force_n;           ///< mean of the sent forces
   double noise_mm = 0.0;  ///< standard deviation of the position, all axes together
   double drift_mm = 0.0;  ///< from the mean place of the first half to that of the second
 };
 
 /// One run: force source and sample sink in one. Holds the place of its first ready sample by a
-/// spring, a damper and an integral, so that at rest the mean force is what balances the load,
-/// whatever the spring. Unit mass 50 to 500 g. Belongs to the servo thread while a run lasts.
+/// spring, a damper and an integral, so that at rest the mean force balances the load, whatever the
+/// spring. For masses of 50 to 500 g. Belongs to the servo thread while a run lasts.
 class HoldMeasurement final : public ForceSource, public SampleSink {
  public:
   enum class Mode {
     hold,
-    rest,  ///< no force at all: the handle lies still
+    rest,  ///< without force: the handle lies still
   };
-  static constexpr double kSettleS = 6.0;   ///< left out: the hand lets go, the integral fills
-  static constexpr double kMeasureS = 2.0;  ///< that is averaged
+  static constexpr double kSettleS = 6.0;   ///< not measured: the hand lets go, the integral fills
+  static constexpr double kMeasureS = 2.0;  ///< averaged
   static constexpr double kRunS = kSettleS + kMeasureS;
 
   explicit HoldMeasurement(Mode mode, double rate_hz = kServoRateHz) noexcept

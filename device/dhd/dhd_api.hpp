@@ -9,11 +9,12 @@
 
 namespace touchtrial::device::dhd {
 
-/// What most functions return: below 0 an error, 0 done, 2 that the motors gave less force than was
-/// asked for, which is no fault, or this: asked too soon, so the values are those of before.
+/// Most functions return a number below 0 for an error, 0 for success, 2 if the motors gave less
+/// force than requested (no fault), or this one if the call came too soon and gave the same values
+/// again.
 constexpr int kTimeGuard = 1;
 
-/// Places in the status. Longer than any version's, so that a newer library stays inside.
+/// The status and places in it. Longer than any version's, so that a newer library stays inside.
 using Status = std::array<int, 32>;
 constexpr std::size_t kConnected = 1;
 constexpr std::size_t kReset = 3;  ///< the device knows where its axes are
@@ -21,7 +22,8 @@ constexpr std::size_t kForce = 5;  ///< force is switched on
 constexpr std::size_t kError = 9;
 constexpr std::size_t kForceOffCause = 14;
 
-/// Causes for which the device itself switches force off; the others are a person's (its button).
+/// Causes for which the device itself switches force off; the other causes are a person's act (its
+/// button).
 constexpr int kOffByVelocity = 2;
 constexpr int kOffByWatchdog = 3;
 constexpr int kOffByUnplugging = 5;
@@ -55,6 +57,27 @@ struct Api {
 };
 
 /// \throws DeviceError if a function is missing
-[[nodiscard]] Api load_api(const DynamicLibrary& library);
+[[nodiscard]] inline Api load_api(const DynamicLibrary& library) {
+  Api api{};
+  library.find("dhdGetDeviceCount", api.get_device_count);
+  library.find("dhdOpenID", api.open_id);
+  library.find("dhdClose", api.close);
+  library.find("dhdGetPosition", api.get_position);
+  library.find("dhdGetLinearVelocity", api.get_linear_velocity);
+  library.find("dhdSetForce", api.set_force);
+  library.find("dhdEnableForce", api.enable_force);
+  library.find("dhdGetButtonMask", api.get_button_mask);
+  library.find("dhdGetStatus", api.get_status);
+  library.find("dhdSetTimeGuard", api.set_time_guard);
+  library.find("dhdSetGravityCompensation", api.set_gravity_compensation);
+  library.find("dhdSetEffectorMass", api.set_effector_mass);
+  library.find("dhdErrorGetLastStr", api.error_get_last_str);
+  library.find_if_any("dhdEnableExpertMode", api.enable_expert_mode);
+  library.find_if_any("dhdDisableExpertMode", api.disable_expert_mode);
+  library.find_if_any("dhdGetSystemName", api.get_system_name);
+  library.find_if_any("dhdGetSerialNumber", api.get_serial_number);
+  library.find_if_any("dhdGetVersion", api.get_version);
+  return api;
+}
 
 }  // namespace touchtrial::device::dhd

@@ -1,37 +1,33 @@
 /// \file Force Dimension's omega, delta and sigma, through the vendor's library.
 #pragma once
 
+#include "device/device_link.hpp"
 #include "device/device_settings.hpp"
-#include "device/haptic_device.hpp"
 
 #include <memory>
 
 namespace touchtrial::device {
 
-/// The driver "dhd". A thread of its own polls the device at 4 kHz; its velocity threshold and
-/// watchdog stay on beneath our safety chain, its time guard is set, gravity compensation and the
-/// effector's mass are as the settings say. Not verified on hardware.
+/// The driver "dhd". A thread of its own polls the device at 4 kHz. The device's velocity threshold
+/// and watchdog stay on beneath our safety chain; its time guard is set; gravity compensation and
+/// the effector's mass follow the settings. Not verified on hardware.
 ///
-/// No force is sent before the device knows where its axes are; samples are not ready either while
-/// somebody has switched force off at the device. A fault latches: a device that failed has to be
-/// opened anew.
-class DhdDevice final : public HapticDevice {
+/// The driver sends no force before the device knows where its axes are. Samples are not ready
+/// while a person has switched force off at the device. A fault latches: open the device anew.
+class DhdDevice final : public LinkedDevice {
  public:
-  /// \throws DeviceError with the remedy: no library, not all of its functions, no such device, or
-  ///   a setting that it refuses
+  /// \throws DeviceError with the remedy if there is no library, a function of it is missing, there
+  ///   is no such device, or it refuses a setting
   explicit DhdDevice(const DhdSettings& settings);
-  /// Zero force, then force off, then the device is closed.
+  /// Sends zero force, switches force off, and closes the device.
   ~DhdDevice() override;
 
   [[nodiscard]] DeviceInfo info() const override;
-  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override;
-  [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override;
-  void halt() noexcept override;
-  void rearm() noexcept override;
-  [[nodiscard]] DeviceFault fault() const noexcept override;
   [[nodiscard]] DeviceReadiness readiness() const noexcept override;
 
  private:
+  [[nodiscard]] DeviceLink& link() const noexcept override;
+
   struct Running;
   std::unique_ptr<Running> running_;
 };

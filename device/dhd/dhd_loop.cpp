@@ -62,7 +62,7 @@ void Loop::check_status() noexcept {
       std::memory_order_release);
 }
 
-/// Force that a person switched off at the device is no fault; the samples say that it is off.
+/// A person may switch force off at the device; that is no fault, and the samples are not ready.
 void Loop::judge_force_off(int cause) noexcept {
   if (cause == kOffByVelocity) link_.fail(DeviceFault::limit_passed);
   if (cause == kOffByWatchdog) link_.fail(DeviceFault::driver);
@@ -82,7 +82,7 @@ void Loop::take_sample() noexcept {
     link_.fail(DeviceFault::bad_data);
     return;
   }
-  if (got == kTimeGuard) return;  // nothing newer: the servo sees by the number that it is not
+  if (got == kTimeGuard) return;  // nothing newer: the sequence number tells the servo
   DeviceSample sample;
   sample.position_mm = kMmPerM * to_device_frame(position_m);
   sample.velocity_mm_s = kMmPerM * to_device_frame(velocity_m_s);
@@ -96,7 +96,7 @@ void Loop::send(Vec3 force_n) noexcept {
   if (api_.set_force(force.x, force.y, force.z, device_) < 0) fail_call();
 }
 
-/// A call failed: because the device is gone, or for a reason of the library's own.
+/// Reports a failed call: the device is gone, or the library has a reason of its own.
 void Loop::fail_call() noexcept {
   Status status{};
   const bool there = api_.get_status(status.data(), device_) >= 0 && status[kConnected] != 0;

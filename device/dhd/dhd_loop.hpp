@@ -10,14 +10,15 @@
 
 namespace touchtrial::device::dhd {
 
-/// How often the device is asked: about what its USB link gives.
+/// About the rate that the device's USB link allows.
 constexpr double kPollRateHz = 4000.0;
 
-/// Polls the device from its construction to its destruction, in real time where that is permitted.
-/// Zeros are the last forces that it sends.
+/// Polls the device from its construction to its destruction, in real time where the system permits
+/// it. The last forces that it sends are zeros.
 class Loop {
  public:
-  /// \param api  must outlive this, and the device stay open
+  /// \param api  must outlive this
+  /// \param device  must stay open as long
   Loop(const Api& api, char device);
   ~Loop();
   Loop(const Loop&) = delete;

@@ -1,7 +1,9 @@
 #include "device/falcon/falcon_device.hpp"
 
 #include "core/errors.hpp"
+#include "device/drivers.hpp"
 #include "device/falcon/falcon_firmware.hpp"
+#include "device/falcon/usb_falcon.hpp"
 
 namespace touchtrial::device::falcon {
 namespace {
@@ -17,11 +19,12 @@ class RealPace final : public FalconPace {
 constexpr double kMaxForceN = 8.0;
 
 constexpr int kProbes = 5;
-/// At a latency of 1 ms the chip sends a packet each millisecond, mostly without anything in it.
+/// At a latency of 1 ms the chip sends a packet every millisecond, usually an empty one.
 constexpr int kPacketsPerProbe = 20;
 constexpr milliseconds kPacketLimit{20};
 
-/// One question. \return whether a reply came before the device had nothing to say
+/// Sends one question.
+/// \return whether a reply came before the device fell silent
 bool answers_once(FtdiTransport& transport) {
   const Packet question = FalconExchange::farewell();
   if (transport.send(question, kPacketLimit) != question.size()) return false;
@@ -35,7 +38,7 @@ bool answers_once(FtdiTransport& transport) {
   return false;
 }
 
-/// Makes the device run, loading its firmware if need be.
+/// Makes the device run, and loads its firmware if it has none.
 void make_run(FtdiTransport& transport, const FalconSettings& settings) {
   set_up_running_falcon(transport);
   if (falcon_answers(transport)) return;
@@ -45,6 +48,41 @@ void make_run(FtdiTransport& transport, const FalconSettings& settings) {
                     one_line(settings.firmware.string()) +
                     " may not be a Falcon's firmware: correct falcon.firmware in the device "
                     "settings");
+}
+
+/// \return what is wrong with the firmware's file; empty if nothing is
+std::string firmware_trouble(const FalconSettings& settings) {
+  try {
+    static_cast<void>(read_falcon_firmware(settings.firmware));
+  } catch (const FileError& error) {
+    return error.what();
+  }
+  return {};
+}
+
+std::vector<DeviceListing> list_falcons(const DeviceSettings& settings) {
+  std::vector<DeviceListing> listings;
+  const std::string firmware = firmware_trouble(settings.falcon);
+  for (const UsbFalcon& found : find_usb_falcons()) {
+    DeviceListing listing{"falcon", "Novint Falcon", found.serial, found.where, true, {}};
+    if (!found.trouble.empty()) listing.missing.push_back(found.trouble);
+    if (!firmware.empty()) listing.missing.push_back(firmware);
+    listings.push_back(std::move(listing));
+  }
+  if (listings.empty()) {
+    listings.push_back(
+        {"falcon",
+         "",
+         "",
+         "",
+         false,
+         {"none is plugged in (USB 0403:cb48); plug it in and switch its power on"}});
+  }
+  return listings;
+}
+
+std::unique_ptr<HapticDevice> open_falcon(const DeviceSettings& settings) {
+  return std::make_unique<FalconDevice>(open_usb_falcon(settings.falcon.serial), settings.falcon);
 }
 
 }  // namespace
@@ -115,9 +153,9 @@ void FalconDevice::exchange_until_stopped() noexcept {
 
 void FalconDevice::exchange() noexcept {
   const Packet command = exchange_.command(options_.pace->now());
-  // One that is not taken is missing a reply soon.
+  // A command that is not taken shows as a missing reply.
   static_cast<void>(transport_->post(command));
-  // The device's own time, whatever the pace says.
+  // The device answers in real time, whatever the pace is.
   const FalconPace::Time until = monotonic_now() + kReplyLimit;
   do {
     transport_->serve(std::chrono::duration_cast<std::chrono::microseconds>(kReplyLimit));
@@ -134,8 +172,20 @@ void FalconDevice::say_farewell() noexcept {
       static_cast<void>(transport_->send(FalconExchange::farewell(), milliseconds(20)));
     }
   } catch (const DeviceError&) {
-    // It is gone: nobody is left to tell.
+    // The device is gone, so it needs no farewell.
   }
 }
 
 }  // namespace touchtrial::device::falcon
+
+namespace touchtrial::device {
+
+DeviceDriver falcon_driver() {
+  return {.name = "falcon",
+          .what = "Novint Falcon, over USB",
+          .list = falcon::list_falcons,
+          .open = falcon::open_falcon,
+          .nominal_workspace = falcon::kFalconWorkspace};
+}
+
+}  // namespace touchtrial::device

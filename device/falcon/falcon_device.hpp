@@ -30,10 +30,9 @@ class FalconPace {
   virtual ~FalconPace() = default;
   /// Monotonic. Any thread.
   [[nodiscard]] virtual Time now() noexcept = 0;
-  /// The USB thread rests here before each exchange until it is time for it.
+  /// The USB thread rests here until its next exchange is due.
   virtual void rest_until(Time time) noexcept = 0;
-  /// Ends the rest, now and for good: the device is being closed, or the USB thread has ended. Any
-  /// thread.
+  /// Ends the rest for good: the device is being closed, or the USB thread has ended. Any thread.
   virtual void end() noexcept {}
 };
 
@@ -42,22 +41,22 @@ class FalconPace {
 
 struct FalconOptions {
   std::unique_ptr<FalconPace> pace = real_falcon_pace();
-  /// Of the USB thread: a little before the servo, which waits for what it brings.
+  /// Of the USB thread: its priority is a little above that of the servo, which needs its samples.
   SchedulingRequest scheduling{SchedulingPolicy::fifo, 81, true};
 };
 
-/// Exchanges one packet each way at up to 1 kHz on a thread of its own. No force is sent before all
-/// three axes are homed; the gravity bias is added while a servo runs.
+/// Exchanges one packet each way at up to 1 kHz on a thread of its own. Sends no force before all
+/// three axes are homed; adds the gravity bias while a servo runs.
 class FalconDevice final : public HapticDevice {
  public:
-  /// Least time from one exchange to the next: the device manages about 1 kHz.
+  /// The shortest time from one exchange to the next: the device manages about 1 kHz.
   static constexpr FalconPace::Time kPeriod = std::chrono::milliseconds(1);
-  /// How long a reply may take.
+  /// The longest time for a reply.
   static constexpr FalconPace::Time kReplyLimit = std::chrono::milliseconds(5);
-  /// Packets without force that are sent on closing.
+  /// Packets without force before the device is closed.
   static constexpr int kFarewells = 5;
 
-  /// Loads the firmware unless the device answers already; returns once exchanges go on.
+  /// Loads the firmware unless the device answers already; returns once exchanges have begun.
   /// \throws DeviceError or FileError with the remedy
   FalconDevice(std::unique_ptr<FtdiTransport> transport, const FalconSettings& settings,
                FalconOptions options = {});
@@ -86,11 +85,12 @@ class FalconDevice final : public HapticDevice {
   std::atomic<bool> homed_{false};
   std::atomic<bool> stopping_{false};
   SchedulingObtained scheduling_;
-  std::latch started_{1};  ///< its scheduling is known
+  std::latch started_{1};  ///< until its scheduling is known
   std::thread thread_;
 };
 
-/// Whether loaded firmware answers. Moves nothing.
+/// Moves nothing.
+/// \return whether loaded firmware answers
 /// \throws DeviceError if the device is gone
 [[nodiscard]] bool falcon_answers(FtdiTransport& transport);
 

@@ -32,13 +32,13 @@ bool FalconExchange::take(const Reply& reply, Time now) noexcept {
   homed_ = reply.all_homed();
   const Pose pose =
       forward_kinematics(theta1_of_counts(reply.counts), known_ ? pose_.native_m : kCentreM);
-  // Before homing the counts have no origin, so any of them may be.
+  // Before homing the counts have no origin, so every count is possible.
   if (homed_ && pose.status == PoseStatus::out_of_reach) return false;
   const Vec3 position_mm = to_device_mm(pose.native_m);
   if (jumps(position_mm, now)) return false;
   pose_ = pose;
   pose_at_ = now;
-  // The origin jumps with homing: what was read before it is no way that the hand went.
+  // Homing moves the origin, so readings before it say nothing about the hand's motion.
   if (!known_ || !homed_) velocity_.forget();
   known_ = homed_;
   const Vec3 velocity_mm_s = velocity_.add(position_mm, now);
@@ -50,7 +50,7 @@ bool FalconExchange::jumps(Vec3 position_mm, Time now) noexcept {
   if (!known_ || !homed_) return false;
   const double passed_s = std::chrono::duration<double>(now - pose_at_).count();
   const double way_mm = norm(position_mm - to_device_mm(pose_.native_m));
-  // Within 1 ms clocks and replies may well stand beside each other.
+  // Replies less than 1 ms apart are judged as if they were 1 ms apart: they may come together.
   if (way_mm <= kMostSpeedMmS * std::max(passed_s, 1e-3)) {
     jumps_ = 0;
     return false;
@@ -68,7 +68,7 @@ Vec3 FalconExchange::bias_n(Time now) noexcept {
 }
 
 MotorValues FalconExchange::motors(Time now) noexcept {
-  // Asked for even if it is not sent, so that none lies waiting.
+  // Taken even if it is not sent, so that no old force waits in the link.
   const std::optional<Vec3> force_n = link_.live_force(now);
   if (!force_n || !homed_ || !known_ || missing_ > kForcelessAfter) {
     bias_from_.reset();

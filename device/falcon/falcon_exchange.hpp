@@ -1,5 +1,5 @@
-/// \file What a Falcon's replies mean and what it is sent: everything between packets and the
-/// DeviceLink, without USB, threads or clocks.
+/// \file The meaning of a Falcon's replies, and the commands to it: everything between packets and
+/// the DeviceLink, without USB, threads or clocks.
 #pragma once
 
 #include "device/device_link.hpp"
@@ -20,15 +20,15 @@ class FalconExchange final : public FtdiStreamSink {
  public:
   using Time = DeviceLink::Time;
 
-  /// Exchanges in a row without a reply after which forces are no longer sent: the position that
-  /// they belong to is too old.
+  /// Exchanges in a row without a reply after which forces stop, as their position is too old.
   static constexpr int kForcelessAfter = 2;
   /// ... and after which the device counts as lost.
   static constexpr int kLostAfter = 20;
-  /// A hand does not move faster: a reply that says so is a broken one, unless the next ones agree.
+  /// No hand moves faster: a reply that says so is damaged, unless the next ones agree with it.
   static constexpr double kMostSpeedMmS = 5'000.0;
   static constexpr int kMostJumps = 3;
-  /// In which the gravity bias comes, so that no hand is jerked when a servo begins.
+  /// The time in which the gravity bias rises, so that it does not jerk the hand when a servo
+  /// begins.
   static constexpr std::chrono::milliseconds kBiasRamp{500};
 
   /// \param link  must outlive this
@@ -36,39 +36,41 @@ class FalconExchange final : public FtdiStreamSink {
 
   /// Bytes from the device, as the transport hands them on.
   void receive(std::span<const std::uint8_t> transfer) noexcept override;
-  /// Whether a reply came since the last `finish`.
+  /// \return whether a reply came since the last `finish`
   [[nodiscard]] bool has_reply() const noexcept { return fresh_; }
 
-  /// Ends one exchange: publishes the newest reply, or counts a missing one, and fails the link
-  /// where there were too many: bad_data if there were bytes without sense, else link_lost.
+  /// Ends one exchange: publishes the newest reply, or counts a missing one. Too many missing ones
+  /// fail the link: bad_data if bytes came that make no sense, else link_lost.
   void finish(Time now) noexcept;
-  /// What to send next: no force before all axes are homed, or after replies went missing.
+  /// \return the packet to send next, without force before all axes are homed and after replies
+  /// went
+  ///   missing
   [[nodiscard]] Packet command(Time now) noexcept;
-  /// All axes homed, as of the newest reply.
+  /// \return whether all axes are homed, by the newest reply
   [[nodiscard]] bool homed() const noexcept { return homed_; }
 
-  /// Lights out, no force: what is sent last.
+  /// \return the last packet of all: lights off, no force
   [[nodiscard]] static Packet farewell() noexcept { return encode_command({}); }
 
  private:
   void note_missing() noexcept;
-  /// \return whether the reply is a reading that can be
+  /// \return whether the reply is a possible reading
   [[nodiscard]] bool take(const Reply& reply, Time now) noexcept;
   [[nodiscard]] bool jumps(Vec3 position_mm, Time now) noexcept;
-  /// What is there of it by now.
+  /// \return the part of the gravity bias that has risen by now
   [[nodiscard]] Vec3 bias_n(Time now) noexcept;
   [[nodiscard]] MotorValues motors(Time now) noexcept;
 
   DeviceLink& link_;
   Vec3 gravity_bias_n_;
   std::array<int, 3> led_order_;
-  std::optional<Time> bias_from_;  ///< when forces began to be sent; nothing: none are
+  std::optional<Time> bias_from_;  ///< when the first force was sent; nothing: there is no force
 
   FalconStream stream_;
   bool fresh_ = false;
   int missing_ = 0;
-  std::uint64_t sense_at_ = 0;  ///< bytes without sense, when the last good reply came
-  bool bad_reading_ = false;    ///< a reply since then was no reading of a Falcon
+  std::uint64_t sense_at_ = 0;  ///< discarded bytes when the last good reply came
+  bool bad_reading_ = false;    ///< a reply since then was not a Falcon's reading
 
   bool homed_ = false;
   bool known_ = false;  ///< whether `pose_` is a reading

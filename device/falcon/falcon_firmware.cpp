@@ -13,7 +13,7 @@ namespace {
 using std::chrono::milliseconds;
 using Bytes = std::vector<std::uint8_t>;
 
-// Values of the chip's requests.
+// Values for the chip's requests.
 constexpr std::uint16_t kPurgeReceived = 1;
 constexpr std::uint16_t kPurgeSent = 2;
 constexpr std::uint16_t kRequestToSendLow = 0x200;
@@ -32,13 +32,13 @@ constexpr std::array<std::uint8_t, 3> kHello = {0x0a, 0x43, 0x0d};
 constexpr std::array<std::uint8_t, 4> kHelloAnswer = {0x0a, 0x44, 0x2c, 0x0d};
 constexpr std::array<std::uint8_t, 1> kStart = {0x41};
 
-/// A packet's payload, so that a block and its echo fit one each.
+/// A packet's payload, so that a block and its echo fit into one packet each.
 constexpr std::size_t kBlockBytes = kUsbPacketSize - kFtdiStatusSize;
 
 constexpr milliseconds kSendLimit{200};
-/// Well above the latency timer, which sends a packet every 16 ms even if there is nothing in it.
+/// Well above the latency timer, which sends a packet every 16 ms even if it is empty.
 constexpr milliseconds kBootPacketLimit{50};
-/// Packets without news after which an answer will not come any more.
+/// Empty packets after which no answer will come any more.
 constexpr int kPatiencePackets = 2;
 
 void purge(FtdiTransport& transport) {
@@ -46,7 +46,8 @@ void purge(FtdiTransport& transport) {
   transport.control(FtdiRequest::purge, kPurgeSent);
 }
 
-/// Appends what the next packet holds. \return whether it held anything
+/// Appends the payload of the next packet.
+/// \return whether it had any
 bool receive_more(FtdiTransport& transport, Bytes& bytes) {
   std::array<std::uint8_t, kUsbPacketSize> packet{};
   const std::size_t length = transport.receive(packet, kBootPacketLimit);
@@ -55,7 +56,7 @@ bool receive_more(FtdiTransport& transport, Bytes& bytes) {
   return true;
 }
 
-/// What comes until there are as many bytes, or nothing more comes.
+/// Receives this many bytes, or fewer if no more come.
 Bytes receive_bytes(FtdiTransport& transport, std::size_t count) {
   Bytes bytes;
   for (int idle = 0; bytes.size() < count && idle < kPatiencePackets;) {
@@ -64,7 +65,7 @@ Bytes receive_bytes(FtdiTransport& transport, std::size_t count) {
   return bytes;
 }
 
-/// Whether the answer came, whatever the line said before it: a zero sometimes leads.
+/// \return whether the answer came, perhaps after other bytes: sometimes a zero leads
 bool answers(FtdiTransport& transport, std::span<const std::uint8_t> expected) {
   Bytes bytes;
   for (int idle = 0; idle < kPatiencePackets && bytes.size() < kUsbPacketSize;) {
@@ -104,7 +105,7 @@ bool starts_loading(FtdiTransport& transport) {
   return says(transport, kStart, kStart);
 }
 
-/// \return where the image and its echo part, in bytes; the image's size if they never do
+/// \return the first byte at which the echo differs; the image's size if none does
 std::size_t send_image(FtdiTransport& transport, std::span<const std::uint8_t> image) {
   for (std::size_t at = 0; at < image.size(); at += kBlockBytes) {
     const auto block = image.subspan(at, std::min(kBlockBytes, image.size() - at));
@@ -114,7 +115,8 @@ std::size_t send_image(FtdiTransport& transport, std::span<const std::uint8_t> i
   return image.size();
 }
 
-/// One load. \return what failed; empty if nothing did
+/// Loads the image once.
+/// \return what failed; empty if nothing did
 std::string try_load(FtdiTransport& transport, std::span<const std::uint8_t> image) {
   reset_into_loader(transport);
   if (!shakes_hands(transport)) return "its loader does not answer";
@@ -142,7 +144,7 @@ std::vector<std::uint8_t> read_falcon_firmware(const std::filesystem::path& file
   }
   if (image.size() < kLeastFirmwareBytes || image.size() > kMostFirmwareBytes) {
     throw FileError(one_line(file.string()) +
-                    ": is no Falcon firmware, which has 4096 to 16384 bytes; correct "
+                    ": is not a Falcon's firmware, which has 4096 to 16384 bytes; correct "
                     "falcon.firmware in the device settings");
   }
   return image;

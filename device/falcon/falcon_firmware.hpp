@@ -1,5 +1,5 @@
-/// \file Loading the vendor's firmware into a Falcon, which forgets it without power. The image is
-/// the user's: none comes with this program.
+/// \file Loads the vendor's firmware into a Falcon, which forgets it without power. The user
+/// provides the image: this program contains none.
 #pragma once
 
 #include "device/falcon/ftdi_transport.hpp"
@@ -11,25 +11,27 @@
 
 namespace touchtrial::device::falcon {
 
-/// Sizes of a file that can be an image: those known have 7,914 and 8,492 bytes.
+/// Limits of an image's size: the known ones have 7,914 and 8,492 bytes.
 constexpr std::size_t kLeastFirmwareBytes = 4'096;
 constexpr std::size_t kMostFirmwareBytes = 16'384;
 
-/// \throws FileError, with the remedy, if no file is named, it cannot be read, or it has a size
-///   that no image has
+/// \throws FileError with the remedy if no file is named, it cannot be read, or its size is not
+/// that
+///   of an image
 [[nodiscard]] std::vector<std::uint8_t> read_falcon_firmware(const std::filesystem::path& file);
 
-/// How often to try before giving up: loading is known to fail now and then.
+/// Attempts before giving up: loading is known to fail now and then.
 constexpr int kFirmwareLoads = 10;
 constexpr int kFirmwareHandshakes = 100;
 
-/// Resets the device into its loader and sends the image, comparing every byte with its echo; then
-/// sets the chip up for running. Takes about 2.5 s where nothing fails.
+/// Resets the device into its loader, sends the image, compares every byte with its echo, and sets
+/// the chip up for running. Takes about 2.5 s if nothing fails.
 /// \throws DeviceError with the last failure and the remedy after `kFirmwareLoads` loads, or at
-///   once if the device is gone
+/// once
+///   if the device is gone
 void load_falcon_firmware(FtdiTransport& transport, std::span<const std::uint8_t> image);
 
-/// Sets the chip up for talking to loaded firmware: latency 1 ms, running speed, empty buffers.
+/// Sets the chip up for loaded firmware: latency 1 ms, running speed, empty buffers.
 void set_up_running_falcon(FtdiTransport& transport);
 
 }  // namespace touchtrial::device::falcon

@@ -1,7 +1,5 @@
 #include "device/falcon/falcon_kinematics.hpp"
 
-#include "device/falcon/falcon_geometry.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -12,18 +10,14 @@ namespace {
 constexpr double kDegPerCount = 0.0364347;
 constexpr double kDegAtCountZero = 35.0;
 
-/// A little beyond what any position in reach needs (-75.4 to 113.5 degrees were found).
+/// A little beyond the angles of all positions in reach (-75.4 to 113.5 degrees).
 constexpr double kLeastTheta1Rad = -90.0 * kRadPerDeg;
 constexpr double kGreatestTheta1Rad = 120.0 * kRadPerDeg;
 
-/// Of the three pulls, which are about unit vectors: -0.80 at the centre, nowhere nearer to zero
-/// than -0.24 within a cube of 80 mm. It is zero where the legs cannot hold the hand, and positive
-/// beyond, where the legs would have to pass through one another.
+/// Limit for the determinant of the three pulls, which are about unit vectors: -0.80 at the centre,
+/// nowhere nearer to zero than -0.24 within a cube of 80 mm. It is zero where the legs cannot hold
+/// the hand, and positive beyond, where the legs would have to pass through one another.
 constexpr double kLeastDeterminant = -0.02;
-
-double dot(Vec3 a, Vec3 b) noexcept {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
 
 Vec3 cross(Vec3 a, Vec3 b) noexcept {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
@@ -53,7 +47,7 @@ struct Closure {
   PerLeg gap_m{};
   std::array<Vec3, 3> pull;  ///< its gradient
   PerLeg lever_m{};
-  bool exists = false;  ///< the parallelograms reach as far to the side
+  bool exists = false;  ///< the parallelograms reach far enough to the side
   bool upright = true;  ///< every parallelogram leads away from the base
 };
 
@@ -87,7 +81,7 @@ bool is_closed(const Closure& c) noexcept {
          std::abs(c.gap_m[2]) < kTolerance;
 }
 
-/// The capped Newton step; nothing where the gradients do not span the space.
+/// \return the capped Newton step; nothing where the gradients do not span the space
 std::optional<Vec3> newton_step(const Closure& c) noexcept {
   constexpr double kLongestM = 0.020;
   const double det = determinant(c.pull);
@@ -101,7 +95,8 @@ std::optional<Vec3> newton_step(const Closure& c) noexcept {
   return length > kLongestM ? (kLongestM / length) * step : step;
 }
 
-/// Halves the step until the legs come nearer to closing. \return whether they did
+/// Halves the step until the legs come nearer to closing.
+/// \return whether they did
 bool advance(Vec3& position_m, Closure& closure, Vec3 step, const Arms& arms) noexcept {
   constexpr int kMostHalvings = 10;
   const double before = sum_of_squares(closure.gap_m);
@@ -115,13 +110,14 @@ bool advance(Vec3& position_m, Closure& closure, Vec3 step, const Arms& arms) no
   return false;
 }
 
-/// The legs of a Falcon, put together as they are in its housing.
+/// \return whether the legs stand as they do in a Falcon's housing
 bool is_falcon(const Closure& c) noexcept {
   return c.upright && c.lever_m[0] >= 0.0 && c.lever_m[1] >= 0.0 && c.lever_m[2] >= 0.0 &&
          determinant(c.pull) < 0.0;
 }
 
-/// Newton from a start. \return out of reach if that does not close the legs
+/// Newton's method from a start.
+/// \return out of reach if it does not close the legs
 Pose solve_from(Vec3 start_m, const Arms& arms) noexcept {
   constexpr int kMostSteps = 25;
   Pose pose;

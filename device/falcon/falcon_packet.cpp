@@ -37,7 +37,7 @@ std::int16_t take_nibbles(std::span<const std::uint8_t, kPacketSize> packet,
   return static_cast<std::int16_t>(static_cast<std::uint16_t>(bits));
 }
 
-/// Whether a byte may stand at a place of a reply.
+/// \return whether a byte may stand at this place of a reply
 bool fits_reply(std::uint8_t byte, std::size_t at) noexcept {
   if (at == 0) return byte == kFirst;
   if (at < kFlagsAt) return byte >= kZero && byte <= kZero + 0xF;
@@ -137,7 +137,7 @@ void FalconStream::start_packet_at(std::uint8_t byte) noexcept {
 }
 
 bool FalconStream::push_byte(std::uint8_t byte) noexcept {
-  // No byte within a packet fits a beginning but the first, so nothing has to be read twice.
+  // Only the first byte of a packet can begin one, so no byte has to be read twice.
   if (!fits_reply(byte, size_)) {
     start_packet_at(byte);
     return false;

@@ -1,12 +1,12 @@
-/// \file The 16 bytes that go to a running Falcon, and the 16 that it answers with.
+/// \file The 16 bytes of a command to a running Falcon, and the 16 of its reply.
 ///
 /// '<', three int16 as four nibbles each (least significant first, plus 0x41), a byte of flags plus
-/// 0x41, a byte that nobody uses, '>'. To the Falcon: motor values; flags: homing, three LEDs. From
-/// it: encoder counts; flags: four buttons, three axes homed. Source: the open drivers. Not
-/// verified on hardware.
+/// 0x41, an unused byte, '>'. A command has motor values, and flags for homing and three LEDs. A
+/// reply has encoder counts, and flags for four buttons and three homed axes. Source: the open
+/// drivers. Not verified on hardware.
 ///
-/// Nothing here allocates or throws. Pure functions may be called by any thread; a FalconStream
-/// belongs to one.
+/// Nothing here allocates or throws. Any thread may call the pure functions; a FalconStream belongs
+/// to one thread.
 #pragma once
 
 #include "core/vec.hpp"
@@ -27,9 +27,9 @@ using Packet = std::array<std::uint8_t, kPacketSize>;
 ///@{
 using MotorValues = std::array<std::int16_t, 3>;  ///< -10,000 for 1 N m
 
-/// Motor values of torques. If one is beyond 1 N m, all three shrink by one scale, so that the
-/// force keeps its direction; no force that a Falcon can make within its workspace needs as much.
-/// Torques that are not finite give zeros.
+/// Motor values of torques. If one torque is beyond 1 N m, all three shrink by one factor, so that
+/// the force keeps its direction; no force that a Falcon can make in its workspace needs as much.
+/// \return zeros if a torque is not finite
 [[nodiscard]] MotorValues motor_values(const PerLeg& torques_nm) noexcept;
 
 /// Which lights are on.
@@ -39,14 +39,16 @@ struct Lights {
   bool blue = false;
 };
 
-/// The flags' bits 0 to 2 of the lights. \param order  the bits of red, green and blue, each 0 to
-/// 2: sources disagree on them. A bit out of range lights nothing.
+/// \param order  the bits of red, green and blue, each 0 to 2, on which sources differ; a bit out
+/// of
+///   range lights nothing
+/// \return bits 0 to 2 of Command::leds
 [[nodiscard]] std::uint8_t led_bits(const Lights& lights, const std::array<int, 3>& order) noexcept;
 
 struct Command {
   MotorValues motors{};
-  std::uint8_t leds = 0;  ///< as `led_bits` gives them
-  bool homing = true;     ///< lets the axes home when they are moved; always on
+  std::uint8_t leds = 0;  ///< from `led_bits`
+  bool homing = true;     ///< lets the axes home when a person moves them; always on
 };
 
 [[nodiscard]] Packet encode_command(const Command& command) noexcept;
@@ -64,12 +66,12 @@ enum Button : std::uint32_t {
 
 struct Reply {
   EncoderCounts counts{};
-  std::uint32_t buttons = 0;    ///< of Button, set while down
-  std::array<bool, 3> homed{};  ///< one for each leg
+  std::uint32_t buttons = 0;    ///< bits of Button, set while down
+  std::array<bool, 3> homed{};  ///< for each leg
   [[nodiscard]] bool all_homed() const noexcept { return homed[0] && homed[1] && homed[2]; }
 };
 
-/// \return nothing unless both marks and all twelve nibbles are as they must be
+/// \return nothing unless both marks and all twelve nibbles are valid
 [[nodiscard]] std::optional<Reply> decode_reply(
     std::span<const std::uint8_t, kPacketSize> packet) noexcept;
 ///@}
@@ -79,26 +81,24 @@ struct Reply {
 inline constexpr std::size_t kUsbPacketSize = 64;
 inline constexpr std::size_t kFtdiStatusSize = 2;  ///< at the front of every USB packet from it
 
-/// Takes the status bytes out of what one bulk transfer brought: USB packets of 64 bytes, the last
-/// one shorter perhaps.
-/// \param payload  where the rest goes; what does not fit is left out
-/// \return how many bytes were written
+/// Takes the status bytes out of one bulk transfer: USB packets of 64 bytes, of which the last may
+/// be shorter. \param payload  takes the other bytes, as many as fit \return how many bytes it took
 [[nodiscard]] std::size_t ftdi_payload(std::span<const std::uint8_t> transfer,
                                        std::span<std::uint8_t> payload) noexcept;
 ///@}
 
-/// Finds replies in the bytes from a Falcon, whatever else is among them, and finds back to them
-/// after bytes were lost. Holds one unfinished packet and no more.
+/// Finds replies among the bytes from a Falcon, and finds them again after bytes were lost. Holds
+/// one unfinished packet and no more.
 class FalconStream {
  public:
-  /// Reads what one bulk transfer brought, with the FTDI's status bytes.
+  /// Reads one bulk transfer, with the FTDI's status bytes.
   /// \return how many replies it finished; `newest` is the last of them
   int push_transfer(std::span<const std::uint8_t> transfer) noexcept;
 
-  /// The last reply; the default one before the first.
+  /// \return the last reply; a default one before the first
   [[nodiscard]] const Reply& newest() const noexcept { return newest_; }
   [[nodiscard]] std::uint64_t replies() const noexcept { return replies_; }
-  /// Bytes that belonged to no reply: a measure of how bad the link is.
+  /// \return the number of bytes that belonged to no reply: a measure of how bad the link is
   [[nodiscard]] std::uint64_t discarded_bytes() const noexcept { return discarded_; }
   /// Forgets the unfinished packet, after a purge of the chip's buffers. The counters stay.
   void restart() noexcept;
@@ -114,8 +114,8 @@ class FalconStream {
   std::uint64_t discarded_ = 0;
 };
 
-/// The force to send: what the servo asks for and a constant one that carries the grip.
-/// \param bias_n  device frame; a norm beyond 1 N is cut to that
+/// \param bias_n  a constant force that carries the grip, device frame; its norm is cut to 1 N
+/// \return the force to send: the servo's and the bias
 [[nodiscard]] Vec3 with_gravity_bias(Vec3 force_n, Vec3 bias_n) noexcept;
 
 }  // namespace touchtrial::device::falcon

@@ -1,5 +1,5 @@
-/// \file What the Falcon driver asks of the FTDI chip in the device, without saying how it gets
-/// there: libusb in the product (usb_falcon.hpp), an emulator in the tests.
+/// \file The Falcon driver's interface to the FTDI chip in the device: libusb in the product
+/// (usb_falcon.hpp), an emulator in the tests.
 #pragma once
 
 #include "device/falcon/falcon_packet.hpp"
@@ -23,17 +23,17 @@ enum class FtdiRequest : std::uint8_t {
   latency_timer = 9,
 };
 
-/// Who receives the bytes of the stream. Called on the thread that calls FtdiTransport::serve.
+/// Receives the bytes of the stream, on the thread that calls FtdiTransport::serve.
 class FtdiStreamSink {
  public:
   virtual ~FtdiStreamSink() = default;
-  /// \param transfer  what one bulk transfer brought, with the chip's status bytes; may be empty
+  /// \param transfer  the bytes of one bulk transfer, with the chip's status bytes; may be empty
   virtual void receive(std::span<const std::uint8_t> transfer) noexcept = 0;
 };
 
-/// A chip that is open and claimed; closed by the destructor. Belongs to one thread at a time. It
-/// is used in two ways that are never mixed: one transfer after the other, which waits and throws,
-/// for setting up; and the stream, with one read always queued, which neither waits nor throws.
+/// A chip that is open and claimed; the destructor closes it. Belongs to one thread at a time. It
+/// has two uses that never mix: single transfers, which wait and throw, for setting up; and the
+/// stream, with one read always queued, which neither waits nor throws.
 class FtdiTransport {
  public:
   virtual ~FtdiTransport() = default;
@@ -44,28 +44,30 @@ class FtdiTransport {
   /// \name Setting up: each waits, and throws DeviceError if the device is gone
   ///@{
   virtual void control(FtdiRequest request, std::uint16_t value) = 0;
-  /// \return how many bytes went out in this time; fewer than all if it was too short
+  /// \return how many bytes went out; fewer than all if the limit was too short
   [[nodiscard]] virtual std::size_t send(std::span<const std::uint8_t> bytes,
                                          std::chrono::milliseconds limit) = 0;
-  /// The next packet, status bytes and all.
-  /// \return its length; 0 if none came in this time
+  /// Receives the next packet, with its status bytes.
+  /// \return its length; 0 if none came within the limit
   [[nodiscard]] virtual std::size_t receive(std::span<std::uint8_t, kUsbPacketSize> packet,
                                             std::chrono::milliseconds limit) = 0;
   ///@}
 
   /// \name Stream
   ///@{
-  /// Queues the first read. \throws DeviceError if it cannot
+  /// Queues the first read.
   /// \param sink  must outlive the stream
+  /// \throws DeviceError if it cannot
   virtual void start_stream(FtdiStreamSink& sink) = 0;
-  /// Ends the stream and waits until nothing is under way, for some seconds at most: if there still
-  /// is something then, the device counts as lost. Safe on a lost device.
+  /// Ends the stream and waits, a few seconds at most, until no transfer is under way; if one still
+  /// is, the device counts as lost. Safe on a lost device.
   virtual void stop_stream() noexcept = 0;
-  /// Sends without waiting. \return whether it was taken: the one before may still be under way
+  /// Sends without waiting.
+  /// \return whether the bytes were taken, which fails while the previous ones are under way
   [[nodiscard]] virtual bool post(std::span<const std::uint8_t> bytes) noexcept = 0;
-  /// Waits until something arrives, at most this long, and hands on all that has.
+  /// Waits until bytes arrive, at most this long, and hands them to the sink.
   virtual void serve(std::chrono::microseconds at_most) noexcept = 0;
-  /// Unplugged, or broken beyond use. Never mends: open the device anew.
+  /// \return whether the device is unplugged or unusable. It stays so: open the device anew.
   [[nodiscard]] virtual bool lost() const noexcept = 0;
   ///@}
 };

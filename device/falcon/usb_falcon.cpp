@@ -1,14 +1,197 @@
 #include "device/falcon/usb_falcon.hpp"
 
 #include "core/errors.hpp"
-#include "device/falcon/usb_ftdi.hpp"
+#include "device/falcon/usb_handles.hpp"
 
 #include <algorithm>
+#include <array>
+#include <utility>
 
 namespace touchtrial::device::falcon {
 namespace {
 
-/// Whether it can be claimed, told by doing so for a moment.
+constexpr unsigned char kOutEndpoint = 0x02;
+constexpr unsigned char kInEndpoint = 0x81;
+constexpr std::uint8_t kVendorRequest = 0x40;
+constexpr unsigned kControlTimeoutMs = 1000;
+
+/// As many failed transfers in a row may come from a bad cable; after more the link is lost.
+constexpr int kMostFailures = 20;
+/// The time for cancelled transfers to come back.
+constexpr std::chrono::seconds kPatience{2};
+
+/// Leaks a transfer that libusb never gave back: it would write to freed memory.
+void leave_to_libusb(UsbTransfer& transfer) {
+  static std::vector<UsbTransfer>& left = *new std::vector<UsbTransfer>;
+  left.push_back(std::move(transfer));
+}
+
+/// The FTDI chip of a Falcon, by libusb.
+class UsbFtdi final : public FtdiTransport {
+ public:
+  /// Takes over an open device and claims it.
+  /// \throws DeviceError if another program has it
+  UsbFtdi(UsbContext context, UsbHandle handle);
+  ~UsbFtdi() override;
+
+  [[nodiscard]] std::string serial() const override { return serial_; }
+  void control(FtdiRequest request, std::uint16_t value) override;
+  [[nodiscard]] std::size_t send(std::span<const std::uint8_t> bytes,
+                                 std::chrono::milliseconds limit) override;
+  [[nodiscard]] std::size_t receive(std::span<std::uint8_t, kUsbPacketSize> packet,
+                                    std::chrono::milliseconds limit) override;
+
+  void start_stream(FtdiStreamSink& sink) override;
+  void stop_stream() noexcept override;
+  [[nodiscard]] bool post(std::span<const std::uint8_t> bytes) noexcept override;
+  void serve(std::chrono::microseconds at_most) noexcept override;
+  [[nodiscard]] bool lost() const noexcept override { return lost_; }
+
+ private:
+  static void LIBUSB_CALL on_read(libusb_transfer* transfer);
+  static void LIBUSB_CALL on_sent(libusb_transfer* transfer);
+  [[nodiscard]] std::size_t transfer(unsigned char endpoint, std::uint8_t* bytes, int count,
+                                     std::chrono::milliseconds limit);
+  void queue_read() noexcept;
+  /// Counts failures in a row. The device is lost after too many, or if it was unplugged.
+  void note(libusb_transfer_status status) noexcept;
+
+  // In the order of use, so that they are released in the reverse.
+  UsbContext context_;
+  UsbHandle handle_;
+  std::string where_;
+  std::string serial_;
+  UsbClaim claim_;
+  UsbTransfer read_;
+  UsbTransfer send_;
+  std::array<std::uint8_t, kUsbPacketSize> in_{};
+  std::array<std::uint8_t, kUsbPacketSize> out_{};
+  FtdiStreamSink* sink_ = nullptr;  ///< null: no stream, so no further read is queued
+  bool reading_ = false;
+  bool sending_ = false;
+  int failures_ = 0;
+  int deaf_ = 0;  ///< calls in a row in which libusb failed to handle its events
+  bool lost_ = false;
+};
+
+UsbFtdi::UsbFtdi(UsbContext context, UsbHandle handle)
+    : context_(std::move(context)),
+      handle_(std::move(handle)),
+      where_(place_of(libusb_get_device(handle_.get()))),
+      serial_(serial_of(handle_.get())),
+      claim_(handle_.get(), where_),
+      read_(make_usb_transfer()),
+      send_(make_usb_transfer()) {}
+
+UsbFtdi::~UsbFtdi() {
+  stop_stream();
+}
+
+void UsbFtdi::control(FtdiRequest request, std::uint16_t value) {
+  const int result =
+      libusb_control_transfer(handle_.get(), kVendorRequest, static_cast<std::uint8_t>(request),
+                              value, 0, nullptr, 0, kControlTimeoutMs);
+  if (result < 0) throw DeviceError("falcon at " + where_ + ": " + usb_remedy(result));
+}
+
+std::size_t UsbFtdi::transfer(unsigned char endpoint, std::uint8_t* bytes, int count,
+                              std::chrono::milliseconds limit) {
+  int done = 0;
+  // To libusb a limit of 0 is no limit.
+  const auto limit_ms = static_cast<unsigned>(std::max<std::int64_t>(limit.count(), 1));
+  const int result = libusb_bulk_transfer(handle_.get(), endpoint, bytes, count, &done, limit_ms);
+  if (result != 0 && result != LIBUSB_ERROR_TIMEOUT) {
+    throw DeviceError("falcon at " + where_ + ": " + usb_remedy(result));
+  }
+  return static_cast<std::size_t>(done);
+}
+
+std::size_t UsbFtdi::send(std::span<const std::uint8_t> bytes, std::chrono::milliseconds limit) {
+  const std::size_t count = std::min(bytes.size(), out_.size());
+  std::copy_n(bytes.begin(), count, out_.begin());
+  return transfer(kOutEndpoint, out_.data(), static_cast<int>(count), limit);
+}
+
+std::size_t UsbFtdi::receive(std::span<std::uint8_t, kUsbPacketSize> packet,
+                             std::chrono::milliseconds limit) {
+  return transfer(kInEndpoint, packet.data(), static_cast<int>(packet.size()), limit);
+}
+
+void UsbFtdi::start_stream(FtdiStreamSink& sink) {
+  sink_ = &sink;
+  failures_ = 0;
+  queue_read();
+  if (lost_) throw DeviceError("falcon at " + where_ + ": " + usb_remedy(LIBUSB_ERROR_NO_DEVICE));
+}
+
+void UsbFtdi::stop_stream() noexcept {
+  sink_ = nullptr;
+  if (reading_) libusb_cancel_transfer(read_.get());
+  if (sending_) libusb_cancel_transfer(send_.get());
+  // A transfer belongs to libusb until its callback has run, even if the device is gone.
+  const auto give_up = std::chrono::steady_clock::now() + kPatience;
+  while ((reading_ || sending_) && deaf_ <= kMostFailures &&
+         std::chrono::steady_clock::now() < give_up) {
+    serve(std::chrono::milliseconds(100));
+  }
+  if (!reading_ && !sending_) return;
+  lost_ = true;
+  if (std::exchange(reading_, false)) leave_to_libusb(read_);
+  if (std::exchange(sending_, false)) leave_to_libusb(send_);
+}
+
+void UsbFtdi::queue_read() noexcept {
+  libusb_fill_bulk_transfer(read_.get(), handle_.get(), kInEndpoint, in_.data(),
+                            static_cast<int>(in_.size()), &on_read, this, 0);
+  reading_ = libusb_submit_transfer(read_.get()) == 0;
+  if (!reading_) lost_ = true;
+}
+
+bool UsbFtdi::post(std::span<const std::uint8_t> bytes) noexcept {
+  if (sending_ || lost_ || bytes.size() > out_.size()) return false;
+  std::copy(bytes.begin(), bytes.end(), out_.begin());
+  libusb_fill_bulk_transfer(send_.get(), handle_.get(), kOutEndpoint, out_.data(),
+                            static_cast<int>(bytes.size()), &on_sent, this, 0);
+  const int error = libusb_submit_transfer(send_.get());
+  sending_ = error == 0;
+  if (error == LIBUSB_ERROR_NO_DEVICE) lost_ = true;
+  return sending_;
+}
+
+void UsbFtdi::serve(std::chrono::microseconds at_most) noexcept {
+  timeval limit{};
+  limit.tv_sec = at_most.count() / 1'000'000;
+  limit.tv_usec = at_most.count() % 1'000'000;
+  const int error = libusb_handle_events_timeout_completed(context_.get(), &limit, nullptr);
+  if (error == LIBUSB_ERROR_INTERRUPTED) return;
+  deaf_ = error == 0 ? 0 : deaf_ + 1;
+  if (deaf_ > kMostFailures) lost_ = true;
+}
+
+void UsbFtdi::note(libusb_transfer_status status) noexcept {
+  failures_ = status == LIBUSB_TRANSFER_COMPLETED ? 0 : failures_ + 1;
+  if (status == LIBUSB_TRANSFER_NO_DEVICE || failures_ > kMostFailures) lost_ = true;
+}
+
+void LIBUSB_CALL UsbFtdi::on_read(libusb_transfer* transfer) {
+  auto& self = *static_cast<UsbFtdi*>(transfer->user_data);
+  self.reading_ = false;
+  if (self.sink_ == nullptr) return;
+  self.note(transfer->status);
+  const auto length = static_cast<std::size_t>(transfer->actual_length);
+  if (transfer->status == LIBUSB_TRANSFER_COMPLETED) {
+    self.sink_->receive(std::span(self.in_).first(length));
+  }
+  if (!self.lost_) self.queue_read();
+}
+
+void LIBUSB_CALL UsbFtdi::on_sent(libusb_transfer* transfer) {
+  auto& self = *static_cast<UsbFtdi*>(transfer->user_data);
+  self.sending_ = false;
+  if (self.sink_ != nullptr) self.note(transfer->status);
+}
+
+/// Finds out whether the device can be claimed, by claiming it for a moment.
 void fill_in(UsbFalcon& falcon, libusb_device* device) {
   try {
     const UsbHandle handle = open_usb_device(device);
@@ -24,12 +207,13 @@ void fill_in(UsbFalcon& falcon, libusb_device* device) {
 std::string joined(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) {
-    text += (text.empty() ? "" : ", ") + (word.empty() ? std::string("one without") : word);
+    text += (text.empty() ? "" : ", ") +
+            (word.empty() ? std::string("one without a serial number") : word);
   }
   return text;
 }
 
-/// The handle of the only one.
+/// \return the handle of the only Falcon
 UsbHandle open_only(const std::vector<UsbDevice>& falcons) {
   if (falcons.size() == 1) return open_usb_device(falcons.front().get());
   std::vector<std::string> places;
@@ -38,8 +222,9 @@ UsbHandle open_only(const std::vector<UsbDevice>& falcons) {
                     "); name the serial number of one in the device settings, falcon.serial");
 }
 
-/// The handle of the one with this serial number. Those that may not be opened are passed over,
-/// unless none is left: then the reason of the last is told.
+/// Passes over devices that do not open; if no other has the serial number, the error gives the
+/// reason of the last of them.
+/// \return the handle of the Falcon with this serial number
 UsbHandle open_by_serial(const std::vector<UsbDevice>& falcons, const std::string& serial) {
   std::vector<std::string> seen;
   std::string trouble;

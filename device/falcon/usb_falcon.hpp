@@ -1,4 +1,4 @@
-/// \file Novint Falcons on the USB, found and opened by libusb.
+/// \file Finds and opens Novint Falcons on the USB, by libusb.
 #pragma once
 
 #include "device/falcon/ftdi_transport.hpp"
@@ -16,14 +16,15 @@ struct UsbFalcon {
   std::string trouble;  ///< why it cannot be opened, with the remedy, one line; empty if it can
 };
 
-/// Every Falcon that is plugged in. Opens each for a moment, and moves nothing.
+/// Opens each Falcon for a moment, and moves nothing.
+/// \return every Falcon that is plugged in
 /// \throws DeviceError if USB cannot be used at all
 [[nodiscard]] std::vector<UsbFalcon> find_usb_falcons();
 
-/// Opens and claims one; a kernel driver that holds it is detached for as long.
+/// Opens and claims a Falcon; a kernel driver that holds it is detached for as long.
 /// \param serial  of the one to open; empty: the only one
-/// \throws DeviceError, with the remedy, if there is none, more than one, no permission, or if
-///   another program has it
+/// \throws DeviceError with the remedy if there is none, more than one, no permission, or another
+///   program uses it
 [[nodiscard]] std::unique_ptr<FtdiTransport> open_usb_falcon(const std::string& serial);
 
 }  // namespace touchtrial::device::falcon

@@ -1,4 +1,5 @@
-/// \file libusb's objects, released by their owners. Private to this folder.
+/// \file libusb's objects with owners that release them, and the Falcons on the bus. Private to
+/// this folder.
 #pragma once
 
 #include <memory>
@@ -22,10 +23,10 @@ using UsbTransfer = std::unique_ptr<libusb_transfer, UsbRelease>;
 
 /// \throws DeviceError if libusb cannot start
 [[nodiscard]] UsbContext make_usb_context();
-/// \throws DeviceError if there is no memory for it
+/// \throws DeviceError if there is not enough memory
 [[nodiscard]] UsbTransfer make_usb_transfer();
 
-/// The interface of a handle, claimed from whoever has it; a kernel driver gets it back.
+/// The interface of a handle, claimed from a kernel driver if one has it, which gets it back.
 class UsbClaim {
  public:
   /// \throws DeviceError naming `where` if another program has it
@@ -38,16 +39,17 @@ class UsbClaim {
   libusb_device_handle* handle_;
 };
 
-/// Falcons on the bus, in the order of the bus. \throws DeviceError if it cannot be read
+/// \return the Falcons in the order of the bus
+/// \throws DeviceError if the bus cannot be read
 [[nodiscard]] std::vector<UsbDevice> falcons_on_bus(libusb_context* context);
-/// "USB bus 1 port 2, address 7"
+/// \return for instance "USB bus 1 port 2, address 7"
 [[nodiscard]] std::string place_of(libusb_device* device);
-/// Empty if it has none, or does not tell.
+/// \return empty if the device has none or does not tell it
 [[nodiscard]] std::string serial_of(libusb_device_handle* handle);
 /// \throws DeviceError with the remedy if it may not be opened or is gone
 [[nodiscard]] UsbHandle open_usb_device(libusb_device* device);
 
-/// What to do about an error of libusb's, as the end of a message: "LIBUSB_ERROR_ACCESS: ...".
+/// \return the end of a message about an error of libusb: the cause and the remedy
 [[nodiscard]] std::string usb_remedy(int error);
 
 }  // namespace touchtrial::device::falcon

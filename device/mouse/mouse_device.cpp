@@ -1,7 +1,11 @@
 #include "device/mouse/mouse_device.hpp"
 
+#include "core/errors.hpp"
+#include "device/drivers.hpp"
+
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <stdexcept>
 
 namespace touchtrial::device {
@@ -12,7 +16,7 @@ namespace {
 constexpr double kMass = 1e-4;
 constexpr double kDamping_n_s_per_mm = 0.012;
 constexpr double kHoverStiffness_n_per_mm = 0.4;
-/// A servo that stood still must not throw the hand about when it goes on.
+/// Keeps a servo that stood still from throwing the hand when it goes on.
 constexpr ServoClock::Time kLongestStep = std::chrono::milliseconds(20);
 constexpr double kFinestStepS = 0.001;
 
@@ -20,7 +24,7 @@ double seconds(ServoClock::Time time) noexcept {
   return std::chrono::duration<double>(time).count();
 }
 
-/// The same direction, no longer than this.
+/// \return the vector, shortened to the greatest length
 Vec2 limited(Vec2 vector, double greatest) noexcept {
   const double length = norm(vector);
   return length > greatest ? (greatest / length) * vector : vector;
@@ -37,6 +41,32 @@ void check(const MouseOptions& o) {
       throw std::invalid_argument("MouseDevice: an option is out of range");
     }
   }
+}
+
+std::string variable(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+std::vector<DeviceListing> list_mouse(const DeviceSettings&) {
+  DeviceListing listing;
+  listing.driver = kMouseDriver;
+  const std::string wayland = variable("WAYLAND_DISPLAY");
+  listing.where = wayland.empty() ? variable("DISPLAY") : wayland;
+  listing.present = !listing.where.empty();
+  if (listing.present) {
+    listing.model = "pointer on a screen";
+  } else {
+    listing.missing = {
+        "no display: neither DISPLAY nor WAYLAND_DISPLAY is set; run in a graphical session"};
+  }
+  return {listing};
+}
+
+std::unique_ptr<HapticDevice> refuse_without_window(const DeviceSettings&) {
+  throw DeviceError(
+      "mouse: it needs a window, which this command does not open; use touchtrial device monitor "
+      "mouse");
 }
 
 }  // namespace
@@ -91,7 +121,7 @@ DeviceStatus MouseDevice::write(Vec3 force_n) noexcept {
 void MouseDevice::look_at(const PointerState& pointer, ServoClock::Time now) noexcept {
   if (pointer.sequence != seen_.sequence) news_at_ = now;
   if (seen_.sequence == 0) {
-    // Where the pointer is first seen, the hand has always been.
+    // The hand begins where the pointer is first seen.
     hand_mm_ = pointer.position_mm;
     followed_.reset(hand_mm_);
   }
@@ -124,6 +154,12 @@ void MouseDevice::move_across(double step_s, double normal_force_n) noexcept {
   const double next_mm = height_mm_ + step_s * rise_mm_s_;
   height_mm_ = std::clamp(next_mm, -kReachMm, kReachMm);
   if (height_mm_ != next_mm) rise_mm_s_ = 0.0;
+}
+
+DeviceDriver mouse_driver() {
+  return {kMouseDriver,
+          "pointer on a screen, for demonstration and pilot sessions: visual, not blind",
+          list_mouse, refuse_without_window};
 }
 
 }  // namespace touchtrial::device

@@ -1,42 +1,35 @@
 #include "device/openhaptics/hd_api.hpp"
 
-#include <type_traits>
-
 namespace touchtrial::device::hd {
 namespace {
 
-/// More errors than any stack holds: a library that never runs out of them must not hang us.
+/// More errors than any stack holds, so that a library that never runs out of them cannot hang us.
 constexpr int kMostErrors = 256;
-
-template <typename Pointer>
-void find(const DynamicLibrary& library, const char* name, Pointer& function) {
-  function = library.function<std::remove_pointer_t<Pointer>>(name);
-}
 
 }  // namespace
 
 Api load_api(const DynamicLibrary& library) {
   Api api{};
-  find(library, "hdInitDevice", api.init_device);
-  find(library, "hdDisableDevice", api.disable_device);
-  find(library, "hdMakeCurrentDevice", api.make_current_device);
-  find(library, "hdBeginFrame", api.begin_frame);
-  find(library, "hdEndFrame", api.end_frame);
-  find(library, "hdEnable", api.enable);
-  find(library, "hdDisable", api.disable);
-  find(library, "hdGetDoublev", api.get_doublev);
-  find(library, "hdGetIntegerv", api.get_integerv);
-  find(library, "hdSetDoublev", api.set_doublev);
-  find(library, "hdGetString", api.get_string);
-  find(library, "hdGetErrorString", api.get_error_string);
-  find(library, "hdGetError", api.get_error);
-  find(library, "hdCheckCalibration", api.check_calibration);
-  find(library, "hdUpdateCalibration", api.update_calibration);
-  find(library, "hdStartScheduler", api.start_scheduler);
-  find(library, "hdStopScheduler", api.stop_scheduler);
-  find(library, "hdSetSchedulerRate", api.set_scheduler_rate);
-  find(library, "hdScheduleAsynchronous", api.schedule_asynchronous);
-  find(library, "hdUnschedule", api.unschedule);
+  library.find("hdInitDevice", api.init_device);
+  library.find("hdDisableDevice", api.disable_device);
+  library.find("hdMakeCurrentDevice", api.make_current_device);
+  library.find("hdBeginFrame", api.begin_frame);
+  library.find("hdEndFrame", api.end_frame);
+  library.find("hdEnable", api.enable);
+  library.find("hdDisable", api.disable);
+  library.find("hdGetDoublev", api.get_doublev);
+  library.find("hdGetIntegerv", api.get_integerv);
+  library.find("hdSetDoublev", api.set_doublev);
+  library.find("hdGetString", api.get_string);
+  library.find("hdGetErrorString", api.get_error_string);
+  library.find("hdGetError", api.get_error);
+  library.find("hdCheckCalibration", api.check_calibration);
+  library.find("hdUpdateCalibration", api.update_calibration);
+  library.find("hdStartScheduler", api.start_scheduler);
+  library.find("hdStopScheduler", api.stop_scheduler);
+  library.find("hdSetSchedulerRate", api.set_scheduler_rate);
+  library.find("hdScheduleAsynchronous", api.schedule_asynchronous);
+  library.find("hdUnschedule", api.unschedule);
   return api;
 }
 

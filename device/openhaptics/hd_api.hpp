@@ -14,7 +14,7 @@ using Enum = std::uint32_t;
 using ScheduleHandle = unsigned long;  ///< a scheduled callback
 using Callback = std::uint32_t(void*);
 
-/// Handed over by value, top of a stack of errors.
+/// The top of the library's stack of errors, passed by value.
 struct ErrorInfo {
   std::uint32_t code;
   int internal_code;
@@ -24,10 +24,10 @@ struct ErrorInfo {
 constexpr Handle kInvalidHandle = 0xFFFFFFFF;
 constexpr std::uint32_t kCallbackDone = 0;
 constexpr std::uint32_t kCallbackContinue = 1;
-/// Before everything else of the scheduler's.
+/// Runs before every other callback of the scheduler.
 constexpr std::uint16_t kHighestPriority = 0xFFFF;
 
-/// What can be read and written.
+/// Parameters to read and write.
 constexpr Enum kButtons = 0x2000;
 constexpr Enum kPosition = 0x2050;  ///< 3 doubles, mm
 constexpr Enum kVelocity = 0x2051;  ///< 3 doubles, mm/s
@@ -44,7 +44,7 @@ constexpr Enum kContinuousForce = 0x2604;   ///< nominal, N
 constexpr Enum kMotorTemperature = 0x2605;  ///< 6 doubles: 0 cold, 1 as warm as a motor may get
 constexpr Enum kCurrentForce = 0x2700;      ///< 3 doubles, N
 
-/// What can be switched on.
+/// Capabilities to switch on and off.
 constexpr Enum kForceOutput = 0x4000;
 constexpr Enum kForceClamping = 0x4001;
 constexpr Enum kForceRamping = 0x4002;
@@ -55,7 +55,7 @@ constexpr Enum kCalibrationNeedsUpdate = 0x5001;
 constexpr int kStyleAuto = 2;
 constexpr int kStyleInkwell = 4;
 
-/// Errors that have a meaning of their own; all others are the driver's failure.
+/// Errors with a DeviceFault of their own; all others are DeviceFault::driver.
 constexpr std::uint32_t kWarmMotors = 0x200;
 constexpr std::uint32_t kExceededForce = 0x201;
 constexpr std::uint32_t kExceededImpulse = 0x202;
@@ -89,16 +89,16 @@ struct Api {
 /// \throws DeviceError if a function is missing
 [[nodiscard]] Api load_api(const DynamicLibrary& library);
 
-/// What a drained stack of errors amounts to.
+/// The sum of a drained stack of errors.
 struct Errors {
   std::uint32_t oldest = 0;  ///< code; 0: there was none
-  /// The most telling one of them: a warm motor rather than the frame that failed because of it.
+  /// The most specific one: a warm motor rather than the frame that failed because of it.
   DeviceFault fault = DeviceFault::none;
 };
 
 [[nodiscard]] DeviceFault fault_of(std::uint32_t code) noexcept;
 
-/// Takes all errors off the stack. No heap, lock or I/O of ours.
+/// Takes all errors off the stack. No heap, lock or I/O on our side.
 [[nodiscard]] Errors drain_errors(const Api& api) noexcept;
 
 }  // namespace touchtrial::device::hd

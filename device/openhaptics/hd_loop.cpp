@@ -11,7 +11,7 @@ namespace touchtrial::device::hd {
 namespace {
 
 constexpr std::int64_t kTicksBetweenTemperatures = 100;
-/// The library takes a moment over a calibration; asking again at once would only begin it anew.
+/// The library takes a moment for a calibration; a new request during it would begin it anew.
 constexpr std::int64_t kTicksBetweenCalibrations = 100;
 
 DeviceReadiness readiness_of(Enum calibration, int style) noexcept {
@@ -30,8 +30,8 @@ std::uint32_t Loop::callback(void* loop) noexcept {
   return static_cast<Loop*>(loop)->enter();
 }
 
-/// `inside_` is set before `closed_` is read, and `close` does it the other way round: with
-/// sequentially consistent atomics one of the two sees the other.
+/// Sets `inside_` before it reads `closed_`, while `close` sets `closed_` before it reads
+/// `inside_`: with sequentially consistent atomics at least one of the two sees the other.
 std::uint32_t Loop::enter() noexcept {
   inside_.store(true);
   const bool closed = closed_.load();

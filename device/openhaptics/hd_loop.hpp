@@ -1,4 +1,4 @@
-/// \file What happens on the vendor's scheduler thread, once a tick.
+/// \file The callback that the vendor's scheduler thread runs once a tick.
 #pragma once
 
 #include "device/device_link.hpp"
@@ -10,24 +10,24 @@
 
 namespace touchtrial::device::hd {
 
-/// What the device was found to offer when it was opened.
+/// What the device offers, as found when it was opened.
 struct LoopOptions {
   bool has_motor_temperature = false;
-  int calibration_style = kStyleInkwell;  ///< 0: none that can be done from here
+  int calibration_style = kStyleInkwell;  ///< 0: none that a program can do
 };
 
-/// The callback's data. Made and destroyed by the opening thread; the callback touches nothing
-/// else.
+/// The callback's data, and all that it touches. The thread that opens the device makes and
+/// destroys it.
 class Loop {
  public:
-  /// Of the vendor's scale from 0, cold, to 1, as warm as a motor may get. The library itself
-  /// raises an error at 1; we stop a little before, while the motors still obey.
+  /// On the vendor's scale from 0 (cold) to 1 (as warm as a motor may get). The library raises an
+  /// error at 1; we stop a little before that, while the motors still obey.
   static constexpr double kWarmestMotor = 0.95;
 
   Loop(const Api& api, Handle device, const LoopOptions& options) noexcept
       : api_(api), device_(device), options_(options) {}
 
-  /// To be given to the scheduler, with the loop as data.
+  /// For the scheduler, with the loop as data.
   static std::uint32_t callback(void* loop) noexcept;
 
   [[nodiscard]] DeviceLink& link() noexcept { return link_; }
@@ -35,13 +35,14 @@ class Loop {
   [[nodiscard]] DeviceReadiness readiness() const noexcept {
     return readiness_.load(std::memory_order_acquire);
   }
-  /// Frames in a row that sent zero, until now.
+  /// \return the number of frames in a row, up to now, that sent zero
   [[nodiscard]] int zeros_sent() const noexcept {
     return zeros_sent_.load(std::memory_order_acquire);
   }
 
-  /// From now on callbacks return at once and ask not to come again. \return false if one is still
-  /// inside the vendor's library after the patience: this object must then live for ever
+  /// Makes all further callbacks return at once and end themselves.
+  /// \return false if one is still inside the vendor's library after the patience: this object must
+  ///   then live for ever
   [[nodiscard]] bool close(std::chrono::milliseconds patience) noexcept;
 
  private:

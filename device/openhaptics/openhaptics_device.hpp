@@ -1,38 +1,35 @@
-/// \file 3D Systems Touch, Phantom Omni and their kin, through the vendor's library.
+/// \file 3D Systems Touch, Phantom Omni and similar devices, through the vendor's library.
 #pragma once
 
+#include "device/device_link.hpp"
 #include "device/device_settings.hpp"
-#include "device/haptic_device.hpp"
 
 #include <memory>
 
 namespace touchtrial::device {
 
 /// The driver "openhaptics". The library's frame is the device frame: x to the right, y up, z
-/// towards the person, mm. Forces go out from the library's own scheduler thread; its clamping and
+/// towards the person, mm. The library's own scheduler thread sends the forces; its clamping and
 /// ramping stay on beneath our safety chain. Not verified on hardware.
 ///
-/// Until the device says that it is calibrated no force is sent; when it wants its calibration
-/// brought up to date (the stylus is in the inkwell), that is done. A fault latches: a device that
-/// failed has to be opened anew.
-class OpenHapticsDevice final : public HapticDevice {
+/// The driver sends no force before the device reports that it is calibrated, and updates the
+/// calibration when the device requests it (the stylus is in the inkwell). A fault latches: open
+/// the device anew.
+class OpenHapticsDevice final : public LinkedDevice {
  public:
-  /// Starts the scheduler; samples come from then on. One at a time in a process.
-  /// \throws DeviceError with the remedy: no library, not all of its functions, no device, one that
-  ///   is open already, or a rate that the scheduler refuses
+  /// Starts the scheduler, from which samples come. One at a time in a process.
+  /// \throws DeviceError with the remedy if there is no library, a function of it is missing, there
+  ///   is no device, one is open already, or the scheduler refuses the rate
   explicit OpenHapticsDevice(const OpenHapticsSettings& settings);
-  /// Zero force, then the scheduler stops, then everything is let go of.
+  /// Sends zero force, stops the scheduler, and closes the device.
   ~OpenHapticsDevice() override;
 
   [[nodiscard]] DeviceInfo info() const override { return info_; }
-  [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override;
-  [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override;
-  void halt() noexcept override;
-  void rearm() noexcept override;
-  [[nodiscard]] DeviceFault fault() const noexcept override;
   [[nodiscard]] DeviceReadiness readiness() const noexcept override;
 
  private:
+  [[nodiscard]] DeviceLink& link() const noexcept override;
+
   class Running;
   DeviceInfo info_;
   std::unique_ptr<Running> running_;

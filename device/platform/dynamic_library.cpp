@@ -21,7 +21,7 @@ int load_flags(Unload unload) {
   return RTLD_NOW | RTLD_LOCAL | (unload == Unload::never ? RTLD_NODELETE : 0);
 }
 
-/// The linker's reason, without the library's name in front, which our message begins with.
+/// \return the linker's reason, without the library's name in front, which begins our message
 std::string reason_for(const std::string& library) {
   const char* text = dlerror();
   if (text == nullptr) return "no reason given";
@@ -29,7 +29,7 @@ std::string reason_for(const std::string& library) {
   return reason.starts_with(library + ": ") ? reason.substr(library.size() + 2) : reason;
 }
 
-/// The child's life: crashes stay silent, and nothing of the parent's is run on the way out.
+/// The child's work: crashes stay silent, and no code of the parent runs at the exit.
 [[noreturn]] void load_and_end(const char* library) {
   for (const int crash : std::array{SIGSEGV, SIGBUS, SIGABRT, SIGILL, SIGFPE}) {
     signal(crash, SIG_DFL);
@@ -59,11 +59,11 @@ void expect_loading_survived(const std::filesystem::path& library, const std::st
   const std::string name = library.string();
   const pid_t child = fork();
   if (child == 0) load_and_end(name.c_str());
-  if (child < 0) return;  // no process to be had: the loading itself will tell
+  if (child < 0) return;  // without a process, the loading itself has to tell
   const std::optional<int> status = status_of(child);
   if (status && !WIFSIGNALED(*status)) return;
   throw DeviceError(one_line(name + (status ? ": crashes" : ": hangs") +
-                             " while it is loaded; the file is damaged or of another system; " +
+                             " while it is loaded; the file is damaged or for another system; " +
                              remedy));
 }
 

@@ -1,4 +1,4 @@
-/// \file A shared library that is loaded while the program runs, and the functions in it.
+/// \file A shared library that the program loads while it runs, and the functions in it.
 #pragma once
 
 #include <filesystem>
@@ -16,9 +16,9 @@ enum class Unload {
 /// Symbols stay in the library's own scope. Any thread.
 class DynamicLibrary {
  public:
-  /// Runs the library's initialisers. All its own references are resolved at once, so that none is
+  /// Runs the library's initialisers and resolves all its own references at once, so that none is
   /// missing later, in the middle of a session.
-  /// \param remedy  what to do if it cannot be used; ends every error, no full stop
+  /// \param remedy  what to do if it cannot be used; ends every error, without a full stop
   /// \throws DeviceError naming the library, the linker's reason and the remedy
   DynamicLibrary(const std::filesystem::path& library, Unload unload, std::string remedy);
   ~DynamicLibrary();
@@ -26,7 +26,7 @@ class DynamicLibrary {
   DynamicLibrary& operator=(const DynamicLibrary&) = delete;
 
   /// \tparam Function  the symbol's type; the linker cannot check it
-  /// \throws DeviceError naming library, symbol and remedy if there is none of this name
+  /// \throws DeviceError naming library, symbol and remedy if the library does not have it
   template <typename Function>
   [[nodiscard]] Function* function(const char* name) const {
     return reinterpret_cast<Function*>(address(name));
@@ -37,6 +37,18 @@ class DynamicLibrary {
     return reinterpret_cast<Function*>(address_if_any(name));
   }
 
+  /// \name The same, written to a pointer of the function's type
+  ///@{
+  template <typename Function>
+  void find(const char* name, Function*& found) const {
+    found = function<Function>(name);
+  }
+  template <typename Function>
+  void find_if_any(const char* name, Function*& found) const noexcept {
+    found = function_if_any<Function>(name);
+  }
+  ///@}
+
  private:
   [[nodiscard]] void* address(const char* name) const;
   [[nodiscard]] void* address_if_any(const char* name) const noexcept;
@@ -46,10 +58,10 @@ class DynamicLibrary {
   void* handle_;
 };
 
-/// Loads the library in a child process, which ends at once: a truncated or broken one may kill
-/// whoever loads it. For a program that does not want to be killed for asking; costs a fork.
-/// \throws DeviceError naming library and remedy if the child crashes or hangs for ten seconds; not
-///   for what DynamicLibrary itself would throw
+/// Loads the library in a child process, which ends at once: a truncated or damaged library may
+/// kill the process that loads it. Costs a fork. \throws DeviceError naming library and remedy if
+/// the child crashes or hangs for ten seconds, but
+///   not for anything that DynamicLibrary itself throws
 void expect_loading_survived(const std::filesystem::path& library, const std::string& remedy);
 
 }  // namespace touchtrial::device

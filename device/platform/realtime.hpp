@@ -1,15 +1,22 @@
-/// \file What the servo's thread asks of the operating system. One source file a platform.
+/// \file Real time: scheduling, the monotonic clock, and the region in which no code may block. One
+/// source file a platform.
 #pragma once
 
 #include <chrono>
 #include <string>
+#include <string_view>
 
 namespace touchtrial::device {
 
 enum class SchedulingPolicy {
   other,  ///< as every program: the thread shares the processor
-  fifo,   ///< real time: it runs before all ordinary threads
+  fifo,   ///< real time: the thread runs before all ordinary threads
 };
+
+/// \return "other" or "fifo", as files and reports call the policy
+[[nodiscard]] constexpr std::string_view name_of(SchedulingPolicy policy) noexcept {
+  return policy == SchedulingPolicy::fifo ? "fifo" : "other";
+}
 
 /// What a servo thread would like to have.
 struct SchedulingRequest {
@@ -23,20 +30,38 @@ struct SchedulingObtained {
   SchedulingPolicy policy = SchedulingPolicy::other;
   int priority = 0;  ///< 0 unless fifo
   bool memory_locked = false;
-  /// Why less than was asked for, and the remedy; empty if everything was had.
+  /// Why the thread got less than it asked for, and the remedy; empty if it got everything.
   std::string reason;
 };
 
-/// Asks for the calling thread, touches its stack so that the loop finds it in memory, and where
-/// real time is not had asks for timers as exact as ordinary threads may have. Locking memory
-/// concerns the whole process and stays. What is not permitted is left as it was and told.
+/// Requests scheduling for the calling thread and touches its stack, so that the loop finds it in
+/// memory. A thread without real time gets timers as exact as ordinary threads may have. Locked
+/// memory concerns the whole process and stays locked. What the system refuses stays as it was and
+/// is reported.
 [[nodiscard]] SchedulingObtained request_scheduling(const SchedulingRequest& request);
 
-/// Time of the monotonic clock. No allocation, lock or exception.
+/// \return the time of the monotonic clock. No allocation, lock or exception.
 [[nodiscard]] std::chrono::nanoseconds monotonic_now() noexcept;
 
-/// Sleeps until this time of `monotonic_now`; at once if it is over. An interrupting signal does
-/// not end it.
+/// Sleeps until this time of `monotonic_now`, through any signal; returns at once if it is over.
 void sleep_until(std::chrono::nanoseconds time) noexcept;
+
+/// Marks code in which nothing may allocate, lock or do I/O: the calling thread is in the servo's
+/// loop while one of these lives. The servo enters once a run, so it costs nothing; tests watch the
+/// allocations and locks of threads that are inside.
+class RealtimeRegion {
+ public:
+  RealtimeRegion() noexcept { ++depth_; }
+  ~RealtimeRegion() { --depth_; }
+  RealtimeRegion(const RealtimeRegion&) = delete;
+  RealtimeRegion& operator=(const RealtimeRegion&) = delete;
+
+  /// \return whether the calling thread is inside one. Allocates nothing.
+  [[nodiscard]] static bool entered() noexcept { return depth_ > 0; }
+
+ private:
+  // A constant at first, so that the first use on a thread constructs nothing.
+  static constinit inline thread_local int depth_ = 0;
+};
 
 }  // namespace touchtrial::device

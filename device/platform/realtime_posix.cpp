@@ -29,7 +29,7 @@ void add_reason(SchedulingObtained& obtained, const std::string& reason) {
   obtained.reason += (obtained.reason.empty() ? "" : "; ") + reason;
 }
 
-/// Writes to every page below this call, which the loop will use later.
+/// Writes to every page of the stack below this call, which the loop will use later.
 [[gnu::noinline]] void touch_stack() noexcept {
   std::array<volatile std::byte, kStackTouched> room;
   constexpr std::size_t kLeastPage = 4096;
@@ -50,8 +50,8 @@ void ask_for_fifo(int priority, SchedulingObtained& obtained) {
   obtained.priority = param.sched_priority;
 }
 
-/// Under a limit, later mappings that would pass it fail: then only what is there now is locked.
-/// A privileged process may take the limit off.
+/// Under a limit, later mappings that pass it would fail, so only the present memory is locked. A
+/// privileged process takes the limit off.
 int what_to_lock() noexcept {
   const rlimit none{RLIM_INFINITY, RLIM_INFINITY};
   rlimit limit{};
@@ -70,7 +70,8 @@ void lock_memory(SchedulingObtained& obtained) {
                            "): raise the user's memlock limit in /etc/security/limits.d");
 }
 
-/// Ordinary threads are woken up to 50 us late to save power, unless they object.
+/// Makes the system wake the thread on time; it wakes ordinary threads up to 50 us late to save
+/// power.
 void sharpen_timers() noexcept {
 #ifdef __linux__
   static_cast<void>(prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL));

@@ -15,12 +15,12 @@ namespace {
 
 constexpr long kTimeToSendNs = 20'000'000;
 constexpr int kExitBySignal = 128;
-// Those that would put the program to sleep are among them: the motors would hold their last force.
+// Also those that would put the program to sleep: the motors would hold their last force.
 constexpr std::array kAskSignals = {SIGINT,  SIGTERM, SIGHUP,  SIGPIPE,
                                     SIGXCPU, SIGTSTP, SIGTTIN, SIGTTOU};
 constexpr std::array kCrashSignals = {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGQUIT};
 
-// What handlers see: lock-free atomics alone.
+// Handlers see lock-free atomics alone.
 std::atomic<HapticDevice*> device_to_halt{nullptr};
 std::atomic<ServoControl*> servo_to_stop{nullptr};
 std::atomic<int> first_signal{0};
@@ -105,7 +105,7 @@ void handle(const std::array<int, n>& signals, void (*handler)(int),
 StopOnSignals::StopOnSignals(HapticDevice& device, ServoControl& control) {
   HapticDevice* none = nullptr;
   if (!device_to_halt.compare_exchange_strong(none, &device)) {
-    throw std::logic_error("StopOnSignals: there is another");
+    throw std::logic_error("StopOnSignals: there is another one");
   }
   servo_to_stop.store(&control);
   first_signal.store(0);

@@ -2,7 +2,6 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "device/replay/csv_rows.hpp"
 
 #include <algorithm>
 #include <array>
@@ -21,6 +20,95 @@ constexpr double kFarthestMm = 10'000.0;
 constexpr double kSlowestHz = 10.0;
 constexpr double kFastestHz = 20'000.0;
 constexpr std::array<std::string_view, 4> kColumns = {"time_s", "x_mm", "y_mm", "z_mm"};
+
+struct CsvRow {
+  std::vector<std::string> fields;
+  std::size_t line = 0;  ///< on which the row begins, from 1
+};
+
+/// Rows of a CSV file by RFC 4180. Commas separate fields, LF or CRLF separate rows; a field in
+/// quotation marks may contain both, and a doubled mark in it stands for one. A byte order mark in
+/// front is ignored.
+class CsvRows {
+ public:
+  /// \param text  must outlive this
+  /// \param name  names the file in errors
+  CsvRows(std::string_view text, std::string name);
+
+  /// \return false at the end
+  /// \throws FileError if a quotation mark is not closed, or text follows a closing one
+  [[nodiscard]] bool next(CsvRow& row);
+
+ private:
+  [[nodiscard]] std::string next_field();
+  [[nodiscard]] std::string quoted_field();
+  [[nodiscard]] bool at_row_end() const noexcept;
+  void pass_row_end() noexcept;
+
+  std::string_view text_;
+  std::string name_;
+  std::size_t at_ = 0;
+  std::size_t line_ = 1;
+};
+
+CsvRows::CsvRows(std::string_view text, std::string name) : text_(text), name_(std::move(name)) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text_.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
+}
+
+bool CsvRows::next(CsvRow& row) {
+  if (at_ >= text_.size()) return false;
+  row.fields.clear();
+  row.line = line_;
+  row.fields.push_back(next_field());
+  while (at_ < text_.size() && text_[at_] == ',') {
+    ++at_;
+    row.fields.push_back(next_field());
+  }
+  if (!at_row_end()) {
+    throw FileError(one_line(name_ + ", line " + std::to_string(line_) +
+                             ": text follows a closing quotation mark; put a comma between them"));
+  }
+  pass_row_end();
+  return true;
+}
+
+std::string CsvRows::next_field() {
+  if (at_ < text_.size() && text_[at_] == '"') return quoted_field();
+  const std::size_t begin = at_;
+  while (!at_row_end() && text_[at_] != ',') ++at_;
+  return std::string(text_.substr(begin, at_ - begin));
+}
+
+std::string CsvRows::quoted_field() {
+  const std::size_t first_line = line_;
+  std::string field;
+  for (++at_; at_ < text_.size(); ++at_) {
+    if (text_[at_] == '\n') ++line_;
+    if (text_[at_] == '"') {
+      const bool doubled = at_ + 1 < text_.size() && text_[at_ + 1] == '"';
+      if (!doubled) {
+        ++at_;
+        return field;
+      }
+      ++at_;
+    }
+    field += text_[at_];
+  }
+  throw FileError(one_line(name_ + ", line " + std::to_string(first_line) +
+                           ": a quotation mark is not closed; the file may be truncated"));
+}
+
+bool CsvRows::at_row_end() const noexcept {
+  return at_ >= text_.size() || text_[at_] == '\n' ||
+         (text_[at_] == '\r' && at_ + 1 < text_.size() && text_[at_ + 1] == '\n');
+}
+
+void CsvRows::pass_row_end() noexcept {
+  if (at_ < text_.size() && text_[at_] == '\r') ++at_;
+  if (at_ < text_.size()) ++at_;
+  ++line_;
+}
 
 struct TimedPosition {
   double time_s;
@@ -49,7 +137,7 @@ double number_from(const std::string& text, std::string_view column, const std::
   const char* end = text.data() + text.size();
   const auto [rest, error] = std::from_chars(text.data(), end, value);
   if (error != std::errc() || rest != end || !std::isfinite(value)) {
-    refuse(where, std::string(column) + " is no number: '" + text.substr(0, 40) + "'");
+    refuse(where, std::string(column) + " is not a number: '" + text.substr(0, 40) + "'");
   }
   return value;
 }
@@ -87,7 +175,7 @@ std::vector<TimedPosition> read_positions(CsvRows& rows, const std::string& name
   return positions;
 }
 
-/// The step that most rows are apart.
+/// \return the median step from row to row
 double usual_step_s(const std::vector<TimedPosition>& rows) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < rows.size(); ++i) {
@@ -98,7 +186,7 @@ double usual_step_s(const std::vector<TimedPosition>& rows) {
   return *middle;
 }
 
-/// Positions at every tick, with straight lines where rows are missing.
+/// \return the position at every tick, on straight lines where rows are missing
 std::vector<Vec3> fill_ticks(const std::vector<TimedPosition>& rows, double step_s,
                              const std::string& name) {
   std::vector<Vec3> positions = {rows.front().position_mm};
@@ -106,7 +194,7 @@ std::vector<Vec3> fill_ticks(const std::vector<TimedPosition>& rows, double step
     const Vec3 from = rows[i - 1].position_mm;
     const Vec3 way = rows[i].position_mm - from;
     const double steps = std::round((rows[i].time_s - rows[i - 1].time_s) / step_s);
-    if (steps < 1.0) refuse(name, "rows are much closer in time than they usually are");
+    if (steps < 1.0) refuse(name, "some rows are much closer in time than the others");
     if (steps + static_cast<double>(positions.size()) > RecordedMotion::kMostTicks) {
       refuse(name, "is longer than " + std::to_string(RecordedMotion::kMostTicks) + " ticks");
     }
@@ -116,11 +204,12 @@ std::vector<Vec3> fill_ticks(const std::vector<TimedPosition>& rows, double step
   return positions;
 }
 
-/// Over the whole recording, so that rounded times do not add up; to the millihertz.
+/// \return the mean rate of the whole recording, in which rounded times do not add up; to the
+///   millihertz
 double rate_over(double duration_s, std::size_t ticks, const std::string& name) {
   const double rate_hz = std::round(static_cast<double>(ticks - 1) / duration_s * 1000.0) / 1000.0;
   if (rate_hz >= kSlowestHz && rate_hz <= kFastestHz) return rate_hz;
-  refuse(name, "its rows are not 10 to 20,000 to the second; time_s is in seconds");
+  refuse(name, "it does not have 10 to 20,000 rows a second; time_s is in seconds");
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-/// \file Recorded motion of a hand, tick by tick.
+/// \file The recorded motion of a hand, tick by tick, and its CSV file.
 #pragma once
 
 #include "core/vec.hpp"
@@ -9,10 +9,10 @@
 
 namespace touchtrial::device {
 
-/// Motion in memory. Its parts are read on the servo thread: no heap, lock or I/O.
+/// Motion in memory. The servo thread reads it: no heap, lock or I/O.
 class RecordedMotion {
  public:
-  /// More ticks than any trial has; what is longer is no recording.
+  /// More ticks than any trial has; a longer motion is not accepted.
   static constexpr std::int64_t kMostTicks = 4'000'000;
 
   /// \param rate_hz  > 0, finite
@@ -33,11 +33,12 @@ class RecordedMotion {
   double rate_hz_;
 };
 
-/// Reads a CSV file (RFC 4180, either line end) whose header names time_s, x_mm, y_mm and z_mm, in
-/// any order; other columns are left alone. The usual step of time_s gives the rate; where rows are
-/// missing the hand moves straight on to the next one.
-/// \throws FileError with the line: no such file, column or number, a time that does not increase,
-///   a place beyond 10 m, a rate outside 10 to 20,000 Hz, or more than kMostTicks
+/// Reads a CSV file (RFC 4180, lines end in LF or CRLF) whose header names time_s, x_mm, y_mm and
+/// z_mm in any order, and perhaps other columns. The usual step of time_s gives the rate; where
+/// rows are missing, the hand moves straight on to the next one. \throws FileError with the line if
+/// the file, a column or a number is missing, a time does not
+///   increase, a position is beyond 10 m, the rate is outside 10 to 20,000 Hz, or there are more
+///   than kMostTicks
 [[nodiscard]] RecordedMotion read_motion_csv(const std::filesystem::path& file);
 
 }  // namespace touchtrial::device

@@ -9,10 +9,9 @@
 
 namespace touchtrial::device {
 
-/// The driver "replay". Each `write` is one tick, so it goes in virtual time as in real time; run
-/// the servo at the motion's rate. Positions are the recorded ones, in the plane frame; velocity is
-/// the last step's. Forces move nothing.
-/// Not thread-safe.
+/// The driver "replay". Each `write` is one tick, so it works in virtual time as in real time; run
+/// the servo at the motion's rate. Positions are the recorded ones, in the plane frame; the
+/// velocity is that of the last step. Forces move nothing. Not thread-safe.
 class ReplayDevice final : public HapticDevice {
  public:
   explicit ReplayDevice(RecordedMotion motion) : motion_(std::move(motion)) {}
@@ -21,7 +20,7 @@ class ReplayDevice final : public HapticDevice {
   /// \return stopped once the motion is at its end
   [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override;
   [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override;
-  /// Nothing to do: no force reaches anybody.
+  /// Does nothing: no force reaches a person.
   void halt() noexcept override {}
   void rearm() noexcept override {}
 

@@ -1,17 +1,15 @@
 #include "device/safety/safety_chain.hpp"
 
-#include "device/safety/finite_check.hpp"
-#include "device/safety/norm_limit.hpp"
-
 #include <algorithm>
 #include <cmath>
 
 namespace touchtrial::device {
+
 SafetyChain::SafetyChain(const SafetyLimits& limits, double tick_s) noexcept
     : may_engage_(is_sound(limits) && tick_s > 0.0 && std::isfinite(tick_s)),
       gate_(limits.engage_force_n),
-      freshness_(limits.stale_s, tick_s),
       velocity_(limits.max_speed_mm_s, tick_s),
+      freshness_(limits.stale_s, tick_s),
       thermal_(limits, tick_s),
       ramp_(limits.ramp_up_s, tick_s),
       slew_(limits.max_slew_n_per_s, tick_s) {}
@@ -50,8 +48,8 @@ SafetyFault SafetyChain::fault_in(const DeviceSample& sample, double ticks) noex
 SafeForce SafetyChain::check(Vec3 force_n, const DeviceSample& sample,
                              std::int64_t ticks) noexcept {
   const auto elapsed = static_cast<double>(std::max<std::int64_t>(ticks, 1));
-  const double force_squared_n2 = squared_norm(force_n);
-  thermal_.heat(squared_norm(slew_.sent_n()), elapsed);
+  const double force_squared_n2 = dot(force_n, force_n);
+  thermal_.heat(dot(slew_.sent_n(), slew_.sent_n()), elapsed);
   if (!is_finite_state(force_squared_n2, sample)) trip(SafetyFault::not_finite);
   if (faulted()) return stopped();
   const bool was_engaged = gate_.is_open();

@@ -1,15 +1,10 @@
-/// \file What every force passes on its way to a device, in a fixed order. Source: docs/safety.md.
+/// \file The safety chain, which every force passes on its way to a device. Source: docs/safety.md.
 #pragma once
 
 #include "core/vec.hpp"
 #include "device/haptic_device.hpp"
-#include "device/safety/engage_gate.hpp"
-#include "device/safety/freshness.hpp"
-#include "device/safety/ramp_up.hpp"
 #include "device/safety/safety_limits.hpp"
-#include "device/safety/slew_limit.hpp"
-#include "device/safety/thermal_budget.hpp"
-#include "device/safety/velocity_trip.hpp"
+#include "device/safety/safety_links.hpp"
 
 #include <cstdint>
 
@@ -25,8 +20,8 @@ enum class SafetyVerdict {
 /// Why a chain latched.
 enum class SafetyFault {
   none,
-  not_finite,      ///< a force, position or velocity that is no number
-  emergency_stop,  ///< somebody, or a signal, asked for it
+  not_finite,      ///< a force, position or velocity is not a finite number
+  emergency_stop,  ///< a person, or a signal, asked for it
   not_ready,       ///< the device lost its homing while force was on
   overspeed,       ///< faster than a hand
   stale_sample,    ///< the device gives no new readings
@@ -39,18 +34,20 @@ struct SafeForce {
   SafetyVerdict verdict = SafetyVerdict::passed;
 };
 
-/// Finite check, latched fault, homed and armed, small-force gate on engaging, velocity trip (and
-/// freshness of the readings), thermal budget, ramp-up, norm limit, slew limit. A fault skips the
-/// slew: zero at once, and until `rearm`. Belongs to the servo thread.
+/// In this order: finite check, latched fault, homed and armed, small-force gate on engaging,
+/// velocity trip and freshness of the readings, thermal budget, ramp-up, norm limit, slew limit. A
+/// fault skips the slew limit: the force is zero at once, and until `rearm`. Belongs to the servo
+/// thread.
 class SafetyChain {
  public:
-  /// \param limits  if they are not sound, no force passes
+  /// \param limits  unsound ones let no force pass
   /// \param tick_s  of the servo, finite, > 0, else no force passes
   explicit SafetyChain(const SafetyLimits& limits, double tick_s = 0.001) noexcept;
 
-  /// The force that may be sent for this tick. A device that is not ready before engaging gets
-  /// zero, without a fault. No allocation, lock or exception; about 10 ns.
+  /// A device that is not ready before engaging gets zero, without a fault. No allocation, lock or
+  /// exception; about 10 ns.
   /// \param ticks  since the last call, more than 1 after an overrun; less counts as 1
+  /// \return the force that may be sent for this tick
   [[nodiscard]] SafeForce check(Vec3 force_n, const DeviceSample& sample,
                                 std::int64_t ticks = 1) noexcept;
 
@@ -58,14 +55,14 @@ class SafetyChain {
   void trip(SafetyFault fault) noexcept;
   [[nodiscard]] bool faulted() const noexcept { return fault_ != SafetyFault::none; }
   [[nodiscard]] SafetyFault fault() const noexcept { return fault_; }
-  /// Lets forces pass again after a fault, from the gate and the ramp on; a person's decision.
+  /// Lets forces pass again after a fault, from the gate and the ramp on; a person decides it.
   void rearm() noexcept;
-  /// \name Heat of the motors, which outlasts a run: as ThermalBudget
+  /// \name Heat of the motors, which outlasts a run; see ThermalBudget
   ///@{
   [[nodiscard]] double heat_n2() const noexcept { return thermal_.heat_n2(); }
   void begin_warm(double heat_n2, double rest_s) noexcept { thermal_.begin_warm(heat_n2, rest_s); }
   ///@}
-  /// What the last call of `check` let pass, N.
+  /// The force that the last `check` let pass, N.
   [[nodiscard]] Vec3 sent_n() const noexcept { return slew_.sent_n(); }
 
  private:
@@ -76,8 +73,8 @@ class SafetyChain {
   bool may_engage_;
   SafetyFault fault_ = SafetyFault::none;
   EngageGate gate_;
-  Freshness freshness_;
   VelocityTrip velocity_;
+  Freshness freshness_;
   ThermalBudget thermal_;
   RampUp ramp_;
   SlewLimit slew_;

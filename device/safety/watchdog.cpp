@@ -34,7 +34,7 @@ Watchdog::Watchdog(HapticDevice& device, ServoControl& control,
       pause_(std::max(silence / kLooksInSilence, std::chrono::nanoseconds(1))),
       time_(time) {
   if (silence <= std::chrono::nanoseconds(0)) {
-    throw std::invalid_argument("Watchdog: the silence is not > 0");
+    throw std::invalid_argument("Watchdog: the silence must be > 0");
   }
   thread_ = std::thread([this] { watch(); });
 }
@@ -60,7 +60,7 @@ bool Watchdog::disarm() {
 }
 
 void Watchdog::watch() noexcept {
-  // Without the permission it watches as an ordinary thread: nothing that it could do about it.
+  // Without the permission it watches as an ordinary thread.
   static_cast<void>(request_scheduling(
       {.policy = SchedulingPolicy::fifo, .priority = kPriority, .lock_memory = false}));
   WatchdogTime::Time last = time_.now();

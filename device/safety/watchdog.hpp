@@ -1,4 +1,4 @@
-/// \file Zero force when the servo itself stands still, by a thread of its own.
+/// \file A thread that sets the force to zero when the servo itself stands still.
 #pragma once
 
 #include "device/haptic_device.hpp"
@@ -12,57 +12,60 @@
 
 namespace touchtrial::device {
 
-/// Time as the watchdog sees it, so that tests own it. Used by the watchdog's thread, `now` by any.
+/// The watchdog's time, so that tests own it. Belongs to the watchdog's thread; any thread may call
+/// `now`.
 class WatchdogTime {
  public:
   using Time = std::chrono::nanoseconds;
   virtual ~WatchdogTime() = default;
 
   [[nodiscard]] virtual Time now() noexcept = 0;
-  /// Returns after about this time, or earlier.
+  /// Returns after about this time at the latest.
   virtual void pause(Time time) noexcept = 0;
 };
 
 /// The system's monotonic clock.
 [[nodiscard]] WatchdogTime& system_watchdog_time() noexcept;
 
-/// Looks at a servo's heartbeat five times in `silence`. A servo that has begun to beat, and then
-/// is silent for so long without having ended its run, stands still: the device is halted, and the
-/// run will end as SafetyFault::stalled when it goes on. A pause in which the watchdog itself did
-/// not run (a virtual machine that stalls as a whole) is no evidence: a look never counts for more
-/// than two of its pauses.
+/// Looks at a servo's heartbeat five times in `silence`. A servo that has begun to beat and is then
+/// silent for so long, although its run has not ended, stands still: the watchdog halts the device,
+/// and the run ends as SafetyFault::stalled when it goes on. A time in which the watchdog itself
+/// did not run (a virtual machine that stalls as a whole) is no evidence: one look never counts for
+/// more than two of its pauses.
 ///
-/// The thread asks for real-time scheduling above the servo's, so that a spinning servo cannot
-/// starve it, and goes on without. All functions may be called from any thread.
+/// The thread requests real-time scheduling above the servo's, so that a spinning servo cannot
+/// starve it, and works without if it gets none. Any thread may call all functions.
 class Watchdog {
  public:
-  /// On a device whose force a hand feels.
+  /// For a device whose force a hand feels.
   static constexpr std::chrono::milliseconds kSilence{10};
-  /// Where none does.
+  /// For any other.
   static constexpr std::chrono::milliseconds kForcelessSilence{1000};
 
-  /// How long the servo of a device may be silent. A force that stays as it is pushes a hand on; a
-  /// simulated hand, and a hand at a mouse, are pushed by nothing, so that there only a servo that
-  /// does not come back is a fault, and not a busy machine.
+  /// A force that stays on pushes a hand. Nothing pushes a simulated hand, or a hand at a mouse, so
+  /// there a busy machine is no fault, but only a servo that does not come back.
+  /// \return how long the servo of a device may be silent
   [[nodiscard]] static std::chrono::milliseconds silence_for(const DeviceInfo& device) noexcept {
     return device.simulated || device.visual ? kForcelessSilence : kSilence;
   }
 
-  /// \param device,control,heartbeat  must outlive this; the last two are those of the ServoHooks
+  /// \param device,control,heartbeat  must outlive this; control and heartbeat are the ServoHooks'
   /// \param silence  > 0
   /// \throws std::invalid_argument if the silence is not > 0
   Watchdog(HapticDevice& device, ServoControl& control, const std::atomic<std::int64_t>& heartbeat,
            std::chrono::nanoseconds silence = kSilence,
            WatchdogTime& time = system_watchdog_time());
-  /// Ends the thread; takes up to a fifth of the silence.
+  /// Ends the thread, within a fifth of the silence.
   ~Watchdog();
   Watchdog(const Watchdog&) = delete;
   Watchdog& operator=(const Watchdog&) = delete;
 
-  /// Before a run. Silence counts from the first beat on.
+  /// Before a run. Silence counts from the first beat.
   void arm();
-  /// After a run: from here on nothing trips. \return whether it tripped since `arm`. Then the
-  /// device stays halted until somebody re-arms it, also if the run had just ended by itself.
+  /// After a run: nothing trips it any more.
+  /// \return whether it tripped since `arm`; then the device stays halted until a person re-arms
+  /// it,
+  ///   even if the run had just ended by itself
   bool disarm();
 
  private:
@@ -76,7 +79,7 @@ class Watchdog {
   const std::chrono::nanoseconds pause_;
   WatchdogTime& time_;
 
-  std::mutex mutex_;  ///< never taken by the servo; guards what follows
+  std::mutex mutex_;  ///< guards the next five members; the servo never takes it
   bool armed_ = false;
   bool tripped_ = false;
   bool beating_ = false;
@@ -84,7 +87,7 @@ class Watchdog {
   std::chrono::nanoseconds silent_{};
 
   std::atomic<bool> ends_{false};
-  std::thread thread_;  ///< last: it uses all of the above
+  std::thread thread_;  ///< last, as it uses all of the above
 };
 
 /// Arms a watchdog for the length of a scope.

@@ -1,6 +1,6 @@
 #include "device/servo/flight_recorder.hpp"
 
-#include "device/servo/servo_names.hpp"
+#include "device/servo/servo.hpp"
 
 #include <algorithm>
 #include <array>
@@ -26,7 +26,7 @@ std::size_t room_for(double seconds, double rate_hz) {
   return static_cast<std::size_t>(ticks);
 }
 
-/// One row of values; whatever can be written by std::to_chars.
+/// Writes one row of values.
 class Row {
  public:
   explicit Row(std::string& text) : text_(text) {}

@@ -3,14 +3,16 @@
 
 #include "device/servo/servo.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 
 namespace touchtrial::device {
 
-/// Force source and sample sink in one. One run rather than two, because a hand that already rests
-/// on a plane would fall through it at the start of the second: the chain's small-force gate lets a
-/// force in only once the hand is off the plane (docs/safety.md). All there is to know is known
-/// before the run, so nothing is handed over while it lasts. Belongs to the servo thread meanwhile.
+/// Force source and sample sink in one. The two forces share a run because a hand that rests on a
+/// plane would fall through it at the start of a second run: the chain's small-force gate lets a
+/// force in only once the hand is off the plane (docs/safety.md). Everything is known before the
+/// run, so nothing is handed over during it. Belongs to the servo thread while a run lasts.
 class ForceSequence final : public ForceSource, public SampleSink {
  public:
   struct Part {
@@ -19,32 +21,49 @@ class ForceSequence final : public ForceSource, public SampleSink {
     double greatest_force_n = 0.0;   ///< that was sent
   };
 
-  /// \param first,second  must outlive this; the second is asked from the change on, the first
-  ///   until the change's end
+  /// \param first,second  must outlive this; the servo asks the first until the change ends, the
+  ///   second from where it begins
   /// \param change_tick  at which the change to the second begins, >= 0
   /// \param blend_ticks  that it takes, >= 1: the second's share rises by 3 u^2 - 2 u^3
   ForceSequence(ForceSource& first, ForceSource& second, std::int64_t change_tick,
                 std::int64_t blend_ticks) noexcept
       : first_(first), second_(second), change_tick_(change_tick), blend_ticks_(blend_ticks) {}
 
-  /// After an overrun the share is that of the first tick left out, and catches up with the next.
-  [[nodiscard]] Vec3 force_n(const DeviceSample& sample) noexcept override;
-  void record(const ServoSample& sample) noexcept override;
+  /// After an overrun the share is that of the first tick left out; the next tick catches up.
+  [[nodiscard]] Vec3 force_n(const DeviceSample& sample) noexcept override {
+    const std::int64_t changing = tick_ - change_tick_;
+    if (changing < 0) return first_.force_n(sample);
+    if (changing >= blend_ticks_) return second_.force_n(sample);
+    const double u = static_cast<double>(changing) / static_cast<double>(blend_ticks_);
+    const double share = u * u * (3.0 - 2.0 * u);
+    return (1.0 - share) * first_.force_n(sample) + share * second_.force_n(sample);
+  }
 
-  /// Whether a tick counts as the second's: from the beginning of the change on. Any thread.
+  void record(const ServoSample& sample) noexcept override {
+    tick_ = sample.tick + 1;
+    Part& part = parts_[is_second(sample.tick) ? 1 : 0];
+    ++part.ticks;
+    part.contact_ticks += sample.force_n.z > 0.0 ? 1 : 0;
+    part.greatest_force_n = std::max(part.greatest_force_n, norm(sample.force_n));
+  }
+
+  /// Any thread.
+  /// \return whether a tick counts as the second's, which it does from the change's beginning on
   [[nodiscard]] bool is_second(std::int64_t tick) const noexcept { return tick >= change_tick_; }
 
-  /// After the run.
+  /// \name After the run
+  ///@{
   [[nodiscard]] const Part& first() const noexcept { return parts_[0]; }
   [[nodiscard]] const Part& second() const noexcept { return parts_[1]; }
+  ///@}
 
  private:
   ForceSource& first_;
   ForceSource& second_;
   std::int64_t change_tick_;
   std::int64_t blend_ticks_;
-  std::int64_t tick_ = 0;  ///< that is asked for next
-  Part parts_[2];
+  std::int64_t tick_ = 0;  ///< the one that is asked for next
+  std::array<Part, 2> parts_{};
 };
 
 }  // namespace touchtrial::device

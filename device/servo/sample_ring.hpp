@@ -1,4 +1,4 @@
-/// \file How samples leave the servo's thread: one ring, one writer, one reader, no lock.
+/// \file The ring by which samples leave the servo's thread: one writer, one reader, no lock.
 #pragma once
 
 #include "device/servo/servo.hpp"
@@ -11,11 +11,11 @@
 
 namespace touchtrial::device {
 
-/// A ring of a fixed capacity between two threads. All its memory is taken, and touched, when it
-/// is made. Neither side ever waits for the other.
+/// A ring of a fixed capacity between two threads. The constructor takes and touches all its
+/// memory. Neither side ever waits for the other.
 class SampleRing {
  public:
-  /// \param capacity  samples that it holds, >= 1; 56 bytes each
+  /// \param capacity  in samples, >= 1; 56 bytes each
   /// \throws std::invalid_argument if capacity is 0
   explicit SampleRing(std::size_t capacity);
   ~SampleRing();
@@ -24,14 +24,16 @@ class SampleRing {
 
   [[nodiscard]] std::size_t capacity() const noexcept;
 
-  /// Servo thread. \return false if the ring is full: the sample is lost
+  /// Servo thread.
+  /// \return false if the ring is full: the sample is lost
   [[nodiscard]] bool push(const ServoSample& sample) noexcept;
 
   /// \name Reader's thread
   ///@{
-  /// Takes the oldest samples out. \return how many; they are the first ones of `into`
+  /// Takes the oldest samples out, into the first places of `into`.
+  /// \return how many
   [[nodiscard]] std::size_t pop(std::span<ServoSample> into) noexcept;
-  /// Samples that wait; more may have come since.
+  /// \return the number of samples that wait; more may have come since
   [[nodiscard]] std::size_t waiting() const noexcept;
   ///@}
 
@@ -40,7 +42,7 @@ class SampleRing {
   std::unique_ptr<Queue> queue_;
 };
 
-/// Puts the servo's samples into a ring and counts those for which there was no room.
+/// Puts the servo's samples into a ring and counts those that found no room.
 class RingSink final : public SampleSink {
  public:
   /// \param ring  must outlive this

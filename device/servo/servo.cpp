@@ -1,8 +1,8 @@
 #include "device/servo/servo.hpp"
 
+#include "device/platform/realtime.hpp"
 #include "device/servo/duration_histogram.hpp"
 #include "device/servo/flight_recorder.hpp"
-#include "device/servo/realtime_region.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kLeastRateHz = 1'000.0;
 constexpr double kGreatestRateHz = 10'000.0;
-constexpr double kComfortStopS = 0.1;  ///< from the first tick that knows of it
-constexpr double kShareS = 0.1;        ///< from no force to all of it, by ServoParameters
+constexpr double kComfortStopS = 0.1;  ///< from the first tick that sees the request
+constexpr double kShareS = 0.1;        ///< in which the share goes from 0 to 1
 
 double share_of(const ServoParameters& parameters) noexcept {
   return parameters.force_share >= 0.0 ? std::min(parameters.force_share, 1.0) : 0.0;
@@ -36,17 +36,18 @@ struct TickStart {
   ServoClock::Time late;
 };
 
-/// When ticks are due by a clock, and how late they began.
+/// Waits for ticks by a clock and measures how late they begin.
 template <typename Clock>
 class Pacing {
  public:
-  /// In virtual time nothing is late and nobody looks at the clock, so it is not kept.
+  /// In virtual time no tick is late and nobody looks at the clock, so it does not advance.
   static constexpr bool kIsVirtual = std::is_same_v<Clock, VirtualClock>;
 
   Pacing(Clock& clock, double rate_hz) noexcept
       : clock_(clock), rate_hz_(rate_hz), first_(clock.now()) {}
 
-  /// Waits for this tick. \return the tick that is due then: a later one if this was missed
+  /// Waits for this tick.
+  /// \return the tick that is due then: a later one if this one was missed
   TickStart wait_for(std::int64_t tick) noexcept {
     if constexpr (kIsVirtual) return {tick, {}, {}};
     const ServoClock::Time due = time_of(tick);
@@ -60,7 +61,7 @@ class Pacing {
   [[nodiscard]] const DurationHistogram& lateness() const noexcept { return lateness_; }
 
   void report_to(ServoReport& report) const noexcept {
-    report.rate_hz = kIsVirtual ? rate_hz_ : rate_had();
+    report.rate_hz = kIsVirtual ? rate_hz_ : measured_rate_hz();
     report.lateness = {lateness_.percentile_us(0.5), lateness_.percentile_us(0.99),
                        lateness_.percentile_us(0.999), lateness_.percentile_us(1.0)};
   }
@@ -85,7 +86,7 @@ class Pacing {
     last_ = start.since_first;
   }
 
-  [[nodiscard]] double rate_had() const noexcept {
+  [[nodiscard]] double measured_rate_hz() const noexcept {
     const double span_s = std::chrono::duration<double>(last_ - began_).count();
     return span_s > 0.0 ? static_cast<double>(lateness_.count() - 1) / span_s : 0.0;
   }
@@ -93,8 +94,8 @@ class Pacing {
   Clock& clock_;
   double rate_hz_;
   ServoClock::Time first_;
-  ServoClock::Time began_{};  ///< the first tick, since first_
-  ServoClock::Time last_{};   ///< the last one
+  ServoClock::Time began_{};  ///< when the first tick began, since first_
+  ServoClock::Time last_{};   ///< when the last one began
   DurationHistogram lateness_;
 };
 
@@ -123,7 +124,7 @@ class ServoRun {
     {
       const RealtimeRegion region;
       end = run_ticks(pacing);
-      // The loop has ended either way; a device that is lost cannot take the zero either.
+      // The loop has ended; a lost device takes no zero either.
       static_cast<void>(device_.write({}));
       if (hooks_.heartbeat != nullptr) {
         hooks_.heartbeat->store(kServoAtRest, std::memory_order_release);
@@ -154,7 +155,7 @@ class ServoRun {
     return std::nullopt;
   }
 
-  /// A comfort stop goes on until the slew limit has let go as well.
+  /// A comfort stop lasts until the slew limit has let go as well.
   [[nodiscard]] std::int64_t end_of_ticks() const noexcept {
     const bool lets_go = safety_.sent_n() != Vec3{};
     return lets_go ? std::max(end_of_fade(), end_of_comfort_stop_) : end_of_fade();
@@ -176,8 +177,8 @@ class ServoRun {
     end_of_fade_ = end;
   }
 
-  /// Fades from where a fade may already be, unless that one is over sooner. The fade leaves as
-  /// much of the 100 ms as the slew limit may need.
+  /// Fades from the present share, unless a fade that has begun ends sooner. The fade leaves the
+  /// slew limit the part of the 100 ms that it may need.
   void stop_in_comfort(std::int64_t tick) noexcept {
     const bool fades = tick >= fade_from_;
     if (fades && end_of_fade() <= tick + comfort_ticks_) return;
@@ -193,7 +194,7 @@ class ServoRun {
     return std::llround(std::floor((kComfortStopS - let_go_s(limits)) * rate_hz)) - 1;
   }
 
-  /// 1 until the fade begins, then falling to 0.
+  /// \return 1 until the fade begins, then falling to 0
   double fade_at(std::int64_t tick) const noexcept {
     if (tick < fade_from_) return 1.0;
     if (tick + 1 >= end_of_fade()) return 0.0;
@@ -226,7 +227,7 @@ class ServoRun {
                        std::chrono::duration<double>(now - hooks_.heat->when).count());
   }
 
-  /// Follows the parameters.
+  /// \return the factor of this tick's force, which follows the parameters
   double share() noexcept {
     if (hooks_.parameters == nullptr) return 1.0;
     const double most = 1.0 / (kShareS * rate_hz_);
@@ -241,7 +242,7 @@ class ServoRun {
     report_.contact_ticks += safe.force_n.z > 0.0 ? 1 : 0;
   }
 
-  /// Lets those who look at the loop see this tick.
+  /// Shows this tick to the watcher and to the flight recorder.
   void show(const TickStart& start, const DeviceSample& sample, Vec3 requested_n,
             const SafeForce& safe) noexcept {
     const double late_us = static_cast<double>(start.late.count()) * 1e-3;
@@ -267,7 +268,7 @@ class ServoRun {
   std::int64_t fade_from_;
   std::int64_t fade_ticks_;
   double fade_share_ = 1.0;  ///< at which the fade begins
-  double share_ = 1.0;       ///< of ServoParameters, followed
+  double share_ = 1.0;       ///< follows ServoParameters::force_share
   std::int64_t end_of_comfort_stop_ = 0;
   ServoEnd end_of_fade_ = ServoEnd::time_limit;
   ServoReport report_;
@@ -292,6 +293,74 @@ ServoReport run_servo_in_virtual_time(HapticDevice& device, ForceSource& force, 
                                       const ServoOptions& options) {
   VirtualClock clock;
   return run(device, force, sink, options, clock, {});
+}
+
+// Without a default, so that the compiler reports an enumerator that has no name yet.
+
+std::string_view name_of(ServoEnd end) noexcept {
+  switch (end) {
+    case ServoEnd::hand_stopped:
+      return "hand_stopped";
+    case ServoEnd::time_limit:
+      return "time_limit";
+    case ServoEnd::comfort_stop:
+      return "comfort_stop";
+    case ServoEnd::fault:
+      break;
+  }
+  return "fault";
+}
+
+std::string_view name_of(SafetyVerdict verdict) noexcept {
+  switch (verdict) {
+    case SafetyVerdict::passed:
+      return "passed";
+    case SafetyVerdict::limited:
+      return "limited";
+    case SafetyVerdict::fault:
+      break;
+  }
+  return "fault";
+}
+
+std::string_view name_of(SafetyFault fault) noexcept {
+  switch (fault) {
+    case SafetyFault::none:
+      return "none";
+    case SafetyFault::not_finite:
+      return "not_finite";
+    case SafetyFault::emergency_stop:
+      return "emergency_stop";
+    case SafetyFault::not_ready:
+      return "not_ready";
+    case SafetyFault::overspeed:
+      return "overspeed";
+    case SafetyFault::stale_sample:
+      return "stale_sample";
+    case SafetyFault::stalled:
+      return "stalled";
+    case SafetyFault::device:
+      break;
+  }
+  return "device";
+}
+
+std::string_view name_of(DeviceFault fault) noexcept {
+  switch (fault) {
+    case DeviceFault::none:
+      return "none";
+    case DeviceFault::link_lost:
+      return "link_lost";
+    case DeviceFault::bad_data:
+      return "bad_data";
+    case DeviceFault::warm_motors:
+      return "warm_motors";
+    case DeviceFault::limit_passed:
+      return "limit_passed";
+    case DeviceFault::driver:
+      break;
+  }
+  return "driver";
 }
 
 }  // namespace touchtrial::device

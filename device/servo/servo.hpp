@@ -10,6 +10,7 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <string_view>
 
 namespace touchtrial::device {
 
@@ -18,22 +19,22 @@ constexpr std::chrono::nanoseconds kServoTick{1'000'000};
 constexpr double kServoRateHz = 1000.0;
 constexpr double kServoTickS = 1.0 / kServoRateHz;
 
-/// What the servo asks for a force. Called on the servo thread: no heap, lock, log or I/O.
+/// Gives the servo its forces. Called on the servo thread: no heap, lock, log or I/O.
 class ForceSource {
  public:
   virtual ~ForceSource() = default;
-  /// The force on the hand in this state, N, in the plane frame.
+  /// \return the force on the hand in this state, N, in the plane frame
   [[nodiscard]] virtual Vec3 force_n(const DeviceSample& sample) noexcept = 0;
 };
 
-/// One tick as it was: where the stylus was, and the force that was sent.
+/// One tick: where the stylus was, and the force that was sent.
 struct ServoSample {
   Vec3 position_mm;
   Vec3 force_n;
   std::int64_t tick = 0;  ///< place in time since plane-on; an overrun leaves out numbers
 };
 
-/// Who keeps the samples. Called on the servo thread: room for all of them is reserved before.
+/// Keeps the samples. Called on the servo thread, so it reserves room for all of them before.
 class SampleSink {
  public:
   virtual ~SampleSink() = default;
@@ -43,7 +44,7 @@ class SampleSink {
 struct ServoOptions {
   /// Ticks until time is up, >= 0.
   std::int64_t limit_ticks = 60'000;
-  /// Ticks in which the force fades to nothing when time is up, >= 0; recorded like the others.
+  /// Ticks in which the force fades to zero when time is up, >= 0; recorded like the others.
   std::int64_t fade_ticks = 100;
   /// The device's own maximum and continuous force hold as well.
   SafetyLimits limits{};
@@ -52,14 +53,14 @@ struct ServoOptions {
 
 /// Why the loop ended.
 enum class ServoEnd {
-  hand_stopped,  ///< the device said, or ServoControl::finish, that the hand is done
+  hand_stopped,  ///< the hand is done, by the device or by ServoControl::finish
   time_limit,    ///< time was up, and the force has faded
-  comfort_stop,  ///< somebody asked for it, and the force has faded
+  comfort_stop,  ///< a person asked for it, and the force has faded
   fault,         ///< see SafetyFault
 };
 
-/// How late ticks began, from a DurationHistogram. A tick for which others were left out counts
-/// from the first of those: however long the loop stood still, the worst shows it.
+/// How late ticks began, from a DurationHistogram. A tick after others that were left out counts
+/// from the first of those, so the worst shows how long the loop stood still.
 struct Lateness {
   double p50_us = 0.0;
   double p99_us = 0.0;
@@ -75,9 +76,9 @@ struct ServoReport {
   std::int64_t limited_ticks = 0;  ///< changed by the safety chain
   std::int64_t contact_ticks = 0;  ///< with a force out of the plane
   std::int64_t overruns = 0;       ///< ticks left out because the loop stood still too long
-  double force_limit_n = 0.0;      ///< that held: the smaller of the options' and the device's
-  /// That was had, from the first tick to the last; 0 with fewer than two. The options' in virtual
-  /// time.
+  double force_limit_n = 0.0;      ///< in force: the smaller of the options' and the device's
+  /// Measured from the first tick to the last; 0 with fewer than two ticks. In virtual time, that
+  /// of the options.
   double rate_hz = 0.0;
   Lateness lateness;  ///< zeros in virtual time
 };
@@ -94,48 +95,55 @@ struct ServoState {
 class DurationHistogram;
 class FlightRecorder;
 
-/// What the motors of one device went through, from run to run: they do not cool because a trial
-/// is over.
+/// The heat in the motors of one device, from run to run: they do not cool because a trial is over.
 struct MotorHeat {
-  double heat_n2 = 0.0;     ///< as ThermalBudget::heat_n2, when the last run ended
-  ServoClock::Time when{};  ///< then, on the clock of the runs
+  double heat_n2 = 0.0;     ///< ThermalBudget::heat_n2 when the last run ended
+  ServoClock::Time when{};  ///< that moment, on the clock of the runs
 };
 
 /// What other threads may change while the servo runs.
 struct ServoParameters {
-  /// Of every force, in [0, 1]; what lies beyond counts as the nearer end, NaN as 0. The servo
-  /// follows within 100 ms, without a step.
+  /// Factor of every force, in [0, 1]; a value outside counts as the nearer end, NaN as 0. The
+  /// servo follows it within 100 ms, without a step.
   double force_share = 1.0;
 };
 
-/// A heartbeat outside of a run.
+/// The heartbeat outside of a run.
 inline constexpr std::int64_t kServoAtRest = -1;
 
-/// Who else looks at the loop or has a say; null where nobody does.
+/// Whoever else watches the loop or controls it; null: nobody.
 struct ServoHooks {
   ServoControl* control = nullptr;
   LatestValue<ServoState>* state = nullptr;  ///< set every tick, for one reader
   /// Counts ticks, for a Watchdog; kServoAtRest once the run has ended.
   std::atomic<std::int64_t>* heartbeat = nullptr;
-  FlightRecorder* recorder = nullptr;     ///< every tick, that of a fault included
-  DurationHistogram* lateness = nullptr;  ///< what this run's ticks are added to at its end
-  MotorHeat* heat = nullptr;              ///< that the run begins with, and leaves at its end
-  /// A snapshot, whole, is taken every tick; one writer.
+  FlightRecorder* recorder = nullptr;     ///< takes every tick, that of a fault included
+  DurationHistogram* lateness = nullptr;  ///< this run's ticks are added to it at the end
+  MotorHeat* heat = nullptr;              ///< read at the beginning, written at the end
+  /// Read as a whole at every tick; one writer.
   LatestValue<ServoParameters>* parameters = nullptr;
 };
 
-/// Runs the loop until it ends: tick i is at i / rate_hz after the first. A loop that is so late
+/// Runs the loop until it ends. Tick i is due i / rate_hz after the first. A loop that is so late
 /// that the next tick is due as well leaves out the ticks that it missed, so that they never come
 /// in a burst. Every force goes through the safety chain; the last one written is zero. No
-/// allocation, lock or exception inside the loop. Blocks; call on the thread that is to be the
-/// servo's. \throws std::invalid_argument before the first tick if an option is out of its range
+/// allocation, lock or exception inside the loop. Blocks: the calling thread becomes the servo's.
+/// \throws std::invalid_argument before the first tick if an option is out of its range
 [[nodiscard]] ServoReport run_servo(HapticDevice& device, ForceSource& force, SampleSink& sink,
                                     const ServoOptions& options, ServoClock& clock,
                                     const ServoHooks& hooks = {});
 
-/// The same in virtual time, as fast as the processor goes: there is nothing to be late for.
+/// The same in virtual time, as fast as the processor goes; no tick is late.
 /// \throws std::invalid_argument as run_servo
 [[nodiscard]] ServoReport run_servo_in_virtual_time(HapticDevice& device, ForceSource& force,
                                                     SampleSink& sink, const ServoOptions& options);
+
+/// \name What files and reports call the states of the servo: lower case, with underscores
+///@{
+[[nodiscard]] std::string_view name_of(ServoEnd end) noexcept;
+[[nodiscard]] std::string_view name_of(SafetyVerdict verdict) noexcept;
+[[nodiscard]] std::string_view name_of(SafetyFault fault) noexcept;
+[[nodiscard]] std::string_view name_of(DeviceFault fault) noexcept;
+///@}
 
 }  // namespace touchtrial::device

@@ -1,4 +1,4 @@
-/// \file What other threads, and signal handlers, may ask of a running servo.
+/// \file Requests of other threads, and of signal handlers, to a running servo.
 #pragma once
 
 #include <atomic>
@@ -6,22 +6,22 @@
 
 namespace touchtrial::device {
 
-/// Requests to one run of the servo. Every function may be called from any thread and from a signal
-/// handler; none waits. A request holds until `reset`.
+/// Requests to one run of the servo. Any thread and any signal handler may call every function;
+/// none waits. A request holds until `reset`.
 class ServoControl {
  public:
-  /// The person is done: the force fades as when time is up; the run ends as hand_stopped.
+  /// The person is done: the force fades as it does when time is up; the run ends as hand_stopped.
   void finish() noexcept { ask(kFinish); }
   /// The force goes to zero within 100 ms, without a step; the run ends as comfort_stop.
   void comfort_stop() noexcept { ask(kComfortStop); }
   /// Zero from the next tick on; the run ends as a fault.
   void emergency_stop() noexcept { ask(kEmergencyStop); }
-  /// The servo stood still (Watchdog): as an emergency stop, but the run ends as stalled.
+  /// The servo stood still (Watchdog): like an emergency stop, but the run ends as stalled.
   void stall() noexcept { ask(kStall); }
-  /// Before a new run. Emergency stops and stalls are only taken back by this.
+  /// Before a new run: forgets every request. Nothing else takes back an emergency stop or a stall.
   void reset() noexcept { requests_.store(0, std::memory_order_release); }
-  /// Before a new run, with emergency stops and stalls held: one that comes at this very moment is
-  /// not lost.
+  /// Before a new run: forgets the other requests. An emergency stop or a stall that arrives at
+  /// this very moment is not lost.
   void forget_wishes() noexcept {
     requests_.fetch_and(kEmergencyStop | kStall, std::memory_order_acq_rel);
   }

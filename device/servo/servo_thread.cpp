@@ -1,8 +1,6 @@
 #include "device/servo/servo_thread.hpp"
 
-#include <chrono>
 #include <condition_variable>
-#include <future>
 #include <mutex>
 #include <stdexcept>
 #include <thread>
@@ -13,7 +11,7 @@ namespace touchtrial::device {
 struct ServoThread::State {
   using Work = std::packaged_task<void()>;
 
-  /// The thread itself: takes work until it is told to end.
+  /// The thread itself: does work until `end`.
   void serve(const SchedulingRequest& request, std::promise<SchedulingObtained> scheduled) {
     scheduled.set_value(request_scheduling(request));
     for (Work work = next(); work.valid(); work = next()) work();
@@ -65,7 +63,7 @@ const SchedulingObtained& ServoThread::scheduling() const noexcept {
 
 void ServoThread::start(std::function<void()> work) {
   if (state_->result.valid()) {
-    throw std::logic_error("ServoThread: the work before has not been waited for");
+    throw std::logic_error("ServoThread: nobody has waited for the previous work");
   }
   State::Work task(std::move(work));
   state_->result = task.get_future();
@@ -84,6 +82,38 @@ void ServoThread::wait() {
 void ServoThread::run(std::function<void()> work) {
   start(std::move(work));
   wait();
+}
+
+RunningServo::RunningServo(ServoThread& thread, ServoControl& control, std::function<void()> work)
+    : thread_(thread), control_(control) {
+  auto promise = std::make_shared<std::promise<void>>();
+  ended_ = promise->get_future();
+  thread_.start([work = std::move(work), promise = std::move(promise)] {
+    struct EndTeller {  // also if the work throws
+      std::promise<void>& promise;
+      ~EndTeller() { promise.set_value(); }
+    };
+    const EndTeller teller{*promise};
+    work();
+  });
+}
+
+RunningServo::~RunningServo() {
+  if (!ended_.valid()) return;
+  control_.emergency_stop();
+  try {
+    finish();
+  } catch (...) {  // Another exception is on its way.
+  }
+}
+
+bool RunningServo::runs(std::chrono::nanoseconds patience) const {
+  return ended_.wait_for(patience) != std::future_status::ready;
+}
+
+void RunningServo::finish() {
+  ended_.get();
+  thread_.wait();
 }
 
 }  // namespace touchtrial::device

@@ -1,14 +1,18 @@
-/// \file The thread on which a device's servo runs.
+/// \file The thread on which a device's servo runs, and a run on it while another thread attends to
+/// the person.
 #pragma once
 
 #include "device/platform/realtime.hpp"
+#include "device/servo/servo_control.hpp"
 
+#include <chrono>
 #include <functional>
+#include <future>
 #include <memory>
 
 namespace touchtrial::device {
 
-/// A thread that asked for real-time scheduling once, when it was made, and then runs one piece of
+/// A thread that requests real-time scheduling once, when it is made, and then runs one piece of
 /// work after another: every trial of a session. All functions belong to the thread that made it.
 class ServoThread {
  public:
@@ -25,9 +29,9 @@ class ServoThread {
   /// Runs this on the thread and returns at once.
   /// \throws std::logic_error if work is running that nobody has waited for
   void start(std::function<void()> work);
-  /// Whether work is running. False does not replace `wait`.
+  /// \return whether work is running. False does not replace `wait`.
   [[nodiscard]] bool running() const noexcept;
-  /// Waits for the work to end and throws what it threw. At once if there is none.
+  /// Waits for the work to end and throws what it threw. Returns at once if there is none.
   void wait();
   /// `start` and `wait`.
   void run(std::function<void()> work);
@@ -35,6 +39,32 @@ class ServoThread {
  private:
   struct State;
   std::unique_ptr<State> state_;
+};
+
+/// One run on a ServoThread, in a scope. However the scope is left, also by an exception of the
+/// thread that attends, the force is off and the thread at rest before anything that the run uses
+/// is destroyed. Belongs to the thread that made it.
+class RunningServo {
+ public:
+  /// \param thread,control  must outlive this; the control is that of the run's ServoHooks
+  /// \param work  calls run_servo
+  /// \throws std::logic_error if the thread is at work
+  RunningServo(ServoThread& thread, ServoControl& control, std::function<void()> work);
+  /// Requests an emergency stop and waits for the end, unless `finish` has returned.
+  ~RunningServo();
+  RunningServo(const RunningServo&) = delete;
+  RunningServo& operator=(const RunningServo&) = delete;
+
+  /// \param patience  how long to wait for the end
+  /// \return whether it still runs
+  [[nodiscard]] bool runs(std::chrono::nanoseconds patience = {}) const;
+  /// Waits for the end and throws what the work threw. Call it once.
+  void finish();
+
+ private:
+  ServoThread& thread_;
+  ServoControl& control_;
+  std::future<void> ended_;
 };
 
 }  // namespace touchtrial::device

@@ -6,7 +6,7 @@
 namespace touchtrial::device {
 namespace {
 
-/// Part of the plane that the path keeps to.
+/// The part of the plane in which the path stays.
 struct Inside {
   double left_mm, right_mm, top_mm, bottom_mm;
 
@@ -34,7 +34,8 @@ Inside inside_of(const PlaneGeometry& plane, double margin_mm) {
   return {x_mm, plane.width_mm() - x_mm, y_mm, plane.height_mm() - y_mm};
 }
 
-/// From anywhere inside, at least a fifth of the area is far enough: a few draws do.
+/// Draws until the point is far enough. From any point at least a fifth of the area is, so a few
+/// draws suffice.
 Vec2 next_point(Vec2 from_mm, const Inside& inside, RandomStream& random) {
   Vec2 point_mm = inside.point(random);
   while (norm(point_mm - from_mm) < inside.shorter_side_mm() / 2.0) {
@@ -43,7 +44,8 @@ Vec2 next_point(Vec2 from_mm, const Inside& inside, RandomStream& random) {
   return point_mm;
 }
 
-/// Share of the final speed, u = 0 .. 1 of a ramp, and the distance covered in ramps.
+/// The share of the final speed at u = 0 .. 1 of a ramp, and the distance covered by then, in ramps
+/// at that speed.
 double ramp_speed(double u) noexcept {
   return u * u * (3.0 - 2.0 * u);
 }
@@ -84,7 +86,7 @@ PathPoint ExplorationPath::at(double time_s, std::size_t& stroke) const noexcept
   const double begun = std::clamp((time_s - s.start_s) / kRampS, 0.0, 1.0);
   const double left = std::clamp((s.end_s() - time_s) / kRampS, 0.0, 1.0);
   const double steady_s = std::clamp(time_s - s.start_s - kRampS, 0.0, s.steady_s - kRampS);
-  // Speeding up covers ramp_distance(begun), slowing down what is missing from a whole ramp.
+  // Speeding up covers ramp_distance(begun); slowing down covers the rest of half a ramp.
   const double ramps_s = kRampS * (ramp_distance(begun) + 0.5 - ramp_distance(left));
   const double speed_mm_s = s.speed_mm_s * std::min(ramp_speed(begun), ramp_speed(left));
   return {s.from_mm + (s.speed_mm_s * (steady_s + ramps_s)) * s.direction,

@@ -1,4 +1,4 @@
-/// \file How a simulated hand strokes a plane: straight lateral strokes between random points.
+/// \file The path of a simulated hand on a plane: straight lateral strokes between random points.
 #pragma once
 
 #include "core/plane_geometry.hpp"
@@ -17,27 +17,29 @@ struct ExplorationOptions {
   double duration_s = 10.0;     ///< > 0
 };
 
-/// Where the path is and how fast it goes.
+/// Place and speed of the path at one time.
 struct PathPoint {
   Vec2 position_mm;
   Vec2 velocity_mm_s;
 };
 
-/// Strokes laid end to end. Each starts and ends at rest, speeds up and slows down smoothly
-/// (continuous acceleration), and keeps its speed in between. End points are uniform within the
-/// margin, at least half the shorter side apart, so direction and offset differ with every stroke;
-/// speeds are uniform in the range. On a plane too short for the speed, strokes are slower.
+/// Strokes end to end. Each starts and ends at rest, speeds up and slows down smoothly (continuous
+/// acceleration), and keeps its speed in between. End points are uniform within the margin and at
+/// least half the shorter side apart, so that direction and offset differ with every stroke; speeds
+/// are uniform in the range. Strokes are slower on a plane too short for the speed.
 class ExplorationPath {
  public:
-  /// Time in which a stroke gets to its speed, and to rest again.
+  /// The time in which a stroke reaches its speed, and that in which it comes to rest.
   static constexpr double kRampS = 0.08;
 
   /// \throws std::invalid_argument if the plane has no area or an option is out of range
   ExplorationPath(const PlaneGeometry& plane, const ExplorationOptions& options,
                   RandomStream& random);
 
-  /// \param time_s  >= 0; after the last stroke the path rests at its end
-  /// \param stroke  where the search begins, for a caller who goes forward in time; 0 at first
+  /// \param time_s  >= 0, never earlier than in the last call; after the last stroke the path rests
+  /// at
+  ///   its end
+  /// \param stroke  the place of the search, which the caller keeps from call to call; 0 at first
   [[nodiscard]] PathPoint at(double time_s, std::size_t& stroke) const noexcept;
 
  private:

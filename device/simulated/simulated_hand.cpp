@@ -1,5 +1,6 @@
 #include "device/simulated/simulated_hand.hpp"
 
+#include "device/drivers.hpp"
 #include "device/servo/servo.hpp"
 
 #include <algorithm>
@@ -11,6 +12,9 @@ namespace touchtrial::device {
 namespace {
 
 constexpr double kMmPerM = 1000.0;
+/// The plane and the time of a hand that is opened by name; nobody watches it for longer.
+constexpr PlaneGeometry kNamedPlane{0.2, 500, 500};
+constexpr double kNamedExploreS = 8.0 * 3600.0;
 
 void check(const HandOptions& o) {
   const bool positive = o.mass_kg > 0.0 && o.explore_s > 0.0 && o.max_force_n > 0.0;
@@ -22,16 +26,33 @@ void check(const HandOptions& o) {
   }
 }
 
-/// The push at a time after the start: 0 to 1, level at both ends.
+/// \return the share of the push at a time after the start: from 0 to 1, level at both ends
 double push_share(double time_s) noexcept {
   const double u = std::min(time_s / SimulatedHand::kPushBuildUpS, 1.0);
   return u * u * (3.0 - 2.0 * u);
 }
 
-/// Velocity after one tick under a force and a damper whose velocity is that after the tick.
+/// \return the velocity after one tick under a force and a damper, the damper fully implicit
 double velocity_after_tick(double velocity_mm_s, double force_n, double damping_n_s_per_mm,
                            double tick_per_mass) noexcept {
   return (velocity_mm_s + tick_per_mass * force_n) / (1.0 + tick_per_mass * damping_n_s_per_mm);
+}
+
+std::vector<DeviceListing> list_simulated(const DeviceSettings&) {
+  DeviceListing listing;
+  listing.driver = "simulated";
+  listing.model = "simulated hand";
+  listing.present = true;
+  return {listing};
+}
+
+std::unique_ptr<HapticDevice> open_simulated(const DeviceSettings&) {
+  RandomStream random(1, "simulated device");
+  HandOptions hand;
+  hand.explore_s = kNamedExploreS;
+  ExplorationOptions exploration;
+  exploration.duration_s = kNamedExploreS;
+  return std::make_unique<SimulatedHand>(hand, ExplorationPath(kNamedPlane, exploration, random));
 }
 
 }  // namespace
@@ -76,6 +97,11 @@ DeviceStatus SimulatedHand::write(Vec3 force_n) noexcept {
 
 std::chrono::nanoseconds SimulatedHand::now() const noexcept {
   return tick_ * kServoTick;
+}
+
+DeviceDriver simulated_driver() {
+  return {"simulated", "a simulated hand that strokes a blank plane", list_simulated,
+          open_simulated};
 }
 
 }  // namespace touchtrial::device

@@ -1,4 +1,4 @@
-/// \file A device that nobody holds: a hand that follows a path, pushes, and yields to forces.
+/// \file A simulated device and hand: the hand follows a path, pushes, and yields to forces.
 #pragma once
 
 #include "device/haptic_device.hpp"
@@ -17,32 +17,32 @@ struct HandOptions {
   double push_n = 0.7;                     ///< steady push on the plane, >= 0
   double push_damping_n_s_per_mm = 0.008;  ///< of motion across the plane, >= 0
   double start_height_mm = 15.0;           ///< above the plane, >= 0
-  double explore_s = 10.0;                 ///< then the hand stops, > 0
-  double max_force_n = 3.3;                ///< of the device it holds, > 0
+  double explore_s = 10.0;                 ///< after which the hand stops, > 0
+  double max_force_n = 3.3;                ///< of the device that it holds, > 0
 };
 
-/// The driver "simulated". Along the plane a spring and a damper pull the mass towards the path; a
-/// push, which builds up smoothly while the hand comes down from above, presses it on the plane;
-/// forces written move it. Semi-implicit Euler (damping fully implicit) at the servo's rate, in
-/// virtual time: each `write` is one tick. A function of its options and path alone. Not
-/// thread-safe.
+/// The driver "simulated". Along the plane a spring and a damper pull the mass towards the path. A
+/// push, which builds up smoothly while the hand comes down from above, presses it on the plane.
+/// The servo's forces move it. Semi-implicit Euler (damping fully implicit) at the servo's rate, in
+/// virtual time: each `write` is one tick. The motion depends on the options, the path and the
+/// forces alone. Not thread-safe.
 class SimulatedHand final : public HapticDevice {
  public:
-  /// Time in which the push builds up, s.
+  /// The time in which the push builds up, s.
   static constexpr double kPushBuildUpS = 0.3;
 
-  /// The hand waits above the path's first point.
+  /// The hand begins above the path's first point.
   /// \throws std::invalid_argument if an option is out of range
   SimulatedHand(const HandOptions& options, ExplorationPath path);
 
   [[nodiscard]] DeviceInfo info() const override;
   [[nodiscard]] DeviceStatus read(DeviceSample& sample) noexcept override;
   [[nodiscard]] DeviceStatus write(Vec3 force_n) noexcept override;
-  /// Nothing to do: a force lasts for the tick that it is written in.
+  /// Does nothing: a force lasts for its own tick only.
   void halt() noexcept override {}
   void rearm() noexcept override {}
 
-  /// Virtual time since the hand was made.
+  /// \return the virtual time since the hand was made
   [[nodiscard]] std::chrono::nanoseconds now() const noexcept;
 
  private:

@@ -1,6 +1,6 @@
 #include "engine/fourier/real_fft.hpp"
 
-#include "engine/fourier/wisdom_files.hpp"
+#include "engine/fourier/planning.hpp"
 
 #include <cstddef>
 #include <cstdlib>
@@ -17,7 +17,7 @@
 namespace touchtrial::engine {
 namespace {
 
-/// The names of FFTW's two libraries, by precision.
+/// The functions of FFTW's two libraries, by precision.
 template <typename Real>
 struct Fftw;
 
@@ -57,14 +57,14 @@ struct Fftw<float> {
   static constexpr const char* kPrecision = "f32";
 };
 
-/// FFTW's planner keeps global state: only executing a plan is thread-safe.
+/// FFTW's planner has global state: only the execution of a plan is thread-safe.
 std::mutex& planner_mutex() {
   static std::mutex mutex;
   return mutex;
 }
 
-/// The two plans of a size; nullptr where FFTW has none. They serve any buffers of FftwBuffer. To
-/// be made and destroyed under the planner's mutex.
+/// The two plans of a size, for any buffers of FftwBuffer; nullptr if FFTW has none. Create and
+/// destroy them under the planner's mutex.
 template <typename Real>
 struct Plans {
   using Plan = typename Fftw<Real>::Plan;
@@ -81,18 +81,18 @@ struct Plans {
   Plan inverse;
 };
 
-/// Transforms that are quicker than their planning keep their estimated plans for whoever comes
-/// next: a sense of touch is made anew for every exploration.
+/// Transforms up to this size are quicker than their planning, so their estimated plans are kept
+/// for reuse: a new sense of touch, for instance, is created for every exploration.
 constexpr std::size_t kKeptUpToSamples = 4096;
 
-/// By height and width; to be used under the planner's mutex.
+/// The kept plan of a size. Use it under the planner's mutex.
 template <typename Real>
 std::shared_ptr<Plans<Real>>& kept_plans(int height, int width) {
   static std::map<std::pair<int, int>, std::shared_ptr<Plans<Real>>> kept;
   return kept[{height, width}];
 }
 
-/// Memory with the alignment that FFTW's plans count on.
+/// Memory with the alignment that FFTW's plans need.
 template <typename Real, typename Element>
 class FftwBuffer {
  public:
@@ -128,7 +128,7 @@ struct RealFft<Real>::State {
     if (plans) return;
     Fftw<Real>::forget();
     if (way == FftPlan::estimated || !plan_by_file()) plan(FFTW_ESTIMATE);
-    // What one transform taught must not shape the plan of another: that would depend on the order.
+    // Otherwise plans would depend on the order in which transforms are created.
     Fftw<Real>::forget();
     if (keep) kept_plans<Real>(height, width) = plans;
   }

@@ -1,4 +1,4 @@
-/// \file Two-dimensional Fourier transforms of real planes, in float or double.
+/// \file Two-dimensional Fourier transforms of real planes in float or double, by FFTW.
 #pragma once
 
 #include <complex>
@@ -10,18 +10,18 @@ namespace touchtrial::engine {
 /// How a transform is planned.
 enum class FftPlan {
   estimated,  ///< for few transforms
-  measured,  ///< for many: if the program measures plans and the size is worth it, see planning.hpp
+  measured,   ///< for many transforms, of a size worth measuring; see planning.hpp
 };
 
-/// A transform of one size with its buffers. Real is float or double. Results are the same in
-/// every run on a machine: what is measured is measured once, and kept.
-/// One object belongs to one thread at a time; different objects may be made, used and destroyed
-/// at the same time.
+/// A transform of one size with its buffers. Real is float or double. The results are the same in
+/// every run on a machine, because a plan is measured only once and then kept. Only one thread at a
+/// time may use an object. Different objects may be created, used and destroyed at the same time.
 template <typename Real>
 class RealFft {
  public:
   /// \param height,width  samples, >= 1
   /// \throws std::bad_alloc if there is no memory for the buffers
+  /// \throws std::invalid_argument if FFTW has no transform of this size
   RealFft(int height, int width, FftPlan plan = FftPlan::estimated);
   ~RealFft();
   RealFft(const RealFft&) = delete;
@@ -34,8 +34,8 @@ class RealFft {
 
   /// plane -> spectrum, unscaled; the plane keeps its values.
   void forward() noexcept;
-  /// spectrum -> plane, unscaled: inverse after forward multiplies by height * width. The spectrum
-  /// is lost.
+  /// spectrum -> plane, unscaled: forward and inverse multiply by height * width. Destroys the
+  /// spectrum.
   void inverse() noexcept;
 
  private:

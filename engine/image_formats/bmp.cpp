@@ -23,7 +23,7 @@ struct BmpHeader {
   std::uint32_t compression = kNone;
   std::uint32_t data_size = 0;  ///< may be 0 without compression
   std::uint32_t data_at = 0;
-  std::uint32_t colours = 0;  ///< entries of the palette; 0: as many as the bits can name
+  std::uint32_t colours = 0;  ///< entries of the palette; 0: the most that the bits can address
 };
 
 BmpHeader read_bmp_header(ByteView file) {
@@ -74,12 +74,12 @@ bool is_run_length(const BmpHeader& header) {
   return header.compression == kRle8 || header.compression == kRle4;
 }
 
-/// Bytes of a row, which is padded to whole groups of four.
+/// Bytes of a row; rows are padded to a multiple of four.
 std::uint64_t row_size(const BmpHeader& header) {
   return (static_cast<std::uint64_t>(header.width) * header.bits + 31) / 32 * 4;
 }
 
-/// The pixels' bytes; of the compressed kinds as many as the header claims.
+/// The bytes of the pixels; with compression, as many as the header states.
 ByteView data_of(ByteView file, const BmpHeader& header) {
   const std::uint64_t size = is_run_length(header)
                                  ? header.data_size
@@ -88,7 +88,7 @@ ByteView data_of(ByteView file, const BmpHeader& header) {
   return bytes_at(file, header.data_at, size);
 }
 
-/// The grey levels of the palette; what a file leaves out is black.
+/// The grey levels of the palette; missing entries are black.
 using Palette = std::array<std::uint8_t, kMostColours>;
 
 Palette read_palette(ByteView file, const BmpHeader& header) {
@@ -103,7 +103,7 @@ Palette read_palette(ByteView file, const BmpHeader& header) {
   return palette;
 }
 
-/// The `index`-th number of `bits` (1, 4 or 8), the first in the highest bits.
+/// The `index`-th number of `bits` (1, 4 or 8) bits. The first is in the highest bits.
 std::size_t packed_number(ByteView bytes, std::size_t index, std::size_t bits) {
   const std::size_t in_byte = 8 / bits;
   const std::size_t shift = (in_byte - 1 - index % in_byte) * bits;
@@ -124,8 +124,8 @@ void read_row(ByteView stored, std::size_t bits, Alpha alpha, const Palette& pal
   }
 }
 
-/// Runs of pixels, and jumps over pixels that have the palette's first colour. Rows come one behind
-/// the other.
+/// Unpacks run lengths: runs of pixels, and jumps over pixels, which get the palette's first
+/// colour. Rows lie one behind the other.
 class RunLengths {
  public:
   RunLengths(ByteView data, const BmpHeader& header, const Palette& palette)
@@ -149,7 +149,7 @@ class RunLengths {
         at_ += jump[0] + jump[1] * width_;
         row_is_full_ = false;
       } else {
-        // At the end of a full row the place is the next row's beginning already.
+        // After a full row the position is already at the start of the next row.
         if (!row_is_full_) at_ += width_ - at_ % width_;
         row_is_full_ = false;
       }
@@ -191,7 +191,7 @@ class RunLengths {
   const Palette& palette_;
   Bytes pixels_;
   std::size_t at_ = 0;
-  bool row_is_full_ = false;  ///< by the run before
+  bool row_is_full_ = false;  ///< whether the last run ended at the end of a row
 };
 
 }  // namespace

@@ -1,4 +1,4 @@
-/// \file The way out of libpng and libjpeg, whose error handlers must not return.
+/// \file Leaves libpng and libjpeg from their error handlers, which must not return.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 
 namespace touchtrial::engine {
 
-/// Where an error handler leaves to, and what it leaves behind.
+/// Where an error handler jumps to, and its message.
 struct Escape {
   std::jmp_buf back;
   std::array<char, 200> complaint{};
@@ -18,8 +18,8 @@ struct Escape {
   }
 };
 
-/// Runs `steps`, which an error handler may leave half-way by `escape`. The jump destroys nothing:
-/// whatever needs a destructor is made outside of `steps` and reaches them by reference.
+/// Runs `steps`, which an error handler may leave half-way by `escape`. The jump calls no
+/// destructors: create whatever needs one outside `steps`, and capture it by reference.
 /// \return whether the steps reached their end
 template <typename Steps>
 [[nodiscard, gnu::noinline]] bool reaches_end(Escape& escape, const Steps& steps) {

@@ -1,6 +1,5 @@
-/// \file What the readers of the kinds of picture share: their faults, the numbers in their files,
-/// and the arithmetic of samples on their way to 8-bit grey.
-/// Source of the arithmetic: docs/method.md, "Images".
+/// \file The readers of all kinds of pictures, and what they share: faults, numbers in files, and
+/// the conversion of samples to 8-bit grey. Source of the conversion: docs/method.md, "Images".
 #pragma once
 
 #include "core/bytes.hpp"
@@ -8,23 +7,20 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
-#include <optional>
 #include <span>
 #include <string>
-#include <vector>
 
 namespace touchtrial::engine {
 
 enum class ImageKind { png, jpeg, tiff, bmp, pnm };
 
-/// By the first bytes of a file; its name does not matter.
-/// \throws ImageFault if it is a picture of a kind that is not supported, or not a picture
+/// Recognises a picture by the first bytes of its file.
+/// \throws ImageFault if it is a picture of an unsupported kind, or no picture
 [[nodiscard]] ImageKind kind_of_image(ByteView file);
 
-/// Each reads a file of its kind. Metadata is skipped, orientation and colour profiles too. Memory
-/// is taken only for a picture whose samples are there, as far as the file's structure tells.
-/// Prints nothing. Thread-safe.
+/// Each reads a file of its kind. They ignore metadata, including orientation and colour profiles.
+/// They allocate memory only if the structure of the file shows that the samples exist. They print
+/// nothing, and are thread-safe.
 /// \throws ImageFault if the file is truncated, damaged, too large or of an unsupported type
 [[nodiscard]] GreyImage read_png(ByteView file);
 [[nodiscard]] GreyImage read_jpeg(ByteView file);
@@ -32,36 +28,39 @@ enum class ImageKind { png, jpeg, tiff, bmp, pnm };
 [[nodiscard]] GreyImage read_bmp(ByteView file);
 [[nodiscard]] GreyImage read_pnm(ByteView file);
 
-/// A PNG file of 8-bit samples, packed as well as zlib can.
+/// A PNG file of 8-bit samples, with zlib's best compression.
 /// \param channels  1: grey, 3: red, green, blue
 /// \param samples  rows from the top, height * width * channels
 /// \throws ImageFault if libpng refuses
 [[nodiscard]] Bytes png_of_samples(int height, int width, int channels,
                                    std::span<const std::uint8_t> samples);
 
-/// What is wrong with a picture, before the file's name is known to the message.
+/// What is wrong with a picture. The caller adds the file's name.
 struct ImageFault {
-  std::string what;    ///< continues a sentence that starts with the file's name
+  std::string what;    ///< the rest of a sentence that starts with the file's name
   std::string remedy;  ///< what the user can do
 };
 
 [[noreturn]] void throw_truncated_image();
-/// \param complaint  what the library said; may be empty
+/// \param complaint  of the library; may be empty
 [[noreturn]] void throw_damaged_image(const std::string& complaint);
 [[noreturn]] void throw_unsupported_image(const std::string& what);
 
-/// No picture has longer sides than this, which is also libpng's limit.
+/// The longest side of a picture; also libpng's limit.
 inline constexpr std::int64_t kMaxSidePx = 1'000'000;
 
-/// Refuses what would be empty or too large, from the header alone. \throws ImageFault
+/// Refuses an empty or too large picture by its header alone.
+/// \throws ImageFault
 void check_image_size(std::int64_t width_px, std::int64_t height_px);
 
 enum class ByteOrder { little, big };
 
-/// `count` bytes from `at` on. \throws ImageFault (truncated) if they are not all there
+/// `count` bytes from `at` on.
+/// \throws ImageFault (truncated) if the buffer ends before
 [[nodiscard]] ByteView bytes_at(ByteView bytes, std::size_t at, std::size_t count);
 
-/// An unsigned number of `size` (1 to 4) bytes. \throws ImageFault (truncated)
+/// An unsigned number of `size` (1 to 4) bytes.
+/// \throws ImageFault (truncated)
 [[nodiscard]] std::uint32_t number_at(ByteView bytes, std::size_t at, std::size_t size,
                                       ByteOrder order);
 
@@ -77,52 +76,6 @@ enum class ByteOrder { little, big };
 [[nodiscard]] inline std::uint32_t little32(ByteView bytes, std::size_t at) {
   return number_at(bytes, at, 4, ByteOrder::little);
 }
-
-enum class TiffTag : std::uint32_t {
-  width = 256,
-  height = 257,
-  bits_per_sample = 258,
-  compression = 259,
-  photometric = 262,
-  fill_order = 266,
-  strip_offsets = 273,
-  orientation = 274,
-  samples_per_pixel = 277,
-  rows_per_strip = 278,
-  strip_byte_counts = 279,
-  x_resolution = 282,
-  y_resolution = 283,
-  planar = 284,
-  resolution_unit = 296,
-  predictor = 317,
-  tile_width = 322,
-  tile_height = 323,
-  tile_offsets = 324,
-  tile_byte_counts = 325,
-  extra_samples = 338,
-  sample_format = 339,
-};
-
-/// The entries of a TIFF file's first directory; Exif notes are one too. Source: TIFF 6.0,
-/// section 2.
-class TiffDirectory {
- public:
-  /// \throws ImageFault if the header or the directory is cut off
-  explicit TiffDirectory(ByteView file);
-
-  [[nodiscard]] bool has(TiffTag tag) const { return entries_.count(tag) != 0; }
-  /// All values of an entry (BYTE, SHORT or LONG); none if it is absent or of another type.
-  [[nodiscard]] std::vector<std::uint32_t> values(TiffTag tag) const;
-  /// The first value of an entry, or `otherwise`.
-  [[nodiscard]] std::uint32_t value(TiffTag tag, std::uint32_t otherwise) const;
-  /// The first value of a RATIONAL entry; nothing if it is absent, of another type, or over zero.
-  [[nodiscard]] std::optional<double> fraction(TiffTag tag) const;
-
- private:
-  ByteView file_;
-  ByteOrder order_;
-  std::map<TiffTag, std::size_t> entries_;  ///< tag -> where its 12 bytes start
-};
 
 /// floor(v / 257 + 0.5) for a 16-bit sample; an 8-bit sample is itself.
 [[nodiscard]] constexpr std::uint32_t to_8_bit(std::uint16_t sample) noexcept {
@@ -150,10 +103,10 @@ class TiffDirectory {
   return static_cast<std::uint8_t>((299U * red + 587U * green + 114U * blue + 500U) / 1000U);
 }
 
-/// What is done with the second channel of grey, or the fourth of colour.
+/// How the second channel of grey, or the fourth of colour, is used.
 enum class Alpha {
   straight,  ///< composited on black
-  ignored,   ///< the colours are multiplied already, or the channel is not alpha
+  ignored,   ///< the colours are already multiplied by it, or the channel is not alpha
 };
 
 /// One pixel of 8- or 16-bit samples: grey, grey alpha, RGB or RGBA.

@@ -32,9 +32,9 @@ enum Marker : std::uint32_t {
   kComment = 0xFE,
 };
 
-/// Far more than any encoder writes; each scan of a progressive file goes over the whole picture.
+/// Far more than any encoder writes. Each scan of a progressive file covers the whole picture.
 constexpr int kMostScans = 100;
-/// The coefficients of the largest progressive picture, and some room for libjpeg's tables.
+/// Enough for the coefficients of the largest progressive picture and for libjpeg's tables.
 constexpr long kMostMemory = 6L * kMaxImagePixels + (1L << 28U);
 
 struct Frame {
@@ -51,8 +51,8 @@ bool is_baseline_or_progressive(std::uint32_t marker) {
   return marker >= 0xC0 && marker <= 0xC2;
 }
 
-/// Notes for other programs: profiles, thumbnails, orientation. JFIF and Adobe segments stay,
-/// because they say how the channels are meant.
+/// Whether a segment only has metadata: profiles, thumbnails, orientation. JFIF and Adobe segments
+/// are kept, because they define the meaning of the channels.
 bool is_note(std::uint32_t marker) {
   return marker == kComment || (marker > kApp0 && marker <= kApp15 && marker != kApp14);
 }
@@ -74,7 +74,8 @@ Frame read_frame(std::uint32_t marker, ByteView segment) {
   return frame;
 }
 
-/// Position of the next marker's 0xFF after entropy-coded data. \throws ImageFault if none comes
+/// The position of the 0xFF of the next marker after entropy-coded data.
+/// \throws ImageFault if there is none
 std::size_t end_of_scan_data(ByteView file, std::size_t at) {
   while (true) {
     const auto found = std::find(file.begin() + static_cast<std::ptrdiff_t>(at), file.end(), 0xFF);
@@ -86,7 +87,7 @@ std::size_t end_of_scan_data(ByteView file, std::size_t at) {
   }
 }
 
-/// Walks the segments and copies what decides pixels.
+/// Walks through the segments and copies those that affect pixels.
 class Walk {
  public:
   explicit Walk(ByteView file) : file_(file) { copy(0, 2); }
@@ -109,8 +110,9 @@ class Walk {
     return true;
   }
 
-  /// What decides pixels. \throws ImageFault unless the frame can be filled from the scans: a block
-  /// takes a bit at least
+  /// The file without segments that affect no pixel.
+  /// \throws ImageFault if the scans are too short to fill the frame: a block takes at least one
+  ///   bit
   Bytes finish() {
     if (frame_.width == 0 || scan_bytes_ == 0) throw_truncated_image();
     const std::uint64_t blocks = std::uint64_t{(frame_.width + 7) / 8} * ((frame_.height + 7) / 8);
@@ -162,8 +164,8 @@ class Walk {
   static_cast<Escape*>(jpeg->client_data)->leave(text.data());
 }
 
-/// Some cameras pad their files with a few bytes before the end marker; the others that are
-/// harmless speak of how the file describes itself.
+/// Some cameras pad their files with a few bytes before the end marker. The other harmless messages
+/// concern the file's description of itself.
 bool is_harmless(const jpeg_error_mgr& said) {
   constexpr int kMostPadding = 16;
   if (said.msg_code == JWRN_ADOBE_XFORM || said.msg_code == JWRN_JFIF_MAJOR) return true;
@@ -171,7 +173,7 @@ bool is_harmless(const jpeg_error_mgr& said) {
          said.msg_parm.i[1] == static_cast<int>(kEnd);
 }
 
-/// Levels below 0 are warnings: libjpeg goes on with samples that it made up.
+/// Levels below 0 are warnings, after which libjpeg continues with invented samples.
 void weigh_message(j_common_ptr jpeg, int level) {
   if (level < 0 && !is_harmless(*jpeg->err)) leave(jpeg);
 }

@@ -15,7 +15,7 @@ namespace {
 constexpr std::size_t kSignatureSize = 8;
 constexpr std::size_t kChunkOverhead = 12;  // length, type, checksum
 constexpr std::size_t kHeaderSize = 13;
-/// Of a chunk without samples: a palette has 768 bytes.
+/// The largest chunk without samples; a palette has only 768 bytes.
 constexpr std::size_t kLargestChunk = std::size_t{1} << 23U;
 constexpr int kMostChunks = 64;
 
@@ -69,7 +69,7 @@ PngHeader read_png_header(ByteView file) {
   return header;
 }
 
-/// Deflate never packs better than 1032 to 1, so too little data shows before it is unpacked.
+/// Refuses too little data before it is unpacked: deflate never packs better than 1032 to 1.
 void check_amount(const PngHeader& header, std::uint64_t packed_bytes) {
   constexpr std::array<std::uint64_t, 7> kChannels = {1, 0, 3, 1, 2, 0, 4};
   const std::uint64_t row_bits = kChannels.at(static_cast<std::size_t>(header.colour)) *
@@ -86,7 +86,7 @@ bool is_critical(std::string_view type) {
   return (type[0] & 0x20) == 0;
 }
 
-/// The file without colour profiles, gamma, texts and notes: libpng gets nothing else to see.
+/// The file without colour profiles, gamma, texts and notes. libpng sees only this.
 Bytes what_decides_pixels(ByteView file) {
   const PngHeader header = read_png_header(file);
   Bytes kept(file.begin(), file.begin() + kSignatureSize);
@@ -144,7 +144,7 @@ class PngDecoder {
     png_set_user_limits(png_, kMaxSidePx, kMaxSidePx);
     png_set_chunk_malloc_max(png_, kLargestChunk);
     png_set_chunk_cache_max(png_, kMostChunks);
-    // The one chunk with notes that is left decides pixels, too.
+    // The only ancillary chunk left, tRNS, affects pixels as well.
     png_set_crc_action(png_, PNG_CRC_ERROR_QUIT, PNG_CRC_ERROR_QUIT);
     png_set_read_fn(png_, &left_, take_bytes);
     png_read_info(png_, info_);
@@ -154,7 +154,7 @@ class PngDecoder {
     png_read_update_info(png_, info_);
   }
 
-  /// Row by row; all rows are kept only where several passes fill them.
+  /// Reads row by row. Keeps all rows only if several passes fill them.
   template <typename Sample>
   GreyImage rows() {
     const int height = static_cast<int>(png_get_image_height(png_, info_));
@@ -215,7 +215,7 @@ Bytes png_of_samples(int height, int width, int channels, std::span<const std::u
     info = png == nullptr ? nullptr : png_create_info_struct(png);
     if (info == nullptr) escape.leave("libpng has no memory or another version");
     png_set_write_fn(png, &file, give_bytes, flush_nothing);
-    // Filtered rows and zlib's best effort: textures pack poorly, so every per cent is welcome.
+    // Filtered rows and zlib's best compression, because textures compress poorly.
     png_set_compression_level(png, Z_BEST_COMPRESSION);
     png_set_compression_strategy(png, Z_FILTERED);
     png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), 8,

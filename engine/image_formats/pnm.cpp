@@ -1,5 +1,5 @@
-// PGM and PPM, text and binary, of any maximum value, which decides the scale. Of a file with
-// several pictures the first is read.
+// PGM and PPM, as text or binary, of any maximum value, which determines the scale. If a file has
+// several pictures, the first is read.
 #include "engine/image_formats/image_format.hpp"
 
 namespace touchtrial::engine {
@@ -14,13 +14,14 @@ bool is_digit(std::uint8_t c) {
   return c >= '0' && c <= '9';
 }
 
-/// Takes numbers from a file, one after the other.
+/// Reads numbers from a file, one after the other.
 class Scanner {
  public:
   Scanner(ByteView file, std::size_t at) : file_(file), at_(at) {}
 
-  /// The next decimal number; white space and comments before it are skipped.
-  /// \throws ImageFault if there is none or it is absurdly long
+  /// The next decimal number, after white space and comments. A number that is absurdly long ends
+  /// early.
+  /// \throws ImageFault if there is none
   std::uint32_t decimal() {
     skip_space();
     constexpr std::uint32_t kLimit = 400'000'000;
@@ -70,7 +71,7 @@ struct Samples {
   std::uint32_t maximum = 0;
 
   [[nodiscard]] std::size_t size() const { return maximum > 255 ? 2 : 1; }
-  /// The fewest bytes that hold so many samples.
+  /// The fewest bytes that can hold this many samples.
   [[nodiscard]] std::uint64_t bytes(std::uint64_t count) const {
     return text ? 2 * count - 1 : count * size();
   }

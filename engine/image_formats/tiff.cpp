@@ -1,5 +1,6 @@
 #include "engine/image_file.hpp"
 #include "engine/image_formats/image_format.hpp"
+#include "engine/image_formats/tiff_directory.hpp"
 
 #include <algorithm>
 #include <array>
@@ -15,77 +16,7 @@
 namespace touchtrial::engine {
 namespace {
 
-constexpr std::size_t kEntrySize = 12;
-constexpr std::uint32_t kLong = 4;
-constexpr std::uint32_t kRational = 5;
-
-/// Bytes of one value; 0 for types that no entry of ours has.
-std::size_t size_of_type(std::uint32_t type) {
-  switch (type) {
-    case 1:
-      return 1;  // BYTE
-    case 3:
-      return 2;  // SHORT
-    case kLong:
-      return 4;
-    default:
-      return 0;
-  }
-}
-
-}  // namespace
-
-TiffDirectory::TiffDirectory(ByteView file)
-    : file_(file),
-      order_(bytes_at(file, 0, 2)[0] == std::uint8_t{'M'} ? ByteOrder::big : ByteOrder::little) {
-  const std::size_t start = number_at(file, 4, 4, order_);
-  const std::size_t count = number_at(file, start, 2, order_);
-  for (std::size_t i = 0; i < count; ++i) {
-    const std::size_t at = start + 2 + i * kEntrySize;
-    const auto tag = static_cast<TiffTag>(number_at(bytes_at(file, at, kEntrySize), 0, 2, order_));
-    const bool is_new = entries_.emplace(tag, at).second;
-    // Which of two entries counts is up to the reader, so such a file has no meaning.
-    if (!is_new) throw_truncated_image();
-  }
-  // The place of the next directory ends this one; where it points to does not matter.
-  static_cast<void>(bytes_at(file, start + 2 + count * kEntrySize, 4));
-}
-
-std::vector<std::uint32_t> TiffDirectory::values(TiffTag tag) const {
-  const auto entry = entries_.find(tag);
-  if (entry == entries_.end()) return {};
-  const std::size_t at = entry->second;
-  const std::size_t size = size_of_type(number_at(file_, at + 2, 2, order_));
-  const std::size_t count = number_at(file_, at + 4, 4, order_);
-  const bool is_inline = size * count <= 4;
-  const std::size_t from = is_inline ? at + 8 : number_at(file_, at + 8, 4, order_);
-  const ByteView bytes = bytes_at(file_, from, size * count);
-  std::vector<std::uint32_t> values(size == 0 ? 0 : count);
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    values[i] = number_at(bytes, i * size, size, order_);
-  }
-  return values;
-}
-
-std::uint32_t TiffDirectory::value(TiffTag tag, std::uint32_t otherwise) const {
-  const std::vector<std::uint32_t> all = values(tag);
-  return all.empty() ? otherwise : all.front();
-}
-
-std::optional<double> TiffDirectory::fraction(TiffTag tag) const {
-  const auto entry = entries_.find(tag);
-  if (entry == entries_.end()) return std::nullopt;
-  const std::size_t at = entry->second;
-  if (number_at(file_, at + 2, 2, order_) != kRational) return std::nullopt;
-  const std::size_t place = number_at(file_, at + 8, 4, order_);
-  const std::uint32_t numerator = number_at(file_, place, 4, order_);
-  const std::uint32_t denominator = number_at(file_, place + 4, 4, order_);
-  if (denominator == 0) return std::nullopt;
-  return static_cast<double>(numerator) / denominator;
-}
-
-namespace {
-
+/// How the samples of the picture are stored.
 struct Layout {
   std::uint32_t width;
   std::uint32_t height;
@@ -94,11 +25,9 @@ struct Layout {
   std::uint32_t compression;
   std::uint32_t photometric;
   bool separate;
-
-  [[nodiscard]] bool is_grey() const { return photometric <= PHOTOMETRIC_MINISBLACK; }
 };
 
-/// Every channel has the value of the first one, or the entry is absent.
+/// Whether every channel has the value of the first one, or the entry is absent.
 bool is_uniform(const TiffDirectory& directory, TiffTag tag, std::uint32_t otherwise) {
   const std::vector<std::uint32_t> all = directory.values(tag);
   const std::uint32_t first = directory.value(tag, otherwise);
@@ -167,7 +96,7 @@ void check_samples(const TiffDirectory& directory, const Layout& layout) {
                             "samples, which is not supported");
   }
   if (!directory.has(TiffTag::photometric)) {
-    throw_unsupported_image("is a TIFF that does not say what its samples mean");
+    throw_unsupported_image("is a TIFF without a photometric interpretation");
   }
   if (!channels_fit(layout) || (layout.separate && layout.bits != 8)) {
     throw_unsupported_image("is a TIFF with an arrangement of channels (" +
@@ -180,7 +109,7 @@ void check_samples(const TiffDirectory& directory, const Layout& layout) {
   }
 }
 
-/// The pieces that the picture is stored in: strips are as wide as the picture.
+/// The strips or tiles of the picture. A strip is as wide as the picture.
 struct Pieces {
   std::uint64_t width = 0;
   std::uint64_t height = 0;
@@ -217,7 +146,7 @@ Pieces read_pieces(const TiffDirectory& directory, const Layout& layout) {
   return pieces;
 }
 
-/// Bytes of one piece, unpacked; the last strip may be shorter than the others.
+/// The unpacked size of one piece in bytes. The last strip may be shorter than the others.
 std::uint64_t unpacked_size(const Layout& layout, const Pieces& pieces, std::uint64_t row_index) {
   const std::uint64_t rows_left = layout.height - row_index * pieces.height;
   const std::uint64_t rows = pieces.tiled ? pieces.height : std::min(pieces.height, rows_left);
@@ -225,7 +154,7 @@ std::uint64_t unpacked_size(const Layout& layout, const Pieces& pieces, std::uin
   return ceil_divide(pieces.width * channels * layout.bits, 8) * rows;
 }
 
-/// How many bytes one byte of a file may unpack to, generously; 0 if there is no limit.
+/// A generous limit of how many bytes one byte of a file may unpack to; 0 if there is no limit.
 std::uint64_t packing_limit(const Layout& layout) {
   if (layout.photometric == PHOTOMETRIC_YCBCR || layout.compression == COMPRESSION_JPEG) return 0;
   if (layout.compression == COMPRESSION_NONE) return 1;
@@ -246,14 +175,15 @@ void check_pieces(ByteView file, const Layout& layout, const Pieces& pieces) {
   }
 }
 
-/// A fourth channel that the file says nothing about is alpha by common usage.
+/// A fourth channel that the file does not describe is alpha by common usage.
 Alpha alpha_rule(const TiffDirectory& directory) {
   const std::uint32_t meaning = directory.value(TiffTag::extra_samples, EXTRASAMPLE_UNASSALPHA);
   return meaning == EXTRASAMPLE_UNASSALPHA ? Alpha::straight : Alpha::ignored;
 }
 
-/// libtiff leaves out entries that it finds wrong, and goes on with what is usual. That must not
-/// befall those that say what the samples are. \throws ImageFault
+/// libtiff ignores entries that it finds wrong, and assumes their usual values. That must not
+/// happen to the entries that describe the samples.
+/// \throws ImageFault if libtiff and the directory differ
 void require_same_view(TIFF* tiff, const TiffDirectory& directory, const Layout& layout) {
   const bool is_predicted = layout.compression == COMPRESSION_LZW ||
                             layout.compression == COMPRESSION_DEFLATE ||
@@ -268,11 +198,11 @@ void require_same_view(TIFF* tiff, const TiffDirectory& directory, const Layout&
   }
 }
 
-/// A file in memory, and what libtiff said about it.
+/// A file in memory, and the first complaint of libtiff about it.
 struct Source {
   ByteView file;
   std::size_t at = 0;
-  bool decoding = false;  ///< not opening any more
+  bool decoding = false;  ///< false while the file is being opened
   std::array<char, 200> complaint{};
 
   void require(bool done) const {
@@ -312,7 +242,7 @@ toff_t size_of_file(thandle_t handle) {
   return source_of(handle).file.size();
 }
 
-/// libtiff reads the samples where they are. (It refuses plain tiles that it has to copy.)
+/// Lets libtiff read the samples in place. (It refuses uncompressed tiles that it has to copy.)
 int map_file(thandle_t handle, void** start, toff_t* size) {
   const ByteView file = source_of(handle).file;
   *start = const_cast<std::uint8_t*>(file.data());
@@ -322,34 +252,34 @@ int map_file(thandle_t handle, void** start, toff_t* size) {
 
 void leave_mapped(thandle_t /*handle*/, void* /*start*/, toff_t /*size*/) {}
 
-constexpr int kDealtWith = 1;
+constexpr int kHandled = 1;
 
 /// Keeps the first complaint.
 [[gnu::format(printf, 4, 0)]] int keep_error(TIFF* /*tiff*/, void* handle, const char* module,
                                              const char* format, va_list values) {
   auto& complaint = source_of(handle).complaint;
-  if (complaint[0] != 0) return kDealtWith;
+  if (complaint[0] != 0) return kHandled;
   const int used = std::snprintf(complaint.data(), complaint.size(),
                                  "%s: ", module != nullptr ? module : "libtiff");
   const auto start = std::min(static_cast<std::size_t>(std::max(used, 0)), complaint.size());
   std::vsnprintf(complaint.data() + start, complaint.size() - start, format, values);
-  return kDealtWith;
+  return kHandled;
 }
 
-/// While a file is opened, warnings are about entries that decide no pixel, or that are checked
-/// here. Later they tell of samples that libtiff made up, but for the one about an older kind of
-/// LZW, which it reads all the same.
+/// While a file is opened, warnings concern entries that affect no pixel, or that are checked here.
+/// Later warnings mean that libtiff invented samples, except for the one about an old kind of LZW,
+/// which it reads correctly.
 [[gnu::format(printf, 4, 0)]] int weigh_warning(TIFF* tiff, void* handle, const char* module,
                                                 const char* format, va_list values) {
   const bool is_about_old_lzw = module != nullptr && std::string_view(module) == "LZWPreDecode";
-  if (!source_of(handle).decoding || is_about_old_lzw) return kDealtWith;
+  if (!source_of(handle).decoding || is_about_old_lzw) return kHandled;
   return keep_error(tiff, handle, module, format, values);
 }
 
 using TiffFile = std::unique_ptr<TIFF, decltype(&TIFFClose)>;
 
 TiffFile opened(Source& source) {
-  // Eight bytes a pixel are the most that a picture takes.
+  // A picture takes at most eight bytes per pixel.
   constexpr tmsize_t kLargestBlock = 8 * kMaxImagePixels + (1 << 20U);
   const std::unique_ptr<TIFFOpenOptions, decltype(&TIFFOpenOptionsFree)> options(
       TIFFOpenOptionsAlloc(), TIFFOpenOptionsFree);
@@ -366,6 +296,7 @@ TiffFile opened(Source& source) {
   return tiff;
 }
 
+/// libtiff's conversion of a picture to 8-bit RGBA.
 struct Rgba : TIFFRGBAImage {
   explicit Rgba(TIFF* tiff) : TIFFRGBAImage() {
     std::array<char, 1024> why{};
@@ -380,8 +311,9 @@ struct Rgba : TIFFRGBAImage {
   Rgba& operator=(const Rgba&) = delete;
 };
 
-/// Colour, palettes and bilevel samples, of whose many arrangements libtiff makes 8-bit RGBA. Where
-/// the file says that alpha is straight, libtiff multiplies colours by it, rounding as we do.
+/// Reads colour, palettes and bilevel samples, whose many arrangements libtiff converts to 8-bit
+/// RGBA. If the file declares straight alpha, libtiff multiplies the colours by it and rounds as we
+/// do.
 GreyImage read_as_rgba(TIFF* tiff, const Source& source, const Layout& layout,
                        std::uint64_t piece_height, Alpha alpha) {
   Rgba rgba(tiff);
@@ -406,8 +338,8 @@ GreyImage read_as_rgba(TIFF* tiff, const Source& source, const Layout& layout,
   return image;
 }
 
-/// 16-bit samples, and 8-bit grey with alpha, which libtiff would not keep apart: channels side by
-/// side, in strips or tiles.
+/// Reads 16-bit samples, and 8-bit grey with alpha, in strips or tiles with interleaved channels.
+/// libtiff's conversion would lose their precision, or their alpha.
 template <typename Sample>
 GreyImage read_samples(TIFF* tiff, const Source& source, const Layout& layout, const Pieces& pieces,
                        Alpha alpha) {
@@ -422,7 +354,7 @@ GreyImage read_samples(TIFF* tiff, const Source& source, const Layout& layout, c
     source.require(size == (pieces.tiled ? TIFFReadEncodedTile(tiff, i, piece.data(), size)
                                          : TIFFReadEncodedStrip(tiff, i, piece.data(), size)));
     if (layout.photometric == PHOTOMETRIC_MINISWHITE) {
-      // Before alpha is composited: it concerns the colour only.
+      // Before alpha is composited: the inversion concerns the colour only.
       for (std::size_t at = 0; at < piece.size(); at += layout.channels) {
         piece[at] = static_cast<Sample>(~piece[at]);
       }

@@ -1,4 +1,4 @@
-/// \file Scratch rows for the kernels: aligned, and safe to read and write past their ends.
+/// \file Rows of scratch memory for the kernels: aligned, and safe to access past their ends.
 #pragma once
 
 #include <algorithm>
@@ -8,14 +8,14 @@
 
 namespace touchtrial::engine {
 
-/// The longest vector of any target, in bytes: how far a kernel may run past the end of a row.
+/// The longest vector of any target, in bytes. A kernel may run this far past the end of a row.
 inline constexpr std::size_t kVectorBytes = 64;
 
-/// What rows are for: scratch rows are zero at first and lie so that neighbours do not contend for
-/// the same places of the first-level cache; the rows of a plane are undefined and lie close.
+/// The use of rows. Scratch rows start as zeros, and are placed so that neighbours do not compete
+/// for the same lines of the first-level cache. The rows of a plane start undefined, and lie close.
 enum class RowUse { scratch, plane };
 
-/// `count` rows of `width` samples, each with `margin` samples before it, and as many and one more
+/// `count` rows of `width` samples. Each has `margin` samples before it, and `margin` samples and a
 /// vector behind it.
 template <typename Sample>
 class AlignedRows {
@@ -41,9 +41,9 @@ class AlignedRows {
   static constexpr std::size_t whole_vectors(std::size_t samples) {
     return (samples + kPerVector - 1) / kPerVector * kPerVector;
   }
-  /// Loads wait for stores whose addresses have the same last twelve bits. Rows of a width near a
-  /// power of two would have them, in all columns: a stride of a page and more than a quarter keeps
-  /// neighbouring rows well apart.
+  /// A load waits for a store to an address with the same last twelve bits. Rows of a width near a
+  /// power of two would have such addresses in all columns. A stride of a page and more than a
+  /// quarter avoids that.
   static constexpr std::size_t spread(std::size_t stride, RowUse use) {
     constexpr std::size_t kPage = 4096 / sizeof(Sample);
     constexpr std::size_t kApart = 18 * kPerVector;

@@ -19,8 +19,9 @@ namespace HWY_NAMESPACE {
 namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
+using Slopes = ForceRows::Slopes;
 
-/// Rounds half up without adding a half first, which would round on to ties.
+/// Rounds half up. It does not add a half first, as that would round to ties.
 template <class D>
 HWY_INLINE void picture_at(D d, const float* texture, std::uint8_t* picture) {
   const hn::Rebind<std::uint8_t, D> bytes;
@@ -45,10 +46,10 @@ void row_of_picture(const float* texture, int width, std::uint8_t* picture) {
   for (; x < width; ++x) picture_at(one, texture + x, picture + x);
 }
 
-/// Differences of opposite neighbours come first, so that equal ones cancel exactly.
+/// Takes the differences of opposite neighbours first, so that equal ones cancel exactly.
 template <class D>
-HWY_INLINE void force_at(D d, const float* surface, const SlopeRow& above, const SlopeRow& centre,
-                         const SlopeRow& below, int x, float* force_x, float* force_y) {
+HWY_INLINE void force_at(D d, const float* surface, const Slopes& above, const Slopes& centre,
+                         const Slopes& below, int x, float* force_x, float* force_y) {
   const auto half = hn::Set(d, 0.5F);
   const auto left = hn::LoadU(d, surface + x - 1);
   const auto right = hn::LoadU(d, surface + x + 1);
@@ -61,9 +62,15 @@ HWY_INLINE void force_at(D d, const float* surface, const SlopeRow& above, const
   hn::StoreU(hn::Sub(hn::LoadU(d, above.weight + x), weight), d, force_y + x);
 }
 
-void row_of_force(const float* surface, int width, const SlopeRow& above, const SlopeRow& centre,
-                  const SlopeRow& below, float* force_x, float* force_y,
-                  const StreamedRow& beside) {
+/// Takes a row of a surface and gives the force of the row above it:
+/// x = across + (across above + across below) / 2, y = weight above - weight below.
+/// \param surface  `width` samples, with a 0 at both ends
+/// \param above,centre  slopes of the two rows above the surface
+/// \param below  receives the slopes of the surface; a vector behind them may be overwritten
+/// \param force_x,force_y  receive `width` samples and no more
+/// \param beside  a row of at most `width` samples to move meanwhile
+void row_of_force(const float* surface, int width, const Slopes& above, const Slopes& centre,
+                  const Slopes& below, float* force_x, float* force_y, const StreamedRow& beside) {
   const hn::ScalableTag<float> d;
   const int lanes = static_cast<int>(hn::Lanes(d));
   int x = 0;
@@ -71,7 +78,7 @@ void row_of_force(const float* surface, int width, const SlopeRow& above, const 
     move_samples(beside, x, lanes);
     force_at(d, surface, above, centre, below, x, force_x, force_y);
   }
-  if (x < width && width >= lanes) {  // once more what has been done, and the rest
+  if (x < width && width >= lanes) {  // the last block overlaps the one before it
     x = width;
     force_at(d, surface, above, centre, below, width - lanes, force_x, force_y);
   }
@@ -102,14 +109,57 @@ void picture_row(const float* texture, int width, std::uint8_t* picture) {
   HWY_DYNAMIC_DISPATCH(row_of_picture)(texture, width, picture);
 }
 
-void force_row(const float* surface, int width, const SlopeRow& above, const SlopeRow& centre,
-               const SlopeRow& below, float* force_x, float* force_y, const StreamedRow& beside) {
-  HWY_DYNAMIC_DISPATCH(row_of_force)
-  (surface, width, above, centre, below, force_x, force_y, beside);
-}
-
 void move_row(const StreamedRow& row) {
   HWY_DYNAMIC_DISPATCH(all_of_row)(row);
+}
+
+ForceRows::ForceRows(int width)
+    : width_(width),
+      samples_(3 * kRows, static_cast<std::size_t>(width), kVectorBytes / sizeof(float)) {
+  for (std::size_t row = 0; row < kRows; ++row) {
+    slopes_[row] = {samples_.row(kRows + 2 * row), samples_.row(kRows + 2 * row + 1)};
+  }
+}
+
+void ForceRows::add_row(float* force_x, float* force_y, const StreamedRow& beside) {
+  float* const surface = surface_row(rows_);
+  surface[-1] = 0.0F;
+  surface[width_] = 0.0F;
+  HWY_DYNAMIC_DISPATCH(row_of_force)
+  (surface, width_, slopes(rows_ - 2), slopes(rows_ - 1), slopes(rows_), force_x, force_y, beside);
+  if (rows_ == 0) {
+    fill_border(surface, slopes(-1));
+  } else {
+    correct_ends(rows_ - 1, false, force_x);
+  }
+  ++rows_;
+}
+
+void ForceRows::finish(float* force_x, float* force_y) {
+  const int last = rows_ - 1;
+  fill_border(surface_row(last), slopes(rows_));
+  for (int x = 0; x < width_; ++x) {
+    force_x[x] = slopes(last).across[x] + 0.5F * slopes(last - 1).across[x];
+    force_y[x] = slopes(last - 1).weight[x] - slopes(rows_).weight[x];
+  }
+  correct_ends(last, true, force_x);
+}
+
+/// Writes the slopes of a row outside the image. With them, only existing neighbours affect the row
+/// at the border.
+void ForceRows::fill_border(const float* surface, const Slopes& out) const {
+  std::fill_n(out.across, width_, 0.0F);
+  for (int x = 0; x < width_; ++x) out.weight[x] = 2.0F * surface[x];
+  out.weight[0] -= 0.5F * surface[0];
+  out.weight[width_ - 1] -= 0.5F * surface[width_ - 1];
+}
+
+/// Corrects the force of the first and the last pixel of a row for their missing neighbours.
+void ForceRows::correct_ends(int row, bool last, float* force_x) {
+  const float beside = 2.0F - (row == 0 ? 0.5F : 0.0F) - (last ? 0.5F : 0.0F);
+  const float* const surface = surface_row(row);
+  force_x[0] += beside * surface[0];
+  force_x[width_ - 1] -= beside * surface[width_ - 1];
 }
 
 }  // namespace touchtrial::engine

@@ -1,11 +1,8 @@
 #include "engine/kernels/float_extraction.hpp"
 
 #include "engine/kernels/aligned_rows.hpp"
-#include "engine/kernels/csgv_row.hpp"
-#include "engine/kernels/extended_rows.hpp"
 #include "engine/kernels/gl_row.hpp"
 #include "engine/kernels/half_gradient.hpp"
-#include "engine/kernels/reshaped.hpp"
 #include "engine/kernels/texture_sink.hpp"
 #include "engine/order_map.hpp"
 
@@ -18,7 +15,7 @@ namespace {
 
 static_assert(ExtractionOptions::kMaxRadius <= kMaxGlRadius);
 
-/// What an extraction by another method may have left.
+/// Clears what an extraction by another method may have left.
 void forget_other_methods(Extraction<float>& result) {
   result.cartoon = {};
   result.components.clear();
@@ -39,14 +36,14 @@ void keep_csgv(const HalfGradient& gradient, Plane<float>& csgv) {
   }
 }
 
-/// The orders of two image rows at a time, each square's order twice.
+/// The orders of the image's rows. Two rows share their orders, and so do two pixels of a row.
 class OrderRows {
  public:
   explicit OrderRows(const HalfGradient& gradient)
       : gradient_(gradient),
         row_(1, 2 * static_cast<std::size_t>(gradient.width()), kVectorBytes / sizeof(float)) {}
 
-  /// \param y  rows of the image in turn
+  /// \param y  the rows of the image, one after the other
   const float* row(int y) {
     if (y % 2 == 0) {
       order_row(gradient_.row(y / 2), gradient_.width(), gradient_.largest(), row_.row(0));
@@ -59,7 +56,8 @@ class OrderRows {
   AlignedRows<float> row_;
 };
 
-/// \param order_of  called with y, for all rows in turn; gives what gl_row takes
+/// Filters all rows of the image.
+/// \param order_of  called with y for all rows, one after the other; returns the order for gl_row()
 template <typename OrderOf>
 void filter_rows(const GreyImage& image, int radius, TextureSink& sink, OrderOf order_of) {
   ExtendedRows rows(image, radius);

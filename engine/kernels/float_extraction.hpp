@@ -1,26 +1,31 @@
-/// \file The adaptive and the fixed method in single precision: two passes over the image, or one.
+/// \file The adaptive and the fixed method in single precision, in two passes over the image or
+/// one.
 ///
-/// Pass one makes sub-bands, gradients and the maximum of CSGV, in rolling rows; pass two orders,
-/// texture, and picture and force where they are wanted. Beside the planes asked for, memory is one
-/// byte a pixel for CSGV (adaptive) and a number of rows that the radius decides.
+/// The first pass computes sub-bands, gradients and the maximum of CSGV in rolling rows. The second
+/// computes orders and texture, and picture and force if they are wanted. Besides the wanted
+/// planes, they need memory for CSGV, one byte per pixel (adaptive), and for rows whose number
+/// depends on the radius.
 #pragma once
 
 #include "engine/extraction.hpp"
 
 namespace touchtrial::engine {
 
-/// \param image  not empty  \param radius  1 .. ExtractionOptions::kMaxRadius
-/// \param result  receives all planes wanted but `enhanced`; others are emptied. Planes that have
-///   the right shape are used again.
+/// The adaptive method with its default options but the radius.
+/// \param image  not empty
+/// \param radius  1 .. ExtractionOptions::kMaxRadius
+/// \param result  receives the wanted planes but `enhanced`; the others are emptied. Planes that
+///   have the right shape are reused.
 /// Thread-safe.
 void extract_adaptive(const GreyImage& image, int radius, const WantedPlanes& wanted,
                       Extraction<float>& result);
 
+/// The fixed method with the additive norm.
 /// \param order  v in [0, 1)
 void extract_fixed(const GreyImage& image, int radius, double order, const WantedPlanes& wanted,
                    Extraction<float>& result);
 
-/// The sub-bands alone: those planes of `result`.
+/// Computes only the sub-bands, into those planes of `result`.
 void extract_sub_bands(const GreyImage& image, Extraction<float>& result);
 
 }  // namespace touchtrial::engine

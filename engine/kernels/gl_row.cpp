@@ -1,5 +1,7 @@
 #include "engine/kernels/gl_row.hpp"
 
+#include "engine/symmetric_extension.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cstddef>
@@ -21,7 +23,7 @@
 namespace touchtrial::engine {
 namespace {
 
-/// Columns that are worked on at a time: with usual radii all that they need stays in the
+/// How many columns are processed at a time. With the usual radii their data stay in the
 /// first-level cache.
 constexpr int kTile = 512;
 constexpr int kSlack = static_cast<int>(kVectorBytes / sizeof(std::int16_t));
@@ -29,8 +31,8 @@ constexpr int kFront = 64;
 constexpr int kColumns = kFront + kTile + kMaxGlRadius + 1 + kSlack;
 static_assert(kFront > kMaxGlRadius);
 
-/// Column sums of one tile. Entry kFront + i of a ring belongs to column x0 + i. Only what the
-/// radius needs is touched.
+/// The column sums of one tile. Entry kFront + i of a ring belongs to column x0 + i. Only the
+/// entries that the radius needs are touched.
 struct Workspace {
   alignas(64) std::int16_t sums[kMaxGlRadius][kColumns];
 };
@@ -57,7 +59,7 @@ constexpr DecayTable decay_table() {
 
 constexpr DecayTable kDecays = decay_table();
 
-/// One order for all pixels: every factor is rounded once, from double.
+/// The factors of one order for all pixels, each rounded once from double.
 struct FixedFactors {
   FixedFactors(double order, int radius) : gain(static_cast<float>(order / 8)) {
     for (int k = 1; k < radius; ++k) decays[k] = static_cast<float>((k - order) / (k + 1));
@@ -75,7 +77,14 @@ namespace touchtrial::engine {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// The factors that each pixel's own order gives.
+/// Converts a row of bytes to 16-bit integers.
+void widened(const std::uint8_t* from, int width, std::int16_t* to) {
+  int x = 0;
+  for (; x + kBlock <= width; x += kBlock) hn::StoreU(load_bytes(from + x), Integers(), to + x);
+  for (; x < width; ++x) to[x] = from[x];
+}
+
+/// Applies the factors of each pixel's own order.
 class PixelOrders {
  public:
   explicit PixelOrders(const float* orders) : orders_(orders) {}
@@ -87,7 +96,7 @@ class PixelOrders {
             hn::MulAdd(hn::NegMulAdd(order.upper, share, lead), inner.upper, ring.upper)};
   }
   static HWY_INLINE RealPair finish(RealPair order, RealPair sum) {
-    const auto eighth = hn::Set(Reals(), 0.125F);  // the rings hold eight samples
+    const auto eighth = hn::Set(Reals(), 0.125F);  // a ring has eight samples
     return {hn::Mul(hn::Mul(order.lower, eighth), sum.lower),
             hn::Mul(hn::Mul(order.upper, eighth), sum.upper)};
   }
@@ -96,7 +105,7 @@ class PixelOrders {
   const float* orders_;
 };
 
-/// The factors of one order for all pixels.
+/// Applies the factors of one order for all pixels.
 class OneOrder {
  public:
   explicit OneOrder(const FixedFactors& factors) : factors_(factors) {}
@@ -115,8 +124,7 @@ class OneOrder {
   const FixedFactors& factors_;
 };
 
-/// The first of the blocks that a ring's column sums take. Blocks lie at whole multiples of kBlock
-/// columns from the tile's first one.
+/// Where the column sums of a ring begin: at a whole multiple of kBlock columns before the tile.
 constexpr int first_block(int k) {
   return -(k + kBlock - 1) / kBlock * kBlock;
 }
@@ -133,7 +141,7 @@ HWY_INLINE void sum_columns(const ExtendedRows& rows, int k, Tile tile, Workspac
   }
 }
 
-/// Both rings of radius 2 at once, which loads the centre once.
+/// The column sums of both rings of radius 2. Loads the centre only once.
 HWY_INLINE void sum_columns_of_two(const ExtendedRows& rows, Tile tile, Workspace& work) {
   const Integers d;
   const std::array<const std::int16_t*, 5> from = {rows.row(-2) + tile.x0, rows.row(-1) + tile.x0,
@@ -158,8 +166,8 @@ HWY_INLINE RealPair ring_difference(const Workspace& work, int k, int i, Integer
   return to_reals(hn::Sub(hn::Sub(nine_centre, hn::Load(d, sums)), sides));
 }
 
-/// The texture of a block, from the outermost ring in.
-/// \param kRadius  the radius where it is known at compile time, else 0
+/// The texture of a block, from the outermost ring inwards.
+/// \tparam kRadius  the radius if it is known at compile time, else 0
 template <int kRadius, class Orders>
 HWY_INLINE RealPair texture_block(const Workspace& work, const std::int16_t* centres,
                                   int any_radius, int x0, int i, const Orders& orders) {
@@ -174,7 +182,7 @@ HWY_INLINE RealPair texture_block(const Workspace& work, const std::int16_t* cen
   return orders.finish(order, sum);
 }
 
-/// \param before_block  called with the column before each block
+/// \param before_block  called before each block with its first column
 template <int kRadius, class Orders, class BeforeBlock>
 HWY_INLINE void texture_blocks(const Workspace& work, const std::int16_t* centres, int radius,
                                Tile tile, const Orders& orders, float* texture,
@@ -211,7 +219,7 @@ HWY_INLINE void texture_row(const ExtendedRows& rows, int radius, const Orders& 
   Workspace work;
   for (int x0 = 0; x0 < rows.width(); x0 += kTile) {
     const Tile tile{x0, std::min(kTile, rows.width() - x0)};
-    if (radius == 2) {  // the usual one, worth its own code
+    if (radius == 2) {  // the usual radius has code of its own
       sum_columns_of_two(rows, tile, work);
       texture_tile<2>(work, rows.row(0), radius, tile, orders, texture, beside);
     } else {
@@ -240,10 +248,32 @@ HWY_AFTER_NAMESPACE();
 namespace touchtrial::engine {
 namespace {
 
+HWY_EXPORT(widened);
 HWY_EXPORT(row_of_orders);
 HWY_EXPORT(row_of_one_order);
 
 }  // namespace
+
+ExtendedRows::ExtendedRows(const GreyImage& image, int reach)
+    : image_(image),
+      reach_(reach),
+      rows_(2 * static_cast<std::size_t>(reach) + 1, static_cast<std::size_t>(image.width()),
+            static_cast<std::size_t>(reach)) {
+  for (int y = -reach; y < reach; ++y) load(y);
+}
+
+void ExtendedRows::next_row() {
+  ++y_;
+  load(y_ + reach_);
+}
+
+void ExtendedRows::load(int y) {
+  const int width = image_.width();
+  std::int16_t* const to = rows_.row(slot(y));
+  HWY_DYNAMIC_DISPATCH(widened)
+  (image_.row(symmetric_index(y, image_.height())).data(), width, to);
+  mirror_ends(to, width, reach_);
+}
 
 void gl_row(const ExtendedRows& rows, int radius, const float* orders, float* texture,
             std::span<const StreamedRow> beside) {

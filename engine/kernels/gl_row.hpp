@@ -1,25 +1,64 @@
-/// \file One row of Gruenwald-Letnikov texture in single precision, vectorised for every target.
+/// \file A window of image rows, and from it one row of Gruenwald-Letnikov texture in single
+/// precision, vectorised for every target.
 ///
-/// With W_k the sum of the three samples of a column that lie k above, in, and k below the row,
+/// W_k is the sum of three samples of a column: k above the row, in it, and k below it. Then
 ///   8 D_k(x) = 9 I(x) - W_k(x - k) - W_k(x) - W_k(x + k),
-/// all of it exact in 16 bits. Then T = v/8 (8 D_1 + a_2 (8 D_2 + a_3 (8 D_3 + ..))), with
-/// a_k = (k - 1 - v) / k: two fused operations a ring, and an error that does not grow with K.
+/// exactly in 16 bits, and T = v/8 (8 D_1 + a_2 (8 D_2 + a_3 (8 D_3 + ..))) with a_k = (k - 1 - v)
+/// / k. That takes two fused operations per ring, and the error does not grow with K.
 #pragma once
 
-#include "engine/kernels/extended_rows.hpp"
+#include "core/plane.hpp"
+#include "engine/kernels/aligned_rows.hpp"
 #include "engine/kernels/streamed_row.hpp"
 
+#include <cstddef>
+#include <cstdint>
 #include <span>
 
 namespace touchtrial::engine {
 
-/// The largest radius that the kernel has room for.
+/// Rows y - reach .. y + reach of an image for one y at a time, as 16-bit integers, with `reach`
+/// mirrored samples at both ends. Converts every row once, and needs memory for (2 * reach + 1)
+/// rows, whatever the height. Keeps a reference to the image. Not thread-safe.
+class ExtendedRows {
+ public:
+  /// \param image  not empty
+  /// \param reach  >= 1; may exceed the image
+  ExtendedRows(const GreyImage& image, int reach);
+
+  /// Moves to the next row, which must exist. The first call moves to row 0.
+  void next_row();
+
+  /// The sample in column 0 of the row that lies `offset` below the current one. Columns -reach ..
+  /// width - 1 + reach may be read, and a vector more. Valid until next_row().
+  /// \param offset  -reach .. reach
+  [[nodiscard]] const std::int16_t* row(int offset) const noexcept {
+    return rows_.row(slot(y_ + offset));
+  }
+  [[nodiscard]] int width() const noexcept { return image_.width(); }
+
+ private:
+  void load(int y);
+  /// For any y, the rows y - reach .. y + reach have different slots.
+  [[nodiscard]] std::size_t slot(int y) const noexcept {
+    return static_cast<std::size_t>(y + reach_) % (2 * static_cast<std::size_t>(reach_) + 1);
+  }
+
+  const GreyImage& image_;
+  int reach_;
+  int y_ = -1;
+  AlignedRows<std::int16_t> rows_;
+};
+
+/// The largest radius that the kernel's workspace holds.
 inline constexpr int kMaxGlRadius = 63;
 
-/// \param rows  reach >= radius  \param radius  1 .. kMaxGlRadius
+/// One row of the texture, with an order for each pixel.
+/// \param rows  reach >= radius
+/// \param radius  1 .. kMaxGlRadius
 /// \param orders  v in [0, 1) for each pixel; read up to a vector past the row's end
 /// \param texture  receives width() samples and no more
-/// \param beside  rows of at most width() samples that are moved meanwhile
+/// \param beside  rows of at most width() samples to move meanwhile
 void gl_row(const ExtendedRows& rows, int radius, const float* orders, float* texture,
             std::span<const StreamedRow> beside = {});
 

@@ -1,16 +1,21 @@
-/// \file The composite sub-band gradient of an image in single precision, in one pass over it.
+/// \file The composite sub-band gradient (CSGV) of an image at half resolution, and the orders that
+/// follow from it, in single precision, vectorised for every target.
+/// Source: docs/method.md, "Gradient and order map".
 #pragma once
 
 #include "core/plane.hpp"
 #include "engine/kernels/aligned_rows.hpp"
-#include "engine/kernels/column_filter.hpp"
+#include "engine/kernels/wavelet_rows.hpp"
 
 #include <cstddef>
 
 namespace touchtrial::engine {
 
-/// CSGV at half resolution, and its maximum, which is only known after the last row: it forces a
-/// second pass. Takes as many bytes as the image has pixels.
+/// CSGV at half resolution, and its maximum. As the maximum is known only after the last row, the
+/// orders need a second pass. Takes as many bytes as the image has pixels.
+///
+/// Everything up to the gradient is exact in whole numbers: CSGV is exact where the gradient is a
+/// whole number along one axis, as for ramps, and 0 where there is no gradient.
 class HalfGradient {
  public:
   /// \param image  not empty
@@ -31,5 +36,10 @@ class HalfGradient {
   AlignedRows<float> rows_;
   float largest_ = 0.0F;
 };
+
+/// The orders of one row, each twice: out[2 i] = out[2 i + 1] = the order of csgv[i].
+/// \param largest  of the whole image, >= kFlatBelowCsgv
+/// \param out  receives 2 * count samples; two vectors behind them may be overwritten
+void order_row(const float* csgv, int count, float largest, float* out);
 
 }  // namespace touchtrial::engine

@@ -1,5 +1,5 @@
-/// \file Sixteen-bit integers and the reals that they become, for one target: one vector of
-/// integers makes a pair of vectors of reals. The one-lane target has only the lower of the two.
+/// \file Conversion of 16-bit integers to floats, for one target: one vector of integers becomes a
+/// pair of vectors of floats. The target with one lane uses only the lower vector of a pair.
 // Included once for every target, by files that do the same.
 #if defined(TOUCHTRIAL_REAL_PAIRS_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef TOUCHTRIAL_REAL_PAIRS_INL
@@ -30,7 +30,7 @@ using Integers = hn::Repartition<std::int16_t, Reals>;
 using Real = hn::Vec<Reals>;
 using Integer = hn::Vec<Integers>;
 
-/// Integers in a vector: how many samples a block of the kernels has.
+/// How many integers a vector holds: the length of a block of samples in the kernels.
 constexpr int kBlock = static_cast<int>(hn::MaxLanes(Integers()));
 
 struct RealPair {
@@ -38,7 +38,7 @@ struct RealPair {
   Real upper;
 };
 
-/// The integers as reals, which is exact.
+/// The integers as floats, exactly.
 HWY_INLINE RealPair to_reals(Integer v) {
   const Reals d;
   const WideIntegers wide;
@@ -68,7 +68,7 @@ HWY_INLINE void store_pair(RealPair pair, float* to) {
 #endif
 }
 
-/// kBlock bytes as integers.
+/// Loads kBlock bytes as integers.
 HWY_INLINE Integer load_bytes(const std::uint8_t* from) {
   return hn::PromoteTo(Integers(), hn::LoadU(hn::Rebind<std::uint8_t, Integers>(), from));
 }

@@ -17,7 +17,7 @@ namespace touchtrial::engine {
 namespace HWY_NAMESPACE {
 namespace {
 
-/// Moves samples x .. x + length - 1, as far as there are any.
+/// Moves samples x .. x + length - 1, as far as the row has them.
 /// \param x,length  multiples of the number of lanes
 HWY_INLINE void move_samples(const StreamedRow& row, int x, int length) {
   const hwy::HWY_NAMESPACE::ScalableTag<float> d;

@@ -1,7 +1,7 @@
-/// \file Rows on their way to planes that are too large for the caches.
+/// \file Copies of rows to planes that are too large for the caches.
 ///
-/// Stores past the caches keep up with memory, but a burst of them stalls everything behind it.
-/// So a row is moved a vector at a time by a kernel that has something else to compute.
+/// Stores past the caches are as fast as memory, but a burst of them stalls everything that
+/// follows. So a kernel that has something else to compute moves such a row one vector at a time.
 #pragma once
 
 #include <algorithm>
@@ -10,15 +10,16 @@
 
 namespace touchtrial::engine {
 
-/// Samples 0 .. count - 1 are still to be moved; `to` is a multiple of a cache line.
-/// \pre hwy::FlushStream() before another thread reads them
+/// Samples 0 .. count - 1 remain to be moved. `to` is a multiple of a cache line. Call
+/// hwy::FlushStream() before another thread reads the samples.
 struct StreamedRow {
   const float* from = nullptr;
   float* to = nullptr;
   int count = 0;
 };
 
-/// Copies the ends of a row, which share their cache lines with other rows, and leaves its middle.
+/// Copies the ends of a row, which share cache lines with other rows.
+/// \return the middle of the row, which remains to be moved
 inline StreamedRow start_stream(const float* from, int width, float* to) {
   constexpr std::uintptr_t kLineBytes = 64;
   constexpr int kLineSamples = kLineBytes / sizeof(float);

@@ -1,8 +1,5 @@
 #include "engine/kernels/texture_sink.hpp"
 
-#include "engine/kernels/field_rows.hpp"
-#include "engine/kernels/reshaped.hpp"
-
 #include <algorithm>
 #include <cstdint>
 
@@ -11,8 +8,8 @@
 namespace touchtrial::engine {
 namespace {
 
-/// From these sizes on it pays to write past the caches: for three planes long before they would
-/// fill the second-level cache, as what they would drive out of it is worth more. Measured; see
+/// From these sizes on it pays to write past the caches. For three planes it pays long before they
+/// fill the second-level cache, because they would displace more useful data. Measured; see
 /// docs/decisions/0011.
 constexpr std::size_t kStreamTextureFromBytes = std::size_t{3} << 19;
 constexpr std::size_t kStreamForceFromBytes = std::size_t{1} << 18;
@@ -66,7 +63,7 @@ void TextureSink::fill_flat() {
   std::fill(result_.picture.samples().begin(), result_.picture.samples().end(), std::uint8_t{128});
 }
 
-/// A constant added to the texture would add nothing to its force: 128 need not be.
+/// Makes the force of the texture itself: adding 128 would not change it.
 void TextureSink::add_force(int y) {
   const float* const texture = row(y);
   float* const kept = result_.texture.row(y).data();

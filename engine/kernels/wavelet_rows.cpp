@@ -1,5 +1,7 @@
 #include "engine/kernels/wavelet_rows.hpp"
 
+#include "engine/symmetric_extension.hpp"
+
 #include <algorithm>
 #include <cstddef>
 
@@ -18,10 +20,10 @@
 namespace touchtrial::engine {
 namespace {
 
-/// Weights of four neighbouring samples.
+/// The weights of four neighbouring samples.
 using Taps = std::array<std::int16_t, 4>;
 
-/// kRootDenominator times (p + q s)(whole + root s): weights of the wholes and of the roots.
+/// kRootDenominator times (p + q s)(whole + root s): the weights of the wholes and of the roots.
 struct RootTaps {
   Taps whole;
   Taps root;
@@ -50,14 +52,14 @@ namespace {
 
 using WideInteger = hn::Vec<WideIntegers>;
 
-/// Sub-band samples in a vector.
+/// How many samples of a sub-band a vector holds.
 constexpr int kHalfBlock = static_cast<int>(hn::MaxLanes(WideIntegers()));
 
 HWY_INLINE Integer tripled(Integer v) {
   return hn::Add(hn::Add(v, v), v);
 }
 
-/// A block of each of the four rows at `x`, filtered, to `to` of the outputs.
+/// Filters a block of the four rows at `x`, and writes it at `to` of the outputs.
 HWY_INLINE void filter_block(const std::array<const std::uint8_t*, 4>& rows, int x,
                              const FilteredRows& out, int to) {
   const Integers d;
@@ -75,6 +77,8 @@ HWY_INLINE void filter_block(const std::array<const std::uint8_t*, 4>& rows, int
   hn::StoreU(hn::Sub(inner_sum, outer_sum), d, out.high_root + to);
 }
 
+/// \param width  >= 1; no more than this many samples are read
+/// \param out  receives `width` samples each; a vector behind them may be overwritten
 void along_y(const std::array<const std::uint8_t*, 4>& rows, int width, const FilteredRows& out) {
   int x = 0;
   for (; x + kBlock <= width; x += kBlock) filter_block(rows, x, out, x);
@@ -88,7 +92,7 @@ void along_y(const std::array<const std::uint8_t*, 4>& rows, int width, const Fi
   filter_block({copies[0], copies[1], copies[2], copies[3]}, 0, out, 0);
 }
 
-/// Adds even * from[0] + odd * from[1], even * from[2] + odd * from[3] .. to the lanes of a sum.
+/// Adds even * from[0] + odd * from[1], even * from[2] + odd * from[3], .. to the lanes of a sum.
 HWY_INLINE WideInteger add_pairs(const std::int16_t* from, std::int16_t even, std::int16_t odd,
                                  WideInteger sum) {
   const WideIntegers wide;
@@ -177,9 +181,28 @@ HWY_EXPORT(values_along_x);
 
 }  // namespace
 
-void filter_along_y(const std::array<const std::uint8_t*, 4>& rows, int width,
-                    const FilteredRows& out) {
-  HWY_DYNAMIC_DISPATCH(along_y)(rows, width, out);
+ColumnFilter::ColumnFilter(const GreyImage& image, Columns columns)
+    : image_(image),
+      first_x_(2 * columns.first),
+      available_(std::min(2 * columns.count() + 2, image.width() - first_x_)),
+      wanted_(2 * columns.count() + 2),
+      samples_(4, static_cast<std::size_t>(wanted_), kVectorBytes / sizeof(std::int16_t)),
+      rows_{samples_.row(0), samples_.row(1), samples_.row(2), samples_.row(3)} {}
+
+const FilteredRows& ColumnFilter::row(int y) {
+  std::array<const std::uint8_t*, 4> rows;
+  for (int m = 0; m < 4; ++m) {
+    rows[m] = image_.row(symmetric_index(2 * y + m, image_.height())).data() + first_x_;
+  }
+  HWY_DYNAMIC_DISPATCH(along_y)(rows, available_, rows_);
+  for (std::size_t part = 0; part < 4; ++part) extend(samples_.row(part));
+  return rows_;
+}
+
+void ColumnFilter::extend(std::int16_t* row) const {
+  for (int x = available_; x < wanted_; ++x) {
+    row[x] = row[symmetric_index(first_x_ + x, image_.width()) - first_x_];
+  }
 }
 
 void filter_along_x(const FilteredRows& rows, int count, const SobelRows& out) {

@@ -1,7 +1,5 @@
 #include "engine/metrics/glcm.hpp"
 
-#include "engine/metrics/glcm_counts.hpp"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,7 +13,62 @@
 namespace touchtrial::engine {
 namespace {
 
-/// n ln n, from a table where n is small, as most counts are.
+constexpr int kGreyLevels = 256;
+
+/// Counts of one pair of levels, for each of kGlcmOffsets.
+using GlcmCell = std::array<std::uint32_t, 4>;
+
+/// How often each ordered pair (level of a pixel, level of its neighbour) occurs. The four
+/// directions of a pair lie side by side, so that neighbouring pixels of a texture use the same
+/// cache lines.
+class GlcmCounts {
+ public:
+  explicit GlcmCounts(const GreyImage& image)
+      : cells_(static_cast<std::size_t>(kGreyLevels) * kGreyLevels) {
+    count_first_row(image);
+    for (int y = 1; y < image.height(); ++y) {
+      count_row(image.row(y).data(), image.row(y - 1).data(), image.row(y).size());
+    }
+  }
+
+  [[nodiscard]] const GlcmCell& at(int level, int neighbour) const noexcept {
+    return cells_[static_cast<std::size_t>(level * kGreyLevels + neighbour)];
+  }
+
+ private:
+  /// Indices into a cell, as in kGlcmOffsets.
+  enum Direction : std::size_t { kRight, kRightUp, kUp, kLeftUp };
+
+  void count_first_row(const GreyImage& image) {
+    const auto row = image.row(0);
+    for (std::size_t x = 0; x + 1 < row.size(); ++x) {
+      ++cells_[row[x] * std::size_t{kGreyLevels} + row[x + 1]][kRight];
+    }
+  }
+
+  void count_row(const std::uint8_t* row, const std::uint8_t* above, std::size_t width) {
+    const auto cells_of = [this, row](std::size_t x) {
+      return cells_.data() + row[x] * std::size_t{kGreyLevels};
+    };
+    ++cells_of(0)[above[0]][kUp];
+    ++cells_of(0)[row[1]][kRight];
+    ++cells_of(0)[above[1]][kRightUp];
+    for (std::size_t x = 1; x + 1 < width; ++x) {
+      GlcmCell* const cells = cells_of(x);
+      ++cells[row[x + 1]][kRight];
+      ++cells[above[x + 1]][kRightUp];
+      ++cells[above[x]][kUp];
+      ++cells[above[x - 1]][kLeftUp];
+    }
+    const std::size_t last = width - 1;
+    ++cells_of(last)[above[last]][kUp];
+    ++cells_of(last)[above[last - 1]][kLeftUp];
+  }
+
+  std::vector<GlcmCell> cells_;
+};
+
+/// n ln n. Most counts are small, and read from a table.
 class NLogN {
  public:
   NLogN() {
@@ -39,8 +92,8 @@ const NLogN& n_log_n_table() {
   return table;
 }
 
-/// What the statistics need of the symmetric matrix of one direction, in whole numbers but for the
-/// last. Each unordered pair of levels enters once.
+/// The sums over the symmetric matrix of one direction from which the statistics follow; all but
+/// the last are whole numbers. Each unordered pair of levels counts once.
 struct Sums {
   std::array<std::uint64_t, kGreyLevels> marginal{};  ///< row sums of the symmetric matrix
   std::uint64_t squares = 0;           ///< of the unordered counts of different levels
@@ -49,7 +102,7 @@ struct Sums {
   double n_log_n = 0.0;                ///< over all entries of the symmetric matrix
 };
 
-/// Two different levels, neighbours `count` times.
+/// Adds a pair of different levels that are neighbours `count` times.
 void add_pair(Sums& sums, int i, int j, std::uint64_t count, const NLogN& n_log_n) {
   const auto gap = static_cast<std::uint64_t>((i - j) * (i - j));
   sums.marginal[static_cast<std::size_t>(i)] += count;
@@ -59,7 +112,7 @@ void add_pair(Sums& sums, int i, int j, std::uint64_t count, const NLogN& n_log_
   sums.n_log_n += 2 * n_log_n(count);
 }
 
-/// One level beside itself: its entry of the symmetric matrix counts every pair twice.
+/// Adds a pair of equal levels. Its entry of the symmetric matrix counts every pair twice.
 void add_diagonal(Sums& sums, int i, std::uint64_t count, const NLogN& n_log_n) {
   sums.marginal[static_cast<std::size_t>(i)] += 2 * count;
   sums.diagonal_squares += count * count;
@@ -91,7 +144,7 @@ std::vector<Sums> sums_of(const GlcmCounts& counts) {
   return sums;
 }
 
-/// Of one level; both members of a symmetric pair have the same.
+/// The variance of one level of a pair; both have the same.
 double variance_of(const std::array<std::uint64_t, kGreyLevels>& marginal, double total) {
   double mean = 0.0;
   for (std::size_t i = 0; i < marginal.size(); ++i) {
@@ -105,7 +158,8 @@ double variance_of(const std::array<std::uint64_t, kGreyLevels>& marginal, doubl
   return variance;
 }
 
-/// contrast = 2 variance - 2 covariance, as both members of a pair have the same variance.
+/// Follows from contrast = 2 variance - 2 covariance, as both levels of a pair have the same
+/// variance.
 double correlation_of(double contrast, const Sums& sums, double total) {
   const auto levels = std::count_if(sums.marginal.begin(), sums.marginal.end(),
                                     [](std::uint64_t count) { return count != 0; });

@@ -8,16 +8,17 @@
 
 namespace touchtrial::engine {
 
-/// Statistics of the matrix p(i, j): how often levels i and j are neighbours, in either order.
+/// Statistics of the matrix p(i, j), the share of neighbours that have the levels i and j, in
+/// either order.
 struct GlcmStatistics {
   double angular_second_moment;  ///< sum of p^2, in (0, 1]; 1 for a flat image
-  double energy;                 ///< its square root: what the paper's Table 1 calls entropy
+  double energy;                 ///< its square root; the paper's Table 1 calls it entropy
   double entropy;                ///< -sum of p ln p, in nats; 0 for a flat image
   double contrast;               ///< sum of (i - j)^2 p, in squared grey levels
-  double correlation;            ///< of i and j, in [-1, 1]; 1 where they do not vary
+  double correlation;            ///< of i and j, in [-1, 1]; 1 if they do not vary
 };
 
-/// Where the neighbour of a pixel lies, y downwards: (y, x) + (dy, dx).
+/// The offset from a pixel (y, x) to its neighbour (y + dy, x + dx); y points downwards.
 struct GlcmOffset {
   int degrees;
   int dy;
@@ -31,10 +32,10 @@ inline constexpr std::array<GlcmOffset, 4> kGlcmOffsets = {
 /// One entry for each of kGlcmOffsets.
 using GlcmTable = std::array<GlcmStatistics, 4>;
 
-/// 256 levels, symmetric, pairs inside the image only. The counts are exact; the statistics are
-/// computed from them in double.
+/// The statistics of the symmetric matrix of 256 levels; only pairs inside the image count. The
+/// counts are exact, and the statistics are computed from them in double.
 /// \param image  at least 2 x 2, so that every direction has a pair; below 2^32 pixels
-/// \throws std::invalid_argument for another size
+/// \throws std::invalid_argument for any other size
 /// Thread-safe. Needs 1 MB while it runs.
 [[nodiscard]] GlcmTable glcm_statistics(const GreyImage& image);
 

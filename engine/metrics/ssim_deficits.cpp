@@ -1,4 +1,4 @@
-#include "engine/metrics/ssim_kernels.hpp"
+#include "engine/metrics/ssim_deficits.hpp"
 
 #include <algorithm>
 #include <array>
@@ -24,10 +24,10 @@ constexpr double kC1 = (0.01 * 255) * (0.01 * 255);
 constexpr double kC2 = (0.03 * 255) * (0.03 * 255);
 constexpr int kMoments = 4;
 constexpr int kTileBytes = 512;
-/// The longest vector, in bytes: what a row of a tile may be read or written beyond its end.
+/// The longest vector, in bytes: how far accesses may go beyond the end of a row of a tile.
 constexpr int kSlackBytes = 64;
 
-/// The Gaussian from its centre outwards; both wings together sum to 1.
+/// The Gaussian from its centre outwards; the centre and both wings sum to 1.
 template <typename Real>
 std::array<Real, kReach + 1> window_weights() {
   std::array<double, kReach + 1> weights{};
@@ -41,8 +41,8 @@ std::array<Real, kReach + 1> window_weights() {
   return normalised;
 }
 
-/// The columns of the result that are worked on from top to bottom at a time: all that a tile needs
-/// stays in the first-level cache.
+/// How many columns of the result are processed at a time, from top to bottom: the data of a tile
+/// stay in the first-level cache.
 template <typename Real>
 constexpr int kTile = kTileBytes / static_cast<int>(sizeof(Real));
 
@@ -51,17 +51,17 @@ struct alignas(64) Workspace {
   static constexpr int kSlack = kSlackBytes / static_cast<int>(sizeof(Real));
   /// u and v of one row of the images.
   alignas(64) Real pair[2][kTile<Real> + 2 * kSlack];
-  /// u, v, u^2, v^2, filtered along x, one after the other: row y is in slot y mod kTaps.
+  /// u, v, u^2 and v^2, filtered along x, one behind the other. Row y is in slot y mod kTaps.
   alignas(64) Real filtered[kTaps][kMoments * kTile<Real>];
 };
 
-/// Part of the result: windows whose left edge is at x0 .. x0 + width - 1.
+/// A part of the result: the windows whose left edge is at x0 .. x0 + width - 1.
 struct Tile {
   int x0;
   int width;
 };
 
-/// The first scale, read as bytes.
+/// The samples of the first scale, as bytes.
 struct GreySource {
   explicit GreySource(const GreyPair& pair)
       : x(pair.x.samples().data()),
@@ -76,6 +76,7 @@ struct GreySource {
   int width;
 };
 
+/// The samples of a further scale.
 template <typename Real>
 struct RealSource {
   explicit RealSource(const SumDifference<Real>& pair)
@@ -111,7 +112,7 @@ HWY_INLINE hn::Vec<D> to_real(D d, hn::Vec<hn::Rebind<std::int32_t, D>> integers
   }
 }
 
-/// u and v of the samples from `at` on.
+/// Loads u and v of the samples from `at` on.
 template <class D>
 HWY_INLINE void load_pair(D d, const GreySource& source, std::size_t at, hn::Vec<D>& u,
                           hn::Vec<D>& v) {
@@ -140,7 +141,7 @@ HWY_INLINE void store_pair(D d, const Source& source, std::size_t at, int i,
   hn::StoreU(v, d, work.pair[1] + i);
 }
 
-/// One row of the images, as far as the tile's windows reach.
+/// Loads one row of the images, as far as the tile's windows reach.
 template <class D, class Source, typename Real = hn::TFromD<D>>
 HWY_INLINE void load_row(D d, const Source& source, int y, Tile tile, Workspace<Real>& work) {
   const int lanes = static_cast<int>(hn::Lanes(d));
@@ -156,7 +157,7 @@ HWY_INLINE void load_row(D d, const Source& source, int y, Tile tile, Workspace<
   for (; i < wanted; ++i) store_pair(one, source, first + static_cast<std::size_t>(i), i, work);
 }
 
-/// The window's weighted sum of what the taps point at, from the outermost pair inwards.
+/// The window's weighted sum of the rows that the taps point to, from the outermost pair inwards.
 template <class D, typename Real = hn::TFromD<D>>
 HWY_INLINE hn::Vec<D> windowed(D d, const Real* HWY_RESTRICT weights, const Real* const* taps,
                                int offset) {
@@ -204,15 +205,14 @@ HWY_INLINE void filter_row(D d, const Real* HWY_RESTRICT weights, Tile tile, int
   }
 }
 
-/// Half the deficits of one vector of windows, or of a sum of them.
+/// Half of the deficits of one vector of windows, or of the sum of several.
 template <class D>
 struct HalfDeficits {
   hn::Vec<D> structure;
   hn::Vec<D> luminance;
-  hn::Vec<D> similarity;
 };
 
-/// Half of 1 - c s where the arguments are the variances of v and u, of 1 - l where they are the
+/// Half of 1 - c s if the arguments are the variances of v and u; half of 1 - l if they are the
 /// squares of their means.
 template <class D>
 HWY_INLINE hn::Vec<D> share(D d, hn::Vec<D> difference, hn::Vec<D> sum, double constant) {
@@ -231,13 +231,11 @@ HWY_INLINE HalfDeficits<D> deficits_at(D d, const Real* HWY_RESTRICT weights,
   const auto vv = windowed(d, weights, rows, x + 3 * kTile<Real>);
   const auto variance_u = hn::Max(hn::NegMulAdd(u, u, uu), zero);
   const auto variance_v = hn::Max(hn::NegMulAdd(v, v, vv), zero);
-  HalfDeficits<D> half{share(d, variance_v, variance_u, kC2), zero, zero};
+  HalfDeficits<D> half{share(d, variance_v, variance_u, kC2), zero};
   if constexpr (kLuminance) {
     const auto sum = hn::Add(u, hn::Set(d, static_cast<Real>(offsets.sum)));
     const auto difference = hn::Add(v, hn::Set(d, static_cast<Real>(offsets.difference)));
     half.luminance = share(d, hn::Mul(difference, difference), hn::Mul(sum, sum), kC1);
-    const auto product = hn::Mul(half.structure, half.luminance);
-    half.similarity = hn::Sub(hn::Add(half.structure, half.luminance), hn::Add(product, product));
   }
   return half;
 }
@@ -246,7 +244,6 @@ template <class D>
 HWY_INLINE void add_to(HalfDeficits<D>& sum, const HalfDeficits<D>& part) {
   sum.structure = hn::Add(sum.structure, part.structure);
   sum.luminance = hn::Add(sum.luminance, part.luminance);
-  sum.similarity = hn::Add(sum.similarity, part.similarity);
 }
 
 template <class D>
@@ -254,12 +251,13 @@ HWY_INLINE double total_of(D d, hn::Vec<D> lanes) {
   return static_cast<double>(hn::GetLane(hn::SumOfLanes(d, lanes)));
 }
 
-/// Adds the deficits of one row of windows, the sum in Real only as far as a tile is wide.
+/// Adds the deficits of one row of windows. Sums of one tile's width are in Real, the total in
+/// double.
 template <class D, bool kLuminance, typename Real = hn::TFromD<D>>
 HWY_INLINE void add_row(D d, const Real* HWY_RESTRICT weights, const Real* const* rows, Tile tile,
                         PairOffsets offsets, MeanDeficits& sum) {
   const int lanes = static_cast<int>(hn::Lanes(d));
-  HalfDeficits<D> row{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
+  HalfDeficits<D> row{hn::Zero(d), hn::Zero(d)};
   int x = 0;
   for (; x + lanes <= tile.width; x += lanes) {
     add_to(row, deficits_at<D, kLuminance>(d, weights, rows, x, offsets));
@@ -269,14 +267,10 @@ HWY_INLINE void add_row(D d, const Real* HWY_RESTRICT weights, const Real* const
     HalfDeficits<D> rest = deficits_at<D, kLuminance>(d, weights, rows, x, offsets);
     rest.structure = hn::IfThenElseZero(inside, rest.structure);
     rest.luminance = hn::IfThenElseZero(inside, rest.luminance);
-    rest.similarity = hn::IfThenElseZero(inside, rest.similarity);
     add_to(row, rest);
   }
   sum.structure += 2 * total_of(d, row.structure);
-  if constexpr (kLuminance) {
-    sum.luminance += 2 * total_of(d, row.luminance);
-    sum.similarity += 2 * total_of(d, row.similarity);
-  }
+  if constexpr (kLuminance) sum.luminance += 2 * total_of(d, row.luminance);
 }
 
 template <typename Real, bool kLuminance, class Source>
@@ -303,7 +297,7 @@ HWY_INLINE MeanDeficits deficits_of(const Source& source) {
     add_tile<Real, kLuminance>(source, Tile{x0, std::min(kTile<Real>, windows_x - x0)}, sum);
   }
   const double windows = static_cast<double>(windows_x) * static_cast<double>(windows_y);
-  return {sum.structure / windows, sum.luminance / windows, sum.similarity / windows};
+  return {sum.structure / windows, sum.luminance / windows};
 }
 
 template <typename Real, class Source>

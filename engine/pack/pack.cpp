@@ -1,8 +1,7 @@
 #include "engine/pack/pack.hpp"
 
 #include "core/errors.hpp"
-#include "engine/pack/field_file.hpp"
-#include "engine/pack/manifest_json.hpp"
+#include "engine/pack/pack_files.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -60,9 +59,9 @@ Digest Pack::digest() const {
   hasher.add("touchtrial pack 2").add(manifest_.study_id);
   for (const PackEntry& entry : manifest_.entries) {
     hasher.add(entry.code).add(ByteView(entry.checksum)).add(ByteView(entry.input_tag));
-    hasher.add(std::bit_cast<std::int64_t>(entry.gains.tangential_n));
-    hasher.add(std::bit_cast<std::int64_t>(entry.gains.normal_n));
-    hasher.add(std::bit_cast<std::int64_t>(entry.gains.height_mm));
+    for (const NamedGain& gain : kGains) {
+      hasher.add(std::bit_cast<std::int64_t>(entry.gains.*gain.value));
+    }
   }
   return hasher.finish();
 }

@@ -14,11 +14,11 @@
 
 namespace touchtrial::engine {
 
-/// One field of a pack. Nothing here tells what it shows.
+/// One field of a pack. Nothing in it tells what the field shows.
 struct PackEntry {
   std::string code;    ///< opaque name, see is_pack_code; the file is <code>.field
   Digest checksum{};   ///< SHA-256 of the file
-  Digest input_tag{};  ///< keyed hash of everything that decides the field; without the key, noise
+  Digest input_tag{};  ///< keyed hash of everything that decides the field; noise without the key
   Gains gains;         ///< finite, >= 0
 
   friend bool operator==(const PackEntry&, const PackEntry&) = default;
@@ -32,25 +32,26 @@ struct PackManifest {
   friend bool operator==(const PackManifest&, const PackManifest&) = default;
 };
 
-/// Whether a text may name a field: 16 lower-case letters and digits, which base32 and hexadecimal
-/// both are, so that no code can be a path.
+/// Whether a text may name a field: 16 lower-case letters and digits, as in base32 and hexadecimal,
+/// so that no code can be a path.
 [[nodiscard]] bool is_pack_code(std::string_view code) noexcept;
 
-/// Writes one field file durably; its size depends on height, width and model alone. Write the
+/// Writes one field file durably; its size depends only on height, width and model. Write the
 /// fields of a pack in the order of their codes, so that the files' times tell nothing either.
 /// \return its SHA-256
-/// \throws FileError if it cannot be written; std::invalid_argument if the code is none, or the
-///   view is empty or has another number of samples than its geometry, heights that are not finite,
-///   or more than kMaxImagePixels
+/// \throws FileError if it cannot be written
+/// \throws std::invalid_argument if the code is not one (is_pack_code), or the view is empty, has
+///   more than kMaxImagePixels or heights that are not finite, or does not fill its geometry
 Digest write_field(const std::filesystem::path& folder, const std::string& code, FieldView field);
 
-/// Writes `pack.json` durably, after the fields it names; entries may come in any order. The same
-/// manifest gives the same bytes.
-/// \throws FileError if it cannot be written; std::invalid_argument if study_id is not hexadecimal,
-///   a code is none or occurs twice, or a gain is negative or not finite
+/// Writes `pack.json` durably; call it after writing the fields it names. Entries may come in any
+/// order. The same manifest gives the same bytes.
+/// \throws FileError if it cannot be written
+/// \throws std::invalid_argument if study_id is not hexadecimal, a code is not one or occurs twice,
+///   or a gain is negative or not finite
 void write_manifest(const std::filesystem::path& folder, const PackManifest& manifest);
 
-/// A field mapped from a pack; keep it as long as its view is used.
+/// A field mapped from a pack; it must outlive every use of its view.
 class MappedField {
  public:
   explicit MappedField(MappedFile file, FieldView view) : file_(std::move(file)), view_(view) {}
@@ -71,19 +72,21 @@ class Pack {
   [[nodiscard]] const PackManifest& manifest() const noexcept { return manifest_; }
   [[nodiscard]] const std::filesystem::path& folder() const noexcept { return folder_; }
 
-  /// SHA-256 over the canonical table of contents: what a database remembers of its pack. It
-  /// depends on what pack.json says and not on how it is laid out.
+  /// SHA-256 over the canonical table of contents, by which a database recognises its pack. It
+  /// depends on the content of pack.json and not on its layout.
   [[nodiscard]] Digest digest() const;
 
-  /// The entry of a code. \throws FileError if the pack has none such
+  /// The entry of a code.
+  /// \throws FileError if the pack has no such code
   [[nodiscard]] const PackEntry& entry(const std::string& code) const;
 
-  /// Maps a field; header and size are checked, content pages are read when touched. Samples are
-  /// what the file holds: only is_intact tells whether they are what was written.
+  /// Maps a field. Header and size are checked; pages of samples are read when they are touched.
+  /// Only is_intact tells whether the samples are those that were written.
   /// \throws FileError if the file is missing, truncated or not a field
   [[nodiscard]] MappedField map(const std::string& code) const;
 
-  /// Whether a field's bytes still have their checksum. \throws FileError if it cannot be read
+  /// Whether a field's bytes still have their checksum.
+  /// \throws FileError if the file cannot be read
   [[nodiscard]] bool is_intact(const std::string& code) const;
 
  private:

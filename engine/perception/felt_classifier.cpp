@@ -10,11 +10,10 @@
 namespace touchtrial::engine {
 namespace {
 
-/// Finest difference in a feature that is believed, so that equal examples do not make a class
-/// infinitely narrow.
+/// Resolution of a feature: it keeps equal examples from making a class infinitely narrow.
 constexpr double kResolution = 1e-3;
 
-/// Square, row-major.
+/// A square matrix, row-major.
 struct Matrix {
   explicit Matrix(std::size_t n) : size(n), values(n * n, 0.0) {}
   [[nodiscard]] double& at(std::size_t row, std::size_t column) {
@@ -30,12 +29,14 @@ void check_noise(double noise) {
   }
 }
 
+bool all_finite(std::span<const double> features) {
+  return std::ranges::all_of(features, [](double f) { return std::isfinite(f); });
+}
+
 void check(std::span<const FeltExample> examples) {
   if (examples.empty()) throw std::invalid_argument("FeltClassifier: there is no example");
   for (const FeltExample& example : examples) {
-    const bool finite =
-        std::ranges::all_of(example.features, [](double f) { return std::isfinite(f); });
-    if (example.label < 0 || !finite ||
+    if (example.label < 0 || !all_finite(example.features) ||
         example.features.size() != examples.front().features.size()) {
       throw std::invalid_argument("FeltClassifier: an example's label or features are impossible");
     }
@@ -45,7 +46,7 @@ void check(std::span<const FeltExample> examples) {
 std::vector<std::vector<double>> means_by_label(std::span<const FeltExample> examples) {
   int last = 0;
   for (const FeltExample& example : examples) last = std::max(last, example.label);
-  // Every label needs an example, so more labels than examples cannot be.
+  // Every label needs an example: with more labels than examples, one has none.
   const auto labels = static_cast<std::size_t>(last) + 1;
   if (labels > examples.size()) throw std::invalid_argument("FeltClassifier: a label is missing");
   std::vector<std::vector<double>> sums(labels,
@@ -78,6 +79,7 @@ Matrix scatter_within(std::span<const FeltExample> examples,
   return scatter;
 }
 
+/// The covariance of FeltClassifier.
 /// \param freedom  degrees of freedom of the scatter within labels
 Matrix covariance_of(Matrix scatter, double freedom, double noise) {
   const std::size_t n = scatter.size;
@@ -101,7 +103,8 @@ std::vector<std::vector<double>> means_of(const FeltStatistics& statistics) {
   return means;
 }
 
-/// The lower triangle L with L L^T = matrix; the matrix is positive definite.
+/// The lower triangle L with L L^T = matrix.
+/// \param matrix  positive definite
 Matrix cholesky(Matrix matrix) {
   for (std::size_t j = 0; j < matrix.size; ++j) {
     for (std::size_t i = j; i < matrix.size; ++i) {
@@ -114,6 +117,64 @@ Matrix cholesky(Matrix matrix) {
 }
 
 }  // namespace
+
+FeltStatistics::FeltStatistics(int labels, std::size_t features) : features_(features) {
+  if (labels < 1 || features < 1) {
+    throw std::invalid_argument("FeltStatistics: there must be a label and a feature");
+  }
+  counts_.resize(static_cast<std::size_t>(labels), 0);
+  means_.resize(counts_.size() * features, 0.0);
+  scatter_.resize(features * features, 0.0);
+}
+
+void FeltStatistics::learn(int label, std::span<const double> features) {
+  check(label, features);
+  const double before = counts_[label]++;
+  add_to_scatter(label, features, before / (before + 1.0));
+  double* mean = means_.data() + static_cast<std::size_t>(label) * features_;
+  for (std::size_t i = 0; i < features_; ++i) mean[i] += (features[i] - mean[i]) / (before + 1.0);
+}
+
+void FeltStatistics::forget(int label, std::span<const double> features) {
+  check(label, features);
+  if (counts_[label] == 0) throw std::invalid_argument("FeltStatistics: nothing to forget");
+  const double left = --counts_[label];
+  double* mean = means_.data() + static_cast<std::size_t>(label) * features_;
+  if (left == 0.0) {
+    std::fill_n(mean, features_, 0.0);
+    return;
+  }
+  // From the mean without the example, the deviation has the same direction: only its scale
+  // differs.
+  add_to_scatter(label, features, -(left + 1.0) / left);
+  for (std::size_t i = 0; i < features_; ++i) mean[i] -= (features[i] - mean[i]) / left;
+}
+
+int FeltStatistics::degrees_of_freedom() const noexcept {
+  int freedom = 0;
+  for (const int count : counts_) freedom += std::max(count - 1, 0);
+  return freedom;
+}
+
+std::span<const double> FeltStatistics::mean(int label) const noexcept {
+  return std::span(means_).subspan(static_cast<std::size_t>(label) * features_, features_);
+}
+
+void FeltStatistics::check(int label, std::span<const double> features) const {
+  if (label < 0 || label >= labels() || features.size() != features_ || !all_finite(features)) {
+    throw std::invalid_argument("FeltStatistics: an example's label or features are impossible");
+  }
+}
+
+void FeltStatistics::add_to_scatter(int label, std::span<const double> features, double weight) {
+  const std::span<const double> at = mean(label);
+  for (std::size_t i = 0; i < features_; ++i) {
+    const double scaled = weight * (features[i] - at[i]);
+    for (std::size_t j = 0; j < features_; ++j) {
+      scatter_[i * features_ + j] += scaled * (features[j] - at[j]);
+    }
+  }
+}
 
 FeltClassifier::FeltClassifier(std::span<const FeltExample> examples, double noise) {
   check(examples);
@@ -165,7 +226,7 @@ std::vector<double> FeltClassifier::whitened(std::span<const double> features) c
 
 std::vector<double> FeltClassifier::log_likelihoods(std::span<const double> features) const {
   if (features.size() != dimensions_) {
-    throw std::invalid_argument("FeltClassifier: the number of features is not the examples'");
+    throw std::invalid_argument("FeltClassifier: the examples have another number of features");
   }
   const std::vector<double> white = whitened(features);
   std::vector<double> logs;

@@ -30,7 +30,8 @@ Samples hann_window() {
   return window;
 }
 
-/// Powers summed over bins, so that a band's is the difference of two. Entry k: bins 1 .. k.
+/// Powers summed over bins, so that the power of a band is the difference of two sums. Entry k sums
+/// bins 1 .. k.
 class SummedPower {
  public:
   template <typename PowerOfBin>
@@ -55,7 +56,7 @@ double log_intensity(double power, double threshold_n) noexcept {
   return 0.5 * std::log(power + threshold_n * threshold_n);
 }
 
-/// What half a window adds to the one it belongs to.
+/// What half a window adds to its window.
 struct HalfWindow {
   double path_mm = 0.0;
   int contacts = 0;
@@ -103,7 +104,7 @@ struct TextureSense::State {
   HalfWindow earlier, current;
   Vec3 last_mm;
   bool landed = false;
-  int unsettled = 0;  // samples still to leave out after landing
+  int unsettled = 0;  // samples after landing that are still to be left out
   FeltPower power;
 };
 

@@ -1,4 +1,5 @@
-/// \file Pictures in colour, for people to look at; the engine computes with grey ones only.
+/// \file Colour pictures for people to look at, pictures as PNG files, and resizing. The engine
+/// computes with grey pictures only.
 #pragma once
 
 #include "core/bytes.hpp"
@@ -19,12 +20,12 @@ using ColourImage = Plane<Rgb>;
 
 /// A whole 8-bit PNG file in memory. The same picture gives the same bytes on one machine.
 /// \throws std::invalid_argument if the picture is empty
-/// \throws FileError if it cannot be encoded: it is too large
+/// \throws FileError if the picture is too large to be encoded
 [[nodiscard]] Bytes png_bytes(const GreyImage& image);
 [[nodiscard]] Bytes png_bytes(const ColourImage& image);
 
-/// A picture brought to another size: means of areas where it shrinks, bicubic where it grows.
-/// Computed in double, rounded half up.
+/// Resizes a picture: by means of areas if it shrinks, else bicubically. Computes in double and
+/// rounds half up.
 /// \param height,width  >= 1
 /// \throws std::invalid_argument if the picture is empty or a side is below 1
 [[nodiscard]] GreyImage resized(const GreyImage& image, int height, int width);

@@ -19,8 +19,8 @@ namespace {
 constexpr int kPanel_px = 720;
 constexpr int kMargin_px = 24;
 constexpr int kSubpixelBits = 4;
-/// All but the strongest 5 % of the arrows are at most this many pixels of the texture long, so
-/// that neighbours in a row do not run into each other.
+/// The length of all but the strongest 5 % of the arrows is at most this many pixels of the
+/// texture, so that neighbours in a row do not touch.
 constexpr double kLongArrow_px = 0.95;
 constexpr double kShortestArrow_px = 0.06;
 
@@ -31,7 +31,7 @@ double norm_at(const ForceField<double>& force, int y, int x) {
   return std::hypot(force.x.at(y, x), force.y.at(y, x));
 }
 
-/// sums(y, x): of the squared forces above and left of (y, x).
+/// sums(y, x) is the sum of the squared forces above and left of (y, x).
 cv::Mat summed_squares(const ForceField<double>& force) {
   cv::Mat squares(force.x.height(), force.x.width(), CV_64F);
   for (int y = 0; y < squares.rows; ++y) {
@@ -52,7 +52,7 @@ double sum_in(const cv::Mat& sums, const ArrowPatch& patch) {
          sums.at<double>(bottom, patch.x) + sums.at<double>(patch.y, patch.x);
 }
 
-/// The force that 95 % of the patch's pixels do not exceed.
+/// The force that 95 % of the patch's pixels do not exceed; their largest if that is 0.
 double long_force_in(const ForceField<double>& force, const ArrowPatch& patch) {
   std::vector<double> norms;
   for (int y = patch.y; y < patch.y + patch.height; ++y) {
@@ -71,7 +71,8 @@ cv::Mat enlarged(const cv::Mat& picture, double scale) {
   return large;
 }
 
-/// In units of 1 / 2^kSubpixelBits output pixels; the centre of the first output pixel is 0.
+/// A point in units of 1 / 2^kSubpixelBits output pixels; the centre of the first output pixel is
+/// 0.
 cv::Point subpixel(double x, double y, double scale) {
   const double units = 1 << kSubpixelBits;
   return {static_cast<int>(std::lround((x * scale - 0.5) * units)),
@@ -93,7 +94,7 @@ void draw_arrows(cv::Mat& canvas, const ForceField<double>& force, const ArrowPa
   }
 }
 
-/// The whole texture, in the middle of a panel, with the patch framed.
+/// The whole texture in the middle of a panel, with a frame around the patch.
 cv::Mat overview(const cv::Mat& texture, const ArrowPatch& patch) {
   const double scale = static_cast<double>(kPanel_px) / std::max(texture.rows, texture.cols);
   cv::Mat panel(kPanel_px, kPanel_px, CV_8UC3, kWhite);

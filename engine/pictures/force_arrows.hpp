@@ -9,37 +9,38 @@
 
 namespace touchtrial::engine {
 
-/// Side of the patch that is enlarged, pixels; less where the texture is smaller.
+/// The side of the enlarged patch in pixels; less if the texture is smaller.
 inline constexpr int kArrowPatchSide_px = 24;
 
 /// The part of a texture whose forces are drawn.
 struct ArrowPatch {
-  int y = 0;  ///< of its first row, pixels
+  int y = 0;  ///< of its first row and column, pixels
   int x = 0;
   int height = 0;
   int width = 0;
-  /// Grey levels per pixel of an arrow as long as a pixel of the texture is wide; 0 if there is no
-  /// force.
+  /// The force of an arrow that is as long as a pixel of the texture is wide, in grey levels per
+  /// pixel; 0 if there is no force.
   double force_of_unit_arrow = 0.0;
 };
 
-/// The patch in which the sum of the squared forces is largest, the first of several; the middle if
-/// there is no force.
+/// The patch with the largest sum of squared forces, the first if several are equal; the middle of
+/// the texture if there is no force.
 /// \throws std::invalid_argument if the field is empty
 [[nodiscard]] ArrowPatch strongest_patch(const ForceField<double>& force);
 
-/// A patch of a texture enlarged to fill a square, centred on white if it is none, with an arrow in
-/// the direction of the force at each pixel. Arrows have their middle at the centres of their
-/// pixels; their length is proportional to the force.
+/// A patch of a texture, enlarged to fill a square, with an arrow for the force at each pixel. A
+/// patch that is not square is centred on white. The middle of an arrow is at the centre of its
+/// pixel; its length is proportional to the force.
 /// \param texture  8-bit picture of the same shape as the field, at least 1 x 1
 /// \param patch  within the texture
 /// \param side_px  of the square, >= 1
-/// \throws std::invalid_argument if the shapes differ, or the patch is not within them
+/// \throws std::invalid_argument if the shapes differ, the patch is not within them, or side_px is
+///   below 1
 [[nodiscard]] ColourImage force_arrows(const GreyImage& texture, const ForceField<double>& force,
                                        const ArrowPatch& patch, int side_px);
 
-/// Writes a PNG of two parts: the whole texture with a frame round the strongest patch, and that
-/// patch as by force_arrows.
+/// Writes a PNG of two parts: the whole texture with a frame around the strongest patch, and that
+/// patch as force_arrows() draws it.
 /// \param texture  8-bit picture of the same shape as the field, at least 1 x 1
 /// \return the patch
 /// \throws std::invalid_argument if the shapes differ or are empty

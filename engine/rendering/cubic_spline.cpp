@@ -13,20 +13,20 @@ namespace {
 
 constexpr double kPole = -0.26794919243112270647;  // sqrt 3 - 2
 constexpr double kGain = 6.0;                      // (1 - pole) (1 - 1 / pole)
-constexpr double kFarthestPx = 1 << 29;            // where whole pixels still fit an int
-constexpr double kNegligible = 1e-20;              // power of the pole, beside 1
+constexpr double kFarthestPx = 1 << 29;            // whole pixels still fit an int
+constexpr double kNegligible = 1e-20;              // of a power of the pole, relative to 1
 
-/// A line of a plane: a row, or a row of columns that are filtered together.
+/// A row of a plane, or all its columns, which are filtered together.
 struct Lines {
   double* first;
   int count;         ///< entries along the filter
-  std::size_t step;  ///< from one to the next
-  int side_by_side;  ///< lines that run beside each other, one sample apart
+  std::size_t step;  ///< from one entry to the next, samples
+  int side_by_side;  ///< parallel lines, one sample apart
 
   [[nodiscard]] double* at(int i) const { return first + static_cast<std::size_t>(i) * step; }
 };
 
-/// to += factor * from, over all lines.
+/// to += factor * from, for all lines.
 void add(const Lines& lines, double* to, double factor, const double* from) {
   for (int j = 0; j < lines.side_by_side; ++j) to[j] += factor * from[j];
 }
@@ -35,8 +35,8 @@ void scale(const Lines& lines, double* entries, double factor) {
   for (int j = 0; j < lines.side_by_side; ++j) entries[j] *= factor;
 }
 
-/// The causal filter's state before the first sample, of the sequence mirrored for ever: the sum
-/// over one period, s_0 .. s_(n-1) s_(n-1) .. s_0, of pole^i, divided by 1 - pole^(2n).
+/// The causal filter's state before the first sample of the endlessly mirrored sequence: the sum
+/// over one period, s_0 .. s_(n-1) s_(n-1) .. s_0, weighted by pole^i, divided by 1 - pole^(2n).
 void start_causal(const Lines& lines, std::vector<double>& state) {
   state.assign(static_cast<std::size_t>(lines.side_by_side), 0.0);
   const double end = std::pow(kPole, lines.count);
@@ -61,16 +61,16 @@ void filter(const Lines& lines, std::vector<double>& state) {
   }
 }
 
-/// Two numbers side by side in a register; compilers keep to it where they would not find it.
+/// Two numbers side by side in a register: without this type compilers do not vectorise the sums.
 using Pair = double __attribute__((vector_size(2 * sizeof(double))));
 
-/// Of the four coefficients around a point, along x and along y.
+/// Weights of the four coefficients around a point, along x and along y.
 struct Weights {
   std::array<Pair, 4> value;
   std::array<Pair, 4> slope;
 };
 
-/// For a point that lies t, 0 <= t < 1, behind the second coefficient of each axis.
+/// Weights for a point at a distance t, 0 <= t < 1, beyond the second coefficient of each axis.
 Weights weights_at(Pair t) noexcept {
   constexpr double kSixth = 1.0 / 6.0;
   const Pair u = 1.0 - t;
@@ -79,14 +79,14 @@ Weights weights_at(Pair t) noexcept {
           {-0.5 * u * u, t * (1.5 * t - 2.0), -u * (1.5 * u - 2.0), 0.5 * t * t}};
 }
 
-/// The sum over four columns, weighted for the x axis.
+/// The sum over four columns with the weights of the x axis.
 double across(const std::array<Pair, 4>& weights, Pair first, Pair second) noexcept {
   const Pair sum =
       first * Pair{weights[0][0], weights[1][0]} + second * Pair{weights[2][0], weights[3][0]};
   return sum[0] + sum[1];
 }
 
-/// Sums the four rows of four that `row_at(row)` points to: along the columns first.
+/// Sums the 4 x 4 coefficients, whose rows `row_at(row)` points to: along the columns first.
 template <typename RowAt>
 SplinePoint summed(const Weights& at, RowAt row_at) noexcept {
   Pair value_first{};
@@ -113,7 +113,7 @@ Plane<double> cubic_spline_coefficients(Plane<double> samples) {
   const int width = samples.width();
   const auto stride = static_cast<std::size_t>(width);
   double* first = samples.samples().data();
-  // Level is neither lost nor rounded: a constant plane stays exactly constant.
+  // Without its level, which costs no digits, a constant plane stays exactly constant.
   const double level = *first;
   for (double& sample : samples.samples()) sample -= level;
   std::vector<double> state;

@@ -10,8 +10,8 @@
 namespace touchtrial::engine {
 
 /// Coefficients of the spline that takes each sample's value at its pixel centre, under half-sample
-/// symmetric extension. By recursive filtering, exact to double rounding; a constant plane is
-/// its own coefficients. Thread-safe. Cost: some 5 ns a pixel.
+/// symmetric extension. Recursive filtering, exact to double rounding; the coefficients of a
+/// constant plane are the plane itself. Thread-safe. Cost: some 5 ns a pixel.
 /// \param samples  at least 1 x 1, finite, any unit
 [[nodiscard]] Plane<double> cubic_spline_coefficients(Plane<double> samples);
 
@@ -22,10 +22,10 @@ struct SplinePoint {
   double along_y = 0.0;  ///< per pixel
 };
 
-/// The spline at a point in continuous pixel coordinates (pixel centres are whole numbers), also
-/// beyond the edges, where it is mirrored. Reads 16 coefficients. No allocation, lock or exception.
+/// The spline at a point in continuous pixel coordinates (pixel centres are whole numbers),
+/// mirrored beyond the edges. Reads 16 coefficients. No allocation, lock or exception.
 /// \param coefficients  row-major, height_px x width_px, each >= 1
-/// \param x_px,y_px  not NaN; beyond a magnitude of 2^29, taken to lie there
+/// \param x_px,y_px  not NaN; clamped to a magnitude of 2^29
 [[nodiscard]] SplinePoint spline_at(std::span<const float> coefficients, int height_px,
                                     int width_px, double x_px, double y_px) noexcept;
 

@@ -1,13 +1,19 @@
 #include "engine/rendering/field_measures.hpp"
 
+#include "engine/fourier/real_fft.hpp"
+
 #include <algorithm>
 #include <cmath>
+#include <complex>
+#include <numeric>
+#include <stdexcept>
 
 namespace touchtrial::engine {
 namespace {
 
-/// A 99th percentile below this share of the maximum says where a filter or a spline fades out.
+/// A 99th percentile below this share of the maximum comes from where a filter or spline fades out.
 constexpr double kLeastShareOfMaximum = 1e-3;
+constexpr double kRoundingOfRadii = 1e-9;  // relative
 
 constexpr double square(double value) noexcept {
   return value * value;
@@ -41,6 +47,41 @@ void append_central_differences(FieldView field, double scale, std::vector<float
   }
 }
 
+/// Mean of the values that are not 0; 0 if there is none.
+double mean_of_nonzero(std::span<const double> values) {
+  const auto zeros = std::ranges::count(values, 0.0);
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum == 0.0 ? 0.0 : sum / static_cast<double>(std::ssize(values) - zeros);
+}
+
+/// Transforms a plane without its mean.
+void transform(const Plane<double>& plane, RealFft<double>& fft) {
+  const auto samples = plane.samples();
+  const double mean =
+      std::accumulate(samples.begin(), samples.end(), 0.0) / static_cast<double>(samples.size());
+  std::ranges::transform(samples, fft.plane().begin(),
+                         [mean](double sample) { return sample - mean; });
+  fft.forward();
+}
+
+/// Visits every coefficient of the half spectrum but the mean with its radial frequency and power;
+/// the power counts twice where the conjugate, which is not stored, belongs to another column.
+template <typename Visit>
+void for_each_power(RealFft<double>& fft, int height, int width, Visit visit) {
+  const int columns = width / 2 + 1;
+  for (int row = 0; row < height; ++row) {
+    const double fy = static_cast<double>(std::min(row, height - row)) / height;
+    for (int column = 0; column < columns; ++column) {
+      if (row == 0 && column == 0) continue;
+      const double fx = static_cast<double>(column) / width;
+      const bool has_twin = column != 0 && 2 * column != width;
+      const std::size_t at = static_cast<std::size_t>(row) * columns + column;
+      visit(std::sqrt(fx * fx + fy * fy), (has_twin ? 2.0 : 1.0) * std::norm(fft.spectrum()[at]));
+    }
+  }
+}
+
 }  // namespace
 
 double tangential_rms(FieldView field) noexcept {
@@ -50,6 +91,10 @@ double tangential_rms(FieldView field) noexcept {
 
 double normal_rms(FieldView field) noexcept {
   return root_mean(field, [](const FieldSample& s) { return square(double{s.surface} - 128.0); });
+}
+
+double height_rms(FieldView relief) noexcept {
+  return root_mean(relief, [](const FieldSample& s) { return square(s.surface); });
 }
 
 void append_tangential_stiffness(FieldView field, double scale, std::vector<float>& pool) {
@@ -64,11 +109,20 @@ void append_normal_stiffness(FieldView field, double scale, std::vector<float>& 
   });
 }
 
-double mean_of_nonzero(std::span<const double> values) {
-  const auto zeros = std::ranges::count(values, 0.0);
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return sum == 0.0 ? 0.0 : sum / static_cast<double>(std::ssize(values) - zeros);
+std::vector<double> equalising_factors(std::span<const double> rms, Equalise equalise) {
+  std::vector<double> factors;
+  for (const double value : rms) {
+    if (!std::isfinite(value)) {
+      throw std::invalid_argument("choose_gains: a field has samples that are not finite");
+    }
+    const double equalising = value > 0.0 ? 1.0 / value : 0.0;
+    factors.push_back(equalise == Equalise::rms ? equalising : 1.0);
+  }
+  return factors;
+}
+
+double explicit_factor(double gain, std::span<const double> rms, Equalise equalise) {
+  return gain * (equalise == Equalise::rms ? mean_of_nonzero(rms) : 1.0);
 }
 
 double typical_stiffness(std::vector<float>& pool) {
@@ -86,6 +140,24 @@ double percentile(std::vector<float>& pool, double share) {
   const auto next = std::min_element(middle + 1, pool.end());
   if (next == pool.end()) return *middle;
   return *middle + (position - whole) * (double{*next} - *middle);
+}
+
+std::vector<double> power_shares_above(const Plane<double>& x, const Plane<double>& y,
+                                       std::span<const double> limits_cycles_per_px) {
+  RealFft<double> fft(x.height(), x.width());
+  std::vector<double> shares(limits_cycles_per_px.size(), 0.0);
+  double total = 0.0;
+  for (const Plane<double>* component : {&x, &y}) {
+    transform(*component, fft);
+    for_each_power(fft, x.height(), x.width(), [&](double cycles_per_px, double power) {
+      total += power;
+      for (std::size_t i = 0; i < shares.size(); ++i) {
+        if (cycles_per_px > limits_cycles_per_px[i] * (1.0 + kRoundingOfRadii)) shares[i] += power;
+      }
+    });
+  }
+  for (double& share : shares) share = total > 0.0 ? share / total : 0.0;
+  return shares;
 }
 
 }  // namespace touchtrial::engine

@@ -7,10 +7,6 @@
 namespace touchtrial::engine {
 namespace {
 
-constexpr double dot(Vec3 a, Vec3 b) noexcept {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
 double side_work_mj(const RenderingModel& model, Bristle& touch, Vec3 from_mm, Vec3 to_mm,
                     double step_mm) {
   const Vec3 way_mm = to_mm - from_mm;

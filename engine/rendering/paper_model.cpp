@@ -1,9 +1,12 @@
 #include "engine/rendering/paper_model.hpp"
 
-#include "engine/rendering/force_limit.hpp"
+#include "engine/rendering/field_measures.hpp"
+#include "engine/rendering/model_parts.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <vector>
 
 namespace touchtrial::engine {
 namespace {
@@ -69,6 +72,105 @@ Vec3 PaperModel::force_n(Vec3 position_mm, Vec3 velocity_mm_s) const noexcept {
 bool PaperModel::is_out_of_reach(double wall_n) const noexcept {
   if (reference_grey_ == 0.0 && wall_n <= 0.0) return true;
   return wall_n + gains_.normal_n * (field_.highest - reference_grey_) <= 0.0;
+}
+
+// What make_texture_field, choose_gains, field_statistics and lateral_field do for this model.
+
+namespace {
+
+constexpr double kSlackOfGains = 1e-9;  // relative; less above the budget is rounding
+
+/// The filter and the force depend on differences only, so the level of 128 is added last and costs
+/// no digits.
+TextureField field_of_paper(Plane<double> smooth, const RenderingOptions& options) {
+  const ForceField<double> force = tangential_force(smooth, options.neighbourhood);
+  Plane<FieldSample> samples(smooth.height(), smooth.width());
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    samples.samples()[i] = {static_cast<float>(128.0 + smooth.samples()[i]),
+                            static_cast<float>(force.x.samples()[i]),
+                            static_cast<float>(force.y.samples()[i])};
+  }
+  return {{options.pitch_mm, smooth.height(), smooth.width()}, std::move(samples)};
+}
+
+/// One of the two forces that have a gain.
+struct Channel {
+  double (*rms)(FieldView) noexcept;
+  void (*append_stiffness)(FieldView, double, std::vector<float>&);
+  std::optional<double> explicit_gain;
+};
+
+struct ChannelGains {
+  std::vector<double> of_field;
+  bool over_budget = false;
+};
+
+/// The pooled stiffness of all fields that are not flat, each with its scale.
+double pooled_stiffness(std::span<const FieldView> fields, const std::vector<double>& rms,
+                        const std::vector<double>& scale, const Channel& channel) {
+  std::size_t pixels = 0;
+  for (const FieldView& field : fields) pixels += field.samples.size();
+  std::vector<float> pool;
+  pool.reserve(pixels);
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    if (rms[i] > 0.0) channel.append_stiffness(fields[i], scale[i], pool);
+  }
+  return typical_stiffness(pool);
+}
+
+ChannelGains channel_gains(std::span<const FieldView> fields, const RenderingOptions& options,
+                           const Channel& channel) {
+  std::vector<double> rms;
+  for (const FieldView& field : fields) rms.push_back(channel.rms(field));
+  ChannelGains gains{equalising_factors(rms, options.equalise)};
+  const double stiffness = pooled_stiffness(fields, rms, gains.of_field, channel);
+  const double budget = options.texture_stiffness_n_per_mm;
+  double factor = stiffness > 0.0 ? budget / stiffness : 0.0;
+  if (channel.explicit_gain) {
+    factor = explicit_factor(*channel.explicit_gain, rms, options.equalise);
+    gains.over_budget = factor * stiffness > budget * (1.0 + kSlackOfGains);
+  }
+  for (double& gain : gains.of_field) gain *= factor;
+  return gains;
+}
+
+StudyGains gains_of_paper(std::span<const FieldView> fields, const RenderingOptions& options) {
+  Channel tangential{tangential_rms, append_tangential_stiffness, std::nullopt};
+  Channel normal{normal_rms, append_normal_stiffness, std::nullopt};
+  if (options.gains) {
+    tangential.explicit_gain = options.gains->tangential_n;
+    normal.explicit_gain = options.gains->normal_n;
+  }
+  const ChannelGains along = channel_gains(fields, options, tangential);
+  const ChannelGains across = channel_gains(fields, options, normal);
+  StudyGains gains;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    gains.of_field.push_back({along.of_field[i], across.of_field[i]});
+  }
+  gains.over_budget = along.over_budget || across.over_budget;
+  return gains;
+}
+
+FieldStatistics statistics_of_paper(FieldView field, Gains gains,
+                                    const RenderingOptions& /*options*/) {
+  require_finite_rms(tangential_rms(field), normal_rms(field));
+  FieldStatistics statistics = lateral_statistics(field, gains.tangential_n);
+  statistics.normal_rms_n = gains.normal_n * normal_rms(field);
+  std::vector<float> pool;
+  pool.reserve(field.samples.size());
+  append_tangential_stiffness(field, 1.0, pool);
+  statistics.stiffness_p99_n_per_mm = gains.tangential_n * percentile(pool, 0.99);
+  return statistics;
+}
+
+LateralField lateral_of_paper(FieldView field, Gains gains) {
+  return {force_planes(field), gains.tangential_n};
+}
+
+}  // namespace
+
+ModelParts paper_parts() noexcept {
+  return {field_of_paper, gains_of_paper, statistics_of_paper, lateral_of_paper};
 }
 
 }  // namespace touchtrial::engine

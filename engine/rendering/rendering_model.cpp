@@ -1,11 +1,19 @@
+/// The two places that turn a ModelKind into code.
 #include "engine/rendering/rendering_model.hpp"
+
+#include "engine/rendering/model_parts.hpp"
 
 namespace touchtrial::engine {
 namespace {
 
 std::variant<PaperModel, SurfaceModel> model_of(FieldView field, const RenderingOptions& options,
                                                 Gains gains) noexcept {
-  if (options.model == ModelKind::surface) return SurfaceModel(field, options, gains);
+  switch (options.model) {
+    case ModelKind::surface:
+      return SurfaceModel(field, options, gains);
+    case ModelKind::paper:
+      break;
+  }
   return PaperModel(field, options, gains);
 }
 
@@ -14,5 +22,15 @@ std::variant<PaperModel, SurfaceModel> model_of(FieldView field, const Rendering
 RenderingModel::RenderingModel(FieldView field, const RenderingOptions& options,
                                Gains gains) noexcept
     : model_(model_of(field, options, gains)) {}
+
+ModelParts parts_of(ModelKind kind) noexcept {
+  switch (kind) {
+    case ModelKind::surface:
+      return surface_parts();
+    case ModelKind::paper:
+      break;
+  }
+  return paper_parts();
+}
 
 }  // namespace touchtrial::engine

@@ -1,7 +1,6 @@
-/// \file Either rendering model, for callers that need not know which.
+/// \file The rendering model of a study, for callers that need not know which one it is.
 #pragma once
 
-#include "engine/rendering/bristle.hpp"
 #include "engine/rendering/paper_model.hpp"
 #include "engine/rendering/surface_model.hpp"
 
@@ -9,14 +8,15 @@
 
 namespace touchtrial::engine {
 
-/// The model that a study asks for. Copyable, no heap; refers to the field's numbers. Thread-safe.
+/// The model that a study asks for. Copyable, without heap memory; refers to the field's samples.
+/// Thread-safe.
 class RenderingModel {
  public:
-  /// \param field  made for options.model; of another model, it is the flat wall
+  /// \param field  made for options.model; the field of another model is the flat wall
   RenderingModel(FieldView field, const RenderingOptions& options, Gains gains) noexcept;
 
   /// PaperModel::force_n or SurfaceModel::force_n.
-  /// \param touch  what the presentation remembers from tick to tick; new for each
+  /// \param touch  the state that a presentation keeps from tick to tick; a new one for each
   [[nodiscard]] Vec3 force_n(Vec3 position_mm, Vec3 velocity_mm_s, Bristle& touch) const noexcept {
     if (const auto* paper = std::get_if<PaperModel>(&model_)) {
       return paper->force_n(position_mm, velocity_mm_s);

@@ -1,17 +1,21 @@
-/// \file What decides how a texture surface becomes force. Source: docs/method.md, "Rendering".
+/// \file The options that decide how a texture becomes a force.
+/// Source: docs/method.md, "Rendering".
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <optional>
+#include <string_view>
 
 namespace touchtrial::engine {
 
-/// The rendering models.
+/// The rendering models. To add one: docs/add-a-rendering-model.md.
 enum class ModelKind {
-  paper,    ///< force planes beside a wall, as the paper has it
+  paper,    ///< a wall and force planes, as in the paper
   surface,  ///< the gradient of one potential
 };
 
-/// From grey levels to newtons. A model uses its own and leaves the others at 0.
+/// Factors from grey levels to forces. Each model uses its own gains and leaves the others at 0.
 struct Gains {
   double tangential_n = 0.0;  ///< paper: k_t, N per (grey level per pixel), >= 0
   double normal_n = 0.0;      ///< paper: c, N per grey level, >= 0
@@ -20,14 +24,32 @@ struct Gains {
   friend bool operator==(const Gains&, const Gains&) = default;
 };
 
+/// A gain and its name in files.
+struct NamedGain {
+  std::string_view name;
+  double Gains::*value;
+};
+inline constexpr std::array kGains = {NamedGain{"tangential_n", &Gains::tangential_n},
+                                      NamedGain{"normal_n", &Gains::normal_n},
+                                      NamedGain{"height_mm", &Gains::height_mm}};
+
+/// Whether every gain is a finite number >= 0.
+[[nodiscard]] inline bool are_valid(const Gains& gains) noexcept {
+  for (const NamedGain& gain : kGains) {
+    const double value = gains.*gain.value;
+    if (!std::isfinite(value) || value < 0.0) return false;
+  }
+  return true;
+}
+
 /// Whether stimuli keep their differences in strength.
 enum class Equalise { none, rms };
 
-/// The load at which the stiffness and the lateral forces of `surface` are stated, N: what a hand
-/// presses with when it feels a texture.
+/// Load at which the stiffness and the lateral forces of `surface` are stated, N: a typical load of
+/// a hand that explores a texture.
 inline constexpr double kStatedLoadN = 0.7;
 
-/// The study file's "rendering" object.
+/// The "rendering" object of the study file.
 struct RenderingOptions {
   ModelKind model = ModelKind::paper;
   double pitch_mm = 0.2;                    ///< > 0
@@ -38,7 +60,7 @@ struct RenderingOptions {
   std::optional<Gains> gains;               ///< explicit gains; empty: from the budget
   Equalise equalise = Equalise::none;
   double reference_grey = 128.0;  ///< paper: G_ref, grey levels, 0 .. 255
-  double friction = 0.0;          ///< surface: mu of the bristle, >= 0; 0: none
+  double friction = 0.0;          ///< surface: friction coefficient mu, >= 0; 0: no friction
   int neighbourhood = 3;          ///< paper: n, odd, >= 3
   double max_force_n = 3.3;       ///< limit of the total force's norm, > 0
 

@@ -1,22 +1,25 @@
 #include "engine/rendering/surface_model.hpp"
 
 #include "engine/rendering/cubic_spline.hpp"
-#include "engine/rendering/force_limit.hpp"
+#include "engine/rendering/field_measures.hpp"
+#include "engine/rendering/model_parts.hpp"
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <vector>
 
 namespace touchtrial::engine {
 namespace {
 
-/// A factor along one axis, and how it changes per mm.
+/// A factor along one axis, and its change per mm.
 struct Fade {
   double value = 1.0;
   double slope = 0.0;
 };
 
-/// 1 on the plane, 0 beyond the rim, twice continuously differentiable between.
+/// 1 on the plane, 0 beyond the rim, twice continuously differentiable in between.
 Fade fade_at(double place_mm, double side_mm) noexcept {
   const double beyond_mm = std::max(-place_mm, place_mm - side_mm);
   if (beyond_mm <= 0.0) return {};
@@ -38,7 +41,7 @@ SurfaceModel::SurfaceModel(FieldView field, const RenderingOptions& options, Gai
       bristle_n_per_mm_(options.texture_stiffness_n_per_mm / std::numbers::sqrt2),
       max_force_n_(options.max_force_n),
       mm_per_grey_(field.coefficients.empty() ? 0.0 : gains.height_mm),
-      // B-splines are weighted means: none is higher than its highest coefficient.
+      // A B-spline is a weighted mean of its coefficients, and so never above the highest.
       reach_mm_(mm_per_grey_ > 0.0 ? std::max(0.0, mm_per_grey_ * field.highest) : 0.0) {}
 
 Vec3 SurfaceModel::force_n(Vec3 position_mm, Vec3 velocity_mm_s, Bristle& bristle) const noexcept {
@@ -83,6 +86,234 @@ SurfaceModel::Relief SurfaceModel::relief_at(double x_mm, double y_mm) const noe
   return {height_mm * across.value * down.value,
           {(per_mm * h.along_x * across.value + height_mm * across.slope) * down.value,
            (per_mm * h.along_y * down.value + height_mm * down.slope) * across.value}};
+}
+
+// What make_texture_field, choose_gains, field_statistics and lateral_field do for this model.
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNearEnough = 2e-7;       // relative; pools have single precision
+constexpr double kSlackOfSurfaces = 1e-6;  // relative; less above the budget is rounding
+constexpr int kMostTries = 60;
+
+/// A column of three coefficients, weighted for the value and for the slope at its middle.
+struct Column {
+  float value;
+  float slope;
+};
+
+/// The columns of three rows; at an edge the row itself is its mirror image.
+std::vector<Column> columns_around(FieldView field, int y) {
+  const int width = field.geometry.width_px;
+  const auto row = [&](int at) {
+    const int inside = std::clamp(at, 0, field.geometry.height_px - 1);
+    return field.coefficients.data() + static_cast<std::size_t>(inside) * width;
+  };
+  const float* above = row(y - 1);
+  const float* middle = row(y);
+  const float* below = row(y + 1);
+  std::vector<Column> columns(static_cast<std::size_t>(width));
+  for (int x = 0; x < width; ++x) {
+    const double a = above[x];
+    const double b = below[x];
+    columns[x] = {static_cast<float>((a + 4.0 * middle[x] + b) / 6.0),
+                  static_cast<float>(0.5 * (b - a))};
+  }
+  return columns;
+}
+
+/// The spline of a field at its pixel centres, in the form of samples: `surface` is the height h in
+/// grey levels (without 128), the force is minus the gradient of h, grey levels per pixel.
+/// Cost: some 5 ns a pixel.
+TextureField relief_of(FieldView field) {
+  const PlaneGeometry& plane = field.geometry;
+  Plane<FieldSample> relief(plane.height_px, plane.width_px);
+  for (int y = 0; y < plane.height_px; ++y) {
+    const std::vector<Column> columns = columns_around(field, y);
+    for (int x = 0; x < plane.width_px; ++x) {
+      const Column& left = columns[std::max(x - 1, 0)];
+      const Column& middle = columns[x];
+      const Column& right = columns[std::min(x + 1, plane.width_px - 1)];
+      relief.at(y, x) = {
+          static_cast<float>((left.value + 4.0 * middle.value + right.value) / 6.0),
+          static_cast<float>(-0.5 * (double{right.value} - left.value)),
+          static_cast<float>(-(left.slope + 4.0 * middle.slope + right.slope) / 6.0)};
+    }
+  }
+  return {plane, std::move(relief)};
+}
+
+/// The lateral force at a neighbour of a pixel, at the height at which the pixel meets the stated
+/// load.
+Vec2 force_beside(const FieldSample& middle, const FieldSample& beside, double lateral,
+                  double normal) noexcept {
+  const double load_n =
+      std::max(0.0, kStatedLoadN + normal * (double{beside.surface} - middle.surface));
+  return {lateral * load_n * beside.force_x, lateral * load_n * beside.force_y};
+}
+
+/// Appends, for every interior pixel of a relief, the Frobenius norm of the in-plane Jacobian, in
+/// N/mm: central differences, over the pitch, of the model's lateral force at the height above the
+/// plane at which the pixel in the middle meets a load of kStatedLoadN.
+/// \param mm_per_grey  alpha
+/// \param wall_n_per_mm  k; 0 leaves only the part that is linear in alpha
+void append_stiffness_at_load(FieldView relief, double mm_per_grey, double wall_n_per_mm,
+                              std::vector<float>& pool) {
+  const int height = relief.geometry.height_px;
+  const int width = relief.geometry.width_px;
+  if (height < 3 || width < 3) return;
+  const double lateral = mm_per_grey / relief.geometry.pitch_mm;
+  const double normal = mm_per_grey * wall_n_per_mm;
+  for (int y = 1; y < height - 1; ++y) {
+    const FieldSample* row = relief.samples.data() + static_cast<std::size_t>(y) * width;
+    for (int x = 1; x < width - 1; ++x) {
+      const auto beside = [&](int step) {
+        return force_beside(row[x], row[x + step], lateral, normal);
+      };
+      const Vec2 along = beside(1) - beside(-1);
+      const Vec2 down = beside(width) - beside(-width);
+      const double step_n =
+          std::sqrt(along.x * along.x + along.y * along.y + down.x * down.x + down.y * down.y);
+      pool.push_back(static_cast<float>(step_n / (2.0 * relief.geometry.pitch_mm)));
+    }
+  }
+}
+
+/// Newtons of one grey level per pixel of the relief's force, at the stated load.
+double newtons_per_grey(FieldView field, Gains gains) noexcept {
+  return kStatedLoadN * gains.height_mm / field.geometry.pitch_mm;
+}
+
+/// The fields of a study, each with the factor that equalises it. Every stiffness computes the
+/// reliefs anew: choosing alpha takes about six times their time, but not the memory of them all.
+class Surfaces {
+ public:
+  Surfaces(std::span<const FieldView> fields, const RenderingOptions& options)
+      : fields_(fields), wall_n_per_mm_(options.stiffness_n_per_mm) {
+    for (const FieldView& field : fields) {
+      rms_.push_back(tangential_rms(relief_of(field).view()));
+    }
+    factor_ = equalising_factors(rms_, options.equalise);
+  }
+
+  [[nodiscard]] const std::vector<double>& rms() const noexcept { return rms_; }
+  [[nodiscard]] const std::vector<double>& factors() const noexcept { return factor_; }
+
+  /// Stiffness of the normal force, N/mm, per mm per grey level of alpha.
+  [[nodiscard]] double normal_stiffness() const {
+    return pooled([&](FieldView relief, double factor, std::vector<float>& pool) {
+      append_normal_stiffness(relief, factor * wall_n_per_mm_, pool);
+    });
+  }
+  /// Stiffness of the lateral force at the stated load, N/mm, at this alpha.
+  [[nodiscard]] double lateral_stiffness(double mm_per_grey) const {
+    return pooled([&](FieldView relief, double factor, std::vector<float>& pool) {
+      append_stiffness_at_load(relief, mm_per_grey * factor, wall_n_per_mm_, pool);
+    });
+  }
+  /// The same per mm per grey level of alpha, in the limit of small heights.
+  [[nodiscard]] double linear_stiffness() const {
+    return pooled([](FieldView relief, double factor, std::vector<float>& pool) {
+      append_stiffness_at_load(relief, factor, 0.0, pool);
+    });
+  }
+
+ private:
+  template <typename Append>
+  [[nodiscard]] double pooled(Append append) const {
+    std::vector<float> pool;
+    for (std::size_t i = 0; i < fields_.size(); ++i) {
+      if (rms_[i] > 0.0) append(relief_of(fields_[i]).view(), factor_[i], pool);
+    }
+    return typical_stiffness(pool);
+  }
+
+  std::span<const FieldView> fields_;
+  double wall_n_per_mm_;
+  std::vector<double> rms_;
+  std::vector<double> factor_;
+};
+
+/// The alpha, at most `most`, at which the lateral force is as stiff as the budget. Stiffness is
+/// nearly a power of alpha, with an exponent of 1 for small heights and up to 2 for large ones: a
+/// secant method on the logarithms, within a bracket, finds alpha in a few tries.
+double lateral_limit(const Surfaces& surfaces, double budget, double most) {
+  const double linear = surfaces.linear_stiffness();
+  if (linear == 0.0) return most;
+  if (most < kInfinity && surfaces.lateral_stiffness(most) <= budget) return most;
+  double low = 0.0;
+  double high = most;
+  double alpha = budget / linear;
+  double earlier = 0.0;
+  double earlier_short_of = 0.0;
+  for (int i = 0; i < kMostTries; ++i) {
+    if (!(alpha > low && alpha < high)) alpha = 0.5 * (low + high);
+    const double short_of = std::log(budget / surfaces.lateral_stiffness(alpha));
+    if (std::abs(short_of) <= kNearEnough) return alpha;
+    (short_of > 0.0 ? low : high) = alpha;
+    const double power = (earlier_short_of - short_of) / std::log(alpha / earlier);
+    const double step = short_of / (earlier > 0.0 ? std::clamp(power, 0.5, 4.0) : 1.0);
+    earlier = alpha;
+    earlier_short_of = short_of;
+    alpha *= std::exp(step);
+  }
+  return low;
+}
+
+double within_budget(const Surfaces& surfaces, double budget) {
+  const double normal = surfaces.normal_stiffness();
+  const double limit = lateral_limit(surfaces, budget, normal > 0.0 ? budget / normal : kInfinity);
+  return limit < kInfinity ? limit : 0.0;
+}
+
+StudyGains gains_of_surfaces(std::span<const FieldView> fields, const RenderingOptions& options) {
+  const Surfaces surfaces(fields, options);
+  const double budget = options.texture_stiffness_n_per_mm;
+  StudyGains gains;
+  double alpha = 0.0;
+  if (options.gains) {
+    alpha = explicit_factor(options.gains->height_mm, surfaces.rms(), options.equalise);
+    const double stiffest =
+        std::max(surfaces.lateral_stiffness(alpha), alpha * surfaces.normal_stiffness());
+    gains.over_budget = stiffest > budget * (1.0 + kSlackOfSurfaces);
+  } else {
+    alpha = within_budget(surfaces, budget);
+  }
+  for (const double factor : surfaces.factors()) {
+    gains.of_field.push_back({.height_mm = alpha * factor});
+  }
+  return gains;
+}
+
+TextureField field_of_surface(Plane<double> smooth, const RenderingOptions& options) {
+  const PlaneGeometry geometry{options.pitch_mm, smooth.height(), smooth.width()};
+  const Plane<double> exact = cubic_spline_coefficients(std::move(smooth));
+  return {geometry, converted<float>(exact)};
+}
+
+FieldStatistics statistics_of_surface(FieldView field, Gains gains,
+                                      const RenderingOptions& options) {
+  const TextureField relief = relief_of(field);
+  const FieldView view = relief.view();
+  require_finite_rms(tangential_rms(view), height_rms(view));
+  FieldStatistics statistics = lateral_statistics(view, newtons_per_grey(field, gains));
+  statistics.normal_rms_n = options.stiffness_n_per_mm * gains.height_mm * height_rms(view);
+  std::vector<float> pool;
+  pool.reserve(field.coefficients.size());
+  append_stiffness_at_load(view, gains.height_mm, options.stiffness_n_per_mm, pool);
+  statistics.stiffness_p99_n_per_mm = percentile(pool, 0.99);
+  return statistics;
+}
+
+LateralField lateral_of_surface(FieldView field, Gains gains) {
+  return {force_planes(relief_of(field).view()), newtons_per_grey(field, gains)};
+}
+
+}  // namespace
+
+ModelParts surface_parts() noexcept {
+  return {field_of_surface, gains_of_surfaces, statistics_of_surface, lateral_of_surface};
 }
 
 }  // namespace touchtrial::engine

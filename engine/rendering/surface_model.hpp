@@ -1,15 +1,47 @@
-/// \file Rendering model `surface`: the gradient of one potential, so that no path gains energy.
-/// Source: docs/method.md, "Rendering".
+/// \file Rendering model `surface`: the gradient of one potential, so that no closed path gains
+/// energy, and friction on it. Source: docs/method.md, "Rendering".
 #pragma once
 
 #include "core/vec.hpp"
-#include "engine/rendering/bristle.hpp"
 #include "engine/rendering/texture_field.hpp"
 
 namespace touchtrial::engine {
 
+/// Friction as a bristle: a spring from the stylus to the point where it holds on to the plane,
+/// which slips when it is stretched too far. One bristle belongs to one presentation, and carries
+/// what the next tick needs. It depends on positions only, never on time: a path gives the same
+/// forces at any speed. It is passive: it stores only what the hand puts in, and slipping loses
+/// energy.
+class Bristle {
+ public:
+  /// The friction on a stylus that has moved to a point of the plane. At the first point after a
+  /// release the bristle takes hold. No allocation, lock or exception.
+  /// \param at_mm  finite
+  /// \param limit_n  mu * F_N, >= 0: the bristle slips at this force
+  /// \param stiffness_n_per_mm  of the bristle, > 0
+  /// \return of norm <= limit_n, within rounding
+  [[nodiscard]] Vec2 friction_n(Vec2 at_mm, double limit_n, double stiffness_n_per_mm) noexcept {
+    if (!holds_) anchor_mm_ = at_mm;
+    holds_ = true;
+    Vec2 stretch_mm = at_mm - anchor_mm_;
+    const double spring_n = stiffness_n_per_mm * norm(stretch_mm);
+    if (spring_n > limit_n) {
+      stretch_mm = (limit_n / spring_n) * stretch_mm;
+      anchor_mm_ = at_mm - stretch_mm;
+    }
+    return -stiffness_n_per_mm * stretch_mm;
+  }
+
+  /// The stylus has left the plane.
+  void release() noexcept { holds_ = false; }
+
+ private:
+  Vec2 anchor_mm_;
+  bool holds_ = false;
+};
+
 /// Width of the rim beyond the plane's edge in which the texture fades into the flat wall, mm. A
-/// step there would be an infinite force, and energy for whoever crosses it to and fro.
+/// step there would be an infinite force, and give energy to a hand that crosses it to and fro.
 inline constexpr double kRimMm = 2.0;
 
 /// The force on the stylus from one texture, in the frame of PaperModel: z out of the plane towards
@@ -17,21 +49,22 @@ inline constexpr double kRimMm = 2.0;
 class SurfaceModel {
  public:
   /// Reads no coefficient.
-  /// \param field  its coefficients must outlive the model; height_px * width_px of them
+  /// \param field  its height_px * width_px coefficients must outlive the model
   /// \param options,gains  finite, in the ranges of their types
   SurfaceModel(FieldView field, const RenderingOptions& options, Gains gains) noexcept;
 
-  /// With e = depth + alpha * h(x, y), U = k/2 * max(0, e)^2. Contact while e > 0; then the force
-  /// is -grad U: k * e across the plane and -k * e * alpha * grad h along it. h is the spline
-  /// through the field; beyond the edges it is mirrored and fades to 0 over kRimMm, where the flat
-  /// wall begins. Damping takes damping * v_z from the normal force, down to nothing: it only loses
-  /// energy. With friction > 0 the bristle adds up to friction * F_N against the stroke, with a
-  /// stiffness (as Frobenius norm) of the whole stiffness budget. The total is limited in norm to
-  /// max_force_n, direction kept.
-  /// No contact: zero force, a released bristle; and the field is not read where no surface could
-  /// reach the hand. A position or velocity that is not finite is no contact. No allocation, lock
-  /// or exception; any number of threads, each with its own bristle. Cost: under twice
-  /// PaperModel's. \param bristle  of this presentation; not used without friction
+  /// With e = depth + alpha * h(x, y), the potential is U = k/2 * max(0, e)^2. Contact lasts while
+  /// e > 0; then the force is -grad U: k * e across the plane and -k * e * alpha * grad h along it.
+  /// h is the spline through the field; beyond the edges it is mirrored, and fades to 0 over
+  /// kRimMm, where the flat wall begins. Damping subtracts damping * v_z from the normal force, but
+  /// never below 0, so it only takes energy. With friction > 0 the bristle adds up to
+  /// friction * F_N against the stroke, with a stiffness (as Frobenius norm) of the whole stiffness
+  /// budget. The norm of the total is limited to max_force_n; its direction is kept.
+  /// Without contact the force is zero and the bristle is released; the field is not read where no
+  /// surface could reach the hand. A position or velocity that is not finite is no contact.
+  /// No allocation, lock or exception. Any number of threads, each with its own bristle. Cost: less
+  /// than twice PaperModel's.
+  /// \param bristle  of this presentation; not used without friction
   [[nodiscard]] Vec3 force_n(Vec3 position_mm, Vec3 velocity_mm_s, Bristle& bristle) const noexcept;
 
  private:

@@ -1,9 +1,8 @@
 #include "engine/rendering/texture_field.hpp"
 
 #include "engine/finite_plane.hpp"
-#include "engine/force_field.hpp"
 #include "engine/gaussian_filter.hpp"
-#include "engine/rendering/cubic_spline.hpp"
+#include "engine/rendering/model_parts.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -21,26 +20,7 @@ void check_options(const RenderingOptions& options) {
   }
 }
 
-/// Filter and force see only differences, so the level of 128 joins last and costs no digits.
-Plane<FieldSample> surface_and_force(const Plane<double>& smooth, int neighbourhood) {
-  const ForceField<double> force = tangential_force(smooth, neighbourhood);
-  Plane<FieldSample> samples(smooth.height(), smooth.width());
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    samples.samples()[i] = {static_cast<float>(128.0 + smooth.samples()[i]),
-                            static_cast<float>(force.x.samples()[i]),
-                            static_cast<float>(force.y.samples()[i])};
-  }
-  return samples;
-}
-
-Plane<float> as_float(const Plane<double>& plane) {
-  Plane<float> rounded(plane.height(), plane.width());
-  std::ranges::transform(plane.samples(), rounded.samples().begin(),
-                         [](double value) { return static_cast<float>(value); });
-  return rounded;
-}
-
-/// The largest, or the first that is not a number.
+/// The largest value, or the first that is not finite.
 template <typename Range, typename HeightOf>
 double highest_in(const Range& range, HeightOf height_of) noexcept {
   float highest = height_of(range.front());
@@ -75,12 +55,8 @@ TextureField make_texture_field(const Plane<double>& texture, const RenderingOpt
   check_options(options);
   if (texture.empty()) throw std::invalid_argument("make_texture_field: the texture is empty");
   require_finite(texture, "make_texture_field", "texture");
-  const PlaneGeometry geometry{options.pitch_mm, texture.height(), texture.width()};
-  Plane<double> smooth = gaussian_filtered(texture, to_px(options.filter_mm, options.pitch_mm));
-  if (options.model == ModelKind::paper) {
-    return {geometry, surface_and_force(smooth, options.neighbourhood)};
-  }
-  return {geometry, as_float(cubic_spline_coefficients(std::move(smooth)))};
+  return parts_of(options.model)
+      .make_field(gaussian_filtered(texture, to_px(options.filter_mm, options.pitch_mm)), options);
 }
 
 }  // namespace touchtrial::engine

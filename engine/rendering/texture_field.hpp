@@ -1,4 +1,4 @@
-/// \file A texture as the stylus meets it, on a plane: what a rendering model reads.
+/// \file A texture on the virtual plane, in the form that a rendering model reads.
 #pragma once
 
 #include "core/plane.hpp"
@@ -14,11 +14,11 @@ namespace touchtrial::engine {
 /// One pixel of a field for the model `paper`, before gains.
 struct FieldSample {
   float surface = 128.0F;  ///< G after the reconstruction filter, grey levels
-  float force_x = 0.0F;    ///< tangential force, grey levels per pixel, to the right
-  float force_y = 0.0F;    ///< the same, downwards in the image
+  float force_x = 0.0F;    ///< tangential force to the right, grey levels per pixel
+  float force_y = 0.0F;    ///< tangential force downwards in the image, grey levels per pixel
 };
 
-/// A field that somebody else owns (a mapped file of a pack, or a TextureField). It holds no name.
+/// A field owned by another object: a mapped file of a pack, or a TextureField. It holds no name.
 /// It has either samples (`paper`) or spline coefficients (`surface`), row-major,
 /// geometry.height_px x geometry.width_px of them; a flat wall without texture has neither.
 struct FieldView {
@@ -26,8 +26,8 @@ struct FieldView {
   std::span<const FieldSample> samples = {};
   /// Coefficients of the cubic B-spline through T after the reconstruction filter, grey levels
   std::span<const float> coefficients = {};
-  /// No surface (or coefficient) is higher than this, grey levels: models need not read the field
-  /// above. Infinite if nobody has looked.
+  /// Upper bound of all surface values (or coefficients), grey levels: a model need not read the
+  /// field above it. Infinite if unknown.
   double highest = std::numeric_limits<double>::infinity();
 
   /// The model that can render the field.
@@ -37,8 +37,9 @@ struct FieldView {
   [[nodiscard]] bool empty() const noexcept { return samples.empty() && coefficients.empty(); }
 };
 
-/// The largest surface or coefficient of a field; not finite if a number of it is not. Reads all
-/// of it. \pre the field is not empty
+/// The largest surface value or coefficient of a field; not finite if any of them is not. Reads the
+/// whole field.
+/// \pre the field is not empty
 [[nodiscard]] double highest_of(FieldView field) noexcept;
 
 /// A field in memory.
@@ -59,13 +60,13 @@ class TextureField {
   double highest_;
 };
 
-/// Builds a field for the options' model from an extracted texture T. `paper`: surface 128 + T,
-/// reconstruction filter, tangential force with the options' neighbourhood. `surface`: the filtered
-/// T as a spline; force planes are not computed. Computed in double, stored as float.
+/// Builds a field for the options' model from an extracted texture T. `paper`: the surface 128 + T
+/// after the reconstruction filter, and its tangential force with the options' neighbourhood.
+/// `surface`: the filtered T as a spline, without force planes. Computed in double, stored as
+/// float. Thread-safe.
 /// \param texture  T, grey levels, finite, at least 1 x 1
 /// \throws std::invalid_argument if the texture is empty or not finite, or pitch, filter or
 ///   neighbourhood is out of range
-/// Thread-safe.
 [[nodiscard]] TextureField make_texture_field(const Plane<double>& texture,
                                               const RenderingOptions& options);
 

@@ -14,10 +14,11 @@ namespace {
 constexpr double kCautiousRelaxation = 1.8;
 constexpr double kEagerRelaxation = 1.5;
 constexpr double kEagerMomentum = 0.3;
-/// Of the image's gradient, at the start.
+/// z starts as this share of the image's gradient.
 constexpr double kFirstShare = 0.5;
 
-/// Spectrum of minus the second difference on a ring of n samples, first `count` coefficients.
+/// The first `count` coefficients of the spectrum of minus the second difference on a ring of n
+/// samples.
 template <typename Real>
 std::vector<Real> ring_laplacian(int n, int count) {
   std::vector<Real> spectrum(static_cast<std::size_t>(count));
@@ -29,7 +30,7 @@ std::vector<Real> ring_laplacian(int n, int count) {
   return spectrum;
 }
 
-/// A row of z, parted into the scaled multiplier b and w.
+/// A row of z, split into the scaled multiplier b and w.
 template <typename Real>
 struct SplitRow {
   explicit SplitRow(std::size_t width) : b_x(width), b_y(width), w_x(width), w_y(width) {}
@@ -97,8 +98,9 @@ TvGaborAdmm<Real>::TvGaborAdmm(const TvGaborProblem<Real>& problem, RealFft<Real
   }
 }
 
-/// Leaves -div target in the transform's plane, row by row, behind the row that is worked on; the
-/// last row is above the first.
+/// Writes -div target into the transform's plane, row by row, each after it has been read; the last
+/// row is above the first.
+/// \param target_row  called as target_row(y) for every row, fills target_x_ and target_y_
 template <typename Real>
 template <typename TargetRow>
 void TvGaborAdmm<Real>::load_targets(const TargetRow& target_row) {
@@ -155,7 +157,8 @@ AdmmResiduals TvGaborAdmm<Real>::measured_step() {
           ratio_of_norms(sums.change_of_w, sums.b)};
 }
 
-/// One step. \param around  called as around(y, map_row) for every row, with what maps it
+/// One step.
+/// \param around  called as around(y, map_row) for every row; calls map_row
 template <typename Real>
 template <typename Around>
 void TvGaborAdmm<Real>::map(double relaxation, double momentum, const Around& around) {
@@ -183,7 +186,7 @@ void TvGaborAdmm<Real>::map(double relaxation, double momentum, const Around& ar
 }
 
 /// The u-step in terms of v = f - u: diagonal in the Fourier basis, and without K = M^-1, so that
-/// frequencies which M removes are exact. Leaves v in the transform's plane.
+/// frequencies that M removes are exact. Writes v into the transform's plane.
 template <typename Real>
 void TvGaborAdmm<Real>::filter() {
   fft_.forward();

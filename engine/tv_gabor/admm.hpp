@@ -5,43 +5,43 @@
 #include "core/plane.hpp"
 #include "engine/fourier/real_fft.hpp"
 #include "engine/tv_gabor/problem.hpp"
-#include "engine/tv_gabor/vector_field.hpp"
 
 #include <span>
 #include <vector>
 
 namespace touchtrial::engine {
 
-/// How eagerly an iteration moves. Each holds alone what it gained; with momentum the relaxation
-/// has to be smaller.
+/// How eagerly an iteration moves: cautious steps relax more and have no momentum, eager ones relax
+/// less and have some.
 enum class AdmmPace { cautious, eager };
 
-/// How far a step was from the fixed point: the changes of the scaled multiplier and of w, each
-/// relative to the size of what it should agree with. The image's gradient is among the sizes: a
-/// cartoon that becomes flat leaves nothing else to compare with. After B. Wohlberg, "ADMM penalty
-/// parameter selection by residual balancing", 2017.
+/// The distance of a step from the fixed point: the changes of the scaled multiplier and of w, each
+/// relative to a reference size. The image's gradient is among the references, because a cartoon
+/// that becomes flat leaves no other. After B. Wohlberg, "ADMM penalty parameter selection by
+/// residual balancing", 2017.
 struct AdmmResiduals {
   double primal = 0.0;  ///< |change of b| / max(|w|, |grad f|)
   double dual = 0.0;    ///< |change of w| / |b|
 };
 
-/// The iteration's state is one field, z = w + b: the multiplier b, scaled, is z with its vectors
-/// shortened to 1 / penalty, and w, which becomes the cartoon's gradient, is the rest. Works on the
-/// texture v and not on the cartoon u: the image enters by its gradient alone, which is exact, so
-/// that rounding is relative to the texture and not to the image's 255 grey levels. (Float needs
-/// that: an error of u reaches v multiplied by penalty / lambda, about 100.)
-/// A step reads and writes each plane once beside its two transforms. Takes 30 bytes a sample of
-/// the torus in float with problem and transform, 60 in double.
+/// The iteration's state is one field, z = w + b: the scaled multiplier b is z with its vectors
+/// shortened to 1 / penalty, and w, which becomes the cartoon's gradient, is the rest. The
+/// iteration works on the texture v, not on the cartoon u: the image enters through its gradient
+/// only, which is exact, so that rounding is relative to the texture and not to the image's 255
+/// grey levels. (Float needs that: an error of u reaches v multiplied by penalty / lambda, about
+/// 100.) Besides its two transforms, a step reads and writes each plane once. Memory with problem
+/// and transform: 30 bytes a sample of the torus in float, 60 in double.
 template <typename Real>
 class TvGaborAdmm {
  public:
-  /// Starts at z = grad f / 2. Keeps references to both arguments; the transform has the image's
-  /// size and is also used by others between steps, see start_again().
+  /// Starts at z = grad f / 2. Keeps references to problem and transform; others may use the
+  /// transform between steps, see start_again().
+  /// \param fft  of the problem's size
   /// \param penalty  rho, 1 / grey levels, > 0
   TvGaborAdmm(const TvGaborProblem<Real>& problem, RealFft<Real>& fft, double penalty);
 
-  /// start_again() comes before the first step, and before any step after which others used the
-  /// transform, or the penalty or z changed. It forgets the momentum.
+  /// Call this before the first step, and again before a step if others have used the transform, or
+  /// the penalty or z has changed. Forgets the momentum.
   void start_again();
   void step(AdmmPace pace);
   /// A step without momentum, with its residuals.
@@ -50,7 +50,7 @@ class TvGaborAdmm {
   /// Changes the penalty, keeping w and the unscaled multiplier.
   void set_penalty(double penalty);
 
-  /// Takes over an iteration on the same image in another precision.
+  /// Continues an iteration on the same image from another precision.
   template <typename Other>
   void resume(const VectorField<Other>& z, double penalty) {
     penalty_ = penalty;
@@ -59,7 +59,7 @@ class TvGaborAdmm {
   }
 
   [[nodiscard]] double penalty() const noexcept { return penalty_; }
-  /// penalty() * z, shortened to 1 where it is longer, is minus a dual point.
+  /// Minus a dual point is penalty() * z, with vectors longer than 1 shortened to 1.
   [[nodiscard]] const VectorField<Real>& z() const noexcept { return z_; }
 
  private:

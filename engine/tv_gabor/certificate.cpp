@@ -11,7 +11,7 @@
 namespace touchtrial::engine {
 namespace {
 
-/// Rows of q = -p, made when they are wanted: the field itself keeps what the solver needs.
+/// Rows of q = -p, computed on demand: the field itself stays as the solver needs it.
 template <typename Real>
 class DualRows {
  public:

@@ -1,16 +1,46 @@
-/// \file What TV-Gabor minimises: J(u) + (lambda / 2) <f - u, K (f - u)> over u, on a torus.
+/// \file What TV-Gabor minimises: J(u) + (lambda / 2) <f - u, K (f - u)> over u, on a torus. The
+/// torus, the operator M = K^-1, and gradient and divergence on the torus.
 /// Source: docs/method.md, "TV-Gabor".
 #pragma once
 
 #include "core/plane.hpp"
 #include "engine/extraction.hpp"
 
+#include <cstddef>
+#include <span>
+
 namespace touchtrial::engine {
+
+/// Samples of the torus before the image on each axis; at least as many follow it.
+inline constexpr int kTorusMargin = 16;
+
+/// The smallest even length >= n + 2 * kTorusMargin with no prime factor above 7, quick for any FFT
+/// (500 -> 540).
+/// \param n  length of an image axis, >= 1
+[[nodiscard]] int torus_length(int n);
+
+/// The image with mirrored margins: torus_length on each axis, kTorusMargin samples before it.
+template <typename Real>
+[[nodiscard]] Plane<Real> extended_to_torus(const GreyImage& image);
+
+/// The part of a torus plane that belongs to an image of the given shape.
+template <typename Real>
+[[nodiscard]] Plane<Real> cropped_from_torus(const Plane<Real>& torus, int height, int width);
+
+/// The spectrum of M, which decides which oscillations count as texture: the sum over the
+/// components of |g^|^2, scaled so that its maximum is 1, where g is an 11 x 11 even Gabor patch of
+/// standard deviation 2 px minus its own mean. Non-negative by construction, and zero at frequency
+/// zero.
+/// \param components  at least one, each with a frequency in (0, 0.5] and a finite direction
+/// \param height,width  of the torus, >= 11
+/// \return height x (width / 2 + 1), in the layout of RealFft's spectrum
+[[nodiscard]] Plane<double> gabor_spectrum(std::span<const GaborComponent> components, int height,
+                                           int width);
 
 template <typename Real>
 struct TvGaborProblem {
   Plane<Real> image;     ///< f, grey levels
-  Plane<Real> spectrum;  ///< of M = K^-1, in [0, 1], in the layout of RealFft's spectrum
+  Plane<Real> spectrum;  ///< of M, in [0, 1], as gabor_spectrum gives it
   double lambda;         ///< weight of the texture norm
 };
 
@@ -23,5 +53,36 @@ template <typename Real>
 /// The mean of |grad f|, grey levels per pixel; more than 0 unless the image is flat.
 template <typename Real>
 [[nodiscard]] double mean_gradient(const Plane<Real>& torus);
+
+/// A vector at each place of the torus: its components along columns and along rows.
+template <typename Real>
+struct VectorField {
+  VectorField(int height, int width) : x(height, width), y(height, width) {}
+
+  Plane<Real> x;
+  Plane<Real> y;
+};
+
+/// The gradient of one row by forward differences: to the right neighbour (the last sample's is the
+/// first) and to the row below. All spans have the torus' width, at least 1.
+template <typename Real>
+void gradient_of_row(std::span<const Real> row, std::span<const Real> below,
+                     std::span<Real> along_x, std::span<Real> along_y) noexcept {
+  const std::size_t last = row.size() - 1;
+  for (std::size_t x = 0; x < last; ++x) along_x[x] = row[x + 1] - row[x];
+  along_x[last] = row[0] - row[last];
+  for (std::size_t x = 0; x <= last; ++x) along_y[x] = below[x] - row[x];
+}
+
+/// out = -div field for one row: the adjoint of the gradient.
+/// \param above  along_y of the row above
+template <typename Real>
+void negative_divergence_of_row(std::span<const Real> along_x, std::span<const Real> along_y,
+                                std::span<const Real> above, std::span<Real> out) noexcept {
+  out[0] = (along_x.back() - along_x[0]) + (above[0] - along_y[0]);
+  for (std::size_t x = 1; x < out.size(); ++x) {
+    out[x] = (along_x[x - 1] - along_x[x]) + (above[x] - along_y[x]);
+  }
+}
 
 }  // namespace touchtrial::engine

@@ -65,7 +65,8 @@ HWY_INLINE V mapped(V u, V z, V b, V relaxation) {
   return hn::Add(hn::MulAdd(relaxation, hn::Sub(u, w), w), b);
 }
 
-/// Samples i .. of a row, as many as d has lanes; `right` is the distance to the right neighbour.
+/// Maps as many samples of a row as d has lanes, from i on; `right` is the distance to the right
+/// neighbour.
 template <class D, typename Real>
 HWY_INLINE void map_samples(D d, const AdmmRow<Real>& row, const AdmmNumbers<Real>& numbers,
                             std::size_t i, std::ptrdiff_t right) {

@@ -1,13 +1,13 @@
-/// \file What the TV-Gabor solvers do to one row, on the best instruction set of the machine.
-/// Real is float or double. Pointers of one call must not overlap unless said.
+/// \file The TV-Gabor solvers' kernels for one row, on the best instruction set of the machine.
+/// Real is float or double. Pointers of one call must not overlap unless stated otherwise.
 #pragma once
 
 #include <cstddef>
 
 namespace touchtrial::engine {
 
-/// One row of the ADMM map; see TvGaborAdmm. All have `width` samples but for `image_below` and so
-/// on, which are the rows below on the torus.
+/// One row of the ADMM map; see TvGaborAdmm. Each pointer leads to `width` samples; `image_below`
+/// and `texture_below` are the next row on the torus.
 template <typename Real>
 struct AdmmRow {
   const Real* image;
@@ -16,7 +16,7 @@ struct AdmmRow {
   const Real* texture_below;
   Real* z_x;  ///< in and out
   Real* z_y;
-  Real* former_x;  ///< the map's former value, in and out
+  Real* former_x;  ///< the map's previous value, in and out
   Real* former_y;
   Real* target_x;  ///< out: grad f - z + 2 clip(z)
   Real* target_y;
@@ -26,17 +26,17 @@ template <typename Real>
 struct AdmmNumbers {
   Real relaxation;
   Real limit;     ///< of |b|, 1 / penalty
-  Real momentum;  ///< share of the last change that is added again
+  Real momentum;  ///< share of the last change to add again
 };
 
 template <typename Real>
 void admm_row(const AdmmRow<Real>& row, std::size_t width, const AdmmNumbers<Real>& numbers);
 
-/// target = grad f - z + 2 clip(z) of a row; texture and former are not looked at.
+/// target = grad f - z + 2 clip(z) of a row; texture and former are not read.
 template <typename Real>
 void admm_target_row(const AdmmRow<Real>& row, std::size_t width, Real limit);
 
-/// out = the nearest point with norm <= 1 to scale * (x, y). The outputs may be the inputs.
+/// out = the point with norm <= 1 nearest to scale * (x, y). The outputs may be the inputs.
 template <typename Real>
 void clip_row(const Real* x, const Real* y, std::size_t width, Real scale, Real* out_x,
               Real* out_y);

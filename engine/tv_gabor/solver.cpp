@@ -1,16 +1,60 @@
 #include "engine/tv_gabor/solver.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace touchtrial::engine {
 namespace {
 
-/// The gap should fall to this share of itself within this many checks.
+/// First penalty, in units of the inverse mean gradient.
+constexpr double kFirst = 6.0;
+constexpr double kFall = 0.86;
+constexpr int kChecksOfFall = 20;
+
+/// Primal residuals count six times: equal residuals leave the penalty too small for the gap.
+constexpr double kPrimalEmphasis = 6.0;
+/// Ratios of residuals up to this count as balanced.
+constexpr double kDeadBand = 1.2;
+/// One correction changes the penalty at most by this factor.
+constexpr double kMostChange = 4.0;
+/// The penalty stays within this factor of the first, either way.
+constexpr double kRange = 1e4;
+
+/// Momentum pauses after a check that finds more than this share of the last gap left.
+constexpr double kHardlyAnyProgress = 0.95;
+
+/// A solver stalls unless the gap falls to this share of itself within this many checks.
 constexpr double kShareLeft = 0.7;
 constexpr std::size_t kChecksToFall = 5;
 
 }  // namespace
+
+PenaltySchedule::PenaltySchedule(double mean_gradient)
+    : first_penalty_(kFirst / mean_gradient), penalty_(first_penalty_) {}
+
+bool PenaltySchedule::wants_residuals() const noexcept {
+  return checks_ >= kChecksOfFall;
+}
+
+void PenaltySchedule::next(double gap, const AdmmResiduals& residuals) {
+  ++checks_;
+  pace_ =
+      checks_ > 1 && gap > kHardlyAnyProgress * last_gap_ ? AdmmPace::cautious : AdmmPace::eager;
+  last_gap_ = gap;
+  if (checks_ <= kChecksOfFall) {
+    penalty_ *= kFall;
+  } else {
+    balance(residuals);
+  }
+}
+
+void PenaltySchedule::balance(const AdmmResiduals& residuals) {
+  const double ratio = kPrimalEmphasis * residuals.primal / residuals.dual;
+  if (!(ratio > kDeadBand || ratio < 1.0 / kDeadBand)) return;  // balanced, or not a number
+  const double factor = std::clamp(std::sqrt(ratio), 1.0 / kMostChange, kMostChange);
+  penalty_ = std::clamp(penalty_ * factor, first_penalty_ / kRange, first_penalty_ * kRange);
+}
 
 template <typename Real>
 TvGaborSolver<Real>::TvGaborSolver(const GreyImage& image, const TvGaborOptions& options)
@@ -27,14 +71,15 @@ SolverStop TvGaborSolver<Real>::run(int max_steps, Patience patience) {
   while (steps_ < max_steps) {
     step_to_check(max_steps);
     if (certificate_.gap <= wanted_gap_) return SolverStop::converged;
-    // Without steps left there is nothing to go on with, so this is the end, not a stall.
+    // Without steps left nobody can continue: the steps are exhausted, not stalled.
     const bool may_stall = patience == Patience::limited && steps_ < max_steps;
     if (may_stall && is_stalled()) return SolverStop::stalled;
   }
   return SolverStop::exhausted;
 }
 
-/// Certifying costs as much as a step; the penalty changes only then.
+/// Certifies after every tenth step, because it costs as much as one; only then does the penalty
+/// change.
 template <typename Real>
 void TvGaborSolver<Real>::step_to_check(int last) {
   const int left = PenaltySchedule::kStepsBetweenChecks;
@@ -44,7 +89,7 @@ void TvGaborSolver<Real>::step_to_check(int last) {
   if (schedule_.wants_residuals()) {
     residuals = admm_.measured_step();
   } else {
-    admm_.step(AdmmPace::cautious);  // momentum without a pause can go round in circles
+    admm_.step(AdmmPace::cautious);  // uninterrupted momentum can go round in circles
   }
   ++steps_;
   certificate_ = certify(problem_, admm_.z(), admm_.penalty(), fft_);

@@ -1,4 +1,4 @@
-/// \file The course of a TV-Gabor decomposition: steps, checks, a penalty that follows a schedule.
+/// \file The course of a TV-Gabor decomposition: steps, checks, and the schedule of the penalty.
 /// Source: docs/method.md, "TV-Gabor".
 #pragma once
 
@@ -7,28 +7,61 @@
 #include "engine/fourier/real_fft.hpp"
 #include "engine/tv_gabor/admm.hpp"
 #include "engine/tv_gabor/certificate.hpp"
-#include "engine/tv_gabor/penalty_schedule.hpp"
 #include "engine/tv_gabor/problem.hpp"
 
 #include <vector>
 
 namespace touchtrial::engine {
 
+/// The penalty of the iteration, check by check. It starts high and falls by the same factor at
+/// each of 20 checks, which suits photographs: they converge meanwhile. From then on it balances
+/// the residuals of the others, mostly drawings. (Balanced from the start, photographs take up to
+/// twice as many steps.)
+class PenaltySchedule {
+ public:
+  static constexpr int kStepsBetweenChecks = 10;
+
+  /// \param mean_gradient  of the image, > 0: the penalty's natural unit is its inverse
+  explicit PenaltySchedule(double mean_gradient);
+
+  /// Call after every check.
+  /// \param gap  >= 0
+  /// \param residuals  of the last step
+  void next(double gap, const AdmmResiduals& residuals);
+
+  /// Whether the next check needs residuals.
+  [[nodiscard]] bool wants_residuals() const noexcept;
+  [[nodiscard]] double penalty() const noexcept { return penalty_; }
+  /// Eager, unless the last check showed hardly any progress.
+  [[nodiscard]] AdmmPace pace() const noexcept { return pace_; }
+
+ private:
+  void balance(const AdmmResiduals& residuals);
+
+  double first_penalty_;
+  double penalty_;
+  double last_gap_ = 0.0;
+  AdmmPace pace_ = AdmmPace::eager;
+  int checks_ = 0;
+};
+
+/// Why a run stopped.
 enum class SolverStop {
   converged,  ///< the gap is small enough
   exhausted,  ///< no steps are left
-  stalled,    ///< the gap no longer shrinks as it should
+  stalled,    ///< the gap hardly shrinks any more
 };
 
-/// Whether a run may end because the gap no longer shrinks.
+/// Whether a run may stop because the gap hardly shrinks any more.
 enum class Patience { limited, unlimited };
 
 template <typename Real>
 class TvGaborSolver {
  public:
-  /// \param image  not flat, not empty \param options  max_steps does not count
+  /// \param image  neither flat nor empty
+  /// \param options  max_steps has no effect
   TvGaborSolver(const GreyImage& image, const TvGaborOptions& options);
-  /// Goes on where a solver of the same image and options, of another precision, stopped.
+  /// Continues where a solver of the same image and options, but of another precision, stopped.
   template <typename Other>
   TvGaborSolver(const GreyImage& image, const TvGaborOptions& options, const VectorField<Other>& z,
                 const PenaltySchedule& schedule, int steps)
@@ -42,15 +75,15 @@ class TvGaborSolver {
   TvGaborSolver(const TvGaborSolver&) = delete;
   TvGaborSolver& operator=(const TvGaborSolver&) = delete;
 
-  /// Takes steps until one of the reasons to stop holds; the certificate is then that of the last
-  /// one. \param max_steps  after which no steps are left
+  /// Takes steps until there is a reason to stop; the certificate is then that of the last step.
+  /// \param max_steps  the number of steps() at which they are exhausted
   [[nodiscard]] SolverStop run(int max_steps, Patience patience);
 
   /// Texture on the torus and gap at the last check; empty before the first.
   [[nodiscard]] const TvGaborCertificate<Real>& certificate() const noexcept {
     return certificate_;
   }
-  /// Steps taken, those of the former solver among them.
+  /// Steps taken, including those of the solver that this one continues.
   [[nodiscard]] int steps() const noexcept { return steps_; }
   [[nodiscard]] const VectorField<Real>& z() const noexcept { return admm_.z(); }
   [[nodiscard]] const PenaltySchedule& schedule() const noexcept { return schedule_; }
@@ -65,7 +98,7 @@ class TvGaborSolver {
   PenaltySchedule schedule_;
   TvGaborAdmm<Real> admm_;
   TvGaborCertificate<Real> certificate_;
-  std::vector<double> gaps_;  // at every check of this solver
+  std::vector<double> gaps_;  // of this solver, at every check
   int steps_ = 0;
 };
 

@@ -1,24 +1,70 @@
 #include "engine/tv_gabor/tv_gabor.hpp"
 
-#include "engine/tv_gabor/domain.hpp"
+#include "engine/fourier/real_fft.hpp"
 #include "engine/tv_gabor/solver.hpp"
-#include "engine/tv_gabor/spectral_peak.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <complex>
+#include <cstddef>
+#include <numbers>
+#include <numeric>
 #include <optional>
+#include <span>
 #include <stdexcept>
+#include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 namespace touchtrial::engine {
 namespace {
+
+/// Frequencies of components, cycles per pixel: below lies shading, above little but the pixel
+/// grid.
+constexpr double kLowestPeakFrequency = 0.04;
+constexpr double kHighestPeakFrequency = 0.45;
+
+/// sin^2(pi (n + 0.5) / N).
+std::vector<double> hann_window(int length) {
+  std::vector<double> window(static_cast<std::size_t>(length));
+  for (int n = 0; n < length; ++n) {
+    const double s = std::sin(std::numbers::pi * (n + 0.5) / length);
+    window[static_cast<std::size_t>(n)] = s * s;
+  }
+  return window;
+}
+
+void load_windowed(const GreyImage& image, std::span<double> plane) {
+  const double mean = std::accumulate(image.samples().begin(), image.samples().end(), 0.0) /
+                      static_cast<double>(image.size());
+  const std::vector<double> along_y = hann_window(image.height());
+  const std::vector<double> along_x = hann_window(image.width());
+  std::size_t i = 0;
+  for (const double weight_y : along_y) {
+    for (const double weight_x : along_x) {
+      plane[i] = weight_y * weight_x * (image.samples()[i] - mean);
+      ++i;
+    }
+  }
+}
+
+GaborComponent component_at(double frequency_x, double frequency_y) {
+  const double degrees = std::atan2(frequency_y, frequency_x) * 180.0 / std::numbers::pi;
+  return {std::hypot(frequency_x, frequency_y), degrees < 0.0 ? degrees + 180.0 : degrees};
+}
+
+bool in_range(const GaborComponent& component) {
+  return component.frequency_cycles_per_px >= kLowestPeakFrequency &&
+         component.frequency_cycles_per_px <= kHighestPeakFrequency;
+}
 
 bool is_flat(const GreyImage& image) {
   return std::all_of(image.samples().begin(), image.samples().end(),
                      [&](auto sample) { return sample == image.samples().front(); });
 }
 
-/// \return all but the cartoon and the components
+/// The result without the cartoon and the components.
 template <typename Real, typename Precision>
 TvGaborResult<Real> result_of(const TvGaborSolver<Precision>& solver, SolverStop stop,
                               const GreyImage& image) {
@@ -28,9 +74,9 @@ TvGaborResult<Real> result_of(const TvGaborSolver<Precision>& solver, SolverStop
           stop == SolverStop::converged};
 }
 
-/// Float goes as far as its digits carry, double takes over if that is not far enough: rounding of
-/// the texture reaches the multiplier at every step, and shows in the gap of images with large
-/// smooth parts, whose gradients are small.
+/// Float goes as far as its digits allow, and double continues if that is not enough: the texture's
+/// rounding reaches the multiplier at every step, and shows in the gap of images with large smooth
+/// parts, whose gradients are small.
 template <typename Real>
 TvGaborResult<Real> solved(const GreyImage& image, const TvGaborOptions& options) {
   if constexpr (std::is_same_v<Real, double>) {
@@ -43,19 +89,40 @@ TvGaborResult<Real> solved(const GreyImage& image, const TvGaborOptions& options
     const VectorField<float> z = solver->z();
     const PenaltySchedule schedule = solver->schedule();
     const int steps = solver->steps();
-    solver.reset();  // before double's larger planes are there
+    solver.reset();  // frees its memory before double's larger planes need some
     TvGaborSolver<double> finisher(image, options, z, schedule, steps);
     return result_of<float>(finisher, finisher.run(options.max_steps, Patience::unlimited), image);
   }
 }
 
-/// The options with the components that are meant.
-TvGaborOptions resolved(const GreyImage& image, TvGaborOptions options) {
-  if (options.automatic) options.components = {strongest_component(image)};
-  return options;
-}
-
 }  // namespace
+
+GaborComponent strongest_component(const GreyImage& image) {
+  if (image.empty()) throw std::invalid_argument("strongest_component: the image is empty");
+  const int height = image.height();
+  const int width = image.width();
+  RealFft<double> fft(height, width);
+  load_windowed(image, fft.plane());
+  fft.forward();
+  std::optional<GaborComponent> strongest;
+  double most = -1.0;
+  std::size_t i = 0;
+  for (int y = 0; y < height; ++y) {
+    const double frequency_y = static_cast<double>(2 * y <= height ? y : y - height) / height;
+    for (int x = 0; x <= width / 2; ++x, ++i) {
+      const GaborComponent component = component_at(static_cast<double>(x) / width, frequency_y);
+      const double power = std::norm(fft.spectrum()[i]);
+      if (!in_range(component) || power <= most) continue;
+      most = power;
+      strongest = component;
+    }
+  }
+  if (!strongest) {
+    throw std::invalid_argument("components: auto needs an image of 3 px or more, not " +
+                                std::to_string(width) + " x " + std::to_string(height));
+  }
+  return *strongest;
+}
 
 template <typename Real>
 TvGaborResult<Real> tv_gabor(const GreyImage& image, const TvGaborOptions& options) {
@@ -64,7 +131,8 @@ TvGaborResult<Real> tv_gabor(const GreyImage& image, const TvGaborOptions& optio
   if (is_flat(image)) {
     result.texture = Plane<Real>(image.height(), image.width());
   } else {
-    TvGaborOptions explicit_options = resolved(image, options);
+    TvGaborOptions explicit_options = options;
+    if (options.automatic) explicit_options.components = {strongest_component(image)};
     result = solved<Real>(image, explicit_options);
     result.components = std::move(explicit_options.components);
   }

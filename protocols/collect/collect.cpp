@@ -1,10 +1,7 @@
 #include "protocols/collect/collect.hpp"
 
-#include "core/errors.hpp"
-#include "protocols/collect/station_course.hpp"
 #include "protocols/store/collected_draft.hpp"
-#include "protocols/store/damaged_store.hpp"
-#include "protocols/store/event_fault.hpp"
+#include "protocols/store/damage.hpp"
 #include "protocols/store/payload_json.hpp"
 
 #include <algorithm>
@@ -19,6 +16,7 @@ namespace {
 /// A station and the chain that was read from it, in order.
 struct Station {
   store::StationChain chain;
+  store::FileChain says;  ///< what the chain says
   std::unique_ptr<StationFile> file;
 };
 
@@ -26,7 +24,7 @@ struct Station {
   throw StoreError(one_line(text));
 }
 
-/// Calls `work`; what does not hold in the station comes out as StoreError with its name.
+/// Calls `work`; faults of the station come out as DamagedStore with its name.
 template <typename Work>
 void named(const std::string& station, Work&& work) {
   try {
@@ -38,13 +36,15 @@ void named(const std::string& station, Work&& work) {
 }
 
 Station read_station(std::unique_ptr<StationFile> file) {
-  Station station{.chain = {.name = file->name(), .events = file->file_chain()}, .file = nullptr};
-  named(station.chain.name, [&] { store::check_file_chain(station.chain.events); });
+  Station station;
+  station.chain = {.name = file->name(), .events = file->file_chain()};
+  named(station.chain.name,
+        [&] { station.says = store::checked_file_chain(station.chain.events); });
   station.file = std::move(file);
   return station;
 }
 
-/// Which session an event of a file chain is about, in words; empty if none.
+/// The session that an event of a file chain opens, or its kind, in words.
 std::string about(const store::Event& event) {
   if (event.kind == store::EventKind::session_opened) {
     const store::SessionOpenedBody body = store::session_opened_from_json(event.body);
@@ -53,7 +53,7 @@ std::string about(const store::Event& event) {
   return fmt::format(" ({})", store::name_of(event.kind));
 }
 
-/// Of two copies of one station's file the one that went further.
+/// Keeps the copy of a station's file that went further.
 /// \throws StoreError if each went on by itself
 void keep_further(Station& kept, Station& other, CollectReport& report) {
   const std::vector<store::Event>& a = kept.chain.events;
@@ -94,7 +94,7 @@ std::vector<Station> distinct(Stations files, CollectReport& report) {
   return stations;
 }
 
-/// What the collected study is, while its sessions come in.
+/// The collected study while its sessions come in.
 class Collecting {
  public:
   Collecting(Stations files, store::CollectedDraft draft, CollectReport& report)
@@ -106,7 +106,7 @@ class Collecting {
     report.stations = static_cast<int>(stations_.size());
     report.sessions = static_cast<int>(places_.size());
     for (const store::SessionPlace& place : chain.left_out) {
-      report.left_out.push_back(left_out(chains, place));
+      report.left_out.push_back(left_out(place));
     }
   }
 
@@ -129,7 +129,7 @@ class Collecting {
 
   store::StudyStore finished(TraceUse traces) && {
     if (traces == TraceUse::copied) return std::move(draft_).finished();
-    // StudyStore asks from one thread at a time, as a station may be asked.
+    // A station may be asked from one thread at a time, and so may StudyStore.
     const auto files = std::make_shared<std::vector<Station>>(std::move(stations_));
     return std::move(draft_).finished(
         [files, places = std::move(places_)](int session,
@@ -146,14 +146,13 @@ class Collecting {
  private:
   StationFile& file(int station) { return *stations_[static_cast<std::size_t>(station) - 1].file; }
 
-  static SessionLeftOut left_out(const std::vector<store::StationChain>& chains,
-                                 const store::SessionPlace& place) {
-    const store::StationChain& chain = chains[static_cast<std::size_t>(place.station) - 1];
-    const SessionCourse course = courses_of(chain.events).at(place.own_session);
-    return {.station = chain.name,
+  [[nodiscard]] SessionLeftOut left_out(const store::SessionPlace& place) const {
+    const Station& station = stations_[static_cast<std::size_t>(place.station) - 1];
+    const store::SessionOnFile& session = station.says.sessions().at(place.own_session);
+    return {.station = station.file->name(),
             .session = place.own_session,
-            .participant = course.opened.participant,
-            .cut_short = is_cut_short(course)};
+            .participant = session.opened.participant,
+            .cut_short = session.is_cut_short()};
   }
 
   store::CollectedDraft draft_;
@@ -183,6 +182,27 @@ store::StudyStore collected_for_reading(Stations stations, const std::string& na
   CollectReport unread;
   return collected(std::move(stations), store::CollectedDraft::temporary(name), traces,
                    report == nullptr ? unread : *report, progress);
+}
+
+store::StudyStore open_study(const std::string& where, TraceUse traces) {
+  if (!is_address(where)) {
+    return store::StudyStore::open(where, store::StudyStore::Access::read_only);
+  }
+  const ServerAddress address(where);
+  if (traces == TraceUse::fetched) {
+    return collected_for_reading(stations_of_server(address), address.shown(), traces);
+  }
+  // A reader who wants all of it also wants the derived tables checked.
+  DerivedTables derived;
+  store::StudyStore study =
+      collected_for_reading(stations_of_server(address, &derived), address.shown(), traces);
+  derived(study);
+  return study;
+}
+
+std::string study_name(const std::string& where) {
+  if (is_address(where)) return ServerAddress(where).shown();
+  return std::filesystem::path(where).filename().string();
 }
 
 }  // namespace touchtrial::collect

@@ -1,25 +1,22 @@
-/// \file Several stations' files made one: the collected study. Source: docs/several-stations.md,
-/// docs/decisions/0041.
+/// \file Several stations' files made one, the collected study; and a study opened for reading, in
+/// a file or on a server. Source: docs/several-stations.md, docs/decisions/0041.
 #pragma once
 
-#include "protocols/collect/station_file.hpp"
+#include "protocols/collect/stations.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <filesystem>
 #include <functional>
-#include <memory>
 #include <string>
 #include <vector>
 
 namespace touchtrial::collect {
 
-/// Whether traces are taken along, or asked of the station when somebody wants one (the sources
-/// then live as long as the collected study).
+/// Whether traces are copied, or fetched from the station when they are asked for (the sources then
+/// live as long as the collected study).
 enum class TraceUse { copied, fetched };
 
-using Stations = std::vector<std::unique_ptr<StationFile>>;
-
-/// Called with how many sessions are collected, and how many there are.
+/// Called with the number of sessions collected so far and the number of all.
 using CollectProgress = std::function<void(int, int)>;
 
 /// A session that is not in the collected study, because it has not ended.
@@ -27,7 +24,7 @@ struct SessionLeftOut {
   std::string station;  ///< StationFile::name
   int session = 0;      ///< its number there
   std::string participant;
-  /// Replaced or withdrawn before it ended: it cannot go on, and is in no collected study.
+  /// Replaced or withdrawn before it ended: it cannot go on, and will be in no collected study.
   bool cut_short = false;
 };
 
@@ -39,29 +36,38 @@ struct CollectReport {
   std::vector<std::string> superfluous;
 };
 
-/// Collects into a new file. What is made is a function of the stations' content alone, whatever
-/// their order and names. One station may be given several times: the furthest copy counts. All or
-/// nothing: the file gets its name when it is whole and on the disk.
-/// Time: each session is read, checked and written once; one trace is in memory at a time.
+/// Collects into a new file. Its content depends on the stations' content alone, and not on their
+/// order and names. A station may be given several times: the copy that went furthest counts. All
+/// or nothing: the file gets its name when it is whole and on the disk. Time: each session is read,
+/// checked and written once; one trace is in memory at a time.
 /// \throws DamagedStore, naming station and session, if anything in the stations does not hold
 /// \throws StoreError, naming station and session, if the target exists or cannot be written, the
-///   stations are not of one study and kind, a participant or an enrolment number is taken in two
-///   of them, or two copies of one went on differently
+///   stations are not of one study and kind, two of them used one participant id or enrolment
+///   number, or two copies of one station went on differently
 CollectReport collect_into_file(Stations stations, const std::filesystem::path& target,
                                 const CollectProgress& progress = {});
 
-/// The same for reading, in a private temporary database that no other program sees and that is
+/// Collects for reading, into a private temporary database that no other program sees and that is
 /// gone with the store, or with the program.
-/// \param name  of the whole, for messages  \param report  may be null
+/// \param name  of the whole, for messages
+/// \param report  may be null
+/// \throws the same
 [[nodiscard]] store::StudyStore collected_for_reading(Stations stations, const std::string& name,
                                                       TraceUse traces,
                                                       CollectReport* report = nullptr,
                                                       const CollectProgress& progress = {});
 
-/// The station that an SQLite file is, or the stations that were collected into it.
-/// \throws DamagedStore, naming file and session, if it is damaged or was tampered with
-/// \throws StoreError if it is missing, of an older schema (and how to bring it forward), or a
-///   collected file that went on by itself
-[[nodiscard]] Stations stations_of_file(const std::filesystem::path& database);
+/// Opens a database file as StudyStore::open does for reading, or collects all stations of a server
+/// into a private temporary database.
+/// \param where  a path, or a postgresql:// address
+/// \param traces  for a server: `copied` if the reader wants all traces
+/// \throws what StudyStore::open throws; also what ServerAddress, stations_of_server and
+///   collected_for_reading throw
+[[nodiscard]] store::StudyStore open_study(const std::string& where,
+                                           TraceUse traces = TraceUse::fetched);
+
+/// The name of a study in reports: of its file, or the address of its server without the user.
+/// \throws what ServerAddress throws
+[[nodiscard]] std::string study_name(const std::string& where);
 
 }  // namespace touchtrial::collect

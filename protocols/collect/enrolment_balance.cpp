@@ -18,7 +18,7 @@ bool uneven(const Counts& counts, CountOf count_of) {
 }
 
 void add_gaps(EnrolmentBalance& balance, const std::set<int>& taken) {
-  // A number may be absurdly high: only what is listed is counted through.
+  // The highest number may be absurd, so the loop below ends with the list.
   const auto below = std::distance(taken.begin(), taken.lower_bound(balance.highest));
   balance.gap_count = std::max(balance.highest - 1, 0) - static_cast<int>(below);
   for (int number = 1; number < balance.highest && balance.gaps.size() < kMostGaps; ++number) {

@@ -1,5 +1,4 @@
-/// \file Whether a study's places fill evenly: over its stations, the order of enrolment, and the
-/// orders of methods.
+/// \file Whether a study fills evenly: over its stations, enrolment numbers, and orders of methods.
 #pragma once
 
 #include "protocols/store/study_store.hpp"
@@ -11,7 +10,7 @@
 
 namespace touchtrial::collect {
 
-/// One session, as far as balance goes.
+/// One session, as far as it matters for balance.
 struct EnrolledSession {
   int station = 0;  ///< from 1
   int enrolment = 0;
@@ -21,12 +20,13 @@ struct EnrolledSession {
 };
 
 struct EnrolmentBalance {
-  /// Of sessions that are complete and count, by station; a station may have 0.
+  /// Number of sessions that are complete and count, by station; a station may have 0.
   std::map<int, int> stations;
   std::map<int, std::string> names;  ///< of stations' files, where they are known
-  /// The same by row of the methods' orders (enrolment mod rows); each row is there.
+  /// The same by row of the methods' orders (enrolment mod rows), for every row.
   std::vector<int> rows;
-  /// Numbers below the highest that no session that counts has, ascending; at most kMostGaps.
+  /// Enrolment numbers below the highest without a complete session that counts, ascending; at most
+  /// kMostGaps.
   std::vector<int> gaps;
   int gap_count = 0;
   int highest = 0;  ///< enrolment number, of all sessions
@@ -39,8 +39,8 @@ inline constexpr std::size_t kMostGaps = 20;
 [[nodiscard]] EnrolmentBalance enrolment_balance(std::span<const EnrolledSession> sessions,
                                                  int method_rows);
 
-/// One line each for what is uneven: rows or stations that differ by more than one session, numbers
-/// that were passed over. Empty: nothing.
+/// One line for each imbalance: rows or stations that differ by more than one session, and gaps in
+/// the enrolment numbers.
 [[nodiscard]] std::vector<std::string> imbalances(const EnrolmentBalance& balance);
 
 }  // namespace touchtrial::collect

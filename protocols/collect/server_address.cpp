@@ -15,8 +15,8 @@ namespace {
 
 using Parameters = std::map<std::string, std::string>;
 
-/// What is said unless the address says otherwise. A server that cannot be reached, or a cable that
-/// was pulled, is noticed within about half a minute.
+/// Settings that hold unless the address says otherwise. With them an unreachable server or a
+/// pulled cable is noticed within about half a minute.
 constexpr std::array<std::pair<const char*, const char*>, 6> kDefaults = {{
     {"fallback_application_name", "touchtrial"},
     {"keepalives_idle", "15"},
@@ -26,7 +26,7 @@ constexpr std::array<std::pair<const char*, const char*>, 6> kDefaults = {{
     {"client_encoding", "UTF8"},
 }};
 
-/// libpq's own complaint repeats the address, and is not passed on.
+/// Does not pass on libpq's own complaint, which repeats the address.
 Parameters parsed(const std::string& where) {
   const bool ours = where.starts_with("postgresql://") || where.starts_with("postgres://");
   using Options = std::unique_ptr<PQconninfoOption, decltype(&PQconninfoFree)>;
@@ -55,7 +55,7 @@ void refuse_passwords(const Parameters& parameters) {
   }
 }
 
-/// As libpq reads it: in single quotes, with these and backslashes escaped.
+/// A value for libpq: in single quotes, with quotes and backslashes escaped.
 std::string quoted(const std::string& value) {
   std::string text = "'";
   for (const char character : value) {
@@ -102,7 +102,7 @@ ServerAddress::ServerAddress(const std::string& where) {
   refuse_passwords(parameters);
   shown_ = shown_of(parameters);
   for (const auto& [name, value] : kDefaults) parameters.emplace(name, value);
-  // An empty setting in the environment is libpq's business as well.
+  // libpq also reads a setting of the environment that is empty.
   if (std::getenv("PGCONNECT_TIMEOUT") == nullptr) parameters.emplace("connect_timeout", "10");
   connection_ = joined(parameters);
 }

@@ -1,19 +1,23 @@
 #include "protocols/collect/server_connection.hpp"
 
-#include "protocols/collect/connection_refusal.hpp"
-#include "protocols/store/damaged_store.hpp"
+#include "protocols/store/damage.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <initializer_list>
 #include <string>
+#include <string_view>
+
+#include <libpq-fe.h>
+#include <poll.h>
 
 namespace touchtrial::collect {
 namespace {
 
-/// SHA-256 in SQL, which arrivals are checked with, came with this version.
+/// The first version with SHA-256 in SQL, which the checks of arrivals need.
 constexpr int kOldestServer = 110000;
 
-/// A station that dies must not keep its locks: the server notices within a minute.
+/// With the keepalives the server notices within a minute that a station died, and frees its locks.
 constexpr const char* kSettings =
     "SET synchronous_commit = on; SET bytea_output = 'hex'; SET lock_timeout = '60s'; "
     "SET statement_timeout = 0; "
@@ -29,13 +33,79 @@ std::string without_ending(std::string text) {
   return text;
 }
 
-/// What the server says, without the statement that it then quotes and points into with a caret.
+/// The server's message without the lines that quote the statement and point into it.
 std::string complaint(const std::exception& error) {
   const std::string text = error.what();
   return without_ending(text.substr(0, text.find('\n')));
 }
 
-/// Only what will be refused again is final.
+/// Why a server did not let somebody in.
+enum class ConnectionRefusal {
+  unreached,    ///< no answer, a broken handshake, or a server that starts or stops
+  too_many,     ///< too many connections in all or of this role
+  credentials,  ///< user, password, database or rights: the server will refuse them again
+};
+
+constexpr std::chrono::seconds kLongestAttempt{10};
+
+using Connection = std::unique_ptr<PGconn, decltype(&PQfinish)>;
+
+/// Returns when the connection stands, has failed, or the time is over.
+void establish(PGconn* connection) {
+  const auto end = std::chrono::steady_clock::now() + kLongestAttempt;
+  PostgresPollingStatusType next = PGRES_POLLING_WRITING;
+  while (next == PGRES_POLLING_READING || next == PGRES_POLLING_WRITING) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(
+        end - std::chrono::steady_clock::now());
+    if (left.count() <= 0) return;
+    const auto events = static_cast<short>(next == PGRES_POLLING_READING ? POLLIN : POLLOUT);
+    pollfd socket{.fd = PQsocket(connection), .events = events, .revents = 0};
+    if (poll(&socket, 1, static_cast<int>(left.count())) <= 0) return;
+    next = PQconnectPoll(connection);
+  }
+}
+
+/// The server's code at the end of a line, for instance of "FATAL: 28P01"; empty for libpq's own
+/// lines.
+std::string code_at_end(std::string_view line) {
+  while (line.ends_with(' ')) line.remove_suffix(1);
+  if (line.size() < 6 || line[line.size() - 6] != ' ') return {};
+  const std::string code(line.substr(line.size() - 5));
+  const bool is_code = std::all_of(code.begin(), code.end(), [](char each) {
+    return (each >= '0' && each <= '9') || (each >= 'A' && each <= 'Z');
+  });
+  return is_code ? code : "";
+}
+
+/// The code of the last of several servers; libpq may add lines of its own.
+std::string code_in(std::string_view text) {
+  std::string code;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string found = code_at_end(text.substr(0, end));
+    if (!found.empty()) code = found;
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return code;
+}
+
+/// Connects once more: an error of libpqxx lacks the server's code, and its words may be in any
+/// language. Takes as long as the address' connect_timeout allows.
+/// \return unreached also if it succeeds now
+ConnectionRefusal refusal_by(const ServerAddress& address) {
+  const Connection connection(PQconnectStart(address.connection_string().c_str()), PQfinish);
+  if (!connection) return ConnectionRefusal::unreached;
+  PQsetErrorVerbosity(connection.get(), PQERRORS_SQLSTATE);
+  if (PQstatus(connection.get()) != CONNECTION_BAD) establish(connection.get());
+  if (PQstatus(connection.get()) == CONNECTION_OK) return ConnectionRefusal::unreached;
+  if (PQconnectionNeedsPassword(connection.get()) != 0) return ConnectionRefusal::credentials;
+  const std::string code = code_in(PQerrorMessage(connection.get()));
+  if (code == "53300") return ConnectionRefusal::too_many;
+  const bool is_final = code.starts_with("28") || code == "3D000" || code == "42501";
+  return is_final ? ConnectionRefusal::credentials : ConnectionRefusal::unreached;
+}
+
+/// Only a refusal that will come again is final; all others are a LostConnection.
 [[noreturn]] void refuse_connection(const ServerAddress& address, const std::string& why) {
   switch (refusal_by(address)) {
     case ConnectionRefusal::credentials:
@@ -78,7 +148,7 @@ ServerConnection::ServerConnection(const ServerAddress& address)
 }
 
 void ServerConnection::check_server() {
-  // Libpqxx prints the server's remarks unless somebody else takes them.
+  // Libpqxx prints the server's notices unless a handler takes them.
   pqxx::quiet_errorhandler quiet(connection_);
   if (connection_.server_version() < kOldestServer) {
     refuse("the server is older than PostgreSQL 11; bring it up to date");
@@ -109,12 +179,12 @@ void ServerConnection::wipe_deleted_keys() noexcept {
     session.exec("SET lock_timeout = '2s'");
     session.exec("VACUUM FULL participant_keys");
   } catch (const std::exception&) {
-    // Everything is committed; docs/several-stations.md tells the owner to do it.
+    // Everything is committed. docs/several-stations.md tells the owner how to wipe the table.
   }
 }
 
 void ServerConnection::refuse_damage(const store::EventFault& fault) const {
-  // A station's file chain stands under its negative number.
+  // A station's file chain is stored under the station's negative number.
   const auto known = places_.find(static_cast<int>(fault.session()));
   const std::string place = known != places_.end() ? known->second
                             : fault.session() < 0
@@ -131,7 +201,7 @@ void ServerConnection::refuse_garbage(const std::string& what) const {
                             without_ending(what) + "); restore the database from a backup");
 }
 
-// Of some errors libpqxx has a type and forgets the state, of others it has the state alone.
+// For some errors libpqxx has a type and drops the state; for others it has the state alone.
 void ServerConnection::translate(const pqxx::failure& error) const {
   const auto* const sql = dynamic_cast<const pqxx::sql_error*>(&error);
   const std::string state = sql == nullptr ? "" : sql->sqlstate();

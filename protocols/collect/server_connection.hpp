@@ -1,11 +1,10 @@
-/// \file One connection to a PostgreSQL server, and its errors. Private to protocols/collect: the
-/// only header that shows libpqxx.
+/// \file One connection to a PostgreSQL server, and its errors. Private to protocols/collect.
 #pragma once
 
 #include "core/bytes.hpp"
 #include "core/errors.hpp"
 #include "protocols/collect/server_address.hpp"
-#include "protocols/store/event_fault.hpp"
+#include "protocols/store/damage.hpp"
 
 #include <map>
 #include <memory>
@@ -17,20 +16,20 @@
 
 namespace touchtrial::collect {
 
-/// The connection broke or the server went away: what was not committed is not there, and what was
-/// being committed may be. Trying again on a new connection may help.
+/// The connection broke or the server went away. Uncommitted changes are lost; a commit that was
+/// under way may have taken place. Trying again on a new connection may help.
 class LostConnection : public StoreError {
  public:
   using StoreError::StoreError;
 };
 
-/// Somebody else was at the same rows: nothing was changed, and trying again helps.
+/// Another program wrote the same rows. Nothing was changed, and trying again helps.
 class Contention : public StoreError {
  public:
   using StoreError::StoreError;
 };
 
-/// A statement's bytes, sent as they are.
+/// Bytes as a statement's parameter, sent in binary form.
 [[nodiscard]] inline pqxx::binarystring binary(ByteView bytes) {
   return {bytes.data(), bytes.size()};
 }
@@ -45,8 +44,8 @@ class ServerConnection {
 
   [[nodiscard]] const ServerAddress& address() const noexcept { return address_; }
 
-  /// From now on damage in a session is said to be there.
-  /// \param session  the number on the server; of a station's file chain the negative
+  /// Names a session for messages about damage from now on.
+  /// \param session  the number on the server; for a station's file chain its negative number
   void call(int session, const std::string& place) { places_[session] = place; }
 
   /// Calls `work` with a transaction, which is committed unless `work` throws.
@@ -54,7 +53,7 @@ class ServerConnection {
   auto change(Work&& work) {
     return translated([&] {
       pqxx::work transaction(connection_);
-      // A program that hangs must not keep others waiting for ever.
+      // A program that hangs must not keep others waiting forever.
       transaction.exec("SET LOCAL idle_in_transaction_session_timeout = '5min'");
       if constexpr (std::is_void_v<decltype(work(transaction))>) {
         work(transaction);
@@ -76,18 +75,18 @@ class ServerConnection {
     });
   }
 
-  /// A transaction that sees this moment for as long as it lives, and changes nothing. Work with it
-  /// inside `translated`; it must not outlive the connection.
+  /// A transaction that sees this moment as long as it lives, and changes nothing. Use it inside
+  /// `translated`; it must not outlive the connection.
   [[nodiscard]] std::unique_ptr<pqxx::work> begin_look();
 
-  /// Rewrites the table of keys, so that what was deleted from it is no longer in its file. Only
-  /// its owner may; whatever stands against it is left to the owner.
+  /// Rewrites the table of keys, so that deleted keys are no longer in its file. Only the table's
+  /// owner may do that; for everybody else this does nothing.
   void wipe_deleted_keys() noexcept;
 
   /// \throws StoreError "<address>: <text>"
   [[noreturn]] void refuse(const std::string& text) const;
 
-  /// Calls `work`; errors of libpqxx, and of rows that cannot be believed, come out as ours, naming
+  /// Calls `work`; errors of libpqxx, and of rows that cannot be true, come out as our errors with
   /// the address.
   template <typename Work>
   decltype(auto) translated(Work&& work) const {

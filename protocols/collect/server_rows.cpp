@@ -1,79 +1,131 @@
 #include "protocols/collect/server_rows.hpp"
 
-#include "protocols/collect/server_array.hpp"
 #include "protocols/collect/server_schema.hpp"
-#include "protocols/store/event_fault.hpp"
-#include "protocols/store/row_cells.hpp"
+#include "protocols/store/damage.hpp"
 #include "protocols/store/tables.hpp"
 
-#include <algorithm>
-#include <array>
+#include <charconv>
+#include <concepts>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <utility>
+#include <variant>
 
 namespace touchtrial::collect {
 namespace {
 
-/// As much as goes to or comes from the server at a time, roughly, in bytes.
+/// Roughly how much is sent to the server or fetched from it at a time, in bytes.
 constexpr std::size_t kBatch = 8U << 20U;
-/// No event and no trace of a session is nearly as large; what is was not written by us.
+/// No event or trace of ours is nearly as large.
 constexpr std::int64_t kLargestEvent = 64 << 20;
 constexpr std::int64_t kLargestTrace = 512 << 20;
 
-/// What arrays of a column's values are cast to.
+/// A column of many rows as one parameter of a statement, in PostgreSQL's text form of arrays:
+/// "{1,NULL,\"text\"}", to be cast to the column's type in SQL.
+class ServerArray {
+ public:
+  template <std::integral Number>
+  void add(Number value) {
+    add_bare(std::to_string(value));
+  }
+  /// With enough digits to be read back as the same number.
+  void add(double value) {
+    char text[32];
+    const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+    add_bare({text, static_cast<std::size_t>(end - text)});
+  }
+  void add(std::string_view text) {
+    separate();
+    values_ += '"';
+    for (const char character : text) {
+      if (character == '"' || character == '\\') values_ += '\\';
+      values_ += character;
+    }
+    values_ += '"';
+  }
+  void add(ByteView bytes) { add(std::string_view("\\x" + to_hex(bytes))); }
+  void add(std::monostate) { add_bare("NULL"); }
+  template <typename... Values>
+  void add(const std::variant<std::monostate, Values...>& value) {
+    std::visit([this](const auto& held) { this->add(held); }, value);
+  }
+
+  /// Its length so far, in bytes.
+  [[nodiscard]] std::size_t size() const noexcept { return values_.size(); }
+  [[nodiscard]] std::string text() const { return "{" + values_ + "}"; }
+
+ private:
+  void separate() {
+    if (!values_.empty()) values_ += ',';
+  }
+  void add_bare(std::string_view text) {
+    separate();
+    values_ += text;
+  }
+
+  std::string values_;
+};
+
+/// The type that arrays of a column's values are cast to.
 std::string array_of(store::ColumnType type) {
   return std::string(kServerTypes.at(static_cast<std::size_t>(type))) + "[]";
 }
 
-/// "INSERT INTO trials(...) SELECT * FROM unnest(...)": a parameter a column, which holds all rows.
-std::string insertion_sql(const store::TableDefinition& table) {
+/// "INSERT INTO trials(...) SELECT * FROM unnest(...)": one parameter for each column, with all
+/// rows.
+std::string insertion_sql(store::Table table) {
+  const store::TableDefinition& definition = store::table_definition(table);
   std::string parameters;
   int number = 0;
-  for (const store::TableColumn& column : table.columns) {
+  for (const store::TableColumn& column : definition.columns) {
     parameters +=
         (number == 0 ? "$" : ", $") + std::to_string(number + 1) + "::" + array_of(column.type);
     ++number;
   }
-  return "INSERT INTO " + std::string(table.name) + "(" + store::column_list(table) +
+  return "INSERT INTO " + std::string(definition.name) + "(" + store::column_list(table) +
          ") SELECT * FROM unnest(" + parameters + ")";
 }
 
-/// Columns of rows of events, on their way.
-class EventBatch {
+/// Sends rows of a table, a batch at a time.
+class RowBatch {
  public:
-  EventBatch(pqxx::work& work, int session) : work_(work), session_(session) {}
+  RowBatch(pqxx::work& work, store::Table table)
+      : work_(work), table_(table), columns_(store::table_definition(table).columns.size()) {}
 
-  void add(const store::Event& event) {
-    sessions_.add(session_);
-    sequences_.add(event.sequence);
-    kinds_.add(store::name_of(event.kind));
-    times_.add(event.at.count());
-    bodies_.add(std::string_view(event.body));
-    sealed_.add(ByteView(event.sealed));
-    previous_.add(ByteView(event.previous));
-    hashes_.add(ByteView(event.hash));
-    own_.add(event.own_session());
-    if (bodies_.size() + sealed_.size() > kBatch) send();
+  /// The values of a row, in the order of the table's columns.
+  template <typename... Values>
+  void add(const Values&... values) {
+    std::size_t column = 0;
+    (columns_[column++].add(values), ...);
+    send_if_full();
+  }
+  void add(const store::Cells& cells) {
+    for (std::size_t i = 0; i < columns_.size(); ++i) columns_[i].add(cells.at(i));
+    send_if_full();
   }
 
   void send() {
-    if (sequences_.size() == 0) return;
-    work_.exec_params0(insertion_sql(store::table_definition(store::Table::events)),
-                       sessions_.text(), sequences_.text(), kinds_.text(), times_.text(),
-                       bodies_.text(), sealed_.text(), previous_.text(), hashes_.text(),
-                       own_.text());
-    sessions_ = sequences_ = kinds_ = times_ = bodies_ = sealed_ = previous_ = hashes_ = own_ = {};
+    if (columns_.front().size() == 0) return;
+    std::vector<std::string> texts;
+    for (ServerArray& column : columns_) texts.push_back(std::exchange(column, {}).text());
+    work_.exec_params0(insertion_sql(table_), pqxx::prepare::make_dynamic_params(texts));
   }
 
  private:
+  void send_if_full() {
+    std::size_t size = 0;
+    for (const ServerArray& column : columns_) size += column.size();
+    if (size > kBatch) send();
+  }
+
   pqxx::work& work_;
-  int session_;
-  ServerArray sessions_, sequences_, kinds_, times_, bodies_, sealed_, previous_, hashes_, own_;
+  store::Table table_;
+  std::vector<ServerArray> columns_;
 };
 
-/// Traces on their way, one after the other in one parameter that is sent as it is: as text they
-/// would be twice as long.
+/// Sends traces, a batch at a time, one after the other in one binary parameter: as text they would
+/// be twice as long.
 class TraceBatch {
  public:
   TraceBatch(pqxx::work& work, int session) : work_(work), session_(session) {}
@@ -104,45 +156,22 @@ class TraceBatch {
   ServerArray trials_, starts_, lengths_;
 };
 
-void insert_rows(pqxx::work& work, store::Table table, std::span<const store::Cells> rows) {
-  const store::TableDefinition& definition = store::table_definition(table);
-  std::vector<std::string> columns;
-  for (std::size_t i = 0; i < definition.columns.size(); ++i) {
-    ServerArray column;
-    for (const store::Cells& row : rows) column.add(row.at(i));
-    columns.push_back(column.text());
-  }
-  work.exec_params0(insertion_sql(definition), pqxx::prepare::make_dynamic_params(columns));
-}
-
-Digest digest_of(const pqxx::field& field, int session, std::int64_t sequence) {
-  const Bytes bytes = bytes_of(field);
-  Digest digest{};
-  if (bytes.size() != digest.size()) {
-    throw store::EventFault(session, sequence, "a hash of the event is not 32 bytes long");
-  }
-  std::copy(bytes.begin(), bytes.end(), digest.begin());
-  return digest;
-}
-
 /// \param row  sequence, kind, at_ns, body, sealed, previous, hash, own_session
 store::Event event_of(const pqxx::row& row, int session) {
   const auto sequence = row[0].as<std::int64_t>();
-  const auto name = row[1].as<std::string>();
-  const std::optional<store::EventKind> kind = store::event_kind_from_name(name);
-  if (!kind) throw store::EventFault(session, sequence, "unknown kind of event '" + name + "'");
+  const store::EventKind kind = store::stored_kind(row[1].as<std::string>(), session, sequence);
   const auto own = row[7].is_null() ? session : row[7].as<std::int64_t>();
   if (own < 0 || own > std::numeric_limits<int>::max() || (own == 0) != (session < 0)) {
     throw store::EventFault(session, sequence, "no session of a station has this number");
   }
   return {.session = static_cast<int>(own),
           .sequence = sequence,
-          .kind = *kind,
+          .kind = kind,
           .at = std::chrono::nanoseconds(row[2].as<std::int64_t>()),
           .body = row[3].as<std::string>(),
           .sealed = bytes_of(row[4]),
-          .previous = digest_of(row[5], session, sequence),
-          .hash = digest_of(row[6], session, sequence)};
+          .previous = store::stored_hash(bytes_of(row[5]), session, sequence),
+          .hash = store::stored_hash(bytes_of(row[6]), session, sequence)};
 }
 
 void refuse_large_events(pqxx::work& work, int session) {
@@ -159,8 +188,11 @@ void refuse_large_events(pqxx::work& work, int session) {
 }  // namespace
 
 void insert_events(pqxx::work& work, int session, std::span<const store::Event> events) {
-  EventBatch batch(work, session);
-  for (const store::Event& event : events) batch.add(event);
+  RowBatch batch(work, store::Table::events);
+  for (const store::Event& event : events) {
+    batch.add(session, event.sequence, store::name_of(event.kind), event.at.count(), event.body,
+              event.sealed, event.previous, event.hash, event.own_session());
+  }
   batch.send();
 }
 
@@ -176,21 +208,22 @@ void insert_key(pqxx::work& work, int session, const Bytes& wrapped) {
 }
 
 void insert_session(pqxx::work& work, const store::SessionRow& row) {
-  insert_rows(work, store::Table::sessions,
-              std::array{store::session_cells(row, store::OwnNumber::always)});
+  RowBatch batch(work, store::Table::sessions);
+  batch.add(store::session_cells(row, store::OwnNumber::always));
+  batch.send();
 }
 
 void insert_trials(pqxx::work& work, int session, const store::DerivedRows& rows) {
-  std::vector<store::Cells> trials;
-  std::vector<store::Cells> responses;
+  RowBatch trials(work, store::Table::trials);
+  RowBatch responses(work, store::Table::responses);
   for (const auto& [id, own] : rows.trials) {
     store::TrialRow row = own;
     row.session = session;
-    trials.push_back(store::trial_cells(row));
-    if (row.position) responses.push_back(store::response_cells(row));
+    trials.add(store::trial_cells(row));
+    if (row.position) responses.add(store::response_cells(row));
   }
-  insert_rows(work, store::Table::trials, trials);
-  insert_rows(work, store::Table::responses, responses);
+  trials.send();
+  responses.send();
 }
 
 std::vector<store::Event> read_events(pqxx::work& work, int session, std::int64_t first) {

@@ -1,11 +1,9 @@
 /// \file Events, traces, keys and derived rows in a server's tables. Private to protocols/collect.
-/// Sessions have two numbers: the one on the server, and their own, which hashes are bound to.
-/// Statements are the same for every call; whatever varies is a parameter.
+/// A session has two numbers: `session` on the server, and its own, to which hashes are bound.
 #pragma once
 
 #include "protocols/collect/server_connection.hpp"
-#include "protocols/collect/station_file.hpp"
-#include "protocols/store/event.hpp"
+#include "protocols/collect/stations.hpp"
 #include "protocols/store/fold.hpp"
 
 #include <cstdint>
@@ -19,27 +17,29 @@ namespace touchtrial::collect {
 
 /// \param session  the number on the server; -1, -2, ... for a station's file chain
 void insert_events(pqxx::work& work, int session, std::span<const store::Event> events);
-/// All of a session's traces, a few megabytes at a time.
+/// Inserts all traces of a session, a few megabytes at a time.
 void insert_traces(pqxx::work& work, int session, StationFile& station, int own_session);
 void insert_key(pqxx::work& work, int session, const Bytes& wrapped);
-/// Its number on the server is row.session.
+/// \param row  row.session is the number on the server
 void insert_session(pqxx::work& work, const store::SessionRow& row);
-/// Rows of trials and responses. \param rows  by own numbers
+/// Inserts rows of trials and responses.
+/// \param rows  by own numbers
 void insert_trials(pqxx::work& work, int session, const store::DerivedRows& rows);
 
 /// Events as the station wrote them: with the session's own number, 0 for a file chain.
-/// \param first  sequence from which on
+/// \param first  the least sequence
 /// \throws EventFault, by the number on the server, if a row is no event or absurdly large
 [[nodiscard]] std::vector<store::Event> read_events(pqxx::work& work, int session,
                                                     std::int64_t first = 0);
 [[nodiscard]] std::optional<Bytes> read_key(pqxx::work& work, int session);
 [[nodiscard]] std::optional<Bytes> read_trace(pqxx::work& work, int session, int trial);
+
 /// Trials from the first to the last.
 struct TrialRange {
   std::int64_t first = 0;
   std::int64_t last = 0;
 };
-/// Traces of a session as they are fetched together: a few megabytes at a time.
+/// Cuts a session's traces into batches of a few megabytes.
 /// \throws EventFault if a trace is absurdly large
 [[nodiscard]] std::vector<TrialRange> trace_batches(pqxx::work& work, int session);
 /// Trial and trace, by trial.

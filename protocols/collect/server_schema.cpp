@@ -5,7 +5,7 @@
 namespace touchtrial::collect {
 namespace {
 
-// A station's name is that of its file when it first came, for messages. Session numbers come from
+// A station's name, for messages, is that of its file at its first push. Session numbers come from
 // a sequence, so that two stations can push at once; gaps in them mean nothing.
 constexpr const char* kServerAlone = R"sql(
 CREATE TABLE touchtrial_schema(
@@ -31,7 +31,7 @@ std::string table_sql(const store::TableDefinition& table) {
            name + " FOR EACH STATEMENT EXECUTE FUNCTION touchtrial_append_only();";
   }
   for (const store::TableColumn& column : table.columns) {
-    // Trying to make them smaller costs more than all the rest of storing them.
+    // Trying to compress them would take longer than the rest of storing them.
     if (column.bulky) {
       sql += "ALTER TABLE " + name + " ALTER COLUMN " + std::string(column.name) +
              " SET STORAGE EXTERNAL;";
@@ -112,7 +112,7 @@ void bring_forward(ServerConnection& server, std::span<const ServerMigration> st
     if (version) require_known(server, *version, newest);
     return version == newest;
   };
-  // Whoever may only add rows must not need more rights than that.
+  // A role that may only add rows must not need further rights.
   if (is_current(server_version(server))) return;
   server.change([&](pqxx::work& work) {
     work.exec(

@@ -1,5 +1,5 @@
-/// \file The tables on a server: those of an SQLite file (protocols/store/tables.hpp) and what a
-/// server needs beside them. Private to protocols/collect.
+/// \file The tables on a server: those of an SQLite file (protocols/store/tables.hpp) and a few
+/// that only a server needs. Private to protocols/collect.
 #pragma once
 
 #include "protocols/collect/server_connection.hpp"
@@ -13,20 +13,19 @@ namespace touchtrial::collect {
 
 inline constexpr store::TypeNames kServerTypes = {"BIGINT", "DOUBLE PRECISION", "TEXT", "BYTEA"};
 
-/// One step forward; runs inside a transaction.
+/// One step forward. It runs inside a transaction.
 using ServerMigration = void (*)(pqxx::work&);
 
 /// server_migrations()[i] makes version kOldestSchemaVersion + i + 1 of the one before it.
 [[nodiscard]] std::span<const ServerMigration> server_migrations();
 
-/// Nothing if the database has no tables of ours.
-/// \throws StoreError if there are others under their names, or no schema to look in
+/// The version of the tables, or nothing if the database has none of ours.
+/// \throws StoreError if another program's tables have their names, or no schema exists to look in
 [[nodiscard]] std::optional<int> server_version(ServerConnection& server);
 
-/// Makes the tables of kSchemaVersion, or brings those that are there to the newest version, which
-/// follows from `steps`, in one transaction; two programs that do it at once come one after the
-/// other.
-/// \throws StoreError if the tables are newer or too old, which are left alone, or not ours
+/// Makes the tables of kSchemaVersion, or brings existing ones to the newest version, which follows
+/// from `steps`, in one transaction. If two programs do it at once, one waits for the other.
+/// \throws StoreError if the tables are newer, too old or not ours; they are then left alone
 void bring_forward(ServerConnection& server,
                    std::span<const ServerMigration> steps = server_migrations());
 

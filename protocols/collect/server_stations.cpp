@@ -1,12 +1,13 @@
-#include "protocols/collect/server_stations.hpp"
-
-#include "protocols/collect/server_connection.hpp"
-#include "protocols/collect/server_derived.hpp"
+// Stations that are kept on a server.
 #include "protocols/collect/server_rows.hpp"
 #include "protocols/collect/server_schema.hpp"
 #include "protocols/collect/server_study.hpp"
-#include "protocols/store/damaged_store.hpp"
+#include "protocols/collect/stations.hpp"
+#include "protocols/store/collected_chain.hpp"
+#include "protocols/store/damage.hpp"
+#include "protocols/store/tables.hpp"
 
+#include <initializer_list>
 #include <map>
 #include <memory>
 #include <utility>
@@ -14,7 +15,7 @@
 namespace touchtrial::collect {
 namespace {
 
-/// A connection and the moment that it looks at.
+/// A connection, and a transaction that sees one moment.
 class Snapshot {
  public:
   explicit Snapshot(const ServerAddress& address) : server_(address) {
@@ -31,7 +32,7 @@ class Snapshot {
 
  private:
   ServerConnection server_;
-  std::unique_ptr<pqxx::work> look_;  // must go before the connection
+  std::unique_ptr<pqxx::work> look_;  // destroyed before the connection
 };
 
 class ServerStation final : public StationFile {
@@ -52,51 +53,48 @@ class ServerStation final : public StationFile {
   }
 
   std::vector<store::Event> events(int own_session) override {
-    const std::optional<int> session = number_of(own_session);
-    if (!session) return {};
-    return snapshot_->ask([&](pqxx::work& work) { return read_events(work, *session); });
+    return ask_about(own_session,
+                     [](pqxx::work& work, int session) { return read_events(work, session); });
   }
 
   std::optional<Bytes> wrapped_key(int own_session) override {
-    const std::optional<int> session = number_of(own_session);
-    if (!session) return std::nullopt;
-    return snapshot_->ask([&](pqxx::work& work) { return read_key(work, *session); });
+    return ask_about(own_session, read_key);
   }
 
   std::optional<Bytes> trace(int own_session, int trial) override {
-    const std::optional<int> session = number_of(own_session);
-    if (!session) return std::nullopt;
-    return snapshot_->ask([&](pqxx::work& work) { return read_trace(work, *session, trial); });
+    return ask_about(own_session, [&](pqxx::work& work, int session) {
+      return read_trace(work, session, trial);
+    });
   }
 
   void for_each_trace(int own_session,
                       const std::function<void(int, const Bytes&)>& visit) override {
-    const std::optional<int> session = number_of(own_session);
-    if (!session) return;
-    const std::vector<TrialRange> batches =
-        snapshot_->ask([&](pqxx::work& work) { return trace_batches(work, *session); });
-    for (const TrialRange& batch : batches) {
-      const auto traces =
-          snapshot_->ask([&](pqxx::work& work) { return read_traces(work, *session, batch); });
-      // Its complaints are not the server's.
+    for (const TrialRange& batch : ask_about(own_session, trace_batches)) {
+      const auto traces = ask_about(own_session, [&](pqxx::work& work, int session) {
+        return read_traces(work, session, batch);
+      });
+      // Outside `ask`: errors of `visit` are not the server's.
       for (const auto& [trial, box] : traces) visit(trial, box);
     }
   }
 
  private:
-  [[nodiscard]] std::optional<int> number_of(int own_session) const {
+  /// What `read` gets for a session by its number on the server; nothing if there is none.
+  template <typename Read>
+  auto ask_about(int own_session, Read read)
+      -> decltype(read(std::declval<pqxx::work&>(), own_session)) {
     const auto found = sessions_.find(own_session);
-    if (found == sessions_.end()) return std::nullopt;
-    return found->second;
+    if (found == sessions_.end()) return {};
+    return snapshot_->ask([&](pqxx::work& work) { return read(work, found->second); });
   }
 
   std::shared_ptr<Snapshot> snapshot_;
   int station_;
   std::string name_;
-  std::map<int, int> sessions_;  ///< by own number: that on the server
+  std::map<int, int> sessions_;  ///< number on the server, by own number
 };
 
-/// Whatever was laid beside what was pushed would otherwise not be seen by anybody.
+/// Refuses rows that belong to nothing that was pushed. No other check would find them.
 void refuse_strays(pqxx::work& work, const ServerConnection& server) {
   for (const char* const table : {"events", "traces", "participant_keys"}) {
     const pqxx::result strays = work.exec(
@@ -114,7 +112,7 @@ std::map<int, std::unique_ptr<ServerStation>> named_stations(
     pqxx::work& work, const std::shared_ptr<Snapshot>& snapshot) {
   std::map<int, std::unique_ptr<ServerStation>> stations;
   std::map<int, std::string> places;
-  // A row without a chain and without sessions is nobody's: any station's role can write one.
+  // Rows of stations without a chain and sessions are left out: any station's role can write them.
   for (const pqxx::row& row :
        work.exec("SELECT station, name FROM stations t WHERE EXISTS (SELECT FROM events WHERE "
                  "session = -t.station) OR EXISTS (SELECT FROM sessions s WHERE s.station = "
@@ -138,13 +136,109 @@ std::map<int, std::unique_ptr<ServerStation>> named_stations(
   return stations;
 }
 
+/// The station's number on the server, and the session's own number.
+using Place = std::pair<int, int>;
+
+/// \param tables  whose columns the row has, one table after the other
+store::Cells row_cells(const pqxx::row& row, std::initializer_list<store::Table> tables) {
+  return store::cells_of(tables, [&](int column, store::ColumnType type) -> store::Cell {
+    const pqxx::field field = row[static_cast<pqxx::row::size_type>(column)];
+    if (field.is_null()) return {};
+    if (type == store::ColumnType::integer) return field.as<std::int64_t>();
+    if (type == store::ColumnType::real) return field.as<double>();
+    return field.as<std::string>();  // derived tables have no blobs
+  });
+}
+
+/// Holds the derived tables on a server against a study that was collected from its events.
+class DerivedCheck {
+ public:
+  DerivedCheck(pqxx::work& work, const ServerConnection& server, const store::StudyStore& collected)
+      : work_(work), server_(server) {
+    std::map<int, int> stations;  // on the server, by the number in the collected study
+    for (int station = 1; station <= collected.stations(); ++station) {
+      const auto identity = store::station_identity(collected.station_chain(station));
+      const auto number = identity ? find_station(work, *identity) : std::nullopt;
+      if (number) stations[station] = *number;
+    }
+    std::map<int, Place> places;
+    for (store::SessionRow row : collected.sessions()) {
+      const Place place(stations[row.station], row.own_session);
+      places[row.session] = place;
+      row.station = place.first;
+      sessions_[place] = row;
+    }
+    for (const store::TrialRow& row : collected.trials()) {
+      trials_[{places[row.session], row.trial}] = row;
+      responses_ += row.answered_at ? 1 : 0;
+    }
+  }
+
+  /// \throws DamagedStore naming station and session of the first row that disagrees
+  void run() {
+    check_sessions();
+    check_trials();
+    if (work_.exec1("SELECT count(*) FROM responses")[0].as<int>() != responses_) {
+      throw store::DamagedStore(
+          server_.address().shown() +
+          ": table responses holds rows without a trial; restore the database from "
+          "a backup");
+    }
+  }
+
+ private:
+  void check_sessions() {
+    for (const pqxx::row& row :
+         work_.exec("SELECT " + store::column_list(store::Table::sessions) + " FROM sessions")) {
+      store::SessionRow there = store::session_row(row_cells(row, {store::Table::sessions}));
+      const Place place(there.station, there.own_session);
+      places_[there.session] = place;
+      const auto expected = sessions_.extract(place);
+      // Sessions have other numbers on the server.
+      if (!expected.empty()) there.session = expected.mapped().session;
+      if (expected.empty() || expected.mapped() != there) refuse("sessions", place);
+    }
+    if (!sessions_.empty()) refuse("sessions", sessions_.begin()->first);
+  }
+
+  void check_trials() {
+    for (const pqxx::row& row :
+         work_.exec("SELECT " + store::column_list(store::Table::trials, "t.") + ", " +
+                    store::column_list(store::Table::responses, "r.") +
+                    " FROM trials t LEFT JOIN responses r USING(session, trial)")) {
+      store::TrialRow there =
+          store::trial_row(row_cells(row, {store::Table::trials, store::Table::responses}));
+      const Place place = places_[there.session];
+      const auto expected = trials_.extract({place, there.trial});
+      if (!expected.empty()) there.session = expected.mapped().session;
+      if (expected.empty() || expected.mapped() != there) refuse("trials or responses", place);
+    }
+    if (!trials_.empty()) refuse("trials", trials_.begin()->first.first);
+  }
+
+  [[noreturn]] void refuse(const std::string& table, const Place& place) const {
+    throw store::DamagedStore(server_.address().shown() + ", station " +
+                              std::to_string(place.first) + ", session " +
+                              std::to_string(place.second) + ": derived table " + table +
+                              " disagrees with the events; restore the database from a backup");
+  }
+
+  pqxx::work& work_;
+  const ServerConnection& server_;
+  std::map<int, Place> places_;  ///< by the session's number on the server
+  std::map<Place, store::SessionRow> sessions_;
+  std::map<std::pair<Place, int>, store::TrialRow> trials_;
+  int responses_ = 0;
+};
+
 }  // namespace
 
 Stations stations_of_server(const ServerAddress& address, DerivedTables* derived) {
   const auto snapshot = std::make_shared<Snapshot>(address);
   if (derived != nullptr) {
     *derived = [snapshot](const store::StudyStore& collected) {
-      snapshot->ask([&](pqxx::work& work) { check_derived(work, snapshot->server(), collected); });
+      snapshot->ask(
+          [&](pqxx::work& work) { DerivedCheck(work, snapshot->server(), collected).run(); });
     };
   }
   return snapshot->ask([&](pqxx::work& work) {

@@ -1,15 +1,16 @@
 #include "protocols/collect/server_study.hpp"
 
 #include "protocols/collect/server_rows.hpp"
-#include "protocols/store/damaged_store.hpp"
-#include "protocols/store/event_fault.hpp"
+#include "protocols/store/damage.hpp"
+#include "protocols/store/payload_json.hpp"
 
 #include <algorithm>
+#include <map>
 
 namespace touchtrial::collect {
 namespace {
 
-/// Of a session that stands in another's way.
+/// A session that has another's participant id or enrolment number.
 struct Holder {
   int session = 0;  ///< on the server
   int own = 0;
@@ -36,7 +37,8 @@ std::optional<Holder> holder_of(pqxx::work& work, const store::SessionRow& row) 
                 .enrolment = first[5].as<int>()};
 }
 
-/// Of a chain's first event, as it is on the server.
+/// `parse(body)` of a chain's first event on the server.
+/// \throws EventFault if `parse` throws StoreError
 template <typename Parse>
 auto parsed_from(int session, const std::string& body, Parse parse) {
   try {
@@ -46,7 +48,7 @@ auto parsed_from(int session, const std::string& body, Parse parse) {
   }
 }
 
-/// "opened 2026-01-05T10:00:00Z on falcon 1234"; what its first event says, as it is there.
+/// "opened 2026-01-05T10:00:00Z on falcon 1234", from the session's first event on the server.
 std::string opening_of(pqxx::work& work, int session) {
   const pqxx::result found = work.exec_params(
       "SELECT body FROM events WHERE session = $1 AND sequence = 0 AND octet_length(body) < 65536",
@@ -60,7 +62,8 @@ std::string opening_of(pqxx::work& work, int session) {
   return one_line(text);
 }
 
-/// What is there, where it is not the same study; stations may differ in the program's version.
+/// What the server holds, in words, if it is not the same study. Stations may differ in the
+/// program's version.
 std::optional<std::string> difference(const store::StudyCommitment& there,
                                       store::StudyCommitment here) {
   here.program_version = there.program_version;
@@ -73,6 +76,123 @@ std::optional<std::string> difference(const store::StudyCommitment& there,
   }
   if (there.pilot != here.pilot) return there.pilot ? "its pilot" : "the study and not its pilot";
   return "this study with another configuration";
+}
+
+/// Adds events to a chain.
+/// \param refuse  called with the first fault, must throw
+template <typename Refuse>
+void extend(store::ChainLink& chain, std::span<const store::Event> events, Refuse refuse) {
+  for (const store::Event& event : events) {
+    try {
+      chain.extend(event);
+    } catch (const store::EventFault& fault) {
+      refuse("event " + std::to_string(event.sequence) + ": " + fault.bare());
+    }
+  }
+}
+
+/// A session that has arrived on the server.
+class ArrivedSession {
+ public:
+  ArrivedSession(const ServerConnection& server, int own_session)
+      : server_(server), own_session_(own_session) {}
+
+  [[noreturn]] void refuse(const std::string& why) const {
+    server_.refuse("session " + std::to_string(own_session_) + " did not arrive whole: " + why +
+                   "; nothing of it was kept, run `touchtrial verify` on the station's file");
+  }
+  void require(bool holds, const std::string& otherwise) const {
+    if (!holds) refuse(otherwise);
+  }
+
+  void check_chain(std::span<const store::Event> events, const store::SessionOnFile& course) const {
+    store::ChainLink chain(own_session_);
+    extend(chain, events, [&](const std::string& why) { refuse(why); });
+    require(!events.empty() && events.front().hash == course.opened.first,
+            "it begins with another event than the file's chain says");
+    require(chain.length() == course.closed->length && chain.head() == course.closed->head,
+            "it ends with another event than the file's chain says");
+  }
+
+  void check_opening(const store::Event& event, const store::SessionOnFile& course,
+                     const store::StudyCommitment& commitment) const {
+    const store::SessionOpening opening = store::body_of(event, store::opening_from_json);
+    require(opening.study_id == commitment.study_id && opening.seal == commitment.seal,
+            "it was recorded under another seal");
+    require(opening.participant == course.opened.participant &&
+                opening.enrolment == course.opened.enrolment,
+            "it is another participant's than the file's chain says");
+  }
+
+  void check_traces(std::span<const store::Event> events,
+                    std::map<std::int64_t, Bytes> digests) const {
+    for (const store::Event& event : events) {
+      if (event.kind != store::EventKind::trace_stored) continue;
+      const store::TraceBody body = store::body_of(event, store::trace_body_from_json);
+      const auto found = digests.extract(body.trial);
+      require(!found.empty() && std::equal(body.trace.begin(), body.trace.end(),
+                                           found.mapped().begin(), found.mapped().end()),
+              "the trace of trial " + std::to_string(body.trial) + " is not the one recorded");
+    }
+    require(digests.empty(), "there is a trace without an event");
+  }
+
+  void check_key(const std::optional<Bytes>& wrapped, const store::SessionOnFile& course,
+                 bool has_key) const {
+    require(wrapped.has_value() == has_key, "the participant's key is missing or too many");
+    require(!wrapped || sha256(*wrapped) == course.opened.key, "the participant's key is another");
+  }
+
+  void check_sealed_end(const Bytes& wrapped, const SecretKey& master,
+                        std::span<const store::Event> events) const {
+    const auto key = store::unwrap_participant_key(master, own_session_, wrapped);
+    require(key.has_value(), "its key does not open with the study's key");
+    const auto secret = store::unsealed(events.back(), *key);
+    require(secret.has_value(), "its sealed end does not open");
+    const store::ChainEnd end = store::chain_end_from_json(*secret);
+    require(end.length == static_cast<std::int64_t>(events.size()) - 1 &&
+                end.head == events.back().previous,
+            "its sealed end is that of another chain");
+  }
+
+ private:
+  const ServerConnection& server_;
+  int own_session_;
+};
+
+/// \throws DamagedStore if this very session is there
+void refuse_if_cut_off(pqxx::work& work, const ServerConnection& server,
+                       const store::SessionRow& row) {
+  const pqxx::result found =
+      work.exec_params("SELECT 1 FROM sessions WHERE station = $1 AND own_session = $2",
+                       row.station, row.own_session);
+  if (found.empty()) return;
+  throw store::DamagedStore(
+      server.address().shown() + ": the server lost the end of the chain of station " +
+      std::to_string(row.station) + ", but has its session " + std::to_string(row.own_session) +
+      " still; restore the database from a backup, or make a new one and sync all "
+      "stations again");
+}
+
+/// \throws StoreError if another session has its participant or enrolment number
+void refuse_if_taken(pqxx::work& work, const ServerConnection& server,
+                     const store::SessionRow& row) {
+  if (!row.replaced_by.empty()) return;
+  const std::optional<Holder> holder = holder_of(work, row);
+  if (!holder) return;
+  const bool same_person = holder->participant == row.participant;
+  const std::string what = same_person ? "participant " + row.participant
+                                       : "enrolment number " + std::to_string(row.enrolment);
+  server.refuse("session " + std::to_string(row.own_session) + ": " + what +
+                " is taken already by session " + std::to_string(holder->own) + " of station " +
+                std::to_string(holder->station) + " (" + one_line(holder->station_name) +
+                "), participant " + one_line(holder->participant) + ", enrolment " +
+                std::to_string(holder->enrolment) + ", " + opening_of(work, holder->session) +
+                "; replace one of the two at its station (`touchtrial replace`)" +
+                (holder->enrolment == row.enrolment
+                     ? ", run nobody under the successor's id, who would inherit the number,"
+                     : "") +
+                " and sync that first; hand out numbers beforehand (`touchtrial plan --stations`)");
 }
 
 }  // namespace
@@ -122,14 +242,9 @@ store::ChainHead chain_head(pqxx::work& work, int station) {
       "SELECT sequence, hash FROM events WHERE session = $1 ORDER BY sequence DESC LIMIT 1",
       chain_number(station));
   if (found.empty()) return {};
-  const Bytes hash = bytes_of(found[0][1]);
-  store::ChainHead head{.length = found[0][0].as<std::int64_t>() + 1, .hash = {}};
-  if (hash.size() != head.hash.size()) {
-    throw store::EventFault(chain_number(station), head.length - 1,
-                            "its hash is not 32 bytes long");
-  }
-  std::copy(hash.begin(), hash.end(), head.hash.begin());
-  return head;
+  const auto last = found[0][0].as<std::int64_t>();
+  return {.length = last + 1,
+          .hash = store::stored_hash(bytes_of(found[0][1]), chain_number(station), last)};
 }
 
 std::optional<std::int64_t> parting(pqxx::work& work, int station,
@@ -146,41 +261,14 @@ std::optional<std::int64_t> parting(pqxx::work& work, int station,
   return std::nullopt;
 }
 
-void refuse_if_cut_off(pqxx::work& work, const ServerConnection& server,
-                       const store::SessionRow& row) {
-  const pqxx::result found =
-      work.exec_params("SELECT 1 FROM sessions WHERE station = $1 AND own_session = $2",
-                       row.station, row.own_session);
-  if (found.empty()) return;
-  throw store::DamagedStore(
-      server.address().shown() + ": the server lost the end of the chain of station " +
-      std::to_string(row.station) + ", but has its session " + std::to_string(row.own_session) +
-      " still; restore the database from a backup, or make a new one and sync all "
-      "stations again");
+void refuse_if_there_or_taken(pqxx::work& work, const ServerConnection& server,
+                              const store::SessionRow& row) {
+  refuse_if_cut_off(work, server, row);
+  refuse_if_taken(work, server, row);
 }
 
-void refuse_if_taken(pqxx::work& work, const ServerConnection& server,
-                     const store::SessionRow& row) {
-  if (!row.replaced_by.empty()) return;
-  const std::optional<Holder> holder = holder_of(work, row);
-  if (!holder) return;
-  const bool same_person = holder->participant == row.participant;
-  const std::string what = same_person ? "participant " + row.participant
-                                       : "enrolment number " + std::to_string(row.enrolment);
-  server.refuse("session " + std::to_string(row.own_session) + ": " + what +
-                " is taken already by session " + std::to_string(holder->own) + " of station " +
-                std::to_string(holder->station) + " (" + one_line(holder->station_name) +
-                "), participant " + one_line(holder->participant) + ", enrolment " +
-                std::to_string(holder->enrolment) + ", " + opening_of(work, holder->session) +
-                "; replace one of the two at its station (`touchtrial replace`)" +
-                (holder->enrolment == row.enrolment
-                     ? ", run nobody under the successor's id, who would inherit the number,"
-                     : "") +
-                " and sync that first; hand out numbers beforehand (`touchtrial plan --stations`)");
-}
-
-bool update_session(pqxx::work& work, int station, int own_session, const SessionCourse& course,
-                    std::int64_t end) {
+bool update_session(pqxx::work& work, int station, int own_session,
+                    const store::SessionOnFile& course, std::int64_t end) {
   const auto holds = [&](const std::optional<std::int64_t>& at) { return at && *at < end; };
   work.exec_params0(
       "UPDATE sessions SET excluded = $3, withdrawn = $4, replaced_by = nullif($5, '') "
@@ -206,6 +294,34 @@ std::vector<KeyThere> keys_of_station(pqxx::work& work, int station) {
         {.session = row[0].as<int>(), .own_session = row[1].as<int>(), .digest = bytes_of(row[2])});
   }
   return keys;
+}
+
+void check_session_arrival(pqxx::work& work, const ServerConnection& server, int session,
+                           int own_session, const store::SessionOnFile& course,
+                           const store::StudyCommitment& commitment,
+                           const std::optional<SecretKey>& master, bool has_key) {
+  const ArrivedSession arrived(server, own_session);
+  const std::vector<store::Event> events = read_events(work, session);
+  arrived.check_chain(events, course);
+  arrived.check_opening(events.front(), course, commitment);
+  arrived.check_traces(events, trace_digests(work, session));
+  const std::optional<Bytes> wrapped = read_key(work, session);
+  arrived.check_key(wrapped, course, has_key);
+  if (master && wrapped) arrived.check_sealed_end(*wrapped, *master, events);
+}
+
+void check_chain_arrival(pqxx::work& work, const ServerConnection& server, int station,
+                         std::span<const store::Event> file_chain, std::int64_t first) {
+  const std::vector<store::Event> tail = read_events(work, chain_number(station), first);
+  store::ChainLink chain =
+      first == 0 ? store::ChainLink(0)
+                 : store::ChainLink::after(file_chain[static_cast<std::size_t>(first - 1)]);
+  extend(chain, tail, [&](const std::string& why) {
+    server.refuse("the file's chain did not arrive whole: " + why + "; nothing of it was kept");
+  });
+  if (chain.head() != file_chain.back().hash) {
+    server.refuse("the file's chain did not arrive whole; nothing of it was kept");
+  }
 }
 
 }  // namespace touchtrial::collect

@@ -1,7 +1,8 @@
-/// \file The study and its stations on a server. Private to protocols/collect.
+/// \file The study and its stations on a server, as a push asks for them, changes them, and checks
+/// what has arrived. Private to protocols/collect.
 #pragma once
 
-#include "core/hash.hpp"
+#include "core/cipher.hpp"
 #include "protocols/collect/server_connection.hpp"
 #include "protocols/collect/station_course.hpp"
 #include "protocols/store/study_store.hpp"
@@ -13,7 +14,7 @@
 
 namespace touchtrial::collect {
 
-/// The session number under which a station's file chain is kept.
+/// The session number under which a station's file chain is stored.
 [[nodiscard]] constexpr int chain_number(int station) {
   return -station;
 }
@@ -26,38 +27,54 @@ void lock_station(pqxx::work& work, const Digest& identity);
 [[nodiscard]] int register_station(pqxx::work& work, const ServerConnection& server,
                                    const Digest& identity, const std::string& name,
                                    const store::Event& commitment);
-/// \throws StoreError if there is a study, and it is another
+/// \throws StoreError if the server has another study
 void refuse_other_study(pqxx::work& work, const ServerConnection& server,
                         const store::Event& commitment);
 
 [[nodiscard]] store::ChainHead chain_head(pqxx::work& work, int station);
-/// The first event at which the server's copy of a chain is another one; nothing if one of the two
-/// is the beginning of the other.
+/// The sequence of the first event that differs in the server's copy of a chain; nothing if one of
+/// the two chains begins with the other.
 [[nodiscard]] std::optional<std::int64_t> parting(pqxx::work& work, int station,
                                                   std::span<const store::Event> file_chain);
 
 /// \pre the station's file chain on the server ends before this session does
-/// \throws DamagedStore if this very session is there: the server's end of the chain is gone
-void refuse_if_cut_off(pqxx::work& work, const ServerConnection& server,
-                       const store::SessionRow& row);
+/// \throws DamagedStore if the server has the session: it then lost the end of the chain
+/// \throws StoreError, naming the other session, if the participant or enrolment number is taken by
+///   a session that nobody replaced
+void refuse_if_there_or_taken(pqxx::work& work, const ServerConnection& server,
+                              const store::SessionRow& row);
 
-/// \throws StoreError, naming the session that is there, if its participant or enrolment number is
-///   taken by one that nobody replaced
-void refuse_if_taken(pqxx::work& work, const ServerConnection& server,
-                     const store::SessionRow& row);
-
-/// Brings a session that is there up to date with the chain up to `end`: exclusion, replacement,
+/// Brings a stored session up to date with the chain up to `end`: exclusion, replacement,
 /// withdrawal, which destroys its key.
 /// \return whether a key was destroyed
-bool update_session(pqxx::work& work, int station, int own_session, const SessionCourse& course,
-                    std::int64_t end);
+bool update_session(pqxx::work& work, int station, int own_session,
+                    const store::SessionOnFile& course, std::int64_t end);
 
-/// The key of a session that is there and was not withdrawn there.
+/// The key of a stored session that was not withdrawn on the server.
 struct KeyThere {
   int session = 0;  ///< on the server
   int own_session = 0;
   Bytes digest;  ///< SHA-256 of the wrapped key; empty: it is gone
 };
 [[nodiscard]] std::vector<KeyThere> keys_of_station(pqxx::work& work, int station);
+
+/// Reads an arrived session back, in the transaction that brought it, and checks: every hash,
+/// length and head as the file chain says, study and seal those of the commitment, traces those
+/// that the events name, and the key the one that the session was opened with.
+/// \param master  the study's key, if known: the session's sealed end is then opened as well
+/// \param has_key  whether the session's key must be there
+/// \throws StoreError naming what does not hold
+void check_session_arrival(pqxx::work& work, const ServerConnection& server, int session,
+                           int own_session, const store::SessionOnFile& course,
+                           const store::StudyCommitment& commitment,
+                           const std::optional<SecretKey>& master, bool has_key);
+
+/// Reads an arrived part of a file chain back, in the transaction that brought it, and checks every
+/// hash, and that it ends as the station's chain does.
+/// \param file_chain  the station's chain up to where it has been pushed
+/// \param first  sequence from which on it was pushed now
+/// \throws StoreError
+void check_chain_arrival(pqxx::work& work, const ServerConnection& server, int station,
+                         std::span<const store::Event> file_chain, std::int64_t first);
 
 }  // namespace touchtrial::collect

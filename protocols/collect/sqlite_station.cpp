@@ -1,9 +1,7 @@
 // Stations that are SQLite files, or were collected into one.
-#include "core/errors.hpp"
-#include "protocols/collect/collect.hpp"
+#include "protocols/collect/stations.hpp"
 #include "protocols/store/collected_chain.hpp"
-#include "protocols/store/damaged_store.hpp"
-#include "protocols/store/event_fault.hpp"
+#include "protocols/store/damage.hpp"
 #include "protocols/store/payload_json.hpp"
 
 #include <map>
@@ -13,10 +11,6 @@
 
 namespace touchtrial::collect {
 namespace {
-
-[[noreturn]] void refuse(const std::filesystem::path& database, const std::string& why) {
-  throw StoreError(one_line(database.string() + ": " + why));
-}
 
 class SqliteStation final : public StationFile {
  public:
@@ -72,7 +66,7 @@ class SqliteStation final : public StationFile {
   std::map<int, int> sessions_;  ///< number in the file, by own number
 };
 
-/// What was decided on a collected file after it was made would be lost with it.
+/// Refuses a collected file in which something was decided since: collecting again would lose it.
 void refuse_own_decisions(const store::StudyStore& store, const std::filesystem::path& database) {
   std::vector<store::StationChain> chains;
   for (int station = 1; station <= store.stations(); ++station) {
@@ -81,11 +75,11 @@ void refuse_own_decisions(const store::StudyStore& store, const std::filesystem:
   const std::size_t collected = store::collected_chain(chains).events.size();
   const std::vector<store::Event> events = store.events(0);
   if (events.size() == collected) return;
-  refuse(database,
-         fmt::format("was collected from stations, and then '{}' was recorded in it, which no "
-                     "other file would have; record that at the station, or after the last merge, "
-                     "and merge the stations' own files",
-                     store::name_of(events[collected].kind)));
+  throw StoreError(one_line(
+      fmt::format("{}: was collected from stations, and then '{}' was recorded in it, which no "
+                  "other file would have; record that at the station, or after the last merge, "
+                  "and merge the stations' own files",
+                  database.string(), store::name_of(events[collected].kind))));
 }
 
 }  // namespace

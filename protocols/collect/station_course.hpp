@@ -1,41 +1,22 @@
-/// \file A station's file chain in the pieces in which it is pushed.
+/// \file A station's file chain in the pieces in which it is pushed. Private to protocols/collect.
 #pragma once
 
-#include "protocols/store/event.hpp"
-#include "protocols/store/payload_json.hpp"
-#include "protocols/store/study_store.hpp"
+#include "protocols/store/file_chain.hpp"
 
 #include <cstdint>
 #include <functional>
 #include <map>
-#include <optional>
-#include <span>
-#include <string>
 #include <vector>
 
 namespace touchtrial::collect {
 
-/// What the file chain says of one session, and at which of its events.
-struct SessionCourse {
-  store::SessionOpenedBody opened;
-  store::SessionClosedBody end;  ///< only if closed_at
-  std::optional<std::int64_t> closed_at;
-  std::optional<std::int64_t> excluded_at;
-  std::optional<std::int64_t> withdrawn_at;
-  std::optional<std::int64_t> replaced_at;
-  std::string replaced_by;
-};
+/// Sessions by their own numbers.
+using Courses = std::map<int, store::SessionOnFile>;
 
-/// Whether something is decided about a session, after its end, among these events of the chain.
-/// \param first,end  sequences, the end not among them
-[[nodiscard]] bool is_decided_between(const SessionCourse& course, std::int64_t first,
+/// Whether an exclusion, withdrawal or replacement of the session stands among these events.
+/// \param first, end  sequences on the file's chain, from `first` up to before `end`
+[[nodiscard]] bool is_decided_between(const store::SessionOnFile& course, std::int64_t first,
                                       std::int64_t end) noexcept;
-
-/// Whether it was replaced or withdrawn and has not ended: it cannot go on any more.
-[[nodiscard]] bool is_cut_short(const SessionCourse& course) noexcept;
-
-/// By own number. \throws EventFault if a body is no such, or names a session that was not opened
-[[nodiscard]] std::map<int, SessionCourse> courses_of(std::span<const store::Event> file_chain);
 
 /// A piece of a file chain that is pushed in one transaction, with the sessions that it closes.
 struct ChainSegment {
@@ -46,12 +27,14 @@ struct ChainSegment {
   friend bool operator==(const ChainSegment&, const ChainSegment&) = default;
 };
 
-/// Cuts what lies from `first` on. Each segment closes one session, and goes up to before the next
-/// closing; further if a session's key is gone, because the withdrawal must come with it, or if
-/// somebody else took its place, because until then it stands in that one's way. So wherever
-/// pushing breaks off, what is on the server holds by itself.
+/// Cuts a file chain from `first` on. Each segment closes one session and ends before the next
+/// closing. It goes further if the session's key is gone, so that the withdrawal comes with it, and
+/// if the session was replaced, since until then it blocks its successor. So wherever pushing
+/// breaks off, the server's content holds by itself.
+/// \param courses  what the chain says of its sessions
+/// \param length  of the chain
 /// \param has_key  whether a session's wrapped key is still in the file
-[[nodiscard]] std::vector<ChainSegment> segments_of(std::span<const store::Event> file_chain,
+[[nodiscard]] std::vector<ChainSegment> segments_of(const Courses& courses, std::int64_t length,
                                                     std::int64_t first,
                                                     const std::function<bool(int)>& has_key);
 

@@ -1,12 +1,11 @@
 #include "protocols/collect/station_push.hpp"
 
-#include "protocols/collect/arrival_check.hpp"
-#include "protocols/collect/server_connection.hpp"
 #include "protocols/collect/server_rows.hpp"
 #include "protocols/collect/server_schema.hpp"
 #include "protocols/collect/server_study.hpp"
-#include "protocols/store/event_fault.hpp"
-#include "protocols/store/row_cells.hpp"
+#include "protocols/store/damage.hpp"
+#include "protocols/store/payload_json.hpp"
+#include "protocols/store/tables.hpp"
 
 #include <algorithm>
 #include <filesystem>
@@ -20,16 +19,22 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Failures without anything pushed between them, until pushing gives up: half a minute.
+/// After so many failures with nothing pushed between them, about half a minute, pushing gives up.
 constexpr int kMostFailures = 10;
 constexpr milliseconds kFirstWait{100};
 constexpr milliseconds kLongestWait{5000};
 
-/// Somebody else pushed the same station meanwhile: what is there must be looked at again.
+/// Another program pushed the same station meanwhile: the server must be looked at again.
 class Overtaken : public Contention {
  public:
   using Contention::Contention;
 };
+
+store::DerivedRows folded(std::span<const store::Event> events) {
+  store::DerivedRows rows;
+  for (const store::Event& event : events) store::fold(rows, event);
+  return rows;
+}
 
 class StationPush {
  public:
@@ -38,16 +43,39 @@ class StationPush {
       : station_(station), address_(server), options_(options), report_(report) {
     chain_ = station.file_chain();
     if (chain_.empty()) throw StoreError(station.name() + ": its file chain is empty");
-    courses_ = courses_of(chain_);
-    commitment_ = store::body_of(chain_.front(), store::commitment_from_json);
+    const store::FileChain file = store::checked_file_chain(chain_);
+    courses_ = file.sessions();
+    commitment_ = *file.commitment();
     for (const auto& [session, course] : courses_) {
-      if (course.closed_at) continue;
-      (is_cut_short(course) ? report_.cut_short : report_.left_open).push_back(named(session));
+      if (course.closed) continue;
+      (course.is_cut_short() ? report_.cut_short : report_.left_open).push_back(named(session));
     }
   }
 
-  void run();
-  /// Sessions that the server did not have at first.
+  void run() {
+    if (options_.dry_run) return look_only();
+    int failures = 0;
+    while (true) {
+      const int before = done_;
+      try {
+        return attempt();
+      } catch (const LostConnection& error) {
+        server_.reset();
+        // An address that never answered is more likely wrong than late.
+        if (!was_connected_) throw;
+        if (done_ > before) failures = 0;
+        if (++failures > kMostFailures) give_up(error);
+        ++report_.reconnections;
+      } catch (const Contention& error) {
+        sent_.reset();  // it was certainly not committed
+        if (done_ > before) failures = 0;
+        if (++failures > kMostFailures) give_up(error);
+      }
+      wait_after(failures);
+    }
+  }
+
+  /// How many sessions the server lacked at first.
   [[nodiscard]] int to_push() const noexcept { return to_push_; }
 
  private:
@@ -55,258 +83,219 @@ class StationPush {
     const store::SessionOpenedBody& opened = courses_.at(session).opened;
     return {session, opened.participant, opened.enrolment};
   }
-  /// Nobody has the same second event: it holds the first session's key and first event.
+  /// The hash of the second event: no two stations have the same one, as it holds the hashes of the
+  /// first session's key and first event.
   [[nodiscard]] const Digest& identity() const { return chain_[1].hash; }
   [[nodiscard]] std::span<const store::Event> chain_to(std::int64_t end) const {
     return std::span(chain_).first(static_cast<std::size_t>(end));
   }
 
-  void attempt();
-  void look_only();
-  void wait_after(int failures) const;
-  [[noreturn]] void give_up(const StoreError& error) const;
-  [[nodiscard]] std::int64_t stored_length();
-  [[nodiscard]] std::int64_t length_there(pqxx::work& work, int station) const;
-  void note_plan(std::int64_t stored);
-  [[nodiscard]] std::vector<ChainSegment> segments(std::int64_t stored);
-  void push(const ChainSegment& segment);
-  void restore_keys();
-  [[nodiscard]] int station_number(pqxx::work& work);
-  void push_session(pqxx::work& work, int station, int session, std::int64_t end);
-  [[nodiscard]] store::SessionRow row_of(const store::DerivedRows& rows, int session,
-                                         std::int64_t end) const;
-  void note_pushed(const ChainSegment& segment);
+  void attempt() {
+    if (!server_) server_ = std::make_unique<ServerConnection>(address_);
+    was_connected_ = true;
+    bring_forward(*server_);
+    const std::int64_t stored = stored_length();
+    note_plan(stored);
+    // Only the server knows how a commit ended whose answer was lost.
+    if (const auto sent = std::exchange(sent_, std::nullopt); sent && sent->end <= stored) {
+      note_pushed(*sent);
+    }
+    for (const ChainSegment& segment : segments(stored)) {
+      sent_ = segment;
+      push(segment);
+      note_pushed(segment);
+      sent_.reset();
+    }
+    restore_keys();
+    if (key_destroyed_) server_->wipe_deleted_keys();
+  }
+
+  void look_only() {
+    server_ = std::make_unique<ServerConnection>(address_);
+    const bool has_tables = server_version(*server_).has_value();
+    if (has_tables) require_current(*server_);
+    const std::int64_t stored = has_tables ? stored_length() : 0;
+    note_plan(stored);
+    for (const ChainSegment& segment : segments(stored)) {
+      for (const int session : segment.sessions) report_.pushed.push_back(named(session));
+      report_.chain_events += segment.end - segment.first;
+      if (!has_tables) continue;
+      server_->look([&](pqxx::work& work) {
+        for (const int session : segment.sessions) {
+          const store::DerivedRows rows = folded(station_.events(session));
+          static_cast<void>(checked_row(work, rows, report_.station, session, segment.end));
+        }
+      });
+    }
+  }
+
+  void wait_after(int failures) const {
+    const milliseconds time = std::min(kFirstWait * (1 << (failures - 1)), kLongestWait);
+    if (options_.wait) return options_.wait(time);
+    std::this_thread::sleep_for(time);
+  }
+
+  [[noreturn]] void give_up(const StoreError& error) const {
+    throw StoreError(std::string(error.what()) + "; gave up after " +
+                     std::to_string(kMostFailures) +
+                     " attempts; run the same command again to go on from there");
+  }
+
+  /// How much of the file chain the server has.
+  /// \throws StoreError if it has another one
+  [[nodiscard]] std::int64_t stored_length() {
+    return server_->look([&](pqxx::work& work) -> std::int64_t {
+      refuse_other_study(work, *server_, chain_.front());
+      if (chain_.size() < 2) return 0;
+      const std::optional<int> station = find_station(work, identity());
+      if (!station) return 0;
+      report_.station = *station;
+      return length_there(work, *station);
+    });
+  }
+
+  [[nodiscard]] std::int64_t length_there(pqxx::work& work, int station) const {
+    const store::ChainHead head = chain_head(work, station);
+    const auto here = static_cast<std::int64_t>(chain_.size());
+    if (const auto parted = parting(work, station, chain_)) {
+      server_->refuse(
+          "has another event " + std::to_string(*parted) + " of the chain of " + station_.name() +
+          " (station " + std::to_string(station) +
+          "): two copies of this file went on by themselves; find out which is to count, "
+          "and sync that one");
+    }
+    report_.ahead = std::max<std::int64_t>(head.length - here, 0);
+    return std::min(head.length, here);
+  }
+
+  /// Counts the sessions to push, at the first attempt.
+  void note_plan(std::int64_t stored) {
+    if (std::exchange(planned_, true)) return;
+    for (const auto& [session, course] : courses_) {
+      if (!course.closed_at) continue;
+      ++(*course.closed_at < stored ? report_.already_there : to_push_);
+    }
+  }
+
+  [[nodiscard]] std::vector<ChainSegment> segments(std::int64_t stored) {
+    // A file without sessions has no identity, and nothing to collect.
+    if (chain_.size() < 2) return {};
+    return segments_of(courses_, static_cast<std::int64_t>(chain_.size()), stored,
+                       [&](int session) { return station_.wrapped_key(session).has_value(); });
+  }
+
+  void push(const ChainSegment& segment) {
+    server_->change([&](pqxx::work& work) {
+      lock_station(work, identity());
+      const int station = station_number(work);
+      if (chain_head(work, station).length != segment.first) {
+        throw Overtaken(address_.shown() + ": another program pushes this station");
+      }
+      for (const auto& [session, course] : courses_) {
+        const bool is_there = course.closed_at && *course.closed_at < segment.first;
+        if (is_there && is_decided_between(course, segment.first, segment.end)) {
+          key_destroyed_ |= update_session(work, station, session, course, segment.end);
+        }
+      }
+      for (const int session : segment.sessions) push_session(work, station, session, segment.end);
+      const std::span<const store::Event> chain = chain_to(segment.end);
+      insert_events(work, chain_number(station),
+                    chain.subspan(static_cast<std::size_t>(segment.first)));
+      check_chain_arrival(work, *server_, station, chain, segment.first);
+      report_.station = station;
+    });
+  }
+
+  // Any station's role can delete any key. The session's own station brings it back.
+  void restore_keys() {
+    // An older copy of the file does not know who has withdrawn since.
+    if (report_.station == 0 || report_.ahead > 0) return;
+    const int restored = server_->change([&](pqxx::work& work) {
+      int count = 0;
+      lock_station(work, identity());
+      for (const KeyThere& there : keys_of_station(work, report_.station)) {
+        const auto course = courses_.find(there.own_session);
+        if (course == courses_.end() || course->second.withdrawn_at) continue;
+        const Digest& right = course->second.opened.key;
+        if (std::equal(right.begin(), right.end(), there.digest.begin(), there.digest.end())) {
+          continue;
+        }
+        const std::optional<Bytes> key = station_.wrapped_key(there.own_session);
+        if (!key) continue;
+        work.exec_params0("DELETE FROM participant_keys WHERE session = $1", there.session);
+        insert_key(work, there.session, *key);
+        ++count;
+      }
+      return count;
+    });
+    report_.keys_restored += restored;
+  }
+
+  [[nodiscard]] int station_number(pqxx::work& work) {
+    if (const std::optional<int> known = find_station(work, identity())) return *known;
+    return register_station(work, *server_, identity(),
+                            one_line(std::filesystem::path(station_.name()).filename().string()),
+                            chain_.front());
+  }
+
+  void push_session(pqxx::work& work, int station, int session, std::int64_t end) {
+    const std::vector<store::Event> events = station_.events(session);
+    const store::DerivedRows rows = folded(events);
+    store::SessionRow row = checked_row(work, rows, station, session, end);
+    row.session = work.exec1("SELECT nextval('session_numbers')")[0].as<int>();
+    insert_session(work, row);
+    insert_events(work, row.session, events);
+    const std::optional<Bytes> key = row.withdrawn ? std::nullopt : station_.wrapped_key(session);
+    if (key) insert_key(work, row.session, *key);
+    insert_trials(work, row.session, rows);
+    insert_traces(work, row.session, station_, session);
+    check_session_arrival(work, *server_, row.session, session, courses_.at(session), commitment_,
+                          options_.master, !row.withdrawn);
+  }
+
+  /// The session's row as the chain up to `end` has it.
+  /// \throws StoreError if something on the server stands in its way
+  [[nodiscard]] store::SessionRow checked_row(pqxx::work& work, const store::DerivedRows& rows,
+                                              int station, int session, std::int64_t end) const {
+    const auto found = rows.sessions.find(session);
+    if (found == rows.sessions.end()) {
+      throw StoreError(station_.name() + ": session " + std::to_string(session) +
+                       " has no events; run `touchtrial verify`");
+    }
+    const store::SessionOnFile& course = courses_.at(session);
+    const auto holds = [&](const std::optional<std::int64_t>& at) { return at && *at < end; };
+    store::SessionRow row = found->second;
+    row.excluded = holds(course.excluded_at);
+    row.withdrawn = holds(course.withdrawn_at);
+    if (holds(course.replaced_at)) row.replaced_by = course.replaced_by;
+    row.own_session = session;
+    row.station = station;
+    refuse_if_there_or_taken(work, *server_, row);
+    return row;
+  }
+
+  void note_pushed(const ChainSegment& segment) {
+    ++done_;
+    report_.chain_events += segment.end - segment.first;
+    for (const int session : segment.sessions) report_.pushed.push_back(named(session));
+    if (options_.progress) options_.progress(static_cast<int>(report_.pushed.size()), to_push_);
+  }
 
   StationFile& station_;
   const ServerAddress& address_;
   const PushOptions& options_;
   PushReport& report_;
   std::vector<store::Event> chain_;
-  std::map<int, SessionCourse> courses_;
+  Courses courses_;
   store::StudyCommitment commitment_;
   std::unique_ptr<ServerConnection> server_;
   bool was_connected_ = false;
   bool planned_ = false;
   bool key_destroyed_ = false;
   int to_push_ = 0;
-  std::optional<ChainSegment> sent_;  ///< of which no answer has come
-  int done_ = 0;                      ///< transactions, so that failures after progress count anew
+  std::optional<ChainSegment> sent_;  ///< sent without an answer so far
+  int done_ = 0;                      ///< transactions; after progress, failures count from 0 again
 };
-
-void StationPush::run() {
-  if (options_.dry_run) return look_only();
-  int failures = 0;
-  while (true) {
-    const int before = done_;
-    try {
-      return attempt();
-    } catch (const LostConnection& error) {
-      server_.reset();
-      // An address where nothing ever answered is more likely wrong than late.
-      if (!was_connected_) throw;
-      if (done_ > before) failures = 0;
-      if (++failures > kMostFailures) give_up(error);
-      ++report_.reconnections;
-    } catch (const Contention& error) {
-      sent_.reset();  // it is certain how that ended
-      if (done_ > before) failures = 0;
-      if (++failures > kMostFailures) give_up(error);
-    }
-    wait_after(failures);
-  }
-}
-
-void StationPush::wait_after(int failures) const {
-  const milliseconds time = std::min(kFirstWait * (1 << (failures - 1)), kLongestWait);
-  if (options_.wait) return options_.wait(time);
-  std::this_thread::sleep_for(time);
-}
-
-void StationPush::give_up(const StoreError& error) const {
-  throw StoreError(std::string(error.what()) + "; gave up after " + std::to_string(kMostFailures) +
-                   " attempts; run the same command again to go on from there");
-}
-
-void StationPush::attempt() {
-  if (!server_) server_ = std::make_unique<ServerConnection>(address_);
-  was_connected_ = true;
-  bring_forward(*server_);
-  const std::int64_t stored = stored_length();
-  note_plan(stored);
-  // Of a commit whose answer was lost, only the server knows how it ended.
-  if (const auto sent = std::exchange(sent_, std::nullopt); sent && sent->end <= stored) {
-    note_pushed(*sent);
-  }
-  for (const ChainSegment& segment : segments(stored)) {
-    sent_ = segment;
-    push(segment);
-    note_pushed(segment);
-    sent_.reset();
-  }
-  restore_keys();
-  if (key_destroyed_) server_->wipe_deleted_keys();
-}
-
-// Any station's role can delete any key: whoever has the session's file brings it back.
-void StationPush::restore_keys() {
-  // An older copy does not know who withdrew since.
-  if (report_.station == 0 || report_.ahead > 0) return;
-  const int restored = server_->change([&](pqxx::work& work) {
-    int count = 0;
-    lock_station(work, identity());
-    for (const KeyThere& there : keys_of_station(work, report_.station)) {
-      const auto course = courses_.find(there.own_session);
-      if (course == courses_.end() || course->second.withdrawn_at) continue;
-      const Digest& right = course->second.opened.key;
-      if (std::equal(right.begin(), right.end(), there.digest.begin(), there.digest.end())) {
-        continue;
-      }
-      const std::optional<Bytes> key = station_.wrapped_key(there.own_session);
-      if (!key) continue;
-      work.exec_params0("DELETE FROM participant_keys WHERE session = $1", there.session);
-      insert_key(work, there.session, *key);
-      ++count;
-    }
-    return count;
-  });
-  report_.keys_restored += restored;
-}
-
-void StationPush::look_only() {
-  server_ = std::make_unique<ServerConnection>(address_);
-  const bool has_tables = server_version(*server_).has_value();
-  if (has_tables) require_current(*server_);
-  const std::int64_t stored = has_tables ? stored_length() : 0;
-  note_plan(stored);
-  for (const ChainSegment& segment : segments(stored)) {
-    for (const int session : segment.sessions) report_.pushed.push_back(named(session));
-    report_.chain_events += segment.end - segment.first;
-    if (!has_tables) continue;
-    server_->look([&](pqxx::work& work) {
-      for (const int session : segment.sessions) {
-        store::DerivedRows rows;
-        for (const store::Event& event : station_.events(session)) store::fold(rows, event);
-        store::SessionRow row = row_of(rows, session, segment.end);
-        row.station = report_.station;
-        refuse_if_cut_off(work, *server_, row);
-        refuse_if_taken(work, *server_, row);
-      }
-    });
-  }
-}
-
-/// How much of the file chain the server has. \throws StoreError if it has another one
-std::int64_t StationPush::stored_length() {
-  return server_->look([&](pqxx::work& work) -> std::int64_t {
-    refuse_other_study(work, *server_, chain_.front());
-    if (chain_.size() < 2) return 0;
-    const std::optional<int> station = find_station(work, identity());
-    if (!station) return 0;
-    report_.station = *station;
-    return length_there(work, *station);
-  });
-}
-
-std::int64_t StationPush::length_there(pqxx::work& work, int station) const {
-  const store::ChainHead head = chain_head(work, station);
-  const auto here = static_cast<std::int64_t>(chain_.size());
-  if (const auto parted = parting(work, station, chain_)) {
-    server_->refuse("has another event " + std::to_string(*parted) + " of the chain of " +
-                    station_.name() + " (station " + std::to_string(station) +
-                    "): two copies of this file went on by themselves; find out which is to count, "
-                    "and sync that one");
-  }
-  report_.ahead = std::max<std::int64_t>(head.length - here, 0);
-  return std::min(head.length, here);
-}
-
-/// \pre nothing of this push has arrived, or it is the plan's continuation
-void StationPush::note_plan(std::int64_t stored) {
-  if (std::exchange(planned_, true)) return;
-  for (const auto& [session, course] : courses_) {
-    if (!course.closed_at) continue;
-    ++(*course.closed_at < stored ? report_.already_there : to_push_);
-  }
-}
-
-std::vector<ChainSegment> StationPush::segments(std::int64_t stored) {
-  // Before its first session a file has no identity, and nothing to collect.
-  if (chain_.size() < 2) return {};
-  return segments_of(chain_, stored,
-                     [&](int session) { return station_.wrapped_key(session).has_value(); });
-}
-
-void StationPush::push(const ChainSegment& segment) {
-  server_->change([&](pqxx::work& work) {
-    lock_station(work, identity());
-    const int station = station_number(work);
-    if (chain_head(work, station).length != segment.first) {
-      throw Overtaken(address_.shown() + ": another program pushes this station");
-    }
-    for (const auto& [session, course] : courses_) {
-      const bool is_there = course.closed_at && *course.closed_at < segment.first;
-      if (is_there && is_decided_between(course, segment.first, segment.end)) {
-        key_destroyed_ |= update_session(work, station, session, course, segment.end);
-      }
-    }
-    for (const int session : segment.sessions) push_session(work, station, session, segment.end);
-    const std::span<const store::Event> chain = chain_to(segment.end);
-    insert_events(work, chain_number(station),
-                  chain.subspan(static_cast<std::size_t>(segment.first)));
-    check_chain_arrival(work, *server_, station, chain, segment.first);
-    report_.station = station;
-  });
-}
-
-int StationPush::station_number(pqxx::work& work) {
-  if (const std::optional<int> known = find_station(work, identity())) return *known;
-  return register_station(work, *server_, identity(),
-                          one_line(std::filesystem::path(station_.name()).filename().string()),
-                          chain_.front());
-}
-
-void StationPush::push_session(pqxx::work& work, int station, int session, std::int64_t end) {
-  const std::vector<store::Event> events = station_.events(session);
-  store::DerivedRows rows;
-  for (const store::Event& event : events) store::fold(rows, event);
-  store::SessionRow row = row_of(rows, session, end);
-  row.station = station;
-  refuse_if_cut_off(work, *server_, row);
-  refuse_if_taken(work, *server_, row);
-  row.session = work.exec1("SELECT nextval('session_numbers')")[0].as<int>();
-  insert_session(work, row);
-  insert_events(work, row.session, events);
-  const std::optional<Bytes> key = row.withdrawn ? std::nullopt : station_.wrapped_key(session);
-  if (key) insert_key(work, row.session, *key);
-  insert_trials(work, row.session, rows);
-  insert_traces(work, row.session, station_, session);
-  check_session_arrival(work, *server_, row.session, session, courses_.at(session), commitment_,
-                        options_.master, !row.withdrawn);
-}
-
-store::SessionRow StationPush::row_of(const store::DerivedRows& rows, int session,
-                                      std::int64_t end) const {
-  const auto found = rows.sessions.find(session);
-  if (found == rows.sessions.end()) {
-    throw StoreError(station_.name() + ": session " + std::to_string(session) +
-                     " has no events; run `touchtrial verify`");
-  }
-  const SessionCourse& course = courses_.at(session);
-  const auto holds = [&](const std::optional<std::int64_t>& at) { return at && *at < end; };
-  store::SessionRow row = found->second;
-  row.excluded = holds(course.excluded_at);
-  row.withdrawn = holds(course.withdrawn_at);
-  if (holds(course.replaced_at)) row.replaced_by = course.replaced_by;
-  row.own_session = session;
-  return row;
-}
-
-void StationPush::note_pushed(const ChainSegment& segment) {
-  ++done_;
-  report_.chain_events += segment.end - segment.first;
-  for (const int session : segment.sessions) report_.pushed.push_back(named(session));
-  if (options_.progress) options_.progress(static_cast<int>(report_.pushed.size()), to_push_);
-}
 
 store::SessionState state_named(int session, const std::string& name) {
   const auto* const found =

@@ -7,6 +7,7 @@
 #include "engine/rendering/loop_work.hpp"
 #include "protocols/design/prepare.hpp"
 #include "protocols/design/stimulus_field.hpp"
+#include "protocols/design/study_sections.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -126,9 +127,9 @@ std::vector<ModelLoopWork> loop_work_of(const Study& study) {
   check_images_exist(study);
   const std::vector<Plane<double>> textures = textures_of(study);
   std::vector<ModelLoopWork> works;
-  for (const engine::ModelKind model : {engine::ModelKind::paper, engine::ModelKind::surface}) {
+  for (const Named<engine::ModelKind>& model : kModelNames) {
     engine::RenderingOptions options = study.rendering;
-    options.model = model;
+    options.model = model.value;
     options.gains.reset();
     options.friction = 0.0;
     works.push_back(loop_work_under(options, textures));

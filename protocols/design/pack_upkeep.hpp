@@ -1,16 +1,31 @@
-/// \file What an existing pack offers to the next `prepare`, and what it leaves behind. Private to
-/// protocols/design.
+/// \file Care of a pack's folder: one writer at a time, what an earlier pack offers to the next
+/// `prepare`, and what is left over. Private to protocols/design.
 #pragma once
 
 #include "engine/pack/pack.hpp"
 #include "protocols/design/study_key.hpp"
 
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
 
 namespace touchtrial::design {
+
+/// Holds `prepare.lock` in the pack's folder; the system lets go of it however the process ends.
+class PackLock {
+ public:
+  /// \param wait  as long as another process or thread prepares this pack
+  /// \throws FileError if one does and `wait` is not set, or the file cannot be made
+  explicit PackLock(const std::filesystem::path& folder, bool wait = false);
+  ~PackLock();
+  PackLock(const PackLock&) = delete;
+  PackLock& operator=(const PackLock&) = delete;
+
+ private:
+  int descriptor_;
+};
 
 /// The identity that a pack has while it is being built: nothing is presented from such a pack,
 /// because it is not the study's, and the next `prepare` knows it as its own.

@@ -4,7 +4,6 @@
 #include "core/files.hpp"
 #include "engine/image_file.hpp"
 #include "engine/rendering/gains.hpp"
-#include "protocols/design/pack_lock.hpp"
 #include "protocols/design/pack_upkeep.hpp"
 #include "protocols/design/prepare_advice.hpp"
 #include "protocols/design/stimulus_field.hpp"
@@ -22,6 +21,10 @@
 
 namespace touchtrial::design {
 namespace {
+
+std::filesystem::path beside(const std::filesystem::path& study_file, const char* ending) {
+  return study_file.parent_path() / (study_file.stem().string() + ending);
+}
 
 using Clock = std::chrono::steady_clock;
 
@@ -349,6 +352,23 @@ class Preparation {
 };
 
 }  // namespace
+
+PackPlace default_pack_place(const std::filesystem::path& study_file) {
+  return {beside(study_file, ".pack"), beside(study_file, ".key")};
+}
+
+PackPlace simulated_pack_place(const std::filesystem::path& study_file) {
+  return {beside(study_file, ".sim.pack"), {}};
+}
+
+PackPlace pack_place_at(const std::filesystem::path& pack_folder) {
+  // "name.pack/" ends in an empty file name; the folder is what comes before.
+  const auto pack = pack_folder.has_filename() ? pack_folder : pack_folder.parent_path();
+  std::filesystem::path key = pack;
+  if (key.extension() == ".pack") key.replace_extension();
+  key += ".key";
+  return {pack, key};
+}
 
 namespace {
 

@@ -30,7 +30,8 @@ std::vector<SkippedWork> skipped_work(const Study& study, std::uintmax_t pixels)
   for (std::size_t m = static_cast<std::size_t>(study.presented_methods());
        m < study.methods.size(); ++m) {
     skipped.push_back({study.methods[m].label + " x " + std::to_string(images) + " stimuli",
-                       "the classification protocol presents only its first method, " +
+                       "the " + study.protocol_name() +
+                           " protocol presents only its first method, " +
                            study.methods.front().label,
                        pixels * sizeof(engine::FieldSample)});
   }

@@ -1,13 +1,13 @@
-/// \file What a participant gets, in which order: a function of the study and the enrolment number.
+/// \file What a participant is presented, in which order.
 #pragma once
 
-#include "protocols/design/study.hpp"
-
+#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace touchtrial::design {
+
+struct Study;
 
 /// Indices into the study's classes, a class's images, and the study's methods.
 struct StimulusIndex {
@@ -18,7 +18,7 @@ struct StimulusIndex {
   friend auto operator<=>(const StimulusIndex&, const StimulusIndex&) = default;
 };
 
-/// A catch trial presents a plane without texture: its `stimulus` means nothing.
+/// A catch trial presents a plane without texture: its `stimulus` has no meaning.
 enum class PresentationKind { scored, lead_in, catch_trial };
 
 struct Presentation {
@@ -32,37 +32,31 @@ struct Presentation {
 
 struct Schedule {
   std::vector<Presentation> presentations;
-  std::vector<int> layout;  ///< class index of the picture at each position
+  /// The choice at each position of the answer screen: an index into the protocol's choices.
+  std::vector<int> layout;
 
   friend bool operator==(const Schedule&, const Schedule&) = default;
 };
 
-/// The schedule of one participant. Depends on the study's seed, classes, methods and trial options
-/// and on the enrolment number, and on nothing else: the same on every platform.
+/// The schedule of one participant, as the study's protocol makes it: a function of the study's
+/// seed, classes, methods and trial options and of the enrolment number alone, equal on every
+/// platform.
 /// \param enrolment  from 1
 /// \throws StudyError if the order is impossible for the study
 [[nodiscard]] Schedule make_schedule(const Study& study, int enrolment);
 
-/// A block of a participant's schedule once more, in a fresh order, with as many catch trials as it
-/// had: a function of the arguments alone. What it was before tells nothing of it.
-/// \param block  from 0  \param restarts_before  of this block by this participant, from 0
-/// \param first_trial  number of its first presentation; the others follow
+/// A block of a participant's schedule in a fresh order, with as many catch trials as before: a
+/// function of the arguments alone. The new order tells nothing about the old one.
+/// \param block  from 0
+/// \param restarts_before  of this block by this participant, from 0
+/// \param first_trial  the number of the block's first presentation; the others follow
 /// \throws StudyError if the order is impossible for the study
 /// \throws std::invalid_argument if there is no such block
 [[nodiscard]] std::vector<Presentation> restarted_block(const Study& study, int enrolment,
                                                         int block, int restarts_before,
                                                         int first_trial);
 
-/// Method blocks in a carry-over-balanced order: row (enrolment mod rows) of a Williams design.
-/// \param methods  >= 1
-/// \return method indices, each once. For an odd number, rows from `methods` on are the mirror
-/// images.
-[[nodiscard]] std::vector<int> williams_row(int methods, int enrolment);
-
-/// How many different rows there are. \param methods  >= 1
-[[nodiscard]] int williams_rows(int methods);
-
-/// Names this rule and its version; the seal commits to it.
+/// The name and version of the rule that makes schedules; the seal commits to it.
 [[nodiscard]] std::string schedule_rule(const Study& study);
 
 }  // namespace touchtrial::design

@@ -1,5 +1,6 @@
 /// The secret part of a session's opening.
 #include "core/errors.hpp"
+#include "protocols/design/protocol.hpp"
 #include "protocols/design/study_key.hpp"
 
 #include <algorithm>
@@ -75,31 +76,37 @@ json parsed_json(const std::string& text) {
   return document;
 }
 
-void check_layout(const std::vector<int>& layout, const StudyKey& key) {
+void check_layout(const std::vector<int>& layout, std::size_t choices) {
   std::vector<int> sorted = layout;
   std::ranges::sort(sorted);
   const bool each_once = std::ranges::adjacent_find(sorted) == sorted.end();
-  if (!each_once || sorted.size() != key.study.classes.size()) {
-    refuse("its layout does not have every class once");
+  const auto in_range = [&](int choice) { return choice >= 0 && choice < std::ssize(sorted); };
+  if (!each_once || sorted.size() != choices || !std::ranges::all_of(sorted, in_range)) {
+    refuse("its layout does not have every choice once");
   }
 }
 
 Schedule schedule_of(const json& document, const StudyKey& key) {
   Schedule schedule;
   schedule.presentations = presentations_from(document.at("presentations"), key);
-  for (const json& code : document.at("layout")) {
-    schedule.layout.push_back(meaning_of(code, key).class_index);
+  for (const json& choice : document.at("layout")) {
+    schedule.layout.push_back(choice.is_number() ? choice.get<int>()
+                                                 : meaning_of(choice, key).class_index);
   }
-  check_layout(schedule.layout, key);
+  check_layout(schedule.layout, key.study.protocol->choices(key.study).size());
   return schedule;
 }
 
 }  // namespace
 
 std::string schedule_to_json(const Schedule& schedule, const StudyKey& key) {
-  // A picture stands for its class; the code of the class's first stimulus names it.
+  // A class's picture is named by the code of its first stimulus, another choice by its index.
+  const std::vector<Choice> choices = key.study.protocol->choices(key.study);
   json layout = json::array();
-  for (const int class_index : schedule.layout) layout.push_back(key.code_of({class_index, 0, 0}));
+  for (const int choice : schedule.layout) {
+    const std::optional<int> class_index = choices[static_cast<std::size_t>(choice)].class_index;
+    layout.push_back(class_index ? json(key.code_of({*class_index, 0, 0})) : json(choice));
+  }
   return json{{"presentations", json_of(schedule.presentations, key)}, {"layout", layout}}.dump();
 }
 

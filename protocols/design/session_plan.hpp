@@ -2,14 +2,21 @@
 /// "registration". Format: docs/study-file.md.
 #pragma once
 
-#include "protocols/design/study_class.hpp"
-
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 namespace touchtrial::design {
+
+/// Each image is an exemplar.
+struct StudyClass {
+  std::string label;
+  std::vector<std::filesystem::path> images;  ///< as written in the file
+
+  friend bool operator==(const StudyClass&, const StudyClass&) = default;
+};
 
 /// A text in several languages, by their codes ("en", "de").
 using Translated = std::map<std::string, std::string>;

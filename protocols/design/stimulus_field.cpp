@@ -2,7 +2,6 @@
 
 #include "core/random.hpp"
 #include "engine/cited_textures.hpp"
-#include "protocols/design/study_names.hpp"
 #include "protocols/design/study_sections.hpp"
 
 #include <algorithm>
@@ -95,6 +94,13 @@ Digest input_tag(const SecretKey& master, const GreyImage& image,
   }
   const Digest input = hasher.finish();
   return keyed_hash(derive_key(master, "input"), ByteView(input));
+}
+
+bool is_made_from(const engine::PackEntry& entry, const StudyKey& key, const GreyImage& image,
+                  const StimulusIndex& stimulus) {
+  return entry.code == key.code_of(stimulus) &&
+         entry.input_tag ==
+             input_tag(key.master, image, method_of(key.study, stimulus), key.study.rendering);
 }
 
 engine::ExtractionOptions method_of(const Study& study, const StimulusIndex& stimulus) {

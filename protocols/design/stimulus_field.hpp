@@ -1,12 +1,12 @@
-/// \file One stimulus from image to field. Private to protocols/design.
+/// \file One stimulus from image to field, and whether a field of a pack was made so.
 #pragma once
 
 #include "core/cipher.hpp"
 #include "engine/extraction.hpp"
+#include "engine/pack/pack.hpp"
 #include "engine/rendering/texture_field.hpp"
 #include "engine/stage_log.hpp"
-#include "protocols/design/schedule.hpp"
-#include "protocols/design/study.hpp"
+#include "protocols/design/study_key.hpp"
 
 #include <optional>
 
@@ -24,6 +24,13 @@ namespace touchtrial::design {
 [[nodiscard]] Digest input_tag(const SecretKey& master, const GreyImage& image,
                                const engine::ExtractionOptions& method,
                                const engine::RenderingOptions& rendering);
+
+/// Whether a field was made from this image by the stimulus's method and the study's rendering, as
+/// the key's study has them and by the computation of this program.
+/// \param entry  the field's, in the pack that the key belongs to
+/// \throws StudyError if the study does not present the stimulus
+[[nodiscard]] bool is_made_from(const engine::PackEntry& entry, const StudyKey& key,
+                                const GreyImage& image, const StimulusIndex& stimulus);
 
 /// A field with what the solver said of it.
 struct BuiltField {

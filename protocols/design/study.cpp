@@ -2,8 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "protocols/design/order_rules.hpp"
-#include "protocols/design/study_names.hpp"
+#include "protocols/design/protocol.hpp"
 #include "protocols/design/study_sections.hpp"
 
 #include <algorithm>
@@ -33,12 +32,39 @@ std::string read_plain_name(const JsonValue& place) {
 
 namespace {
 
-void check_protocol(const JsonValue& place, const Study& study) {
-  if (study.protocol == Protocol::comparison && study.methods.size() < 2) {
-    place.refuse_below("/methods",
-                       "has 1 entry; the protocol comparison needs at least 2: add one, or choose "
-                       "the protocol classification");
+/// The protocol named in the file.
+const Protocol& read_protocol(const JsonValue& place) {
+  std::vector<std::string_view> names;
+  for (const Protocol* one : protocols()) names.push_back(one->name());
+  return *protocols()[place.choice(names)];
+}
+
+/// The keys of every study, and the sections of all protocols: one of another protocol's is refused
+/// under its own name.
+std::vector<std::string_view> keys_of_studies() {
+  std::vector<std::string_view> keys = {"study",        "protocol", "classes",  "methods",
+                                        "rendering",    "trials",   "practice", "session",
+                                        "registration", "blinding", "seed"};
+  for (const Protocol* one : protocols()) {
+    if (!one->section().empty()) keys.push_back(one->section());
   }
+  return keys;
+}
+
+std::shared_ptr<const ProtocolOptions> read_options(const JsonObject& root,
+                                                    const Protocol& protocol) {
+  for (const Protocol* other : protocols()) {
+    if (other->section().empty() || other->section() == protocol.section()) continue;
+    if (const auto member = root.find(other->section())) {
+      member->refuse("belongs to the protocol " + std::string(other->name()) +
+                     "; remove it, or choose that protocol");
+    }
+  }
+  if (protocol.section().empty()) return protocol.read(std::nullopt);
+  return protocol.read(root.find(protocol.section()));
+}
+
+void check_size(const JsonValue& place, const Study& study) {
   std::size_t images = 0;
   for (const StudyClass& study_class : study.classes) images += study_class.images.size();
   if (images * study.methods.size() > kMaxStimuli) {
@@ -47,17 +73,11 @@ void check_protocol(const JsonValue& place, const Study& study) {
                                        " methods, more than " + std::to_string(kMaxStimuli) +
                                        " stimuli; list fewer");
   }
-}
-
-void check_trials(const JsonValue& place, const Study& study) {
   if (study.scored_trials() > kMaxScoredTrials) {
     place.refuse_below("/trials/repeats", "makes " + std::to_string(study.scored_trials()) +
                                               " trials for a participant, more than " +
                                               std::to_string(kMaxScoredTrials) +
                                               "; give fewer repeats");
-  }
-  if (const auto obstacle = obstacle_to_order(study)) {
-    place.refuse_below("/trials" + obstacle->key, obstacle->what);
   }
 }
 
@@ -108,12 +128,11 @@ void check_practice(const JsonValue& place, const Study& study) {
 }
 
 Study read_study(const JsonValue& place) {
-  const JsonObject root =
-      place.object({"study", "protocol", "classes", "methods", "rendering", "trials", "practice",
-                    "session", "registration", "blinding", "seed"});
+  const JsonObject root = place.object(keys_of_studies());
   Study study;
   study.name = read_plain_name(root.at("study"));
-  study.protocol = root.at("protocol").choice(kProtocolNames);
+  study.protocol = &read_protocol(root.at("protocol"));
+  study.options = read_options(root, *study.protocol);
   study.classes = read_classes(root.at("classes"));
   study.methods = read_methods(root.at("methods"));
   if (const auto member = root.find("rendering")) study.rendering = read_rendering(*member);
@@ -127,24 +146,36 @@ Study read_study(const JsonValue& place) {
   if (const auto member = root.find("seed")) {
     study.seed = static_cast<std::uint64_t>(member->integer(0, kMaxSeed));
   }
-  check_protocol(place, study);
-  check_trials(place, study);
+  check_size(place, study);
+  study.protocol->check(place, study);
   check_practice(place, study);
   return study;
 }
 
 }  // namespace
 
-std::string_view name_of(Protocol protocol) {
-  return word_for(kProtocolNames, protocol);
+std::string_view name_of(TrialOrder order) {
+  return word_for(kTrialOrderNames, order);
 }
 
-int Study::presented_methods() const noexcept {
-  return protocol == Protocol::classification ? 1 : static_cast<int>(methods.size());
+std::string_view name_of(Blocks blocks) {
+  return word_for(kBlocksNames, blocks);
 }
 
-int Study::scored_trials() const noexcept {
-  return static_cast<int>(classes.size()) * presented_methods() * trials.repeats;
+std::string_view name_of(engine::ModelKind model) {
+  return word_for(kModelNames, model);
+}
+
+std::string Study::protocol_name() const {
+  return std::string(protocol->name());
+}
+
+int Study::presented_methods() const {
+  return protocol->presents_all_methods() ? static_cast<int>(methods.size()) : 1;
+}
+
+int Study::scored_trials() const {
+  return protocol->scored_trials(*this);
 }
 
 Study parse_study(std::string_view text, const std::filesystem::path& folder,

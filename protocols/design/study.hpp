@@ -5,18 +5,18 @@
 #include "engine/extraction.hpp"
 #include "engine/rendering/rendering_options.hpp"
 #include "protocols/design/session_plan.hpp"
-#include "protocols/design/study_class.hpp"
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace touchtrial::design {
 
-enum class Protocol { classification, comparison };
-[[nodiscard]] std::string_view name_of(Protocol protocol);
+class Protocol;
+class ProtocolOptions;
 
 /// A way of taking textures, and what tables and files call it.
 struct StudyMethod : engine::ExtractionOptions {
@@ -29,8 +29,12 @@ struct StudyMethod : engine::ExtractionOptions {
 [[nodiscard]] std::string default_label(const engine::ExtractionOptions& method);
 
 enum class TrialOrder { shuffled, de_bruijn, uniform, williams };
+[[nodiscard]] std::string_view name_of(TrialOrder order);
 enum class OnTimeout { fade, no_response };
 enum class Blocks { by_method, mixed };
+[[nodiscard]] std::string_view name_of(Blocks blocks);
+/// The study file's word for a rendering model.
+[[nodiscard]] std::string_view name_of(engine::ModelKind model);
 /// What becomes of a presentation that was spoilt: by a fault, a comfort stop, or the program's
 /// end.
 enum class OnInterruption { repeat, leave_out, restart_block };
@@ -57,9 +61,10 @@ struct TrialOptions {
 /// A study as read from its file.
 struct Study {
   std::string name;
-  Protocol protocol = Protocol::classification;
-  std::vector<StudyClass> classes;   ///< >= 2, labels unique
-  std::vector<StudyMethod> methods;  ///< >= 1, labels unique
+  const Protocol* protocol = nullptr;              ///< never null in a study that was read
+  std::shared_ptr<const ProtocolOptions> options;  ///< of the protocol's own section; may be null
+  std::vector<StudyClass> classes;                 ///< >= 2, labels unique
+  std::vector<StudyMethod> methods;                ///< >= 1, labels unique
   engine::RenderingOptions rendering;
   TrialOptions trials;
   PracticePlan practice;
@@ -70,11 +75,12 @@ struct Study {
   std::string source;            ///< the file's name, for errors
   std::string text;              ///< the file's content
 
-  /// The methods that the protocol presents: the first alone for classification, all for
-  /// comparison.
-  [[nodiscard]] int presented_methods() const noexcept;
-  /// Scored presentations a participant.
-  [[nodiscard]] int scored_trials() const noexcept;
+  /// The protocol's name, as the file has it.
+  [[nodiscard]] std::string protocol_name() const;
+  /// How many methods are presented, from the first on.
+  [[nodiscard]] int presented_methods() const;
+  /// Scored presentations of one participant.
+  [[nodiscard]] int scored_trials() const;
 };
 
 /// Reads a study file strictly: unknown keys, wrong types and impossible values are refused.

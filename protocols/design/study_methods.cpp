@@ -14,21 +14,21 @@ struct MethodKey {
 };
 
 const std::vector<MethodKey>& method_keys() {
-  using enum engine::Method;
+  using enum engine::Parameter;
   static const std::vector<MethodKey> keys = {
-      {"radius", {adaptive, fixed, median}},
-      {"order", {fixed}},
-      {"norm", {adaptive, fixed}},
-      {"gradient", {adaptive}},
-      {"combine", {adaptive}},
-      {"levels", {adaptive}},
-      {"sigma_px", {gaussian}},
-      {"threshold", {median}},
-      {"divisor", {edge}},
-      {"lambda", {tv_gabor}},
-      {"components", {tv_gabor}},
-      {"gap", {tv_gabor}},
-      {"max_steps", {tv_gabor}},
+      {"radius", methods_with(radius)},
+      {"order", methods_with(order)},
+      {"norm", methods_with(norm)},
+      {"gradient", methods_with(gradient)},
+      {"combine", methods_with(combine)},
+      {"levels", methods_with(levels)},
+      {"sigma_px", methods_with(sigma)},
+      {"threshold", methods_with(threshold)},
+      {"divisor", methods_with(divisor)},
+      {"lambda", methods_with(lambda)},
+      {"components", methods_with(components)},
+      {"gap", methods_with(gap)},
+      {"max_steps", methods_with(max_steps)},
   };
   return keys;
 }

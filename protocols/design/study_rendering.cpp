@@ -1,5 +1,4 @@
 /// The study file's "rendering".
-#include "protocols/design/study_names.hpp"
 #include "protocols/design/study_sections.hpp"
 
 namespace touchtrial::design {

@@ -1,13 +1,43 @@
-/// The study file's "session".
-#include "protocols/design/study_names.hpp"
-#include "protocols/design/study_questions.hpp"
+// The study file's "session": its texts, its questions, and what else a session has beside trials.
 #include "protocols/design/study_sections.hpp"
-#include "protocols/design/study_texts.hpp"
 
 #include <algorithm>
 
 namespace touchtrial::design {
 namespace {
+
+constexpr std::size_t kLongestQuestion = 500;  // bytes
+
+void check_length(const JsonValue& place, const std::string& text, std::size_t longest) {
+  if (text.size() <= longest) return;
+  place.refuse("has " + std::to_string(text.size()) + " bytes, must have at most " +
+               std::to_string(longest) + "; shorten it");
+}
+
+constexpr std::size_t kMostQuestions = 50;
+constexpr std::size_t kMostOptions = 20;
+
+void read_options(const JsonObject& object, const std::string& language, Question& question) {
+  const auto options = object.find("options");
+  if (question.kind != QuestionKind::choice) {
+    if (options) options->refuse("belongs to a question of the kind choice; remove it");
+    return;
+  }
+  for (const JsonValue& option : object.at("options").items(2, kMostOptions)) {
+    question.options.push_back(read_translated(option, language));
+  }
+}
+
+Question read_question(const JsonValue& place, const std::string& language) {
+  const JsonObject object = place.object({"id", "kind", "text", "options", "required"});
+  Question question;
+  question.id = read_plain_name(object.at("id"));
+  question.kind = object.at("kind").choice(kQuestionKindNames);
+  question.text = read_translated(object.at("text"), language);
+  read_options(object, language, question);
+  if (const auto member = object.find("required")) question.required = member->truth();
+  return question;
+}
 
 constexpr std::size_t kMostPages = 20;
 constexpr std::size_t kLongestPage = 4000;  // bytes
@@ -76,6 +106,80 @@ void read_name(const JsonObject& object, std::string_view key, std::string& name
 }
 
 }  // namespace
+
+bool has_control_character(std::string_view text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    if (c < 0x20 || c == 0x7f) return true;
+    // C1 is 0xC2 0x80 .. 0xC2 0x9F in UTF-8.
+    const bool c1 =
+        c == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xa0;
+    if (c1) return true;
+  }
+  return false;
+}
+
+std::string read_line(const JsonValue& place, std::size_t longest) {
+  const std::string& line = place.text();
+  if (line.empty()) place.refuse("is empty; write something, or leave it out");
+  check_length(place, line, longest);
+  if (has_control_character(line)) place.refuse("has a control character; remove it");
+  if (line.front() == ' ' || line.back() == ' ') {
+    place.refuse("begins or ends with a blank; remove it");
+  }
+  return line;
+}
+
+std::string read_paragraphs(const JsonValue& place, std::size_t longest) {
+  const std::string& text = place.text();
+  check_length(place, text, longest);
+  std::string without_ends = text;
+  std::erase(without_ends, '\n');
+  if (has_control_character(without_ends)) {
+    place.refuse("has a control character other than a line's end; remove it");
+  }
+  return text;
+}
+
+Translated read_translated(const JsonValue& place, const std::string& language) {
+  const JsonObject object = place.object(kLanguages);
+  Translated text;
+  for (const std::string_view code : kLanguages) {
+    if (const auto member = object.find(code)) {
+      text[std::string(code)] = read_line(*member, kLongestQuestion);
+    }
+  }
+  if (!text.contains(language)) {
+    place.refuse_below("/" + language, "is missing, the study's language; add it");
+  }
+  return text;
+}
+
+std::vector<Question> read_questions(const JsonValue& place, const std::string& language) {
+  std::vector<Question> questions;
+  for (const JsonValue& item : place.items(0, kMostQuestions)) {
+    Question question = read_question(item, language);
+    if (std::ranges::count(questions, question.id, &Question::id) > 0) {
+      item.refuse_below(
+          "/id", in_quotes(question.id) + " is the id of another question; ids must be unique");
+    }
+    questions.push_back(std::move(question));
+  }
+  return questions;
+}
+
+nlohmann::json to_json(const std::vector<Question>& questions) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const Question& question : questions) {
+    nlohmann::json item = {{"id", question.id},
+                           {"kind", word_for(kQuestionKindNames, question.kind)},
+                           {"text", question.text},
+                           {"required", question.required}};
+    if (!question.options.empty()) item["options"] = question.options;
+    list.push_back(std::move(item));
+  }
+  return list;
+}
 
 SessionPlan read_session(const JsonValue& place) {
   const JsonObject object = place.object(

@@ -1,24 +1,157 @@
 #include "protocols/session/commitment.hpp"
 
+#include "core/errors.hpp"
+#include "core/strict_json.hpp"
 #include "core/version.hpp"
+#include "protocols/design/protocol.hpp"
+#include "protocols/session/trial_trace.hpp"
+
+#include <algorithm>
 
 namespace touchtrial::session {
+namespace {
+
+std::string section(const std::string& title, const std::string& text) {
+  return "\n## " + title + "\n\n" + (text.empty() ? "Not stated." : text) + "\n";
+}
+
+std::string line(const std::string& what, const std::string& value) {
+  return "- " + what + ": " + value + "\n";
+}
+
+std::string counted(int number, const std::string& one, const std::string& many) {
+  return std::to_string(number) + " " + (number == 1 ? one : many);
+}
+
+/// In alphabetical order, which does not reveal their order in the study.
+std::string labels_of(const design::Study& study) {
+  std::vector<std::string> labels;
+  for (const design::StudyClass& shown : study.classes) labels.push_back(shown.label);
+  std::ranges::sort(labels);
+  std::string list;
+  for (const std::string& label : labels) list += (list.empty() ? "" : ", ") + label;
+  return list;
+}
+
+std::string methods_of(const design::Study& study) {
+  std::string list;
+  for (int m = 0; m < study.presented_methods(); ++m) {
+    list += (m == 0 ? "" : ", ") + study.methods[static_cast<std::size_t>(m)].label;
+  }
+  return list;
+}
+
+std::string participants_of(const design::Registration& registration) {
+  if (registration.participants == 0) return "";
+  return counted(registration.participants, "participant", "participants") + ".";
+}
+
+std::string practice_of(const design::Study& study) {
+  if (study.trials.practice == 0) return "none";
+  const design::PracticePlan& practice = study.practice;
+  return counted(study.trials.practice, "presentation", "presentations") + " a round of " +
+         counted(static_cast<int>(practice.classes.size()), "texture", "textures") +
+         " that are not in the study; criterion " + std::to_string(practice.criterion) +
+         " correct, " + counted(practice.rounds, "round", "rounds") + " at most";
+}
+
+std::string design_of(const design::Study& study) {
+  const design::TrialOptions& trials = study.trials;
+  return line("protocol", study.protocol_name()) +
+         line("classes", std::to_string(study.classes.size()) + " (" + labels_of(study) + ")") +
+         line("methods presented", methods_of(study)) +
+         line("scored trials a participant", std::to_string(study.scored_trials())) +
+         line("time to explore", number_text(trials.explore_limit_s) + " s") +
+         line("practice", practice_of(study)) +
+         line("catch trials (not scored)", std::to_string(trials.catch_trials)) +
+         line("orders", design::schedule_rule(study));
+}
+
+std::string validity_of(const ValidityRule& rule) {
+  return "A trial is valid if all of this holds:\n\n" +
+         line("exploration from landing",
+              "at least " + number_text(rule.least_exploring_s) + " s") +
+         line("contact", "at least " + number_text(rule.least_contact_s) + " s") +
+         line("path in contact", "at least " + number_text(rule.least_path_mm) + " mm") +
+         line("median force in contact", "from " + number_text(rule.least_median_n) + " to " +
+                                             number_text(rule.largest_median_n) + " N") +
+         line("samples at the force limit",
+              "less than " + number_text(100 * rule.saturated_share) + " % of those in contact") +
+         line("servo", "no tick missed in contact");
+}
+
+std::string hashes_of(const design::StudyKey& key, const engine::Pack& pack) {
+  return line("seal", "`" + to_hex(design::study_seal(key)) + "`") +
+         line("pack", "`" + to_hex(pack.digest()) + "`") +
+         line("study identity", "`" + key.study_id + "`") +
+         line("program", "Touchtrial " + std::string(program_version())) +
+         "\nThe seal is SHA-256 over key, schedule rule, seed, configuration and a secret nonce; "
+         "every database of the study begins with it. With the key, `touchtrial verify` tells "
+         "whether a database is of the study that is registered here.\n";
+}
+
+}  // namespace
 
 store::StudyCommitment commitment_of(const design::StudyKey& key, const engine::Pack& pack,
                                      bool simulated, bool pilot) {
   store::StudyCommitment commitment;
   commitment.study = key.study.name;
-  commitment.protocol = name_of(key.study.protocol);
+  commitment.protocol = key.study.protocol_name();
   commitment.study_id = key.study_id;
   commitment.seal = design::study_seal(key);
   commitment.pack = pack.digest();
   commitment.configuration = design::blinded_configuration(key);
   commitment.scored_trials = key.study.scored_trials();
-  commitment.positions = static_cast<int>(key.study.classes.size());
+  commitment.positions = static_cast<int>(key.study.protocol->choices(key.study).size());
   commitment.simulated = simulated;
   commitment.pilot = pilot;
   commitment.program_version = program_version();
   return commitment;
+}
+
+void require_prepared(const design::Study& study, const design::StudyKey& key,
+                      const engine::Pack& pack) {
+  const auto refuse = [&study](const std::string& what) {
+    throw UsageError(one_line(study.source + ": " + what));
+  };
+  if (key.simulated) refuse("its key belongs to a simulated study; run `touchtrial prepare`");
+  if (design::study_seal(design::rekeyed(key, study)) != design::study_seal(key)) {
+    refuse("has changed since it was prepared; run `touchtrial prepare` again");
+  }
+  const engine::PackManifest& manifest = pack.manifest();
+  if (manifest.study_id != key.study_id) {
+    refuse("pack and key do not belong together; run `touchtrial prepare`");
+  }
+  for (const design::KeyedStimulus& keyed : key.stimuli) {
+    if (std::ranges::count(manifest.entries, keyed.code, &engine::PackEntry::code) == 1) continue;
+    refuse("the pack is not complete; run `touchtrial prepare` again");
+  }
+}
+
+std::string registration_page(const design::StudyKey& key, const engine::Pack& pack) {
+  const design::Study& study = key.study;
+  const design::Registration& registration = study.registration;
+  return "# Preregistration of the study " + study.name + "\n" +
+         section("Hypothesis", registration.hypothesis) +
+         section("Sample size", participants_of(registration)) +
+         section("Stopping rule", registration.stopping_rule) +
+         section("Exclusions", registration.exclusions) +
+         section("Validity of trials", validity_of(ValidityRule{})) +
+         section("Primary test", registration.primary_test) + section("Design", design_of(study)) +
+         section("Commitment", hashes_of(key, pack));
+}
+
+std::vector<std::string> unstated(const design::Registration& registration) {
+  std::vector<std::string> places;
+  const auto look = [&places](const char* key, bool stated) {
+    if (!stated) places.push_back(std::string("/registration/") + key);
+  };
+  look("hypothesis", !registration.hypothesis.empty());
+  look("participants", registration.participants > 0);
+  look("stopping_rule", !registration.stopping_rule.empty());
+  look("exclusions", !registration.exclusions.empty());
+  look("primary_test", !registration.primary_test.empty());
+  return places;
 }
 
 }  // namespace touchtrial::session

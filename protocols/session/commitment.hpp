@@ -1,9 +1,13 @@
-/// \file What a database says of its study before the first trial.
+/// \file What is fixed before the first participant: the commitment that a database begins with,
+/// and the preregistration page with the same hashes.
 #pragma once
 
 #include "engine/pack/pack.hpp"
 #include "protocols/design/study_key.hpp"
 #include "protocols/store/payload.hpp"
+
+#include <string>
+#include <vector>
 
 namespace touchtrial::session {
 
@@ -11,5 +15,21 @@ namespace touchtrial::session {
 [[nodiscard]] store::StudyCommitment commitment_of(const design::StudyKey& key,
                                                    const engine::Pack& pack, bool simulated,
                                                    bool pilot);
+
+/// Checks that key and pack belong to the study in its present state.
+/// \param study  newly read from its file
+/// \throws UsageError with the difference and the remedy
+void require_prepared(const design::Study& study, const design::StudyKey& key,
+                      const engine::Pack& pack);
+
+/// The preregistration page, Markdown: the statements of the study's registration, the design, the
+/// validity rule, and the hashes that bind study, key and pack. Reveals the classes' labels
+/// (sorted), methods, rendering and trials; no image name, code, seed, secret or schedule. The same
+/// input gives the same text.
+/// \pre require_prepared
+[[nodiscard]] std::string registration_page(const design::StudyKey& key, const engine::Pack& pack);
+
+/// The missing parts of a registration, as JSON pointers.
+[[nodiscard]] std::vector<std::string> unstated(const design::Registration& registration);
 
 }  // namespace touchtrial::session

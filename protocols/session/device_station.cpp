@@ -2,7 +2,7 @@
 
 #include "core/errors.hpp"
 #include "device/platform/stop_signals.hpp"
-#include "device/servo/servo_names.hpp"
+#include "device/servo/servo.hpp"
 
 #include <stdexcept>
 #include <utility>
@@ -63,7 +63,7 @@ std::string DeviceStation::missing() {
 
 std::string DeviceStation::open_again() try {
   device_ = open_();
-  // Until somebody consents.
+  // No force until somebody consents.
   device_->halt();
   const device::DeviceInfo info = device_->info();
   if (!first_) first_ = info;
@@ -75,7 +75,7 @@ std::string DeviceStation::open_again() try {
   if (placement_) placed_.emplace(*device_, *placement_);
   return "";
 } catch (const Error& error) {
-  // A device that lost its power may also want its firmware's file, which a person can mend too.
+  // A device that lost power may also need its firmware file; a person can remedy either.
   close();
   return error.what();
 }

@@ -1,10 +1,10 @@
-/// \file A real device as a session has it: opened, placed, armed by consent, and opened again.
+/// \file Where a session's device comes from, and how it comes back after a fault: a real device is
+/// opened, placed, armed by consent, and opened again.
 #pragma once
 
 #include "device/haptic_device.hpp"
 #include "device/placed_device.hpp"
 #include "device/platform/realtime.hpp"
-#include "protocols/session/device_supply.hpp"
 #include "protocols/store/payload.hpp"
 
 #include <functional>
@@ -14,38 +14,65 @@
 
 namespace touchtrial::session {
 
-/// Who is asked while a session waits for its device.
+enum class SupplyState {
+  ready,    ///< open, homed and armed: forces may be sent
+  not_yet,  ///< something is missing; ask again
+  stopped,  ///< somebody gave up: the session has to end
+};
+
+/// Provides the device. Used only between explorations, on the session's thread.
+class DeviceSupply {
+ public:
+  virtual ~DeviceSupply() = default;
+
+  /// Takes one step towards a device that is ready: opens it if it was lost, waits for its homing,
+  /// or asks for consent to arm it. May block for a moment.
+  [[nodiscard]] virtual SupplyState make_ready() = 0;
+  /// The last exploration was interrupted: no force until somebody consents.
+  virtual void interrupted() {}
+};
+
+/// For a device that needs nothing: a simulated hand, made anew for each exploration.
+class AlwaysReady final : public DeviceSupply {
+ public:
+  [[nodiscard]] SupplyState make_ready() override { return SupplyState::ready; }
+};
+
+/// The person who helps while a session waits for its device.
 class Attendant {
  public:
   virtual ~Attendant() = default;
   enum class Says { wait, arm, stop };
-  /// Called over and over. \param need  a line on what is missing and its remedy; empty: all is
-  ///   there, and force may come on if the hand is ready for it. \return `arm` counts only then.
-  ///   May block for a moment, as a screen does that draws
+  /// Called repeatedly. May block for a moment, for instance to draw a screen.
+  /// \param need  a line on what is missing and its remedy; empty: nothing is missing, and force
+  ///   may come on if the hand is ready for it
+  /// \return `arm` counts only if nothing is missing
   [[nodiscard]] virtual Says attend(const std::string& need) = 0;
 };
 
-/// Opens the session's device, and opens it anew after it was lost. Force never comes on by itself:
-/// at the beginning and after every interruption the attendant has to say so.
+/// Opens the session's device, and opens it again after it was lost. Force never comes on by
+/// itself: at the beginning and after every interruption the attendant has to consent.
 class DeviceStation final : public DeviceSupply {
  public:
-  /// Opens the device; throws DeviceError, or FileError for its firmware, with the remedy if it
-  /// cannot.
+  /// Opens the device.
+  /// \throws DeviceError, or FileError for its firmware, with the remedy if it cannot
   using Open = std::function<std::unique_ptr<device::HapticDevice>()>;
 
-  /// \param placement  nothing for a device that speaks the plane frame
+  /// \param placement  empty for a device that uses the plane frame
   /// \param attendant  must outlive this
   DeviceStation(Open open, const std::optional<device::PlanePlacement>& placement,
                 Attendant& attendant);
 
-  /// A device other than the one that was there first (name or serial) is not taken. Stopped, too,
-  /// once a signal has asked the program to end during an exploration.
+  /// Refuses a device with another name or serial than the first one. Also returns `stopped` once a
+  /// signal has asked the program to end during an exploration.
   [[nodiscard]] SupplyState make_ready() override;
   void interrupted() override { armed_ = false; }
 
-  /// In the plane frame; until the next `make_ready`. \throws std::logic_error if none is open
+  /// The device, in the plane frame; valid until the next `make_ready`.
+  /// \throws std::logic_error if none is open
   [[nodiscard]] device::HapticDevice& device();
-  /// Of the device that was there first. \throws std::logic_error if none was
+  /// Describes the first device.
+  /// \throws std::logic_error if none has been opened
   [[nodiscard]] const device::DeviceInfo& info() const;
 
  private:
@@ -63,7 +90,7 @@ class DeviceStation final : public DeviceSupply {
   bool armed_ = false;
 };
 
-/// What a session's first event says of its device and servo thread.
+/// Fills in what a session's first event says about its device and servo thread.
 /// \param certificate  SHA-256 of the device's calibration certificate, hexadecimal, or empty
 void describe_station(store::SessionOpening& opening, const device::DeviceInfo& device,
                       const device::SchedulingObtained& scheduling, double rate_hz,

@@ -1,11 +1,14 @@
 #include "protocols/session/exploration.hpp"
 
-#include "protocols/session/model_force.hpp"
+#include <algorithm>
+#include <cmath>
 
 namespace touchtrial::session {
 namespace {
 
-/// Keeps the trace, and passes on to the participant what the device did.
+constexpr std::chrono::milliseconds kFade{100};
+
+/// Adds samples to the trace, and lets the participant feel them.
 class TrialSink final : public device::SampleSink {
  public:
   TrialSink(Participant& participant, TraceBuilder& builder)
@@ -23,8 +26,67 @@ class TrialSink final : public device::SampleSink {
 
 }  // namespace
 
+device::ServoOptions trial_servo_options(const design::Study& study, double rate_hz,
+                                         const device::LabLimits& lab) {
+  device::ServoOptions options;
+  options.rate_hz = rate_hz;
+  options.limit_ticks = std::llround(study.trials.explore_limit_s * rate_hz);
+  options.fade_ticks = std::llround(std::chrono::duration<double>(kFade).count() * rate_hz);
+  options.limits.max_force_n = study.rendering.max_force_n;
+  options.limits = device::stricter_of(options.limits, lab);
+  return options;
+}
+
 std::size_t most_samples(const device::ServoOptions& options) noexcept {
   return static_cast<std::size_t>(options.limit_ticks + options.fade_ticks);
+}
+
+std::chrono::nanoseconds time_of_tick(std::int64_t tick, double rate_hz) noexcept {
+  constexpr double kNanosecondsPerS = 1e9;
+  return std::chrono::nanoseconds(
+      std::llround(static_cast<double>(tick) * kNanosecondsPerS / rate_hz));
+}
+
+TraceBuilder::TraceBuilder(store::Trace& trace, double rate_hz, std::size_t most_samples)
+    : trace_(trace), room_(most_samples) {
+  trace.rate_hz = rate_hz;
+  trace.samples.clear();
+  trace.samples.reserve(most_samples);
+}
+
+void TraceBuilder::add(const device::ServoSample& sample) noexcept {
+  const auto tick = static_cast<std::size_t>(std::max<std::int64_t>(sample.tick, 0));
+  if (tick >= room_ || tick < trace_.samples.size()) return;
+  const store::TraceSample kept{sample.position_mm, sample.force_n};
+  hold_until(tick, kept);
+  if (!landing_tick_ && sample.position_mm.z <= kLandingHeightMm) landing_tick_ = sample.tick;
+  trace_.samples.push_back(kept);
+}
+
+/// Before the first sample there is none to hold, so the first one fills the gap.
+void TraceBuilder::hold_until(std::size_t tick, const store::TraceSample& first) noexcept {
+  const store::TraceSample last = trace_.samples.empty() ? first : trace_.samples.back();
+  while (trace_.samples.size() < tick) {
+    trace_.samples.push_back(last);
+    ++held_;
+    held_in_contact_ += last.force_n.z > 0.0 ? 1 : 0;
+  }
+}
+
+std::optional<std::chrono::nanoseconds> TraceBuilder::landed_at() const noexcept {
+  if (!landing_tick_) return std::nullopt;
+  return time_of_tick(*landing_tick_, trace_.rate_hz);
+}
+
+bool is_interrupted(const device::ServoReport& report) noexcept {
+  return report.end == device::ServoEnd::fault || report.end == device::ServoEnd::comfort_stop;
+}
+
+std::string words_in_clear(const device::ServoReport& report) {
+  if (report.end == device::ServoEnd::comfort_stop) return "comfort stop";
+  if (report.fault == device::SafetyFault::emergency_stop) return "emergency stop";
+  if (report.device_fault == device::DeviceFault::link_lost) return "device lost";
+  return "device fault";
 }
 
 Exploration VirtualExplorer::explore(const engine::RenderingModel& model,

@@ -1,55 +1,127 @@
-/// \file One exploration: servo, force model, participant, trace. How time goes is the explorer's.
+/// \file One exploration: a participant's hand, a force model, the servo, and the trace of what
+/// they did. An explorer runs it, and decides how time passes.
 #pragma once
 
+#include "device/device_settings.hpp"
 #include "device/servo/servo.hpp"
 #include "engine/rendering/rendering_model.hpp"
+#include "protocols/design/study.hpp"
 #include "protocols/session/participant.hpp"
-#include "protocols/session/trace_builder.hpp"
 #include "protocols/store/payload.hpp"
 #include "protocols/store/trace.hpp"
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 namespace touchtrial::session {
 
-/// What came of an exploration.
+/// The force of a rendering model, for the servo; made anew for each exploration.
+class ModelForce final : public device::ForceSource {
+ public:
+  /// \param model  must outlive this
+  explicit ModelForce(const engine::RenderingModel& model) noexcept : model_(model) {}
+
+  [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override {
+    return model_.force_n(sample.position_mm, sample.velocity_mm_s, touch_);
+  }
+
+ private:
+  const engine::RenderingModel& model_;
+  engine::Bristle touch_;
+};
+
+/// The servo's options in a study's trials: the limits of the study, or the lab's where they are
+/// stricter.
+/// \param rate_hz  of the servo
+/// \param lab  empty in virtual time
+[[nodiscard]] device::ServoOptions trial_servo_options(const design::Study& study, double rate_hz,
+                                                       const device::LabLimits& lab);
+
+/// The most samples that an exploration can have.
+[[nodiscard]] std::size_t most_samples(const device::ServoOptions& options) noexcept;
+
+/// When a tick is due, from the first tick on.
+[[nodiscard]] std::chrono::nanoseconds time_of_tick(std::int64_t tick, double rate_hz) noexcept;
+
+/// Height above the plane, mm, at which the stylus counts as landed. A height, because the place
+/// and time at which a force begins depend on the texture, and first contacts are stored in clear.
+inline constexpr double kLandingHeightMm = 3.0;
+
+/// Turns the servo's samples into an evenly sampled trace. Where ticks are missing, because the
+/// servo overran or a sample was lost on its way, it repeats (holds) the sample before them, so
+/// that a sample's index gives its time; it counts the held samples. `add` allocates no memory. Not
+/// thread-safe.
+class TraceBuilder {
+ public:
+  /// \param trace  cleared, and given room for `most_samples`; must outlive this
+  TraceBuilder(store::Trace& trace, double rate_hz, std::size_t most_samples);
+
+  /// Adds a sample whose tick is larger than those before; ignores others, and those beyond the
+  /// room.
+  void add(const device::ServoSample& sample) noexcept;
+
+  [[nodiscard]] std::int64_t held() const noexcept { return held_; }
+  /// Held samples with a force out of the plane.
+  [[nodiscard]] std::int64_t held_in_contact() const noexcept { return held_in_contact_; }
+  /// When the stylus landed, since plane-on.
+  [[nodiscard]] std::optional<std::chrono::nanoseconds> landed_at() const noexcept;
+
+ private:
+  void hold_until(std::size_t tick, const store::TraceSample& first) noexcept;
+
+  store::Trace& trace_;
+  std::size_t room_;
+  std::int64_t held_ = 0;
+  std::int64_t held_in_contact_ = 0;
+  std::optional<std::int64_t> landing_tick_;
+};
+
+/// The result of an exploration, beside its trace.
 struct Exploration {
   device::ServoReport servo;
   std::optional<std::chrono::nanoseconds> landed_at;  ///< since plane-on
   std::chrono::nanoseconds lasted{};                  ///< on the servo's clock
-  /// When the servo started, in real time: its ticks are counted from here.
+  /// When the servo started, in real time: its ticks count from here.
   std::optional<std::chrono::steady_clock::time_point> began;
-  std::int64_t held_in_contact = 0;  ///< samples of the trace that were filled in, with contact
+  std::int64_t held_in_contact = 0;                 ///< held samples of the trace with contact
   std::optional<store::ServoHealth> health;         ///< in real time
-  std::optional<store::InterruptionDetail> detail;  ///< of one that was interrupted in real time
+  std::optional<store::InterruptionDetail> detail;  ///< if it was interrupted in real time
 };
 
-/// Runs explorations. The participant gets the plane's extent and the samples, and nothing else.
+/// Whether a fault or a comfort stop ended the exploration.
+[[nodiscard]] bool is_interrupted(const device::ServoReport& report) noexcept;
+
+/// The reason of an interruption, in clear: "comfort stop", "emergency stop" or "device lost" for
+/// what somebody did, else "device fault". Faults that follow from forces or motion depend on the
+/// texture.
+[[nodiscard]] std::string words_in_clear(const device::ServoReport& report);
+
+/// Runs explorations. Participants get the plane's extent and the samples, and nothing else.
 class Explorer {
  public:
   virtual ~Explorer() = default;
 
-  /// Whether a disk that is waited for would be felt: then every field is to be in memory before.
+  /// Whether time passes by itself. A wait for the disk could then be felt, so every field has to
+  /// be in memory before.
   [[nodiscard]] virtual bool in_real_time() const noexcept { return false; }
   /// Puts a plane before a participant until the hand stops, time is up, or something fails. The
-  /// last force written is zero. \param trace  gets every sample; its memory is used again
+  /// last force written is zero.
+  /// \param trace  gets every sample; its memory is reused
   [[nodiscard]] virtual Exploration explore(const engine::RenderingModel& model,
                                             const PlaneGeometry& plane, Participant& participant,
                                             const device::ServoOptions& options,
                                             store::Trace& trace) = 0;
 };
 
-/// As fast as the processor goes, on the calling thread: for hands that live in virtual time.
+/// Runs as fast as the processor allows, on the calling thread: for hands in virtual time.
 class VirtualExplorer final : public Explorer {
  public:
   [[nodiscard]] Exploration explore(const engine::RenderingModel& model, const PlaneGeometry& plane,
                                     Participant& participant, const device::ServoOptions& options,
                                     store::Trace& trace) override;
 };
-
-/// Samples that an exploration can have.
-[[nodiscard]] std::size_t most_samples(const device::ServoOptions& options) noexcept;
 
 }  // namespace touchtrial::session

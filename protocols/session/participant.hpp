@@ -1,45 +1,115 @@
-/// \file Whoever feels planes and names pictures.
+/// \file The participant, who feels planes and names pictures: the steps that a session shows them,
+/// and their replies.
 #pragma once
 
 #include "core/plane_geometry.hpp"
 #include "device/haptic_device.hpp"
 #include "device/servo/servo.hpp"
 #include "device/servo/servo_control.hpp"
-#include "protocols/session/step.hpp"
+#include "protocols/design/session_plan.hpp"
 
+#include <chrono>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 namespace touchtrial::session {
 
-/// All that reaches a participant is in these calls: the pictures to choose from, the extent of the
-/// blank plane (the same in every trial), and what the device lets them feel. No code, label or
-/// file name of what is presented. Called on the session's thread but for `feel`.
+/// Pages to read, one after the other.
+struct InstructionStep {
+  std::vector<std::string> pages;
+};
+
+struct QuestionStep {
+  const design::Questionnaire* questionnaire = nullptr;  ///< outlives the step
+};
+
+/// Announces a practice round.
+struct PracticeStep {
+  int round = 1;
+};
+
+/// Between trials: the plane comes on once the participant is ready.
+struct ReadyStep {
+  int trial = 0;  ///< from 1 to `of`
+  int of = 0;
+  bool practice = false;
+};
+
+/// Asks for one of the pictures of `Participant::see_pictures`.
+struct AnswerStep {
+  int trial = 0;
+  int of = 0;
+  bool practice = false;
+  bool time_is_up = false;
+  bool may_explore_again = false;                ///< the reply may be `explore_again`
+  int confidence_levels = 0;                     ///< 0: not asked
+  design::Sight sight = design::Sight::curtain;  ///< blindfold: the answer is spoken
+};
+
+/// After a practice answer.
+struct FeedbackStep {
+  int answered = 0;  ///< position
+  int correct = 0;   ///< position
+};
+
+struct BreakStep {
+  int done = 0;
+  int of = 0;
+};
+
+/// The session is paused until the experimenter resumes it; a reply has no effect.
+struct PauseStep {};
+
+struct EndStep {};
+
+/// Data alone, which a window draws, a simulated participant answers, and a test scripts. Nothing
+/// in a step depends on what is presented.
+using Step = std::variant<InstructionStep, QuestionStep, PracticeStep, ReadyStep, AnswerStep,
+                          FeedbackStep, BreakStep, PauseStep, EndStep>;
+
+struct StepReply {
+  /// When the participant replied, on the servo's monotonic clock; empty: now.
+  std::optional<std::chrono::steady_clock::time_point> at;
+  /// Time that the reply takes in virtual time; ignored in real time.
+  std::chrono::nanoseconds took{};
+  bool explore_again = false;         ///< AnswerStep: back to the plane; ignore the members below
+  int position = 0;                   ///< AnswerStep
+  std::optional<int> first_position;  ///< AnswerStep: the choice before a change
+  std::optional<int> confidence;      ///< AnswerStep, if asked for: from 1
+  /// QuestionStep, in the questions' order: of a choice the option's index from 0; empty if the
+  /// question was left out.
+  std::vector<std::string> answers;
+};
+
+/// The calls below are all that reaches a participant: the pictures to choose from, the extent of
+/// the blank plane (the same in every trial), and what the device lets them feel. They get no code,
+/// label or file name of what is presented. The session's thread makes all calls except `feel`.
 class Participant {
  public:
   virtual ~Participant() = default;
 
-  /// The pictures' labels, by position: before the first trial, and, if there is practice, those of
-  /// the practice before it.
+  /// Called before the first trial, and before each practice round with the round's pictures.
+  /// \param labels  of the pictures, by position
   virtual void see_pictures(const std::vector<std::string>& labels) = 0;
 
-  /// Puts a step before the participant. Called over and over with the same step until there is a
-  /// reply; the first call shows it. May block for a moment, as a screen does that draws.
-  /// \return nothing as long as they have not replied
+  /// Shows a step, and looks for a reply. Called repeatedly with the same step until there is one.
+  /// May block for a moment, for instance to draw a screen.
+  /// \return empty as long as there is no reply
   [[nodiscard]] virtual std::optional<StepReply> attend(const Step& step) = 0;
 
-  /// A plane is about to be on. \return the device with the participant's hand on it, in the plane
-  ///   frame; it may report stopped when the participant is done exploring. Valid until the next
-  ///   call.
+  /// Called just before a plane comes on.
+  /// \return the device with the participant's hand on it, in the plane frame; valid until the next
+  ///   call. Its `read` may return `stopped` when the participant is done exploring.
   [[nodiscard]] virtual device::HapticDevice& begin_exploring(const PlaneGeometry& plane) = 0;
 
-  /// In real time, while the plane is on: called over and over, to look for what the person does.
-  /// Whoever is done calls `finish`, whoever wants no force `comfort_stop`.
+  /// Called repeatedly in real time while the plane is on, to look for what the participant does:
+  /// `finish` when they are done, `comfort_stop` when they want no force.
   virtual void exploring(device::ServoControl& /*servo*/) {}
 
-  /// One tick of what the device did. In virtual time on the servo's thread; in real time behind
-  /// it, on a thread of its own, over before the next step.
+  /// One tick of what the device did. In virtual time called on the servo's thread; in real time on
+  /// another thread, with a delay, but before the next step.
   virtual void feel(const device::ServoSample& sample) noexcept = 0;
 };
 

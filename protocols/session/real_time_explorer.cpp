@@ -2,20 +2,22 @@
 
 #include "device/platform/stop_signals.hpp"
 #include "device/servo/flight_recorder.hpp"
-#include "device/servo/paced_clock.hpp"
-#include "device/servo/running_servo.hpp"
 #include "device/servo/sample_ring.hpp"
+#include "device/servo/servo_clock.hpp"
 #include "device/servo/servo_thread.hpp"
-#include "protocols/session/interruption_words.hpp"
-#include "protocols/session/model_force.hpp"
-#include "protocols/session/trace_writer.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <string>
+#include <thread>
 #include <utility>
+#include <vector>
 
 namespace touchtrial::session {
 namespace {
@@ -24,8 +26,56 @@ namespace {
 /// again.
 constexpr std::chrono::milliseconds kBetweenLooks{5};
 
-/// A writer that is late by this many samples loses some: 6.5 s at 10 kHz.
+/// Capacity of the largest ring, samples: 6.5 s at 10 kHz. A writer that falls further behind loses
+/// some.
 constexpr std::size_t kLargestRing = std::size_t{1} << 16U;
+
+// The servo must not spend time on waking the writer, so the writer looks by itself: often enough
+// for a ring that holds seconds.
+constexpr std::chrono::milliseconds kBetweenDrains{2};
+constexpr std::size_t kAtOnce = 256;
+
+/// A thread that empties the servo's ring while the servo fills it: samples go to the trace, which
+/// fills gaps, and to the participant. Made and destroyed on one thread.
+class TraceWriter {
+ public:
+  /// All must outlive this. Nobody else may use builder and `feel` as long as this lives.
+  TraceWriter(device::SampleRing& ring, TraceBuilder& builder, Participant& participant)
+      : ring_(ring), builder_(builder), participant_(participant), thread_([this] { write(); }) {}
+  /// Takes what is left in the ring. The servo must have ended.
+  ~TraceWriter() {
+    finishing_.store(true, std::memory_order_release);
+    thread_.join();
+  }
+  TraceWriter(const TraceWriter&) = delete;
+  TraceWriter& operator=(const TraceWriter&) = delete;
+
+ private:
+  void write() noexcept {
+    while (!finishing_.load(std::memory_order_acquire)) {
+      if (!take_some()) std::this_thread::sleep_for(kBetweenDrains);
+    }
+    while (take_some()) {
+    }
+  }
+
+  /// \return whether there was anything
+  bool take_some() noexcept {
+    std::array<device::ServoSample, kAtOnce> samples;
+    const std::size_t count = ring_.pop(samples);
+    for (const device::ServoSample& sample : std::span(samples).first(count)) {
+      builder_.add(sample);
+      participant_.feel(sample);
+    }
+    return count > 0;
+  }
+
+  device::SampleRing& ring_;
+  TraceBuilder& builder_;
+  Participant& participant_;
+  std::atomic<bool> finishing_{false};
+  std::thread thread_;
+};
 
 store::ServoHealth health_of(const device::ServoReport& report, std::int64_t lost,
                              std::int64_t held) {
@@ -36,6 +86,15 @@ store::ServoHealth health_of(const device::ServoReport& report, std::int64_t los
           .lateness_worst_us = report.lateness.worst_us,
           .lost = lost,
           .held = held};
+}
+
+/// The sealed part of an interruption: the faults by name, and the ticks before them.
+store::InterruptionDetail detail_of(const device::ServoReport& report,
+                                    const std::vector<device::FlightTick>& ticks) {
+  return {.safety_fault = std::string(device::name_of(report.fault)),
+          .device_fault = std::string(device::name_of(report.device_fault)),
+          .ticks = static_cast<std::int64_t>(ticks.size()),
+          .flight = device::flight_csv(ticks)};
 }
 
 }  // namespace
@@ -49,7 +108,7 @@ struct RealTimeExplorer::Machinery {
         device::PacedClock::usual_spin(thread.scheduling().policy));
   }
 
-  /// Takes memory that the servo will use before it runs.
+  /// Allocates what the servo will use, before it runs.
   void make_room(const device::ServoOptions& servo) {
     const std::size_t wanted = std::clamp(most_samples(servo), std::size_t{1}, kLargestRing);
     if (!ring || ring->capacity() < wanted) ring.emplace(wanted);
@@ -60,8 +119,8 @@ struct RealTimeExplorer::Machinery {
     recorder->clear();
   }
 
-  /// One run of the servo, on its thread; this one looks after the participant meanwhile.
-  /// \param began  set to when the servo starts
+  /// Runs the servo on its thread; the caller's looks after the participant meanwhile.
+  /// \param began  set to the time at which the servo starts
   [[nodiscard]] device::ServoReport run(device::HapticDevice& device,
                                         const engine::RenderingModel& model,
                                         device::SampleSink& sink, const device::ServoOptions& servo,
@@ -104,7 +163,7 @@ device::ServoReport RealTimeExplorer::Machinery::run(device::HapticDevice& devic
   while (running.runs(kBetweenLooks)) participant.exploring(control);
   running.finish();
   if (watchdog.disarm() && !is_interrupted(report)) {
-    // It tripped while the run ended by itself: the device is halted, which is an interruption.
+    // It tripped while the run ended by itself. The device is halted: an interruption.
     report.end = device::ServoEnd::fault;
     report.fault = device::SafetyFault::stalled;
   }

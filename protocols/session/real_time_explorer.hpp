@@ -14,34 +14,34 @@ namespace touchtrial::session {
 
 struct RealTimeOptions {
   device::SchedulingRequest scheduling{};
-  double flight_s = 3.0;  ///< that the flight record holds, > 0
-  /// As the watchdog sees it; must outlive the explorer.
+  double flight_s = 3.0;  ///< length of the flight record, > 0
+  /// The watchdog's time; must outlive the explorer.
   device::WatchdogTime* watchdog_time = &device::system_watchdog_time();
-  /// The clock of each exploration; empty: a PacedClock. Tests own time.
+  /// Makes the clock of each exploration; empty: a PacedClock. For tests.
   std::function<std::unique_ptr<device::ServoClock>()> clock{};
 };
 
-/// Runs the servo on a thread of its own that asked for real-time scheduling once. Samples go
-/// through a ring to a TraceWriter; the session's thread looks after the participant; a watchdog
-/// looks after the servo, and signals and crashes halt the device (StopOnSignals). An
-/// exploration that is interrupted leaves the device halted, so that only a person's decision
-/// (HapticDevice::rearm) lets force pass again. All functions belong to the session's thread, but
-/// for what `control` gives.
+/// Runs the servo on its own thread, which has asked for real-time scheduling once. A ring takes
+/// the samples to a second thread, which writes the trace. The session's thread looks after the
+/// participant. A watchdog looks after the servo; signals and crashes halt the device
+/// (StopOnSignals). An interrupted exploration leaves the device halted, so that no force passes
+/// before a person decides so (HapticDevice::rearm). All functions belong to the session's thread,
+/// except those of the object that `control` returns.
 class RealTimeExplorer final : public Explorer {
  public:
   explicit RealTimeExplorer(const RealTimeOptions& options = {});
   ~RealTimeExplorer() override;
 
   [[nodiscard]] bool in_real_time() const noexcept override { return true; }
-  /// Also throws what `participant.exploring` throws: the force is zero by then.
+  /// \throws whatever `participant.exploring` throws; the force is zero by then
   [[nodiscard]] Exploration explore(const engine::RenderingModel& model, const PlaneGeometry& plane,
                                     Participant& participant, const device::ServoOptions& options,
                                     store::Trace& trace) override;
 
-  /// Of the servo's thread.
+  /// The scheduling of the servo's thread.
   [[nodiscard]] const device::SchedulingObtained& scheduling() const noexcept;
-  /// For other threads. Requests hold for the exploration that runs; an emergency stop that comes
-  /// between two holds for the next.
+  /// For other threads. Requests apply to the current exploration; an emergency stop between two
+  /// explorations applies to the next.
   [[nodiscard]] device::ServoControl& control() noexcept;
 
  private:

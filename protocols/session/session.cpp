@@ -1,7 +1,6 @@
 #include "protocols/session/session.hpp"
 
 #include <array>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 
@@ -27,17 +26,14 @@ std::string_view name_of(SessionInput input) {
 }
 
 Session::Session(design::Schedule schedule, const design::TrialOptions& options,
-                 store::SessionRecorder recorder, BlockRestart restart)
-    : schedule_(std::move(schedule)),
+                 store::SessionRecorder recorder, BlockDrawing blocks)
+    : course_(std::move(schedule), options.on_interruption, std::move(blocks.draw)),
       options_(options),
       recorder_(std::move(recorder)),
-      restart_(std::move(restart)),
-      queue_(schedule_.presentations.size()) {
-  if (options.on_interruption == design::OnInterruption::restart_block &&
-      !(restart_.draw && restart_.secret)) {
-    throw std::invalid_argument("Session: a study that restarts blocks needs to know how");
+      secret_of_block_(std::move(blocks.secret)) {
+  if (options.on_interruption == design::OnInterruption::restart_block && !secret_of_block_) {
+    throw std::invalid_argument("Session: a study that restarts blocks needs to seal them");
   }
-  std::iota(queue_.begin(), queue_.end(), std::size_t{0});
 }
 
 bool Session::is_under_way() const noexcept {
@@ -104,8 +100,8 @@ void Session::move_to(SessionPhase phase, Time at) noexcept {
   last_ = at;
 }
 
-const design::Presentation* Session::current() const noexcept {
-  return queue_.empty() ? nullptr : &schedule_.presentations[queue_.front()];
+SessionPhase Session::between_trials() const noexcept {
+  return course_.is_over() ? Phase::finished : Phase::ready;
 }
 
 bool Session::break_due() const noexcept {
@@ -129,7 +125,7 @@ void Session::calibrate(Time at, const std::string& text) {
 void Session::instruct(Time at, const std::string& text) {
   require(Input::instruct, at);
   recorder_.remarked(at, store::EventKind::instructed, text);
-  move_to(queue_.empty() ? Phase::finished : Phase::ready, at);
+  move_to(between_trials(), at);
 }
 
 void Session::present(Time at) {
@@ -176,7 +172,7 @@ void Session::interrupt(Time at, const std::string& reason,
   require(Input::interrupt, at);
   recorder_.interrupted(at, current()->trial, reason, detail);
   give_up_presentation(at);
-  if (block_to_restart_) restart_block(at);
+  restart_block(at);
 }
 
 void Session::keep_evidence(store::TrialEvidence evidence) {
@@ -193,7 +189,7 @@ void Session::explore_again(Time at) {
 
 void Session::choose(int position) {
   require(Input::choose, last_);
-  if (position < 0 || position >= static_cast<int>(schedule_.layout.size())) {
+  if (position < 0 || position >= static_cast<int>(layout().size())) {
     throw std::invalid_argument("there is no picture at this position");
   }
   if (answer_ && answer_->position == position) return;  // no change, and not the one allowed
@@ -208,11 +204,27 @@ void Session::confirm(Time at, std::optional<int> confidence) {
   finish_presentation(at);
 }
 
-void Session::finish_presentation(Time at) noexcept {
-  queue_.pop_front();
+void Session::finish_presentation(Time at) {
+  course_.finish();
   evidence_.reset();
   ++done_since_break_;
-  move_to(queue_.empty() ? Phase::finished : Phase::ready, at);
+  move_to(between_trials(), at);
+}
+
+void Session::give_up_presentation(Time at) {
+  course_.spoil();
+  evidence_.reset();
+  move_to(between_trials(), at);
+}
+
+void Session::restart_block(Time at) {
+  if (!course_.block_to_restart()) return;
+  const design::BlockRestart again = course_.drawn_again(*course_.block_to_restart());
+  recorder_.block_restarted(at, again.block, again.first_trial(),
+                            secret_of_block_(again.presentations));
+  course_.restart(again);
+  done_since_break_ = 0;
+  move_to(phase_, at);
 }
 
 void Session::take_break(Time at, const std::string& text) {

@@ -10,7 +10,7 @@ namespace touchtrial::session {
 namespace {
 
 constexpr std::chrono::milliseconds kBetweenShows{250};
-/// What a wait without a reply leaves to others.
+/// Pause between two looks for a reply, which leaves the processor to others.
 constexpr std::chrono::milliseconds kBreath{2};
 
 std::string with_text(const std::string& words, const std::string& text) {
@@ -18,6 +18,33 @@ std::string with_text(const std::string& words, const std::string& text) {
 }
 
 }  // namespace
+
+/// Lets the desk look at the experimenter's requests while the plane is on; all else is the
+/// participant's.
+class SessionDesk::AttendedParticipant final : public Participant {
+ public:
+  explicit AttendedParticipant(SessionDesk& desk)
+      : desk_(desk), participant_(desk.parts_.participant) {}
+
+  void see_pictures(const std::vector<std::string>& labels) override {
+    participant_.see_pictures(labels);
+  }
+  [[nodiscard]] std::optional<StepReply> attend(const Step& step) override {
+    return participant_.attend(step);
+  }
+  [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& plane) override {
+    return participant_.begin_exploring(plane);
+  }
+  void exploring(device::ServoControl& servo) override {
+    participant_.exploring(servo);
+    desk_.look(servo);
+  }
+  void feel(const device::ServoSample& sample) noexcept override { participant_.feel(sample); }
+
+ private:
+  SessionDesk& desk_;
+  Participant& participant_;
+};
 
 SessionDesk::SessionDesk(Session& session, const SessionParts& parts)
     : session_(session), parts_(parts) {
@@ -58,21 +85,39 @@ void SessionDesk::breathe() const {
 }
 
 bool SessionDesk::goes_on() const noexcept {
-  return !tally_.left && !is_aborted_ && session_.phase() != SessionPhase::stopped &&
+  return !left_ && !is_aborted_ && session_.phase() != SessionPhase::stopped &&
          session_.phase() != SessionPhase::closed;
 }
 
 std::optional<StepReply> SessionDesk::attend(const Step& step) {
   while (obey()) {
-    if (std::optional<StepReply> reply = parts_.participant.attend(step)) return reply;
+    if (std::optional<StepReply> reply = parts_.participant.attend(step)) {
+      parts_.clock.pass(reply->took);
+      return reply;
+    }
     show_now_and_then();
   }
   return std::nullopt;
 }
 
+Exploration SessionDesk::explore(const engine::RenderingModel& model, const PlaneGeometry& plane,
+                                 const device::ServoOptions& options, store::Trace& trace) {
+  AttendedParticipant participant(*this);
+  Exploration done = parts_.explorer.explore(model, plane, participant, options, trace);
+  parts_.clock.pass(done.lasted);
+  status_.rate_hz = done.servo.rate_hz;
+  status_.lateness_p99_us = done.servo.lateness.p99_us;
+  status_.overruns = done.servo.overruns;
+  return done;
+}
+
+device::ServoOptions SessionDesk::servo_options() const {
+  return trial_servo_options(parts_.key.study, parts_.rate_hz, parts_.limits);
+}
+
 void SessionDesk::look(device::ServoControl& servo) {
   show_now_and_then();
-  // Whoever wants the session to end may ask for it for as long as it has not.
+  // A request to end the session may come again until it is obeyed.
   while (!end_is_postponed()) {
     std::optional<Request> request = parts_.experimenter.request();
     if (!request) return;
@@ -102,21 +147,20 @@ void SessionDesk::heed(Request request, device::ServoControl& servo) {
     default:
       break;
   }
-  // Events are stamped in order, and the first contact, known at the exploration's end, comes
-  // first.
+  // Recorded after the exploration: events are in the order of their times, and the first contact,
+  // which is known at the end, comes before.
   postponed_.push_back(std::move(request));
 }
 
-std::string SessionDesk::note_interruption(const std::string& words) {
+std::string SessionDesk::note_interruption(const device::ServoReport& report) {
+  return count_interruption(words_in_clear(report));
+}
+
+/// A reason that the experimenter gave takes precedence over the words.
+std::string SessionDesk::count_interruption(const std::string& words) {
   ++status_.interruptions;
   parts_.devices.interrupted();
   return std::exchange(reason_, std::nullopt).value_or(words);
-}
-
-void SessionDesk::saw_servo(const device::ServoReport& report) {
-  status_.rate_hz = report.rate_hz;
-  status_.lateness_p99_us = report.lateness.p99_us;
-  status_.overruns = report.overruns;
 }
 
 std::optional<ExperimenterRequest> SessionDesk::next_request() {
@@ -146,7 +190,7 @@ bool SessionDesk::obey(const Request& request) {
     case Request::Kind::pause:
       return obey_pause(request);
     case Request::Kind::resume:
-      return true;  // nothing was paused
+      return true;  // nothing is paused
     case Request::Kind::comfort_stop:
       return obey_comfort_stop(request);
     case Request::Kind::abort:
@@ -179,13 +223,13 @@ bool SessionDesk::obey_pause(const Request& request) {
   }
 }
 
-/// No force is on: what is left to do is to spoil what is under way, and to ask for consent before
+/// No force is on. Interrupts the current presentation, and has the device ask for consent before
 /// there is force again.
 bool SessionDesk::obey_comfort_stop(const Request& request) {
   const std::string reason = with_text("comfort stop", request.text);
   if (session_.phase() == SessionPhase::paused) session_.resume(now());
   if (session_.accepts(SessionInput::interrupt)) {
-    session_.interrupt(now(), note_interruption(reason));
+    session_.interrupt(now(), count_interruption(reason));
     return false;
   }
   session_.note(now(), reason);
@@ -208,7 +252,7 @@ bool SessionDesk::obey_abort(const Request& request) {
 
 bool SessionDesk::leave(const std::string& why) {
   if (session_.accepts(SessionInput::note)) session_.note(now(), with_text("left", why));
-  tally_.left = why;
+  left_ = why;
   return false;
 }
 
@@ -233,7 +277,7 @@ bool SessionDesk::wait_for_device(SupplyState device) {
   }
   if (device == SupplyState::ready) return true;
   if (device::StopOnSignals::asked()) return leave(device::StopOnSignals::message());
-  // Whoever stopped it may have said why.
+  // The experimenter may have given a reason.
   if (!obey()) return false;
   session_.stop(now(), "stopped while waiting for the device");
   return false;

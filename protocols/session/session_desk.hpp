@@ -1,5 +1,7 @@
-/// \file Where a session's people are attended to: steps are put before the participant until they
-/// reply, and the experimenter's requests are obeyed meanwhile. Private to the runner.
+/// \file The desk at which a session's people, device and time are attended to. Whatever takes a
+/// while passes through it: it shows steps to the participant until they reply, runs explorations,
+/// waits for the device, and obeys the experimenter meanwhile. It calls neither trials nor stages.
+/// Private to protocols/session.
 #pragma once
 
 #include "protocols/session/session_runner.hpp"
@@ -16,44 +18,54 @@ class SessionDesk {
  public:
   using Time = SessionClock::Time;
 
+  /// \param session,parts  must outlive this
   SessionDesk(Session& session, const SessionParts& parts);
 
   [[nodiscard]] Session& session() noexcept { return session_; }
   [[nodiscard]] const SessionParts& parts() const noexcept { return parts_; }
-  [[nodiscard]] SessionTally& tally() noexcept { return tally_; }
 
-  /// Never before the session's last event.
+  /// The time; never before the session's last event.
   [[nodiscard]] Time now();
-  /// When a reply was given: neither in the future nor before the last event.
+  /// The time of a reply; neither in the future nor before the session's last event.
   [[nodiscard]] Time when(const StepReply& reply);
 
-  /// The session has come to another stage; the experimenter sees it.
+  /// Shows the experimenter that another stage has begun.
   void enter(const std::string& stage, bool practice = false);
-  /// \return nothing if the step was broken off: the session was stopped or left, or what was
-  ///   under way was interrupted
+  /// Shows a step until there is a reply, and lets its time pass.
+  /// \return empty if the step was broken off: the session was stopped or left, or the current
+  ///   presentation was interrupted
   [[nodiscard]] std::optional<StepReply> attend(const Step& step);
-  /// While the plane is on, in real time: what the experimenter asks for ends the exploration, or
-  /// waits for its end.
-  void look(device::ServoControl& servo);
-  /// Obeys what is asked for. \return whether what was under way goes on
+  /// Runs an exploration, and lets its time pass. In real time the experimenter's requests end it,
+  /// or are obeyed after it.
+  /// \param trace  gets every sample
+  [[nodiscard]] Exploration explore(const engine::RenderingModel& model, const PlaneGeometry& plane,
+                                    const device::ServoOptions& options, store::Trace& trace);
+  /// The options of the session's explorations.
+  [[nodiscard]] device::ServoOptions servo_options() const;
+  /// Obeys the experimenter's requests.
+  /// \return whether the current step goes on
   [[nodiscard]] bool obey();
-  /// Waits until forces may be sent; the session is paused meanwhile if it can be.
-  /// \return whether they may
+  /// Waits until forces may be sent. Pauses the session meanwhile if possible.
+  /// \return whether forces may be sent
   [[nodiscard]] bool await_device();
 
-  /// Neither stopped nor aborted nor left.
+  /// Whether the session was neither stopped nor aborted nor left.
   [[nodiscard]] bool goes_on() const noexcept;
-  /// An exploration was interrupted; what for, in clear. \param words  that of the servo
-  [[nodiscard]] std::string note_interruption(const std::string& words);
+  /// Why the session is to be left open; empty if it is not.
+  [[nodiscard]] const std::optional<std::string>& left() const noexcept { return left_; }
+  /// Counts an interrupted exploration; the device needs consent before the next one.
+  /// \return the reason, in clear
+  [[nodiscard]] std::string note_interruption(const device::ServoReport& report);
   [[nodiscard]] int interruptions() const noexcept { return status_.interruptions; }
-  /// How the servo kept time in the last exploration.
-  void saw_servo(const device::ServoReport& report);
 
  private:
+  class AttendedParticipant;
   using Request = ExperimenterRequest;
 
+  /// Called repeatedly in real time while the plane is on.
+  void look(device::ServoControl& servo);
   [[nodiscard]] bool end_is_postponed() const noexcept;
-  /// One request while the plane is on.
+  /// Ends the exploration if a request asks for it. Postpones what has to be recorded.
   void heed(Request request, device::ServoControl& servo);
   [[nodiscard]] std::optional<Request> next_request();
   [[nodiscard]] bool obey(const Request& request);
@@ -62,17 +74,18 @@ class SessionDesk {
   [[nodiscard]] bool obey_abort(const Request& request);
   [[nodiscard]] bool leave(const std::string& why);
   [[nodiscard]] bool wait_for_device(SupplyState device);
+  [[nodiscard]] std::string count_interruption(const std::string& words);
   void show();
   void show_now_and_then();
   void breathe() const;
 
   Session& session_;
   const SessionParts& parts_;
-  SessionTally tally_;
+  std::optional<std::string> left_;
   bool is_aborted_ = false;  ///< after the last trial, when there is nothing left to stop
   SessionStatus status_;
   std::deque<Request> postponed_;
-  std::optional<std::string> reason_;  ///< of the interruption that the experimenter asked for
+  std::optional<std::string> reason_;  ///< of an interruption that the experimenter asked for
   std::chrono::steady_clock::time_point shown_{};
 };
 

@@ -1,4 +1,4 @@
-// A session that stands in a database already: its events, followed one by one.
+// Restores a session from its events in a database, one by one.
 #include "core/errors.hpp"
 #include "protocols/session/session.hpp"
 #include "protocols/store/payload_json.hpp"
@@ -33,7 +33,7 @@ void Session::take_up(Time at, const store::ResumedBody& body) {
   recorder_.resumed(at, body);
   move_to(phase_ == Phase::paused ? before_pause_ : phase_, at);
   if (in_presentation()) interrupt(at, "program ended");
-  if (block_to_restart_) restart_block(at);  // the program ended before it could
+  restart_block(at);  // the program may have ended before it could
 }
 
 void Session::follow(const store::Event& event) {
@@ -117,14 +117,14 @@ void Session::follow_course(const store::Event& event) {
       phase_ = Phase::calibrated;
       return;
     case store::EventKind::instructed:
-      phase_ = queue_.empty() ? Phase::finished : Phase::ready;
+      phase_ = between_trials();
       return;
     case store::EventKind::break_taken:
       done_since_break_ = 0;
       return;
     case store::EventKind::block_restarted: {
-      const store::BlockBody body = store::block_from_json(event.body);
-      replace_block(body.block, drawn_again(body.block, body.first_trial));
+      course_.restart(course_.drawn_again(store::block_from_json(event.body).block));
+      done_since_break_ = 0;
       return;
     }
     case store::EventKind::paused:

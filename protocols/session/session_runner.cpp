@@ -1,15 +1,155 @@
 #include "protocols/session/session_runner.hpp"
 
 #include "protocols/session/session_desk.hpp"
-#include "protocols/session/session_stages.hpp"
-#include "protocols/session/trial_run.hpp"
+#include "protocols/session/trial_trace.hpp"
+
+#include <algorithm>
+#include <utility>
 
 namespace touchtrial::session {
 namespace {
 
-// In virtual time; people take the time that they take.
+using Time = SessionClock::Time;
+
+// In virtual time; people take their own time.
 constexpr std::chrono::seconds kBreak{60};
 constexpr std::chrono::seconds kBetweenTrials{2};
+/// With less time than this left, the participant may not go back to the plane.
+constexpr double kLeastAgainS = 0.5;
+
+/// The trials of a session, one after the other. Each presentation is a way from the schedule to
+/// the recorder: the participant is ready, explores, and answers; the session records it.
+class TrialRun {
+ public:
+  TrialRun(SessionDesk& desk, SessionTally& tally)
+      : desk_(desk),
+        session_(desk.session()),
+        parts_(desk.parts()),
+        tally_(tally),
+        servo_(desk.servo_options()) {}
+
+  /// Runs the current presentation to its answer or interruption.
+  /// \pre the session is ready
+  void run();
+
+ private:
+  [[nodiscard]] const engine::RenderingModel& model() const;
+  /// \return whether the participant is to answer
+  [[nodiscard]] bool explore(const engine::RenderingModel& model);
+  [[nodiscard]] bool explore_again(const engine::RenderingModel& model);
+  [[nodiscard]] bool end_exploration(const Exploration& done, Time plane_on);
+  void answer(const engine::RenderingModel& model);
+  [[nodiscard]] AnswerStep question() const;
+  void confirm(const StepReply& reply);
+  void keep_evidence();
+
+  SessionDesk& desk_;
+  Session& session_;
+  const SessionParts& parts_;
+  SessionTally& tally_;
+  device::ServoOptions servo_;
+  TrialTrace trace_;
+  int of_ = 0;  ///< presentations in all, as far as is known
+  bool time_is_up_ = false;
+};
+
+void TrialRun::run() {
+  of_ = session_.presentations_begun() + session_.presentations_left();
+  desk_.enter("ready");
+  if (!desk_.attend(ReadyStep{session_.presentations_begun() + 1, of_, false})) return;
+  const engine::RenderingModel& presented = model();
+  if (explore(presented)) answer(presented);
+}
+
+const engine::RenderingModel& TrialRun::model() const {
+  const design::Presentation& presentation = *session_.current();
+  if (presentation.kind == design::PresentationKind::catch_trial) return parts_.source.flat();
+  return parts_.source.model(parts_.key.code_of(presentation.stimulus));
+}
+
+bool TrialRun::explore(const engine::RenderingModel& model) {
+  if (parts_.explorer.in_real_time()) parts_.source.fetch();
+  trace_.begin();
+  const Time plane_on = desk_.now();
+  session_.present(plane_on);
+  desk_.enter("exploring");
+  ++tally_.presentations;
+  return end_exploration(desk_.explore(model, parts_.source.plane(), servo_, trace_.next_part()),
+                         plane_on);
+}
+
+bool TrialRun::explore_again(const engine::RenderingModel& model) {
+  device::ServoOptions rest = servo_;
+  rest.limit_ticks -= trace_.ticks();
+  store::Trace& part = trace_.next_part();
+  const Time plane_on = desk_.now();
+  session_.explore_again(plane_on);
+  desk_.enter("exploring");
+  return end_exploration(desk_.explore(model, parts_.source.plane(), rest, part), plane_on);
+}
+
+/// Ticks count from the servo's start, a moment after plane-on was recorded. Events that follow the
+/// exploration have the time of its end and not the present one: how long it takes to pack a trace
+/// or to write a flight record tells rough textures from smooth ones.
+bool TrialRun::end_exploration(const Exploration& done, Time plane_on) {
+  const Time began =
+      done.began ? std::clamp(parts_.clock.of(*done.began), plane_on, desk_.now()) : plane_on;
+  const Time ended = std::min(began + done.lasted, desk_.now());
+  tally_.ticks += done.servo.ticks;
+  if (done.landed_at) session_.contact(std::min(began + *done.landed_at, ended));
+  if (is_interrupted(done.servo)) {
+    session_.interrupt(ended, desk_.note_interruption(done.servo), done.detail);
+    return false;
+  }
+  trace_.add(done);
+  trace_.pack(session_, parts_.explorer.in_real_time());
+  time_is_up_ = done.servo.end == device::ServoEnd::time_limit;
+  if (!time_is_up_) {
+    session_.end_exploring(ended);
+  } else {
+    if (parts_.key.study.trials.on_timeout == design::OnTimeout::no_response) keep_evidence();
+    session_.time_out(ended);
+  }
+  return session_.phase() == SessionPhase::answering;
+}
+
+void TrialRun::answer(const engine::RenderingModel& model) {
+  for (;;) {
+    desk_.enter("answering");
+    const AnswerStep step = question();
+    const std::optional<StepReply> reply = desk_.attend(step);
+    if (!reply) return;
+    if (!reply->explore_again) return confirm(*reply);
+    if (step.may_explore_again && !explore_again(model)) return;
+  }
+}
+
+AnswerStep TrialRun::question() const {
+  const design::SessionPlan& plan = parts_.key.study.session;
+  const auto left_s = static_cast<double>(servo_.limit_ticks - trace_.ticks()) / servo_.rate_hz;
+  return {.trial = session_.presentations_begun(),
+          .of = of_,
+          .practice = false,
+          .time_is_up = time_is_up_,
+          .may_explore_again = !time_is_up_ && left_s >= kLeastAgainS,
+          .confidence_levels = plan.confidence_levels,
+          .sight = plan.sight};
+}
+
+void TrialRun::confirm(const StepReply& reply) {
+  const int trial = session_.current()->trial;
+  if (reply.first_position) session_.choose(*reply.first_position);
+  session_.choose(reply.position);
+  keep_evidence();
+  session_.confirm(desk_.when(reply), reply.confidence);
+  parts_.experimenter.acknowledged(trial);
+}
+
+void TrialRun::keep_evidence() {
+  JudgedEvidence judged = trace_.take_evidence();
+  if (!judged.valid) ++tally_.invalid_trials;
+  session_.keep_evidence(std::move(judged.evidence));
+}
 
 void take_break(SessionDesk& desk) {
   Session& session = desk.session();
@@ -20,9 +160,9 @@ void take_break(SessionDesk& desk) {
   static_cast<void>(desk.attend(BreakStep{done, done + session.presentations_left()}));
 }
 
-void run_trials(SessionDesk& desk) {
+void run_trials(SessionDesk& desk, SessionTally& tally) {
   Session& session = desk.session();
-  TrialRun trials(desk);
+  TrialRun trials(desk, tally);
   const int most_interruptions = session.presentations_left();
   while (desk.goes_on() && session.phase() == SessionPhase::ready) {
     if (!desk.await_device()) continue;
@@ -37,7 +177,7 @@ void run_trials(SessionDesk& desk) {
   }
 }
 
-/// Nothing is asked any more that could be lost; whoever has seen it may go.
+/// Nothing that could be lost is asked any more, so that the experimenter may leave.
 void show_end(SessionDesk& desk) {
   desk.enter("end");
   const auto asked_to_end = [&] {
@@ -63,12 +203,14 @@ const SessionTexts& no_texts() {
 
 SessionTally run_session(Session& session, const SessionParts& parts) {
   SessionDesk desk(session, parts);
-  if (run_opening_stages(desk)) run_trials(desk);
+  SessionTally tally;
+  if (run_opening_stages(desk)) run_trials(desk, tally);
   if (session.phase() == SessionPhase::finished) ask_closing_questions(desk);
-  if (!desk.tally().left) session.close(desk.now());
-  desk.tally().duration = desk.now();
-  if (!desk.tally().left) show_end(desk);
-  return desk.tally();
+  if (!desk.left()) session.close(desk.now());
+  tally.duration = desk.now();
+  tally.left = desk.left();
+  if (!tally.left) show_end(desk);
+  return tally;
 }
 
 SessionTally run_session_in_virtual_time(Session& session, const design::StudyKey& key,

@@ -1,27 +1,29 @@
 #include "protocols/session/session_stages.hpp"
 
-#include "protocols/session/practice_run.hpp"
-#include "protocols/session/questionnaire_json.hpp"
+#include "protocols/session/session_desk.hpp"
 
-#include <vector>
+#include <charconv>
+#include <chrono>
+
+#include <nlohmann/json.hpp>
 
 namespace touchtrial::session {
 namespace {
 
-// In virtual time; people take the time that they take.
+// In virtual time; people take their own time.
 constexpr std::chrono::seconds kCalibration{30};
 constexpr std::chrono::seconds kInstruction{120};
 
-/// A step that is shown again if somebody broke it off. \return nothing if the session ended
+/// Shows a step again for as long as it is broken off.
+/// \return empty if the session ended
 std::optional<StepReply> insist(SessionDesk& desk, const Step& step) {
   while (desk.goes_on()) {
-    if (std::optional<StepReply> reply = desk.attend(step)) {
-      desk.parts().clock.pass(reply->took);
-      return reply;
-    }
+    if (std::optional<StepReply> reply = desk.attend(step)) return reply;
   }
   return std::nullopt;
 }
+
+// ---- Day sheet and device
 
 std::vector<DaySheetItem> open_items(const SessionDesk& desk, const SessionRemarks& remarks) {
   std::vector<DaySheetItem> items;
@@ -67,6 +69,8 @@ bool calibrate(SessionDesk& desk) {
   return true;
 }
 
+// ---- Instructions and questions
+
 bool instruct(SessionDesk& desk) {
   desk.enter("instructions");
   const std::vector<std::string>& pages = desk.parts().texts.instructions;
@@ -76,6 +80,40 @@ bool instruct(SessionDesk& desk) {
   return true;
 }
 
+template <typename Number>
+std::optional<Number> number_from(const std::string& text) {
+  Number value{};
+  const char* const end = text.data() + text.size();
+  const auto [stopped, error] = std::from_chars(text.data(), end, value);
+  if (error != std::errc{} || stopped != end) return std::nullopt;
+  return value;
+}
+
+nlohmann::json answer_to_json(design::QuestionKind kind, const std::string& answer) {
+  if (kind == design::QuestionKind::choice) {
+    if (const auto index = number_from<int>(answer)) return *index;
+  }
+  if (kind == design::QuestionKind::number) {
+    if (const auto number = number_from<double>(answer)) return *number;
+  }
+  return answer;
+}
+
+/// One JSON object from question ids to answers, without the questions that were left out. Format:
+/// docs/data-dictionary.md.
+std::string answers_to_json(const design::Questionnaire& questionnaire,
+                            const std::vector<std::string>& answers) {
+  nlohmann::json object = nlohmann::json::object();
+  for (std::size_t i = 0; i < questionnaire.questions.size() && i < answers.size(); ++i) {
+    if (answers[i].empty()) continue;
+    const design::Question& question = questionnaire.questions[i];
+    object[question.id] = answer_to_json(question.kind, answers[i]);
+  }
+  // Whatever people type is kept; bytes that are not UTF-8 are replaced.
+  return object.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+/// \return whether the session goes on
 bool ask(SessionDesk& desk, const std::optional<design::Questionnaire>& questionnaire) {
   if (!questionnaire) return true;
   if (desk.session().remarks().questionnaires.contains(questionnaire->name)) return true;
@@ -87,6 +125,120 @@ bool ask(SessionDesk& desk, const std::optional<design::Questionnaire>& question
   return true;
 }
 
+// ---- Practice
+
+/// How far practice has come.
+struct PracticeProgress {
+  int round = 1;    ///< the current or the next one
+  int done = 0;     ///< presentations of that round
+  int correct = 0;  ///< of these
+  bool passed = false;
+};
+
+/// \param practised  in chronological order
+/// \param a_round  presentations of a round
+PracticeProgress progress_of(const std::vector<store::PracticeBody>& practised,
+                             const design::PracticePlan& plan, int a_round) {
+  PracticeProgress progress;
+  for (const store::PracticeBody& one : practised) {
+    if (one.round > progress.round) progress = {.round = one.round};
+    ++progress.done;
+    progress.correct += one.correct ? 1 : 0;
+  }
+  progress.passed = progress.correct >= plan.criterion;
+  if (!progress.passed && progress.done >= a_round) progress = {.round = progress.round + 1};
+  return progress;
+}
+
+/// Practice with feedback, until enough answers of a round are correct. Continues from what is
+/// recorded, which may be from an earlier run of the program.
+class PracticeRun {
+ public:
+  PracticeRun(SessionDesk& desk, const PracticeTextures& textures)
+      : desk_(desk), textures_(textures), a_round_(desk.parts().key.study.trials.practice) {}
+
+  /// \return whether the session goes on
+  [[nodiscard]] bool run();
+
+ private:
+  [[nodiscard]] PracticeProgress progress() const {
+    return progress_of(desk_.session().remarks().practice, desk_.parts().key.study.practice,
+                       a_round_);
+  }
+  [[nodiscard]] bool run_round(int round);
+  /// \return empty if it was interrupted; to be repeated if the session goes on
+  [[nodiscard]] std::optional<store::PracticeBody> present(const PracticeProgress& at, int position,
+                                                           const engine::RenderingModel& model);
+  /// \return whether it ended without an interruption
+  [[nodiscard]] bool explore(const engine::RenderingModel& model);
+
+  SessionDesk& desk_;
+  const PracticeTextures& textures_;
+  store::Trace trace_;
+  int a_round_;
+};
+
+bool PracticeRun::run() {
+  const int rounds = desk_.parts().key.study.practice.rounds;
+  for (PracticeProgress at = progress(); !at.passed; at = progress()) {
+    if (at.round > rounds) {
+      if (!desk_.session().remarks().deviations.contains("practice-not-passed")) {
+        desk_.session().deviate(desk_.now(), {"practice-not-passed", ""});
+      }
+      return true;
+    }
+    if (!run_round(at.round)) return false;
+  }
+  return true;
+}
+
+bool PracticeRun::run_round(int round) {
+  const PracticeRound shown = textures_.round(round);
+  desk_.parts().participant.see_pictures(shown.labels);
+  desk_.enter("practice", true);
+  if (!desk_.attend(PracticeStep{round})) return desk_.goes_on();
+  const std::vector<int>& order = shown.order;
+  for (PracticeProgress at = progress(); at.round == round && !at.passed; at = progress()) {
+    if (!desk_.await_device()) {
+      if (!desk_.goes_on()) return false;
+      continue;
+    }
+    const int position = order[static_cast<std::size_t>(at.done) % order.size()];
+    const std::optional<store::PracticeBody> done =
+        present(at, position, *shown.models[static_cast<std::size_t>(position)]);
+    if (!desk_.goes_on()) return false;
+    if (!done) continue;
+    desk_.session().practise(desk_.now(), *done);
+    desk_.enter("practice", true);
+    if (!desk_.attend(FeedbackStep{done->position, position}) && !desk_.goes_on()) return false;
+  }
+  return true;
+}
+
+std::optional<store::PracticeBody> PracticeRun::present(const PracticeProgress& at, int position,
+                                                        const engine::RenderingModel& model) {
+  const int number = at.done + 1;
+  if (!desk_.attend(ReadyStep{number, a_round_, true})) return std::nullopt;
+  if (!explore(model)) return std::nullopt;
+  desk_.enter("answering", true);
+  const std::optional<StepReply> reply =
+      desk_.attend(AnswerStep{.trial = number,
+                              .of = a_round_,
+                              .practice = true,
+                              .sight = desk_.parts().key.study.session.sight});
+  if (!reply) return std::nullopt;
+  return store::PracticeBody{at.round, number, reply->position, reply->position == position};
+}
+
+bool PracticeRun::explore(const engine::RenderingModel& model) {
+  desk_.enter("exploring", true);
+  const Exploration done = desk_.explore(model, textures_.plane, desk_.servo_options(), trace_);
+  if (!is_interrupted(done.servo)) return true;
+  desk_.session().note(desk_.now(), "practice interrupted: " + desk_.note_interruption(done.servo));
+  return false;
+}
+
+/// \return whether the session goes on
 bool practise(SessionDesk& desk) {
   const PracticeTextures* textures = desk.parts().practice;
   const bool wanted = textures != nullptr && desk.parts().key.study.trials.practice > 0;
@@ -116,7 +268,7 @@ bool run_opening_stages(SessionDesk& desk) {
 }
 
 void ask_closing_questions(SessionDesk& desk) {
-  // Broken off, they are left out: what counts is stored.
+  // If they are broken off, they are left out: all that counts is stored.
   static_cast<void>(ask(desk, desk.parts().texts.closing));
 }
 

@@ -32,7 +32,7 @@ StimulusSource::StimulusSource(const engine::Pack& pack, const engine::Rendering
                                "prepare`"));
     }
     models_.emplace(entry.code, engine::RenderingModel(view, rendering, entry.gains));
-    // Of a field that is read like any other, so that the servo's times are the same.
+    // Made of a field, which is read like any other, so that the servo takes as long.
     if (!flat_) flat_.emplace(view, rendering, engine::Gains{});
     if (models_.size() == 1) plane_ = view.geometry;
     plane_.height_px = std::min(plane_.height_px, view.geometry.height_px);

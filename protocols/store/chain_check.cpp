@@ -1,12 +1,8 @@
-#include "protocols/store/chain_check.hpp"
-
-#include "protocols/store/chain_link.hpp"
 #include "protocols/store/collected_chain.hpp"
-#include "protocols/store/event_fault.hpp"
 #include "protocols/store/file_chain.hpp"
 #include "protocols/store/rows.hpp"
 #include "protocols/store/schema.hpp"
-#include "protocols/store/session_check.hpp"
+#include "protocols/store/stored_study.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -17,200 +13,8 @@
 namespace touchtrial::store {
 namespace {
 
-[[noreturn]] void fault_of_chain(std::int64_t session, std::int64_t sequence,
-                                 const std::string& what) {
-  throw EventFault(session, sequence, what);
-}
-
 std::string trace_of(const TrialId& id) {
   return "trace of trial " + std::to_string(id.second);
-}
-
-/// Walks through everything once; the first thing that does not hold is thrown.
-class Inspection {
- public:
-  explicit Inspection(const Database& database) : database_(database) {}
-
-  void run(TraceCheck traces) {
-    if (traces == TraceCheck::full) inspect_structure();
-    const std::vector<Event> collected = inspect_stations();
-    if (is_collected_) file_ = FileChain(UniquePlaces::in_the_end);
-    walk(0, [&](const Event& event) {
-      if (!collected.empty()) inspect_collected(event, collected);
-      file_.add(event);
-    });
-    if (!file_.commitment()) fault_of_chain(0, kNoEvent, "the file's chain is empty");
-    inspect_length(collected);
-    inspect_sessions();
-    // Exclusions and withdrawals change rows of sessions, which exist only now.
-    for_each_event(database_, 0, [&](const Event& event) { fold(expected_, event); });
-    inspect_keys();
-    if (traces == TraceCheck::full) inspect_traces();
-    inspect_session_rows();
-    inspect_trial_rows();
-    inspect_schema();
-  }
-
- private:
-  void inspect_structure() const;
-  template <typename Visit>
-  ChainLink walk(int session, Visit visit) const;
-  [[nodiscard]] std::vector<Event> inspect_stations();
-  [[nodiscard]] StationChain inspect_station(int station) const;
-  void inspect_collected(const Event& event, const std::vector<Event>& collected) const;
-  void inspect_length(const std::vector<Event>& collected) const;
-  void inspect_sessions();
-  void inspect_session(int session, const SessionOnFile& on_file);
-  void inspect_keys() const;
-  void inspect_traces();
-  void inspect_session_rows() const;
-  void inspect_trial_rows() const;
-  void inspect_responses() const;
-  void inspect_schema() const;
-
-  const Database& database_;
-  FileChain file_;
-  bool is_collected_ = false;
-  DerivedRows expected_;
-  std::map<TrialId, TraceClaim> claims_;
-};
-
-void Inspection::inspect_structure() const {
-  // Not quick_check, which takes indices on trust.
-  Query query = database_.query("PRAGMA integrity_check(1)");
-  if (!query.step()) return;
-  const std::string finding = query.text(0);
-  if (finding != "ok") fault_of_chain(0, kNoEvent, "the file is damaged: " + finding);
-}
-
-/// Every event of a chain held to the one before it.
-template <typename Visit>
-ChainLink Inspection::walk(int session, Visit visit) const {
-  ChainLink chain(session);
-  for_each_event(database_, session, [&](const Event& event) {
-    if (const auto broken = chain.broken_by(event)) {
-      fault_of_chain(session, std::min(event.sequence, chain.length()), *broken);
-    }
-    chain.extend(event);
-    visit(event);
-  });
-  return chain;
-}
-
-/// What the stations' chains come to; empty if there are none.
-std::vector<Event> Inspection::inspect_stations() {
-  std::vector<StationChain> stations;
-  std::int64_t lowest = 0;
-  for (const std::int64_t session : sessions_with_events(database_)) {
-    lowest = std::clamp(session, -std::int64_t{std::numeric_limits<int>::max()}, lowest);
-  }
-  for (int station = 1; station <= -lowest; ++station) {
-    stations.push_back(inspect_station(station));
-    if (station > 1 && !comes_before(stations[stations.size() - 2], stations.back())) {
-      fault_of_chain(-station, kNoEvent, "does not come after that of the station before");
-    }
-  }
-  if (stations.empty()) return {};
-  try {
-    is_collected_ = true;
-    return collected_chain(stations).events;
-  } catch (const EventFault&) {
-    throw;
-  } catch (const StoreError& error) {
-    fault_of_chain(0, kNoEvent, error.what());
-  }
-}
-
-StationChain Inspection::inspect_station(int station) const {
-  StationChain found{.name = "station " + std::to_string(station), .events = {}};
-  FileChain file;
-  walk(-station, [&](const Event& event) {
-    file.add(event);
-    found.events.push_back(event);
-  });
-  if (!station_identity(found.events)) fault_of_chain(-station, kNoEvent, "opens no session");
-  return found;
-}
-
-/// A collected study's chain is what its stations' come to, and then what was decided later.
-void Inspection::inspect_collected(const Event& event, const std::vector<Event>& collected) const {
-  if (event.sequence < static_cast<std::int64_t>(collected.size())) {
-    if (event.hash == collected[static_cast<std::size_t>(event.sequence)].hash) return;
-    fault_of_chain(0, event.sequence, "is not what the stations' chains come to");
-  }
-  if (event.kind == EventKind::session_opened || event.kind == EventKind::session_closed ||
-      event.kind == EventKind::participant_replaced) {
-    fault_of_chain(0, event.sequence,
-                   "stands at no station; a collected study has no sessions of its own");
-  }
-}
-
-void Inspection::inspect_length(const std::vector<Event>& collected) const {
-  const auto length = static_cast<std::int64_t>(collected.size());
-  const std::optional<Event> last =
-      length > 0 ? read_event(database_, 0, length - 1) : std::nullopt;
-  if (length > 0 && !last)
-    fault_of_chain(0, kNoEvent, "lacks events that the stations' chains come to");
-}
-
-void Inspection::inspect_sessions() {
-  for (const auto& [session, on_file] : file_.sessions()) {
-    if (on_file.opened.station > 0 && !is_collected_) {
-      fault_of_chain(0, on_file.opened_at, "a session comes from a station that is not here");
-    }
-    inspect_session(session, on_file);
-  }
-  for (const std::int64_t session : sessions_with_events(database_)) {
-    if (session < 0) continue;
-    const bool known = session <= std::numeric_limits<int>::max() &&
-                       file_.sessions().count(static_cast<int>(session)) > 0;
-    if (!known) fault_of_chain(session, kNoEvent, "the file's chain knows no such session");
-  }
-}
-
-void Inspection::inspect_session(int session, const SessionOnFile& on_file) {
-  SessionCheck check(session, on_file, *file_.commitment());
-  for_each_event(database_, session, [&](const Event& event) { check.add(event, expected_); });
-  check.finish(expected_);
-  for (const auto& [trial, claim] : check.claims()) {
-    claims_.emplace(TrialId(session, trial), claim);
-  }
-}
-
-void Inspection::inspect_keys() const {
-  std::map<std::int64_t, Digest> stored;
-  Query query = database_.query("SELECT session, wrapped FROM participant_keys");
-  while (query.step()) stored[query.integer(0)] = sha256(query.blob(1));
-  for (const auto& [session, on_file] : file_.sessions()) {
-    const auto key = stored.extract(session);
-    SessionCheck(session, on_file, *file_.commitment())
-        .check_key(key.empty() ? std::nullopt : std::optional(key.mapped()));
-  }
-  if (!stored.empty())
-    fault_of_chain(stored.begin()->first, kNoEvent, "a participant's key has no session");
-}
-
-void Inspection::inspect_traces() {
-  Query query = database_.query("SELECT session, trial, box FROM traces ORDER BY session, trial");
-  auto claim = claims_.begin();
-  using Wide = std::pair<std::int64_t, std::int64_t>;
-  const auto missing = [&] {
-    fault_of_chain(claim->first.first, claim->second.sequence,
-                   trace_of(claim->first) + " is missing");
-  };
-  while (query.step()) {
-    const Wide id(query.integer(0), query.integer(1));
-    if (claim != claims_.end() && Wide(claim->first) < id) missing();
-    if (claim == claims_.end() || Wide(claim->first) != id) {
-      fault_of_chain(id.first, kNoEvent,
-                     "trace of trial " + std::to_string(id.second) + " has no event");
-    }
-    if (sha256(query.blob(2)) != claim->second.digest) {
-      fault_of_chain(id.first, claim->second.sequence, trace_of(claim->first) + " was altered");
-    }
-    ++claim;
-  }
-  if (claim != claims_.end()) missing();
 }
 
 /// The first id at which two sorted lists of rows differ.
@@ -227,48 +31,214 @@ std::optional<Id> first_difference(const std::map<Id, Row>& expected, const std:
   return std::nullopt;
 }
 
-void Inspection::inspect_session_rows() const {
-  const auto differs = first_difference(expected_.sessions, read_sessions(database_),
-                                        [](const SessionRow& row) { return row.session; });
-  if (differs)
-    fault_of_chain(*differs, kNoEvent, "derived table sessions disagrees with the events");
-}
-
 bool same_response(const TrialRow& a, const TrialRow& b) {
   return a.answered_at == b.answered_at && a.position == b.position &&
          a.first_position == b.first_position && a.confidence == b.confidence;
 }
 
-void Inspection::inspect_trial_rows() const {
-  const std::vector<TrialRow> found = read_trials(database_);
-  const auto id_of = [](const TrialRow& row) { return TrialId(row.session, row.trial); };
-  const auto differs = first_difference(expected_.trials, found, id_of);
-  if (!differs) return inspect_responses();
-  const auto expected = expected_.trials.find(*differs);
-  const auto row = std::find_if(found.begin(), found.end(),
-                                [&](const TrialRow& r) { return id_of(r) == *differs; });
-  const bool in_both = expected != expected_.trials.end() && row != found.end();
-  const bool response = in_both && !same_response(expected->second, *row);
-  fault_of_chain(differs->first, kNoEvent,
-                 std::string("derived table ") + (response ? "responses" : "trials") +
-                     " disagrees with the events at trial " + std::to_string(differs->second));
-}
+/// Walks through everything once, and throws EventFault at the first thing that does not hold.
+class Inspection {
+ public:
+  explicit Inspection(const Database& database) : database_(database) {}
 
-/// Responses to trials that the table of trials does not have.
-void Inspection::inspect_responses() const {
-  Query query = database_.query(
-      "SELECT r.session, r.trial FROM responses r LEFT JOIN trials t USING(session, trial) "
-      "WHERE t.trial IS NULL LIMIT 1");
-  if (!query.step()) return;
-  fault_of_chain(query.integer(0), kNoEvent,
-                 "derived table responses disagrees with the events at trial " +
-                     std::to_string(query.integer(1)));
-}
+  void run(TraceCheck traces) {
+    if (traces == TraceCheck::full) inspect_structure();
+    const std::vector<Event> collected = inspect_stations();
+    if (is_collected_) file_ = FileChain(UniquePlaces::in_the_end);
+    walk(0, [&](const Event& event) {
+      if (!collected.empty()) inspect_collected(event, collected);
+      file_.add(event);
+    });
+    if (!file_.commitment()) throw EventFault(0, kNoEvent, "the file's chain is empty");
+    inspect_length(collected);
+    inspect_sessions();
+    // Only now do the rows of sessions exist that exclusions and withdrawals change.
+    for_each_event(database_, 0, [&](const Event& event) { fold(expected_, event); });
+    inspect_keys();
+    if (traces == TraceCheck::full) inspect_traces();
+    inspect_session_rows();
+    inspect_trial_rows();
+    inspect_schema();
+  }
 
-/// Last, so that a fault of what is stored is named before that of a trigger that let it happen.
-void Inspection::inspect_schema() const {
-  if (const auto differs = schema_fault(database_)) fault_of_chain(0, kNoEvent, *differs);
-}
+ private:
+  void inspect_structure() const {
+    // Not quick_check, which takes indices on trust.
+    Query query = database_.query("PRAGMA integrity_check(1)");
+    if (!query.step()) return;
+    const std::string finding = query.text(0);
+    if (finding != "ok") throw EventFault(0, kNoEvent, "the file is damaged: " + finding);
+  }
+
+  /// Holds every event of a chain against the one before it.
+  void walk(int session, const EventVisitor& visit) const {
+    ChainLink chain(session);
+    for_each_event(database_, session, [&](const Event& event) {
+      chain.extend(event);
+      visit(event);
+    });
+  }
+
+  /// \return the chain that the stations' chains come to; empty if there are no stations
+  [[nodiscard]] std::vector<Event> inspect_stations() {
+    std::vector<StationChain> stations;
+    std::int64_t lowest = 0;
+    for (const std::int64_t session : sessions_with_events(database_)) {
+      lowest = std::clamp(session, -std::int64_t{std::numeric_limits<int>::max()}, lowest);
+    }
+    for (int station = 1; station <= -lowest; ++station) {
+      stations.push_back(inspect_station(station));
+      if (station > 1 && !comes_before(stations[stations.size() - 2], stations.back())) {
+        throw EventFault(-station, kNoEvent, "does not come after that of the station before");
+      }
+    }
+    if (stations.empty()) return {};
+    try {
+      is_collected_ = true;
+      return collected_chain(stations).events;
+    } catch (const EventFault&) {
+      throw;
+    } catch (const StoreError& error) {
+      throw EventFault(0, kNoEvent, error.what());
+    }
+  }
+
+  [[nodiscard]] StationChain inspect_station(int station) const {
+    StationChain found{.name = "station " + std::to_string(station), .events = {}};
+    FileChain file;
+    walk(-station, [&](const Event& event) {
+      file.add(event);
+      found.events.push_back(event);
+    });
+    if (!station_identity(found.events)) throw EventFault(-station, kNoEvent, "opens no session");
+    return found;
+  }
+
+  /// A collected study's chain begins with what its stations' chains come to; later decisions
+  /// follow.
+  void inspect_collected(const Event& event, const std::vector<Event>& collected) const {
+    if (event.sequence < static_cast<std::int64_t>(collected.size())) {
+      if (event.hash == collected[static_cast<std::size_t>(event.sequence)].hash) return;
+      throw EventFault(0, event.sequence, "is not what the stations' chains come to");
+    }
+    if (event.kind == EventKind::session_opened || event.kind == EventKind::session_closed ||
+        event.kind == EventKind::participant_replaced) {
+      throw EventFault(0, event.sequence,
+                       "stands at no station; a collected study has no sessions of its own");
+    }
+  }
+
+  void inspect_length(const std::vector<Event>& collected) const {
+    if (collected.empty()) return;
+    if (!read_event(database_, 0, static_cast<std::int64_t>(collected.size()) - 1)) {
+      throw EventFault(0, kNoEvent, "lacks events that the stations' chains come to");
+    }
+  }
+
+  void inspect_sessions() {
+    for (const auto& [session, on_file] : file_.sessions()) {
+      if (on_file.opened.station > 0 && !is_collected_) {
+        throw EventFault(0, on_file.opened_at, "a session comes from a station that is not here");
+      }
+      inspect_session(session, on_file);
+    }
+    for (const std::int64_t session : sessions_with_events(database_)) {
+      if (session < 0) continue;
+      const bool known = session <= std::numeric_limits<int>::max() &&
+                         file_.sessions().count(static_cast<int>(session)) > 0;
+      if (!known) throw EventFault(session, kNoEvent, "the file's chain knows no such session");
+    }
+  }
+
+  void inspect_session(int session, const SessionOnFile& on_file) {
+    SessionCheck check(session, on_file, *file_.commitment());
+    for_each_event(database_, session, [&](const Event& event) { check.add(event, expected_); });
+    check.finish(expected_);
+    for (const auto& [trial, claim] : check.claims()) {
+      claims_.emplace(TrialId(session, trial), claim);
+    }
+  }
+
+  void inspect_keys() const {
+    std::map<std::int64_t, Digest> stored;
+    Query query = database_.query("SELECT session, wrapped FROM participant_keys");
+    while (query.step()) stored[query.integer(0)] = sha256(query.blob(1));
+    for (const auto& [session, on_file] : file_.sessions()) {
+      const auto key = stored.extract(session);
+      SessionCheck(session, on_file, *file_.commitment())
+          .check_key(key.empty() ? std::nullopt : std::optional(key.mapped()));
+    }
+    if (!stored.empty())
+      throw EventFault(stored.begin()->first, kNoEvent, "a participant's key has no session");
+  }
+
+  void inspect_traces() {
+    Query query = database_.query("SELECT session, trial, box FROM traces ORDER BY session, trial");
+    auto claim = claims_.begin();
+    using Wide = std::pair<std::int64_t, std::int64_t>;
+    const auto missing = [&] {
+      throw EventFault(claim->first.first, claim->second.sequence,
+                       trace_of(claim->first) + " is missing");
+    };
+    while (query.step()) {
+      const Wide id(query.integer(0), query.integer(1));
+      if (claim != claims_.end() && Wide(claim->first) < id) missing();
+      if (claim == claims_.end() || Wide(claim->first) != id) {
+        throw EventFault(id.first, kNoEvent,
+                         "trace of trial " + std::to_string(id.second) + " has no event");
+      }
+      if (sha256(query.blob(2)) != claim->second.digest) {
+        throw EventFault(id.first, claim->second.sequence, trace_of(claim->first) + " was altered");
+      }
+      ++claim;
+    }
+    if (claim != claims_.end()) missing();
+  }
+
+  void inspect_session_rows() const {
+    const auto differs = first_difference(expected_.sessions, read_sessions(database_),
+                                          [](const SessionRow& row) { return row.session; });
+    if (differs)
+      throw EventFault(*differs, kNoEvent, "derived table sessions disagrees with the events");
+  }
+
+  void inspect_trial_rows() const {
+    const std::vector<TrialRow> found = read_trials(database_);
+    const auto id_of = [](const TrialRow& row) { return TrialId(row.session, row.trial); };
+    const auto differs = first_difference(expected_.trials, found, id_of);
+    if (!differs) return inspect_responses();
+    const auto expected = expected_.trials.find(*differs);
+    const auto row = std::find_if(found.begin(), found.end(),
+                                  [&](const TrialRow& r) { return id_of(r) == *differs; });
+    const bool in_both = expected != expected_.trials.end() && row != found.end();
+    const bool response = in_both && !same_response(expected->second, *row);
+    throw EventFault(differs->first, kNoEvent,
+                     std::string("derived table ") + (response ? "responses" : "trials") +
+                         " disagrees with the events at trial " + std::to_string(differs->second));
+  }
+
+  /// Finds responses to trials that are not in the table of trials.
+  void inspect_responses() const {
+    Query query = database_.query(
+        "SELECT r.session, r.trial FROM responses r LEFT JOIN trials t USING(session, trial) "
+        "WHERE t.trial IS NULL LIMIT 1");
+    if (!query.step()) return;
+    throw EventFault(query.integer(0), kNoEvent,
+                     "derived table responses disagrees with the events at trial " +
+                         std::to_string(query.integer(1)));
+  }
+
+  /// Runs last: a fault of stored data is named before the missing trigger that allowed it.
+  void inspect_schema() const {
+    if (const auto differs = schema_fault(database_)) throw EventFault(0, kNoEvent, *differs);
+  }
+
+  const Database& database_;
+  FileChain file_;
+  bool is_collected_ = false;
+  DerivedRows expected_;
+  std::map<TrialId, TraceClaim> claims_;
+};
 
 }  // namespace
 

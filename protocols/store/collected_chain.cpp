@@ -1,7 +1,8 @@
 #include "protocols/store/collected_chain.hpp"
 
 #include "core/errors.hpp"
-#include "protocols/store/event_fault.hpp"
+#include "protocols/store/damage.hpp"
+#include "protocols/store/file_chain.hpp"
 #include "protocols/store/payload_json.hpp"
 
 #include <algorithm>
@@ -15,25 +16,6 @@ namespace {
 
 using std::chrono::nanoseconds;
 
-/// The session that an event of a file chain is about, by its number at the station; 0: none.
-int session_about(const Event& event) {
-  switch (event.kind) {
-    case EventKind::session_opened:
-      return body_of(event, session_opened_from_json).session;
-    case EventKind::session_closed:
-      return body_of(event, session_closed_from_json).session;
-    case EventKind::participant_excluded:
-    case EventKind::participant_withdrawn:
-      return body_of(event, participant_from_json).session;
-    case EventKind::participant_replaced:
-      return body_of(event, replacement_from_json).session;
-    case EventKind::participant_noted:
-      return body_of(event, note_from_json).session;
-    default:
-      return 0;
-  }
-}
-
 std::string named(const StationChain& station, int own_session) {
   return "session " + std::to_string(own_session) + " of " + station.name;
 }
@@ -43,14 +25,7 @@ class Feed {
  public:
   Feed(const StationChain& station, int number, bool simulated)
       : station_(&station), number_(number), simulated_(simulated) {
-    for (const Event& event : station.events) {
-      if (event.kind == EventKind::session_opened) {
-        const SessionOpenedBody body = body_of(event, session_opened_from_json);
-        opened_.emplace(body.session, body);
-      }
-      if (event.kind == EventKind::session_closed) ended_.insert(session_about(event));
-      if (event.kind == EventKind::participant_replaced) replaced_.insert(session_about(event));
-    }
+    for (const Event& event : station.events) file_.add(event);
     skip();
   }
 
@@ -58,16 +33,14 @@ class Feed {
   [[nodiscard]] int number() const noexcept { return number_; }
   [[nodiscard]] bool is_done() const noexcept { return next_ == station_->events.size(); }
   [[nodiscard]] const Event& head() const { return station_->events[next_]; }
-  /// That the head is about.
-  [[nodiscard]] const SessionOpenedBody& session() const { return opened_.at(about_); }
-  [[nodiscard]] const std::map<int, SessionOpenedBody>& opened() const noexcept { return opened_; }
-  [[nodiscard]] const std::set<int>& ended() const noexcept { return ended_; }
+  /// The session that the head is about.
+  [[nodiscard]] const SessionOnFile& session() const { return sessions().at(about_); }
+  [[nodiscard]] const std::map<int, SessionOnFile>& sessions() const { return file_.sessions(); }
 
-  /// Whether a session's place is taken by another sooner or later.
-  [[nodiscard]] bool is_replaced(int session) const { return replaced_.contains(session); }
-  /// Decides whose head comes first.
+  /// The feed with the lowest rank comes first.
   [[nodiscard]] std::tuple<int, nanoseconds, int> rank() const {
-    return {simulated_ ? session().enrolment : 0, head().at, simulated_ ? 0 : session().enrolment};
+    const int enrolment = session().opened.enrolment;
+    return {simulated_ ? enrolment : 0, head().at, simulated_ ? 0 : enrolment};
   }
   void advance() {
     ++next_;
@@ -75,32 +48,30 @@ class Feed {
   }
 
  private:
-  /// To the next event about a session that has ended.
+  /// Goes to the next event about a session that has ended.
   void skip() {
     for (; !is_done(); ++next_) {
       about_ = session_about(head());
-      if (about_ != 0 && ended_.contains(about_)) return;
+      if (about_ != 0 && session().closed) return;
     }
   }
 
   const StationChain* station_;
   int number_;
   bool simulated_;
-  std::map<int, SessionOpenedBody> opened_;
-  std::set<int> ended_;
-  std::set<int> replaced_;
+  FileChain file_;
   std::size_t next_ = 0;
   int about_ = 0;
 };
 
-/// All of a commitment but the version of the program, which stations may differ in.
+/// A station's commitment without the program's version, in which stations may differ.
 StudyCommitment without_version(const StationChain& station) {
   StudyCommitment commitment = body_of(station.events.front(), commitment_from_json);
   commitment.program_version.clear();
   return commitment;
 }
 
-/// What differs, in words, where two stations cannot be of one study.
+/// Why two stations cannot be of one study, in words.
 std::string difference(const StudyCommitment& a, const StudyCommitment& b) {
   if (a.study_id != b.study_id) return "they are of different studies";
   if (a.simulated != b.simulated) return "one is of simulated participants, the other is not";
@@ -121,6 +92,28 @@ void require_one_study(std::span<const StationChain> stations) {
   }
 }
 
+/// Participant ids and enrolment numbers of some sessions.
+class Places {
+ public:
+  void insert(const SessionOpenedBody& session) {
+    participants_.insert(session.participant);
+    enrolments_.insert(session.enrolment);
+  }
+  /// Of several sessions with the same place, removes one.
+  void remove(const SessionOpenedBody& session) {
+    participants_.extract(session.participant);
+    enrolments_.extract(session.enrolment);
+  }
+  /// Whether one of the sessions has the same participant id or enrolment number.
+  [[nodiscard]] bool has(const SessionOpenedBody& session) const {
+    return participants_.contains(session.participant) || enrolments_.contains(session.enrolment);
+  }
+
+ private:
+  std::multiset<std::string> participants_;
+  std::multiset<int> enrolments_;
+};
+
 /// Makes the collected chain, event by event.
 class Collection {
  public:
@@ -129,10 +122,8 @@ class Collection {
     int number = 0;
     for (const StationChain& station : stations) feeds_.emplace_back(station, ++number, simulated);
     for (const Feed& feed : feeds_) {
-      for (const int session : feed.ended()) {
-        if (!feed.is_replaced(session)) continue;
-        former_participants_.insert(feed.opened().at(session).participant);
-        former_enrolments_.insert(feed.opened().at(session).enrolment);
+      for (const auto& [own, session] : feed.sessions()) {
+        if (session.closed && session.replaced_at) former_.insert(session.opened);
       }
     }
   }
@@ -145,8 +136,8 @@ class Collection {
     end_collection();
     unblind();
     for (const Feed& feed : feeds_) {
-      for (const auto& [session, opened] : feed.opened()) {
-        if (!feed.ended().contains(session)) chain_.left_out.push_back({feed.number(), session});
+      for (const auto& [own, session] : feed.sessions()) {
+        if (!session.closed) chain_.left_out.push_back({feed.number(), own});
       }
     }
     return std::move(chain_);
@@ -154,38 +145,25 @@ class Collection {
 
  private:
   void append(EventKind kind, nanoseconds at, std::string body) {
-    Event event{.session = 0,
-                .sequence = static_cast<std::int64_t>(chain_.events.size()),
-                .kind = kind,
-                .at = at,
-                .body = std::move(body),
-                .sealed = {},
-                .previous = chain_.events.empty() ? Digest{} : chain_.events.back().hash,
-                .hash = {}};
-    event.hash = event_hash(event);
-    chain_.events.push_back(std::move(event));
+    const Event* const last = chain_.events.empty() ? nullptr : &chain_.events.back();
+    chain_.events.push_back(next_on_file(last, kind, at, std::move(body)));
   }
 
-  /// Whether a feed opens a session whose place somebody has, as far as the chain has come.
+  /// Whether a feed opens a session whose place another session has at this point of the chain.
   [[nodiscard]] bool is_taken(const Feed& feed) const {
-    return feed.head().kind == EventKind::session_opened &&
-           (participants_.contains(feed.session().participant) ||
-            enrolments_.contains(feed.session().enrolment));
+    return feed.head().kind == EventKind::session_opened && taken_.has(feed.session().opened);
   }
 
-  /// Whether a feed opens a session that stays, in a place that another had before, who is still
-  /// to come: clocks of stations may differ by more than it took to replace somebody.
+  /// Whether a feed opens a session that stays, in a place whose former holder's replacement is
+  /// still to come: stations' clocks may differ by more than the time until somebody was replaced.
   [[nodiscard]] bool comes_later(const Feed& feed) const {
-    if (feed.head().kind != EventKind::session_opened) return false;
-    const SessionOpenedBody& session = feed.session();
-    if (feed.is_replaced(session.session)) return false;
-    return former_participants_.contains(session.participant) ||
-           former_enrolments_.contains(session.enrolment);
+    return feed.head().kind == EventKind::session_opened && !feed.session().replaced_at &&
+           former_.has(feed.session().opened);
   }
 
-  /// The feed whose head comes next; none when all are done. What is in somebody's place waits for
-  /// that one's replacement while anything else is left. Two that wait for each other's are no
-  /// clash, if both places are free in the end: then time decides.
+  /// The feed whose head comes next; null when all are done. A session waits for the replacement of
+  /// its place's former holder while any other event is left. Two sessions that wait for each other
+  /// do not clash if both places are free in the end; time then decides.
   Feed* next_feed() {
     Feed* best = nullptr;
     Feed* later = nullptr;
@@ -208,18 +186,18 @@ class Collection {
   [[nodiscard]] const Feed& feed_of(const SessionPlace& place) const {
     return feeds_[static_cast<std::size_t>(place.station) - 1];
   }
-  [[nodiscard]] const SessionOpenedBody& opening_at(const SessionPlace& place) const {
-    return feed_of(place).opened().at(place.own_session);
+  [[nodiscard]] const SessionOnFile& session_at(const SessionPlace& place) const {
+    return feed_of(place).sessions().at(place.own_session);
   }
 
-  /// A participant id and an enrolment number belong to one session that nobody replaced. Whoever
-  /// was replaced stands in nobody's way, at whatever moment that was.
+  /// A participant id and an enrolment number belong to one session that nobody replaced. Replaced
+  /// sessions take no place, whenever they were replaced.
   void refuse_taken_twice() const {
     std::map<std::string, SessionPlace> participants;
     std::map<int, SessionPlace> enrolments;
     for (const SessionPlace& place : chain_.sessions) {
-      if (feed_of(place).is_replaced(place.own_session)) continue;
-      const SessionOpenedBody& opened = opening_at(place);
+      if (session_at(place).replaced_at) continue;
+      const SessionOpenedBody& opened = session_at(place).opened;
       const auto [participant, is_new] = participants.emplace(opened.participant, place);
       if (!is_new) refuse_taken(participant->second, place);
       const auto [enrolment, is_free] = enrolments.emplace(opened.enrolment, place);
@@ -228,8 +206,8 @@ class Collection {
   }
 
   [[noreturn]] void refuse_taken(const SessionPlace& first, const SessionPlace& second) const {
-    const SessionOpenedBody& taken = opening_at(first);
-    const SessionOpenedBody& opened = opening_at(second);
+    const SessionOpenedBody& taken = session_at(first).opened;
+    const SessionOpenedBody& opened = session_at(second).opened;
     const bool participant = taken.participant == opened.participant;
     throw StoreError(one_line(
         (participant ? "participant " + opened.participant
@@ -245,23 +223,20 @@ class Collection {
   }
 
   void take(Feed& feed) {
-    const SessionOpenedBody& session = feed.session();
+    const SessionOpenedBody& session = feed.session().opened;
     const SessionPlace place{.station = feed.number(), .own_session = session.session};
     const Event& event = feed.head();
     if (event.kind == EventKind::session_opened) {
       chain_.sessions.push_back(place);
       numbers_[place] = static_cast<int>(chain_.sessions.size());
-      participants_.insert(session.participant);
-      enrolments_.insert(session.enrolment);
+      taken_.insert(session);
       append(event.kind, event.at, body_of(event, [&](const std::string& body) {
                return renumbered_opening(body, numbers_.at(place), place.station);
              }));
     } else {
       if (event.kind == EventKind::participant_replaced) {
-        participants_.extract(session.participant);
-        enrolments_.extract(session.enrolment);
-        former_participants_.extract(session.participant);
-        former_enrolments_.extract(session.enrolment);
+        taken_.remove(session);
+        former_.remove(session);
       }
       append(event.kind, event.at, body_of(event, [&](const std::string& body) {
                return renumbered(body, numbers_.at(place));
@@ -277,7 +252,7 @@ class Collection {
     return found == station.events.rend() ? nullptr : &*found;
   }
 
-  /// Closed is what all stations closed.
+  /// The study is closed if all stations closed it.
   void end_collection() {
     nanoseconds at = nanoseconds::min();
     for (const StationChain& station : stations_) {
@@ -289,15 +264,17 @@ class Collection {
     closed_ = true;
   }
 
-  /// Unblinded is what all stations with sessions unblinded; if some of them only for an interim
-  /// look, or some station still collects, then for the sessions that the stations' looks show.
+  /// The study is unblinded if all stations with sessions unblinded it. If one of them did so only
+  /// for an interim look, or a station still collects, this is an interim look at the sessions that
+  /// the stations' looks show.
   void unblind() {
     nanoseconds at = nanoseconds::min();
+    const auto ended = [](const auto& entry) { return entry.second.closed.has_value(); };
     bool interim = !closed_;
     std::vector<std::string> reasons;
     std::vector<int> shown;
     for (const Feed& feed : feeds_) {
-      if (feed.ended().empty()) continue;
+      if (std::ranges::none_of(feed.sessions(), ended)) continue;
       const Event* const look = last_of(feed.station(), EventKind::study_unblinded);
       if (look == nullptr) return;
       const StudyState state = state_of_chain(feed.station().events);
@@ -306,8 +283,8 @@ class Collection {
       if (std::ranges::find(reasons, state.unblinding_reason) == reasons.end()) {
         reasons.push_back(state.unblinding_reason);
       }
-      for (const int session : feed.ended()) {
-        if (state.shows(session)) shown.push_back(numbers_.at({feed.number(), session}));
+      for (const auto& [own, session] : feed.sessions()) {
+        if (session.closed && state.shows(own)) shown.push_back(numbers_.at({feed.number(), own}));
       }
     }
     if (reasons.empty()) return;
@@ -323,12 +300,8 @@ class Collection {
   std::vector<Feed> feeds_;
   CollectedChain chain_;
   std::map<SessionPlace, int> numbers_;
-  /// Of sessions that nobody has replaced so far.
-  std::multiset<std::string> participants_;
-  std::multiset<int> enrolments_;
-  /// Of sessions that somebody replaced, until that has come.
-  std::multiset<std::string> former_participants_;
-  std::multiset<int> former_enrolments_;
+  Places taken_;   ///< of sessions that nobody has replaced so far
+  Places former_;  ///< of sessions that will be replaced, until their replacement has come
   bool closed_ = false;
 };
 
@@ -352,24 +325,6 @@ bool comes_before(const StationChain& a, const StationChain& b) {
 CollectedChain collected_chain(std::span<const StationChain> stations) {
   require_one_study(stations);
   return Collection(stations).made();
-}
-
-StudyState state_of_chain(std::span<const Event> chain) {
-  StudyState state;
-  std::set<int> ended;
-  for (const Event& event : chain) {
-    if (event.kind == EventKind::study_closed) state.closed = true;
-    if (event.kind == EventKind::session_closed) ended.insert(session_about(event));
-    if (event.kind != EventKind::study_unblinded) continue;
-    const UnblindingBody body = body_of(event, unblinding_from_json);
-    state.unblinded = true;
-    state.unblinding_reason = body.reason;
-    state.interim = body.interim ? std::optional(ended) : std::nullopt;
-    if (body.interim && body.sessions) {
-      state.interim = std::set<int>(body.sessions->begin(), body.sessions->end());
-    }
-  }
-  return state;
 }
 
 }  // namespace touchtrial::store

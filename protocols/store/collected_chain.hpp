@@ -1,10 +1,9 @@
-/// \file Several stations' file chains made one: a function of what they hold and of nothing else,
-/// so that whoever has the stations' chains can make the collected one again and compare.
-/// Source: docs/data-dictionary.md, "Collected studies"; docs/decisions/0041.
+/// \file Makes one file chain of several stations' file chains. The result depends on their content
+/// alone, so that anybody who has the stations' chains can make it again and compare. Source:
+/// docs/data-dictionary.md, "Collected studies"; docs/decisions/0041.
 #pragma once
 
 #include "protocols/store/event.hpp"
-#include "protocols/store/study_store.hpp"
 
 #include <compare>
 #include <optional>
@@ -14,7 +13,7 @@
 
 namespace touchtrial::store {
 
-/// A station's file chain as it stands in its own file, and what messages call the station.
+/// A station's file chain as it stands in its own file, and the station's name for messages.
 struct StationChain {
   std::string name;
   std::vector<Event> events;
@@ -31,33 +30,34 @@ struct SessionPlace {
 /// The chain that stations' chains come to.
 struct CollectedChain {
   std::vector<Event> events;           ///< of session 0, hashed
-  std::vector<SessionPlace> sessions;  ///< by number, from 1; those that have ended
-  std::vector<SessionPlace> left_out;  ///< those that have not
+  std::vector<SessionPlace> sessions;  ///< by number, from 1: sessions that have ended
+  std::vector<SessionPlace> left_out;  ///< sessions that have not ended
 };
 
-/// What tells stations apart: the hash of the event with which the first session was opened, which
-/// is the second of the chain. Nothing: no session was ever opened there.
+/// What tells stations apart: the hash of the event with which the first session was opened, the
+/// second event of the chain. Nothing if no session was ever opened there.
 [[nodiscard]] std::optional<Digest> station_identity(std::span<const Event> chain);
 
-/// The order of stations: by their first sessions' openings (in simulated studies, whose times mean
-/// nothing, by those sessions' enrolment numbers), and where those are the same, by identity.
+/// The order of stations: by the time at which their first sessions were opened (by those sessions'
+/// enrolment numbers in simulated studies, whose times mean nothing), and by identity where that is
+/// the same.
 /// \pre both have an identity
 [[nodiscard]] bool comes_before(const StationChain& a, const StationChain& b);
 
-/// The collected chain. It begins with the commitment of the first station. Then come the events of
-/// the stations about sessions that have ended, each station's in their order: of those that are
-/// next, the one at the earliest time, and in simulated studies, whose times mean nothing, the one
-/// about the smallest enrolment number; a session waits for the replacement of whoever had its
-/// participant id or enrolment number before, as long as anything else can come. Sessions are
-/// numbered as they are opened here. At last, if it is so at all stations, that the study is
-/// closed, and that it is unblinded. \param stations  in the order of comes_before, each chain
-/// valid by itself (FileChain) \throws StoreError if they are not of one study, or a participant id
-/// or enrolment number is
-///   taken in two of them by sessions that nobody replaced, at whatever moment
-/// \throws EventFault if an event's body is no such
+/// Makes the collected chain:
+/// - First comes the commitment of the first station.
+/// - Then come the stations' events about sessions that have ended. Each station's events keep
+///   their order. Of the stations' next events, the earliest comes first; in simulated studies,
+///   whose times mean nothing, the one about the smallest enrolment number. While any other event
+///   can come, the opening of a session waits until the former holder of its participant id or
+///   enrolment number has been replaced. Sessions are numbered in the order in which they are
+///   opened here.
+/// - At the end stands that the study is closed, if it is at all stations, and that it is
+///   unblinded, if it is at all stations with sessions.
+/// \param stations  in the order of comes_before, each chain valid by itself (checked_file_chain)
+/// \throws StoreError if they are not of one study, or two of them used one participant id or
+///   enrolment number for sessions that nobody ever replaced
+/// \throws EventFault if an event's body cannot be read
 [[nodiscard]] CollectedChain collected_chain(std::span<const StationChain> stations);
-
-/// What `state` of a chain (the events of session 0) is: see StudyStore::state.
-[[nodiscard]] StudyState state_of_chain(std::span<const Event> chain);
 
 }  // namespace touchtrial::store

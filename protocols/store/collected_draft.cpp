@@ -2,12 +2,11 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "protocols/store/database.hpp"
+#include "protocols/store/file_chain.hpp"
+#include "protocols/store/payload_json.hpp"
 #include "protocols/store/rows.hpp"
 #include "protocols/store/schema.hpp"
-#include "protocols/store/session_check.hpp"
 
-#include <algorithm>
 #include <map>
 #include <optional>
 #include <system_error>
@@ -19,23 +18,11 @@
 namespace touchtrial::store {
 namespace {
 
-template <typename Visit>
-void walk(std::span<const Event> chain, Visit visit) {
-  ChainLink link(0);
-  for (const Event& event : chain) {
-    if (const auto broken = link.broken_by(event)) {
-      throw EventFault(0, std::min(event.sequence, link.length()), *broken);
-    }
-    link.extend(event);
-    visit(event);
-  }
-}
-
 [[noreturn]] void refuse_taken_place(const std::filesystem::path& path) {
   throw StoreError(one_line(path.string()) + ": exists already; choose another name");
 }
 
-/// A file that is thrown away unless it is let go.
+/// A file that is removed, with all that SQLite laid beside it, unless it got another name before.
 class DraftFile {
  public:
   explicit DraftFile(std::filesystem::path path) : path_(std::move(path)) { remove(); }
@@ -56,12 +43,6 @@ class DraftFile {
 
 }  // namespace
 
-void check_file_chain(std::span<const Event> chain) {
-  FileChain file;
-  walk(chain, [&](const Event& event) { file.add(event); });
-  if (!file.commitment()) throw EventFault(0, kNoEvent, "the file's chain is empty");
-}
-
 struct CollectedDraft::Impl {
   /// \param file  nullptr: temporary
   Impl(std::unique_ptr<DraftFile> draft, Database made, std::filesystem::path name)
@@ -70,78 +51,63 @@ struct CollectedDraft::Impl {
     database.run([&] { database.write_carelessly(); });
   }
 
-  template <typename Work>
-  void change(Work&& work) {
-    database.run([&] {
-      SQLite::Transaction transaction = database.write_transaction();
-      work();
-      transaction.commit();
-    });
+  void keep_chain(int number, const StationChain& station) {
+    for (Event event : station.events) {
+      event.session = -number;
+      event.renumbered_from = 0;
+      insert_event(database, event);
+    }
   }
 
-  void keep_chain(int number, const StationChain& station);
-  void check_kind(const Event& opened);
-  [[nodiscard]] static Event renumbered(int session, const Event& event);
-  /// Calls `work` with faults of the session that is added named by its own number.
+  /// Sessions that are seen and sessions that are felt are never pooled.
+  void check_kind(const Event& opened) {
+    const SessionOpening opening = body_of(opened, opening_from_json);
+    const bool seen = opening.station && opening.station->visual;
+    if (visual.value_or(seen) != seen) {
+      throw StoreError("session " + std::to_string(opened.own_session()) + " is " +
+                       (seen ? "seen on a screen, and others are felt"
+                             : "felt, and others are seen on a screen") +
+                       ": they are never pooled; collect them apart");
+    }
+    visual = seen;
+  }
+
+  [[nodiscard]] static Event renumbered(int number, const Event& event) {
+    Event here = event;
+    here.session = number;
+    if (event.session != number) here.renumbered_from = event.session;
+    return here;
+  }
+
+  /// Calls `work`; faults of the session that is being added name it by its own number.
   template <typename Work>
-  void named_as_at_its_station(Work&& work) const;
-  void settle(int number, DerivedRows& rows) const;
+  void named_as_at_its_station(Work&& work) const {
+    try {
+      work();
+    } catch (const EventFault& fault) {
+      const int own = chain.sessions.at(static_cast<std::size_t>(session) - 1).own_session;
+      throw EventFault(fault.session() == session ? own : fault.session(), fault.sequence(),
+                       fault.bare());
+    }
+  }
+
+  /// Adds to the session's row where it is from, and whether its participant was excluded, withdrew
+  /// or was replaced.
+  void settle(int number, DerivedRows& rows) const {
+    const auto [first, last] = about.equal_range(number);
+    for (auto event = first; event != last; ++event) fold(rows, chain.events[event->second]);
+  }
 
   std::unique_ptr<DraftFile> file;
   Database database;
   std::filesystem::path target;
   CollectedChain chain;
   FileChain on_file{UniquePlaces::in_the_end};
-  std::multimap<int, std::size_t> about;  ///< places in `chain` of what changes a session's row
+  std::multimap<int, std::size_t> about;  ///< by session: places in `chain` that change its row
   std::optional<bool> visual;
   int session = 0;  ///< that was added last
   std::map<int, TraceClaim> claims;
 };
-
-void CollectedDraft::Impl::keep_chain(int number, const StationChain& station) {
-  for (Event event : station.events) {
-    event.session = -number;
-    event.renumbered_from = 0;
-    insert_event(database, event);
-  }
-}
-
-/// What is seen and what is felt are never pooled.
-void CollectedDraft::Impl::check_kind(const Event& opened) {
-  const SessionOpening opening = body_of(opened, opening_from_json);
-  const bool seen = opening.station && opening.station->visual;
-  if (visual.value_or(seen) != seen) {
-    throw StoreError(
-        "session " + std::to_string(opened.own_session()) + " is " +
-        (seen ? "seen on a screen, and others are felt" : "felt, and others are seen on a screen") +
-        ": they are never pooled; collect them apart");
-  }
-  visual = seen;
-}
-
-Event CollectedDraft::Impl::renumbered(int number, const Event& event) {
-  Event here = event;
-  here.session = number;
-  if (event.session != number) here.renumbered_from = event.session;
-  return here;
-}
-
-template <typename Work>
-void CollectedDraft::Impl::named_as_at_its_station(Work&& work) const {
-  try {
-    work();
-  } catch (const EventFault& fault) {
-    const int own = chain.sessions.at(static_cast<std::size_t>(session) - 1).own_session;
-    throw EventFault(fault.session() == session ? own : fault.session(), fault.sequence(),
-                     fault.bare());
-  }
-}
-
-/// Where the session is from, and that somebody was excluded, withdrew or was replaced.
-void CollectedDraft::Impl::settle(int number, DerivedRows& rows) const {
-  const auto [first, last] = about.equal_range(number);
-  for (auto event = first; event != last; ++event) fold(rows, chain.events[event->second]);
-}
 
 CollectedDraft::CollectedDraft(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 CollectedDraft::~CollectedDraft() = default;
@@ -165,8 +131,8 @@ const CollectedChain& CollectedDraft::begin(std::span<const StationChain> statio
     const auto place = static_cast<std::size_t>(event.sequence);
     if (const auto session = scope_of(event).session) impl_->about.emplace(*session, place);
   }
-  impl_->change([&] {
-    // In the order of the table's key, so that it only ever grows at its end.
+  impl_->database.change([&] {
+    // In the order of the table's key, so that the table grows only at its end.
     for (int number = static_cast<int>(stations.size()); number > 0; --number) {
       impl_->keep_chain(number, stations[static_cast<std::size_t>(number) - 1]);
     }
@@ -193,14 +159,10 @@ void CollectedDraft::add_session(int session, std::span<const Event> events,
     impl_->check_kind(here.front());
   });
   impl_->claims = check.claims();
-  impl_->change([&] {
+  impl_->database.change([&] {
     for (const Event& event : here) insert_event(impl_->database, event);
     write_rows(impl_->database, rows);
-    if (!key) return;
-    impl_->database.query("INSERT INTO participant_keys(session, wrapped) VALUES(?,?)")
-        .bind(session)
-        .bind(*key)
-        .run();
+    if (key) insert_key(impl_->database, session, *key);
   });
 }
 

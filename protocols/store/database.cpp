@@ -1,15 +1,16 @@
 #include "protocols/store/database.hpp"
 
-#include "protocols/store/damaged_store.hpp"
-#include "protocols/store/database_header.hpp"
+#include "protocols/store/tables.hpp"
 
 #include <array>
 #include <cerrno>
 #include <cstdio>
-#include <memory>
+#include <cstring>
+#include <fstream>
+#include <limits>
 #include <system_error>
-#include <utility>
 
+#include <SQLiteCpp/Backup.h>
 #include <sqlite3.h>
 #include <unistd.h>
 
@@ -17,6 +18,87 @@ namespace touchtrial::store {
 namespace {
 
 constexpr int kBusyTimeoutMs = 2000;
+/// What tells our databases from other SQLite files: "TTRL" in SQLite's application_id.
+constexpr std::int32_t kApplicationId = 0x5454524c;
+
+// The first hundred bytes of an SQLite file, read without SQLite.
+// Source: "Database File Format", section 1.3, https://www.sqlite.org/fileformat2.html
+constexpr char kSqliteMagic[] = "SQLite format 3";  // its final zero is part of it
+using Header = std::array<unsigned char, 100>;
+
+[[noreturn]] void refuse_file(const std::filesystem::path& path, const std::string& why) {
+  throw StoreError(one_line(path.string()) + ": " + why);
+}
+
+[[noreturn]] void refuse_damaged(const std::filesystem::path& path, const std::string& why) {
+  throw DamagedStore(one_line(path.string()) + ": " + why + "; restore it from a backup");
+}
+
+Header read_header(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto status = std::filesystem::status(path, error);
+  if (status.type() == std::filesystem::file_type::not_found) {
+    refuse_file(path, "no such database; check the name, or make one with `touchtrial simulate`");
+  }
+  if (std::filesystem::is_directory(status))
+    refuse_file(path, "is a folder; name a database in it");
+  std::ifstream file(path, std::ios::binary);
+  if (!file) refuse_file(path, "cannot be read; check its permissions");
+  Header header{};
+  file.read(reinterpret_cast<char*>(header.data()), header.size());
+  const bool whole = file.gcount() == static_cast<std::streamsize>(header.size());
+  if (!whole || std::memcmp(header.data(), kSqliteMagic, sizeof kSqliteMagic) != 0) {
+    refuse_file(path, "is no Touchtrial database; check the name");
+  }
+  return header;
+}
+
+std::uint32_t big_endian_32(const Header& header, std::size_t offset) {
+  std::uint32_t number = 0;
+  for (std::size_t i = 0; i < 4; ++i) number = (number << 8U) | header[offset + i];
+  return number;
+}
+
+std::uintmax_t size_in_header(const Header& header) {
+  const unsigned stored = (unsigned{header[16]} << 8U) | header[17];
+  const std::uintmax_t page_size = stored == 1 ? 65536 : stored;
+  return page_size * big_endian_32(header, 28);
+}
+
+/// Whether a write-ahead log lies beside the database, with anything in it.
+bool has_log(const std::filesystem::path& path) {
+  std::error_code error;
+  const auto size = std::filesystem::file_size(path.string() + "-wal", error);
+  return !error && size > 0;
+}
+
+/// Looks at a file before SQLite does, so that a foreign, newer, too old or truncated file is
+/// refused untouched.
+void check_header(const std::filesystem::path& path, int newest_version) {
+  const Header header = read_header(path);
+  if (big_endian_32(header, 68) != static_cast<std::uint32_t>(kApplicationId)) {
+    refuse_file(path, "is an SQLite database, but none of Touchtrial; check the name");
+  }
+  const std::uint32_t version = big_endian_32(header, 60);
+  if (version > static_cast<std::uint32_t>(newest_version)) {
+    refuse_file(path, "was written by a newer Touchtrial (schema " + std::to_string(version) +
+                          ", this one knows " + std::to_string(newest_version) +
+                          "); use that version");
+  }
+  if (version == 0) refuse_damaged(path, "has no schema version, so it is damaged");
+  if (version < std::uint32_t{kOldestSchemaVersion}) {
+    refuse_file(path, "was written by an older Touchtrial (schema " + std::to_string(version) +
+                          ", the oldest that this one knows is " +
+                          std::to_string(kOldestSchemaVersion) +
+                          "); use the program that wrote it");
+  }
+  std::error_code error;
+  const auto size = std::filesystem::file_size(path, error);
+  // A log may hold pages that the file still lacks.
+  if (!error && size < size_in_header(header) && !has_log(path)) {
+    refuse_damaged(path, "is truncated");
+  }
+}
 
 /// Absolute, because SQLite gives names such as ":memory:" a meaning of their own.
 std::string absolute_name(const std::filesystem::path& path) {
@@ -31,7 +113,7 @@ bool may_write(const std::filesystem::path& path) {
          ::access(file.parent_path().c_str(), W_OK | X_OK) == 0;
 }
 
-/// For a file that nobody is writing to: read without locks and without files beside it.
+/// For a file that nobody writes to: SQLite then needs neither locks nor files beside it.
 std::string immutable_uri(const std::filesystem::path& path) {
   std::string uri = "file:";
   for (const char c : absolute_name(path)) {
@@ -44,9 +126,9 @@ std::string immutable_uri(const std::filesystem::path& path) {
   return uri + "?immutable=1";
 }
 
-/// Reading a database in WAL mode takes a log and its index beside it. Where we may write, SQLite
-/// makes and removes them, and what other programs add is seen; where we may not, a file without a
-/// log is complete and can be read as it is.
+/// To read a database in WAL mode, SQLite needs a log and its index beside it. Where we may write,
+/// it makes and removes them, and we see what other programs add. Where we may not, a file without
+/// a log is complete and can be read as it is.
 SQLite::Database connected(const std::filesystem::path& path, Database::Mode mode) {
   if (mode == Database::Mode::read_write || may_write(path)) {
     return {absolute_name(path), SQLite::OPEN_READWRITE, kBusyTimeoutMs};
@@ -57,7 +139,7 @@ SQLite::Database connected(const std::filesystem::path& path, Database::Mode mod
   return {absolute_name(path), SQLite::OPEN_READONLY, kBusyTimeoutMs};
 }
 
-/// SQLite does not refuse a setting that it cannot have: it says which one it has.
+/// SQLite does not refuse a setting that it cannot have: it reports the one in force.
 void require_setting(const Database& database, const std::string& name, const std::string& wanted,
                      const std::string& remedy) {
   const std::string had = database.connection().execAndGet("PRAGMA " + name).getString();
@@ -66,7 +148,7 @@ void require_setting(const Database& database, const std::string& name, const st
                                     ", not " + wanted + "); " + remedy));
 }
 
-/// An event that is acknowledged must be on the disk: see docs/durability.md.
+/// Acknowledged events must be on the disk: see docs/durability.md.
 void set_up_for_writing(const Database& database) {
   database.connection().exec("PRAGMA synchronous = FULL; PRAGMA secure_delete = ON;");
   require_setting(database, "journal_mode = WAL", "wal", "keep it in a folder on a local disk");
@@ -89,7 +171,8 @@ void set_up(const Database& database, Database::Mode mode) {
   }
 }
 
-/// What failed and what to do about it, from SQLite's primary result code.
+/// What failed and how to remedy it.
+/// \param code  SQLite's primary result code
 std::string explanation(int code, const std::string& message) {
   switch (code) {
     case SQLITE_BUSY:
@@ -134,7 +217,7 @@ void make_empty_file(const std::filesystem::path& path) {
   std::fclose(file);
 }
 
-/// Nothing of it is repeated: there may be a password in it.
+/// The message does not repeat the address, which may hold a password.
 void refuse_address(const std::filesystem::path& path) {
   if (path.string().find("://") == std::string::npos) return;
   throw StoreError(
@@ -144,13 +227,31 @@ void refuse_address(const std::filesystem::path& path) {
 
 }  // namespace
 
+Query& Query::bind(ByteView blob) {
+  if (blob.size() > std::size_t{std::numeric_limits<int>::max()}) {
+    throw StoreError("a trace is larger than a database can hold; shorten trials.explore_limit_s");
+  }
+  // A null pointer would be stored as NULL, which none of our columns allows.
+  const void* data = blob.empty() ? static_cast<const void*>("") : blob.data();
+  statement_->bindNoCopy(++bound_, data, static_cast<int>(blob.size()));
+  return *this;
+}
+
+Bytes Query::blob(int column) const {
+  const SQLite::Column value = statement_->getColumn(column);
+  // The pointer first: asking for the size may convert a value of another type.
+  const auto* data = static_cast<const std::uint8_t*>(value.getBlob());
+  const auto size = static_cast<std::size_t>(value.getBytes());
+  return data == nullptr ? Bytes() : Bytes(data, data + size);
+}
+
 Database Database::create(const std::filesystem::path& path) {
   refuse_address(path);
   make_empty_file(path);
   try {
     Database database(path, connected(path, Mode::read_write));
-    // Large pages suit large traces; the application_id tells our files from others. A file that
-    // holds nothing need not be safe yet: the first transaction's sync covers this.
+    // Large pages suit large traces. An empty file need not be safe yet: the first transaction's
+    // sync covers it.
     database.connection_.exec("PRAGMA synchronous = OFF; PRAGMA page_size = 8192;");
     database.connection_.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
     set_up(database, Mode::read_write);
@@ -185,7 +286,7 @@ Database Database::open(const std::filesystem::path& path, Mode mode, int newest
           database.refusal("cannot be written; check its permissions and those of its folder"));
     }
     set_up(database, mode);
-    // SQLite opens files lazily: what is wrong with this one shows when its schema is read.
+    // SQLite opens files lazily: faults of the file show when its schema is read.
     database.connection_.execAndGet("SELECT count(*) FROM sqlite_schema");
     return database;
   } catch (const SQLite::Exception& error) {
@@ -210,18 +311,22 @@ void Database::write_carelessly() const {
 }
 
 void Database::write_safely() const {
-  // The first of these makes the change to the second reach the disk, and all before it.
+  // With this setting the change of the journal's mode, below, syncs everything written before.
   connection_.exec("PRAGMA synchronous = FULL;");
   set_up_for_writing(*this);
-}
-
-SQLite::Transaction Database::write_transaction() const {
-  return SQLite::Transaction(connection_, SQLite::TransactionBehavior::IMMEDIATE);
 }
 
 bool Database::checkpoint() const {
   Query query = separate_query("PRAGMA wal_checkpoint(TRUNCATE)");
   return query.step() && query.integer(0) == 0;
+}
+
+void Database::copy_to(const std::filesystem::path& path) const {
+  SQLite::Database target(path.string(), SQLite::OPEN_READWRITE | SQLite::OPEN_CREATE);
+  if (SQLite::Backup(target, connection_).executeStep(-1) != SQLITE_DONE) {
+    throw StoreError(refusal(
+        "cannot be copied, because another program uses it; close it there, and try again"));
+  }
 }
 
 std::string Database::refusal(const std::string& text) const {

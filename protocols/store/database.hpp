@@ -1,39 +1,110 @@
-/// \file One SQLite connection: how it is opened, its prepared statements, its errors.
-/// Private to protocols/store: with query.hpp the only headers here that show SQLiteCpp.
+/// \file One SQLite connection: how it is opened, its prepared statements, transactions and errors.
+/// Private to protocols/store: the only header here that shows SQLiteCpp.
 #pragma once
 
-#include "core/errors.hpp"
-#include "protocols/store/event_fault.hpp"
-#include "protocols/store/query.hpp"
+#include "core/bytes.hpp"
+#include "protocols/store/damage.hpp"
 
+#include <concepts>
+#include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <variant>
 
+#include <SQLiteCpp/Column.h>
 #include <SQLiteCpp/Database.h>
 #include <SQLiteCpp/Exception.h>
+#include <SQLiteCpp/Statement.h>
 #include <SQLiteCpp/Transaction.h>
 
 namespace touchtrial::store {
+
+/// A prepared statement in use. Binds parameters from left to right, then steps through rows. Its
+/// destructor resets the statement, so that no read transaction stays open. Blobs are not copied:
+/// they must live until the last step.
+class Query {
+ public:
+  explicit Query(SQLite::Statement& statement) : statement_(&statement) {}
+  explicit Query(std::unique_ptr<SQLite::Statement> owned)
+      : owned_(std::move(owned)), statement_(owned_.get()) {}
+  ~Query() { statement_->tryReset(); }
+  Query(const Query&) = delete;
+  Query& operator=(const Query&) = delete;
+
+  template <std::integral Number>
+  Query& bind(Number value) {
+    statement_->bind(++bound_, std::int64_t{value});
+    return *this;
+  }
+  Query& bind(double value) {
+    statement_->bind(++bound_, value);
+    return *this;
+  }
+  Query& bind(std::string_view text) {
+    statement_->bind(++bound_, std::string(text));
+    return *this;
+  }
+  Query& bind(ByteView blob);
+  /// NULL.
+  Query& bind(std::monostate) {
+    statement_->bind(++bound_);
+    return *this;
+  }
+  template <typename Value>
+  Query& bind(const std::optional<Value>& value) {
+    return value ? bind(*value) : bind(std::monostate());
+  }
+  template <typename... Values>
+  Query& bind(const std::variant<std::monostate, Values...>& value) {
+    return std::visit([this](const auto& held) -> Query& { return this->bind(held); }, value);
+  }
+
+  /// \return whether there is another row
+  [[nodiscard]] bool step() { return statement_->executeStep(); }
+  /// For statements without rows.
+  void run() { statement_->exec(); }
+
+  [[nodiscard]] std::int64_t integer(int column) const {
+    return statement_->getColumn(column).getInt64();
+  }
+  [[nodiscard]] double real(int column) const { return statement_->getColumn(column).getDouble(); }
+  [[nodiscard]] std::string text(int column) const {
+    return statement_->getColumn(column).getString();
+  }
+  [[nodiscard]] Bytes blob(int column) const;
+  [[nodiscard]] bool is_null(int column) const { return statement_->isColumnNull(column); }
+
+ private:
+  std::unique_ptr<SQLite::Statement> owned_;
+  SQLite::Statement* statement_;
+  int bound_ = 0;
+};
 
 /// Not to be shared between threads.
 class Database {
  public:
   enum class Mode { read_only, read_write };
 
-  /// A new, empty database of ours, without tables. \throws StoreError if the file exists
+  /// A new, empty database with our application id, without tables.
+  /// \throws StoreError if the file exists
   [[nodiscard]] static Database create(const std::filesystem::path& path);
 
-  /// An empty one that SQLite keeps to itself, in memory and in a file without a name, which is
-  /// gone with the connection or the program. \param name  for messages
+  /// An empty database that SQLite keeps to itself, in memory and in a file without a name. It is
+  /// gone with the connection or the program.
+  /// \param name  for messages
   [[nodiscard]] static Database temporary(const std::string& name);
 
-  /// An existing one. For reading it leaves no files behind and works in a folder that cannot be
-  /// written, if the file has no log beside it.
+  /// An existing database. If it is opened for reading and no log lies beside it, no files are left
+  /// behind and its folder need not be writable.
   /// \param newest_version  the newest schema that the program knows
-  /// \throws StoreError if it is missing, none of ours, damaged, newer or too old (see
-  ///   check_header)
+  /// \throws DamagedStore if it is truncated, has no version or cannot be read by SQLite
+  /// \throws StoreError if it is missing, no Touchtrial database, or its schema is newer than
+  ///   `newest_version` or older than kOldestSchemaVersion; it is then untouched
   [[nodiscard]] static Database open(const std::filesystem::path& path, Mode mode,
                                      int newest_version);
 
@@ -42,23 +113,25 @@ class Database {
   [[nodiscard]] const std::filesystem::path& path() const noexcept { return path_; }
   [[nodiscard]] SQLite::Database& connection() const { return connection_; }
 
-  /// A prepared statement, compiled once. \param sql  lives as long as the program
+  /// A prepared statement, compiled once.
+  /// \param sql  lives as long as the program
   [[nodiscard]] Query query(const char* sql) const;
-  /// One of its own, for loops whose body may ask anything else of this database.
+  /// A statement of its own, for loops whose body may ask anything else of this database.
   [[nodiscard]] Query separate_query(const char* sql) const;
 
-  /// For filling a file that nobody knows yet, and that is thrown away if anything fails: without a
-  /// log, and without waiting for the disk.
+  /// For filling a file under a name that nobody knows yet, and that is thrown away if anything
+  /// fails: without a log, and without waiting for the disk.
   void write_carelessly() const;
-  /// After write_carelessly: from now on as every database of ours, with all of it on the disk.
+  /// After write_carelessly: syncs everything, and writes from now on like any other database.
   void write_safely() const;
 
-  /// A transaction that holds the write lock from its beginning; rolled back unless committed.
-  [[nodiscard]] SQLite::Transaction write_transaction() const;
-
-  /// Moves what the write-ahead log holds into the file and empties the log.
-  /// \return whether nobody else kept it from doing so
+  /// Moves the content of the write-ahead log into the file and empties the log.
+  /// \return whether no other program prevented it
   bool checkpoint() const;
+
+  /// Lays a copy at a path.
+  /// \throws StoreError if another program keeps this one from being read
+  void copy_to(const std::filesystem::path& path) const;
 
   /// Calls `work`; errors of SQLite and of events come out as StoreError with file and remedy.
   template <typename Work>
@@ -72,6 +145,17 @@ class Database {
     }
   }
 
+  /// As `run`, in a transaction that holds the write lock from its beginning and is committed
+  /// unless `work` throws.
+  template <typename Work>
+  void change(Work&& work) const {
+    run([&] {
+      SQLite::Transaction transaction(connection_, SQLite::TransactionBehavior::IMMEDIATE);
+      work();
+      transaction.commit();
+    });
+  }
+
   /// "<file>: <text>" on one line.
   [[nodiscard]] std::string refusal(const std::string& text) const;
 
@@ -82,7 +166,7 @@ class Database {
   [[noreturn]] void refuse(const SQLite::Exception& error) const;
 
   std::filesystem::path path_;
-  // Reading changes a connection's state, but not what it stands for.
+  // Reading changes a connection's state, but not the database that it stands for.
   mutable SQLite::Database connection_;
   mutable std::map<std::string_view, SQLite::Statement> statements_;
 };

@@ -1,5 +1,7 @@
 #include "protocols/store/event.hpp"
 
+#include "protocols/store/damage.hpp"
+
 #include <algorithm>
 #include <array>
 #include <utility>
@@ -69,6 +71,58 @@ Digest event_hash(const Event& event) {
       .add(event.sealed)
       .add(event.previous)
       .finish();
+}
+
+Event next_on_file(const Event* last, EventKind kind, std::chrono::nanoseconds at,
+                   std::string body) {
+  Event event{.session = 0,
+              .sequence = last == nullptr ? 0 : last->sequence + 1,
+              .kind = kind,
+              .at = at,
+              .body = std::move(body),
+              .sealed = {},
+              .previous = last == nullptr ? Digest{} : last->hash,
+              .hash = {}};
+  event.hash = event_hash(event);
+  return event;
+}
+
+ChainLink ChainLink::after(const Event& last) {
+  ChainLink link(last.session, last.own_session());
+  link.length_ = last.sequence + 1;
+  link.head_ = last.hash;
+  link.last_at_ = last.at;
+  return link;
+}
+
+std::optional<std::string> ChainLink::broken_by(const Event& next) const {
+  if (next.session != session_ || next.own_session() != own_session_) {
+    return "the event belongs to another chain";
+  }
+  if (next.sequence > length_) {
+    return "sequence gap: event " + std::to_string(length_) + " is missing";
+  }
+  if (next.sequence < length_) return "the sequence number repeats";
+  if (next.previous != head_) {
+    return length_ == 0 ? "previous is not zero in the first event"
+                        : "previous does not match the hash of the event before";
+  }
+  if (next.hash != event_hash(next)) return "the hash of the event does not match its content";
+  if (belongs_to_file_chain(next.kind) != (session_ <= 0)) {
+    return "an event of kind '" + std::string(name_of(next.kind)) + "' does not belong here";
+  }
+  // The file's chain is stamped by the wall clock, which may be set back.
+  if (session_ > 0 && next.at < last_at_) return "the time is before that of the event before";
+  return std::nullopt;
+}
+
+void ChainLink::extend(const Event& next) {
+  if (const auto broken = broken_by(next)) {
+    throw EventFault(session_, std::min(next.sequence, length_), *broken);
+  }
+  ++length_;
+  head_ = next.hash;
+  last_at_ = next.at;
 }
 
 }  // namespace touchtrial::store

@@ -1,10 +1,11 @@
-/// \file The append-only events of a study, and how each commits to the one before.
-/// Source: docs/data-dictionary.md, "Events".
+/// \file The append-only events of a study, and how each commits to the one before. Source:
+/// docs/data-dictionary.md, "Events".
 #pragma once
 
 #include "core/bytes.hpp"
 #include "core/hash.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <optional>
@@ -22,8 +23,8 @@ enum class EventKind {
   participant_withdrawn,
   study_closed,
   study_unblinded,
-  participant_replaced,  ///< somebody takes a participant's place in the order of enrolment
-  participant_noted,     ///< a remark or deviation, after a session or beside it
+  participant_replaced,  ///< another participant takes this one's place in the order of enrolment
+  participant_noted,     ///< a remark or deviation that is recorded after or outside a session
 
   opened,
   calibrated,
@@ -40,10 +41,10 @@ enum class EventKind {
   stopped,
   noted,
   ticked,           ///< an item of the day sheet is done
-  deviated,         ///< something was not as the study asks
+  deviated,         ///< something differs from what the study asks for
   questioned,       ///< a questionnaire was filled in
   explored_again,   ///< the participant went back to the plane before answering
-  block_restarted,  ///< a block's trials are void and come anew, in another order
+  block_restarted,  ///< a block's trials are void and are presented anew, in another order
   resumed,          ///< after a pause, or after the program ended
   closed,
 };
@@ -51,14 +52,14 @@ enum class EventKind {
 /// The name stored in the database: the enumerator with hyphens, for instance "first-contact".
 [[nodiscard]] std::string_view name_of(EventKind kind);
 [[nodiscard]] std::optional<EventKind> event_kind_from_name(std::string_view name);
-/// Whether this kind stands on the file's chain; all others stand on a session's.
+/// Whether events of this kind stand on the file's chain; all others stand on a session's.
 [[nodiscard]] bool belongs_to_file_chain(EventKind kind);
 
-/// One event. `body` is readable by anyone and says nothing of stimuli; `sealed` is ciphertext
+/// One event. Anybody can read `body`, which says nothing about stimuli; `sealed` is ciphertext
 /// under the participant's key.
 struct Event {
-  int session = 0;            ///< 0 for the file's chain, else the session's number, from 1
-                              ///< (-1, -2, ...: a collected station's file chain)
+  int session = 0;            ///< 0: the file's chain; from 1: a session;
+                              ///< -1, -2, ...: the file chain of a collected station
   std::int64_t sequence = 0;  ///< place in its chain, from 0
   EventKind kind{};
   std::chrono::nanoseconds at{};  ///< session: since its opening, monotonic; file: UTC since 1970
@@ -66,8 +67,7 @@ struct Event {
   Bytes sealed;                   ///< empty if the event has no secret part
   Digest previous{};              ///< hash of the event before; zeros for the first
   Digest hash{};                  ///< event_hash of this one
-  /// In a collected database, where sessions have other numbers than in the station's file that
-  /// they come from: the number there. Empty: the same.
+  /// In a collected database: the session's number in the station's file. Empty if it is the same.
   std::optional<int> renumbered_from{};
 
   /// The session's number in the file that it was recorded in. Hash and sealed part are bound to
@@ -77,5 +77,41 @@ struct Event {
 
 /// SHA-256 over own_session() and all other members, ciphertext included.
 [[nodiscard]] Digest event_hash(const Event& event);
+
+/// The event that follows `last` on a file's chain, with its hash.
+/// \param last  null: the event is the first
+[[nodiscard]] Event next_on_file(const Event* last, EventKind kind, std::chrono::nanoseconds at,
+                                 std::string body);
+
+/// The growing end of one chain. It checks how events are linked; `fold` checks what they mean.
+class ChainLink {
+ public:
+  /// \param session  as Event::session
+  explicit ChainLink(int session) : ChainLink(session, std::max(session, 0)) {}
+  /// \param own_session  Event::own_session of its events
+  ChainLink(int session, int own_session) : session_(session), own_session_(own_session) {}
+
+  /// The end of a chain that is stored already.
+  /// \param last  its last event
+  [[nodiscard]] static ChainLink after(const Event& last);
+
+  /// \return why `next` cannot follow, or nothing if it can
+  [[nodiscard]] std::optional<std::string> broken_by(const Event& next) const;
+
+  /// Adds the next event.
+  /// \throws EventFault if it cannot follow; the chain is then as it was
+  void extend(const Event& next);
+
+  [[nodiscard]] std::int64_t length() const noexcept { return length_; }
+  /// Hash of the last event; zeros before the first.
+  [[nodiscard]] const Digest& head() const noexcept { return head_; }
+
+ private:
+  int session_;
+  int own_session_;
+  std::int64_t length_ = 0;
+  Digest head_{};
+  std::chrono::nanoseconds last_at_{0};
+};
 
 }  // namespace touchtrial::store

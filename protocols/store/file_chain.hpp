@@ -1,60 +1,135 @@
-/// \file What the file's chain says of the study and its sessions.
+/// \file What the file's chain says of the study and its sessions, and whether a session agrees
+/// with it.
 #pragma once
 
-#include "protocols/store/event.hpp"
-#include "protocols/store/payload_json.hpp"
+#include "protocols/store/fold.hpp"
+#include "protocols/store/payload.hpp"
 
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 
 namespace touchtrial::store {
 
+/// The state of data collection, from the file's chain.
+struct StudyState {
+  bool closed = false;
+  bool unblinded = false;         ///< outcomes may be shown (an interim look counts)
+  std::string unblinding_reason;  ///< of the last unblinding
+  /// If the last unblinding was an interim look: the sessions that had ended before it.
+  std::optional<std::set<int>> interim;
+
+  /// Whether a session's outcomes may be shown. An interim look shows nothing of sessions that end
+  /// after it.
+  [[nodiscard]] bool shows(int session) const {
+    return unblinded && (!interim || interim->contains(session));
+  }
+};
+
+/// \param chain  the events of session 0
+/// \throws EventFault if a body cannot be read
+[[nodiscard]] StudyState state_of_chain(std::span<const Event> chain);
+
 /// One session as the file's chain knows it.
 struct SessionOnFile {
   SessionOpenedBody opened;
-  std::int64_t opened_at = 0;  ///< sequence on the file's chain
   std::optional<SessionClosedBody> closed;
-  bool withdrawn = false;
   std::string replaced_by;  ///< empty: nobody
+
+  // Sequences on the file's chain; of several exclusions or withdrawals the last.
+  std::int64_t opened_at = 0;
+  std::optional<std::int64_t> closed_at;
+  std::optional<std::int64_t> excluded_at;
+  std::optional<std::int64_t> withdrawn_at;
+  std::optional<std::int64_t> replaced_at;
+
+  /// The number that the session has in the file that it was recorded in.
+  [[nodiscard]] int own_session() const noexcept {
+    return opened.own_session > 0 ? opened.own_session : opened.session;
+  }
+  /// Whether it was replaced or withdrawn before it ended, and so cannot go on.
+  [[nodiscard]] bool is_cut_short() const noexcept {
+    return !closed && (replaced_at || withdrawn_at);
+  }
 };
 
-/// Where a session's participant id and enrolment number must be nobody else's.
+/// When participant ids and enrolment numbers must be unique.
 enum class UniquePlaces {
-  always,     ///< at every moment, among sessions that nobody has replaced: a station's own file
-  in_the_end  ///< among sessions that nobody replaced in the end, which collected_chain sees to
+  always,     ///< at every moment, among sessions not yet replaced: a station's own file
+  in_the_end  ///< among sessions that nobody ever replaced, which collected_chain ensures
 };
 
-/// The events of the file's chain in order, held against each other.
+/// The events of the file's chain in order, held against each other. Links and hashes are not
+/// checked here.
 class FileChain {
  public:
   explicit FileChain(UniquePlaces unique = UniquePlaces::always) : unique_(unique) {}
 
-  /// \throws EventFault if the event cannot come after those before
+  /// \throws EventFault if the event cannot follow those before
   void add(const Event& event);
 
   /// Empty only before the first event.
   [[nodiscard]] const std::optional<StudyCommitment>& commitment() const { return commitment_; }
+  /// By number.
   [[nodiscard]] const std::map<int, SessionOnFile>& sessions() const { return sessions_; }
 
  private:
-  void commit(const Event& event);
   void open_session(const Event& event);
   void close_session(const Event& event);
-  void withdraw(const Event& event);
   void replace(const Event& event);
-  [[nodiscard]] SessionOnFile& known(const Event& event, int session);
+  [[nodiscard]] SessionOnFile& known(const Event& event);
   void take_place(const Event& event, const SessionOpenedBody& body);
 
   UniquePlaces unique_;
   std::optional<StudyCommitment> commitment_;
   std::map<int, SessionOnFile> sessions_;
-  /// Of sessions that nobody replaced.
+  /// Of sessions that nobody has replaced.
   std::set<std::string> participants_;
   std::set<int> enrolments_;
   bool closed_ = false;
+};
+
+/// A station's file chain, checked by itself: links, hashes, and what the events say of each other.
+/// \throws EventFault at the first fault
+[[nodiscard]] FileChain checked_file_chain(std::span<const Event> chain);
+
+/// The trace that a trace-stored event names.
+struct TraceClaim {
+  std::int64_t sequence = 0;  ///< of the event
+  Digest digest{};
+};
+
+/// Holds one session against its file's chain. It takes the session's events one by one. Every
+/// function throws EventFault, naming the event, at the first thing that does not hold.
+class SessionCheck {
+ public:
+  /// \param session  its number here
+  /// \param on_file, commitment  outlive this
+  SessionCheck(int session, const SessionOnFile& on_file, const StudyCommitment& commitment);
+
+  /// The next event: checks its link, and whether the opening is the one on the file's chain.
+  /// \param rows  is brought up to date
+  void add(const Event& event, DerivedRows& rows);
+  /// After the last event: whether the session ends as the file's chain says.
+  void finish(const DerivedRows& rows) const;
+  /// \param wrapped  SHA-256 of the stored key, or nothing if there is none
+  void check_key(const std::optional<Digest>& wrapped) const;
+
+  /// All traces that the events name, by trial.
+  [[nodiscard]] const std::map<int, TraceClaim>& claims() const noexcept { return claims_; }
+
+ private:
+  void check_opening(const Event& event) const;
+  void note_trace(const Event& event);
+
+  int session_;
+  const SessionOnFile& on_file_;
+  const StudyCommitment& commitment_;
+  ChainLink chain_;
+  std::map<int, TraceClaim> claims_;
 };
 
 }  // namespace touchtrial::store

@@ -1,6 +1,6 @@
 #include "protocols/store/fold.hpp"
 
-#include "protocols/store/event_fault.hpp"
+#include "protocols/store/damage.hpp"
 #include "protocols/store/payload_json.hpp"
 
 #include <string>
@@ -9,16 +9,12 @@
 namespace touchtrial::store {
 namespace {
 
-[[noreturn]] void refuse_event(const Event& event, const std::string& why) {
-  throw EventFault(event.session, event.sequence, why);
-}
-
 [[noreturn]] void refuse_trial(const Event& event, int trial, const char* why) {
-  refuse_event(event, "trial " + std::to_string(trial) + " " + why);
+  throw EventFault(event, "trial " + std::to_string(trial) + " " + why);
 }
 
 void open_session(DerivedRows& rows, const Event& event) {
-  if (event.sequence != 0) refuse_event(event, "a session is opened by its first event only");
+  if (event.sequence != 0) throw EventFault(event, "a session is opened by its first event only");
   const SessionOpening opening = body_of(event, opening_from_json);
   rows.sessions[event.session] = {.session = event.session,
                                   .participant = opening.participant,
@@ -36,13 +32,13 @@ void open_session(DerivedRows& rows, const Event& event) {
 
 SessionRow& open_row(DerivedRows& rows, const Event& event) {
   const auto found = rows.sessions.find(event.session);
-  if (found == rows.sessions.end()) refuse_event(event, "the session has not been opened");
+  if (found == rows.sessions.end()) throw EventFault(event, "the session has not been opened");
   if (found->second.state != SessionState::open)
-    refuse_event(event, "the session is already closed");
+    throw EventFault(event, "the session is already closed");
   return found->second;
 }
 
-/// What was presented before its block was restarted is done with.
+/// A trial that was presented before its block was restarted takes nothing more.
 void refuse_if_voided(const TrialRow& row, const Event& event) {
   if (row.state == TrialState::voided) {
     refuse_trial(event, row.trial, "is void: its block was restarted");
@@ -76,7 +72,7 @@ TrialRow& presented_row(DerivedRows& rows, const Event& event, int trial) {
   return found->second;
 }
 
-/// A trial that still waits for its answer; after a timeout it may still come.
+/// A trial that still waits for its answer, which may also come after a timeout.
 TrialRow& waiting_row(DerivedRows& rows, const Event& event, int trial) {
   TrialRow& row = presented_row(rows, event, trial);
   if (row.state == TrialState::answered) refuse_trial(event, trial, "is already answered");
@@ -119,19 +115,19 @@ void explore_again(DerivedRows& rows, const Event& event) {
   ++waiting_row(rows, event, trial).explorations;
 }
 
-/// All that was presented of the block is void; what comes anew has numbers of its own, so that
-/// nothing links the two.
+/// Every presented trial of the block becomes void. Its new trials have numbers of their own, so
+/// that nothing links them to the old ones.
 void restart_block(DerivedRows& rows, const Event& event) {
   const BlockBody body = body_of(event, block_from_json);
   std::vector<TrialRow*> block;
   for (auto entry = rows.trials.lower_bound({event.session, 0});
        entry != rows.trials.end() && entry->first.first == event.session; ++entry) {
-    if (entry->second.block == body.block) block.push_back(&entry->second);
-  }
-  for (const TrialRow* row : block) {
-    if (row->trial >= body.first_trial) {
-      refuse_trial(event, row->trial, "was presented before its block was restarted");
+    TrialRow& row = entry->second;
+    if (row.block != body.block) continue;
+    if (row.trial >= body.first_trial) {
+      refuse_trial(event, row.trial, "was presented before its block was restarted");
     }
+    block.push_back(&row);
   }
   for (TrialRow* row : block) row->state = TrialState::voided;
 }
@@ -141,30 +137,29 @@ void close_session(DerivedRows& rows, const Event& event) {
   open_row(rows, event).state = complete ? SessionState::completed : SessionState::stopped;
 }
 
-SessionRow& named_row(DerivedRows& rows, const Event& event, int session) {
+/// The row of the session that an event of the file's chain names.
+SessionRow& named_row(DerivedRows& rows, const Event& event) {
+  const int session = session_about(event);
   const auto found = rows.sessions.find(session);
-  if (found == rows.sessions.end())
-    refuse_event(event, "there is no session " + std::to_string(session));
+  if (found == rows.sessions.end()) {
+    throw EventFault(event, "there is no session " + std::to_string(session));
+  }
   return found->second;
-}
-
-void mark_participant(DerivedRows& rows, const Event& event, bool SessionRow::*mark) {
-  named_row(rows, event, body_of(event, participant_from_json).session).*mark = true;
 }
 
 void replace_participant(DerivedRows& rows, const Event& event) {
   const ReplacementBody body = body_of(event, replacement_from_json);
-  SessionRow& row = named_row(rows, event, body.session);
+  SessionRow& row = named_row(rows, event);
   if (!row.replaced_by.empty()) {
-    refuse_event(event, "session " + std::to_string(body.session) + " is replaced twice");
+    throw EventFault(event, "session " + std::to_string(body.session) + " is replaced twice");
   }
   row.replaced_by = body.by;
 }
 
-/// The file's chain says where a session was collected from; in a station's own file, nothing.
+/// In a collected study the file's chain says which station a session comes from.
 void place_session(DerivedRows& rows, const Event& event) {
   const SessionOpenedBody body = body_of(event, session_opened_from_json);
-  if (body.station > 0) named_row(rows, event, body.session).station = body.station;
+  if (body.station > 0) named_row(rows, event).station = body.station;
 }
 
 void fold_session_event(DerivedRows& rows, const Event& event) {
@@ -198,24 +193,34 @@ bool is_about_a_trial(EventKind kind) {
          kind == EventKind::explored_again;
 }
 
-bool is_about_a_participant(EventKind kind) {
-  return kind == EventKind::participant_excluded || kind == EventKind::participant_withdrawn;
-}
-
 }  // namespace
 
+int session_about(const Event& event) {
+  switch (event.kind) {
+    case EventKind::session_opened:
+    case EventKind::session_closed:
+    case EventKind::participant_excluded:
+    case EventKind::participant_withdrawn:
+    case EventKind::participant_replaced:
+    case EventKind::participant_noted:
+      return body_of(event, session_from_json);
+    default:
+      return belongs_to_file_chain(event.kind) ? 0 : event.session;
+  }
+}
+
 FoldScope scope_of(const Event& event) {
-  if (is_about_a_participant(event.kind)) {
-    return {.session = body_of(event, participant_from_json).session, .trial = {}};
+  switch (event.kind) {
+    case EventKind::study_committed:
+    case EventKind::session_closed:
+    case EventKind::study_closed:
+    case EventKind::study_unblinded:
+    case EventKind::participant_noted:
+      return {};
+    default:
+      break;
   }
-  if (event.kind == EventKind::participant_replaced) {
-    return {.session = body_of(event, replacement_from_json).session, .trial = {}};
-  }
-  if (event.kind == EventKind::session_opened) {
-    return {.session = body_of(event, session_opened_from_json).session, .trial = {}};
-  }
-  if (belongs_to_file_chain(event.kind)) return {};
-  FoldScope scope{.session = event.session, .trial = {}};
+  FoldScope scope{.session = session_about(event)};
   if (is_about_a_trial(event.kind)) {
     scope.trial = TrialId(event.session, body_of(event, trial_from_json).trial);
   }
@@ -226,16 +231,22 @@ FoldScope scope_of(const Event& event) {
 }
 
 void fold(DerivedRows& rows, const Event& event) {
-  if (event.kind == EventKind::opened) return open_session(rows, event);
-  if (event.kind == EventKind::participant_excluded) {
-    return mark_participant(rows, event, &SessionRow::excluded);
+  switch (event.kind) {
+    case EventKind::opened:
+      return open_session(rows, event);
+    case EventKind::session_opened:
+      return place_session(rows, event);
+    case EventKind::participant_excluded:
+      named_row(rows, event).excluded = true;
+      return;
+    case EventKind::participant_withdrawn:
+      named_row(rows, event).withdrawn = true;
+      return;
+    case EventKind::participant_replaced:
+      return replace_participant(rows, event);
+    default:
+      if (!belongs_to_file_chain(event.kind)) fold_session_event(rows, event);
   }
-  if (event.kind == EventKind::participant_withdrawn) {
-    return mark_participant(rows, event, &SessionRow::withdrawn);
-  }
-  if (event.kind == EventKind::participant_replaced) return replace_participant(rows, event);
-  if (event.kind == EventKind::session_opened) return place_session(rows, event);
-  if (!belongs_to_file_chain(event.kind)) fold_session_event(rows, event);
 }
 
 }  // namespace touchtrial::store

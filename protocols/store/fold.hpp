@@ -1,15 +1,64 @@
-/// \file What events come to: the rows of sessions, trials and responses. One function says so for
-/// every use: as events arrive, when the tables are made anew, and when they are verified.
+/// \file What events come to: the rows of sessions, trials and responses. One function makes them,
+/// as events arrive, when a session is added whole, and when the tables are verified.
 #pragma once
 
 #include "protocols/store/event.hpp"
-#include "protocols/store/study_store.hpp"
 
+#include <chrono>
+#include <cstdint>
 #include <map>
 #include <optional>
+#include <string>
 #include <utility>
 
 namespace touchtrial::store {
+
+enum class SessionState { open, completed, stopped };
+
+struct SessionRow {
+  int session = 0;  ///< from 1
+  std::string participant;
+  int enrolment = 0;
+  SessionState state{};
+  bool simulated = false;
+  bool pilot = false;
+  bool excluded = false;
+  bool withdrawn = false;
+  std::string device;
+  /// The participant who took this one's place in the order of enrolment; the same participant if
+  /// the session was restarted; empty if nobody did.
+  std::string replaced_by{};
+  /// The number in the file that it was recorded in (Event::own_session): participant keys and
+  /// sealed boxes are bound to it.
+  int own_session = 0;
+  int station = 0;  ///< the station that it was collected from, from 1; 0: recorded in this file
+
+  friend bool operator==(const SessionRow&, const SessionRow&) = default;
+};
+
+/// How a trial ended. `voided`: its block was restarted, so that this trial no longer counts,
+/// whatever its state was, and is never presented again.
+enum class TrialState { presented, answered, timed_out, interrupted, voided };
+
+struct TrialRow {
+  int session = 0;
+  int trial = 0;  ///< from 1
+  int block = 0;
+  TrialState state{};
+  std::chrono::nanoseconds presented_at{};
+  std::optional<std::chrono::nanoseconds> contact_at;
+  std::optional<std::chrono::nanoseconds> answered_at;
+  std::optional<int> position;  ///< in the participant's layout; empty: no response
+  std::optional<int> first_position;
+  std::optional<int> confidence;
+  bool valid = true;
+  std::int64_t overruns = 0;
+  std::int64_t samples = 0;
+  double rate_hz = 0.0;
+  int explorations = 1;  ///< of the last presentation
+
+  friend bool operator==(const TrialRow&, const TrialRow&) = default;
+};
 
 using TrialId = std::pair<int, int>;  ///< session, trial
 
@@ -19,21 +68,26 @@ struct DerivedRows {
   std::map<TrialId, TrialRow> trials;
 };
 
-/// Which rows an event is about; fold needs these and no others.
+/// The session that an event is about: its own, or the one that an event of a file's chain names.
+/// \return 0 if the event is about none
+/// \throws EventFault if the event's body names none, and must
+[[nodiscard]] int session_about(const Event& event);
+
+/// The rows that an event may change. `fold` needs these and no others.
 struct FoldScope {
-  std::optional<int> session;
-  std::optional<TrialId> trial;
-  /// Session and block: all trials of it that were presented.
+  std::optional<int> session{};
+  std::optional<TrialId> trial{};
+  /// Session and block: all trials of the block that were presented.
   std::optional<std::pair<int, int>> block{};
 };
 
-/// \throws EventFault if the event's body is no such
+/// \throws EventFault if the event's body cannot be read
 [[nodiscard]] FoldScope scope_of(const Event& event);
 
 /// Brings `rows` up to date with one more event. Sessions may be folded in any order, the events of
-/// each in theirs; the file's chain after the sessions that it names.
-/// \throws EventFault if the event's body is no such, or it cannot come after those before: `rows`
-///   are then as they were
+/// each session in theirs, and the file's chain after the sessions that it names.
+/// \throws EventFault if the event's body cannot be read, or the event cannot follow those before;
+///   `rows` are then as they were
 void fold(DerivedRows& rows, const Event& event);
 
 }  // namespace touchtrial::store

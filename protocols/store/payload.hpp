@@ -11,10 +11,11 @@
 
 namespace touchtrial::store {
 
-/// First event of the file's chain: what this database is about, fixed before any trial.
+/// `study-committed`, the first event of the file's chain: what this database is about, fixed
+/// before any trial.
 struct StudyCommitment {
   std::string study;          ///< the study's name
-  std::string protocol;       ///< "classification" or "comparison"
+  std::string protocol;       ///< the protocol's name
   std::string study_id;       ///< public identity of the key, hexadecimal
   Digest seal{};              ///< commitment to key, schedule rule, configuration and nonce
   Digest pack{};              ///< Pack::digest of the prepared fields
@@ -28,20 +29,69 @@ struct StudyCommitment {
   friend bool operator==(const StudyCommitment&, const StudyCommitment&) = default;
 };
 
-/// `opened`, in real time: what the hand was on. Says nothing of stimuli.
+/// `session-opened`: ties a session's chain and key to the file.
+struct SessionOpenedBody {
+  int session = 0;
+  std::string participant;
+  int enrolment = 0;
+  Digest first{};  ///< hash of the session's `opened`
+  Digest key{};    ///< SHA-256 of the wrapped participant key
+  /// In a collected study: the session's station, from 1, and its number there; 0 elsewhere.
+  int station = 0;
+  int own_session = 0;
+};
+
+/// `session-closed`: how the session's chain ends.
+struct SessionClosedBody {
+  int session = 0;
+  std::int64_t length = 0;  ///< number of events
+  Digest head{};            ///< hash of the last
+  bool complete = false;
+};
+
+/// `participant-excluded`, `participant-withdrawn`.
+struct ParticipantBody {
+  int session = 0;
+  std::string reason;
+};
+
+/// `participant-replaced`.
+struct ReplacementBody {
+  int session = 0;
+  std::string by;  ///< participant who inherits the enrolment number; the same one: restarted
+  std::string reason;
+};
+
+/// `participant-noted`.
+struct NoteBody {
+  int session = 0;
+  std::string code;  ///< of a deviation; empty: a remark
+  std::string text;
+};
+
+/// `study-unblinded`.
+struct UnblindingBody {
+  std::string reason;
+  bool interim = false;
+  /// In a collected study: the sessions that the stations' interim looks show.
+  std::optional<std::vector<int>> sessions{};
+};
+
+/// `opened`, in real time: the device that the hand was on. Says nothing about stimuli.
 struct StationRecord {
-  std::string model;          ///< as the device tells it; may be empty
+  std::string model;          ///< as the device reports it; may be empty
   std::string firmware;       ///< likewise
-  double max_force_n = 0.0;   ///< the device's own
-  bool visual = false;        ///< shown on a screen instead of felt: pilot sessions alone
-  double rate_hz = 0.0;       ///< of the servo, as asked for
-  std::string scheduling;     ///< that its thread obtained
+  double max_force_n = 0.0;   ///< of the device
+  bool visual = false;        ///< shown on a screen instead of felt: pilot sessions only
+  double rate_hz = 0.0;       ///< requested rate of the servo
+  std::string scheduling;     ///< that the servo's thread obtained
   std::string calibration{};  ///< SHA-256 of the device's certificate, hexadecimal; empty: none
 
   friend bool operator==(const StationRecord&, const StationRecord&) = default;
 };
 
-/// First event of a session's chain. Its sealed part is the schedule and the answer layout.
+/// `opened`, the first event of a session's chain. Its sealed part holds the schedule and the
+/// answer layout.
 struct SessionOpening {
   std::string participant;  ///< 1 to 32 of [0-9A-Za-z+-_]; unique in a study
   int enrolment = 0;        ///< from 1; decides the schedule; unique in a study
@@ -84,40 +134,53 @@ struct ResumedBody {
   std::string program_version{};  ///< after the program ended
 };
 
-/// `trace-stored`, in real time: how the servo kept its time. When a tick begins is up to the
-/// operating system and not to the texture.
+/// `presented`, `first-contact`, `interrupted`, `timed-out`.
+struct TrialBody {
+  int trial = 0;       ///< from 1
+  int block = 0;       ///< `presented` only
+  std::string reason;  ///< `interrupted` only
+};
+
+/// `block-restarted`: which block, from 0, and the number of its first trial from now on.
+struct BlockBody {
+  int block = 0;
+  int first_trial = 0;
+};
+
+/// `trace-stored`, in real time: how well the servo kept time. The start of a tick depends on the
+/// operating system and not on the texture.
 struct ServoHealth {
-  double rate_hz = 0.0;  ///< that was had
+  double rate_hz = 0.0;  ///< that was reached
   double lateness_p50_us = 0.0;
   double lateness_p99_us = 0.0;
   double lateness_p999_us = 0.0;
   double lateness_worst_us = 0.0;
-  std::int64_t lost = 0;  ///< samples for which there was no room on their way to the trace
+  std::int64_t lost = 0;  ///< samples that found no room in the ring to the trace
   std::int64_t held = 0;  ///< samples of the trace that were filled in, for overruns and lost ones
 
   friend bool operator==(const ServoHealth&, const ServoHealth&) = default;
 };
 
-/// `trace-stored`: servo health in clear; what was felt is in the sealed part (TrialMeasures).
+/// `trace-stored`: the servo's health in clear; the sealed part (TrialMeasures) says what was felt.
 struct TraceBody {
   int trial = 0;
   std::int64_t samples = 0;
   double rate_hz = 0.0;
   std::int64_t overruns = 0;
-  bool valid = true;  ///< by what is in clear: the rest of the validity rule is sealed
+  bool valid = true;  ///< by the clear part of the validity rule; the other part is sealed
   Digest trace{};     ///< SHA-256 of the stored (encrypted) trace
-  /// Samples of each exploration, where the participant explored again; they add up to `samples`.
+  /// Samples of each exploration, if the participant explored again; they add up to `samples`.
   std::vector<std::int64_t> explorations{};
   std::optional<ServoHealth> servo{};  ///< real time only
 };
 
-/// Sealed part of `trace-stored`: figures that would tell stimuli apart.
+/// Sealed part of `trace-stored`: numbers that would tell stimuli apart.
 struct TrialMeasures {
   double contact_s = 0.0;
   double path_mm = 0.0;  ///< length of the stylus' path while in contact
   double force_rms_n = 0.0;
   double saturated_share = 0.0;  ///< of the ticks in contact
-  bool within_limits = true;     ///< the part of the validity rule that tells of forces
+  bool within_limits = true;     ///< the part of the validity rule that depends on forces
   /// Ticks whose force the safety chain changed; real time only.
   std::optional<std::int64_t> limited_ticks{};
 
@@ -134,20 +197,13 @@ struct InterruptionDetail {
   friend bool operator==(const InterruptionDetail&, const InterruptionDetail&) = default;
 };
 
-/// Sealed part of `closed`: the chain before it. Without the key no other chain can be given this
+/// Sealed part of `closed`: the chain before it. Nobody without the key can give another chain this
 /// end.
 struct ChainEnd {
   std::int64_t length = 0;  ///< events before `closed`
   Digest head{};            ///< hash of the last of them
 
   friend bool operator==(const ChainEnd&, const ChainEnd&) = default;
-};
-
-/// `presented`, `first-contact`, `interrupted`, `timed-out`: which trial, from 1, and why.
-struct TrialBody {
-  int trial = 0;
-  int block = 0;       ///< `presented` only
-  std::string reason;  ///< `interrupted` only
 };
 
 }  // namespace touchtrial::store

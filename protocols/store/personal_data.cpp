@@ -17,15 +17,15 @@
 namespace touchtrial::store {
 namespace {
 
-constexpr int kApplicationId = 0x54545250;  // "TTRP"
-constexpr int kVersion = 1;
+constexpr int kPersonalApplicationId = 0x54545250;  // "TTRP"
+constexpr int kPersonalVersion = 1;
 constexpr int kPersonalBusyTimeoutMs = 2000;
 
 [[noreturn]] void refuse_personal_data(const std::filesystem::path& path, const std::string& why) {
   throw StoreError(one_line(path.string() + ": " + why));
 }
 
-/// Made with its permissions, so that it is never readable by others, not for a moment.
+/// Creates the file with its final permissions, so that others can never read it, not for a moment.
 void make_private(const std::filesystem::path& path) {
   const int file = ::open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
   if (file >= 0) {
@@ -51,8 +51,8 @@ void set_up(SQLite::Database& connection, const std::filesystem::path& path) {
       "PRAGMA secure_delete = ON; PRAGMA synchronous = FULL; PRAGMA trusted_schema = OFF");
   const int id = connection.execAndGet("PRAGMA application_id").getInt();
   const int version = connection.execAndGet("PRAGMA user_version").getInt();
-  if (id == kApplicationId && version == kVersion) return;
-  if (id == kApplicationId && version > kVersion) {
+  if (id == kPersonalApplicationId && version == kPersonalVersion) return;
+  if (id == kPersonalApplicationId && version > kPersonalVersion) {
     refuse_personal_data(path, "was written by a newer Touchtrial; use that version");
   }
   if (id != 0 || connection.execAndGet("SELECT count(*) FROM sqlite_schema").getInt() != 0) {
@@ -63,9 +63,21 @@ void set_up(SQLite::Database& connection, const std::filesystem::path& path) {
       "CREATE TABLE people(participant TEXT PRIMARY KEY, consent_version TEXT NOT NULL, "
       "consented_utc TEXT NOT NULL, age INTEGER, gender TEXT NOT NULL, contact TEXT NOT NULL) "
       "STRICT");
-  connection.exec("PRAGMA application_id = " + std::to_string(kApplicationId));
-  connection.exec("PRAGMA user_version = " + std::to_string(kVersion));
+  connection.exec("PRAGMA application_id = " + std::to_string(kPersonalApplicationId));
+  connection.exec("PRAGMA user_version = " + std::to_string(kPersonalVersion));
   transaction.commit();
+}
+
+/// Calls `work`; errors of SQLite come out as StoreError with file and remedy.
+template <typename Work>
+auto translated(const std::filesystem::path& path, Work&& work) {
+  try {
+    return work();
+  } catch (const SQLite::Exception& error) {
+    refuse_personal_data(path, std::string("personal data cannot be read or written (") +
+                                   error.what() +
+                                   "); check the disk and that no other program uses the file");
+  }
 }
 
 }  // namespace
@@ -84,21 +96,6 @@ struct PersonalData::Impl {
   std::filesystem::path path;
   SQLite::Database connection;
 };
-
-namespace {
-
-template <typename Work>
-auto translated(const std::filesystem::path& path, Work&& work) {
-  try {
-    return work();
-  } catch (const SQLite::Exception& error) {
-    refuse_personal_data(path, std::string("personal data cannot be read or written (") +
-                                   error.what() +
-                                   "); check the disk and that no other program uses the file");
-  }
-}
-
-}  // namespace
 
 PersonalData::PersonalData(const std::filesystem::path& path) {
   make_private(path);

@@ -3,9 +3,8 @@
 #pragma once
 
 #include "protocols/store/database.hpp"
-#include "protocols/store/event.hpp"
 #include "protocols/store/fold.hpp"
-#include "protocols/store/session_recorder.hpp"
+#include "protocols/store/sealing.hpp"
 
 #include <cstdint>
 #include <functional>
@@ -19,37 +18,40 @@ using EventVisitor = std::function<void(const Event&)>;
 
 void insert_event(const Database& database, const Event& event);
 void insert_trace(const Database& database, const SealedTrace& trace);
+void insert_key(const Database& database, int session, const Bytes& wrapped);
 
-/// Which events are asked for; what is not given may be anything.
+/// The events that are asked for: those with all of the members that are given.
 struct EventFilter {
-  std::optional<std::int64_t> session;
-  std::optional<std::int64_t> sequence;
-  std::optional<EventKind> kind;
-  std::span<const EventKind> kinds{};  ///< any of these; empty: as `kind` says
+  std::optional<std::int64_t> session{};
+  std::optional<std::int64_t> sequence{};
+  std::span<const EventKind> kinds{};  ///< any of these; empty: all
 };
 
-/// Calls `visit` for the events that the filter names, by session and sequence; it may ask anything
-/// of the database.
-/// \throws EventFault if a row is no event: unknown kind, or a hash of another length
+/// Calls `visit` for the events that the filter names, by session and sequence. `visit` may use the
+/// database.
+/// \throws EventFault if a row is no event: unknown kind, impossible number, hash of another length
 void for_each_event(const Database& database, const EventFilter& filter, const EventVisitor& visit);
-/// All of one chain.
+/// The same for all events of one chain.
 void for_each_event(const Database& database, std::int64_t session, const EventVisitor& visit);
-/// One event, if it exists. \throws the same
+/// One event, if it exists.
+/// \throws the same
 [[nodiscard]] std::optional<Event> read_event(const Database& database, int session,
                                               std::int64_t sequence);
 
-/// Every number but 0 that an event gives as its session, ascending.
+/// The number of every session that has events, except 0, ascending.
 [[nodiscard]] std::vector<std::int64_t> sessions_with_events(const Database& database);
 
-/// By session. \throws EventFault if a row holds what no event gives rise to
+/// By session.
+/// \throws EventFault if a row holds a value that no event can give rise to
 [[nodiscard]] std::vector<SessionRow> read_sessions(const Database& database);
-/// By session and trial. \throws the same
+/// By session and trial.
+/// \throws the same
 [[nodiscard]] std::vector<TrialRow> read_trials(const Database& database);
 
-/// The rows that `scope` names, as far as they exist. \throws the same
+/// The rows that `scope` names, as far as they exist.
+/// \throws the same
 [[nodiscard]] DerivedRows read_rows(const Database& database, const FoldScope& scope);
 /// Adds or changes every row of `rows`.
 void write_rows(const Database& database, const DerivedRows& rows);
-void delete_all_rows(const Database& database);
 
 }  // namespace touchtrial::store

@@ -1,5 +1,6 @@
 #include "protocols/store/schema.hpp"
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <utility>
@@ -9,17 +10,13 @@ namespace {
 
 constexpr std::array<Migration, kSchemaVersion - kOldestSchemaVersion> kMigrations = {};
 
-/// WITHOUT ROWID suits small rows under keys of several columns.
+/// All others are WITHOUT ROWID, which suits small rows under keys of several columns.
 bool has_row_numbers(const TableDefinition& table) {
-  if (table.key.size() == 1) return true;
-  for (const TableColumn& column : table.columns) {
-    if (column.bulky) return true;
-  }
-  return false;
+  return table.key.size() == 1 || std::ranges::any_of(table.columns, &TableColumn::bulky);
 }
 
-/// REPLACE deletes without a delete trigger, so that inserts over an existing row are refused as
-/// well.
+/// REPLACE deletes rows without running the delete trigger, so a third trigger refuses to insert
+/// over an existing row.
 std::string append_only_sql(const TableDefinition& table) {
   const std::string name(table.name);
   std::string same_key;
@@ -50,18 +47,16 @@ void set_version(SQLite::Database& connection, int version) {
 }
 
 void bring_forward(const Database& database, std::span<const Migration> steps) {
-  database.run([&] {
-    const auto done = static_cast<std::size_t>(schema_version(database) - kOldestSchemaVersion);
-    if (done >= steps.size()) return;
-    SQLite::Transaction transaction = database.write_transaction();
+  const auto done = static_cast<std::size_t>(schema_version(database) - kOldestSchemaVersion);
+  if (done >= steps.size()) return;
+  database.change([&] {
     for (const Migration step : steps.subspan(done)) step(database.connection());
     set_version(database.connection(), kOldestSchemaVersion + static_cast<int>(steps.size()));
-    transaction.commit();
-    database.checkpoint();
   });
+  database.run([&] { database.checkpoint(); });
 }
 
-/// By type and name: the table it belongs to, and how it was made, without blanks and line ends.
+/// By type and name: the table that an object belongs to, and its SQL without blanks and line ends.
 using SchemaObjects = std::map<std::pair<std::string, std::string>, std::string>;
 
 SchemaObjects objects_of(SQLite::Database& connection) {
@@ -89,11 +84,9 @@ std::span<const Migration> migrations() {
 }
 
 void make_tables(const Database& database) {
-  database.run([&] {
-    SQLite::Transaction transaction = database.write_transaction();
+  database.change([&] {
     database.connection().exec(schema_sql());
     set_version(database.connection(), kSchemaVersion);
-    transaction.commit();
   });
 }
 
@@ -112,7 +105,8 @@ Database open_current(const std::filesystem::path& path, Database::Mode mode,
 }
 
 int schema_version(const Database& database) {
-  return database.connection().execAndGet("PRAGMA user_version").getInt();
+  return database.run(
+      [&] { return database.connection().execAndGet("PRAGMA user_version").getInt(); });
 }
 
 std::optional<std::string> schema_fault(const Database& database) {

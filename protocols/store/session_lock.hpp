@@ -1,4 +1,4 @@
-/// \file One program at a time in one participant's session.
+/// \file Keeps a second program out of a participant's session.
 #pragma once
 
 #include <filesystem>
@@ -6,13 +6,13 @@
 
 namespace touchtrial::store {
 
-/// Holds a participant of a study until it goes. The kernel releases it with the process, however
-/// that ends. It is on `<db>.lock`, an empty file that stays; other participants are not hindered.
-/// Advisory: it keeps this program's sessions apart and nothing else. Folders that several machines
-/// share may not know such locks.
+/// Holds a lock on one participant of a study while it exists. The kernel releases the lock when
+/// the process ends, in whatever way. The lock is on `<db>.lock`, an empty file that stays, and
+/// does not hinder sessions of other participants. It is advisory: it keeps only this program's
+/// sessions apart. Folders that several machines share may not support such locks.
 class SessionLock {
  public:
-  /// Takes it without waiting.
+  /// Takes the lock without waiting.
   /// \throws StoreError, naming the participant and what to do, if another holds it, or if the file
   ///   cannot be made
   SessionLock(const std::filesystem::path& database, const std::string& participant);

@@ -14,7 +14,7 @@
 namespace touchtrial::store {
 namespace {
 
-/// The participant's own byte of the file, which need not be that long.
+/// The participant's own byte, which may lie beyond the end of the file.
 off_t place_of(const std::string& participant) {
   const Digest digest = sha256(bytes_of(participant));
   std::uint64_t number = 0;
@@ -22,14 +22,14 @@ off_t place_of(const std::string& participant) {
   return static_cast<off_t>(number);
 }
 
-/// \return whether it was had; false if another holds it
+/// \return whether the lock was taken; false if another holds it
 bool take(int file, const std::string& participant) {
   struct flock lock {};
   lock.l_type = F_WRLCK;
   lock.l_whence = SEEK_SET;
   lock.l_start = place_of(participant);
   lock.l_len = 1;
-  // Tied to this opening of the file, so that two sessions of one process exclude each other too.
+  // The lock belongs to this open file, so that two sessions of one process exclude each other too.
   return ::fcntl(file, F_OFD_SETLK, &lock) == 0;
 }
 

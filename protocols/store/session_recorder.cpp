@@ -1,7 +1,6 @@
 #include "protocols/store/session_recorder.hpp"
 
 #include "core/errors.hpp"
-#include "protocols/store/contexts.hpp"
 #include "protocols/store/payload_json.hpp"
 
 #include <utility>
@@ -24,19 +23,21 @@ bool is_remark(EventKind kind) {
   }
 }
 
-}  // namespace
-
-void BufferedEvents::accept(const Event& event, const std::optional<SealedTrace>& trace) {
-  events.push_back(event);
-  if (trace) traces.push_back(*trace);
-}
-
+/// The padding of an interruption: a function of its flight record's ticks alone, so that the size
+/// does not tell rough textures from smooth ones. A multiple of kEventPadding.
 std::size_t interruption_padding(std::int64_t ticks) {
   // A row has 21 values, 14 of them of up to 24 characters; ordinary rows need 330 bytes or less.
   constexpr std::size_t kBytesATick = 384;
   constexpr std::size_t kBytesBefore = 1024;
   const std::size_t bytes = kBytesBefore + kBytesATick * static_cast<std::size_t>(ticks);
   return (bytes + kEventPadding - 1) / kEventPadding * kEventPadding;
+}
+
+}  // namespace
+
+void BufferedEvents::accept(const Event& event, const std::optional<SealedTrace>& trace) {
+  events.push_back(event);
+  if (trace) traces.push_back(*trace);
 }
 
 SessionRecorder::SessionRecorder(int session, const SecretKey& participant_key, EventSink& sink)
@@ -74,10 +75,7 @@ void SessionRecorder::timed_out(std::chrono::nanoseconds at, int trial,
 
 TrialEvidence SessionRecorder::packed(TraceBody body, const TrialMeasures& measures,
                                       const Trace& trace) const {
-  SealedTrace sealed{.session = session_,
-                     .trial = body.trial,
-                     .box = seal(participant_key_, trace_context(session_, body.trial),
-                                 encode_trace(trace), trace_padding(trace.samples.size()))};
+  SealedTrace sealed = seal_trace(session_, body.trial, trace, participant_key_);
   body.samples = static_cast<std::int64_t>(trace.samples.size());
   body.trace = sha256(sealed.box);
   return {std::move(body), measures, std::move(sealed)};
@@ -125,7 +123,7 @@ void SessionRecorder::remarked(std::chrono::nanoseconds at, EventKind kind,
 }
 
 void SessionRecorder::closed(std::chrono::nanoseconds at, bool complete) {
-  // Only who has the key can seal this: a chain that was made anew without it ends otherwise.
+  // Sealing this takes the key: a chain that somebody makes anew without it ends differently.
   append(at, EventKind::closed, completion_to_json(complete),
          {to_json(ChainEnd{.length = length_, .head = head_})});
 }
@@ -191,8 +189,7 @@ RecordedEvent SessionRecorder::chained(std::chrono::nanoseconds at, std::int64_t
               .previous = previous,
               .hash = {}};
   if (!draft.secret.text.empty()) {
-    event.sealed = seal(participant_key_, event_context(session_, sequence, draft.kind),
-                        bytes_of(draft.secret.text), draft.secret.padding);
+    event.sealed = seal_text(event, participant_key_, draft.secret.text, draft.secret.padding);
   }
   event.hash = event_hash(event);
   return {std::move(event), std::move(draft.trace)};

@@ -1,10 +1,8 @@
 /// \file Turns what happens in one session into chained, sealed events.
 #pragma once
 
-#include "core/cipher.hpp"
-#include "protocols/store/event.hpp"
 #include "protocols/store/payload.hpp"
-#include "protocols/store/trace.hpp"
+#include "protocols/store/sealing.hpp"
 
 #include <chrono>
 #include <cstddef>
@@ -16,36 +14,27 @@
 
 namespace touchtrial::store {
 
-/// An encrypted trace, on its way to a database or from one.
-struct SealedTrace {
-  int session = 0;  ///< its own number, see Event::own_session: the box is bound to it
-  int trial = 0;
-  Bytes box;
-
-  friend bool operator==(const SealedTrace&, const SealedTrace&) = default;
-};
-
 /// An event, and the trace that comes with one of kind trace_stored.
 struct RecordedEvent {
   Event event;
   std::optional<SealedTrace> trace;
 };
 
-/// What is stored of a presentation beside its answer, ready to be written.
+/// What is stored for a presentation beside its answer, ready to be written.
 struct TrialEvidence {
   TraceBody body;
   TrialMeasures measures;
   SealedTrace trace;
 };
 
-/// Where events go. A durable sink has them on disk when `accept` returns.
+/// Where events go. When `accept` returns, a durable sink has them on the disk.
 class EventSink {
  public:
   virtual ~EventSink() = default;
-  /// `trace` accompanies a trace_stored event and no other.
+  /// \param trace  comes with a trace_stored event and with no other
   /// \throws StoreError if the event cannot be stored; it is then not part of the chain
   virtual void accept(const Event& event, const std::optional<SealedTrace>& trace) = 0;
-  /// Events that are stored together. A durable sink stores all or none of them.
+  /// Takes events that belong together. A durable sink stores all or none of them.
   virtual void accept_together(std::span<const RecordedEvent> events) {
     for (const auto& [event, trace] : events) accept(event, trace);
   }
@@ -60,16 +49,9 @@ class BufferedEvents final : public EventSink {
   std::vector<SealedTrace> traces;
 };
 
-/// Events' sealed parts are padded to a multiple of this many bytes.
-inline constexpr std::size_t kEventPadding = 256;
-
-/// That of an interruption: a function of its flight record's ticks alone, so that the size does
-/// not tell rough textures from smooth ones. A multiple of kEventPadding.
-[[nodiscard]] std::size_t interruption_padding(std::int64_t ticks);
-
-/// One session's chain, growing. Not thread-safe; any number may run beside each other.
-/// Times must not be negative nor decrease. Every function that records throws StoreError if the
-/// time does, if a text is not UTF-8, or if the sink refuses: the chain is then as it was.
+/// The growing chain of one session. Not thread-safe; any number may run beside each other. Times
+/// must not be negative or decrease. Every function that records throws StoreError if the time
+/// decreases, a text is not UTF-8, or the sink refuses: the chain is then as it was.
 class SessionRecorder {
  public:
   /// \param session  number in the database, from 1
@@ -84,22 +66,23 @@ class SessionRecorder {
   /// \param evidence  of the same presentation, stored with the answer or not at all
   void answered(std::chrono::nanoseconds at, const AnswerBody& answer,
                 const std::optional<TrialEvidence>& evidence = std::nullopt);
-  /// \param reason  in clear: must tell nothing of the stimulus  \param detail  sealed, under
-  ///   a padding that follows from the flight record's number of ticks
+  /// \param reason  in clear: must say nothing about the stimulus
+  /// \param detail  sealed, with a padding that follows from the flight record's number of ticks
   void interrupted(std::chrono::nanoseconds at, int trial, const std::string& reason,
                    const std::optional<InterruptionDetail>& detail = std::nullopt);
   void timed_out(std::chrono::nanoseconds at, int trial,
                  const std::optional<TrialEvidence>& evidence = std::nullopt);
   /// Encodes and seals a trace, and fills `body.trace` and `body.samples`. Takes a few milliseconds
-  /// for each second of exploration; may be called on another thread while this one records.
+  /// for each second of exploration. Another thread may call it while this one records.
   [[nodiscard]] TrialEvidence packed(TraceBody body, const TrialMeasures& measures,
                                      const Trace& trace) const;
-  /// Stores `packed` of these, on its own.
+  /// Stores what `packed` makes of these, without an answer.
   void trace_stored(std::chrono::nanoseconds at, const TraceBody& body,
                     const TrialMeasures& measures, const Trace& trace);
   void practised(std::chrono::nanoseconds at, const PracticeBody& body);
   void deviated(std::chrono::nanoseconds at, const DeviationBody& body);
-  /// \param name  of the questionnaire, in clear  \param answers  JSON, sealed
+  /// \param name  of the questionnaire, in clear
+  /// \param answers  JSON, sealed
   void questioned(std::chrono::nanoseconds at, const std::string& name, const std::string& answers);
   void explored_again(std::chrono::nanoseconds at, int trial);
   /// \param first_trial  number of the block's first trial from now on
@@ -107,13 +90,15 @@ class SessionRecorder {
   void block_restarted(std::chrono::nanoseconds at, int block, int first_trial,
                        const std::string& secret_schedule);
   void resumed(std::chrono::nanoseconds at, const ResumedBody& body);
-  /// calibrated, instructed, break_taken, paused, stopped, noted, ticked: a line of text or "".
+  /// \param kind  calibrated, instructed, break_taken, paused, stopped, noted or ticked
+  /// \param text  one line, or empty
   void remarked(std::chrono::nanoseconds at, EventKind kind, const std::string& text);
   /// Seals the chain's length and head up to here into the event, see ChainEnd.
   /// \param complete  whether the schedule was finished
   void closed(std::chrono::nanoseconds at, bool complete);
 
-  /// Goes on with a chain that is stored already. \param last  its last event
+  /// Goes on with a chain that is stored already.
+  /// \param last  its last event
   void go_on_after(const Event& last);
 
   /// Hash of the last event; zeros before the first.

@@ -1,17 +1,18 @@
-/// \file A study in its database: what every operation of StudyStore is made of.
-/// Private to protocols/store. Call everything here inside Database::run, and what writes inside a
-/// write transaction.
+/// \file A study in its database: the operations that StudyStore is made of, and its two inner
+/// parts (sessions that are stored event by event, the check of everything that is stored). Private
+/// to protocols/store. Call everything here inside Database::run, and functions that write inside
+/// Database::change.
 #pragma once
 
 #include "protocols/store/database.hpp"
 #include "protocols/store/fold.hpp"
-#include "protocols/store/payload_json.hpp"
+#include "protocols/store/session_recorder.hpp"
 #include "protocols/store/study_store.hpp"
 
 #include <chrono>
-#include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -23,42 +24,52 @@ class StoredStudy {
 
   [[nodiscard]] const Database& database() const noexcept { return database_; }
 
-  /// The first event's body; read once. \throws StoreError if there is none
+  /// The first event's body; read once.
+  /// \throws StoreError if there is no first event
   [[nodiscard]] const StudyCommitment& commitment() const;
   [[nodiscard]] StudyState state() const;
-  /// Where a chain ends (0: the file's).
+  /// The end of a chain (0: the file's).
   [[nodiscard]] ChainHead head(int session) const;
   [[nodiscard]] std::optional<Event> last_event(int session) const;
   /// How many stations' files were collected into this one.
   [[nodiscard]] int stations() const;
   [[nodiscard]] int next_session() const;
-  /// The smallest number that nobody has and that is kept for nobody.
+  /// The smallest enrolment number that is neither taken nor kept for somebody.
   [[nodiscard]] int next_enrolment() const;
-  /// What the participant inherits, else next_enrolment.
+  /// The number that the participant inherits, else next_enrolment.
   [[nodiscard]] int enrolment_for(const std::string& participant) const;
-  /// The session that a participant has and that nobody replaced, if any.
+  /// The participant's session that nobody replaced, if any.
   [[nodiscard]] std::optional<SessionRow> session_of(const std::string& participant) const;
   /// \throws StoreError if there is no such session
   [[nodiscard]] SessionRow session(int session) const;
 
-  /// Adds an event to the file's chain, and to the derived rows what it means.
+  /// Adds an event to the file's chain, and brings the derived rows up to date.
   void append_to_file(EventKind kind, std::chrono::nanoseconds at, const std::string& body);
-  /// Adds an event of a session, and to the derived rows what it means.
+  /// Adds an event of a session, and brings the derived rows up to date.
   void append(const Event& event, const std::optional<SealedTrace>& trace);
 
-  /// Lets a session in: its key, and its opening on the file's chain.
+  /// Lets a session in: stores its key, and its opening on the file's chain.
   /// \throws StoreError if the study is closed, the session is not the next, belongs to another
-  ///   study, or its participant or enrolment is taken (by which session), or it would mix pilots
-  ///   with others or what is seen with what is felt
+  ///   study, its participant or enrolment is taken (by which session), or it would mix pilots with
+  ///   others or sessions that are seen with sessions that are felt
   void admit(const Event& opened, const Bytes& wrapped_key, std::chrono::nanoseconds at);
   /// The last event of a session that may go on.
   /// \throws StoreError if there is no such session, it is closed, its participant has withdrawn,
   ///   or the study is closed
   [[nodiscard]] Event last_of_open(int session) const;
-  /// A session's end on the file's chain. \param closed  its last event
+  /// Records a session's end on the file's chain.
+  /// \param closed  its last event
   void conclude(const Event& closed, std::chrono::nanoseconds at);
 
-  /// Destroys a participant's key. \throws StoreError if they have withdrawn already
+  /// Holds the events of a finished session against each other.
+  /// \throws StoreError, EventFault
+  void check_whole(const BufferedEvents& session) const;
+  /// \pre check_whole found no fault
+  void store_whole(const BufferedEvents& session, const Bytes& wrapped_key,
+                   std::chrono::nanoseconds at);
+
+  /// Destroys a participant's key.
+  /// \throws StoreError if the participant has withdrawn already
   void withdraw(int session, std::chrono::nanoseconds at, const std::string& reason);
   /// \throws StoreError if the session may still go on or was replaced, or `by` is taken
   void replace(const ReplacementBody& replacement, std::chrono::nanoseconds at);
@@ -69,21 +80,53 @@ class StoredStudy {
   void require_reason(const std::string& reason, const std::string& what) const;
 
  private:
-  void refuse_if_collected() const;
+  /// \throws StoreError if the database takes no more sessions: it was collected, or is closed
+  void refuse_if_over() const;
+  void require_participant_id(const std::string& id) const;
   void refuse_after_withdrawal(const DerivedRows& rows, const Event& event) const;
   void check_opening(const SessionOpening& opening) const;
-  /// Pilots and others, what is seen and what is felt: one database holds one kind.
+  /// A database holds pilots or others, and sessions that are seen or sessions that are felt.
   void refuse_mixture(const SessionOpening& opening) const;
   void refuse_if_taken(const SessionOpening& opening) const;
-  /// Nobody comes back whom somebody else replaced, nor takes a number that is kept for another.
+  /// Nobody returns after being replaced by another, or takes a number that is kept for another.
   void refuse_if_promised(const SessionOpening& opening) const;
   void check_replaced(const SessionRow& row) const;
   void check_replacement(const SessionRow& row, const std::string& by) const;
-  /// Numbers that are kept, and for whom.
+  /// Enrolment numbers that are kept for somebody, and for whom.
   [[nodiscard]] std::map<int, std::string> promised_enrolments() const;
 
   Database database_;
   mutable std::optional<StudyCommitment> commitment_;
 };
+
+/// The durable sink: every event, or group of events, is one transaction.
+class StoredSession final : public EventSink {
+ public:
+  /// \param study  must outlive this
+  StoredSession(StoredStudy& study, int session, Bytes wrapped_key, UtcClock utc);
+  /// Goes on with a session that is stored and open.
+  /// \param last  its last event
+  StoredSession(StoredStudy& study, const Event& last, UtcClock utc);
+
+  void accept(const Event& event, const std::optional<SealedTrace>& trace) override;
+  void accept_together(std::span<const RecordedEvent> events) override;
+
+ private:
+  StoredSession(StoredStudy& study, ChainLink chain, Bytes wrapped_key, UtcClock utc);
+  void refuse_if_others_wrote(int session) const;
+  void store(const Event& event, const std::optional<SealedTrace>& trace, bool first);
+
+  StoredStudy& study_;
+  ChainLink chain_;
+  Bytes wrapped_key_;
+  UtcClock utc_;
+};
+
+/// Finds the first fault of a database. Checks, in this order: the file's structure, its chain,
+/// every session's chain, what the file's chain says of the sessions, keys, traces, the derived
+/// tables, and the schema. Call it inside a transaction.
+/// \param traces  `skip` leaves structure and traces out
+[[nodiscard]] std::optional<ChainFault> find_first_fault(const Database& database,
+                                                         TraceCheck traces);
 
 }  // namespace touchtrial::store

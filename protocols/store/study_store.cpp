@@ -1,13 +1,10 @@
 #include "protocols/store/study_store.hpp"
 
 #include "core/files.hpp"
-#include "protocols/store/chain_check.hpp"
 #include "protocols/store/collected_draft.hpp"
-#include "protocols/store/damaged_store.hpp"
 #include "protocols/store/payload_json.hpp"
 #include "protocols/store/rows.hpp"
 #include "protocols/store/schema.hpp"
-#include "protocols/store/stored_session.hpp"
 #include "protocols/store/stored_study.hpp"
 
 #include <system_error>
@@ -38,7 +35,7 @@ void check_tables(const Database& database) {
   }
 }
 
-/// What the stations' own chains say stands on the collected study's chain again.
+/// Skips the stations' own chains, whose content the collected study's chain repeats.
 EventVisitor unless_of_station(const EventVisitor& visit) {
   return [&visit](const Event& event) {
     if (event.session >= 0) visit(event);
@@ -50,20 +47,16 @@ EventVisitor unless_of_station(const EventVisitor& visit) {
 struct StudyStore::Impl {
   explicit Impl(Database opened) : study(std::move(opened)) {}
 
-  /// Calls `work` with SQLite's errors translated.
+  /// As Database::run.
   template <typename Work>
   decltype(auto) run(Work&& work) const {
     return database().run(std::forward<Work>(work));
   }
 
-  /// Calls `work` in a transaction that is committed unless it throws.
+  /// As Database::change.
   template <typename Work>
   void change(Work&& work) {
-    run([&] {
-      SQLite::Transaction transaction = database().write_transaction();
-      work();
-      transaction.commit();
-    });
+    database().change(std::forward<Work>(work));
   }
 
   [[nodiscard]] const Database& database() const { return study.database(); }
@@ -80,7 +73,7 @@ StudyStore& StudyStore::operator=(StudyStore&&) noexcept = default;
 StudyStore StudyStore::create(const std::filesystem::path& path, const StudyCommitment& commitment,
                               std::chrono::nanoseconds at) {
   if (is_there(path)) refuse_taken(path);
-  // It gets its name when it is whole: whatever ends the program before leaves no half of it there.
+  // The file gets its name when it is whole, so that no early end of the program leaves half of it.
   const std::filesystem::path draft = path.string() + ".new" + std::to_string(::getpid());
   remove_database(draft);
   try {
@@ -138,12 +131,6 @@ std::vector<SessionRow> StudyStore::sessions_of(const std::string& participant) 
   return rows;
 }
 
-std::optional<SessionRow> StudyStore::open_session_of(const std::string& participant) const {
-  std::optional<SessionRow> row = session_of(participant);
-  if (row && row->state != SessionState::open) row.reset();
-  return row;
-}
-
 std::optional<Event> StudyStore::last_event(int session) const {
   return impl_->run([&] { return impl_->study.last_event(session); });
 }
@@ -167,18 +154,15 @@ std::vector<Event> StudyStore::events(int session) const {
 
 void StudyStore::for_each(EventKind kind, const std::function<void(const Event&)>& visit) const {
   impl_->run([&] {
-    for_each_event(impl_->database(), {.session = {}, .sequence = {}, .kind = kind},
-                   unless_of_station(visit));
+    for_each_event(impl_->database(), {.kinds = std::span(&kind, 1)}, unless_of_station(visit));
   });
 }
 
 void StudyStore::for_each_of(std::span<const EventKind> kinds,
                              const std::function<void(const Event&)>& visit) const {
   if (kinds.empty()) return;
-  impl_->run([&] {
-    for_each_event(impl_->database(), {.session = {}, .sequence = {}, .kind = {}, .kinds = kinds},
-                   unless_of_station(visit));
-  });
+  impl_->run(
+      [&] { for_each_event(impl_->database(), {.kinds = kinds}, unless_of_station(visit)); });
 }
 
 int StudyStore::next_session() const {
@@ -232,8 +216,8 @@ std::vector<Event> StudyStore::station_chain(int station) const {
 
 void StudyStore::add_session(const BufferedEvents& session, const Bytes& wrapped_key,
                              std::chrono::nanoseconds at) {
-  impl_->run([&] { check_whole_session(impl_->study, session); });
-  impl_->change([&] { store_whole_session(impl_->study, session, wrapped_key, at); });
+  impl_->run([&] { impl_->study.check_whole(session); });
+  impl_->change([&] { impl_->study.store_whole(session, wrapped_key, at); });
 }
 
 std::unique_ptr<EventSink> StudyStore::begin_session(int session, const Bytes& wrapped_key,
@@ -291,7 +275,7 @@ void StudyStore::withdraw(std::span<const int> sessions, std::chrono::nanosecond
   impl_->change([&] {
     for (const int session : sessions) impl_->study.withdraw(session, at, reason);
   });
-  // The log still holds the keys' pages from before.
+  // The log still holds the pages with the keys.
   const bool emptied = impl_->run([&] { return impl_->database().checkpoint(); });
   if (!emptied) {
     impl_->study.refuse(
@@ -320,23 +304,24 @@ void StudyStore::note(int session, std::chrono::nanoseconds at, const std::strin
 
 std::optional<ChainFault> StudyStore::first_fault(TraceCheck traces) const {
   return impl_->run([&] {
-    // One transaction, so that everything is seen at one moment even while others write.
+    // One transaction, so that everything is from one moment even while others write.
     SQLite::Transaction snapshot(impl_->database().connection());
     return find_first_fault(impl_->database(), traces);
   });
 }
 
-void StudyStore::rebuild_derived() {
-  impl_->change([&] {
-    DerivedRows rows;
-    const auto add = [&](const Event& event) { fold(rows, event); };
-    for (const std::int64_t session : sessions_with_events(impl_->database())) {
-      if (session > 0) for_each_event(impl_->database(), session, add);
-    }
-    for_each_event(impl_->database(), 0, add);
-    delete_all_rows(impl_->database());
-    write_rows(impl_->database(), rows);
-  });
+void copy_database(const std::filesystem::path& from, const std::filesystem::path& to) {
+  const Database database = Database::open(from, Database::Mode::read_only, kSchemaVersion);
+  std::filesystem::path draft = to;
+  draft += ".part";
+  std::error_code error;
+  std::filesystem::remove(draft, error);  // left by a copy that broke off
+  database.run([&] { database.copy_to(draft); });
+  std::filesystem::rename(draft, to, error);
+  if (error) {
+    throw StoreError(one_line(to.string()) + ": cannot be written (" + error.message() +
+                     "); give another folder or change its permissions");
+  }
 }
 
 }  // namespace touchtrial::store

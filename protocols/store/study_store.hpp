@@ -1,90 +1,24 @@
-/// \file One SQLite file a station and study: events, sealed traces, wrapped participant keys, and
-/// tables derived from the events; or one that several stations' files were collected into
-/// (protocols/store/collected_store.hpp). Format: docs/data-dictionary.md, "Database".
+/// \file The database of a study, one SQLite file: events, sealed traces, wrapped participant keys,
+/// and tables derived from the events. Each station has one; several can be collected into one
+/// (protocols/collect/collect.hpp). Format: docs/data-dictionary.md, "Database".
 #pragma once
 
-#include "core/cipher.hpp"
-#include "protocols/store/event.hpp"
-#include "protocols/store/payload.hpp"
+#include "protocols/store/file_chain.hpp"
+#include "protocols/store/fold.hpp"
 #include "protocols/store/session_recorder.hpp"
-#include "protocols/store/trace.hpp"
 
 #include <chrono>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <vector>
 
 namespace touchtrial::store {
 
-/// How a session stands, derived from its events.
-enum class SessionState { open, completed, stopped };
-
-struct SessionRow {
-  int session = 0;  ///< from 1
-  std::string participant;
-  int enrolment = 0;
-  SessionState state{};
-  bool simulated = false;
-  bool pilot = false;
-  bool excluded = false;
-  bool withdrawn = false;
-  std::string device;
-  /// Participant who took this one's place in the order of enrolment, the same one if the session
-  /// was restarted; empty: nobody.
-  std::string replaced_by{};
-  /// The number in the file that it was recorded in (Event::own_session): participant keys and
-  /// whatever is sealed are bound to it.
-  int own_session = 0;
-  int station = 0;  ///< that it was collected from, from 1; 0: recorded in this file
-
-  friend bool operator==(const SessionRow&, const SessionRow&) = default;
-};
-
-/// How a trial ended, derived from its events. `voided`: its block was restarted, whatever it was
-/// before; it is never presented again.
-enum class TrialState { presented, answered, timed_out, interrupted, voided };
-
-struct TrialRow {
-  int session = 0;
-  int trial = 0;  ///< from 1
-  int block = 0;
-  TrialState state{};
-  std::chrono::nanoseconds presented_at{};
-  std::optional<std::chrono::nanoseconds> contact_at;
-  std::optional<std::chrono::nanoseconds> answered_at;
-  std::optional<int> position;  ///< in the participant's layout; empty: no response
-  std::optional<int> first_position;
-  std::optional<int> confidence;
-  bool valid = true;
-  std::int64_t overruns = 0;
-  std::int64_t samples = 0;
-  double rate_hz = 0.0;
-  int explorations = 1;  ///< of the last presentation
-
-  friend bool operator==(const TrialRow&, const TrialRow&) = default;
-};
-
-/// What the file's chain says of the state of collection.
-struct StudyState {
-  bool closed = false;
-  bool unblinded = false;         ///< outcomes may be shown (an interim look counts)
-  std::string unblinding_reason;  ///< of the last unblinding
-  /// If that was an interim look: the sessions that had ended before it.
-  std::optional<std::set<int>> interim;
-
-  /// Whether a session's outcomes may be shown: an interim look shows nothing of sessions that end
-  /// after it.
-  [[nodiscard]] bool shows(int session) const {
-    return unblinded && (!interim || interim->contains(session));
-  }
-};
-
-/// Where a chain ends.
+/// The end of a chain.
 struct ChainHead {
   std::int64_t length = 0;  ///< number of events
   Digest hash{};            ///< of the last; zeros if there is none
@@ -92,28 +26,28 @@ struct ChainHead {
   friend bool operator==(const ChainHead&, const ChainHead&) = default;
 };
 
-/// How much of a study is looked at: reading the file's pages and its traces, nearly all of a file,
-/// may be left out.
+/// How much of a database is checked. `skip` leaves out the file's pages and the traces, which are
+/// nearly all of a file.
 enum class TraceCheck { full, skip };
 
-/// A broken link, named: chain, sequence, what does not hold.
+/// A fault of the evidence, and its place.
 struct ChainFault {
-  int session = 0;  ///< 0: the file's chain; -1, -2, ...: that of station 1, 2, ...
+  int session = 0;  ///< as Event::session
   std::int64_t sequence = 0;
   std::string what;
 };
 
-/// Asks for the sealed trace of a session, by its number here, and trial; it may throw StoreError.
+/// Fetches the sealed trace of a session, by its number here, and trial. It may throw StoreError.
 using TraceFetch = std::function<std::optional<SealedTrace>(int, int)>;
 
-/// UTC since 1970; the file's chain is stamped with it.
+/// UTC since 1970, for the events of the file's chain.
 using UtcClock = std::function<std::chrono::nanoseconds()>;
 
 /// The database. One writer at a time (SQLite's lock); not to be shared between threads.
 class StudyStore {
  public:
-  /// Makes a new database with its first event. Refuses an existing file. The file appears under
-  /// its name when it is whole and safe; a kill or a power cut before leaves none.
+  /// Makes a new database with its first event. The file appears under its name when it is whole
+  /// and synced; a kill or a power cut before that leaves no file of this name.
   /// \throws StoreError if the file exists or cannot be made
   [[nodiscard]] static StudyStore create(const std::filesystem::path& path,
                                          const StudyCommitment& commitment,
@@ -121,11 +55,11 @@ class StudyStore {
 
   enum class Access { read_only, read_write };
 
-  /// Opens an existing database; one of another schema is refused untouched, unless this program
-  /// knows how to bring it forward and may write. Reading changes nothing (but folds in a log that
-  /// a crash left), leaves nothing beside the file, and sees what other programs write; a file
-  /// without a -wal can be read where nothing can be written, but should not be written to then by
-  /// anybody else. Only what opening takes is looked at: see first_fault.
+  /// Opens an existing database. A database of another schema is refused untouched, unless this
+  /// program knows how to bring it forward and may write. Reading changes nothing (except that it
+  /// folds in a log left by a crash), leaves nothing beside the file, and sees what other programs
+  /// write. A file without a -wal can be read in a folder that cannot be written; other programs
+  /// should not write to it then. Opening checks only what it reads: see first_fault.
   /// \throws DamagedStore if it is truncated, lacks tables or cannot be read by SQLite
   /// \throws StoreError if it is missing, no Touchtrial database, or of another schema
   [[nodiscard]] static StudyStore open(const std::filesystem::path& path, Access access);
@@ -136,16 +70,14 @@ class StudyStore {
 
   [[nodiscard]] const StudyCommitment& commitment() const;
   [[nodiscard]] StudyState state() const;
-  /// Where the file's chain ends.
+  /// The end of the file's chain.
   [[nodiscard]] ChainHead file_head() const;
   [[nodiscard]] std::vector<SessionRow> sessions() const;
-  /// The session that this participant has and that nobody replaced, whatever its state.
+  /// The participant's session that nobody replaced, whatever its state.
   [[nodiscard]] std::optional<SessionRow> session_of(const std::string& participant) const;
-  /// All that this participant ever had, by number: those before a restart too.
+  /// All sessions of a participant, by number, including those before a restart.
   [[nodiscard]] std::vector<SessionRow> sessions_of(const std::string& participant) const;
-  /// The same if that session is still open: it may be continued.
-  [[nodiscard]] std::optional<SessionRow> open_session_of(const std::string& participant) const;
-  /// The last event of one chain (0: the file's), read without those before it.
+  /// The last event of one chain (0: the file's). The events before it are not read.
   [[nodiscard]] std::optional<Event> last_event(int session) const;
   /// All trials of all sessions, by session and trial.
   [[nodiscard]] std::vector<TrialRow> trials() const;
@@ -153,7 +85,7 @@ class StudyStore {
   [[nodiscard]] std::vector<Event> events(int session) const;
   /// Calls `visit` for every event of one kind in all sessions, by session and sequence.
   void for_each(EventKind kind, const std::function<void(const Event&)>& visit) const;
-  /// The same of several kinds in one pass.
+  /// The same for several kinds in one pass.
   void for_each_of(std::span<const EventKind> kinds,
                    const std::function<void(const Event&)>& visit) const;
 
@@ -166,16 +98,17 @@ class StudyStore {
   void add_session(const BufferedEvents& session, const Bytes& wrapped_key,
                    std::chrono::nanoseconds at);
 
-  /// Starts a session whose events are stored one by one, each in its own transaction; it stands in
-  /// the file from its `opened` on. Whoever asks in vain learns it from that event.
+  /// Starts a session whose events are stored one by one, each in its own transaction. The file
+  /// holds the session from its event `opened` on; storing that event throws the errors of
+  /// add_session.
   /// \param utc  the system's clock if empty
-  /// \return the sink; it must not outlive the store. Same errors as add_session.
+  /// \return the sink; it must not outlive the store
   [[nodiscard]] std::unique_ptr<EventSink> begin_session(int session, const Bytes& wrapped_key,
                                                          UtcClock utc = {});
 
-  /// Goes on with a session that is stored and still open, after the program ended in it. Give
-  /// the recorder last_event (SessionRecorder::go_on_after). If another program goes on with it as
-  /// well, the slower of the two is refused at its next event; see session_lock.hpp.
+  /// Goes on with a session that is stored and still open, after the program ended during it. Give
+  /// last_event to the recorder (SessionRecorder::go_on_after). If another program goes on with it
+  /// too, the slower of the two is refused at its next event; see session_lock.hpp.
   /// \param utc  the system's clock if empty
   /// \return the sink; it must not outlive the store
   /// \throws StoreError if there is no such session, it has ended, its participant has withdrawn,
@@ -184,37 +117,36 @@ class StudyStore {
 
   /// The number that the next session gets.
   [[nodiscard]] int next_session() const;
-  /// The smallest enrolment number that nobody has and that is kept for nobody, from 1.
+  /// The smallest enrolment number, from 1, that is neither taken nor kept for somebody.
   [[nodiscard]] int next_enrolment() const;
-  /// The number that this participant gets: what they inherit from somebody whom they replace, or
-  /// from their own session if it was restarted, else next_enrolment.
+  /// The number that this participant gets: inherited from the participant whom they replace or
+  /// from their own restarted session, else next_enrolment.
   [[nodiscard]] int enrolment_for(const std::string& participant) const;
 
   void close_study(std::chrono::nanoseconds at);
   /// \param interim  a look at the sessions that have ended, while the study goes on
-  /// \throws StoreError if the study is open and `interim` is false or it is closed and `interim`
-  /// is
-  ///   true, or `reason` is empty
+  /// \throws StoreError if the study is open and `interim` is false, if it is closed and `interim`
+  ///   is true, or if `reason` is empty
   void unblind(std::chrono::nanoseconds at, const std::string& reason, bool interim);
 
-  /// Marks a session as left out of outcomes. \throws StoreError if there is no such session, it is
-  /// already excluded, or `reason` is empty
+  /// Marks a session as left out of outcomes.
+  /// \throws StoreError if there is no such session, it is already excluded, or `reason` is empty
   void exclude(int session, std::chrono::nanoseconds at, const std::string& reason);
-  /// Destroys the participant's key, and with it every sealed payload, for ever; the chain, which
-  /// hashes ciphertext, still holds. Copies of the file keep the key: destroy those yourself.
-  /// \throws StoreError if there is no such session or it has already withdrawn; also, after the
-  ///   withdrawal, if another program keeps the key's last traces in the write-ahead log
+  /// Destroys the participant's key, so that no sealed payload can ever be read again. The chain,
+  /// which hashes ciphertext, still holds. Copies of the file keep the key: destroy those yourself.
+  /// \throws StoreError if there is no such session or its participant has already withdrawn; also,
+  ///   after the withdrawal, if another program keeps a page with the key in the write-ahead log
   void withdraw(int session, std::chrono::nanoseconds at, const std::string& reason);
-  /// The same of several sessions, all or none: those of one participant.
+  /// The same for all sessions of one participant: all of them or none.
   void withdraw(std::span<const int> sessions, std::chrono::nanoseconds at,
                 const std::string& reason);
 
-  /// Lets `by` take the place of a session's participant: whoever comes under that id next inherits
-  /// the enrolment number. The session stays as it is, but enters no outcomes.
+  /// Lets `by` take the place of a session's participant: the next session under that id inherits
+  /// the enrolment number. The replaced session stays as it is, but enters no outcomes.
   /// \param by  another participant, or the same one, whose session is restarted
-  /// \throws StoreError if there is no such session, it was replaced already or may still go on
-  ///   (it must have been stopped, excluded or withdrawn), `by` has a session or replaces somebody
-  ///   else already or is no participant id, the study is closed, or `reason` is empty
+  /// \throws StoreError if there is no such session, it was replaced already or may still go on (it
+  ///   must have been stopped, excluded or withdrawn), `by` has a session or replaces somebody else
+  ///   already or is no participant id, the study is closed, or `reason` is empty
   void replace(int session, const std::string& by, std::chrono::nanoseconds at,
                const std::string& reason);
 
@@ -226,25 +158,21 @@ class StudyStore {
 
   /// The participant's wrapped key; empty after withdrawal.
   [[nodiscard]] std::optional<Bytes> wrapped_key(int session) const;
-  /// \throws StoreError if the trace must be fetched from elsewhere, in vain
+  /// \throws StoreError if the trace must be fetched from elsewhere and cannot be
   [[nodiscard]] std::optional<SealedTrace> sealed_trace(int session, int trial) const;
 
-  /// How many stations' files were collected into this one; 0: it is a station's own. What was
-  /// collected takes no sessions and no replacements: those are recorded at the stations.
+  /// How many stations' files were collected into this one; 0: it is a station's own. A collected
+  /// database takes no sessions and no replacements: those are recorded at the stations.
   [[nodiscard]] int stations() const;
-  /// A station's file chain as it stood in its own file. \param station  from 1
+  /// A station's file chain as it stood in its own file.
+  /// \param station  from 1
   [[nodiscard]] std::vector<Event> station_chain(int station) const;
 
-  /// Recomputes every hash of every chain, holds the file's chain against the sessions' heads and
-  /// lengths, stored traces against their events, and the derived tables against the events. What a
-  /// chain cannot show: events cut off the end of the file's chain, or of a session that is still
-  /// open.
-  /// \param traces  `skip`: neither the pages of the file nor its traces are looked at
+  /// Recomputes every hash of every chain, and holds the file's chain against the sessions' heads
+  /// and lengths, stored traces against their events, and the derived tables against the events. It
+  /// cannot find events that were cut off the end of the file's chain, or of an open session.
   /// \return the first fault, or nothing
   [[nodiscard]] std::optional<ChainFault> first_fault(TraceCheck traces = TraceCheck::full) const;
-
-  /// Makes the derived tables anew from the events.
-  void rebuild_derived();
 
  private:
   struct Impl;
@@ -255,28 +183,11 @@ class StudyStore {
   std::unique_ptr<Impl> impl_;
 };
 
-/// A participant's random key, encrypted under the study's. Destroying the row that holds it makes
-/// the participant's payloads unreadable for ever.
-/// \param own_session  the session's own number, see SessionRow
-[[nodiscard]] Bytes wrap_participant_key(const SecretKey& study_master, int own_session,
-                                         const SecretKey& participant_key);
-/// \return nothing if the bytes are no such key, or another session's
-[[nodiscard]] std::optional<SecretKey> unwrap_participant_key(const SecretKey& study_master,
-                                                              int own_session,
-                                                              const Bytes& wrapped);
-
-/// The secret text of an event (schedule, measures), or nothing if key or bytes are wrong.
-[[nodiscard]] std::optional<std::string> unsealed(const Event& event,
-                                                  const SecretKey& participant_key);
-/// \param own_session  the session's own number, see SessionRow
-[[nodiscard]] std::optional<Trace> unsealed_trace(int own_session, int trial, const Bytes& box,
-                                                  const SecretKey& participant_key,
-                                                  std::size_t sample_count);
-[[nodiscard]] std::optional<Trace> unsealed_trace(const SealedTrace& sealed,
-                                                  const SecretKey& participant_key,
-                                                  std::size_t sample_count);
-/// TrialMeasures from the secret text of a trace_stored event.
-/// \throws StoreError if the text is not such
-[[nodiscard]] TrialMeasures measures_from_json(const std::string& text);
+/// Lays a copy of a study's database at a path, for an archive: the database as it is now, while
+/// others may go on writing. An existing file is replaced. If the copying breaks off, no file of
+/// that name is left.
+/// \throws StoreError if there is no such database, another program keeps it from being read, or
+///   the copy cannot be written
+void copy_database(const std::filesystem::path& from, const std::filesystem::path& to);
 
 }  // namespace touchtrial::store

@@ -1,18 +1,25 @@
-/// \file The tables of a study as data. SQLite's and a server's tables, the check of a file's
-/// schema, and the statements on derived tables are all made from it. What each column means:
-/// docs/data-dictionary.md, "Database".
+/// \file The tables of a study as data, and rows of derived tables as values of their columns.
+/// SQLite's and a server's tables, the check of a file's schema, and the statements on whole rows
+/// are all made from it. What each column means: docs/data-dictionary.md, "Database".
 #pragma once
 
+#include "protocols/store/fold.hpp"
+
 #include <array>
+#include <cstdint>
+#include <functional>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
+#include <vector>
 
 namespace touchtrial::store {
 
 /// Counts every change of the tables, in files and on servers.
 inline constexpr int kSchemaVersion = 3;
-/// The oldest version that can be brought forward; those before it were never released.
+/// The oldest version that can be brought forward; earlier ones were never released.
 inline constexpr int kOldestSchemaVersion = 3;
 
 /// integer: 64 bits, signed. real: 64 bits. text: UTF-8. blob: bytes.
@@ -22,23 +29,23 @@ struct TableColumn {
   std::string_view name;
   ColumnType type{};
   bool nullable = false;
-  /// SQL, the same in all dialects, for rows that do not name the column; empty: they must.
+  /// SQL, the same in all dialects, for rows that do not name the column; empty: they must name it.
   std::string_view default_value{};
-  /// Large and sealed: bytes that do not shrink, and that are kept apart from the table's key.
+  /// Large and encrypted: the bytes do not compress, and are stored apart from the table's key.
   bool bulky = false;
 };
 
-/// Columns of which no two rows have the same values.
+/// No two of the rows that meet the condition have the same value in the column.
 struct UniqueIndex {
   std::string_view name;
   std::string_view column;
-  std::string_view where;  ///< SQL condition that rows must meet to be held to it
+  std::string_view where;  ///< SQL condition
 };
 
 /// Columns that name a row of another table.
 struct TableReference {
   std::span<const std::string_view> columns;
-  std::string_view table;  ///< whose columns of the same names are its key
+  std::string_view table;  ///< its columns of the same names are its key
 };
 
 struct TableDefinition {
@@ -50,21 +57,51 @@ struct TableDefinition {
   std::span<const TableReference> references{};
 };
 
-/// In this order each table comes after those that it refers to.
+/// Each table comes after those that it refers to.
 enum class Table { events, traces, participant_keys, sessions, trials, responses };
 
 [[nodiscard]] std::span<const TableDefinition> table_definitions();
 [[nodiscard]] const TableDefinition& table_definition(Table table);
 
-/// "session, trial, box". \param prefix  put before every name, for instance "t."
-[[nodiscard]] std::string column_list(const TableDefinition& table, std::string_view prefix = {});
+/// "session, trial, box".
+/// \param prefix  put before every name, for instance "t."
+[[nodiscard]] std::string column_list(Table table, std::string_view prefix = {});
 
 /// What a dialect of SQL calls the types, in the order of ColumnType.
 using TypeNames = std::array<std::string_view, 4>;
 
-/// "CREATE TABLE trials(...)", to which a dialect adds what it has of its own.
+/// "CREATE TABLE trials(...)", to which each dialect adds its own clauses.
 [[nodiscard]] std::string create_table_sql(const TableDefinition& table, const TypeNames& types);
 /// One statement for each of the table's unique indices.
 [[nodiscard]] std::string create_indices_sql(const TableDefinition& table);
+
+/// A value of one column; std::monostate stands for NULL.
+using Cell = std::variant<std::monostate, std::int64_t, double, std::string>;
+/// The values of a row of a derived table, in the order of its columns.
+using Cells = std::vector<Cell>;
+
+/// The states as they are written, in the order of the enumerators.
+inline constexpr std::array<std::string_view, 3> kSessionStates = {"open", "completed", "stopped"};
+inline constexpr std::array<std::string_view, 5> kTrialStates = {
+    "presented", "answered", "timed-out", "interrupted", "voided"};
+
+/// When a row of sessions has a value in own_session.
+enum class OwnNumber { if_other, always };
+
+[[nodiscard]] Cells session_cells(const SessionRow& row, OwnNumber own = OwnNumber::if_other);
+[[nodiscard]] Cells trial_cells(const TrialRow& row);
+/// \pre the trial has a response
+[[nodiscard]] Cells response_cells(const TrialRow& row);
+
+/// Reads the columns of one row of derived tables, one table after the other.
+/// \param cell  gives the value of a column by its place in the row, from 0, and its type
+[[nodiscard]] Cells cells_of(std::initializer_list<Table> tables,
+                             const std::function<Cell(int, ColumnType)>& cell);
+
+/// \throws EventFault if a cell holds a value that no event can give rise to
+[[nodiscard]] SessionRow session_row(std::span<const Cell> cells);
+/// \param cells  of a row of trials, then those of responses; all NULL without a response
+/// \throws the same
+[[nodiscard]] TrialRow trial_row(std::span<const Cell> cells);
 
 }  // namespace touchtrial::store

@@ -69,12 +69,12 @@ std::vector<std::int32_t> quantised(const Channel& channel, std::span<const Trac
   return steps;
 }
 
-/// Differences to the number before, from index `first` on.
+/// Replaces the numbers from index `first` on by their differences to the number before.
 void take_differences(std::vector<std::int32_t>& steps, std::size_t first) {
   for (std::size_t i = steps.size(); i > first; --i) steps[i - 1] -= steps[i - 2];
 }
 
-/// Small numbers of either sign become small non-negative ones.
+/// Maps small numbers of either sign to small non-negative ones.
 std::uint32_t zigzag(std::int32_t step) {
   return (std::bit_cast<std::uint32_t>(step) << 1U) ^ std::bit_cast<std::uint32_t>(step >> 31);
 }
@@ -126,8 +126,9 @@ using Compressor = std::unique_ptr<ZSTD_CCtx, FreeCompressor>;
                    "); free some memory");
 }
 
-/// Level 1, made to look for long matches only, in a small table: what repeats in a plane of
-/// differences are runs of zeros, the rest is for the entropy coder. Half the time, no larger.
+/// Level 1 with a search for long matches only, in a small table: in a plane of differences only
+/// runs of zeros repeat, and the entropy coder handles the rest. Takes half the time for the same
+/// size.
 Compressor make_compressor() {
   Compressor compressor(ZSTD_createCCtx());
   constexpr std::array<std::pair<ZSTD_cParameter, int>, 3> kParameters = {
@@ -152,8 +153,8 @@ void put_compressed(Bytes& bytes, ZSTD_CCtx* compressor, ByteView plane) {
   }
 }
 
-/// The lowest bytes of all numbers, then the next, as many as the largest number has: each plane
-/// has statistics of its own and thus a code table of its own.
+/// Writes the lowest bytes of all numbers as one plane, then the next bytes, as many planes as the
+/// largest number has bytes. Each plane has its own statistics and so gets its own code table.
 void put_channel(Bytes& bytes, ZSTD_CCtx* compressor, const std::vector<std::int32_t>& steps) {
   std::vector<std::uint32_t> codes(steps.size());
   std::transform(steps.begin(), steps.end(), codes.begin(), zigzag);
@@ -179,7 +180,7 @@ ByteView read_frame(Cursor& cursor) {
   return cursor.take(cursor.number<std::uint32_t>());
 }
 
-/// Looks at the parts' own lengths before memory is spent on the claimed number of samples.
+/// Checks the parts' own lengths before memory is allocated for the claimed number of samples.
 void require_consistent(Cursor cursor, std::size_t count) {
   for (std::size_t channel = 0; channel < kChannels.size(); ++channel) {
     const unsigned planes = read_plane_count(cursor);
@@ -218,7 +219,7 @@ void restore_channel(const Channel& channel, std::span<const std::uint32_t> code
   std::int64_t slope = 0;
   for (std::size_t i = 0; i < codes.size(); ++i) {
     const std::int64_t code = unzigzag(codes[i]);
-    // The second difference starts at the second sample: the first is its own difference.
+    // The first sample is its own difference; second differences start at the second sample.
     slope = channel.differences == 2 && i > 1 ? slope + code : code;
     step += slope;
     if (step < -limit || step > limit) refuse_bytes("a sample is beyond 10 m or 100 N");
@@ -243,7 +244,7 @@ Bytes encode_trace(const Trace& trace) {
   const Compressor compressor = make_compressor();
   for (const Channel& channel : kChannels) {
     std::vector<std::int32_t> steps = quantised(channel, trace.samples);
-    // The first sample stays as it is, and so does the first slope: neither is a small number.
+    // The first sample and the first slope stay as they are: neither is a small number.
     for (int d = 1; d <= channel.differences; ++d)
       take_differences(steps, static_cast<std::size_t>(d));
     put_channel(bytes, compressor.get(), steps);

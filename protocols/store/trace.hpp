@@ -19,16 +19,16 @@ struct Trace {
   std::vector<TraceSample> samples;
 };
 
-/// Quantises (positions to 1 um, forces to a fraction of a millinewton: see the definition), takes
-/// differences, compresses with zstd level 1. Not yet encrypted.
+/// Quantises a trace (positions to 1 um, forces to 1/4096 N), takes differences, and compresses
+/// them with zstd level 1. The result is not encrypted.
 /// \throws StoreError if a sample is not finite or beyond +-10 m or +-100 N
 [[nodiscard]] Bytes encode_trace(const Trace& trace);
 
-/// \throws StoreError if the bytes are no trace, truncated, or of absurd length
+/// \throws StoreError if the bytes are no trace, are truncated, or claim an absurd length
 [[nodiscard]] Trace decode_trace(ByteView bytes);
 
-/// The padding under which traces are sealed: a function of the number of samples alone, so that
-/// the size of a stored trace does not tell rough textures from smooth ones.
+/// The padding under which traces are sealed, in bytes. It depends on the number of samples alone,
+/// so that the size of a stored trace does not tell rough textures from smooth ones.
 [[nodiscard]] std::size_t trace_padding(std::size_t sample_count);
 
 }  // namespace touchtrial::store

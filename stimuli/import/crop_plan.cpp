@@ -7,12 +7,12 @@
 namespace touchtrial::stimuli {
 namespace {
 
-/// Crops along one axis whose starts are half a side apart or more.
+/// The number of crops along one axis whose starts are at least half a side apart.
 int overlapping_along(int length_px, int side_px) {
   return length_px < side_px ? 0 : 1 + (length_px - side_px) / ((side_px + 1) / 2);
 }
 
-/// The starts of `count` segments that do not touch each other's pixels, at random distances.
+/// The starts of `count` segments that do not overlap, at random distances.
 std::vector<int> loose_starts(int length_px, int side_px, int count, RandomStream& random) {
   const auto slack = static_cast<std::uint64_t>(length_px - count * side_px);
   std::vector<int> starts;
@@ -22,7 +22,7 @@ std::vector<int> loose_starts(int length_px, int side_px, int count, RandomStrea
   return starts;
 }
 
-/// Evenly from edge to edge; a single one in the middle.
+/// Starts spread evenly from edge to edge; a single one is in the middle.
 std::vector<int> even_starts(int length_px, int side_px, int count) {
   const int room = length_px - side_px;
   std::vector<int> starts;
@@ -30,7 +30,7 @@ std::vector<int> even_starts(int length_px, int side_px, int count) {
   return starts;
 }
 
-/// Share of a crop's side that neighbours share when `count` are spread evenly; 0 if none.
+/// The share of a crop's side that lies in its neighbour, too, if `count` crops are spread evenly.
 double overlap_along(int length_px, int side_px, int count) {
   if (count == 1) return 0.0;
   const double step = static_cast<double>(length_px - side_px) / (count - 1);
@@ -42,7 +42,7 @@ struct Grid {
   int columns = 0;
 };
 
-/// The grid of enough crops whose neighbours share least.
+/// Of the grids with enough crops, the one whose neighbours overlap least.
 Grid least_overlapping_grid(PhotoSize photo, int side_px, int count) {
   Grid best;
   double least = 2.0;
@@ -59,7 +59,7 @@ Grid least_overlapping_grid(PhotoSize photo, int side_px, int count) {
   return best;
 }
 
-/// Separate crops: rows at random distances, and in each row columns of its own.
+/// Separate crops: rows at random distances, and in each row its own columns at random distances.
 std::vector<CropPlace> separate_places(PhotoSize photo, int side_px, RandomStream& random) {
   std::vector<CropPlace> places;
   for (const int y : loose_starts(photo.height_px, side_px, photo.height_px / side_px, random)) {
@@ -81,7 +81,7 @@ std::vector<CropPlace> even_places(PhotoSize photo, int side_px, int count) {
   return places;
 }
 
-/// Deals one crop after another round the photographs that still have room.
+/// Deals crops one by one, in turn, to the photographs that still have room.
 void deal(std::vector<int>& shares, std::span<const int> room, int& left) {
   for (bool dealt = true; dealt && left > 0;) {
     dealt = false;

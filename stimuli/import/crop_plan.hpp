@@ -1,4 +1,4 @@
-/// \file Where crops are cut. Private to stimuli/import.
+/// \file The places at which crops are cut. Private to stimuli/import.
 #pragma once
 
 #include "core/random.hpp"
@@ -22,20 +22,20 @@ struct CropPlace {
   friend bool operator==(const CropPlace&, const CropPlace&) = default;
 };
 
-/// Squares that fit without sharing a pixel, on a grid.
+/// The number of squares that fit on a grid without sharing a pixel.
 [[nodiscard]] int separate_crops(PhotoSize photo, int side_px);
 
-/// Squares that fit where neighbours share at most half their side.
+/// The number of squares that fit if neighbours share at most half their side.
 [[nodiscard]] int overlapping_crops(PhotoSize photo, int side_px);
 
-/// Different places: separate ones while there are enough of them, at random distances; otherwise
-/// spread evenly, with as little overlap as can be.
+/// Different places: separate and at random distances if there is room, otherwise spread evenly
+/// with as little overlap as possible.
 /// \param count  0 .. overlapping_crops()
 [[nodiscard]] std::vector<CropPlace> crop_places(PhotoSize photo, int side_px, int count,
                                                  RandomStream& random);
 
-/// How many crops each photograph of a class gives: as evenly as can be, first without overlap.
-/// \return empty if they have not that many even with overlap
+/// The number of crops of each photograph of a class: as even as possible, first without overlap.
+/// \return empty if even overlapping crops are too few
 [[nodiscard]] std::vector<int> shared_out(std::span<const PhotoSize> photos, int side_px,
                                           int count);
 

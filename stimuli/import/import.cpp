@@ -3,14 +3,15 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "engine/image_file.hpp"
-#include "stimuli/import/draft_folder.hpp"
-#include "stimuli/import/import_advice.hpp"
+#include "stimuli/default_set.hpp"
 #include "stimuli/import/import_checks.hpp"
 #include "stimuli/import/import_files.hpp"
-#include "stimuli/manifest.hpp"
 
 #include <algorithm>
 #include <map>
+#include <system_error>
+
+#include <unistd.h>
 
 namespace touchtrial::stimuli {
 namespace {
@@ -19,12 +20,12 @@ namespace fs = std::filesystem;
 
 ImportOptions completed(ImportOptions options) {
   if (options.pictures.empty()) options.pictures = default_pictures_folder(options.study);
-  // "pictures/" ends in an empty file name; the folder is what comes before.
+  // "pictures/" ends in an empty file name, and its parent path is the folder.
   if (!options.pictures.has_filename()) options.pictures = options.pictures.parent_path();
   return options;
 }
 
-/// Study names go into file names, tables and BIDS labels.
+/// A name that suits file names, tables and BIDS labels.
 std::string study_name(const fs::path& study) {
   constexpr std::size_t kLongest = 64;
   std::string name = study.stem().string().substr(0, kLongest);
@@ -49,7 +50,7 @@ GreyImage cut(const GreyImage& photo, CropPlace place, int side_px) {
   return crop;
 }
 
-/// Refuses a photograph that is there already, as a file or as a picture.
+/// Refuses a photograph whose bytes or pixels equal those of an earlier one.
 class Duplicates {
  public:
   void check(const Photograph& photo) {
@@ -67,7 +68,73 @@ class Duplicates {
   std::map<Digest, fs::path> seen_;
 };
 
-/// One run: everything is read once to be checked, then again to be cut.
+/// A hidden path beside the target, so that renaming stays on one file system.
+fs::path beside(const fs::path& target, const std::string& purpose) {
+  const std::string name = target.filename().string();
+  return target.parent_path() / ("." + name + "." + purpose + std::to_string(::getpid()));
+}
+
+void move(const fs::path& from, const fs::path& to) {
+  std::error_code error;
+  fs::rename(from, to, error);
+  if (!error) return;
+  throw FileError(one_line(to.string()) + ": cannot be written (" + error.message() +
+                  "); check the folder and its permissions");
+}
+
+/// A folder that appears whole or not at all: files are written into a draft beside the target, and
+/// `put_in_place` renames it. Until `keep` is called, the destructor restores the earlier state.
+class DraftFolder {
+ public:
+  /// \throws FileError if the draft cannot be made
+  explicit DraftFolder(fs::path target)
+      : target_(std::move(target)), draft_(beside(target_, "draft")) {
+    std::error_code error;
+    fs::remove_all(draft_, error);
+    if (fs::create_directory(draft_, error)) return;
+    throw FileError(one_line(target_.string()) + ": cannot be made (" + error.message() +
+                    "); check the folder above it and its permissions");
+  }
+  ~DraftFolder() {
+    std::error_code ignored;
+    if (!kept_) {
+      fs::remove_all(in_place_ ? target_ : draft_, ignored);
+      if (!earlier_.empty()) fs::rename(earlier_, target_, ignored);
+    }
+  }
+  DraftFolder(const DraftFolder&) = delete;
+  DraftFolder& operator=(const DraftFolder&) = delete;
+
+  [[nodiscard]] const fs::path& path() const noexcept { return draft_; }
+
+  /// Moves an earlier target aside, and the draft to its place.
+  /// \throws FileError if one of them cannot be moved
+  void put_in_place() {
+    if (is_there(target_)) {
+      const fs::path aside = beside(target_, "earlier");
+      move(target_, aside);
+      earlier_ = aside;
+    }
+    move(draft_, target_);
+    in_place_ = true;
+  }
+
+  /// Nothing can fail any more: removes the earlier target.
+  void keep() noexcept {
+    kept_ = true;
+    std::error_code ignored;
+    if (!earlier_.empty()) fs::remove_all(earlier_, ignored);
+  }
+
+ private:
+  fs::path target_;
+  fs::path draft_;
+  fs::path earlier_;  ///< where the earlier target is now; empty if there is none
+  bool in_place_ = false;
+  bool kept_ = false;
+};
+
+/// One run: reads each photograph once to check it, and again to cut it.
 class Import {
  public:
   Import(const ImportOptions& options, const ImportProgress& progress)
@@ -106,7 +173,7 @@ class Import {
     }
   }
 
-  /// As the manifest writes it.
+  /// The file's name in the manifest.
   [[nodiscard]] std::string name_of(const fs::path& file) const {
     return file.lexically_relative(options_.photographs).generic_string();
   }
@@ -126,7 +193,7 @@ class Import {
     if (photo.sha256 != record_.photographs[next_photograph_].photo.sha256) {
       throw FileError(one_line(file.string()) + ": changed while it was imported; try again");
     }
-    // The stream hangs on the photograph's name alone: other photographs come and go.
+    // The stream depends on the photograph's name only, so that other photographs may come and go.
     const Digest name = sha256(bytes_of(record_.photographs[next_photograph_].file));
     RandomStream random(options_.seed, "import crops of " + to_hex(name));
     const PhotoSize size{photo.image.height(), photo.image.width()};
@@ -147,7 +214,7 @@ class Import {
     picture.levels = levels_of(crop);
     if (picture.levels.rms_grey == 0.0) {
       throw FileError(one_line(record_.photographs[next_photograph_].photo.path.string()) +
-                      ": has one grey level all over the crop at x " + std::to_string(place.x) +
+                      ": has only one grey level in the crop at x " + std::to_string(place.x) +
                       ", y " + std::to_string(place.y) +
                       ", where nothing can be felt; trim the photograph, or remove it");
     }
@@ -174,7 +241,7 @@ class Import {
     }
   }
 
-  /// The study is written last, and what was there before comes back if that fails.
+  /// Writes the study last; if that fails, the earlier pictures return.
   void finish(DraftFolder& draft) {
     replace_file(draft.path() / kStimulusManifestFile, import_manifest(record_, options_));
     const fs::path from = fs::absolute(options_.study).lexically_normal().parent_path();
@@ -194,7 +261,7 @@ class Import {
     report.pictures = options_.pictures;
     report.ignored = std::move(ignored);
     for (std::size_t c = 0; c < classes_.size(); ++c) {
-      report.classes.push_back(class_figures(classes_[c], shares[c], record_, options_));
+      report.classes.push_back(summary_of(classes_[c], shares[c], record_, options_));
     }
     report.warnings = import_warnings(report.classes, record_, options_);
     return report;

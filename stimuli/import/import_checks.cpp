@@ -3,10 +3,11 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/strict_json.hpp"
-#include "stimuli/import/import_files.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <numeric>
 #include <system_error>
 
@@ -15,10 +16,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// As in study files.
+// The limits of study files.
 constexpr std::size_t kMostClasses = 64;
 constexpr int kMostStimuli = 10'000;
 constexpr NumberRange kPitchMm{0.001, 10.0};
+
+/// Devices do not render shorter waves well.
+constexpr double kFinestFeatureMm = 1.0;
+/// Fewer waves than this across a picture feel like slopes, not like a texture.
+constexpr double kFewestFeatures = 8.0;
 
 [[noreturn]] void refuse(const std::string& what) {
   throw UsageError("stimuli import: " + what);
@@ -40,7 +46,7 @@ void check_numbers(const ImportOptions& options) {
   if (!positive) refuse("--pixels-per-mm must be a number above 0, or the word file");
 }
 
-/// Whether `path` is `folder` or lies below it, links resolved as far as they exist.
+/// Whether `path` is `folder` or lies below it. Links are resolved as far as they exist.
 bool is_within(const fs::path& path, const fs::path& folder) {
   std::error_code error;
   const fs::path inner = fs::weakly_canonical(fs::absolute(path), error);
@@ -57,9 +63,7 @@ void check_writable(const fs::path& path, const ImportOptions& options, const st
   }
   if (is_within(path, options.photographs) || is_within(options.photographs, path)) {
     refuse(one_line(path.string()) +
-           " and the folder of photographs lie within one another; give "
-           "another " +
-           option);
+           " and the folder of photographs lie within one another; give another " + option);
   }
   if (!is_there(path) || options.replace) return;
   refuse(one_line(path.string()) + " exists already; give another " + option +
@@ -84,9 +88,9 @@ void check_places(const ImportOptions& options) {
     refuse(one_line(options.study.string()) + " is a folder; give another --study");
   }
   if (is_there(options.pictures) && !is_imported(options.pictures)) {
-    refuse(one_line(options.pictures.string()) +
-           " was not written by an import and is not "
-           "replaced; move it away, or give another --out");
+    refuse(
+        one_line(options.pictures.string()) +
+        " was not written by an import and is not replaced; move it away, or give another --out");
   }
 }
 
@@ -100,7 +104,7 @@ bool all_fit(const std::vector<SizedClass>& classes, int side_px, int crops) {
   });
 }
 
-/// The remedy in numbers: fewer crops of this size, or smaller ones.
+/// The remedy with numbers: fewer crops of this size, or smaller crops.
 std::string what_would_do(const std::vector<SizedClass>& classes, const ImportOptions& options) {
   int crops = options.crops;
   while (crops > 0 && !all_fit(classes, options.size_px, crops)) --crops;
@@ -125,6 +129,71 @@ void check_photo_sizes(const SizedClass& one, const std::vector<SizedClass>& cla
   }
 }
 
+/// With three digits, which are enough for advice.
+std::string rounded(double number) {
+  std::array<char, 32> text{};
+  const int length = std::snprintf(text.data(), text.size(), "%.3g", number);
+  return {text.data(), static_cast<std::size_t>(length)};
+}
+
+std::string scale_warning_of(const ImportedClass& one, const ImportOptions& options) {
+  const double side_mm = options.size_px * options.pitch_mm;
+  const std::string size =
+      "class \"" + one.label + "\": features of about " + rounded(one.feature_mm) + " mm are ";
+  if (one.feature_mm < kFinestFeatureMm) {
+    return size +
+           "finer than devices render well; give a larger --pitch-mm, or photographs from "
+           "closer up";
+  }
+  if (one.feature_mm > side_mm / kFewestFeatures) {
+    return size + "coarse for a picture of " + rounded(side_mm) +
+           " mm, which will feel like a few slopes; give a smaller --pitch-mm, a larger --size, or "
+           "photographs from farther away";
+  }
+  return {};
+}
+
+/// The photographs that one warning is about: the first by name, the others by number.
+class Counted {
+ public:
+  void add(const std::string& name) {
+    if (count_++ == 0) first_ = name;
+  }
+  [[nodiscard]] bool any() const { return count_ > 0; }
+  [[nodiscard]] std::string text() const {
+    return first_ + (count_ > 1 ? " and " + std::to_string(count_ - 1) + " more" : "");
+  }
+
+ private:
+  int count_ = 0;
+  std::string first_;
+};
+
+void add_resolution_warnings(const ImportRecord& record, const ImportOptions& options,
+                             std::vector<std::string>& warnings) {
+  Counted enlarged;
+  Counted unused;
+  double magnified = 0.0;
+  for (const ImportedPhotograph& photograph : record.photographs) {
+    const Photograph& photo = photograph.photo;
+    if (photo.scale > 1.0) enlarged.add(photograph.file);
+    const bool given = options.pixels_per_mm || options.pixels_per_mm_of_files;
+    if (given || !photo.said_pixels_per_mm) continue;
+    if (!unused.any()) magnified = *photo.said_pixels_per_mm * options.pitch_mm;
+    unused.add(photograph.file);
+  }
+  if (enlarged.any()) {
+    warnings.push_back(one_line(enlarged.text()) +
+                       ": enlarged to the pitch, which adds no detail; give photographs of more "
+                       "pixels, or a larger --pitch-mm");
+  }
+  if (unused.any()) {
+    warnings.push_back(
+        one_line(unused.text()) + ": the file states its resolution, by which the crops feel " +
+        rounded(magnified) + " times life-size; give --pixels-per-mm file for life-size");
+  }
+}
+
 }  // namespace
 
 void check_import(const ImportOptions& options) {
@@ -137,15 +206,14 @@ void check_classes(const PhotoFolder& folder, const ImportOptions& options) {
   const std::string name = one_line(options.photographs.string());
   if (classes < 2) {
     throw FileError(name + ": holds 1 class, \"" + folder.classes.front().label +
-                    "\"; a study needs 2 at least: add a folder, or a photograph, of another");
+                    "\"; a study needs 2 or more: add a folder or a photograph of another");
   }
   if (classes > kMostClasses) {
     throw FileError(name + ": holds " + std::to_string(classes) + " classes, more than " +
                     std::to_string(kMostClasses) +
                     "; to make several photographs one class, put them into a folder of its name");
   }
-  const int methods = options.protocol == ImportProtocol::comparison ? 2 : 1;
-  if (static_cast<int>(classes) * options.crops * methods > kMostStimuli) {
+  if (static_cast<int>(classes) * options.crops * options.methods > kMostStimuli) {
     throw FileError(name + ": " + std::to_string(classes) + " classes of " +
                     std::to_string(options.crops) + " crops make more than " +
                     std::to_string(kMostStimuli) + " stimuli; give fewer --crops");
@@ -169,6 +237,48 @@ std::vector<std::vector<int>> plan_shares(const std::vector<SizedClass>& classes
                     "; " + what_would_do(classes, options));
   }
   return shares;
+}
+
+ImportedClass summary_of(const SizedClass& one, const std::vector<int>& shares,
+                         const ImportRecord& record, const ImportOptions& options) {
+  ImportedClass summary;
+  summary.label = one.label;
+  summary.photographs = static_cast<int>(one.files.size());
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    summary.crops += shares[i];
+    summary.overlapping |= shares[i] > separate_crops(one.sizes[i], options.size_px);
+  }
+  std::vector<double> features_mm;
+  for (const ImportedPicture& picture : record.pictures) {
+    if (picture.label != one.label) continue;
+    features_mm.push_back(picture.levels.feature_px * options.pitch_mm);
+    summary.mean_grey += picture.levels.mean_grey / summary.crops;
+    summary.rms_grey += picture.levels.rms_grey / summary.crops;
+  }
+  summary.feature_mm = median(std::move(features_mm));
+  return summary;
+}
+
+std::vector<std::string> import_warnings(const std::vector<ImportedClass>& classes,
+                                         const ImportRecord& record, const ImportOptions& options) {
+  std::vector<std::string> warnings;
+  add_resolution_warnings(record, options, warnings);
+  for (const ImportedClass& one : classes) {
+    if (one.overlapping) {
+      warnings.push_back("class \"" + one.label +
+                         "\": some crops overlap, by up to half their side; larger or more "
+                         "photographs give separate crops");
+    }
+    const std::string scale = scale_warning_of(one, options);
+    if (!scale.empty()) warnings.push_back(scale);
+  }
+  constexpr double kNoticeableShare = 0.01;
+  for (const ImportedPicture& picture : record.pictures) {
+    if (picture.clipped_share <= kNoticeableShare) continue;
+    warnings.push_back(picture.file + ": " + rounded(100 * picture.clipped_share) +
+                       " % of its pixels were clipped by equalising; give --equalise both, or rms");
+  }
+  return warnings;
 }
 
 }  // namespace touchtrial::stimuli

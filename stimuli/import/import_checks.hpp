@@ -1,21 +1,25 @@
-/// \file What must hold before anything is read or written. Private to stimuli/import.
+/// \file What an import refuses before it reads or writes, and what it reports and warns of
+/// afterwards. Private to stimuli/import.
 #pragma once
 
 #include "stimuli/import/crop_plan.hpp"
 #include "stimuli/import/import.hpp"
-#include "stimuli/import/photo_folder.hpp"
+#include "stimuli/import/import_files.hpp"
+#include "stimuli/import/photographs.hpp"
 
+#include <filesystem>
+#include <string>
 #include <vector>
 
 namespace touchtrial::stimuli {
 
-/// Options in range, texts that JSON can hold, and places that may be written to.
+/// Checks that the options are in range, their texts are UTF-8, and the outputs may be written.
 /// \param options  with every path filled in
-/// \throws UsageError
+/// \throws UsageError if not
 void check_import(const ImportOptions& options);
 
-/// Two to 64 classes, and no more stimuli than a study may have.
-/// \throws FileError
+/// Checks that there are 2 to 64 classes, and no more stimuli than a study may have.
+/// \throws FileError if not
 void check_classes(const PhotoFolder& folder, const ImportOptions& options);
 
 /// The photographs of one class after resampling.
@@ -25,10 +29,20 @@ struct SizedClass {
   std::vector<PhotoSize> sizes;
 };
 
-/// How many crops each photograph of each class gives.
-/// \throws FileError if a photograph is smaller than a crop, or a class has too few crops; says
-///   what would do
+/// The number of crops of each photograph of each class.
+/// \throws FileError if a photograph is smaller than a crop, or a class gives too few crops; the
+///   message names numbers that would do
 [[nodiscard]] std::vector<std::vector<int>> plan_shares(const std::vector<SizedClass>& classes,
                                                         const ImportOptions& options);
+
+/// The class's part of the report.
+/// \param shares  the number of crops of each of the class's photographs
+[[nodiscard]] ImportedClass summary_of(const SizedClass& one, const std::vector<int>& shares,
+                                       const ImportRecord& record, const ImportOptions& options);
+
+/// \return warnings, one line each
+[[nodiscard]] std::vector<std::string> import_warnings(const std::vector<ImportedClass>& classes,
+                                                       const ImportRecord& record,
+                                                       const ImportOptions& options);
 
 }  // namespace touchtrial::stimuli

@@ -3,7 +3,7 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/version.hpp"
-#include "stimuli/manifest.hpp"
+#include "stimuli/default_set.hpp"
 
 #include <nlohmann/json.hpp>
 
@@ -66,7 +66,7 @@ Json to_json(const ImportedPicture& picture, const ImportRecord& record,
           {"pixels_sha256", to_hex(picture.pixels_sha256)}};
 }
 
-/// Decides every participant's schedule: another set of pictures, other schedules.
+/// The seed of every participant's schedule; other pictures give other schedules.
 std::uint64_t study_seed(const ImportRecord& record, std::uint64_t seed) {
   FieldHasher hasher;
   hasher.add("touchtrial import seed").add(static_cast<std::int64_t>(seed));
@@ -76,23 +76,23 @@ std::uint64_t study_seed(const ImportRecord& record, std::uint64_t seed) {
   std::uint64_t number = 0;
   const Digest digest = hasher.finish();
   for (std::size_t i = 0; i < 6; ++i) number = number << 8U | digest[i];
-  return number + 1;  // 0 would count as not chosen
+  return number + 1;  // 0 would count as not set
 }
 
-Json methods_of(ImportProtocol protocol) {
+Json methods_of(const ImportOptions& options) {
   Json methods = Json::array({{{"name", "adaptive"}, {"radius", 2}}});
-  if (protocol == ImportProtocol::comparison) {
+  if (options.methods > 1) {
     methods.push_back({{"name", "tv-gabor"}, {"lambda", 0.01}});
   }
   return methods;
 }
 
 Json rendering_of(const ImportOptions& options) {
-  const bool comparing = options.protocol == ImportProtocol::comparison;
+  const bool comparing = options.methods > 1;
   return {{"model", "paper"},
           {"pitch_mm", options.pitch_mm},
           {"gains", "budget"},
-          // Methods that differ in strength would be told apart by strength.
+          // Otherwise methods of different strength would be told apart by strength.
           {"equalise", comparing ? "rms" : "none"}};
 }
 
@@ -137,11 +137,10 @@ std::string import_manifest(const ImportRecord& record, const ImportOptions& opt
 
 std::string import_study(const ImportRecord& record, const ImportOptions& options,
                          const std::string& name, const std::filesystem::path& folder) {
-  const bool comparing = options.protocol == ImportProtocol::comparison;
   const Json study = {{"study", name},
-                      {"protocol", comparing ? "comparison" : "classification"},
+                      {"protocol", options.protocol},
                       {"classes", classes_of(record, folder)},
-                      {"methods", methods_of(options.protocol)},
+                      {"methods", methods_of(options)},
                       {"rendering", rendering_of(options)},
                       {"trials", {{"repeats", 5}, {"order", "shuffled"}, {"explore_limit_s", 60}}},
                       {"blinding", "double"},

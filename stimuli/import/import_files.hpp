@@ -4,7 +4,7 @@
 
 #include "core/hash.hpp"
 #include "stimuli/import/crop_plan.hpp"
-#include "stimuli/import/photograph.hpp"
+#include "stimuli/import/photographs.hpp"
 #include "stimuli/import/picture_levels.hpp"
 
 #include <filesystem>
@@ -16,14 +16,14 @@ namespace touchtrial::stimuli {
 
 inline constexpr std::string_view kImportFormat = "touchtrial-import";
 
-/// A photograph without its pixels.
+/// A photograph of the import, without its pixels.
 struct ImportedPhotograph {
   std::string file;   ///< relative to the folder of photographs, with forward slashes
   Photograph photo;   ///< the image is empty
   PhotoSize size_px;  ///< after resampling
 };
 
-/// A crop as it was written.
+/// A crop that was written.
 struct ImportedPicture {
   std::string label;
   std::string file;  ///< name in the folder of pictures
@@ -35,23 +35,24 @@ struct ImportedPicture {
   Digest pixels_sha256{};  ///< of the grey levels, row-major
 };
 
+/// Everything that an import has read and written.
 struct ImportRecord {
   std::vector<ImportedPhotograph> photographs;
   std::vector<ImportedPicture> pictures;  ///< class by class
   EqualLevels equal;
 };
 
-/// manifest.json, indented, with a line feed at the end.
+/// The text of manifest.json.
 [[nodiscard]] std::string import_manifest(const ImportRecord& record, const ImportOptions& options);
 
-/// A complete study file.
-/// \param name  of the study, as study files allow it
-/// \param folder  of the pictures, as the study file is to write it
+/// The text of the study file.
+/// \param name  of the study, valid in study files
+/// \param folder  of the pictures, relative to the study file
 [[nodiscard]] std::string import_study(const ImportRecord& record, const ImportOptions& options,
                                        const std::string& name,
                                        const std::filesystem::path& folder);
 
-/// Whether a folder is what an earlier import wrote.
+/// Whether an earlier import wrote this folder.
 [[nodiscard]] bool is_imported(const std::filesystem::path& folder);
 
 }  // namespace touchtrial::stimuli

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <numbers>
-#include <vector>
+#include <utility>
 
 namespace touchtrial::stimuli {
 namespace {
@@ -18,7 +18,8 @@ Histogram histogram_of(const GreyImage& picture) {
   return histogram;
 }
 
-/// The grey level below which lies at most `share` of the pixels.
+/// The first grey level, counted from black or from white, up to which lie more than `share` of the
+/// pixels.
 int tail(const Histogram& histogram, double share, bool from_bright) {
   std::int64_t total = 0;
   for (const std::int64_t count : histogram) total += count;
@@ -33,7 +34,7 @@ int tail(const Histogram& histogram, double share, bool from_bright) {
   return 0;
 }
 
-/// Mean of the squared gradient, from forward differences within the picture.
+/// Mean of the squared gradient, by forward differences within the picture.
 double mean_squared_gradient(const GreyImage& picture) {
   double across = 0.0;
   double down = 0.0;
@@ -51,7 +52,7 @@ double mean_squared_gradient(const GreyImage& picture) {
          down / steps(picture.height(), picture.width());
 }
 
-/// The largest rms that a picture can have about a mean.
+/// The largest rms that a picture can have about a mean without clipping beyond its tails.
 double reachable_rms(const PictureLevels& levels, double mean_grey) {
   const double up = std::max(levels.high_grey - levels.mean_grey, 0.5);
   const double down = std::max(levels.mean_grey - levels.low_grey, 0.5);
@@ -61,12 +62,16 @@ double reachable_rms(const PictureLevels& levels, double mean_grey) {
 double median_rms(std::span<const PictureLevels> set) {
   std::vector<double> rms;
   for (const PictureLevels& levels : set) rms.push_back(levels.rms_grey);
-  std::ranges::sort(rms);
-  const std::size_t middle = rms.size() / 2;
-  return rms.size() % 2 == 1 ? rms[middle] : (rms[middle - 1] + rms[middle]) / 2;
+  return median(std::move(rms));
 }
 
 }  // namespace
+
+double median(std::vector<double> numbers) {
+  std::ranges::sort(numbers);
+  const std::size_t middle = numbers.size() / 2;
+  return numbers.size() % 2 == 1 ? numbers[middle] : (numbers[middle - 1] + numbers[middle]) / 2;
+}
 
 PictureLevels levels_of(const GreyImage& picture) {
   const Histogram histogram = histogram_of(picture);

@@ -1,4 +1,4 @@
-/// \file Brightness, contrast and scale of a picture, and their equalising over a set.
+/// \file Brightness, contrast and feature size of a picture, and their equalising over a set.
 /// Private to stimuli/import. Source: docs/own-images.md, "Equalising".
 #pragma once
 
@@ -7,12 +7,13 @@
 
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace touchtrial::stimuli {
 
-/// The mean that equalising gives: the wall's own grey.
+/// The mean of equalised pictures: the grey of the flat wall.
 inline constexpr double kEqualMeanGrey = 128.0;
-/// Share of a picture's pixels at either end that may be clipped when contrasts are equalised.
+/// Share of a picture's pixels that equalising contrasts may clip at either end.
 inline constexpr double kTailShare = 0.0005;
 
 struct PictureLevels {
@@ -20,23 +21,27 @@ struct PictureLevels {
   double rms_grey = 0.0;  ///< standard deviation
   int low_grey = 0;       ///< kTailShare of the pixels are darker
   int high_grey = 0;      ///< kTailShare of the pixels are brighter
-  /// Characteristic wavelength, 2 pi rms / rms of the gradient (forward differences): that of the
-  /// wave which rises and falls as steeply. 0 if nothing varies.
+  /// Characteristic wavelength, 2 pi rms / rms of the gradient (forward differences): the
+  /// wavelength of a sine with the same slopes. 0 in a constant picture.
   double feature_px = 0.0;
 };
+
+/// The mean of the middle two of an even number.
+/// \param numbers  at least one
+[[nodiscard]] double median(std::vector<double> numbers);
 
 /// \param picture  at least 1 x 1
 [[nodiscard]] PictureLevels levels_of(const GreyImage& picture);
 
-/// What every picture of a set is to have; nothing: what it has.
+/// The levels that every picture of a set gets; without a value, each picture keeps its own.
 struct EqualLevels {
   std::optional<double> mean_grey;
   std::optional<double> rms_grey;
 };
 
-/// The mean is kEqualMeanGrey; the rms is the median of the set, or less, as much as every picture
-/// can have without being clipped beyond its tails.
-/// \param set  at least one, none of them constant
+/// The mean is kEqualMeanGrey; the rms is the median of the set, or the largest that every picture
+/// can have without clipping beyond its tails if that is less.
+/// \param set  at least one picture, none of them constant
 [[nodiscard]] EqualLevels equal_levels(std::span<const PictureLevels> set, LevelEqualising which);
 
 struct EqualisedPicture {
@@ -44,7 +49,7 @@ struct EqualisedPicture {
   double clipped_share = 0.0;  ///< of the pixels
 };
 
-/// \param levels  those of the picture; not constant if the rms is to change
+/// \param levels  of the picture; it must not be constant if the rms changes
 [[nodiscard]] EqualisedPicture equalised(const GreyImage& picture, const PictureLevels& levels,
                                          const EqualLevels& wanted);
 

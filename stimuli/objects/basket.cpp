@@ -1,6 +1,6 @@
 #include "stimuli/noise.hpp"
-#include "stimuli/objects/still_life.hpp"
 #include "stimuli/recipes.hpp"
+#include "stimuli/relief.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,7 +15,7 @@ constexpr double kBulge = 85.0;   ///< depth of the round body
 constexpr double kRow = 15.0;     ///< height of a row of rods
 constexpr double kStake = 0.125;  ///< angle between two stakes, radians
 
-/// A round-bellied basket of rods woven about upright stakes, with a twisted rim and handle.
+/// A round basket of rods woven around upright stakes, with a twisted rim and handle.
 class Basket {
  public:
   explicit Basket(std::uint64_t seed)
@@ -33,7 +33,8 @@ class Basket {
   }
 
   /// Rods over and under the stakes, row by row.
-  /// \param angle  round the basket, radians \param v  downwards, units
+  /// \param angle  round the basket, radians
+  /// \param v  downwards, units
   [[nodiscard]] SurfacePoint woven(double angle, double v) const {
     const double wobble = 2.0 * sway_.fractal(angle * 4 + 9, v / 60, 2);
     const double row = std::floor((v + wobble) / kRow);
@@ -60,7 +61,9 @@ class Basket {
     return 186.0 + 90.0 * t * (1.0 - t) - 52.0 * t * t;
   }
 
-  /// Twisted strands round an axis; `across` in -1 .. 1, `along` in units.
+  /// Strands twisted round an axis.
+  /// \param across  -1 .. 1
+  /// \param along  units
   [[nodiscard]] SurfacePoint twisted(double across, double along, double radius) const {
     const double phase = along / (2.1 * radius) + 0.55 * across;
     const double strand = phase - std::floor(phase);
@@ -141,9 +144,7 @@ class Basket {
 
 GreyImage make_basket(const Specimen& specimen, int size_px) {
   const Lamp lamp{{-0.5, -0.55, 0.8}, 0.34, 70.0, 4.0, 9.0, 0.78};
-  return photographed(specimen,
-                      laid_out(Basket(specimen.noise_seed()), size_px, object_view(specimen)), lamp,
-                      {112.0});
+  return object_picture(specimen, size_px, Basket(specimen.noise_seed()), lamp, {112.0});
 }
 
 GreyImage make_wicker(const Specimen& specimen, int size_px) {
@@ -151,8 +152,7 @@ GreyImage make_wicker(const Specimen& specimen, int size_px) {
   const Basket basket(specimen.noise_seed());
   const Noise bulge(specimen.noise_seed(), "wicker/bulge");
   const double stakes = specimen.factor("wicker/stakes", 0.15);
-  Relief relief(size_px);
-  // Stakes are never set quite upright or evenly, and the wall gives here and there.
+  // Stakes are never quite upright or evenly spaced, and the wall bulges here and there.
   const auto wall = [&](double x, double y) {
     const double u = x + 13.0 * bulge.fractal(x / 75, y / 260, 2);
     const double v = y + 13.0 * bulge.fractal(x / 210 + 20, y / 170, 2);
@@ -162,9 +162,8 @@ GreyImage make_wicker(const Specimen& specimen, int size_px) {
   };
   View view = view_of(specimen, {0.18, 0.08, 0.2});
   view.scale *= 1.3;
-  fill(relief, wall, view);
   const Lamp lamp{{-0.5, -0.55, 0.8}, 0.34, 40.0, 4.0, 9.0};
-  return photographed(specimen, relief, lamp, {118.0});
+  return surface_picture(specimen, size_px, wall, view, lamp, {118.0});
 }
 
 }  // namespace touchtrial::stimuli

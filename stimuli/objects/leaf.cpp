@@ -1,6 +1,6 @@
 #include "stimuli/noise.hpp"
-#include "stimuli/objects/still_life.hpp"
 #include "stimuli/recipes.hpp"
+#include "stimuli/relief.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,22 +10,22 @@ namespace {
 
 constexpr double kVeinDistance = 40.0;
 
-/// Of which leaf, seen from where.
+/// The shape of a leaf and its place in the picture, units.
 struct LeafShape {
   Vec2 foot{68.0, 446.0};
   double length = 560.0;
   double half_width = 188.0;
   double midrib = 5.2;  ///< its half thickness at the foot, units
-  double arch = 1.0;    ///< how much the blade as a whole rises and falls, relative
+  double arch = 1.0;    ///< relative height of the whole blade's curve
 };
 
-/// Where a point lies on the leaf.
+/// The place of a point on the leaf.
 struct LeafPlace {
   double along = 0.0;   ///< from the foot (0) to the tip (1)
   double across = 0.0;  ///< units to the right of the midrib
 };
 
-/// The side vein next to a point.
+/// The side vein nearest to a point.
 struct Vein {
   double distance = 0.0;  ///< units, across the vein
   double number = 0.0;
@@ -55,7 +55,7 @@ class Leaf {
 
  private:
   [[nodiscard]] LeafPlace locate(double x, double y) const {
-    // The leaf lies aslant, and its midrib is bent.
+    // The leaf lies diagonally, and its midrib is bent.
     constexpr Vec2 kAlong{0.7071067811865476, -0.7071067811865476};
     const Vec2 d{x - shape_.foot.x, y - shape_.foot.y};
     const double s = (d.x * kAlong.x + d.y * kAlong.y) / shape_.length;
@@ -96,7 +96,7 @@ class Leaf {
         {4.0 + lift + 1.3 * thickness * std::sqrt(1.0 - u * u) + 0.3 * grain, 0.62 + 0.08 * grain}};
   }
 
-  /// The blade as a whole: halves rise from the midrib and fall to the edge.
+  /// The curve of the whole blade: both halves rise from the midrib and fall towards the edge.
   [[nodiscard]] double arch(const LeafPlace& place) const {
     const double t = std::abs(place.across) / shape_.half_width;
     return shape_.arch * (26.0 * place.along * (1.0 - place.along) * 2.0 + 34.0 * t * (0.9 - t));
@@ -107,7 +107,7 @@ class Leaf {
     const double reach = std::abs(place.across);
     const double taper = 1.0 - 0.7 * std::min(1.0, reach / half_width(place.along));
     const double ridge = smooth_step(3.4 * taper + 0.6, 0.2, vein.distance);
-    // The net's meshes lie across, between the side veins.
+    // The meshes of the net lie across, between the side veins.
     const double wx = x + 5.0 * sway_.at(x / 20, y / 20);
     const double wy = y + 5.0 * sway_.at(x / 20 + 40, y / 20);
     const CellPlace mesh = mesh_.at(wx / 13, wy / 13);
@@ -135,37 +135,31 @@ class Leaf {
 
 GreyImage make_leaf(const Specimen& specimen, int size_px) {
   const Lamp lamp{{-0.72, -0.42, 0.75}, 0.36, 40.0, 5.0, 9.0, 0.78};
-  return photographed(specimen,
-                      laid_out(Leaf(specimen.noise_seed()), size_px, object_view(specimen)), lamp,
-                      {112.0});
+  return object_picture(specimen, size_px, Leaf(specimen.noise_seed()), lamp, {112.0});
 }
 
 GreyImage make_venation(const Specimen& specimen, int size_px) {
-  // So large a leaf that its edge is out of sight.
+  // The leaf is so large that its edge is out of sight.
   LeafShape shape;
   shape.foot = {-780.0 + specimen.shift("venation/foot", 110.0), 1010.0};
   shape.length = 2300.0;
   shape.half_width = 900.0;
   shape.arch = 0.0;
   shape.midrib = 8.6;
-  Relief relief(size_px);
   const Leaf leaf(specimen.noise_seed(), shape);
   const Noise bend(specimen.noise_seed(), "venation/bend");
   View view = view_of(specimen, {0.15, 0.25, 0.2});
   view.scale *= 1.35;
   view.relief *= 0.62;
-  fill(
-      relief,
-      [&](double x, double y) {
-        const double u = x + 8.0 * bend.fractal(x / 150, y / 150, 2);
-        const double v = y + 8.0 * bend.fractal(x / 150 + 40, y / 150, 2);
-        SurfacePoint point = leaf(u, v).surface;
-        point.height_px += 16.0 * bend.fractal(x / 110 + 80, y / 110, 2);
-        return point;
-      },
-      view);
+  const auto blade = [&](double x, double y) {
+    const double u = x + 8.0 * bend.fractal(x / 150, y / 150, 2);
+    const double v = y + 8.0 * bend.fractal(x / 150 + 40, y / 150, 2);
+    SurfacePoint point = leaf(u, v).surface;
+    point.height_px += 16.0 * bend.fractal(x / 110 + 80, y / 110, 2);
+    return point;
+  };
   const Lamp lamp{{-0.72, -0.42, 0.75}, 0.36, 30.0, 5.0, 9.0};
-  return photographed(specimen, relief, lamp, {118.0});
+  return surface_picture(specimen, size_px, blade, view, lamp, {118.0});
 }
 
 }  // namespace touchtrial::stimuli

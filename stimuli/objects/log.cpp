@@ -1,6 +1,6 @@
 #include "stimuli/noise.hpp"
-#include "stimuli/objects/still_life.hpp"
 #include "stimuli/recipes.hpp"
+#include "stimuli/relief.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,19 +10,19 @@ namespace {
 
 constexpr double kBark = 24.0;  ///< thickness of the bark
 
-/// Of which log, seen from where.
+/// The shape of a log's end and its place in the picture, units.
 struct LogShape {
   Vec2 middle{250.0, 252.0};
   Vec2 pith{232.0, 268.0};  ///< rings are wider on one side
   double radius = 206.0;    ///< of the wood
   double years = 34.0;
-  double uneven = 2.6;  ///< by how many years good and bad ones shift the rings
+  double uneven = 2.6;  ///< shift of the rings by good and bad years, years
   double saw = 0.55;    ///< height of the saw marks, units
   double rays = 60.0;   ///< wood rays in a radian
   int cracks = 9;
 };
 
-/// The sawn end of a log: rings of growth, drying cracks, saw marks, and bark round it.
+/// The sawn end of a log: growth rings, drying cracks, saw marks, and bark around it.
 class LogEnd {
  public:
   explicit LogEnd(std::uint64_t seed, const LogShape& shape = {})
@@ -45,7 +45,7 @@ class LogEnd {
   }
 
  private:
-  /// From the pith (0) to the bark (1), along rings that share the outline only far out.
+  /// From the pith (0) to the bark (1), along rings that follow the outline only far out.
   [[nodiscard]] double ring_place(double x, double y, double share) const {
     const Vec2 p{x - shape_.pith.x, y - shape_.pith.y};
     const double near = std::sqrt(p.x * p.x + p.y * p.y) / shape_.radius;
@@ -55,7 +55,7 @@ class LogEnd {
 
   [[nodiscard]] SurfacePoint wood_point(double x, double y, double share, Vec2 way) const {
     const double place = ring_place(x, y, share);
-    // Good years and bad ones: the rings' distances vary.
+    // In good and bad years rings differ in width.
     const double year = shape_.years * place + shape_.uneven * rings_.fractal(7.0 * place, 0.5, 3);
     const double season = year - std::floor(year);
     const double late = smooth_step(0.25, 0.85, season) * smooth_step(1.0, 0.93, season);
@@ -72,7 +72,7 @@ class LogEnd {
     return point;
   }
 
-  /// Cracks run from the pith outwards and open on the way; each has a direction and an end.
+  /// Cracks run outwards from the pith and widen on the way; each has its own direction and end.
   [[nodiscard]] double crack_depth(double x, double y) const {
     const Vec2 p{x - shape_.pith.x, y - shape_.pith.y};
     const double r = std::sqrt(p.x * p.x + p.y * p.y);
@@ -118,9 +118,7 @@ class LogEnd {
 
 GreyImage make_log(const Specimen& specimen, int size_px) {
   const Lamp lamp{{-0.62, -0.5, 0.62}, 0.32, 55.0, 4.0, 7.0, 0.78};
-  return photographed(specimen,
-                      laid_out(LogEnd(specimen.noise_seed()), size_px, object_view(specimen)), lamp,
-                      {116.0});
+  return object_picture(specimen, size_px, LogEnd(specimen.noise_seed()), lamp, {116.0});
 }
 
 GreyImage make_endgrain(const Specimen& specimen, int size_px) {
@@ -135,13 +133,11 @@ GreyImage make_endgrain(const Specimen& specimen, int size_px) {
   shape.saw = 0.25;
   shape.rays = 330.0;
   shape.cracks = 13;
-  Relief relief(size_px);
   const LogEnd log(specimen.noise_seed(), shape);
-  fill(
-      relief, [&](double x, double y) { return log(x, y).surface; },
-      view_of(specimen, {0.12, 0.2, 0.2}));
+  const auto wood = [&](double x, double y) { return log(x, y).surface; };
   const Lamp lamp{{-0.62, -0.5, 0.62}, 0.32, 30.0, 4.0, 7.0};
-  return photographed(specimen, relief, lamp, {118.0});
+  return surface_picture(specimen, size_px, wood, view_of(specimen, {0.12, 0.2, 0.2}), lamp,
+                         {118.0});
 }
 
 }  // namespace touchtrial::stimuli

@@ -1,6 +1,6 @@
 #include "stimuli/noise.hpp"
-#include "stimuli/objects/still_life.hpp"
 #include "stimuli/recipes.hpp"
+#include "stimuli/relief.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,16 +10,16 @@ namespace {
 
 constexpr double kHalfAngle = 1.02;  ///< of the fan, radians
 
-/// Of which shell, seen from where.
+/// The shape of a shell and its place in the picture, units.
 struct ShellShape {
   Vec2 hinge{250.0, 446.0};
   double radius = 392.0;
   double rib_angle = 0.094;  ///< between two ribs, radians
-  double dome = 84.0;        ///< how high it bulges
-  double years = 17.0;       ///< terraces of growth
+  double dome = 84.0;        ///< height of the bulge
+  double years = 17.0;       ///< number of growth terraces
 };
 
-/// A scallop from outside: ribs that fan out from the hinge, crossed by bands of growth.
+/// The outside of a scallop: ribs that fan out from the hinge, crossed by growth bands.
 class Shell {
  public:
   explicit Shell(std::uint64_t seed, const ShellShape& shape = {})
@@ -69,7 +69,7 @@ class Shell {
     return {true, point};
   }
 
-  /// Terraces of growth: rising slowly, falling suddenly, at irregular distances.
+  /// Growth terraces at irregular distances, which rise slowly and fall suddenly.
   [[nodiscard]] double growth_rings(double share, double angle) const {
     const double place = shape_.years * share * (0.7 + 0.5 * share) +
                          1.2 * growth_.fractal(share * 6, 0.7, 3) +
@@ -79,7 +79,7 @@ class Shell {
     return coarse * smooth_step(1.0, 0.86, coarse) + 0.5 * fine * smooth_step(1.0, 0.8, fine);
   }
 
-  /// Bands of colour across the ribs, broken up along the angle.
+  /// Bands of colour across the ribs, interrupted here and there.
   [[nodiscard]] double bands(double share, double angle) const {
     return growth_.fractal(share * 9 + 30, 0.4 + 0.5 * sway_.at(angle * 5, share * 5), 3) +
            0.7 * growth_.fractal(share * 26, angle * 7, 2);
@@ -108,13 +108,11 @@ class Shell {
 
 GreyImage make_shell(const Specimen& specimen, int size_px) {
   const Lamp lamp{{-0.62, -0.42, 0.8}, 0.36, 60.0, 5.0, 9.0, 0.78};
-  return photographed(specimen,
-                      laid_out(Shell(specimen.noise_seed()), size_px, object_view(specimen)), lamp,
-                      {112.0});
+  return object_picture(specimen, size_px, Shell(specimen.noise_seed()), lamp, {112.0});
 }
 
 GreyImage make_ribs(const Specimen& specimen, int size_px) {
-  // So near the margin of so large a shell that neither hinge nor margin is in sight.
+  // The shell is so large that neither its hinge nor its margin is in sight.
   ShellShape shape;
   shape.hinge = {170.0 + specimen.shift("ribs/hinge", 160.0), 1120.0};
   shape.radius = 1750.0;
@@ -123,19 +121,16 @@ GreyImage make_ribs(const Specimen& specimen, int size_px) {
   shape.years = 62.0 * specimen.factor("ribs/years", 0.25);
   const Shell shell(specimen.noise_seed(), shape);
   const Noise warp(specimen.noise_seed(), "ribs/warp");
-  Relief relief(size_px);
-  fill(
-      relief,
-      [&](double x, double y) {
-        const double u = x + 4.0 * warp.fractal(x / 130, y / 190, 2);
-        const double v = y + 14.0 * warp.fractal(x / 90 + 30, y / 140, 2);
-        SurfacePoint point = shell(u, v).surface;
-        point.height_px += 6.0 * warp.fractal(x / 80 + 60, y / 80, 3);
-        return point;
-      },
-      view_of(specimen, {0.12, 0.15, 0.2}));
+  const auto ribs = [&](double x, double y) {
+    const double u = x + 4.0 * warp.fractal(x / 130, y / 190, 2);
+    const double v = y + 14.0 * warp.fractal(x / 90 + 30, y / 140, 2);
+    SurfacePoint point = shell(u, v).surface;
+    point.height_px += 6.0 * warp.fractal(x / 80 + 60, y / 80, 3);
+    return point;
+  };
   const Lamp lamp{{-0.62, -0.42, 0.8}, 0.36, 40.0, 5.0, 9.0};
-  return photographed(specimen, relief, lamp, {118.0});
+  return surface_picture(specimen, size_px, ribs, view_of(specimen, {0.12, 0.15, 0.2}), lamp,
+                         {118.0});
 }
 
 }  // namespace touchtrial::stimuli

@@ -5,7 +5,7 @@
 namespace touchtrial::stimuli {
 namespace {
 
-/// Tall plates with deep furrows between them, cracked across, with fibres along.
+/// Tall plates with deep furrows between them, cracks across and fibres along.
 class Bark {
  public:
   explicit Bark(const Specimen& specimen)
@@ -21,7 +21,7 @@ class Bark {
 
   [[nodiscard]] SurfacePoint operator()(double x, double y) const {
     const double wx = x + 20.0 * bend_.fractal(x / 70, y / 120, 3) + 5.0 * bend_.at(x / 13, y / 22);
-    // The plates' ends are shifted from one column to the next, or they would form rows.
+    // The ends of the plates shift from one column to the next, so that they do not form rows.
     const double wy = y + 150.0 * bend_.fractal(wx / 48 + 9, y / 400 + 5, 2);
     const CellPlace plate = plates_.at(wx / width_, wy / 165);
     const CellPlace scale = scales_.at(wx / 17 + 3.1 * plates_.value(plate.cell), wy / 42);
@@ -54,10 +54,8 @@ class Bark {
 }  // namespace
 
 GreyImage make_bark(const Specimen& specimen, int size_px) {
-  Relief relief(size_px);
-  fill(relief, Bark(specimen), view_of(specimen));
   const Lamp lamp{{-0.75, -0.35, 0.62}, 0.32, 30.0, 3.0, 9.0};
-  return photographed(specimen, relief, lamp, {122.0, 0.84});
+  return surface_picture(specimen, size_px, Bark(specimen), view_of(specimen), lamp, {122.0, 0.84});
 }
 
 }  // namespace touchtrial::stimuli

@@ -11,7 +11,7 @@ namespace {
 constexpr double kBrickLength = 128.0;  ///< with a joint
 constexpr double kCourse = 47.0;        ///< height of a brick and a joint
 
-/// Where a point lies in its brick.
+/// The place of a point in its brick.
 struct BrickPlace {
   double inside = 0.0;  ///< distance to the nearest edge, pixels; negative in the joint
   std::uint32_t brick = 0;
@@ -51,7 +51,7 @@ class BrickWall {
   }
 
   [[nodiscard]] BrickPlace locate(double x, double y) const {
-    // No mason's line is straight, and no camera is level.
+    // A mason's line is never straight, and a camera never level.
     const double wy = y + 0.018 * x + 20.0 + 2.0 * edges_.fractal(x / 90, y / 90, 2);
     const double wx = x - 0.012 * y + 1.8 * edges_.fractal(x / 70 + 40, y / 70, 2);
     auto row_number = static_cast<std::int64_t>(std::floor(wy / kCourse));
@@ -82,7 +82,7 @@ class BrickWall {
     return place;
   }
 
-  /// Middle of the joint above a course; no two courses are equally high.
+  /// Middle of the joint above a course; courses differ in height.
   [[nodiscard]] double bed(std::int64_t row) const {
     return kCourse *
            (static_cast<double>(row) + 0.11 * (traits_.value(traits_.hash(row, 91)) - 0.5));
@@ -145,16 +145,15 @@ class BrickWall {
   double mortar_;     ///< height of the joints, pixels
   double roughness_;  ///< of the faces, relative
   double pitted_;     ///< share of the cells of a face that hold a pit
-  double tones_;      ///< by how much the lightness of bricks differs
+  double tones_;      ///< spread of the bricks' lightness
 };
 
 }  // namespace
 
 GreyImage make_brick(const Specimen& specimen, int size_px) {
-  Relief relief(size_px);
-  fill(relief, BrickWall(specimen), view_of(specimen, {0.18, 0.05, 0.15}));
   const Lamp lamp{{-0.5, -0.66, 0.6}, 0.34, 26.0, 2.5, 8.0};
-  return photographed(specimen, relief, lamp, {116.0, 0.92});
+  return surface_picture(specimen, size_px, BrickWall(specimen),
+                         view_of(specimen, {0.18, 0.05, 0.15}), lamp, {116.0, 0.92});
 }
 
 }  // namespace touchtrial::stimuli

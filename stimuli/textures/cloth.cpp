@@ -8,7 +8,7 @@
 namespace touchtrial::stimuli {
 namespace {
 
-/// What one system of threads shows at a point.
+/// The thread of one system at a point.
 struct ThreadPlace {
   std::int64_t number = 0;  ///< which thread
   double across = 0.0;      ///< -1 .. 1 from one side of its lane to the other
@@ -16,7 +16,7 @@ struct ThreadPlace {
   double tone = 0.0;        ///< lightness of the thread here, about -1 .. 1
 };
 
-/// Parallel threads of one direction, each of its own thickness, none quite straight.
+/// Parallel threads, each with its own thickness, none quite straight.
 class Threads {
  public:
   Threads(std::uint64_t seed, std::string_view purpose, double pitch_px)
@@ -28,7 +28,7 @@ class Threads {
   [[nodiscard]] ThreadPlace at(double across, double along) const {
     const double drift = 0.5 * wander_.fractal(across / 130, along / 130, 2);
     double lane = across / pitch_px_ + drift;
-    // The lane's own wobble is a function of its number, so the whole thread moves as one.
+    // The wobble depends on the lane's number, so that the whole thread moves together.
     const double number = std::floor(lane);
     lane += 0.26 * wander_.fractal(number * 7.31, along / 42, 2);
     ThreadPlace place;
@@ -49,7 +49,7 @@ class Threads {
   double pitch_px_;
 };
 
-/// Height of a thread that goes over and under: round across, waved along.
+/// Height of a thread that goes over and under others: round across, wavy along.
 double thread_height(const ThreadPlace& place, double lift) {
   const double u = place.across / place.thickness;
   const double round = u * u < 1.0 ? std::sqrt(1.0 - u * u) : -1.2;
@@ -83,14 +83,14 @@ class Cloth {
  private:
   static constexpr double kGapHeight = -1.7;
 
-  /// Plain weave: at a crossing the warp is up (1) where the weft is down, and the other way round
-  /// (-1) at the next.
+  /// Plain weave: the warp is up (1) and the weft down at one crossing, the warp down (-1) and the
+  /// weft up at the next.
   static double warp_lift(const ThreadPlace& warp, const ThreadPlace& weft) {
     const double up = ((warp.number + weft.number) & 1) == 1 ? 1.0 : -1.0;
     return up * (1.0 - 0.55 * weft.across * weft.across) * (1.0 - 0.55 * warp.across * warp.across);
   }
 
-  /// The upper thread at a point: twisted, so its fibres run aslant. Between threads it is dark.
+  /// The upper thread at a point: twisted, so its fibres run at an angle. Gaps are dark.
   [[nodiscard]] SurfacePoint yarn(const ThreadPlace& place, double height, double along) const {
     const double twist = fibres_.ridged((along + 4.0 * place.across) / 4.2,
                                         static_cast<double>(place.number) * 3.3 + place.across, 2);
@@ -109,10 +109,9 @@ class Cloth {
 }  // namespace
 
 GreyImage make_cloth(const Specimen& specimen, int size_px) {
-  Relief relief(size_px);
-  fill(relief, Cloth(specimen), view_of(specimen, {0.15, 0.3, 0.2}));
   const Lamp lamp{{-0.5, -0.62, 0.8}, 0.42, 14.0, 2.0, 5.0};
-  return photographed(specimen, relief, lamp, {126.0, 0.75});
+  return surface_picture(specimen, size_px, Cloth(specimen), view_of(specimen, {0.15, 0.3, 0.2}),
+                         lamp, {126.0, 0.75});
 }
 
 }  // namespace touchtrial::stimuli

@@ -15,10 +15,10 @@ struct Pebble {
   double radius_px = 0.0;
   Vec2 long_axis{1.0, 0.0};
   double slenderness = 1.0;  ///< long half-axis over the short one
-  double base_px = 0.0;      ///< how high it lies
+  double base_px = 0.0;      ///< height at which it lies
   double flatness = 0.7;     ///< height of its dome over its radius
   double albedo = 0.5;
-  double number = 0.0;  ///< moves it to a place of its own in the noise
+  double number = 0.0;  ///< gives it its own place in the noise
 };
 
 Pebble random_pebble(RandomStream& random, double radius_px, double size_px, double base_px) {
@@ -37,7 +37,7 @@ Pebble random_pebble(RandomStream& random, double radius_px, double size_px, dou
   return pebble;
 }
 
-/// The sizes from large to small; each tries so often for a place with little overlap.
+/// One size of pebbles, and how often to try for a place with little overlap. Large ones first.
 struct Layer {
   double radius_px;
   double base_px;
@@ -47,17 +47,17 @@ constexpr Layer kLayers[] = {{33.0, 7.0, 300},  {25.0, 5.0, 900},   {18.0, 3.0, 
                              {12.5, 1.0, 9000}, {8.5, -2.0, 22000}, {5.5, -5.0, 50000},
                              {3.6, -7.0, 90000}};
 
-/// Pebbles above this are the large ones, of which a heap has more or fewer.
+/// Larger pebbles than this are the large ones, whose share differs between heaps.
 constexpr double kLargest_px = 20.0;
 
-/// Pebbles that are already placed, found by the square they lie in.
+/// The pebbles placed so far, indexed by the square in which they lie.
 class Heap {
  public:
   explicit Heap(double size_px)
       : columns_(static_cast<int>((size_px + 2 * kMargin) / kSquare) + 1),
         squares_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(columns_)) {}
 
-  /// Keeps the pebble unless it would lie on others too much.
+  /// Keeps the pebble unless it overlaps others too much.
   void offer(const Pebble& pebble) {
     const int column = square_of(pebble.centre_px.x);
     const int row = square_of(pebble.centre_px.y);
@@ -163,7 +163,7 @@ class PebblePainter {
     relief_.albedo.at(y, x) = albedo(pebble, d, u, v);
   }
 
-  /// Speckles, and on some pebbles a vein.
+  /// Speckles, and a vein on some pebbles.
   [[nodiscard]] double albedo(const Pebble& pebble, Vec2 d, double u, double v) const {
     const double speckle = mottle_.fractal(d.x / 2.3 + pebble.number, d.y / 2.3, 2);
     const double cloud = mottle_.fractal(d.x / 14, d.y / 14 + pebble.number, 2);

@@ -14,14 +14,14 @@ struct Stalk {
   Vec2 along{1.0, 0.0};  ///< length 1
   double half_length_px = 0.0;
   double half_width_px = 0.0;
-  double bend_per_px = 0.0;  ///< how much it leaves the straight line, quadratically
+  double bend_per_px = 0.0;  ///< quadratic departure from a straight line
   double base_px = 0.0;
   double albedo = 0.6;
   double number = 0.0;
   double split = 0.0;  ///< 0 round, 1 a flattened, folded leaf
 };
 
-/// How the stalks of a piece are.
+/// The traits of a specimen's stalks.
 struct Strewing {
   explicit Strewing(const Specimen& specimen)
       : scale(specimen.factor("view/scale", 0.22)),
@@ -31,13 +31,13 @@ struct Strewing {
         pile_height_px(17.0 * scale * specimen.factor("view/relief", 0.3)) {}
 
   double scale;
-  double loose_share;  ///< of the stalks, that lie anywhere
-  double slope;        ///< of the way that the others lie
+  double loose_share;  ///< share of stalks that lie in any direction
+  double slope;        ///< mean direction of the others
   double thickness;    ///< of the thicker stalks, relative
   double pile_height_px;
 };
 
-/// Most lie one way, more or less; some lie anywhere.
+/// Most stalks lie roughly in one direction, some in any.
 Vec2 random_direction(RandomStream& random, const Strewing& strewing) {
   if (random.uniform() < strewing.loose_share) {
     const Vec2 any{random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)};
@@ -75,7 +75,7 @@ class StrawPainter {
     });
   }
 
-  /// Walks along the axis that the stalk follows more, and paints its width at each step.
+  /// Walks along the axis that is closer to the stalk, and paints its width at each step.
   void paint(const Stalk& stalk) {
     const bool flat = std::abs(stalk.along.x) >= std::abs(stalk.along.y);
     const double major = flat ? stalk.along.x : stalk.along.y;

@@ -1,7 +1,7 @@
 #include "analysis/collection.hpp"
 
 #include "analysis/fake_study.hpp"
-#include "analysis/report/quality.hpp"
+#include "analysis/quality.hpp"
 #include "core/errors.hpp"
 #include "support/catch.hpp"
 
@@ -30,7 +30,7 @@ int sum_of(const analysis::ParticipantFlow& flow) {
 }  // namespace
 
 TEST_CASE("load_collection tells what the study prescribes") {
-  FakeStudy study(design::Protocol::classification,
+  FakeStudy study(design::identification::classification(),
                   {.trials = R"({"explore_limit_s": 30, "on_timeout": "no-response"})"});
   const analysis::Prescription prescription = analysis::load_collection(study.store()).prescription;
   CHECK(prescription.explore_limit_s == 30.0);
@@ -54,7 +54,7 @@ TEST_CASE("A prescription follows the section on sessions where there is one") {
 }
 
 TEST_CASE("A session's record holds practice, deviations, resumptions and station") {
-  FakeStudy study(design::Protocol::classification, {.simulated = false});
+  FakeStudy study(design::identification::classification(), {.simulated = false});
   FakeSession session = session_of("P01", 1);
   session.station = falcon();
   session.servo = store::ServoHealth{.rate_hz = 998.0, .lateness_p99_us = 40.0};
@@ -93,7 +93,7 @@ TEST_CASE("A session's record holds practice, deviations, resumptions and statio
 }
 
 TEST_CASE("Practice that did not reach its criterion is told") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   FakeSession session = session_of("P01", 1);
   session.before_trials = [](store::SessionRecorder& recorder) {
     recorder.practised(milliseconds(10), {.round = 1, .presentation = 1, .correct = false});
@@ -107,7 +107,7 @@ TEST_CASE("Practice that did not reach its criterion is told") {
 }
 
 TEST_CASE("Every participant is counted once, by the session that stands") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   study.add(session_of("complete", 1));
   FakeSession stopped = session_of("stopped", 2);
   stopped.complete = false;
@@ -149,7 +149,7 @@ TEST_CASE("Every participant is counted once, by the session that stands") {
 }
 
 TEST_CASE("Of who withdrew a collection holds nothing but that") {
-  FakeStudy study(design::Protocol::classification, {.simulated = false});
+  FakeStudy study(design::identification::classification(), {.simulated = false});
   FakeSession session = session_of("P01", 1);
   session.station = falcon();
   session.servo = store::ServoHealth{};
@@ -173,7 +173,7 @@ TEST_CASE("Of who withdrew a collection holds nothing but that") {
 }
 
 TEST_CASE("Who completes after an interim look is not analysed yet") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   study.add(session_of("P01", 1));
   CHECK(analysis::load_collection(study.store()).flow.analysed == 1);  // blind: to be analysed
   study.store().unblind(milliseconds(100), "safety", true);

@@ -13,7 +13,7 @@ using std::chrono::milliseconds;
 
 constexpr int kRepeats = 4;
 
-design::StudyKey fake_key(design::Protocol protocol, const FakeOptions& options) {
+design::StudyKey fake_key(const design::Protocol& protocol, const FakeOptions& options) {
   nlohmann::json text = nlohmann::json::parse(fake_study_text(protocol, options.label));
   if (!options.trials.empty()) text["trials"].update(nlohmann::json::parse(options.trials));
   const design::Study study = design::parse_study(text.dump(), ".", "fake.json");
@@ -25,7 +25,7 @@ store::StudyCommitment fake_commitment(const design::StudyKey& key, const FakeOp
                                        const std::filesystem::path& pack) {
   store::StudyCommitment commitment;
   commitment.study = key.study.name;
-  commitment.protocol = name_of(key.study.protocol);
+  commitment.protocol = key.study.protocol_name();
   commitment.study_id = key.study_id;
   commitment.seal = design::study_seal(key);
   if (std::filesystem::exists(pack)) commitment.pack = engine::Pack(pack).digest();
@@ -103,10 +103,10 @@ void record_trial(store::SessionRecorder& recorder, const FakeSession& session,
 
 }  // namespace
 
-std::string fake_study_text(design::Protocol protocol, const std::string& first_label) {
-  const bool comparison = protocol == design::Protocol::comparison;
+std::string fake_study_text(const design::Protocol& protocol, const std::string& first_label) {
+  const bool comparison = protocol.presents_all_methods();
   nlohmann::json study{{"study", comparison ? "pair" : "single"},
-                       {"protocol", name_of(protocol)},
+                       {"protocol", std::string(protocol.name())},
                        {"trials", {{"repeats", kRepeats}}},
                        {"seed", 5}};
   study["classes"] = {{{"label", first_label}, {"images", {"../stimuli/first.png"}}},
@@ -117,7 +117,7 @@ std::string fake_study_text(design::Protocol protocol, const std::string& first_
   return study.dump();
 }
 
-FakeStudy::FakeStudy(design::Protocol protocol, const FakeOptions& options)
+FakeStudy::FakeStudy(const design::Protocol& protocol, const FakeOptions& options)
     : key_(fake_key(protocol, options)), store_(fake_store(key_, options, folder_.path())) {}
 
 void FakeStudy::add(const FakeSession& session) {

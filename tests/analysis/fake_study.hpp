@@ -2,6 +2,7 @@
 #pragma once
 
 #include "protocols/design/study_key.hpp"
+#include "protocols/identification/design/identification.hpp"
 #include "protocols/store/study_store.hpp"
 #include "support/temp_folder.hpp"
 
@@ -45,7 +46,7 @@ struct FakeOptions {
 /// Three classes, each with one image, four presentations a method.
 class FakeStudy {
  public:
-  explicit FakeStudy(design::Protocol protocol, const FakeOptions& options = {});
+  explicit FakeStudy(const design::Protocol& protocol, const FakeOptions& options = {});
 
   [[nodiscard]] const design::StudyKey& key() const noexcept { return key_; }
   [[nodiscard]] store::StudyStore& store() noexcept { return store_; }
@@ -68,7 +69,7 @@ class FakeStudy {
 };
 
 /// Its study file.
-[[nodiscard]] std::string fake_study_text(design::Protocol protocol,
+[[nodiscard]] std::string fake_study_text(const design::Protocol& protocol,
                                           const std::string& first_label);
 
 }  // namespace touchtrial

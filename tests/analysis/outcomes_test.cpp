@@ -22,7 +22,7 @@ int counted(const analysis::Outcomes& outcomes) {
 }  // namespace
 
 TEST_CASE("load_outcomes turns positions back into the classes that were meant") {
-  FakeStudy study(design::Protocol::comparison);
+  FakeStudy study(design::identification::comparison());
   study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::confusing(0, 2)});
   study.add({.participant = "P02", .enrolment = 2, .answers = FakeStudy::confusing(0, 2)});
   study.close_and_unblind();
@@ -43,7 +43,7 @@ TEST_CASE("load_outcomes turns positions back into the classes that were meant")
 }
 
 TEST_CASE("A trial without a response counts and is wrong") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   study.add({.participant = "P01", .answers = [](const design::Presentation& shown) {
                return shown.trial == 3 ? std::nullopt : std::optional(shown.stimulus.class_index);
              }});
@@ -58,7 +58,7 @@ TEST_CASE("A trial without a response counts and is wrong") {
 }
 
 TEST_CASE("Of a trial that was interrupted and repeated the repetition counts once") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   study.add({.participant = "P01", .answers = FakeStudy::always_right(), .interrupt_trial = 5});
   study.close_and_unblind();
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
@@ -69,7 +69,7 @@ TEST_CASE("Of a trial that was interrupted and repeated the repetition counts on
 }
 
 TEST_CASE("Sessions that were stopped do not count") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   const FakeAnswers right = FakeStudy::always_right();
   study.add({.participant = "P01", .enrolment = 1, .answers = right});
   study.add(
@@ -102,7 +102,7 @@ TEST_CASE("Excluded, withdrawn and foreign sessions do not count") {
 }
 
 TEST_CASE("load_outcomes keeps outcomes shut until the study is unblinded") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   study.add({.participant = "P01", .answers = FakeStudy::always_right()});
   CHECK_THROWS_AS(analysis::load_outcomes(study.store(), study.key()), StoreError);
   study.close_and_unblind();
@@ -110,7 +110,7 @@ TEST_CASE("load_outcomes keeps outcomes shut until the study is unblinded") {
 }
 
 TEST_CASE("load_outcomes names the key that does not belong") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   study.add({.participant = "P01", .answers = FakeStudy::always_right()});
   study.close_and_unblind();
 
@@ -121,8 +121,8 @@ TEST_CASE("load_outcomes names the key that does not belong") {
   CHECK(contains(complaint, foreign.study_id));
   CHECK(contains(complaint, study.key().study_id));
 
-  const design::Study renamed =
-      design::parse_study(fake_study_text(design::Protocol::classification, "brick"), ".", "x");
+  const design::Study renamed = design::parse_study(
+      fake_study_text(design::identification::classification(), "brick"), ".", "x");
   const design::StudyKey changed = design::rekeyed(study.key(), renamed);
   CHECK(contains(complaint_of<VerificationError>(
                      [&] { static_cast<void>(analysis::load_outcomes(study.store(), changed)); }),
@@ -130,7 +130,7 @@ TEST_CASE("load_outcomes names the key that does not belong") {
 }
 
 TEST_CASE("Outcomes are not shown of tables that the events do not give rise to") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   study.add({.participant = "P01", .answers = FakeStudy::always_right()});
   study.close_and_unblind();
   SQLite::Database(study.database().string(), SQLite::OPEN_READWRITE)
@@ -143,7 +143,7 @@ TEST_CASE("Outcomes are not shown of tables that the events do not give rise to"
 }
 
 TEST_CASE("An interim look shows only sessions that had ended before it") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()});
   study.store().unblind(std::chrono::seconds(1), "safety", true);
   study.add({.participant = "P02", .enrolment = 2, .answers = FakeStudy::always_right()});

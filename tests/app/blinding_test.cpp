@@ -1,5 +1,5 @@
-// What an experimenter, or anybody at the machine, can find without the key: nothing that says
-// which texture is presented, and nothing that links two presentations of one texture.
+// Without the key, nobody at the machine can find out which texture is presented, or link two
+// presentations of one texture.
 #include "app/study_folder.hpp"
 #include "core/bytes.hpp"
 #include "support/catch.hpp"
@@ -19,7 +19,7 @@ using namespace touchtrial::engine;
 
 namespace {
 
-/// Words that nothing but the study file, its images and its key may hold.
+/// Words that only the study file, its images and its key may contain.
 const std::vector<std::string> kOddLabels = {"zyxquartz", "vkjlinen", "wqxbark", "jzkmoss",
                                              "xqzgravel"};
 const std::vector<std::string> kOddImages = {"qwkvelvet", "kzzriver", "jqqplume", "wxvtin",
@@ -33,7 +33,7 @@ std::string lower(std::string text) {
   return text;
 }
 
-/// A prepared study of unmistakable words; its first texture is rough, the others are smooth.
+/// A prepared study with unique words; its first texture is rough, the others are smooth.
 struct OddStudy : StudyFolder {
   explicit OddStudy(int catch_trials = 0) {
     json classes = json::array();
@@ -71,7 +71,7 @@ struct OddStudy : StudyFolder {
   }
 };
 
-/// What must not be found, by what it is.
+/// The words that must not be found, with their meanings.
 std::map<std::string, std::string> secrets_of(const OddStudy& study) {
   std::map<std::string, std::string> secrets = {{"the seed", kOddSeed}};
   for (const std::string& label : kOddLabels) secrets["the label " + label] = label;
@@ -89,7 +89,7 @@ std::map<std::string, std::string> secrets_of(const OddStudy& study) {
   return secrets;
 }
 
-/// \return what was found, a line each, in whichever case it is written
+/// \return the words that were found in any case, one on each line
 std::string found_in(const std::string& text, const std::map<std::string, std::string>& secrets) {
   std::string found;
   const std::string lowered = lower(text);
@@ -99,8 +99,8 @@ std::string found_in(const std::string& text, const std::map<std::string, std::s
   return found;
 }
 
-/// Presents in real time, looks at the program again and again from the first response on, and
-/// kills it after the sixth. It stands still for every look, so that none takes time from the
+/// Presents in real time, inspects the program repeatedly from the first response on, and kills it
+/// after the sixth. The program is stopped during each inspection, so that none takes time from the
 /// session. Leaves `out`, `cmdline`, `fd`, `maps` and `stored`.
 void look_while_it_runs(const OddStudy& study) {
   std::string command = TOUCHTRIAL_PROGRAM;
@@ -122,7 +122,7 @@ void look_while_it_runs(const OddStudy& study) {
   REQUIRE(looked.exit_code == 0);
 }
 
-/// Which fields of the pack are named in a list of what a program has open.
+/// The fields of the pack that a list of a program's open files names.
 std::size_t fields_named(const OddStudy& study, const std::string& list) {
   std::size_t named = 0;
   for (const auto& entry : fs::directory_iterator(study.path() / "cloths.pack")) {
@@ -132,8 +132,8 @@ std::size_t fields_named(const OddStudy& study, const std::string& list) {
   return named;
 }
 
-/// Everything of one trial that can be read without the key, but for its number, its times, what
-/// was answered, and the hash of what is encrypted.
+/// Everything of one trial that can be read without the key, except its number, its times, its
+/// answer, and the hash of the encrypted data.
 using VisibleTrials = std::map<int, std::string>;
 
 VisibleTrials visible_trials(const OddStudy& study) {
@@ -176,7 +176,7 @@ TEST_CASE("nothing that a session prints, stores or shows of itself names a stim
   }
   CHECK(content(study.path() / "fd").find(".png") == std::string::npos);
   CHECK(content(study.path() / "fd").find(".key") == std::string::npos);
-  // All fields stay open, or none: one that is open alone would be the one that is presented.
+  // All fields are open, or none: a single open field would be the presented one.
   CHECK(fields_named(study, content(study.path() / "fd")) == 0);
   const std::size_t mapped = fields_named(study, content(study.path() / "maps"));
   CHECK((mapped == 0 || mapped == kOddLabels.size()));
@@ -189,7 +189,7 @@ TEST_CASE("nothing that a session prints, stores or shows of itself names a stim
   CHECK(found_in(OddStudy::files(study.path(), "db"), secrets) == "");
 }
 
-TEST_CASE("without the key, presentations look alike whatever was felt, or nothing") {
+TEST_CASE("without the key, presentations look alike, whether a texture was felt or nothing") {
   const int catch_trials = 3;
   const OddStudy study(catch_trials);
   const ProgramResult ran = study.run(study.session());

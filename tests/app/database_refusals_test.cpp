@@ -35,7 +35,7 @@ ProgramResult run_session(const StudyFolder& study, const std::string& file,
                     "--subject", study.in("quick.json"), "--headless"});
 }
 
-/// Runs it as a user whom permissions bind, which they do not root.
+/// Runs the program as an ordinary user, because permissions do not bind root.
 ProgramResult run_as_ordinary_user(const StudyFolder& study,
                                    const std::vector<std::string>& arguments) {
   if (::geteuid() != 0) return study.run(arguments);
@@ -47,7 +47,7 @@ ProgramResult run_as_ordinary_user(const StudyFolder& study,
 
 }  // namespace
 
-TEST_CASE("a database that another program writes is refused, and stays as it was") {
+TEST_CASE("a database that another program writes is refused, and is not changed") {
   const StudyFolder study;
   REQUIRE(study.simulate("study.db", {"--keep-blind"}).exit_code == 0);
   {
@@ -61,13 +61,13 @@ TEST_CASE("a database that another program writes is refused, and stays as it wa
   CHECK(note(study, study.in("study.db")).exit_code == 0);
 }
 
-TEST_CASE("a database with a corrupted page is named as damaged, whatever is asked of it") {
+TEST_CASE("every command names a database with a corrupted page as damaged") {
   const StudyFolder study;
   REQUIRE(study.simulate("study.db", {"--keep-blind"}).exit_code == 0);
   Bytes bytes = read_file(study.path() / "study.db");
   constexpr std::size_t kPage = 8192;
   REQUIRE(bytes.size() > 3 * kPage);
-  // The first page holds the schema, the second the root of the events.
+  // The first page contains the schema, the second the root of the events.
   for (std::size_t i = kPage; i < 2 * kPage; ++i) bytes[i] = 0xa5;
   replace_file(study.path() / "study.db", ByteView(bytes));
   check_refused(note(study, study.in("study.db")),
@@ -97,7 +97,7 @@ TEST_CASE("a session is not put into another study's database") {
   CHECK(content(study.path() / "study.db") == before);
 }
 
-TEST_CASE("what is no database of a study is not opened, and stays as it was") {
+TEST_CASE("a file that is not a study's database is refused, and is not changed") {
   const StudyFolder study;
   replace_file(study.path() / "letter.db", std::string(300, 'x'));
   {
@@ -112,7 +112,7 @@ TEST_CASE("what is no database of a study is not opened, and stays as it was") {
   CHECK(content(study.path() / "letter.db") == std::string(300, 'x'));
 }
 
-TEST_CASE("in a folder that may only be read, reading goes on and writing says what is wrong") {
+TEST_CASE("in a read-only folder, reading works and writing says what is wrong") {
   const StudyFolder study;
   REQUIRE(::chmod(study.path().c_str(), 0755) == 0);
   if (run_as_ordinary_user(study, {"--version"}).exit_code != 0) {
@@ -144,7 +144,7 @@ TEST_CASE("in a folder that may only be read, reading goes on and writing says w
   check_refused(simulated, {study.path().string()});
 }
 
-TEST_CASE("a refusal names a file in any language, and bytes that are no text by their numbers") {
+TEST_CASE("a refusal prints file names in any script, and bytes that are not text as numbers") {
   const TempFolder folder;
   const std::vector<std::pair<std::string, std::string>> names = {
       {"t\u00e4st-\u20ac-\U0001f600.db", "t\u00e4st-\u20ac-\U0001f600.db"},

@@ -14,7 +14,7 @@ using nlohmann::json;
 
 namespace {
 
-/// A study of two pictures of different sizes, 0.2 mm a pixel, beside empty device settings.
+/// A study of two pictures of different sizes, 0.2 mm per pixel, beside empty device settings.
 class FitFolder {
  public:
   FitFolder(int side_px, int other_side_px) {
@@ -39,7 +39,7 @@ class FitFolder {
 
 }  // namespace
 
-TEST_CASE("device fit lays the part that all pictures have without a device at hand") {
+TEST_CASE("device fit places the part that all pictures cover, without a device") {
   const ProgramResult result = FitFolder(200, 230).fit({"--device", "falcon", "--json"});
   INFO(result.errors);
   REQUIRE(result.exit_code == 0);
@@ -55,7 +55,7 @@ TEST_CASE("device fit lays the part that all pictures have without a device at h
   CHECK(fit.at("crop").is_null());
 }
 
-TEST_CASE("device fit stands a plane up when asked to") {
+TEST_CASE("device fit places a plane vertically on request") {
   const ProgramResult result =
       FitFolder(200, 200).fit({"--device", "falcon", "--orientation", "vertical", "--json"});
   REQUIRE(result.exit_code == 0);
@@ -71,7 +71,7 @@ TEST_CASE("device fit refuses a plane that is too large with a crop in pixels") 
   CHECK_THAT(result.errors, holds_text("51.2 x 51.2 mm") && holds_text("230 x 231 px"));
 }
 
-TEST_CASE("device fit takes any plane for a device that speaks the plane frame") {
+TEST_CASE("device fit accepts any plane for a device without a frame of its own") {
   const ProgramResult result = FitFolder(600, 600).fit({"--device", "simulated"});
   CHECK(result.exit_code == 0);
   CHECK_THAT(result.output, holds_text("120.0 x 120.0 mm") && holds_text("fits"));

@@ -13,7 +13,7 @@ using nlohmann::json;
 
 namespace {
 
-/// Settings of the test's own, so that those of whoever runs it do not matter.
+/// The test's own settings, so that the user's settings do not matter.
 std::string settings_in(const TempFolder& folder, const std::string& text = "{}") {
   const auto file = folder.path() / "devices.json";
   replace_file(file, text);
@@ -32,7 +32,7 @@ TEST_CASE("device list names every driver and which devices are ready") {
   CHECK_THAT(result.output, holds_text("simulated") && holds_text("ready"));
 }
 
-TEST_CASE("device list gives the same as JSON") {
+TEST_CASE("device list prints the same as JSON") {
   const TempFolder folder;
   const ProgramResult result = run_touchtrial(
       folder.path(), {"device", "list", "--json", "--settings", settings_in(folder)});
@@ -57,7 +57,7 @@ TEST_CASE("device list refuses settings that break their schema with the place")
   CHECK_THAT(result.errors, holds_text("/falcon/firmwear") && holds_text("firmware"));
 }
 
-TEST_CASE("the command device wants to know what to do") {
+TEST_CASE("the command device requires a command of its own") {
   const TempFolder folder;
   CHECK(run_touchtrial(folder.path(), {"device"}).exit_code == 2);
   const ProgramResult help = run_touchtrial(folder.path(), {"device", "--help"});

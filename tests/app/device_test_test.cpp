@@ -1,6 +1,6 @@
 // touchtrial device test and device calibrate as people and scripts run them. Every test waits for
-// what the program says, never for a time, and bears a machine that stands still: a device may then
-// be given up as a fault, which is the program's duty.
+// the program's output, never for a time, and tolerates a machine that stalls: the program must
+// then end with a fault.
 #include "app/touchtrial_process.hpp"
 #include "core/files.hpp"
 #include "support/catch.hpp"
@@ -22,7 +22,7 @@ using touchtrial::testing::ChildProcess;
 
 namespace {
 
-/// A folder with device settings of the test's own.
+/// A folder with the test's own device settings.
 class DeviceFolder {
  public:
   explicit DeviceFolder(const json& settings = json::object()) {
@@ -88,7 +88,7 @@ TEST_CASE("device test goes from wall to texture in one run, and the hand stays 
   CHECK(run.at("rate_hz") > 0.0);
   CHECK(run.at("overruns") >= 0);
   CHECK(run.at("lateness_us").at("worst") >= run.at("lateness_us").at("p50"));
-  // 2 s and the fade of 0.1 s; what the machine slept is left out, not made up for.
+  // 2 s and the fade of 0.1 s; ticks that a busy machine misses are left out.
   CHECK(run.at("ticks").get<int>() + run.at("overruns").get<int>() == 2100);
   REQUIRE(test.at("phases").size() == 2);
   for (const json& phase : test.at("phases")) {
@@ -100,7 +100,7 @@ TEST_CASE("device test goes from wall to texture in one run, and the hand stays 
   CHECK(test.at("fault_record") == "");
 }
 
-TEST_CASE("device test has a wall alone, and a summary for people") {
+TEST_CASE("device test can show only the wall, and has a summary for people") {
   const ProgramResult result =
       DeviceFolder().run("test", {"simulated", "--seconds", "0.5", "--wall-only"});
   REQUIRE(result.exit_code == 0);
@@ -123,7 +123,7 @@ TEST_CASE("device test ends at the letter q on a pipe, and not at the pipe's end
   CHECK(at_end.finish() == 128 + SIGTERM);
 }
 
-TEST_CASE("device test lets go at a space and still tells what it felt") {
+TEST_CASE("device test releases the force at a space, and still reports the run") {
   const DeviceFolder folder;
   ChildProcess test = folder.start("test", {"simulated", "--seconds", "3000"});
   REQUIRE(test.says("wall  "));
@@ -132,7 +132,7 @@ TEST_CASE("device test lets go at a space and still tells what it felt") {
   CHECK_THAT(test.output(), holds_text("let go on request"));
 }
 
-TEST_CASE("device test that a signal ends says so and leaves with the code that a shell expects") {
+TEST_CASE("device test that a signal ends says so, and exits with the code that a shell expects") {
   const auto [signal, name] =
       GENERATE(table<int, std::string>({{SIGINT, "SIGINT"}, {SIGTERM, "SIGTERM"}}));
   const DeviceFolder folder;
@@ -192,7 +192,7 @@ TEST_CASE("device list and test use the library that the settings name") {
   CHECK((code == 0 || stood_still));
 }
 
-TEST_CASE("device calibrate wants motors, and every answer") {
+TEST_CASE("device calibrate requires motors, and every answer") {
   const ProgramResult simulated = DeviceFolder().run("calibrate", {"simulated"});
   CHECK(simulated.exit_code == 1);
   CHECK(line_count(simulated.errors) == 1);

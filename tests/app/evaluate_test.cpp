@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Writes a blotchy picture and gives its path.
+/// Writes a blotchy picture.
+/// \return its path
 std::string picture_in(const TempFolder& folder, const std::string& name, int side) {
   RandomStream random(3, "evaluate test");
   GreyImage image(side, side);
@@ -34,7 +35,7 @@ std::string picture_in(const TempFolder& folder, const std::string& name, int si
   return path.string();
 }
 
-/// Hides every program from the ones that are started meanwhile.
+/// While it lives, programs that are started find no other program.
 class EmptyPath {
  public:
   explicit EmptyPath(const fs::path& folder) : before_(std::getenv("PATH")) {
@@ -50,7 +51,7 @@ class EmptyPath {
 
 }  // namespace
 
-TEST_CASE("evaluate prints both pictures' statistics, and no sweep that nobody asked for") {
+TEST_CASE("evaluate prints both pictures' statistics, and the sweep only on request") {
   const TempFolder folder;
   const std::string path = picture_in(folder, "small.png", 20);
   const ProgramResult text = run_touchtrial(folder.path(), {"evaluate", path});

@@ -54,7 +54,7 @@ TEST_CASE("extract writes the texture and every stage, with consistent shapes an
   }
 }
 
-TEST_CASE("extract dumps single precision unless asked for double") {
+TEST_CASE("extract dumps single precision unless double is requested") {
   const TempFolder folder;
   const auto path = folder.path() / "noise.png";
   write_png(path, noise(5, 7));
@@ -69,7 +69,7 @@ TEST_CASE("extract dumps single precision unless asked for double") {
   CHECK_FALSE(std::filesystem::exists(folder.path() / "tv-gabor" / "order.npy"));
 }
 
-TEST_CASE("extract takes the texture by every method and option") {
+TEST_CASE("extract extracts the texture by every method and option") {
   const TempFolder folder;
   const auto path = (folder.path() / "noise.png").string();
   write_png(path, noise(12, 17));
@@ -107,7 +107,7 @@ TEST_CASE("extract says which component auto chose, or why there is none") {
   CHECK_THAT(result.errors, holds_text("noise.png: components: auto needs an image"));
 }
 
-TEST_CASE("extract maps the picture as asked, and never the forces") {
+TEST_CASE("extract applies the mapping to the picture, and never to the forces") {
   const TempFolder folder;
   const auto path = (folder.path() / "noise.png").string();
   write_png(path, noise(12, 17));
@@ -163,7 +163,7 @@ TEST_CASE("extract draws the force field over an enlarged patch") {
   CHECK(read_grey_image(arrows).height() == 720);
 }
 
-TEST_CASE("extract says of an order of 1 that the range ends before it") {
+TEST_CASE("extract says that an order of 1 is outside the range") {
   const TempFolder folder;
   const auto path = (folder.path() / "noise.png").string();
   write_png(path, noise(5, 7));
@@ -218,7 +218,7 @@ TEST_CASE("extract refuses bad arguments with exit 2 and one line") {
   }
 }
 
-TEST_CASE("extract reports a file that is no image with exit 1, one line and its name") {
+TEST_CASE("extract refuses a file that is not an image with exit 1, one line and its name") {
   const TempFolder folder;
   const auto text = folder.path() / "text.png";
   replace_file(text, "this is no picture");

@@ -6,7 +6,7 @@ using namespace touchtrial;
 
 namespace {
 
-/// Few explorations: these tests are of the command, not of estimates.
+/// Few explorations: these tests check the command, not the estimates.
 ProgramResult fit(const StudyFolder& study, const std::vector<std::string>& more) {
   std::vector<std::string> arguments = {
       "fit", study.in("s.db"), "--subject", study.in("quick.json"), "--explorations",
@@ -50,7 +50,7 @@ TEST_CASE("fit prints tables, writes a subject file that simulate reads, and sta
   CHECK(object.at("estimates")[0].at("name") == "weber");
   CHECK(object.at("estimates")[1].at("name") == "position");
   CHECK(object.at("label_swaps").at("tried").empty());
-  // The same, whatever the number of threads.
+  // The result does not depend on the number of threads.
   CHECK(fit(study, {"--json", "--fix", "lapse,classes,swaps", "--jobs", "1"}).output ==
         as_json.output);
 }
@@ -131,24 +131,24 @@ TEST_CASE("fit replaces subject files only, and nothing that it reads") {
     CHECK(content(study.path() / name) == before);
   };
   for (const char* name : {"s.db", "s.db.key"}) {
-    unharmed(name, {"fit", study.in("s.db"), "-o", study.in(name)}, "belongs to what is fitted");
+    unharmed(name, {"fit", study.in("s.db"), "-o", study.in(name)}, "is one of the inputs");
   }
   for (const char* ending : {"-wal", "-shm"}) {
     const std::string name = study.in("s.db") + ending;
     const bool was_there = fs::exists(name);
-    require_refused(fit(study, {"-o", name}), 2, "belongs to what is fitted");
+    require_refused(fit(study, {"-o", name}), 2, "is one of the inputs");
     CHECK(fs::exists(name) == was_there);
   }
   fs::create_hard_link(study.path() / "s.db", study.path() / "linked.db");
   unharmed("linked.db", {"fit", study.in("s.db"), "-o", study.in("linked.db")},
-           "belongs to what is fitted");
+           "is one of the inputs");
   unharmed("cloths.json", {"fit", study.in("s.db"), "-o", study.in("cloths.json")},
-           "is no subject file");
+           "is not a subject file");
   const std::string accuracies = "granite=0.9,linen=0.7,corduroy=0.8";
   unharmed(
       "cloths.json",
       {"fit", study.in("cloths.json"), "--accuracies", accuracies, "-o", study.in("cloths.json")},
-      "belongs to what is fitted");
+      "is one of the inputs");
   unharmed("s.db", {"fit", study.in("s.db"), "--accuracies", accuracies}, "study file");
   fs::copy_file(study.path() / "quick.json", study.path() / "old.json");
   CHECK(fit(study, {"-o", study.in("old.json")}).exit_code == 0);

@@ -1,4 +1,4 @@
-// Several stations' databases made one, by the program: what a lab sees of it.
+// The program merges several stations' databases into one.
 #include "app/study_folder.hpp"
 #include "support/catch.hpp"
 
@@ -103,7 +103,7 @@ TEST_CASE("the summary of a merge says what was collected, and where the key is"
   CHECK(summary.at("superfluous") == json::array({study.in("s1.db")}));
   CHECK(summary.at("key") == study.in("C.db.key"));
   CHECK(content(study.in("C.db.key")) == content(study.in("s1.db.key")));
-  CHECK(ran.errors.find("s1.db: holds no finished session that the others do not hold") !=
+  CHECK(ran.errors.find("s1.db: has no finished session that the others do not have") !=
         std::string::npos);
 }
 
@@ -138,7 +138,7 @@ TEST_CASE("the key of a study with people is not copied") {
         std::string::npos);
 }
 
-TEST_CASE("a merge of a station's file that was altered ends as verifying it does") {
+TEST_CASE("a merge of an altered station file ends like its verification") {
   const SimulatedStations study;
   {
     SQLite::Database raw(study.in("s3.db"), SQLite::OPEN_READWRITE);
@@ -151,7 +151,7 @@ TEST_CASE("a merge of a station's file that was altered ends as verifying it doe
   CHECK_FALSE(fs::exists(study.in("C.db")));
 }
 
-TEST_CASE("a merge that is refused says which file, and makes none") {
+TEST_CASE("a refused merge names the file, and makes none") {
   const SimulatedStations study;
   json other = study_of("classification");
   other["seed"] = 12;
@@ -174,7 +174,7 @@ TEST_CASE("a merge that is refused says which file, and makes none") {
   replace_file(study.in("D.db.key"), content(study.in("other.db.key")));
   const ProgramResult keyed = study.merge({"s1.db", "s3.db"}, {"-o", study.in("D.db")});
   CHECK(keyed.exit_code == 1);
-  CHECK(keyed.errors.find("D.db.key: is another study's key") != std::string::npos);
+  CHECK(keyed.errors.find("D.db.key: is the key of another study") != std::string::npos);
   CHECK_FALSE(fs::exists(study.in("D.db")));
   CHECK(study.merge({"s1.db"}).exit_code == 2);
   CHECK(study.merge({}, {"-o", study.in("C.db")}).exit_code == 2);

@@ -1,4 +1,4 @@
-// Power of a study, run as a user runs it: threads, shards, kills, and what cannot be meant.
+// Power of a study, run as a user runs it: threads, shards, kills, and invalid arguments.
 #include "app/study_folder.hpp"
 #include "support/catch.hpp"
 
@@ -11,7 +11,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-/// A power run of the little study, quick enough for a test.
+/// A power run of the small study, fast enough for a test.
 Words power_of(const StudyFolder& study, const Words& more) {
   Words words = {"power",          study.in("cloths.json"),
                  "--subject",      study.in("quick.json"),
@@ -27,7 +27,7 @@ ProgramResult run_power(const StudyFolder& study, const Words& more) {
   return study.run(power_of(study, more));
 }
 
-/// That a command is refused in one line with this exit code, and says all of that.
+/// Checks that a command is refused in one line, with this exit code and these words.
 void check_refused(const ProgramResult& result, int code, const Words& says) {
   INFO(result.errors);
   CHECK(result.exit_code == code);
@@ -46,7 +46,7 @@ Words with_sizes(const Words& more) {
 
 }  // namespace
 
-TEST_CASE("power prints the same figures with any number of threads, and writes them") {
+TEST_CASE("power prints and writes the same numbers with any number of threads") {
   const StudyFolder study;
   const ProgramResult one = run_power(study, with_sizes({"--jobs", "1", "--json"}));
   INFO(one.errors);
@@ -67,7 +67,7 @@ TEST_CASE("power prints the same figures with any number of threads, and writes 
   CHECK_THAT(text.output, Catch::Contains("SIMULATED: power given the assumed sensitivity"));
 }
 
-TEST_CASE("shards of a power run, combined, print what one run prints") {
+TEST_CASE("combined shards of a power run print the same as one run") {
   const StudyFolder study;
   const ProgramResult whole = run_power(study, with_sizes({"--json"}));
   REQUIRE(whole.exit_code == 0);
@@ -97,7 +97,7 @@ TEST_CASE("shards of a power run, combined, print what one run prints") {
                 {"other", "--no-early-stop"});
 }
 
-TEST_CASE("an only shard and more shards than runs are combined like others") {
+TEST_CASE("a single shard, and more shards than runs, are combined like others") {
   const StudyFolder study;
   const auto few = [&](const Words& more) {
     Words words = power_of(study, with_sizes(more));
@@ -114,7 +114,7 @@ TEST_CASE("an only shard and more shards than runs are combined like others") {
   CHECK(study.run({"power", "--combine", study.in("four"), "--json"}).output == whole.output);
 }
 
-TEST_CASE("combining takes no option of a plan: shards have theirs") {
+TEST_CASE("the option --combine accepts no option of the plan, which the shards contain") {
   const StudyFolder study;
   for (const Words& more :
        {Words{"--runs", "10"}, Words{"--seed", "2"}, Words{"--participants", "3"},
@@ -125,7 +125,7 @@ TEST_CASE("combining takes no option of a plan: shards have theirs") {
   }
 }
 
-TEST_CASE("a power run is resumed with its own arguments alone") {
+TEST_CASE("a power run is resumed only with its own arguments") {
   const StudyFolder study;
   const Words out = {"--out", study.in("power")};
   const ProgramResult first = run_power(study, with_sizes({"--json", out[0], out[1]}));
@@ -145,7 +145,7 @@ TEST_CASE("a power run is resumed with its own arguments alone") {
                 {"power-progress.json", "truncated"});
 }
 
-TEST_CASE("power refuses what cannot be meant, in one line") {
+TEST_CASE("power refuses invalid arguments in one line") {
   const StudyFolder study;
   check_refused(run_power(study, {"--participants", "1"}), 2, {"--participants", "1"});
   check_refused(run_power(study, {"--participants", "8,8"}), 2, {"8 is given twice"});

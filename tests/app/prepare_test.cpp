@@ -112,7 +112,7 @@ TEST_CASE("prepare explains what it did for each stimulus") {
         std::string::npos);
 }
 
-TEST_CASE("prepare prints the gain of the study's model, zero too") {
+TEST_CASE("prepare prints the gain of the study's model, even if it is zero") {
   const StudyFolder study;
   json document = study_of("classification");
   document["rendering"] = {{"model", "surface"}, {"gains", {{"height_mm", 0}}}};

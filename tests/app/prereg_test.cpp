@@ -20,7 +20,7 @@ json registered_study() {
 
 }  // namespace
 
-TEST_CASE("prereg writes what is registered, the design and the hashes, and no secret") {
+TEST_CASE("prereg writes the registration, the design and the hashes, and no secret") {
   const StudyFolder study;
   replace_file(study.path() / "cloths.json", registered_study().dump());
   REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
@@ -46,14 +46,14 @@ TEST_CASE("prereg writes what is registered, the design and the hashes, and no s
   const ProgramResult again =
       study.run({"prereg", study.in("cloths.json"), "-o", study.in("page.md")});
   CHECK(again.exit_code == 2);
-  CHECK_THAT(again.errors, holds_text("is there already"));
+  CHECK_THAT(again.errors, holds_text("exists already"));
 }
 
 TEST_CASE("prereg refuses a study that is not prepared, or has changed since") {
   const StudyFolder study;
   const auto page = [&] { return study.run({"prereg", study.in("cloths.json")}); };
   CHECK(page().exit_code == 2);
-  CHECK_THAT(page().errors, holds_text("has not been prepared"));
+  CHECK_THAT(page().errors, holds_text("is not prepared"));
   REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
   CHECK_THAT(page().errors, holds_text("/registration/hypothesis is not stated"));
   CHECK(page().exit_code == 0);

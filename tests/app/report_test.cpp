@@ -1,4 +1,4 @@
-// The folder of a report as its user gets it. Figures are drawn only where gnuplot is.
+// The folder of a report. Figures are drawn only if gnuplot is installed.
 #include "app/study_folder.hpp"
 #include "support/catch.hpp"
 
@@ -8,7 +8,7 @@ using namespace touchtrial;
 
 namespace {
 
-/// Every file in a report but figures and what lists the files, in one text.
+/// The texts of all files of a report, except figures and the list of files.
 std::string texts_in(const fs::path& folder) {
   std::string all;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -26,7 +26,8 @@ ProgramResult without_gnuplot(const StudyFolder& study, const std::vector<std::s
 
 }  // namespace
 
-TEST_CASE("report --out without gnuplot writes all but figures, and says so in one line") {
+TEST_CASE(
+    "report --out without gnuplot writes everything except figures, and says so in one line") {
   const StudyFolder study;
   REQUIRE(study.simulate("s.db").exit_code == 0);
   const std::vector<std::string> report = {"report", study.in("s.db"), "--out", study.in("out")};
@@ -44,7 +45,7 @@ TEST_CASE("report --out without gnuplot writes all but figures, and says so in o
   const ProgramResult json = study.run({"report", study.in("s.db"), "--json", "--cues", "yes"});
   CHECK(content(study.path() / "out/results.json") == json.output);
 
-  // The same report without cues has fewer tables: the others go, and nothing else does.
+  // The same report without cues has fewer tables: only these are removed.
   replace_file(study.path() / "out/tables/mine.md", std::string("mine"));
   REQUIRE(fs::exists(study.path() / "out/tables/cues-1.md"));
   std::vector<std::string> fewer = report;
@@ -54,7 +55,7 @@ TEST_CASE("report --out without gnuplot writes all but figures, and says so in o
   CHECK(content(study.path() / "out/tables/mine.md") == "mine");
 }
 
-TEST_CASE("report --out refuses a file, another study's folder, and a trial that is not there") {
+TEST_CASE("report --out refuses a file, another study's folder, and a missing trial") {
   const StudyFolder study;
   REQUIRE(study.simulate("s.db").exit_code == 0);
   replace_file(study.path() / "file", std::string("text"));
@@ -77,7 +78,7 @@ TEST_CASE("report --out refuses a file, another study's folder, and a trial that
   CHECK_FALSE(fs::exists(study.path() / "out"));
 }
 
-TEST_CASE("report --out of a blind study tells nothing of what was presented") {
+TEST_CASE("report --out of a blind study reveals nothing about what was presented") {
   const StudyFolder study;
   REQUIRE(study.simulate("s.db", {"--keep-blind"}).exit_code == 0);
   const ProgramResult ran = study.run({"report", study.in("s.db"), "--out", study.in("out")});

@@ -1,4 +1,4 @@
-// One session after the other, run as an experimenter runs them, with a simulated participant.
+// Sessions with a simulated participant, run as an experimenter runs them.
 #include "app/study_folder.hpp"
 #include "protocols/store/study_store.hpp"
 #include "support/catch.hpp"
@@ -29,7 +29,7 @@ ProgramResult run(const StudyFolder& study, const std::string& participant,
   return study.run(run_arguments(study, participant, more));
 }
 
-/// A session in real time that is sent a signal once its first response was acknowledged.
+/// A session in real time that gets a signal after its first acknowledged response.
 struct Interrupted {
   Interrupted(const StudyFolder& study, const std::string& participant, int signal) {
     std::vector<std::string> command = run_arguments(study, participant, {"--real-time"});
@@ -43,8 +43,8 @@ struct Interrupted {
     REQUIRE(responded);
   }
 
-  int exit_code = 0;   ///< -1 if it died of the signal
-  std::string output;  ///< and what it said of errors
+  int exit_code = 0;   ///< -1 if the signal killed it
+  std::string output;  ///< including errors
 };
 
 int acknowledged(const std::string& output) {
@@ -56,7 +56,8 @@ int acknowledged(const std::string& output) {
   return count;
 }
 
-/// Every trial answered once, every class as often as any other, and the chain whole.
+/// Checks that every trial is answered once, that all classes are equally frequent, and that the
+/// chain is whole.
 void check_balanced(const StudyFolder& study, int participants) {
   const ProgramResult verified = study.run({"verify", study.in("db")});
   INFO(verified.output << verified.errors);
@@ -96,7 +97,7 @@ TEST_CASE("run makes the database, acknowledges every response, and is refused a
   check_balanced(study, 2);
 }
 
-TEST_CASE("stations take their own numbers of a plan, and a replacement its predecessor's") {
+TEST_CASE("stations use their own numbers of a plan, and a replacement uses its predecessor's") {
   const StudyFolder study;
   const auto plan = [&](const std::vector<std::string>& more) {
     std::vector<std::string> arguments = {"plan", study.in("cloths.json"), "--participants"};
@@ -139,7 +140,7 @@ TEST_CASE("stations take their own numbers of a plan, and a replacement its pred
   CHECK(numbers == std::vector<int>{3, 4, 6, 3});
 }
 
-TEST_CASE("a session that was killed goes on after the responses that were acknowledged") {
+TEST_CASE("a killed session resumes after the acknowledged responses") {
   const StudyFolder study;
   const Interrupted killed(study, "P01", SIGKILL);
   CHECK(killed.exit_code == -1);
@@ -152,13 +153,13 @@ TEST_CASE("a session that was killed goes on after the responses that were ackno
   const ProgramResult resumed = run(study, "P01", {"--on-existing", "resume"});
   INFO(resumed.errors);
   CHECK(resumed.exit_code == 0);
-  // The last response may have been durable without anybody having read so.
+  // The last response may be durable although its acknowledgement was not read.
   CHECK(before + acknowledged(resumed.output) >= 5);
   CHECK(before + acknowledged(resumed.output) <= 6);
   check_balanced(study, 1);
 }
 
-TEST_CASE("a session that is asked to end stays open, says so, and goes on later") {
+TEST_CASE("a session that a signal ends stays open, says so, and can be resumed") {
   const StudyFolder study;
   const Interrupted stopped(study, "P01", SIGTERM);
   CHECK(stopped.exit_code == 128 + SIGTERM);
@@ -168,7 +169,7 @@ TEST_CASE("a session that is asked to end stays open, says so, and goes on later
   check_balanced(study, 1);
 }
 
-TEST_CASE("a session that was left can be begun anew, and the one before enters no outcomes") {
+TEST_CASE("an unfinished session can be restarted, and the first one does not count") {
   const StudyFolder study;
   REQUIRE(Interrupted(study, "P01", SIGKILL).exit_code == -1);
   const ProgramResult restarted = run(study, "P01", {"--on-existing", "restart"});
@@ -178,7 +179,7 @@ TEST_CASE("a session that was left can be begun anew, and the one before enters 
   check_balanced(study, 1);
 }
 
-TEST_CASE("pilots, other studies and studies that changed are refused") {
+TEST_CASE("pilot sessions and changed studies are refused") {
   const StudyFolder study;
   REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
   REQUIRE(run(study, "P01").exit_code == 0);
@@ -194,7 +195,7 @@ TEST_CASE("pilots, other studies and studies that changed are refused") {
   CHECK(other.errors.find("prepare") != std::string::npos);
 }
 
-TEST_CASE("closing a study names the sessions that can then no longer be continued") {
+TEST_CASE("closing a study names the sessions that can no longer be continued") {
   const StudyFolder study;
   REQUIRE(Interrupted(study, "P01", SIGKILL).exit_code == -1);
   REQUIRE(run(study, "P02").exit_code == 0);

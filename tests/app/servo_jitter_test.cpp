@@ -1,5 +1,5 @@
-// The program servo_jitter as its users run it: what it prints is there and holds together. How
-// late ticks are is the machine's affair.
+// The program servo_jitter as its users run it: its output is complete and consistent. The lateness
+// of ticks depends on the machine and is not tested.
 #include "app/touchtrial_process.hpp"
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
@@ -35,7 +35,7 @@ TEST_CASE("servo_jitter measures every combination of rate, policy and load that
   }
 }
 
-TEST_CASE("unpaced ticks all reach the writer, and none is dropped") {
+TEST_CASE("all unpaced ticks reach the writer, and none is dropped") {
   const TempFolder folder;
   const ProgramResult result =
       run_program(kProgram, folder.path(), {"--unpaced", "200000", "--policy", "other", "--json"});
@@ -58,7 +58,7 @@ TEST_CASE("servo_jitter draws its histograms") {
   CHECK(std::filesystem::file_size(picture) > 1000);
 }
 
-TEST_CASE("servo_jitter refuses arguments that cannot be meant, in one line") {
+TEST_CASE("servo_jitter refuses invalid arguments in one line") {
   const TempFolder folder;
   const auto arguments = GENERATE(std::vector<std::string>{"--rate", "999"},
                                   std::vector<std::string>{"--policy", "idle"},

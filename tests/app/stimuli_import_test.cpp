@@ -1,4 +1,4 @@
-// Photographs of one's own, from their folder to an accuracy table and a contact sheet.
+// A user's photographs, from their folder to an accuracy table and a contact sheet.
 #include "app/touchtrial_process.hpp"
 #include "core/files.hpp"
 #include "core/random.hpp"
@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Stripes of another width and direction for each number, with noise on them.
+/// Noisy stripes whose width and direction depend on the number.
 GreyImage photograph(int number) {
   RandomStream random(5, "import application test", static_cast<std::uint64_t>(number));
   GreyImage image(130, 170);
@@ -110,7 +110,7 @@ TEST_CASE("import says what it made, and what is wrong with its arguments") {
                 1, "give --crops 12, --size");
 }
 
-TEST_CASE("a contact sheet is drawn as PNG, PDF and HTML, readable by its owner alone") {
+TEST_CASE("a contact sheet is drawn as PNG, PDF and HTML that only its owner can read") {
   const Album album;
   REQUIRE(album.import_with({}).exit_code == 0);
   REQUIRE(album.run({"prepare", album.in("mine.json")}).exit_code == 0);
@@ -139,7 +139,7 @@ TEST_CASE("a contact sheet is drawn with a key that is kept elsewhere") {
   REQUIRE(album.run({"prepare", album.in("mine.json")}).exit_code == 0);
   fs::create_directories(album.in("drawer/stick"));
   fs::rename(album.in("mine.key"), album.in("drawer/stick/away.key"));
-  check_refused(album.sheet("sheet.html"), 1, "a sheet is made with the study's key only");
+  check_refused(album.sheet("sheet.html"), 1, "there is no key, which a sheet needs");
   const ProgramResult drawn =
       album.sheet("sheet.html", {"--key", album.in("drawer/stick/away.key")});
   INFO(drawn.errors);
@@ -154,18 +154,18 @@ TEST_CASE("the table of an import says when its levels are those before equalisi
   CHECK(plain.output.find("before equalising") == std::string::npos);
   const ProgramResult equal = album.import_with({"--force", "--equalise", "both"});
   REQUIRE(equal.exit_code == 0);
-  CHECK_THAT(equal.output, holds_text("levels   as they were before equalising"));
+  CHECK_THAT(equal.output, holds_text("levels   before equalising"));
 }
 
-TEST_CASE("without its key, or with another study's, there is no sheet") {
+TEST_CASE("without its key, or with another study's key, there is no sheet") {
   const Album album;
   REQUIRE(album.import_with({}).exit_code == 0);
-  check_refused(album.sheet("sheet.html"), 1, "a sheet is made with the study's key only");
+  check_refused(album.sheet("sheet.html"), 1, "there is no key, which a sheet needs");
   REQUIRE(album.run({"prepare", album.in("mine.json")}).exit_code == 0);
   check_refused(album.sheet("sheet.html", {"--key", album.in("other.key")}), 1,
-                "a sheet is made with the study's key only");
-  check_refused(album.sheet("sheet.svg"), 2, "end it in .png, .pdf or .html");
-  check_refused(album.sheet("mine.pictures/D1-1.png"), 2, "a file that the sheet is made of");
+                "there is no key, which a sheet needs");
+  check_refused(album.sheet("sheet.svg"), 2, "give a name that ends in .png, .pdf or .html");
+  check_refused(album.sheet("mine.pictures/D1-1.png"), 2, "is an input of the sheet");
   write_png(album.in("mine.pictures/D1-1.png"), photograph(3));
   check_refused(album.sheet("sheet.html"), 3, "was not made from");
   REQUIRE(album.import_with({"--force", "--seed", "2"}).exit_code == 0);

@@ -58,7 +58,7 @@ TEST_CASE("measure takes a study, a picture and a folder of photographs, each a 
   CHECK_THAT(text.output, holds_text("wide.png"));
 }
 
-TEST_CASE("measure refuses what is no picture, too small, missing or empty in one line") {
+TEST_CASE("measure refuses in one line what is not a picture, too small, missing or empty") {
   const TempFolder folder;
   write_png(folder.path() / "tiny.png", GreyImage(20, 20, 7));
   replace_file(folder.path() / "text.png", "no picture");
@@ -72,6 +72,6 @@ TEST_CASE("measure refuses what is no picture, too small, missing or empty in on
   };
   CHECK_THAT(refusal("tiny.png"), holds_text("tiny.png") && holds_text("32 px"));
   CHECK_THAT(refusal("text.png"), holds_text("text.png"));
-  CHECK_THAT(refusal("empty"), holds_text("holds no picture"));
+  CHECK_THAT(refusal("empty"), holds_text("contains no picture"));
   CHECK_THAT(refusal("none.png"), holds_text("none.png"));
 }

@@ -1,4 +1,4 @@
-/// \file A study of three textures in a folder of its own, for tests that run the program.
+/// \file A study of three textures in its own folder, for tests that run the program.
 #pragma once
 
 #include "app/touchtrial_process.hpp"
@@ -20,7 +20,7 @@ namespace touchtrial {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-/// Rough noise, smooth noise and stripes: three textures that a hand can tell apart.
+/// Rough noise, smooth noise and stripes: three textures that a hand can distinguish.
 inline GreyImage texture_number(int number) {
   RandomStream random(7, "study test", static_cast<std::uint64_t>(number));
   GreyImage image(120, 120);

@@ -107,7 +107,7 @@ TEST_CASE("before unblinding, report and export show quality and no outcome") {
     const ProgramResult refused =
         study.run({"export", study.in("a.db"), "--format", format, "--out", study.in("none")});
     CHECK(refused.exit_code == 1);
-    CHECK(refused.errors.find("has not been unblinded") != std::string::npos);
+    CHECK(refused.errors.find("is not unblinded") != std::string::npos);
     CHECK_FALSE(fs::exists(study.path() / "none"));
   }
   const std::string trials = content(study.path() / "csv" / "trials.csv");
@@ -131,7 +131,7 @@ TEST_CASE("outcomes show only after closing and unblinding, which are recorded")
   CHECK(study.run({"verify", study.in("a.db")}).exit_code == 0);
 }
 
-TEST_CASE("an interim look is possible before closing, if it is called one") {
+TEST_CASE("an interim look is possible before closing, if it is declared as one") {
   const StudyFolder study;
   REQUIRE(study.simulate("a.db", {"--keep-blind"}).exit_code == 0);
   CHECK(study.run({"unblind", study.in("a.db"), "--reason", "safety", "--interim"}).exit_code == 0);
@@ -179,7 +179,7 @@ TEST_CASE("verify finds a field that was tampered with") {
   CHECK(result.output.find("pack") != std::string::npos);
 }
 
-TEST_CASE("verify calls a truncated database and an altered key findings, with exit 3") {
+TEST_CASE("verify reports a truncated database and an altered key as findings, with exit 3") {
   const StudyFolder study;
   REQUIRE(study.simulate("a.db").exit_code == 0);
   const auto verified = [&](const std::vector<std::string>& more) {
@@ -249,14 +249,14 @@ TEST_CASE("simulate does not replace a key that belongs to something else") {
   CHECK_FALSE(fs::exists(study.path() / "cloths"));
 }
 
-TEST_CASE("a removed database can be made again beside the key it left") {
+TEST_CASE("a removed database can be made again beside its key") {
   const StudyFolder study;
   REQUIRE(study.simulate("a.db").exit_code == 0);
   fs::remove(study.path() / "a.db");
   CHECK(study.simulate("a.db").exit_code == 0);
 }
 
-TEST_CASE("a seed that is no whole number of 64 bits is refused") {
+TEST_CASE("a seed that is not a 64-bit whole number is refused") {
   const StudyFolder study;
   for (const std::string seed : {"-1", "18446744073709551616", "0x10", "1.5", ""}) {
     const ProgramResult result = study.simulate("a.db", {}, seed);
@@ -266,7 +266,7 @@ TEST_CASE("a seed that is no whole number of 64 bits is refused") {
   }
 }
 
-TEST_CASE("a misspelt command is answered with the nearest one") {
+TEST_CASE("a misspelt command is answered with the nearest name") {
   const StudyFolder study;
   const ProgramResult result = study.run({"simulat"});
   CHECK(result.exit_code == 2);

@@ -14,7 +14,7 @@ using namespace touchtrial;
 
 namespace {
 
-/// A study that was prepared for people, with two simulated sessions as a rehearsal.
+/// A study that is prepared for people, with two simulated sessions.
 struct PreparedStudy : StudyFolder {
   PreparedStudy() {
     REQUIRE(StudyFolder::run({"prepare", in("cloths.json")}).exit_code == 0);
@@ -40,8 +40,8 @@ void flip(const fs::path& file, std::size_t at) {
   replace_file(file, ByteView(bytes));
 }
 
-/// Alters the middle byte of a column of one row, as somebody with an SQLite shell could who leaves
-/// the schema as it was.
+/// Alters the middle byte of a column of one row, as somebody with an SQLite shell could, without a
+/// change of the schema.
 void flip_in(const StudyFolder& study, const std::string& table, const std::string& column,
              const std::string& where) {
   SQLite::Database database(study.in("study.db"), SQLite::OPEN_READWRITE);
@@ -143,7 +143,7 @@ const std::vector<Tampering> kTamperings = {
        const json pack = json::parse(content(list));
        const std::string id =
            json::parse(content(study.path() / "cloths.pack" / "pack.json")).at("study_id");
-       // A digit becomes another one, so that it still is an identity.
+       // One digit changes, so that the value still has the form of an identity.
        flip(list, content(list).find(id) + id.find_first_of("0123456789"));
      },
      {"pack", "failed", "the pack is of study"}},
@@ -161,7 +161,7 @@ const std::vector<Tampering> kTamperings = {
      {"key", "failed", "cloths.key"}},
 };
 
-/// The lines of checks that failed.
+/// The lines of failed checks.
 std::string failed_lines(const std::string& output) {
   std::string failed;
   std::size_t at = 0;
@@ -176,7 +176,7 @@ std::string failed_lines(const std::string& output) {
 
 }  // namespace
 
-TEST_CASE("one byte altered anywhere is named by verify, with exit 3") {
+TEST_CASE("verify names one altered byte anywhere, with exit 3") {
   const PreparedStudy study;
   const ProgramResult whole = study.verify();
   INFO(whole.output << whole.errors);
@@ -207,7 +207,7 @@ TEST_CASE("one byte altered anywhere is named by verify, with exit 3") {
   CHECK(study.verify().exit_code == 0);
 }
 
-TEST_CASE("verify prints UTF-8 whatever became of the pack's list, in lines and as JSON") {
+TEST_CASE("verify prints UTF-8 even for a damaged list of the pack, as lines and as JSON") {
   const PreparedStudy study;
   const fs::path list = study.path() / "cloths.pack" / "pack.json";
   const Bytes whole = read_file(list);

@@ -13,7 +13,8 @@ struct ProgramResult {
   std::string errors;  ///< standard error
 };
 
-/// Runs `PROGRAM ARGUMENTS` to its end without any input; `folder` takes what it prints meanwhile.
+/// Runs `PROGRAM ARGUMENTS` to its end without input.
+/// \param folder  a folder for its output while it runs
 [[nodiscard]] ProgramResult run_program(const std::filesystem::path& program,
                                         const std::filesystem::path& folder,
                                         const std::vector<std::string>& arguments);

@@ -20,7 +20,7 @@ TEST_CASE("the worst motion extracts as much energy as the bound allows, within 
   CHECK(damping_by_energy(wall) == Approx(passivity_bound(wall)).epsilon(0.02));
 }
 
-TEST_CASE("a heavy mass comes to rest from half of K T on, less what the wall damps") {
+TEST_CASE("a heavy mass comes to rest with half of K T less the wall's damping") {
   const SampledWall wall{GENERATE(100.0, 400.0), 0.0, 1.0 / GENERATE(1000.0, 10'000.0)};
   const double mass_kg = wall.stiffness_n_per_m * wall.period_s * wall.period_s / 0.01;
   CHECK(damping_for_rest(wall, mass_kg) == Approx(passivity_bound(wall)).epsilon(0.02));

@@ -35,7 +35,7 @@ TEST_CASE("capitals and the kind of dash do not count") {
   CHECK(edit_distance("no response", "no-response") == 0);
 }
 
-TEST_CASE("nearest_name finds what was meant and keeps silent otherwise") {
+TEST_CASE("nearest_name finds a misspelt name, and nothing for an unrelated one") {
   constexpr std::array<std::string_view, 3> kKnown = {"gap", "gains", "max_steps"};
   CHECK(nearest_name("gian", kKnown) == std::nullopt);
   CHECK(nearest_name("gain", kKnown) == "gains");

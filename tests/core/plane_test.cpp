@@ -3,6 +3,8 @@
 #include "core/plane_geometry.hpp"
 #include "support/catch.hpp"
 
+#include <utility>
+
 using namespace touchtrial;
 
 TEST_CASE("a plane is row-major and starts filled") {
@@ -17,6 +19,23 @@ TEST_CASE("a plane is row-major and starts filled") {
 TEST_CASE("a plane with a negative side is refused") {
   CHECK_THROWS_AS(Plane<int>(-1, 3), std::invalid_argument);
   CHECK(Plane<int>(0, 3).empty());
+}
+
+TEST_CASE("the mean of a plane is exact for grey levels, and a flat plane is told from others") {
+  GreyImage image(2, 3, 200);
+  CHECK(mean_of(image) == 200.0);
+  CHECK(is_flat(image));
+  image.at(1, 2) = 203;
+  CHECK(mean_of(image) == 200.5);
+  CHECK_FALSE(is_flat(image));
+}
+
+TEST_CASE("a converted plane has the same samples, and a temporary of the same type is passed on") {
+  Plane<float> plane(2, 2, 0.25F);
+  const float* const samples = plane.samples().data();
+  CHECK(converted<double>(plane) == Plane<double>(2, 2, 0.25));
+  const Plane<float> passed = converted<float>(std::move(plane));
+  CHECK(passed.samples().data() == samples);
 }
 
 TEST_CASE("a pixel's centre lies half a pitch from its edges") {

@@ -11,14 +11,14 @@
 
 using namespace touchtrial;
 
-TEST_CASE("a stream's numbers are fixed for ever by seed, purpose and index") {
+TEST_CASE("seed, purpose and index determine a stream's numbers for ever") {
   RandomStream random(31875542, "schedule", 1);
   const std::array<std::uint64_t, 3> first = {random.bits(), random.bits(), random.bits()};
   CHECK(first == std::array<std::uint64_t, 3>{3579677490342817192ULL, 5722241296468689785ULL,
                                               6556397578880777809ULL});
 }
 
-TEST_CASE("streams of other seeds, purposes and indices are other streams") {
+TEST_CASE("another seed, purpose or index gives another stream") {
   const std::uint64_t base = RandomStream(1, "a", 0).bits();
   CHECK(RandomStream(1, "a", 0).bits() == base);
   CHECK(RandomStream(2, "a", 0).bits() != base);

@@ -1,5 +1,5 @@
-/// The JSON Schema of device settings and their reader are held to each other: every statement of
-/// the schema is tried on the reader, and what the reader says it knows is looked up in the schema.
+// Holds the JSON Schema of device settings and their reader to each other: tries every statement of
+// the schema on the reader, and looks up the keys that the reader knows in the schema.
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "device/device_settings.hpp"
@@ -61,7 +61,7 @@ std::vector<Leaf> all_leaves() {
   return leaves;
 }
 
-/// The error that a file with this value alone is refused with; empty if it is accepted.
+/// \return the error for a file with this value alone; empty if it is accepted
 std::string refusal(const Pointer& place, const json& value) {
   json file = json::object();
   file[place] = value;
@@ -73,7 +73,7 @@ std::string refusal(const Pointer& place, const json& value) {
   return "";
 }
 
-/// The keys that the reader says it knows in an object.
+/// \return the keys that the reader knows in an object, by its own error
 std::set<std::string> keys_of_reader(const Pointer& place) {
   const std::string mark = "known here: ";
   const std::string message = refusal(place / "qqqqqqqqqqqqqqqqqqqq", 1);
@@ -87,7 +87,7 @@ std::set<std::string> keys_of_reader(const Pointer& place) {
   return keys;
 }
 
-/// Where a list of three numbers is wanted: `number` first, with others that do not disturb it.
+/// \return for a list of three numbers: `number` first, with others that are valid beside it
 json in_list(const json& rule, double number) {
   if (!rule.contains("uniqueItems")) {
     const double other = std::max(0.0, rule.at("items").at("minimum").get<double>());
@@ -104,7 +104,8 @@ double step_of(const json& rule) {
   return rule.at("type") == "integer" ? 1.0 : 1e-9;
 }
 
-/// Tries one bound, and the nearest number beyond it. \return whether the schema has it
+/// Tries one bound, and the nearest number beyond it.
+/// \return whether the schema has the bound
 bool holds_bound(const Leaf& leaf, const char* word, double outwards, bool belongs) {
   const bool listed = leaf.rule.contains("items");
   const json rule = listed ? leaf.rule.at("items") : leaf.rule;
@@ -156,7 +157,7 @@ TEST_CASE("the reader keeps the types of the schema of device settings") {
                         ((type == "number" || type == "integer") && value.is_number()) ||
                         (type == "boolean" && value.is_boolean()) ||
                         (type == "array" && value.is_array());
-      // [0, 1, 2] is no gravity bias and no size: its numbers are too large, or too small.
+      // [0, 1, 2] is neither a gravity bias nor a size: its numbers are too large, or too small.
       if (fits && (leaf.place.back() == "gravity_bias_n" || leaf.place.back() == "workspace_mm"))
         continue;
       INFO(leaf.place.to_string() << " = " << value.dump());
@@ -165,7 +166,7 @@ TEST_CASE("the reader keeps the types of the schema of device settings") {
   }
 }
 
-TEST_CASE("the reader keeps the words lengths and defaults of the schema of device settings") {
+TEST_CASE("the reader keeps the words, lengths and defaults of the schema of device settings") {
   int words = 0;
   int lists = 0;
   int texts = 0;

@@ -26,7 +26,7 @@ bool is_refused(const std::string& text, const std::string& part) {
 
 }  // namespace
 
-TEST_CASE("device settings say everything about the drivers") {
+TEST_CASE("device settings give every setting of the drivers") {
   const device::DeviceSettings settings = parsed(R"({
     "falcon": {"firmware": "fw.bin", "serial": "F7", "gravity_bias_n": [0, 0.5, -0.1],
                "led_order": [2, 0, 1]},
@@ -53,7 +53,7 @@ TEST_CASE("device settings say everything about the drivers") {
 }
 
 TEST_CASE("a control character in a text is refused with its place") {
-  // To the system the first of these would be the C library.
+  // To the system the first of these names means the C library.
   CHECK(is_refused(R"({"openhaptics": {"library": "libc.so.6\u0000x"}})", "/openhaptics/library"));
   CHECK(is_refused(R"({"dhd": {"library": "libdhd.so\n"}})", "/dhd/library"));
   CHECK(is_refused(R"({"openhaptics": {"device": "a\tb"}})", "/openhaptics/device"));
@@ -63,7 +63,7 @@ TEST_CASE("a control character in a text is refused with its place") {
   CHECK(parsed(R"({"falcon": {"serial": "Größe 7"}})").falcon.serial == "Größe 7");
 }
 
-TEST_CASE("a library is a name for the system to look up or a path from the file") {
+TEST_CASE("a library is a name that the system looks up or a path from the file") {
   CHECK(parsed(R"({"dhd": {"library": "libdhd.so"}})").dhd.library == "libdhd.so");
   CHECK(parsed(R"({"dhd": {"library": "lib/libdhd.so"}})").dhd.library == "/lab/lib/libdhd.so");
   CHECK(is_refused(R"({"dhd": {"library": ""}})", "/dhd/library"));
@@ -107,7 +107,7 @@ TEST_CASE("a lab's slew limit does not keep a force from being let go") {
   CHECK(device::is_sound(limits));
 }
 
-TEST_CASE("a lab's continuous force holds where none is known and beside a larger one") {
+TEST_CASE("a lab's continuous force holds if none is known or the known one is larger") {
   device::LabLimits lab;
   lab.continuous_force_n = 0.9;
   device::SafetyLimits known;
@@ -135,7 +135,7 @@ TEST_CASE("the example settings are accepted and relative to their file") {
   CHECK(settings.use_of("dhd").limits.max_speed_mm_s == 1000.0);
 }
 
-TEST_CASE("settings of the user's folder serve unless a file is named") {
+TEST_CASE("settings come from the user's folder unless a file is named") {
   const TempFolder folder;
   const char* before = std::getenv("XDG_CONFIG_HOME");
   const std::string kept = before == nullptr ? "" : before;

@@ -1,4 +1,4 @@
-/// \file A wall by Hooke's law and a sink that keeps everything: what the device tests feel with.
+/// \file A wall by Hooke's law, and a sink that keeps all samples, for tests of devices.
 #pragma once
 
 #include "device/servo/servo.hpp"

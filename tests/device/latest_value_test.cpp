@@ -8,7 +8,7 @@
 namespace touchtrial {
 namespace {
 
-/// Torn copies would break the promise that all members are equal.
+/// All members are equal unless a copy is torn.
 struct Pair {
   std::uint64_t a = 0;
   std::uint64_t b = 0;
@@ -24,7 +24,7 @@ TEST_CASE("a latest value starts as the first and stays until a newer one comes"
   CHECK(latest.get().a == 2);
 }
 
-TEST_CASE("a reader beside a writer sees whole values that never go back") {
+TEST_CASE("a reader beside a writer sees whole values, never an older one") {
   device::LatestValue<Pair> latest;
   constexpr std::uint64_t kLast = 200'000;
   std::thread writer([&] {

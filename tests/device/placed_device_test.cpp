@@ -2,8 +2,7 @@
 #include "device/placed_device.hpp"
 
 #include "device/falcon/falcon_device.hpp"
-#include "device/falcon/rig/emulator_transport.hpp"
-#include "device/falcon/rig/lockstep.hpp"
+#include "device/falcon/rig/falcon_rig.hpp"
 #include "support/catch.hpp"
 
 namespace touchtrial {

@@ -39,7 +39,7 @@ TEST_CASE("every driver is listed whether it has a device or not") {
     CHECK(listed.count(driver.name) == 1);
 }
 
-TEST_CASE("a driver that does not exist is refused with the nearest that does") {
+TEST_CASE("a driver that does not exist is refused with the nearest name") {
   const auto opened = [](const char* name) {
     return [=] { return device::open_device(name, {}); };
   };

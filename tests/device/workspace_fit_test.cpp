@@ -124,7 +124,7 @@ TEST_CASE("the offered crop of a box is the plane cut at its sides alone") {
   CHECK(fit.largest.height_px == 150);
 }
 
-TEST_CASE("no crop that is a pixel larger fits") {
+TEST_CASE("no crop that is one pixel larger fits") {
   const PlaneGeometry plane = plane_of(80.0, 50.0);
   for (const device::Workspace& workspace :
        {ball_of(40.0), ball_of(31.0), box_of(61.0, 20.0, 47.3)}) {
@@ -154,7 +154,7 @@ TEST_CASE("a session on a device that is too small is refused with numbers and a
   CHECK(message_of<DeviceError>(
             [&] { return device::placement_of(plane_of(51.2, 51.2), device, {}); }) ==
         "falcon: the plane of 51.2 x 51.2 mm (256 x 256 px) does not fit its workspace of 80 x 80 "
-        "x 80 mm (rounded) with 5 mm around it; crop the pictures to 230 x 231 px about their "
+        "x 80 mm (rounded) with 5 mm around it; crop the pictures to 230 x 231 px around their "
         "middle (46 x 46.2 mm), turn the plane, or use a larger device");
   CHECK(refuses<DeviceError>(
       [&] {

@@ -3,7 +3,7 @@
 #include "engine/example_images.hpp"
 #include "engine/extraction.hpp"
 #include "engine/plane_comparison.hpp"
-#include "engine/reference/options_reference.hpp"
+#include "engine/reference/extraction_reference.hpp"
 #include "engine/refusal.hpp"
 #include "support/catch.hpp"
 
@@ -34,7 +34,7 @@ TEST_CASE("the gaussian texture agrees with its definition") {
                            reference::gaussian_texture(image, 0.4)) < 1e-9);
 }
 
-TEST_CASE("the median texture is its definition exactly") {
+TEST_CASE("the median texture equals its definition exactly") {
   for (const Size size : awkward_sizes()) {
     for (const auto& [name, image] : example_images(size)) {
       for (const int radius : {1, 2, 6}) {
@@ -49,7 +49,7 @@ TEST_CASE("the median texture is its definition exactly") {
         reference::median_texture(image, 63, 0.0));
 }
 
-TEST_CASE("the median texture leaves differences up to the threshold alone") {
+TEST_CASE("the median texture ignores differences up to the threshold") {
   GreyImage image = flat_image({9, 9}, 100);
   image.at(4, 4) = 104;
   CHECK(largest_magnitude(engine::median_texture<double>(image, 2, 4.0)) == 0.0);
@@ -112,7 +112,7 @@ TEST_CASE("the cited extractors give the enhanced image and no other by-product"
   }
 }
 
-TEST_CASE("parameters of the cited extractors out of range are refused by name") {
+TEST_CASE("a parameter of a cited extractor that is out of range is refused by name") {
   for (const double sigma : {kNan, 0.0, -1.0, 1001.0}) {
     engine::ExtractionOptions options = options_of(engine::Method::gaussian);
     options.sigma_px = sigma;

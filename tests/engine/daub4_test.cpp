@@ -2,7 +2,7 @@
 
 #include "engine/example_images.hpp"
 #include "engine/plane_comparison.hpp"
-#include "engine/reference/adaptive_reference.hpp"
+#include "engine/reference/extraction_reference.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -36,14 +36,14 @@ TEST_CASE("daub4 turns a constant c into ll = 2c and no details") {
   }
 }
 
-TEST_CASE("daub4 has no details for a ramp inside, its filters having two vanishing moments") {
+TEST_CASE("daub4 has no details inside a ramp, because its filters have two vanishing moments") {
   const engine::SubBands bands = engine::daub4_sub_bands(ramp_image({20, 40}, 5));
   for (int x = 0; x < 18; ++x) CHECK(bands.hl.at(4, x) == Approx(0.0).margin(1e-11));
   CHECK(largest_magnitude(bands.hh) < 1e-11);
 }
 
-TEST_CASE("daub4 keeps the energy of an image whose rim the extension repeats") {
-  // Inside a frame of zeros no filter sees past the edge, so the transform is orthonormal.
+TEST_CASE("daub4 keeps the energy of an image in a black frame") {
+  // The frame keeps the filters from the mirrored samples, so the transform is orthonormal.
   GreyImage image(40, 52);
   const GreyImage noise = noise_image({40, 52});
   double expected = 0.0;

@@ -9,7 +9,7 @@
 
 namespace touchtrial {
 
-/// Forces a target while it lives, then lets the best one be chosen again.
+/// Forces a target during its lifetime.
 class ForcedSimdTarget {
  public:
   explicit ForcedSimdTarget(const std::string& name) { force_simd_target(name); }

@@ -1,4 +1,4 @@
-/// \file Images to try the engine on: plain ones whose result is known, and irregular ones.
+/// \file Test images for the engine: plain ones with a known result, and irregular ones.
 #pragma once
 
 #include "core/plane.hpp"
@@ -24,11 +24,11 @@ struct Size {
 [[nodiscard]] GreyImage ramp_image(Size size, int slope = 1);
 /// `low` in the left half, `high` in the right.
 [[nodiscard]] GreyImage step_image(Size size, std::uint8_t low = 40, std::uint8_t high = 200);
-/// 0 and 255 by turns.
+/// 0 and 255, alternating.
 [[nodiscard]] GreyImage checkerboard(Size size);
 /// Every level equally likely.
 [[nodiscard]] GreyImage noise_image(Size size, std::uint64_t seed = 1);
-/// Only black and white, at random: the largest differences an image can have.
+/// Black and white at random: the largest differences that an image can have.
 [[nodiscard]] GreyImage speckle_image(Size size, std::uint64_t seed = 1);
 /// Threads of cloth with noise and smooth shading: all branches of the order map occur.
 [[nodiscard]] GreyImage cloth_image(Size size, std::uint64_t seed = 1);

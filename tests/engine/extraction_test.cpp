@@ -2,14 +2,15 @@
 
 #include "engine/example_images.hpp"
 #include "engine/plane_comparison.hpp"
-#include "engine/reference/adaptive_reference.hpp"
+#include "engine/reference/extraction_reference.hpp"
 #include "engine/refusal.hpp"
 #include "support/catch.hpp"
 
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <string>
+#include <limits>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -33,18 +34,13 @@ engine::ExtractionOptions fixed_options(double order, int radius = 2) {
   return options;
 }
 
-/// Where the CSGV is this close to 2 or 128, two ways of summing may take different branches.
-bool is_at_branch_point(double csgv) {
-  return std::abs(csgv - 2.0) < 1e-3 || std::abs(csgv - 128.0) < 1e-3;
-}
-
 template <typename Real>
 double texture_error(const GreyImage& image, const Plane<double>& csgv,
                      const Plane<double>& expected, int radius) {
   Plane<Real> texture = engine::extract_texture<Real>(image, adaptive_options(radius)).texture;
   Plane<double> kept = expected;
   for (std::size_t i = 0; i < kept.size(); ++i) {
-    if (is_at_branch_point(csgv.samples()[i])) {
+    if (reference::is_at_branch_point(csgv.samples()[i])) {
       kept.samples()[i] = 0.0;
       texture.samples()[i] = Real{0};
     }
@@ -162,7 +158,7 @@ TEST_CASE("tv-gabor splits an image into cartoon and texture") {
   CHECK(result.csgv.empty());
 }
 
-TEST_CASE("planes that nobody wants are left empty") {
+TEST_CASE("unwanted planes stay empty") {
   for (const engine::Method method :
        {engine::Method::adaptive, engine::Method::fixed, engine::Method::tv_gabor}) {
     engine::ExtractionOptions options;
@@ -177,19 +173,6 @@ TEST_CASE("planes that nobody wants are left empty") {
   }
 }
 
-TEST_CASE("methods have the names of study files") {
-  CHECK(engine::method_names() == std::vector<std::string>{"adaptive", "fixed", "tv-gabor",
-                                                           "gaussian", "median", "edge",
-                                                           "luminance"});
-  for (const std::string& name : engine::method_names()) {
-    const auto method = engine::method_from_name(name);
-    REQUIRE(method.has_value());
-    CHECK(engine::name_of(*method) == name);
-  }
-  CHECK_FALSE(engine::method_from_name("tv_gabor").has_value());
-  CHECK_FALSE(engine::method_from_name("").has_value());
-}
-
 TEST_CASE("extract_texture refuses an empty image, whatever the method") {
   for (const engine::Method method :
        {engine::Method::adaptive, engine::Method::fixed, engine::Method::tv_gabor}) {
@@ -198,6 +181,62 @@ TEST_CASE("extract_texture refuses an empty image, whatever the method") {
     CHECK(refusal_of([&] { (void)engine::extract_texture<float>(GreyImage(), options); }) ==
           "extract_texture: the image is empty");
   }
+}
+
+template <typename Real>
+int picture_of(Real texture) {
+  return engine::texture_picture(Plane<Real>(1, 1, texture)).at(0, 0);
+}
+
+TEMPLATE_TEST_CASE("texture_picture rounds ties upwards, never to even", "", float, double) {
+  CHECK(picture_of<TestType>(TestType(0.5)) == 129);
+  CHECK(picture_of<TestType>(TestType(1.5)) == 130);
+  CHECK(picture_of<TestType>(TestType(-0.5)) == 128);
+  CHECK(picture_of<TestType>(TestType(-1.5)) == 127);
+}
+
+TEMPLATE_TEST_CASE("texture_picture clamps to what eight bits hold", "", float, double) {
+  CHECK(picture_of<TestType>(TestType(-128.6)) == 0);
+  CHECK(picture_of<TestType>(TestType(-1000)) == 0);
+  CHECK(picture_of<TestType>(TestType(127)) == 255);
+  CHECK(picture_of<TestType>(TestType(127.5)) == 255);
+  CHECK(picture_of<TestType>(std::numeric_limits<TestType>::max()) == 255);
+  CHECK(picture_of<TestType>(std::numeric_limits<TestType>::lowest()) == 0);
+}
+
+TEST_CASE("texture_picture does not round a float twice") {
+  CHECK(picture_of(std::nextafter(0.5F, 0.0F)) == 128);
+  CHECK(picture_of(std::nextafter(-0.5F, -1.0F)) == 127);
+}
+
+TEMPLATE_TEST_CASE("the mapping abs shows magnitudes, rounded half up", "", float, double) {
+  Plane<TestType> texture(1, 4);
+  texture.at(0, 0) = TestType(-3.5);
+  texture.at(0, 1) = TestType(2.25);
+  texture.at(0, 2) = TestType(-400);
+  const GreyImage picture = engine::texture_picture(texture, engine::Mapping::abs);
+  CHECK(picture.at(0, 0) == 4);
+  CHECK(picture.at(0, 1) == 2);
+  CHECK(picture.at(0, 2) == 255);
+  CHECK(picture.at(0, 3) == 0);
+}
+
+TEMPLATE_TEST_CASE("the mapping stretch fills 0 to 255, and shows a flat texture as 0", "", float,
+                   double) {
+  Plane<TestType> texture(1, 3);
+  texture.at(0, 0) = TestType(-1);
+  texture.at(0, 1) = TestType(1);
+  texture.at(0, 2) = TestType(4);
+  const GreyImage picture = engine::texture_picture(texture, engine::Mapping::stretch);
+  CHECK(picture.at(0, 0) == 0);
+  CHECK(picture.at(0, 1) == 102);
+  CHECK(picture.at(0, 2) == 255);
+  CHECK(engine::texture_picture(Plane<TestType>(2, 3, TestType(7)), engine::Mapping::stretch) ==
+        GreyImage(2, 3));
+}
+
+TEST_CASE("texture_picture refuses an empty texture") {
+  CHECK_THROWS_AS(engine::texture_picture(Plane<float>()), std::invalid_argument);
 }
 
 }  // namespace

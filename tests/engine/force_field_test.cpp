@@ -60,7 +60,7 @@ TEST_CASE("tangential_force of a flat surface is exactly zero") {
   }
 }
 
-TEST_CASE("tangential_force turns round when bright and dark change places") {
+TEST_CASE("tangential_force changes its sign when bright and dark are swapped") {
   for (const int n : {3, 7}) {
     const Plane<double> surface = surface_of(cloth_image({20, 23}));
     Plane<double> opposite = surface;
@@ -101,7 +101,7 @@ TEST_CASE("tangential_force agrees with Eqs. 10-12 on real stimulus sizes") {
   }
 }
 
-TEST_CASE("tangential_force takes a neighbourhood far larger than the surface") {
+TEST_CASE("tangential_force accepts a neighbourhood far larger than the surface") {
   const Plane<double> surface = surface_of(noise_image({5, 4}));
   const engine::ForceField<double> whole = engine::tangential_force(surface, 9);
   const engine::ForceField<double> more = engine::tangential_force(surface, INT_MAX);
@@ -109,7 +109,7 @@ TEST_CASE("tangential_force takes a neighbourhood far larger than the surface") 
   CHECK(more.y == whole.y);
 }
 
-TEST_CASE("tangential_force refuses what is no neighbourhood, and an empty surface") {
+TEST_CASE("tangential_force refuses an invalid neighbourhood and an empty surface") {
   const Plane<double> surface(4, 4);
   for (const int n : {-3, 0, 1, 2, 4, INT_MIN}) {
     INFO("n " << n);

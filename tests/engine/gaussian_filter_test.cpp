@@ -1,21 +1,16 @@
 #include "engine/gaussian_filter.hpp"
 
+#include "engine/example_images.hpp"
+#include "engine/reference/mirror.hpp"
 #include "engine/rendering/sample_fields.hpp"
 #include "support/catch.hpp"
 
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <stdexcept>
 
 namespace touchtrial {
 namespace {
-
-/// Index on an axis that runs to its end and back for ever.
-int mirrored(int i, int n) {
-  const int folded = ((i % (2 * n)) + 2 * n) % (2 * n);
-  return folded >= n ? 2 * n - 1 - folded : folded;
-}
 
 /// The definition: a two-dimensional sum over all weights that matter.
 double filtered_slowly(const Plane<double>& plane, double sigma_px, int y, int x) {
@@ -25,22 +20,12 @@ double filtered_slowly(const Plane<double>& plane, double sigma_px, int y, int x
   for (int dy = -radius; dy <= radius; ++dy) {
     for (int dx = -radius; dx <= radius; ++dx) {
       const double weight = std::exp(-(dx * dx + dy * dy) / (2.0 * sigma_px * sigma_px));
-      sum += weight * plane.at(mirrored(y + dy, plane.height()), mirrored(x + dx, plane.width()));
+      sum += weight * reference::mirrored_sample(plane, y + dy, x + dx);
       weights += weight;
     }
   }
   return sum / weights;
 }
-
-double mean_of(const Plane<double>& plane) {
-  const auto samples = plane.samples();
-  return std::accumulate(samples.begin(), samples.end(), 0.0) / static_cast<double>(samples.size());
-}
-
-struct Size {
-  int height;
-  int width;
-};
 
 TEST_CASE("gaussian_filtered agrees with the direct two-dimensional sum on any size") {
   const auto size = GENERATE(Size{1, 1}, Size{1, 7}, Size{7, 1}, Size{2, 2}, Size{3, 3}, Size{5, 7},
@@ -81,7 +66,7 @@ TEST_CASE("gaussian_filtered keeps the mean of a plane") {
   CHECK(mean_of(engine::gaussian_filtered(plane, 2.5)) == Approx(mean_of(plane)).margin(1e-12));
 }
 
-TEST_CASE("gaussian_filtered twice is one filter of root two times the width") {
+TEST_CASE("gaussian_filtered twice equals one filter of root two times the width") {
   const Plane<double> plane = random_texture(40, 33, 3);
   const Plane<double> twice = engine::gaussian_filtered(engine::gaussian_filtered(plane, 2.0), 2.0);
   const Plane<double> once = engine::gaussian_filtered(plane, std::sqrt(8.0));
@@ -95,7 +80,7 @@ TEST_CASE("gaussian_filtered with sigma 0 gives the plane itself") {
   CHECK(engine::gaussian_filtered(plane, 0.0) == plane);
 }
 
-TEST_CASE("gaussian_filtered with a boundless sigma gives the mean everywhere") {
+TEST_CASE("gaussian_filtered with a huge or infinite sigma gives the mean everywhere") {
   const double sigma_px = GENERATE(1e3, 1e300, std::numeric_limits<double>::infinity());
   const Plane<double> plane = random_texture(7, 10, 5);
   const double mean = mean_of(plane);

@@ -1,31 +1,47 @@
 #include "engine/gl_texture.hpp"
 
 #include "engine/example_images.hpp"
-#include "engine/gl_norm.hpp"
+#include "engine/extraction.hpp"
 #include "engine/plane_comparison.hpp"
-#include "engine/reference/adaptive_reference.hpp"
+#include "engine/reference/extraction_reference.hpp"
+#include "engine/reference/gl_weights.hpp"
+#include "engine/refusal.hpp"
 #include "support/catch.hpp"
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <numeric>
+#include <stdexcept>
+#include <vector>
 
 namespace touchtrial {
 namespace {
 
 constexpr double kDoubleTolerance = 1e-10;
-/// What a float texture is promised to keep, in grey levels, on any 8-bit image.
+/// The promised error of a float texture in grey levels, on any 8-bit image.
 constexpr double kFloatTolerance = 4e-5;
 constexpr int kMaxRadius = 9;
+
+/// The texture of one order by the code that the product uses in this precision.
+template <typename Real>
+Plane<Real> texture_of(const GreyImage& image, int radius, double order) {
+  engine::ExtractionOptions options;
+  options.method = engine::Method::fixed;
+  options.radius = radius;
+  options.order = order;
+  return engine::extract_texture<Real>(image, options).texture;
+}
 
 void check_against_definition(const GreyImage& image, double order, int radius) {
   const Plane<double> orders(image.height(), image.width(), order);
   const Plane<double> expected = reference::texture(image, orders, radius);
   CHECK(largest_difference(engine::gl_texture<double>(image, radius, order), expected) <
         kDoubleTolerance);
-  CHECK(largest_difference(engine::gl_texture<float>(image, radius, order), expected) <
-        kFloatTolerance);
+  CHECK(largest_difference(texture_of<float>(image, radius, order), expected) < kFloatTolerance);
 }
 
-TEST_CASE("gl_texture of one bright pixel is its own weights") {
+TEST_CASE("gl_texture of one bright pixel shows the weights of the mask") {
   GreyImage image(5, 5);
   image.at(2, 2) = 80;
   const Plane<double> texture = engine::gl_texture<double>(image, 2, 0.5);
@@ -39,21 +55,21 @@ TEMPLATE_TEST_CASE("gl_texture of a flat image is exactly zero", "", float, doub
   for (const int level : {0, 1, 128, 255}) {
     const GreyImage image = flat_image({9, 11}, level);
     for (int radius = 1; radius <= kMaxRadius; ++radius) {
-      CHECK(largest_magnitude(engine::gl_texture<TestType>(image, radius, 0.999)) == 0.0);
+      CHECK(largest_magnitude(texture_of<TestType>(image, radius, 0.999)) == 0.0);
     }
   }
 }
 
 TEMPLATE_TEST_CASE("gl_texture of order zero is zero", "", float, double) {
-  CHECK(largest_magnitude(engine::gl_texture<TestType>(noise_image({20, 21}), 3, 0.0)) == 0.0);
+  CHECK(largest_magnitude(texture_of<TestType>(noise_image({20, 21}), 3, 0.0)) == 0.0);
 }
 
 TEMPLATE_TEST_CASE("gl_texture of a negative is the negative texture", "", float, double) {
   for (const int radius : {1, 2, 7}) {
     const GreyImage image = noise_image({31, 30});
-    Plane<TestType> texture = engine::gl_texture<TestType>(image, radius, 0.6);
+    Plane<TestType> texture = texture_of<TestType>(image, radius, 0.6);
     for (TestType& sample : texture.samples()) sample = -sample;
-    CHECK(engine::gl_texture<TestType>(negative_of(image), radius, 0.6) == texture);
+    CHECK(texture_of<TestType>(negative_of(image), radius, 0.6) == texture);
   }
 }
 
@@ -62,7 +78,7 @@ TEMPLATE_TEST_CASE("gl_texture does not depend on brightness", "", float, double
   for (std::uint8_t& sample : dark.samples()) sample = static_cast<std::uint8_t>(sample / 2);
   GreyImage bright = dark;
   for (std::uint8_t& sample : bright.samples()) sample = static_cast<std::uint8_t>(sample + 100);
-  CHECK(engine::gl_texture<TestType>(bright, 4, 0.7) == engine::gl_texture<TestType>(dark, 4, 0.7));
+  CHECK(texture_of<TestType>(bright, 4, 0.7) == texture_of<TestType>(dark, 4, 0.7));
 }
 
 TEST_CASE("gl_texture stays within 255 (1 - S_K), and reaches it") {
@@ -100,7 +116,7 @@ TEST_CASE("gl_texture agrees with its definition for every order") {
   }
 }
 
-TEST_CASE("gl_texture takes the order of the square that a pixel lies in") {
+TEST_CASE("gl_texture takes the order of the square that contains the pixel") {
   const GreyImage image = noise_image({7, 9});
   Plane<double> half(4, 5);
   Plane<double> full(7, 9);
@@ -111,6 +127,44 @@ TEST_CASE("gl_texture takes the order of the square that a pixel lies in") {
   }
   CHECK(largest_difference(engine::gl_texture<double>(image, 3, half),
                            reference::texture(image, full, 3)) < kDoubleTolerance);
+}
+
+TEST_CASE("the reference's weights are the binomial coefficients of the order") {
+  const double v = 0.6;
+  const std::vector<double> weights = reference::gl_weights(v, 3);
+  REQUIRE(weights.size() == 4);
+  CHECK(weights[0] == 1.0);
+  CHECK(weights[1] == Approx(-v).epsilon(1e-15));
+  CHECK(weights[2] == Approx(v * (v - 1) / 2).epsilon(1e-15));
+  CHECK(weights[3] == Approx(-v * (v - 1) * (v - 2) / 6).epsilon(1e-15));
+}
+
+TEST_CASE("the reference's weights of order zero keep the sample and nothing else") {
+  for (std::size_t k = 1; k <= 7; ++k) CHECK(reference::gl_weights(0.0, 7)[k] == 0.0);
+}
+
+TEST_CASE("gl_weight_sum is the sum of the weights, above 0 and at most 1") {
+  for (const double order : {0.0, 0.1, 0.5, 0.666, 0.9, 0.999999}) {
+    for (int radius = 1; radius <= 7; ++radius) {
+      const std::vector<double> weights = reference::gl_weights(order, radius);
+      const double sum = std::accumulate(weights.begin(), weights.end(), 0.0);
+      INFO("order " << order << ", radius " << radius);
+      CHECK(engine::gl_weight_sum(order, radius) == Approx(sum).margin(1e-15));
+      CHECK(engine::gl_weight_sum(order, radius) > 0.0);
+      CHECK(engine::gl_weight_sum(order, radius) <= 1.0);
+    }
+  }
+}
+
+TEST_CASE("gl_weight_sum names the option that it refuses") {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const double order : {kNan, kInfinity, -kInfinity, 1.0, -1.0, -1e-9}) {
+    INFO("order " << order);
+    CHECK(refusal_of([&] { (void)engine::gl_weight_sum(order, 2); }).starts_with("order:"));
+  }
+  CHECK(refusal_of([] { (void)engine::gl_weight_sum(0.5, 0); }).starts_with("radius:"));
+  CHECK_THROWS_AS(engine::gl_weight_sum(0.5, -1), std::invalid_argument);
 }
 
 }  // namespace

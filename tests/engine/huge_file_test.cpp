@@ -1,4 +1,4 @@
-// Files far larger than their pictures must not cost what they weigh.
+// A file far larger than its picture must not cost memory for its size.
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "image_samples.hpp"
@@ -17,7 +17,7 @@ namespace {
 constexpr std::uintmax_t kHugeBytes = std::uintmax_t{3} << 29U;  // 1.5 GiB, a hole on disk
 constexpr long kModest_kib = 64L << 10U;
 
-/// The most memory that this process ever had, in KiB.
+/// The peak memory of this process, in KiB.
 long peak_memory_kib() {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
@@ -26,7 +26,7 @@ long peak_memory_kib() {
   return 0;
 }
 
-/// A file that starts with these bytes and goes on with zeros.
+/// A file that starts with these bytes and continues with zeros.
 class HugeFile {
  public:
   explicit HugeFile(const Bytes& start) : path_(folder_.path() / "huge") {
@@ -49,12 +49,12 @@ void check_refused_cheaply(const Bytes& start, const std::string& reason) {
 
 }  // namespace
 
-TEST_CASE("1.5 GiB of nothing are refused at the price of a page") {
+TEST_CASE("1.5 GiB of zeros are refused at the cost of a few pages") {
   check_refused_cheaply({}, "not an image of a known kind");
   check_refused_cheaply(text("GIF89a"), "GIF");
 }
 
-TEST_CASE("1.5 GiB of junk behind the beginning of a picture are refused at the price of a page") {
+TEST_CASE("1.5 GiB of junk after the start of a picture are refused at the cost of a few pages") {
   check_refused_cheaply(hex("89504e470d0a1a0a"), "truncated or damaged");
   check_refused_cheaply(hex("ffd8ffe0"), "truncated or damaged");
   check_refused_cheaply(text(std::string_view("II*\0", 4)), "truncated or damaged");
@@ -62,7 +62,7 @@ TEST_CASE("1.5 GiB of junk behind the beginning of a picture are refused at the 
   check_refused_cheaply(text("P5 99999 99999 255\n"), "more than");
 }
 
-TEST_CASE("a small picture with 1.5 GiB behind its end is read at its own price") {
+TEST_CASE("a small picture with 1.5 GiB after its end costs no more than the picture") {
   const Raster colour = colour_picture();
   for (const Bytes& picture : {png_file(colour), jpeg_file(colour), tiff_file(colour),
                                bmp_file(colour), ppm_file(colour)}) {

@@ -17,7 +17,7 @@ using namespace touchtrial::samples;
 
 namespace {
 
-/// The message of the FileError that reading throws, or "" if it throws nothing.
+/// The message of the FileError that reading throws; "" if it throws nothing.
 std::string error_of(const Bytes& bytes) {
   try {
     static_cast<void>(read_bytes(bytes));
@@ -32,7 +32,7 @@ bool is_readable_or_refused(const Bytes& bytes) {
   return error.find('\n') == std::string::npos;
 }
 
-/// What `action` makes the process write to standard output and standard error.
+/// What the process writes to standard output and standard error during `action`.
 std::string printed_by(const std::function<void()>& action) {
   const TempFolder folder;
   const auto path = folder.path() / "printed";
@@ -63,7 +63,7 @@ Bytes jpeg_with_short_scan() {
   return file;
 }
 
-/// A header alone: width and height in a PNG, JPEG, BMP, TIFF and PGM.
+/// A PNG, JPEG, BMP, TIFF and PGM that consist of a header alone.
 std::vector<Bytes> headers(std::uint32_t width, std::uint32_t height) {
   Bytes png = hex("89504e470d0a1a0a0000000d49484452");
   append(png, numbers({width, height}, 4, true));
@@ -113,7 +113,7 @@ TEST_CASE("an error is one line that names the file, even if its name is hostile
   CHECK_THROWS_WITH(read_grey_image(path), holds_text("two lines.png") && holds_text("; "));
 }
 
-TEST_CASE("every beginning of a picture is refused, and the whole is not") {
+TEST_CASE("every truncated picture is refused, and the complete one is read") {
   for (const auto& [kind, file] : one_of_each_kind()) {
     INFO(kind);
     CHECK(error_of(file).empty());
@@ -124,7 +124,7 @@ TEST_CASE("every beginning of a picture is refused, and the whole is not") {
   }
 }
 
-TEST_CASE("a JPEG whose scan is cut is refused though an end marker follows") {
+TEST_CASE("a JPEG with a truncated scan is refused even if an end marker follows") {
   CHECK_THAT(error_of(jpeg_with_short_scan()), holds_text("damaged"));
 }
 
@@ -157,7 +157,7 @@ TEST_CASE("a picture of more than 2^28 pixels is refused from its header") {
   CHECK_THAT(error_of(text("P5 399999999 399999999 255\n")), holds_text("more than"));
 }
 
-TEST_CASE("a picture of exactly 2^28 pixels is not too large, only cut") {
+TEST_CASE("a header of exactly 2^28 pixels is not too large, only truncated") {
   for (const Bytes& file : headers(16384, 16384)) {
     CHECK_THAT(error_of(file), holds_text("truncated"));
   }
@@ -183,7 +183,7 @@ TEST_CASE("a PGM sample above the stated maximum is refused") {
   CHECK_THAT(error_of(text("P2 1 1 70000 1")), holds_text("65535"));
 }
 
-TEST_CASE("a TIFF in which a tag comes twice has no meaning and is refused") {
+TEST_CASE("a TIFF in which a tag appears twice is ambiguous and refused") {
   Bytes file = Tiff(2, 2, {1, 2, 3, 4}).bytes();
   const std::size_t second_entry = 8 + 4 + 2 + 12;
   REQUIRE(file[second_entry] == 1);  // 257 = 0x0101
@@ -191,7 +191,7 @@ TEST_CASE("a TIFF in which a tag comes twice has no meaning and is refused") {
   CHECK_FALSE(error_of(file).empty());
 }
 
-TEST_CASE("nothing is printed, whatever the decoders think of a file") {
+TEST_CASE("nothing is printed, even if the decoders complain") {
   Bytes metadata = png_file(colour_picture());
   const Bytes bad_profile = hex("00000004694343500000000000000000");
   metadata.insert(metadata.begin() + 33, bad_profile.begin(), bad_profile.end());
@@ -213,7 +213,7 @@ TEST_CASE("nothing is printed, whatever the decoders think of a file") {
   CHECK(printed.empty());
 }
 
-TEST_CASE("padding before the end of a JPEG is harmless, more than that is damage") {
+TEST_CASE("a little padding before the end of a JPEG is harmless, more is damage") {
   const auto padded = [](std::size_t count) {
     Bytes file = without_end(jpeg_file(colour_picture()), 2);
     append(file, Bytes(count, 1));
@@ -258,25 +258,25 @@ TEST_CASE("damaged notes are harmless, damaged transparency and palettes are not
   file.insert(file.begin() + 33, bad_transparency.begin(), bad_transparency.end());
   CHECK_THAT(error_of(file), holds_text("tRNS: CRC error"));
   CHECK(error_of(Tiff(2, 2, {1, 2, 3, 4}).with(65001, {1}).bytes()).empty());
-  // A palette of one number cannot be one; libtiff alone would take the samples for grey levels.
+  // A palette cannot have one entry; libtiff alone would read the samples as grey levels.
   const Tiff palette = Tiff(2, 2, {1, 2, 3, 4}).with(262, {3}).with(320, {1});
   CHECK_THAT(error_of(palette.bytes()), holds_text("damaged"));
 }
 
-TEST_CASE("what libtiff leaves out of a file's description must not decide samples") {
-  // A predictor of two numbers is none.
+TEST_CASE("a description that libtiff would ignore is refused if it affects samples") {
+  // A predictor has one value, not two.
   Tiff tiff(2, 1, hex("789ce3fa1fd50800045e01e5"));
   tiff.with(258, {8, 8}).with(277, {2}).with(338, {2}).with(259, {8}).with(317, {2, 2});
   CHECK_THAT(error_of(tiff.bytes()), holds_text("damaged"));
 }
 
-TEST_CASE("run lengths that leave their row are refused") {
+TEST_CASE("run lengths that exceed their row are refused") {
   Bytes file = packed_bmp();
   file[54 + 16] = 6;
   CHECK_THAT(error_of(file), holds_text("damaged"));
 }
 
-TEST_CASE("no mutation of a picture does worse than to be refused") {
+TEST_CASE("a mutated picture is read or refused, whatever the mutation") {
   for (const auto& [kind, file] : one_of_each_kind()) {
     RandomStream random(20240817, kind);
     for (int i = 0; i < 400; ++i) {

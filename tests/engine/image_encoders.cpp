@@ -1,4 +1,4 @@
-// Encoders for the tests: PNG on zlib alone, JPEG and TIFF by the libraries that wrote the formats.
+// Encoders for the tests: PNG with zlib alone, JPEG with libjpeg, TIFF with libtiff.
 #include "core/files.hpp"
 #include "image_samples.hpp"
 

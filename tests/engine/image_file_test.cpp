@@ -31,7 +31,7 @@ TEST_CASE("the integer sample rules are the rounded formulas") {
   CHECK(luma(10, 20, 30) == 18);
 }
 
-// The PNG files below come from an encoder written on zlib alone, not from libpng.
+// The PNG files below come from an encoder that uses zlib alone, not libpng.
 
 TEST_CASE("a grey PNG of any bit depth keeps its samples, spread over 0 to 255") {
   // Samples 1 0 1 0, then 0 1 2 3, then 0 5 10 15.
@@ -93,7 +93,7 @@ TEST_CASE("colour with alpha in a PNG is composited on black, then made grey") {
                 "6082")) == Row{7, 37});
 }
 
-TEST_CASE("16-bit colour in a PNG is rounded a channel at a time, then made grey") {
+TEST_CASE("16-bit colour in a PNG is rounded channel by channel, then made grey") {
   // (1000, 2000, 3000) (30000, 31000, 32000)
   CHECK(first_row(
             hex("89504e470d0a1a0a0000000d49484452000000020000000110020000002bd0349e00000015494441"
@@ -187,7 +187,7 @@ TEST_CASE("TIFF samples of either byte order follow the rules") {
                       .bytes()) == Row{7, 120});
 }
 
-TEST_CASE("alpha in a TIFF is composited once, unless it was before or is something else") {
+TEST_CASE("alpha in a TIFF is composited unless it is premultiplied or no alpha") {
   // 2: straight alpha; 1: colours are multiplied already; 0: an unnamed channel.
   const auto [meaning, expected8, expected16, expected_grey] =
       GENERATE(table<std::uint32_t, Row, Row, Row>({{2, {18, 54}, {7, 37}, {10, 50}},
@@ -221,7 +221,7 @@ TEST_CASE("16-bit grey with alpha in a TIFF is composited on black") {
                       .bytes()) == Row{4, 36});
 }
 
-TEST_CASE("a fourth TIFF channel that nothing is said about is alpha") {
+TEST_CASE("a fourth TIFF channel without a description is alpha") {
   CHECK(first_row(Tiff(2, 1, {10, 20, 30, 255, 100, 110, 120, 128})
                       .with(258, {8, 8, 8, 8})
                       .with(262, {2})
@@ -253,7 +253,7 @@ TEST_CASE("a compressed TIFF decodes to what was encoded") {
   }
 }
 
-/// A TIFF of one 16 x 16 tile, of which the picture is the upper left corner.
+/// A TIFF of one 16 x 16 tile; the picture is its upper left corner.
 Bytes tiled_tiff(std::uint32_t bits, const Bytes& tile) {
   Tiff tiff(5, 4, tile);
   for (const std::uint32_t strips : {273U, 278U, 279U}) tiff.entries.erase(strips);
@@ -287,8 +287,8 @@ TEST_CASE("a TIFF in 8-bit or bilevel tiles without compression is read") {
   CHECK(first_row(tiled_tiff(1, Bytes(32, 0b10100000))) == Row{255, 0, 255, 0, 0});
 }
 
-TEST_CASE("grey with alpha in a TIFF is read from differences of neighbours, too") {
-  // (10, 255) (100, 128): 2 is the predictor of differences, packed by runs of which none repeats.
+TEST_CASE("grey with alpha in a TIFF is read with and without a predictor") {
+  // (10, 255) (90, 129) by PackBits; then (10, 255) (100, 128) by deflate and predictor 2.
   const Bytes differences = {3, 10, 255, 90, 129};
   Tiff tiff(2, 1, differences);
   tiff.with(258, {8, 8}).with(277, {2}).with(338, {2}).with(259, {32773});

@@ -59,7 +59,7 @@ TEST_CASE("orientation and resolution are found in every kind of file that has t
   CHECK(*phys.pixels_per_mm == Approx(11.811));
 }
 
-TEST_CASE("what programs write that do not know counts as not said") {
+TEST_CASE("placeholders and unusable resolutions count as absent") {
   CHECK_FALSE(notes_of(directory(1, 72, 2)).pixels_per_mm.has_value());
   CHECK_FALSE(notes_of(directory(1, 96, 2)).pixels_per_mm.has_value());
   CHECK_FALSE(notes_of(directory(1, 300, 1)).pixels_per_mm.has_value());
@@ -69,7 +69,7 @@ TEST_CASE("what programs write that do not know counts as not said") {
   CHECK(notes_of(directory(9, 300, 2)).orientation == 1);
 }
 
-TEST_CASE("damaged notes count as not said, at whatever byte the file ends") {
+TEST_CASE("damaged notes count as absent, at whatever byte the file ends") {
   for (const std::string& file :
        {jpeg("\xff\xe1", "Exif\0\0"s + directory(6, 300, 2)), png("eXIf", directory(6, 300, 2)),
         directory(6, 300, 2), jpeg("\xff\xe0", "JFIF\0\1"s), "BM"s, "junk"s}) {

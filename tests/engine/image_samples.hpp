@@ -159,17 +159,17 @@ Bytes sample_bytes(const Raster& raster, bool big);
 
 Bytes png_file(const Raster& raster);
 Bytes jpeg_file(const Raster& raster, bool progressive = false);
-/// \param compression  as the file's entry says it; 5: LZW
+/// \param compression  the value of the file's entry; 5 is LZW
 Bytes tiff_file(const Raster& raster, std::uint16_t compression = 5);
-/// Colour alone.
+/// The raster must be in colour.
 Bytes bmp_file(const Raster& raster);
 Bytes ppm_file(const Raster& raster);
 
-/// What libjpeg makes of a colour file, without our reader.
+/// The pixels of a colour file, decoded by libjpeg without our reader.
 Raster colours_of_jpeg(const Bytes& file);
 
-/// A palette BMP of run lengths, 5 x 3: 1 1 1 2 3, jumped over but for a 2 in the middle, and 3 3 3
-/// 3 3, from the bottom; the palette is grey levels 0, 10, 20, 30.
+/// A BMP of 5 x 3 pixels with a palette of the grey levels 0, 10, 20 and 30, as run lengths. From
+/// the bottom: 1 1 1 2 3; jumps with a 2 in the middle; 3 3 3 3 3.
 inline Bytes packed_bmp() {
   const Bytes palette = numbers({0, 0x0A0A0A, 0x141414, 0x1E1E1E}, 4);
   const Bytes runs = {3, 1, 1, 2, 1, 3, 0, 0, 0, 2, 2, 0, 1, 2, 0, 0, 5, 3, 0, 1};
@@ -192,7 +192,7 @@ inline std::vector<int> first_row(const Bytes& bytes) {
   return {image.row(0).begin(), image.row(0).end()};
 }
 
-/// One whole picture of each kind, for tests that cut and change them.
+/// One valid picture of each kind, for tests that damage them.
 std::map<std::string, Bytes> one_of_each_kind();
 
 }  // namespace touchtrial::samples

@@ -1,4 +1,4 @@
-/// \file How far two planes are apart.
+/// \file Distances between planes.
 #pragma once
 
 #include "core/plane.hpp"
@@ -33,7 +33,7 @@ template <typename A, typename B>
   return largest_scaled_difference(a, b, [](double, double) { return 1.0; });
 }
 
-/// The largest |a - b| / max(1, |b|): how the precision of doubles is promised.
+/// The largest |a - b| / max(1, |b|), the measure for the precision of doubles.
 template <typename A, typename B>
 [[nodiscard]] double largest_relative_difference(const Plane<A>& a, const Plane<B>& b) {
   return largest_scaled_difference(

@@ -1,4 +1,4 @@
-/// \file What a function says when it refuses its arguments.
+/// \file The message of a function that refuses its arguments.
 #pragma once
 
 #include <stdexcept>
@@ -7,7 +7,8 @@
 
 namespace touchtrial {
 
-/// \return the message of the std::invalid_argument that the call throws, empty if it throws none
+/// \return the message of the std::invalid_argument that the call throws; empty if it throws
+///   nothing
 template <typename Call>
 [[nodiscard]] std::string refusal_of(Call&& call) {
   try {

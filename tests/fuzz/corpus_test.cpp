@@ -1,4 +1,4 @@
-// The fuzzers' seeds, and what they once found, read by every run of the tests and any compiler.
+// Every run of the tests, with any compiler, reads the fuzzers' seeds and their former findings.
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "engine/image_file.hpp"
@@ -44,7 +44,7 @@ TEST_CASE("every folder of the fuzzers' corpus belongs to an entry") {
   CHECK(folders == names);
 }
 
-TEST_CASE("the beginnings of the corpus are accepted or refused in one line") {
+TEST_CASE("beginnings of the corpus's files are accepted or refused in one line") {
   for (const Entry& entry : kEntries) {
     for (const fs::path& file : files_of(entry.name)) {
       const Bytes bytes = read_file(file);
@@ -56,7 +56,7 @@ TEST_CASE("the beginnings of the corpus are accepted or refused in one line") {
   }
 }
 
-TEST_CASE("the pictures of the corpus are read, but for those that a fuzzer broke") {
+TEST_CASE("the pictures of the corpus are read, except those that broke a reader") {
   int read = 0;
   for (const fs::path& file : files_of("image")) {
     if (file.filename().string().starts_with("found-")) continue;

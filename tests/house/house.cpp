@@ -70,6 +70,13 @@ std::string kind_of(const Definition& definition) {
   return "";
 }
 
+/// A protocol's part belongs to its layer: its namespace lies in the layer's.
+bool in_one_layer(const Room& part, const Room* layer) {
+  if (layer == nullptr) return false;
+  return layer == &part || (layer->name_space != "touchtrial" &&
+                            part.name_space.starts_with(layer->name_space + "::"));
+}
+
 bool one_in_the_program(const Definition& definition) {
   return definition.kind == Definition::Kind::type || definition.is_inline;
 }
@@ -82,9 +89,19 @@ const std::vector<Room>& rooms() {
                                            "protocols/design"};
     const std::set<std::string> analysis = {"core", "engine", "protocols/store",
                                             "protocols/design"};
-    std::set<std::string> planning = session;
-    planning.insert({"protocols/session", "analysis"});
-    std::set<std::string> app = planning;
+    std::set<std::string> simulation = session;
+    simulation.insert("protocols/session");
+    std::set<std::string> planning = simulation;
+    planning.insert({"protocols/simulation", "analysis", "protocols/identification/analysis"});
+    std::set<std::string> identified = simulation;
+    identified.insert({"protocols/simulation", "protocols/identification/design"});
+    std::set<std::string> analysed = analysis;
+    analysed.insert({"analysis", "protocols/identification/design"});
+    std::set<std::string> registered = planning;
+    registered.insert({"protocols/identification/design", "protocols/identification/simulation",
+                       "protocols/identification/analysis"});
+    std::set<std::string> app = registered;
+    app.insert("protocols/registration");
     app.insert({"protocols/collect", "analysis/planning", "stimuli"});
     std::set<std::string> bench = app;
     bench.insert("app");
@@ -95,9 +112,17 @@ const std::vector<Room>& rooms() {
         {"protocols/store", "touchtrial::store", {"core"}},
         {"protocols/collect", "touchtrial::collect", {"core", "protocols/store"}},
         {"protocols/design", "touchtrial::design", {"core", "engine"}},
+        {"protocols/identification/design",
+         "touchtrial::design::identification",
+         {"core", "engine", "protocols/design"}},
         {"protocols/session", "touchtrial::session", session},
+        {"protocols/simulation", "touchtrial::simulation", simulation},
+        {"protocols/identification/simulation", "touchtrial::simulation::identification",
+         identified},
         {"analysis", "touchtrial::analysis", analysis},
+        {"protocols/identification/analysis", "touchtrial::analysis::identification", analysed},
         {"analysis/planning", "touchtrial::planning", planning},
+        {"protocols/registration", "touchtrial::registration", registered},
         {"stimuli", "touchtrial::stimuli", {"core", "engine"}},
         {"app", "touchtrial::app", app},
         {"bench", "touchtrial::bench", bench, true},
@@ -163,8 +188,8 @@ std::vector<std::string> House::third_party_headers_shown() const {
   std::vector<std::string> found;
   for (const SourceFile& file : files_) {
     for (const std::string& name : file.quoted) {
-      if (showing.count(name) == 0 || file.room->sees_inside || room_of(name) == file.room)
-        continue;
+      if (showing.count(name) == 0 || file.room->sees_inside) continue;
+      if (in_one_layer(*file.room, room_of(name))) continue;
       found.push_back(file.path + " includes " + name + ", which shows a third-party header");
     }
   }

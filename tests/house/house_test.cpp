@@ -94,6 +94,18 @@ TEST_CASE("a third-party header that shows through another header is found") {
         Lines{"app/window.cpp includes engine/outer.hpp, which shows a third-party header"});
 }
 
+TEST_CASE("a protocol's part may use what its layer shows to itself, and no other layer's") {
+  const PlantedHouse planted{
+      {"analysis/json.hpp", header("touchtrial::analysis", "#include <nlohmann/json.hpp>")},
+      {"protocols/design/json.hpp", header("touchtrial::design", "#include <nlohmann/json.hpp>")},
+      {"protocols/identification/analysis/report.cpp",
+       header("touchtrial::analysis::identification",
+              "#include \"analysis/json.hpp\"\n#include \"protocols/design/json.hpp\"")}};
+  CHECK(planted.read().third_party_headers_shown() ==
+        Lines{"protocols/identification/analysis/report.cpp includes protocols/design/json.hpp, "
+              "which shows a third-party header"});
+}
+
 TEST_CASE("a header that says it is private to a folder is included from there alone") {
   CHECK(product().private_headers_used_elsewhere() == Lines{});
 }

@@ -1,8 +1,5 @@
 #include "analysis/statistics/chance_test.hpp"
-#include "analysis/statistics/cochran_q.hpp"
-#include "analysis/statistics/holm.hpp"
-#include "analysis/statistics/mcnemar.hpp"
-#include "analysis/statistics/sign_flip.hpp"
+#include "analysis/statistics/paired_tests.hpp"
 #include "recovery/finding.hpp"
 #include "recovery/population.hpp"
 

@@ -1,8 +1,8 @@
 #include "analysis/statistics/choice_model.hpp"
+#include "analysis/statistics/confusion.hpp"
 #include "analysis/statistics/d_prime.hpp"
+#include "analysis/statistics/descriptive.hpp"
 #include "analysis/statistics/information_transfer.hpp"
-#include "analysis/statistics/label_matching.hpp"
-#include "analysis/statistics/participant_mean.hpp"
 #include "recovery/finding.hpp"
 #include "recovery/population.hpp"
 

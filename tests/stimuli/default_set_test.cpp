@@ -19,7 +19,7 @@ namespace {
 
 constexpr int kTiny = 48;
 
-/// The folder of the set that comes with the program.
+/// The folder of the shipped set.
 std::filesystem::path committed_set() {
   return std::filesystem::path(TOUCHTRIAL_SOURCE_DIR) / "stimuli";
 }
@@ -50,9 +50,9 @@ TEST_CASE("the default set is a file for each recipe and a manifest that matches
 TEST_CASE("the set that comes with the program matches its manifest and its seed") {
   const StimulusManifest manifest = read_stimulus_manifest(committed_set() / kStimulusManifestFile);
   CHECK(manifest.generator_version == kGeneratorVersion);
-  // Twenty further exemplars; every recipe has its first one.
+  // Every recipe has its first exemplar; there are twenty further ones.
   CHECK(manifest.entries.size() == stimulus_recipes().size() + 20);
-  // To make all again takes too long for every test run.
+  // Making all of them again would take too long.
   const std::set<std::string> made_again = {
       "bark.png", "exemplars/brick-5.png", "shell.png", "endgrain.png", "sand.png", "flat.png"};
   std::size_t made = 0;
@@ -84,7 +84,8 @@ TEST_CASE("making the set again replaces it by the same bytes and leaves other f
   CHECK(text_of(read_file(folder.path() / "own.txt")) == "own");
 }
 
-TEST_CASE("a smaller set takes away what the one before it had more, unless it was changed") {
+TEST_CASE(
+    "a smaller set removes the surplus pictures of the one before, unless they were changed") {
   const TempFolder folder;
   generate_default_stimuli(folder.path(), {5, kTiny, 2});
   replace_file(folder.path() / "exemplars" / "bark-2.png", "own");
@@ -102,7 +103,7 @@ TEST_CASE("somebody's own picture is not replaced, and nothing is made beside it
   CHECK_FALSE(is_there(folder.path() / "bark.png"));
 }
 
-TEST_CASE("progress is told after each picture") {
+TEST_CASE("progress is reported after each picture") {
   const TempFolder folder;
   int last = 0;
   generate_default_stimuli(folder.path(), {5, kMinStimulusSizePx, {}}, [&](int done, int total) {
@@ -121,7 +122,7 @@ TEST_CASE("a folder that cannot be made is refused") {
                   FileError);
 }
 
-TEST_CASE("a set without exemplars or with too many is refused before anything is made") {
+TEST_CASE("a set without exemplars or with too many is refused before any picture is made") {
   const TempFolder folder;
   const auto set = folder.path() / "set";
   CHECK_THROWS_AS(generate_default_stimuli(set, {5, kTiny, 0}), UsageError);
@@ -139,7 +140,7 @@ TEST_CASE("the manifest names the licence and the generator in plain JSON") {
   CHECK(json.at("stimuli").empty());
 }
 
-TEST_CASE("a manifest that is not one is refused with file and place") {
+TEST_CASE("a text that is not a manifest is refused with file and place") {
   const TempFolder folder;
   const auto path = folder.path() / "manifest.json";
   const auto refusal = [&](const std::string& content) {

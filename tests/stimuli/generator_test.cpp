@@ -74,7 +74,7 @@ std::vector<StimulusRecipe> recipes_of(std::initializer_list<StimulusKind> kinds
   return recipes;
 }
 
-/// All that fill the picture with something to feel.
+/// All recipes that fill the picture with something to feel.
 std::vector<StimulusRecipe> surfaces() {
   return recipes_of({StimulusKind::texture, StimulusKind::material, StimulusKind::practice});
 }
@@ -95,7 +95,7 @@ double difference_of(const GreyImage& a, const GreyImage& b) {
 
 }  // namespace
 
-TEST_CASE("there are recipes of every kind, with labels of their own") {
+TEST_CASE("there are recipes of every kind, each with its own label") {
   std::set<std::string> labels;
   for (const StimulusRecipe& recipe : stimulus_recipes()) labels.insert(std::string(recipe.label));
   CHECK(labels.size() == 17);
@@ -133,7 +133,7 @@ TEST_CASE("exemplars of a surface are as different as surfaces of two seeds") {
   }
 }
 
-TEST_CASE("objects' exemplars show the same thing, lying and lit otherwise") {
+TEST_CASE("exemplars of an object show the same object, turned and lit differently") {
   for (const StimulusRecipe& recipe : recipes_of({StimulusKind::object})) {
     INFO(recipe.label);
     const GreyImage first = generate_stimulus(recipe.label, 7, 96);
@@ -143,7 +143,7 @@ TEST_CASE("objects' exemplars show the same thing, lying and lit otherwise") {
   }
 }
 
-TEST_CASE("a flat picture has one grey, the middle one, whatever seed and exemplar") {
+TEST_CASE("a flat picture has one grey, the middle one, for any seed and exemplar") {
   const GreyImage flat = generate_stimulus("flat", 7, 32, 3);
   CHECK(flat == GreyImage(32, 32, 128));
   CHECK(flat == generate_stimulus("flat", 8, 32));
@@ -197,7 +197,7 @@ TEST_CASE("an object fills most of its picture, and its ground is plain") {
   }
 }
 
-TEST_CASE("no surface repeats itself: far from the origin it does not look like itself") {
+TEST_CASE("no surface repeats itself: shifted far, it does not resemble itself") {
   for (const StimulusRecipe& recipe : surfaces()) {
     const GreyImage picture = generate_stimulus(recipe.label, kDefaultStimuliSeed, 256);
     // Every second stake of a wicker wall, 60 pixels on, is woven alike.
@@ -212,7 +212,7 @@ TEST_CASE("no surface repeats itself: far from the origin it does not look like 
   }
 }
 
-TEST_CASE("furrows of bark stand upright, straw and courses of brick lie") {
+TEST_CASE("bark's furrows are vertical, straw and courses of brick horizontal") {
   const auto of = [](const char* label) {
     return anisotropy(generate_stimulus(label, kDefaultStimuliSeed, kSmall));
   };

@@ -52,7 +52,7 @@ TEST_CASE("cells on a square grid have the distances of a square grid") {
   CHECK(cells.at(3.2, 4.9).cell == cells.at(3.8, 4.1).cell);
 }
 
-TEST_CASE("jittered cells are found as by looking at every centre") {
+TEST_CASE("the nearest of jittered cells is found as by a search of every centre") {
   // A point's distance to its centre never exceeds that of any nearby point plus the way there.
   const Cells cells(9, "test");
   for (int i = 0; i < 2000; ++i) {

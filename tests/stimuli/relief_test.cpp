@@ -17,7 +17,7 @@ Relief level(int size_px) {
 
 }  // namespace
 
-TEST_CASE("a level surface returns the same light everywhere, as much as is said") {
+TEST_CASE("a level surface returns the same light everywhere, as much as light_on_level says") {
   const Lamp lamp;
   const Plane<double> light = lit(level(12), lamp);
   for (const double value : light.samples()) REQUIRE(value == Approx(light_on_level(lamp)));
@@ -36,7 +36,7 @@ TEST_CASE("a slope towards the lamp is lighter than one away from it") {
   CHECK(slope(-1.0) == Approx(0.0).margin(1e-12));
 }
 
-TEST_CASE("a wall throws a shadow of its height away from the lamp") {
+TEST_CASE("a wall casts a shadow of its height away from the lamp") {
   const Lamp lamp{{-1.0, 0.0, 1.0}, 0.0, 30.0, 0.5, 5.0};
   Relief relief(40);
   fill(relief, [](double x, double) {
@@ -66,7 +66,7 @@ TEST_CASE("blurring keeps a constant, the sum far from the edges, and the spread
   for (const double value : constant.samples()) CHECK(value == Approx(2.5));
 }
 
-TEST_CASE("development reaches the mean that is asked for and keeps the order of light") {
+TEST_CASE("development reaches the wanted mean and keeps the order of light") {
   Plane<double> light(20, 20);
   for (std::size_t i = 0; i < light.size(); ++i) {
     light.samples()[i] = static_cast<double>(i * i);

@@ -1,6 +1,6 @@
 #include "support/realtime_watch.hpp"
 
-#include "device/servo/realtime_region.hpp"
+#include "device/platform/realtime.hpp"
 
 #include <atomic>
 #include <cerrno>

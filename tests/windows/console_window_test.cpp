@@ -1,4 +1,4 @@
-// The experimenter's window beside the participant's, on a screen that nobody sees.
+// The experimenter's window beside the participant's, on a virtual screen.
 #include "app/experimenter/console_experimenter.hpp"
 #include "app/participant/participant_window.hpp"
 #include "device/servo/servo_control.hpp"
@@ -26,7 +26,7 @@ using Kind = session::ExperimenterRequest::Kind;
 
 constexpr const char* kTitle = "Touchtrial";
 constexpr const char* kConsoleTitle = "Touchtrial console";
-/// Long enough that only a window that hangs is given up.
+/// So long that only a window that hangs fails.
 constexpr milliseconds kPatience{300'000};
 constexpr int kParticipantWidth = 1280;
 
@@ -64,13 +64,13 @@ struct Room {
     app::run_beside(window, [&] { session(); });
   }
 
-  /// Waits until the console shows what was done to it.
+  /// Waits until the console shows the effect of all input.
   void settle() {
     REQUIRE(screen->wait_until_heard(kTitle));
     static_cast<void>(window.console_picture());
   }
 
-  /// Clicks in the experimenter's window, which gets the focus, as window managers give it.
+  /// Clicks in the experimenter's window and gives it the focus, like a window manager.
   void click(std::pair<int, int> at) {
     screen->focus_window(kConsoleTitle);
     screen->move_pointer(kParticipantWidth + at.first, at.second);
@@ -143,7 +143,7 @@ bool is(const std::optional<session::ExperimenterRequest>& request, Kind kind,
   return request && request->kind == kind && request->text == text && request->code == code;
 }
 
-TEST_CASE("the console's buttons ask for what stands on them") {
+TEST_CASE("the console's buttons request what they say") {
   Room room;
   room.run([&] {
     room.console.show(status());
@@ -182,7 +182,7 @@ TEST_CASE("the console asks again before a session is aborted, and Enter does no
   });
 }
 
-TEST_CASE("keys pressed over the console are the participant's, but for what is written there") {
+TEST_CASE("keys over the console are the participant's, except while text is written") {
   Room room;
   room.run([&] {
     room.console.show(status());
@@ -242,7 +242,7 @@ TEST_CASE("the console is the same to the last byte, whatever the participant se
   });
 }
 
-TEST_CASE("the console's monitor is named if it is not there") {
+TEST_CASE("a missing monitor of the console is named") {
   const auto screen = VirtualScreen::open();
   session::Experimenter nobody;
   app::ConsoleExperimenter console(nobody);

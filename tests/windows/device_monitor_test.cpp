@@ -1,4 +1,4 @@
-// "touchtrial device monitor" as its users run it, on a screen that nobody sees.
+// "touchtrial device monitor" as its users run it, on a virtual screen.
 #include "engine/image_file.hpp"
 #include "support/catch.hpp"
 #include "support/child_process.hpp"
@@ -29,17 +29,17 @@ std::string first_line_of(const std::filesystem::path& path) {
   return line;
 }
 
-/// Whether it ends as it should: well, or, where a busy machine let the servo stand still, with
+/// Whether it ends correctly: without a fault, or, if a busy machine stalled the servo, with
 /// exactly that fault.
 bool monitors(const std::string& arguments) {
   const TempFolder folder;
   const auto errors = folder.path() / "errors";
   const bool is_well = monitor(arguments + " 2> '" + errors.string() + "'") == 0;
   const std::string line = first_line_of(errors);
-  return is_well ? line.empty() : line.find("the servo stood still") != std::string::npos;
+  return is_well ? line.empty() : line.find("the servo stalled") != std::string::npos;
 }
 
-TEST_CASE("device monitor that is asked to end by a signal leaves as a shell expects") {
+TEST_CASE("device monitor that a signal ends exits as a shell expects") {
   const auto screen = VirtualScreen::open();
   const auto [name, signal] =
       GENERATE(table<std::string, int>({{"SIGINT", SIGINT}, {"SIGTERM", SIGTERM}}));
@@ -74,7 +74,7 @@ TEST_CASE("device monitor writes a picture of the window that is not blank") {
     light += sample > 200 ? 1.0 : 0.0;
   }
   light /= static_cast<double>(picture.size());
-  // Plots on a light ground, with letters, lines and the state's band in colour.
+  // Plots on a light background, with letters, lines and the coloured band of the state.
   CHECK(levels.size() > 50);
   CHECK(light > 0.5);
   CHECK(light < 0.97);

@@ -1,8 +1,7 @@
 #include "app/monitor/monitor_history.hpp"
 #include "app/monitor/monitor_run.hpp"
-#include "app/monitor/monitor_words.hpp"
+#include "app/monitor/monitor_view.hpp"
 #include "app/monitor/plot.hpp"
-#include "app/monitor/test_wall.hpp"
 #include "core/random.hpp"
 #include "device/simulated/simulated_hand.hpp"
 #include "protocols/session/still_time.hpp"
@@ -24,7 +23,7 @@ device::DeviceSample at_height(double z_mm) {
   return sample;
 }
 
-TEST_CASE("the test wall is gentle, and none until it is switched on") {
+TEST_CASE("the test wall is gentle, and has no force until it is switched on") {
   app::TestWall wall(1000.0);
   CHECK(wall.force_n(at_height(-2.0)) == Vec3{});
   wall.put(true);
@@ -34,7 +33,7 @@ TEST_CASE("the test wall is gentle, and none until it is switched on") {
   CHECK(wall.force_n(at_height(-50.0)).z == Approx(1.0));
 }
 
-TEST_CASE("a wall that is switched on behind the stylus waits until it has come out in front") {
+TEST_CASE("a wall that is switched on behind the stylus waits until the stylus is in front") {
   app::TestWall wall(1000.0);
   wall.put(true);
   for (int tick = 0; tick < 500; ++tick) CHECK(wall.force_n(at_height(-3.0)) == Vec3{});
@@ -43,7 +42,7 @@ TEST_CASE("a wall that is switched on behind the stylus waits until it has come 
   CHECK_FALSE(wall.waits());
 }
 
-TEST_CASE("a wall that is switched off goes within 100 ms and without a step") {
+TEST_CASE("a wall that is switched off fades within 100 ms without a step") {
   app::TestWall wall(1000.0);
   wall.put(true);
   for (int tick = 0; tick < 200; ++tick) static_cast<void>(wall.force_n(at_height(1.0)));
@@ -57,7 +56,7 @@ TEST_CASE("a wall that is switched off goes within 100 ms and without a step") {
   CHECK(before_n == Approx(0.0).margin(1e-9));
 }
 
-TEST_CASE("the history keeps least and greatest of each bin, and the newest five seconds") {
+TEST_CASE("the history keeps the extent of each bin, and the newest five seconds") {
   app::MonitorHistory history(1000.0);
   for (std::int64_t tick = 0; tick < 12'000; ++tick) {
     const double time_s = static_cast<double>(tick) * 1e-3;
@@ -96,7 +95,7 @@ TEST_CASE("a new run begins a new history, and lateness belongs to the newest bi
   CHECK(history.lateness_us().back().is_empty());
 }
 
-TEST_CASE("scales hold every value and have ticks at round numbers") {
+TEST_CASE("scales cover every value and have ticks at round numbers") {
   const std::vector<app::PlotLine> lines = {
       {"x", app::kBlue, {{-3.2, 17.0}, app::Extent{}, {0.0, 41.0}}}};
   const app::PlotScale scale = app::scale_for(lines, {0.0, 10.0}, 4);
@@ -108,14 +107,14 @@ TEST_CASE("scales hold every value and have ticks at round numbers") {
   CHECK(none.greatest == Approx(0.8));
 }
 
-TEST_CASE("logarithmic scales hold whole decades") {
+TEST_CASE("logarithmic scales cover whole decades") {
   const app::PlotScale scale =
       app::decades_for({{"late", app::kBlue, {{0.2, 2500.0}}}}, {1.0, 1000.0});
   CHECK(scale.least == Approx(1.0));
   CHECK(scale.greatest == Approx(10'000.0));
 }
 
-TEST_CASE("the state line says what is, and faults say what to do") {
+TEST_CASE("the state line describes the state, and faults give the remedy") {
   device::ServoReport lost;
   lost.end = device::ServoEnd::fault;
   lost.fault = device::SafetyFault::device;
@@ -135,7 +134,8 @@ TEST_CASE("the state line says what is, and faults say what to do") {
   CHECK_THAT(app::state_line({.wall_on = true, .wall_waits = true}).text, holds_text("waits"));
 }
 
-/// Waits until something is so; false if it never is.
+/// Waits until a condition holds.
+/// \return false if it never does
 bool comes(const std::function<bool()>& is_so) {
   const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(5);
   while (!is_so()) {
@@ -145,7 +145,7 @@ bool comes(const std::function<bool()>& is_so) {
   return true;
 }
 
-/// A simulated hand that keeps the last force it was sent.
+/// A simulated hand that keeps the last force.
 class WatchedHand final : public device::HapticDevice {
  public:
   WatchedHand() : random_(1, "monitor test"), hand_(options(), path()) {}
@@ -176,7 +176,7 @@ class WatchedHand final : public device::HapticDevice {
   device::SimulatedHand hand_;
 };
 
-TEST_CASE("a monitored device feels the wall, stops by request with zero force, and goes on") {
+TEST_CASE("a monitored device feels the wall, stops on request with zero force, and resumes") {
   WatchedHand hand;
   app::MonitorHistory history(1000.0);
   {
@@ -185,7 +185,7 @@ TEST_CASE("a monitored device feels the wall, stops by request with zero force, 
     run.wall().put(true);
     run.start();
     CHECK(comes([&] { return run.newest().force_n.z > 0.3; }));
-    // What was recorded last may wait for its lateness.
+    // The newest samples may still wait for their lateness.
     CHECK(comes([&] {
       run.collect(history);
       return history.values(app::Channel::force_z).back().greatest > 0.3 &&
@@ -202,7 +202,7 @@ TEST_CASE("a monitored device feels the wall, stops by request with zero force, 
   CHECK(hand.last_n == Vec3{});
 }
 
-TEST_CASE("a signal halts a monitored device under force, and nobody resumes it") {
+TEST_CASE("a signal halts a monitored device under force, and it is not resumed") {
   const int signal = GENERATE(SIGINT, SIGTERM);
   WatchedHand hand;
   app::MonitorRun run(hand, 1000.0, {}, still_time());
@@ -220,11 +220,11 @@ TEST_CASE("a signal halts a monitored device under force, and nobody resumes it"
   CHECK(hand.rearmed == 1);
 }
 
-TEST_CASE("a monitored device whose driver stands still is halted by the watchdog") {
+TEST_CASE("the watchdog halts a monitored device whose driver stalls") {
   WatchedHand hand;
   app::MonitorRun run(hand, 1000.0, {});
   run.start();
-  // A machine that stands still by itself may be first.
+  // A machine that stalls by itself may cause the fault first.
   CHECK(comes([&] { return run.newest().tick > 10 || run.ended(); }));
   hand.stands_still = true;
   CHECK(comes([&] { return run.ended().has_value(); }));

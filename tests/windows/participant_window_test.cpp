@@ -1,11 +1,11 @@
-// The participant's window on a screen that nobody sees, driven by real key and mouse events.
+// The participant's window on a virtual screen, driven by real key and mouse events.
 #include "app/participant/participant_window.hpp"
 
 #include "app/participant/window_subject.hpp"
 #include "device/servo/servo.hpp"
 #include "device/servo/servo_control.hpp"
 #include "engine/pictures/colour_image.hpp"
-#include "protocols/session/prompt_participant.hpp"
+#include "protocols/simulation/prompt_participant.hpp"
 #include "stimuli/generator.hpp"
 #include "support/catch.hpp"
 #include "windows/virtual_screen.hpp"
@@ -32,12 +32,12 @@ using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 
 constexpr const char* kTitle = "Touchtrial";
-/// Long enough that only a window that hangs is given up.
+/// So long that only a window that hangs exceeds it.
 constexpr milliseconds kPatience{300'000};
 constexpr PlaneGeometry kPlane = {0.2, 256, 256};
 const std::vector<std::string> kLabels = {"bark", "cloth", "pebbles", "straw", "brick"};
 
-/// Pictures as a study's, made once.
+/// Pictures of a study, made once.
 const std::map<std::string, GreyImage>& pictures() {
   static const std::map<std::string, GreyImage> made = [] {
     std::map<std::string, GreyImage> all;
@@ -56,7 +56,7 @@ app::ParticipantWindowOptions options(int width = 1280, int height = 720) {
   return all;
 }
 
-/// A session's thread before the window, with a hand on the keyboard.
+/// A window on a virtual screen, whose keys and mouse a session's thread can use.
 struct Sitting {
   explicit Sitting(const app::ParticipantWindowOptions& wanted = options(),
                    const char* size = "1280x720")
@@ -64,18 +64,18 @@ struct Sitting {
     window.see_pictures(kLabels);
   }
 
-  /// Runs `session` beside the window.
+  /// Runs `session` on a thread of its own.
   template <typename Session>
   void run(const Session& session) {
     app::run_beside(window, [&] { session(); });
   }
 
-  /// Shows a step until it is on the glass; session's thread.
+  /// Waits until a step is visible; session's thread.
   void show(const session::Step& step) {
     CHECK_FALSE(window.attend(step));
     CHECK(window.wait_until_shown(kPatience));
   }
-  /// Waits until the window shows what came of all that was done to it.
+  /// Waits until the window shows the effect of all events.
   void settle() {
     REQUIRE(screen->wait_until_heard(kTitle));
     CHECK(window.wait_until_shown(kPatience));
@@ -90,7 +90,7 @@ struct Sitting {
     screen->release();
     settle();
   }
-  /// Attends until there is a reply, or the window is gone.
+  /// Attends until there is a reply or the window is gone.
   std::optional<session::StepReply> reply_to(const session::Step& step) {
     const auto give_up = steady_clock::now() + kPatience;
     while (steady_clock::now() < give_up && !window.gone()) {
@@ -98,7 +98,8 @@ struct Sitting {
     }
     return std::nullopt;
   }
-  /// Types on a shown step. \return its reply
+  /// Types once a step is visible.
+  /// \return the reply
   std::optional<session::StepReply> answer(const session::Step& step, const std::string& keys) {
     show(step);
     screen->type(keys);
@@ -113,7 +114,7 @@ session::AnswerStep answer_step(int trial = 1) {
   return {.trial = trial, .of = 25};
 }
 
-TEST_CASE("25 trials are answered with keys as chosen, each reply stamped between key and now") {
+TEST_CASE("replies to 25 trials hold the choices made by keys, with times after the keys") {
   Sitting sitting;
   sitting.run([&] {
     for (int trial = 1; trial <= 25; ++trial) {
@@ -143,7 +144,7 @@ TEST_CASE("a picture and Next are clicked with a real mouse") {
   sitting.run([&] {
     const session::AnswerStep step = answer_step();
     sitting.show(step);
-    // The middle one of five, and the button below.
+    // The middle picture of five, then the button below.
     sitting.click(640, 320);
     sitting.click(640, 640);
     const auto reply = sitting.reply_to(step);
@@ -163,7 +164,7 @@ TEST_CASE("a key that was pressed before a screen was shown does nothing on it")
   });
 }
 
-TEST_CASE("Escape ends nothing, on no screen") {
+TEST_CASE("Escape does nothing on a screen") {
   Sitting sitting;
   sitting.run([&] {
     sitting.show(session::ReadyStep{1, 25, false});
@@ -174,7 +175,7 @@ TEST_CASE("Escape ends nothing, on no screen") {
   });
 }
 
-TEST_CASE("a pause covers a choice, which is still there afterwards") {
+TEST_CASE("a choice is still there after a pause") {
   Sitting sitting;
   sitting.run([&] {
     sitting.show(answer_step());
@@ -211,7 +212,8 @@ TEST_CASE("while a plane is on the space bar stops the force and Enter ends the 
   });
 }
 
-TEST_CASE("a window that is closed under force stops it at once, and replies no more") {
+TEST_CASE(
+    "a window that is closed while a force is on stops it at once and gives no more replies") {
   Sitting sitting;
   sitting.run([&] {
     sitting.window.show_exploring(kPlane);
@@ -224,7 +226,7 @@ TEST_CASE("a window that is closed under force stops it at once, and replies no 
   });
 }
 
-/// Feels what a texture of this strength would give.
+/// Passes on the samples of a texture with this force.
 void feel_texture(app::ParticipantWindow& window, double force_n) {
   for (int tick = 0; tick < 2000; ++tick) {
     device::ServoSample sample;
@@ -235,7 +237,7 @@ void feel_texture(app::ParticipantWindow& window, double force_n) {
   }
 }
 
-TEST_CASE("the exploring screen is the same to the last byte, whatever is felt") {
+TEST_CASE("the exploring screen does not depend on what is felt, to the last byte") {
   Sitting sitting;
   sitting.run([&] {
     std::optional<engine::ColourImage> first;
@@ -249,7 +251,7 @@ TEST_CASE("the exploring screen is the same to the last byte, whatever is felt")
       if (!first) first = picture;
       CHECK(picture == *first);
       const auto samples = picture.samples();
-      // No cursor, no edge, no text.
+      // There is no cursor, edge or text.
       CHECK(std::all_of(samples.begin(), samples.end(),
                         [&](const engine::Rgb& sample) { return sample == samples.front(); }));
     }
@@ -264,7 +266,7 @@ class CountedCues final : public app::Cues {
   std::atomic<int> too_hard{0};
 };
 
-TEST_CASE("more than 2 N sounds once, until there has been less") {
+TEST_CASE("a force above 2 N sounds a tone once, until it has been lower") {
   CountedCues cues;
   app::ParticipantWindowOptions wanted = options();
   wanted.cues = &cues;
@@ -278,15 +280,15 @@ TEST_CASE("more than 2 N sounds once, until there has been less") {
   CHECK(cues.too_hard == 2);
 }
 
-/// Chooses pictures in turn, and what is asked about itself.
-class Chooser final : public session::PromptParticipant {
+/// A participant who chooses the pictures in turn.
+class Chooser final : public simulation::PromptParticipant {
  public:
   void see_pictures(const std::vector<std::string>& /*labels*/) override {}
   [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& /*plane*/) override {
     throw std::logic_error("not asked for");
   }
   void feel(const device::ServoSample& /*sample*/) noexcept override {}
-  [[nodiscard]] session::ParticipantAnswer answer() override {
+  [[nodiscard]] simulation::ParticipantAnswer answer() override {
     return {next_++ % 5, std::chrono::seconds(3)};
   }
 
@@ -294,7 +296,7 @@ class Chooser final : public session::PromptParticipant {
   int next_ = 0;
 };
 
-TEST_CASE("a simulated participant sits before the window and answers with its keys") {
+TEST_CASE("a simulated participant answers with the window's keys") {
   Sitting sitting;
   Chooser chooser;
   sitting.run([&] {
@@ -333,7 +335,7 @@ TEST_CASE("the window's title and the monitor's number are all that the system s
   CHECK(sitting.screen->has_window(kTitle));
 }
 
-TEST_CASE("a monitor that is not there is named, and how many there are") {
+TEST_CASE("an error names a missing monitor, and how many there are") {
   const auto screen = VirtualScreen::open();
   app::ParticipantWindowOptions wanted = options();
   wanted.size_px.reset();
@@ -342,7 +344,7 @@ TEST_CASE("a monitor that is not there is named, and how many there are") {
                     holds_text("no monitor 3") && holds_text("has 1"));
 }
 
-TEST_CASE("the whole screen is taken on the monitor that is asked for") {
+TEST_CASE("the window fills the requested monitor") {
   app::ParticipantWindowOptions wanted = options();
   wanted.size_px.reset();
   Sitting sitting(wanted, "1920x1080");
@@ -354,7 +356,7 @@ TEST_CASE("the whole screen is taken on the monitor that is asked for") {
   });
 }
 
-/// What a participant may see, to be looked at by people.
+/// Screens that a participant may see, for people to inspect.
 std::vector<std::pair<std::string, session::Step>> gallery() {
   static const design::Questionnaire questions = {
       "closing",

@@ -4,7 +4,7 @@
 #include "device/mouse/path_observer.hpp"
 #include "engine/extraction.hpp"
 #include "engine/rendering/gains.hpp"
-#include "protocols/session/model_force.hpp"
+#include "protocols/session/exploration.hpp"
 #include "stimuli/generator.hpp"
 #include "support/catch.hpp"
 

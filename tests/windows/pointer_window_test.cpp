@@ -1,10 +1,10 @@
 #include "app/windows/pointer_window.hpp"
 
-#include "app/windows/screen_scale.hpp"
+#include "app/windows/glfw_support.hpp"
 #include "core/errors.hpp"
 #include "device/flat_wall.hpp"
 #include "device/mouse/mouse_device.hpp"
-#include "device/servo/paced_clock.hpp"
+#include "device/servo/servo_clock.hpp"
 #include "device/servo/servo_thread.hpp"
 #include "support/catch.hpp"
 #include "windows/virtual_screen.hpp"
@@ -46,23 +46,24 @@ class NoSink final : public device::SampleSink {
   void record(const device::ServoSample&) noexcept override {}
 };
 
-/// A mouse under its window, a flat wall, and the servo in real time on a thread of its own.
+/// A mouse with its window, a flat wall, and the servo in real time on its own thread.
 struct PilotStation {
   PilotStation() {
     thread.start([this] {
       device::PacedClock servo_clock{std::chrono::microseconds(50)};
-      // Long enough that only a test that hangs would see it end by itself.
+      // So long that it ends by itself only in a test that hangs.
       const device::ServoOptions options = {.limit_ticks = 3'600'000};
       report = device::run_servo(last, wall, sink, options, servo_clock, {.state = &states});
     });
   }
 
-  /// A servo whose window has closed ends.
+  /// The servo ends when its window has closed.
   ~PilotStation() { window.reset(); }
   PilotStation(const PilotStation&) = delete;
   PilotStation& operator=(const PilotStation&) = delete;
 
-  /// Lets the window live until the servo's state is as wanted. \return false if it never is
+  /// Draws the window until the servo's state is as wanted.
+  /// \return false if it never is
   bool attend_until(const std::function<bool(const device::ServoState&)>& is_as_wanted) {
     const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(5);
     while (std::chrono::steady_clock::now() < give_up) {
@@ -135,7 +136,7 @@ TEST_CASE("the pointer itself is hidden, so that only the stylus shows where the
   CHECK(glfwGetInputMode(glfwGetCurrentContext(), GLFW_CURSOR) == GLFW_CURSOR_HIDDEN);
 }
 
-TEST_CASE("the space bar asks to stop") {
+TEST_CASE("the space bar requests a stop") {
   const auto screen = VirtualScreen::open();
   PilotStation station;
   screen->move_pointer(100, 100);
@@ -155,7 +156,7 @@ TEST_CASE("without a display the window says what to do about it") {
   CHECK_THROWS_WITH(app::PointerWindow(exchange, {50.0, 50.0}), holds_text("graphical session"));
 }
 
-TEST_CASE("a monitor's own size is believed only where it can be true") {
+TEST_CASE("a monitor's stated size is used only if it can be true") {
   CHECK(app::stated_mm_per_unit(508, 1920) == Approx(0.26458).epsilon(1e-4));
   CHECK(app::stated_mm_per_unit(0, 1920) == 0.0);
   CHECK(app::stated_mm_per_unit(160, 1920) == Approx(0.0833).epsilon(1e-3));

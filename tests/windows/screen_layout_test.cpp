@@ -1,7 +1,8 @@
-// Whether everything that a participant reads lies on the screen, in both languages and at three
-// sizes: the screens are drawn without a window, and what they placed is looked at.
+// Checks that everything a participant reads lies on the screen, in both languages and at several
+// sizes. The screens are drawn without a window, and the places of texts and buttons are compared.
 #include "app/participant/answer_screen.hpp"
 #include "app/participant/canvas.hpp"
+#include "app/participant/page_layout.hpp"
 #include "app/participant/screen.hpp"
 #include "support/catch.hpp"
 
@@ -16,7 +17,7 @@
 namespace touchtrial {
 namespace {
 
-/// Squares of one size.
+/// Square pictures of one size.
 class Squares final : public app::PictureShelf {
  public:
   explicit Squares(double side_mm) : side_mm_(side_mm) {}
@@ -73,7 +74,7 @@ bool overlap(const app::Box& a, const app::Box& b) {
          a.y + kRounding < b.bottom() && b.y + kRounding < a.bottom();
 }
 
-/// What is wrong with a picture; empty if nothing is.
+/// \return faults of a picture, one line each; empty if there are none
 std::string faults_of(const app::Canvas& canvas) {
   std::string faults;
   const app::Box all = {0.0, 0.0, canvas.size().x, canvas.size().y};
@@ -156,7 +157,7 @@ std::vector<session::Step> steps_of_a_session() {
           session::EndStep{}};
 }
 
-/// Goes through all pages of a screen, with and without choices.
+/// Checks all pages of a screen, with and without choices.
 void check_all_pages(const Paper& paper, app::Screen& screen) {
   for (int page = 0; page < 12 && !screen.is_done(); ++page) {
     CHECK(faults_of(paper.draw(screen)) == "");
@@ -210,7 +211,7 @@ struct Asked {
   app::AnswerScreen screen;
 };
 
-TEST_CASE("an answer is a choice and Next; Enter alone answers nothing") {
+TEST_CASE("an answer needs a choice and Next; Enter alone does not answer") {
   Asked asked;
   CHECK_FALSE(asked.press(app::Key::enter));
   CHECK_FALSE(asked.press(app::Key::digit, 3));
@@ -220,7 +221,7 @@ TEST_CASE("an answer is a choice and Next; Enter alone answers nothing") {
   CHECK_FALSE(reply->first_position);
 }
 
-TEST_CASE("an answer is changed once, and then fixed; both choices are told") {
+TEST_CASE("an answer can be changed once, and the reply holds both choices") {
   Asked asked;
   static_cast<void>(asked.press(app::Key::digit, 3));
   static_cast<void>(asked.press(app::Key::digit, 3));
@@ -273,7 +274,7 @@ TEST_CASE("confidence is asked after the answer, whose time is when Next was pre
   CHECK(reply->at == next.at);
 }
 
-TEST_CASE("a picture and Next are clicked with the mouse; a slip off the button is none") {
+TEST_CASE("a picture and Next can be clicked; releasing the button elsewhere is not a click") {
   Asked asked;
   const auto click = [&](int id, Vec2 slip) {
     const auto targets = asked.paper.draw(asked.screen).targets();
@@ -295,7 +296,7 @@ TEST_CASE("a picture and Next are clicked with the mouse; a slip off the button 
   CHECK(reply->position == 4);
 }
 
-TEST_CASE("feeling again is offered only where the step allows it") {
+TEST_CASE("feeling again is offered only if the step allows it") {
   Asked without;
   Asked with({.trial = 1, .of = 25, .may_explore_again = true});
   CHECK(without.paper.draw(without.screen).targets().size() == 5);
@@ -306,7 +307,7 @@ TEST_CASE("feeling again is offered only where the step allows it") {
   CHECK(reply->explore_again);
 }
 
-TEST_CASE("a questionnaire is answered by keys, back and forth, and some of it is left out") {
+TEST_CASE("a questionnaire can be answered with keys, and optional questions can be skipped") {
   const Paper paper({1280.0, 720.0});
   Squares shelf(51.2);
   const app::Glass glass;
@@ -345,7 +346,7 @@ TEST_CASE("a questionnaire is answered by keys, back and forth, and some of it i
   CHECK(reply->answers == std::vector<std::string>{"4", "0", "23.5", "Rü"});
 }
 
-TEST_CASE("pictures are in true size where there is room, and never larger") {
+TEST_CASE("pictures have their true size if there is room, and are never larger") {
   const std::vector<Vec2> sizes(5, {200.0, 200.0});
   const app::PictureGrid roomy =
       app::lay_out_pictures(sizes, {0.0, 0.0, 1200.0, 400.0}, 20.0, 40.0);

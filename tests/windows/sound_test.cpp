@@ -1,8 +1,6 @@
-#include "app/sound/masking_noise.hpp"
 #include "app/sound/session_sound.hpp"
-#include "app/sound/sound_card.hpp"
 #include "app/sound/sound_mixer.hpp"
-#include "device/servo/realtime_region.hpp"
+#include "device/platform/realtime.hpp"
 #include "support/catch.hpp"
 #include "support/realtime_watch.hpp"
 #include "support/temp_folder.hpp"
@@ -36,7 +34,7 @@ float peak_of(const std::vector<float>& samples) {
   return peak;
 }
 
-/// Power between two of the loop's harmonics, a few of them looked at.
+/// The power between two of the loop's harmonics, from a sample of them.
 double density_at(const std::vector<float>& samples, int first, int last) {
   constexpr int kLooks = 64;
   double power = 0.0;
@@ -45,7 +43,7 @@ double density_at(const std::vector<float>& samples, int first, int last) {
     const double step = 2.0 * std::numbers::pi * harmonic / static_cast<double>(samples.size());
     double even = 0.0;
     double odd = 0.0;
-    // A rotating pair instead of a sine and a cosine a sample.
+    // A rotating pair instead of a sine and a cosine for each sample.
     double c = 1.0;
     double s = 0.0;
     for (const float sample : samples) {
@@ -66,7 +64,7 @@ std::vector<float> rendered(app::SoundMixer& mixer, std::size_t count) {
   return samples;
 }
 
-TEST_CASE("masking noise has the level that is asked for, and no constant part") {
+TEST_CASE("masking noise has the requested level and mean 0") {
   for (const double level : {-60.0, -30.0, -18.0}) {
     const std::vector<float> noise = app::masking_noise(level, 7);
     CHECK(20.0 * std::log10(rms_of(noise)) == Approx(level).margin(1e-4));
@@ -124,12 +122,12 @@ TEST_CASE("tones begin and end without a step, and stop by themselves") {
     for (std::size_t i = 1; i < samples.size(); ++i) {
       step = std::max(step, std::abs(samples[i] - samples[i - 1]));
     }
-    // The steepest of a sine of 1 kHz with this amplitude.
+    // The steepest slope of a 1 kHz sine with this amplitude.
     CHECK(step < 0.06F * 2.0F * 3.1416F * 1000.0F / 48000.0F + 1e-4F);
   }
 }
 
-TEST_CASE("a tone that sounds is not begun anew, and one asked for later is") {
+TEST_CASE("a tone that still sounds is not restarted, and can be played again later") {
   app::SoundMixer mixer(kRateHz, {});
   mixer.tone(app::Cue::too_hard);
   std::ignore = rendered(mixer, 6000);
@@ -165,7 +163,7 @@ TEST_CASE("rendering sound allocates and locks nothing") {
   CHECK(take_realtime_offences() == RealtimeOffences{});
 }
 
-/// ALSA reads its configuration from here as long as this lives.
+/// While it lives, ALSA reads its configuration from here.
 class AlsaConfiguration {
  public:
   explicit AlsaConfiguration(const std::string& text) {
@@ -198,7 +196,7 @@ TEST_CASE("a study without masking noise records nothing about it") {
   CHECK_FALSE(sound.to_record());
 }
 
-/// What the sound card was given so far, as it stands in the file.
+/// The samples that the sound card has received so far, from the file.
 std::vector<float> samples_in(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::vector<float> samples;
@@ -207,7 +205,7 @@ std::vector<float> samples_in(const std::filesystem::path& file) {
   return samples;
 }
 
-TEST_CASE("what is mixed arrives at the sound card sample by sample") {
+TEST_CASE("the mixed samples arrive at the sound card unchanged") {
   const TempFolder folder;
   const std::filesystem::path file = folder.path() / "played.raw";
   const AlsaConfiguration to_file("pcm.!default { type file\n slave.pcm { type null }\n file \"" +
@@ -229,7 +227,7 @@ TEST_CASE("what is mixed arrives at the sound card sample by sample") {
   twin.tone(app::Cue::plane_on);
   const std::vector<float> played = samples_in(file);
   const std::vector<float> expected = rendered(twin, kCount);
-  // The sound card's buffer is filled with silence before.
+  // The sound card's buffer begins with silence.
   REQUIRE(expected.front() != 0.0F);
   const auto first =
       std::find_if(played.begin(), played.end(), [](float sample) { return sample != 0.0F; });

@@ -1,7 +1,7 @@
 #include "app/experimenter/terminal_experimenter.hpp"
 
 #include "app/experimenter/status_words.hpp"
-#include "protocols/session/prompt_participant.hpp"
+#include "protocols/simulation/prompt_participant.hpp"
 #include "support/catch.hpp"
 
 #include <stdexcept>
@@ -49,7 +49,7 @@ std::vector<session::ExperimenterRequest> all_requests(session::Experimenter& ex
   return requests;
 }
 
-TEST_CASE("pause and comfort stop are asked for at their key, the reason follows as a note") {
+TEST_CASE("pause and comfort stop act at their key, and the reason follows as a note") {
   TypedTerminal typed;
   app::TerminalExperimenter experimenter(typed.terminal());
   typed.keys = "c";
@@ -66,7 +66,7 @@ TEST_CASE("pause and comfort stop are asked for at their key, the reason follows
   CHECK(requests[3].kind == Kind::resume);
 }
 
-TEST_CASE("notes and deviations take umlauts and backspace, Escape leaves them") {
+TEST_CASE("notes and deviations accept umlauts and backspace, and Escape discards them") {
   TypedTerminal typed;
   app::TerminalExperimenter experimenter(typed.terminal());
   typed.keys =
@@ -107,7 +107,7 @@ TEST_CASE("the day sheet is ticked item by item, and one can go back") {
         std::vector<session::Tick>{session::Tick::done, session::Tick::skipped});
 }
 
-TEST_CASE("where nobody types nobody is asked, and lines are those of progress") {
+TEST_CASE("without a keyboard nobody is asked, and only progress is printed") {
   TypedTerminal typed;
   typed.rewrites = false;
   app::ExperimenterTerminal terminal = typed.terminal();
@@ -124,7 +124,7 @@ TEST_CASE("where nobody types nobody is asked, and lines are those of progress")
   CHECK(typed.written.find("answering  trial 3 of 25  0:01\n") != std::string::npos);
 }
 
-TEST_CASE("the status line is written over and never wraps") {
+TEST_CASE("the status line is overwritten and never wraps") {
   TypedTerminal typed;
   app::TerminalExperimenter experimenter(typed.terminal());
   typed.written.clear();
@@ -138,13 +138,13 @@ TEST_CASE("the status line is written over and never wraps") {
   CHECK(app::last_of("\xc3\xa4\xc3\xb6\xc3\xbc", 2) == "\xc3\xb6\xc3\xbc");
 }
 
-TEST_CASE("force comes on by a key that was pressed when nothing was missing") {
+TEST_CASE("force comes on only by a key that is pressed when nothing is missing") {
   TypedTerminal typed;
   app::TerminalExperimenter experimenter(typed.terminal());
   typed.keys = "g";
   CHECK(experimenter.attend("move the handle") == session::Attendant::Says::wait);
   CHECK(experimenter.attend("") == session::Attendant::Says::wait);
-  // The session asks for requests meanwhile, and shows how it stands.
+  // Meanwhile, the session takes requests and shows its status.
   typed.keys = "g";
   CHECK_FALSE(experimenter.request());
   experimenter.show(exploring());
@@ -159,7 +159,7 @@ TEST_CASE("force comes on by a key that was pressed when nothing was missing") {
   CHECK(all_requests(experimenter).at(0).text == "fire alarm");
 }
 
-TEST_CASE("requests of others come after those that were typed") {
+TEST_CASE("requests from other sources come after the typed ones") {
   TypedTerminal typed;
   app::TerminalExperimenter experimenter(typed.terminal());
   experimenter.add({Kind::note, "noise", ""});
@@ -170,14 +170,14 @@ TEST_CASE("requests of others come after those that were typed") {
   CHECK(requests[1].text == "noise");
 }
 
-class Blindfolded final : public session::PromptParticipant {
+class Blindfolded final : public simulation::PromptParticipant {
  public:
   void see_pictures(const std::vector<std::string>&) override {}
   [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry&) override {
     throw std::logic_error("nobody explores");
   }
   void feel(const device::ServoSample&) noexcept override {}
-  [[nodiscard]] session::ParticipantAnswer answer() override { return {2, {}}; }
+  [[nodiscard]] simulation::ParticipantAnswer answer() override { return {2, {}}; }
 };
 
 TEST_CASE("a spoken answer is entered by its number in alphabetical order") {
@@ -195,7 +195,7 @@ TEST_CASE("a spoken answer is entered by its number in alphabetical order") {
   typed.keys = "9\n1\n3\n2\n";
   CHECK_FALSE(spoken.attend(step));
   CHECK(typed.written.find("sand; Enter confirms: ") != std::string::npos);
-  // Keys that the session takes on its way to requests are not lost to the answer.
+  // Keys that are read while the session takes requests still belong to the answer.
   typed.keys = "\n6\n4";
   CHECK_FALSE(experimenter.request());
   typed.keys = "\n";
@@ -207,7 +207,7 @@ TEST_CASE("a spoken answer is entered by its number in alphabetical order") {
   CHECK(reply->at);
 }
 
-TEST_CASE("an answer that was begun does not outlive its exploration") {
+TEST_CASE("an unfinished entry is discarded at the next exploration") {
   TypedTerminal typed;
   app::TerminalExperimenter experimenter(typed.terminal());
   Blindfolded participant;
@@ -224,7 +224,7 @@ TEST_CASE("an answer that was begun does not outlive its exploration") {
   CHECK_FALSE(spoken.attend(step));
 }
 
-TEST_CASE("answers of those who see are their own") {
+TEST_CASE("participants who see answer for themselves") {
   TypedTerminal typed;
   app::TerminalExperimenter experimenter(typed.terminal());
   Blindfolded participant;

@@ -42,14 +42,14 @@ Owned<Reply> owned(Reply* reply) {
   ::_exit(127);
 }
 
-/// The number that the server writes once it takes clients; "" if it ended instead.
+/// The number that the server writes once it accepts clients; "" if it ended instead.
 std::string display_number(int from) {
   std::string number;
   for (char c = 0; ::read(from, &c, 1) == 1 && c != '\n';) number += c;
   return number;
 }
 
-/// How a letter is made on a keyboard.
+/// The keys of a letter.
 struct Stroke {
   std::uint8_t key = 0;
   bool with_shift = false;
@@ -57,8 +57,8 @@ struct Stroke {
 
 }  // namespace
 
-/// A client of the server. Windows are asked for again each time, and whatever is asked of one that
-/// has closed meanwhile is answered by an error, which ends no test.
+/// A client of the server. It searches for windows each time; a request to a window that has closed
+/// returns an error, which does not end a test.
 class VirtualScreen::Client {
  public:
   Client() : connection_(xcb_connect(nullptr, nullptr)) {
@@ -124,8 +124,9 @@ class VirtualScreen::Client {
         "the focus");
   }
 
-  /// The question of window managers whether a program still lives: it takes its events in their
-  /// order, and so has taken all before when it answers. \return false if the window closed
+  /// Sends a window manager's ping to a program: because it takes events in order, it has taken all
+  /// earlier events when it answers.
+  /// \return false if the window closed
   [[nodiscard]] bool ping(xcb_window_t window) {
     while (owned(xcb_poll_for_event(connection_))) {
     }
@@ -163,7 +164,7 @@ class VirtualScreen::Client {
     return reply->atom;
   }
 
-  /// Of every symbol on the keyboard, without the shift key if that is possible.
+  /// The keys of every symbol on the keyboard, without the shift key if possible.
   [[nodiscard]] std::map<xcb_keysym_t, Stroke> strokes() {
     const xcb_setup_t* const setup = xcb_get_setup(connection_);
     const xcb_keycode_t first = setup->min_keycode;
@@ -202,7 +203,7 @@ class VirtualScreen::Client {
             static_cast<std::size_t>(xcb_get_property_value_length(title.get()))};
   }
 
-  /// The question itself, sent on to the screen.
+  /// The ping, which the program returns to the screen.
   [[nodiscard]] bool is_answer(const xcb_generic_event_t& event) const {
     constexpr unsigned kSent = 0x80U;
     if ((event.response_type & ~kSent) != XCB_CLIENT_MESSAGE) return false;

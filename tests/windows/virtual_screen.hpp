@@ -1,4 +1,4 @@
-/// \file A screen that nobody sees, with a hand on its mouse and keyboard.
+/// \file A virtual screen, with a hand on its mouse and keyboard.
 #pragma once
 
 #include <memory>
@@ -6,21 +6,21 @@
 
 namespace touchtrial {
 
-/// An X server of its own (Xvfb) on a display that is free, for as long as this lives; DISPLAY
-/// names it, and OpenGL is drawn by software. One at a time.
+/// A private X server (Xvfb) on a free display while this object lives. DISPLAY names it, and
+/// OpenGL is rendered in software. One at a time.
 ///
-/// Input is that of the XTest extension: real events, of which none is meant for a certain window,
-/// so that a window may close at any of them. All functions return once the server has done what
-/// they ask for; they throw std::runtime_error where it refuses.
+/// Input comes from the XTest extension: real events, which are not addressed to a window, so that
+/// a window may close at any of them. All functions return once the server has done the work, and
+/// throw std::runtime_error if it refuses.
 class VirtualScreen {
  public:
-  /// \throws std::runtime_error where Xvfb is not installed, or no screen is to be had
+  /// \throws std::runtime_error if Xvfb is not installed or does not start
   [[nodiscard]] static std::unique_ptr<VirtualScreen> open(const std::string& size = "1280x1024");
   ~VirtualScreen();
   VirtualScreen(const VirtualScreen&) = delete;
   VirtualScreen& operator=(const VirtualScreen&) = delete;
 
-  /// Pixels from the screen's corner.
+  /// Moves the pointer; pixels from the screen's corner.
   void move_pointer(int x, int y) const;
   void press() const;
   void release() const;
@@ -34,8 +34,8 @@ class VirtualScreen {
   void move_window(const std::string& title, int x, int y) const;
   void resize_window(const std::string& title, int width, int height) const;
   void focus_window(const std::string& title) const;
-  /// Waits until the window's program has taken everything that has happened on the screen so far.
-  /// \return false if there is no such window, or it is closed meanwhile
+  /// Waits until the window's program has taken all events so far.
+  /// \return false if there is no such window, or it closes meanwhile
   bool wait_until_heard(const std::string& title) const;
   ///@}
 

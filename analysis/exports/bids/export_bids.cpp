@@ -8,10 +8,10 @@
 #include "analysis/exports/bids/bids_tsv.hpp"
 #include "analysis/exports/dataset_readme.hpp"
 #include "analysis/exports/export_folder.hpp"
-#include "analysis/report/quality.hpp"
-#include "analysis/report/report.hpp"
+#include "analysis/quality.hpp"
+#include "analysis/results.hpp"
 #include "core/errors.hpp"
-#include "protocols/store/database_copy.hpp"
+#include "protocols/store/study_store.hpp"
 
 #include <memory>
 #include <mutex>
@@ -68,7 +68,8 @@ void add_report(Files& files, const DatasetSource& study) {
       text_file(folder + "dataset_description.json", derivative_description_json(study)));
   files.push_back(
       study.outcomes != nullptr
-          ? text_file(folder + "results.json", report_json(make_report(*study.outcomes)))
+          ? text_file(folder + "results.json",
+                      analysis_of(study.outcomes->design).results(*study.outcomes, {})->json())
           : text_file(folder + "quality.json", quality_json(make_quality(study.store))));
 }
 

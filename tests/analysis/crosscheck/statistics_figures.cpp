@@ -4,20 +4,16 @@
 /// Reads one JSON array of cases from standard input; each is an object whose "statistic" names one
 /// of the functions below and whose other members are its arguments. Writes an array of the same
 /// length: each element an array of numbers, null where a figure does not exist.
+#include "analysis/confusion_of_counts.hpp"
 #include "analysis/statistics/chance_test.hpp"
 #include "analysis/statistics/choice_model.hpp"
 #include "analysis/statistics/cluster_bootstrap.hpp"
-#include "analysis/statistics/cochran_q.hpp"
+#include "analysis/statistics/confusion.hpp"
 #include "analysis/statistics/d_prime.hpp"
-#include "analysis/statistics/holm.hpp"
+#include "analysis/statistics/descriptive.hpp"
 #include "analysis/statistics/information_transfer.hpp"
-#include "analysis/statistics/label_matching.hpp"
-#include "analysis/statistics/mcnemar.hpp"
-#include "analysis/statistics/odds_ratio.hpp"
-#include "analysis/statistics/participant_mean.hpp"
+#include "analysis/statistics/paired_tests.hpp"
 #include "analysis/statistics/proportion.hpp"
-#include "analysis/statistics/quantiles.hpp"
-#include "analysis/statistics/sign_flip.hpp"
 
 #include <cmath>
 #include <exception>
@@ -54,15 +50,9 @@ std::vector<double> numbers(const json& value) {
   return value.get<std::vector<double>>();
 }
 
-/// Rows of counts.
+/// \param rows  of counts
 analysis::ConfusionMatrix confusion(const json& rows) {
-  analysis::ConfusionMatrix matrix(static_cast<int>(rows.size()));
-  for (int i = 0; i < matrix.classes(); ++i) {
-    for (int j = 0; j < matrix.classes(); ++j) {
-      for (int k = rows[i][j].get<int>(); k > 0; --k) matrix.add({i, j});
-    }
-  }
-  return matrix;
+  return confusion_of_counts(rows.get<std::vector<std::vector<int>>>());
 }
 
 Figures wilson(const json& c) {

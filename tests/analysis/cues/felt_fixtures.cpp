@@ -26,10 +26,11 @@ engine::FeltFeatures features_of(Difference difference, int class_index) {
 
 }  // namespace
 
-std::vector<analysis::ObservedTrial> felt_trials(Difference difference, int classes, int repeats,
-                                                 double noise, std::uint64_t index) {
+std::vector<analysis::identification::ObservedTrial> felt_trials(Difference difference, int classes,
+                                                                 int repeats, double noise,
+                                                                 std::uint64_t index) {
   RandomStream random(7, "felt_fixtures", index);
-  std::vector<analysis::ObservedTrial> trials;
+  std::vector<analysis::identification::ObservedTrial> trials;
   for (int i = 0; i < classes * repeats; ++i) {
     const int class_index = i % classes;
     trials.push_back({class_index, 0, features_of(difference, class_index)});

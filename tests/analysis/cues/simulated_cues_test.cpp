@@ -1,58 +1,60 @@
-#include "analysis/cues/cue_report.hpp"
 #include "analysis/outcomes.hpp"
+#include "protocols/identification/analysis/cues/cue_report.hpp"
 #include "protocols/session/commitment.hpp"
-#include "protocols/session/simulation.hpp"
 #include "protocols/session/tiny_study.hpp"
+#include "protocols/simulation/simulation.hpp"
 #include "support/catch.hpp"
 
 namespace touchtrial {
 namespace {
 
 /// Quick explorations: 2 s, with the training that they need.
-session::SubjectModel quick_subject(double weber) {
-  session::SubjectModel subject;
+simulation::SubjectModel quick_subject(double weber) {
+  simulation::SubjectModel subject;
   subject.explore_s = 2.0;
   subject.training_passes = 6;
   subject.weber = weber;
   return subject;
 }
 
-analysis::MethodCues simulated_cues(TinyStudy& study, const session::SubjectModel& subject) {
+analysis::identification::MethodCues simulated_cues(TinyStudy& study,
+                                                    const simulation::SubjectModel& subject) {
   store::StudyStore store = store::StudyStore::create(
       study.next_database(), session::commitment_of(study.key(), study.pack(), true, false), {});
-  static_cast<void>(session::simulate_study(study.key(), study.pack(), subject,
-                                            {.participants = 4, .seed = 3}, store));
+  static_cast<void>(simulation::simulate_study(study.key(), study.pack(), subject,
+                                               {.participants = 4, .seed = 3}, store));
   store.close_study({});
   store.unblind({}, "planned", false);
-  const analysis::CueReport report =
-      analysis::make_cues(store, study.key(), analysis::load_outcomes(store, study.key()),
-                          {.pack = study.pack().folder()});
+  const analysis::identification::CueReport report = analysis::identification::make_cues(
+      store, study.key(), analysis::load_outcomes(store, study.key()),
+      {.pack = study.pack().folder()});
   CHECK(report.plane_source == "the study's pack");
   return report.methods.at(0);
 }
 
 TEST_CASE("an ideal simulated participant uses everything that is available") {
   TinyStudy study;
-  const analysis::MethodCues cues = simulated_cues(study, quick_subject(0.0));
-  const analysis::ObserverFigures& everything = cues.observers.at(2);
+  const analysis::identification::MethodCues cues = simulated_cues(study, quick_subject(0.0));
+  const analysis::identification::ObserverFigures& everything = cues.observers.at(2);
   CHECK(cues.trials == 100);
   CHECK(everything.mean.mean.value() >= 0.95);
   CHECK(everything.efficiency.value.value() == Approx(1.0).margin(0.05));
 }
 
-TEST_CASE("a noisy simulated participant is known by confusions as one who uses everything") {
+TEST_CASE("the confusions of a noisy simulated participant show that everything is used") {
   TinyStudy study;
-  const analysis::MethodCues cues = simulated_cues(study, quick_subject(0.5));
+  const analysis::identification::MethodCues cues = simulated_cues(study, quick_subject(0.5));
   CHECK(cues.human_mean.mean.value() < cues.observers.at(2).mean.mean.value());
   CHECK(cues.observers.at(2).matched_noise > 0.0);
-  CHECK(cues.match.value().best == analysis::Cue::everything);
+  CHECK(cues.match.value().best == analysis::identification::Cue::everything);
 }
 
-TEST_CASE("on smooth planes nothing is available, whatever is used") {
+TEST_CASE("on smooth planes nothing is available to any observer") {
   TinyStudy study({.smooth = true});
-  const analysis::MethodCues cues = simulated_cues(study, quick_subject(0.0));
+  const analysis::identification::MethodCues cues = simulated_cues(study, quick_subject(0.0));
   // 100 trials: 99.9 % of binomial draws with p = 0.2 lie between 8 and 34.
-  for (const analysis::ObserverFigures& one : cues.observers) CHECK(one.mean.mean.value() <= 0.34);
+  for (const analysis::identification::ObserverFigures& one : cues.observers)
+    CHECK(one.mean.mean.value() <= 0.34);
 }
 
 }  // namespace

@@ -41,9 +41,6 @@ void read_study(analysis::Outcomes& outcomes, const std::filesystem::path& folde
     }
   }
   outcomes.study = single.at("study");
-  outcomes.protocol = single.at("protocol") == name_of(design::Protocol::comparison)
-                          ? design::Protocol::comparison
-                          : design::Protocol::classification;
   outcomes.simulated = is_set(single.at("simulated"));
   outcomes.pilot = is_set(single.at("pilot"));
   outcomes.visual = is_set(single.at("visual"));
@@ -51,6 +48,7 @@ void read_study(analysis::Outcomes& outcomes, const std::filesystem::path& folde
   outcomes.state.unblinded = is_set(single.at("unblinded"));
   outcomes.state.unblinding_reason = single.at("unblinding_reason");
   if (is_set(single.at("interim"))) outcomes.state.interim.emplace();
+  outcomes.choices = outcomes.classes;
   outcomes.design =
       design::parse_study(text_of_file(folder / "study_file.json"), ".", "study_file.json");
 }
@@ -127,7 +125,10 @@ void read_trials(analysis::Outcomes& outcomes, const std::filesystem::path& file
     if (kind == "catch") trial.kind = design::PresentationKind::catch_trial;
     trial.scored = kind == "scored";
     trial.counted = is_set(row.at("counted"));
-    if (kind != "catch") trial.stimulus = stimulus_of(outcomes, row);
+    if (kind != "catch") {
+      trial.stimulus = stimulus_of(outcomes, row);
+      trial.right = trial.stimulus.class_index;
+    }
     if (!row.at("response").empty()) {
       trial.response = index_of(outcomes.classes, row.at("response"));
     }

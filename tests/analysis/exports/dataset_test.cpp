@@ -5,10 +5,10 @@
 #include "analysis/exports/export_psych_ds.hpp"
 #include "analysis/exports/gunzip.hpp"
 #include "analysis/fake_study.hpp"
-#include "analysis/report/report.hpp"
 #include "analysis/text_matching.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "protocols/identification/analysis/report.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -73,7 +73,7 @@ TEST_CASE("participant_label gives different ids different labels of letters and
 }
 
 TEST_CASE("A study as BIDS keeps to the specification, with traces, database and without") {
-  FakeStudy study(design::Protocol::comparison, {.label = "bark \"old\""});
+  FakeStudy study(design::identification::comparison(), {.label = "bark \"old\""});
   fill(study);
   study.close_and_unblind();
   const OpenStudy open(study);
@@ -91,11 +91,12 @@ TEST_CASE("A study as BIDS keeps to the specification, with traces, database and
         study.store().trials());
   CHECK_FALSE(is_there(copy.string() + ".key"));
   const std::string report = text_of_file(out / "derivatives/touchtrial/results.json");
-  CHECK(report == analysis::report_json(analysis::make_report(open.outcomes)));
+  CHECK(report == analysis::identification::report_json(
+                      analysis::identification::make_report(open.outcomes)));
 }
 
 TEST_CASE("A BIDS recording holds the trace and its beginning") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   fill(study);
   study.close_and_unblind();
   const OpenStudy open(study);
@@ -128,7 +129,7 @@ TEST_CASE("A BIDS recording tells a trace's steps apart, and writes no zero with
 }
 
 TEST_CASE("A BIDS dataset loses its traces and withdrawn participants when it is exported again") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   fill(study);
   study.close_and_unblind();
   const fs::path out = study.folder() / "bids";
@@ -146,7 +147,7 @@ TEST_CASE("A BIDS dataset loses its traces and withdrawn participants when it is
 }
 
 TEST_CASE("Participants with several sessions have folders for them") {
-  FakeStudy study(design::Protocol::classification, {.simulated = false});
+  FakeStudy study(design::identification::classification(), {.simulated = false});
   study.add({.participant = "P01",
              .enrolment = 1,
              .answers = FakeStudy::always_right(),
@@ -165,7 +166,7 @@ TEST_CASE("Participants with several sessions have folders for them") {
 }
 
 TEST_CASE("Before unblinding datasets have no word of what was presented or answered") {
-  FakeStudy study(design::Protocol::comparison, {.label = "petrified wood"});
+  FakeStudy study(design::identification::comparison(), {.label = "petrified wood"});
   fill(study);
   const analysis::DatasetSource source{study.store()};
   const fs::path bids = study.folder() / "bids";
@@ -188,7 +189,7 @@ TEST_CASE("Before unblinding datasets have no word of what was presented or answ
 }
 
 TEST_CASE("A study as Psych-DS keeps to the schema") {
-  FakeStudy study(design::Protocol::comparison,
+  FakeStudy study(design::identification::comparison(),
                   {.label = "bark, \"old\"", .trials = R"({"lead_in": 1, "catch": 1})"});
   fill(study);
   study.store().withdraw(3, milliseconds(900), "asked to");
@@ -203,7 +204,7 @@ TEST_CASE("A study as Psych-DS keeps to the schema") {
 }
 
 TEST_CASE("The checkers of datasets find what is wrong") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   fill(study);
   study.close_and_unblind();
   const OpenStudy open(study);

@@ -36,7 +36,7 @@ std::vector<std::filesystem::path> exported(FakeStudy& study) {
 }  // namespace
 
 TEST_CASE("Exported events have remarks, faults by name, and flight records as they were") {
-  FakeStudy study(design::Protocol::classification, {.simulated = false});
+  FakeStudy study(design::identification::classification(), {.simulated = false});
   study.add(of_somebody("P01", 1));
   study.add({.participant = "P02",
              .enrolment = 2,
@@ -72,7 +72,7 @@ TEST_CASE("Exported events have remarks, faults by name, and flight records as t
 
 TEST_CASE(
     "Exported events have nothing of who withdrew, nor of whom an interim look does not show") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   study.add(of_somebody("P01", 1));
   study.add(of_somebody("P02", 2));
   study.store().note(2, milliseconds(4), "", "asked how long it takes");

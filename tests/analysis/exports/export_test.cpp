@@ -2,10 +2,10 @@
 #include "analysis/exports/export_csv.hpp"
 #include "analysis/exports/export_json.hpp"
 #include "analysis/fake_study.hpp"
-#include "analysis/report/report.hpp"
 #include "analysis/text_matching.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "protocols/identification/analysis/report.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -33,11 +33,12 @@ constexpr const char* kHeader =
 }  // namespace
 
 TEST_CASE("Exported trials count up to the report") {
-  FakeStudy study(design::Protocol::comparison, {.label = "bark, \"old\""});
+  FakeStudy study(design::identification::comparison(), {.label = "bark, \"old\""});
   fill(study);
   study.close_and_unblind();
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
-  const analysis::StudyReport report = analysis::make_report(outcomes);
+  const analysis::identification::StudyReport report =
+      analysis::identification::make_report(outcomes);
   const std::filesystem::path out = study.folder() / "new" / "out";
   const auto files = analysis::export_csv(study.store(), outcomes, out);
   REQUIRE(files.size() == 10);
@@ -49,7 +50,7 @@ TEST_CASE("Exported trials count up to the report") {
     correct += row.at("correct") == "1" ? 1 : 0;
   }
   int expected_correct = 0;
-  for (const analysis::MethodReport& method : report.methods) {
+  for (const analysis::identification::MethodReport& method : report.methods) {
     expected_correct += method.overall.correct;
     const auto confusion = rows_of(out / ("confusion_" + method.method + ".csv"));
     REQUIRE(confusion.size() == 3);
@@ -68,7 +69,7 @@ TEST_CASE("Exported trials count up to the report") {
 }
 
 TEST_CASE("trials.csv has the published columns, exact times and figures") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   fill(study);
   study.close_and_unblind();
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
@@ -97,7 +98,7 @@ TEST_CASE("trials.csv has the published columns, exact times and figures") {
 }
 
 TEST_CASE("An exported trial is valid by the rule's part in clear, then by its sealed part too") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   study.add({.participant = "P01",
              .enrolment = 1,
              .answers = FakeStudy::always_right(),
@@ -119,7 +120,7 @@ TEST_CASE("An exported trial is valid by the rule's part in clear, then by its s
 }
 
 TEST_CASE("Before unblinding an export has no word of what was presented or answered") {
-  FakeStudy study(design::Protocol::comparison, {.label = "petrified wood"});
+  FakeStudy study(design::identification::comparison(), {.label = "petrified wood"});
   fill(study);
   const std::filesystem::path out = study.folder() / "out";
   const auto files = analysis::export_csv(study.store(), std::nullopt, out);
@@ -149,7 +150,7 @@ TEST_CASE("Before unblinding an export has no word of what was presented or answ
 }
 
 TEST_CASE("participants.csv tells whose sessions count and that they are simulated") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   fill(study);
   study.add({.participant = "P03",
              .enrolment = 3,
@@ -172,7 +173,7 @@ TEST_CASE("participants.csv tells whose sessions count and that they are simulat
 }
 
 TEST_CASE("The JSON export holds the report and the same trials") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   fill(study);
   study.close_and_unblind();
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
@@ -180,8 +181,8 @@ TEST_CASE("The JSON export holds the report and the same trials") {
   const auto json = nlohmann::json::parse(
       text_of_file(analysis::export_json(study.store(), outcomes, study.folder())));
   CHECK(json["stamp"] == "SIMULATED");
-  CHECK(json["report"] ==
-        nlohmann::json::parse(analysis::report_json(analysis::make_report(outcomes))));
+  CHECK(json["report"] == nlohmann::json::parse(analysis::identification::report_json(
+                              analysis::identification::make_report(outcomes))));
   CHECK(json["participants"].size() == 2);
   const std::vector<CsvRow> rows = rows_of(study.folder() / "trials.csv");
   REQUIRE(json["trials"].size() == rows.size());
@@ -195,7 +196,7 @@ TEST_CASE("The JSON export holds the report and the same trials") {
 }
 
 TEST_CASE("Exporting twice gives the same bytes and leaves other files alone") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   fill(study);
   study.close_and_unblind();
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
@@ -215,7 +216,7 @@ TEST_CASE("Exporting twice gives the same bytes and leaves other files alone") {
 }
 
 TEST_CASE("An export into a file instead of a folder is refused") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   const std::string complaint = complaint_of<FileError>(
       [&] { analysis::export_csv(study.store(), std::nullopt, study.database()); });
   CHECK(contains(complaint, study.database().string()));

@@ -3,8 +3,8 @@
 #include "analysis/exports/export_csv.hpp"
 #include "analysis/exports/export_json.hpp"
 #include "analysis/exports/export_psych_ds.hpp"
-#include "analysis/exports/r/mixed_model.hpp"
 #include "analysis/fake_study.hpp"
+#include "protocols/identification/analysis/mixed_model.hpp"
 #include "support/catch.hpp"
 
 #include <clocale>
@@ -49,13 +49,13 @@ void export_everything(FakeStudy& study, const fs::path& out) {
   analysis::export_json(study.store(), outcomes, out / "json");
   analysis::export_bids(source, {.traces = true}, out / "bids");
   analysis::export_psych_ds(source, {}, out / "psych");
-  analysis::export_mixed_model(study.store(), outcomes, out / "r");
+  analysis::identification::export_mixed_model(study.store(), outcomes, out / "r");
 }
 
 }  // namespace
 
 TEST_CASE("Exports are the same bytes under a locale with a decimal comma") {
-  FakeStudy study(design::Protocol::comparison);
+  FakeStudy study(design::identification::comparison());
   for (int i = 1; i <= 3; ++i) {
     study.add({.participant = "P0" + std::to_string(i),
                .enrolment = i,

@@ -1,9 +1,9 @@
-#include "analysis/exports/r/mixed_model.hpp"
+#include "protocols/identification/analysis/mixed_model.hpp"
 
 #include "analysis/exports/csv_reading.hpp"
 #include "analysis/fake_study.hpp"
-#include "analysis/report/report.hpp"
 #include "analysis/text_matching.hpp"
+#include "protocols/identification/analysis/report.hpp"
 #include "support/catch.hpp"
 
 namespace touchtrial {
@@ -25,11 +25,12 @@ void fill(FakeStudy& study) {
 }  // namespace
 
 TEST_CASE("The table for a mixed model has the trials of the report and what came before them") {
-  FakeStudy study(design::Protocol::comparison, {.trials = R"({"lead_in": 1})"});
+  FakeStudy study(design::identification::comparison(), {.trials = R"({"lead_in": 1})"});
   fill(study);
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
-  const analysis::StudyReport report = analysis::make_report(outcomes);
-  analysis::export_mixed_model(study.store(), outcomes, study.folder() / "r");
+  const analysis::identification::StudyReport report =
+      analysis::identification::make_report(outcomes);
+  analysis::identification::export_mixed_model(study.store(), outcomes, study.folder() / "r");
   const std::vector<CsvRow> rows = rows_of(study.folder() / "r" / "mixed_model.csv");
   REQUIRE(static_cast<int>(rows.size()) == report.trials);
   int correct = 0;
@@ -48,16 +49,19 @@ TEST_CASE("The table for a mixed model has the trials of the report and what cam
 }
 
 TEST_CASE("The mixed model compares methods, or asks for the level of one") {
-  FakeStudy pair(design::Protocol::comparison);
+  FakeStudy pair(design::identification::comparison());
   fill(pair);
   const analysis::Outcomes two = analysis::load_outcomes(pair.store(), pair.key());
-  CHECK(analysis::mixed_model_formula(two) == "correct ~ method + (1 | participant) + (1 | image)");
-  CHECK(contains(analysis::mixed_model_script(two), "methods <- c(\"adaptive\", \"tv-gabor\")"));
-  FakeStudy single(design::Protocol::classification);
+  CHECK(analysis::identification::mixed_model_formula(two) ==
+        "correct ~ method + (1 | participant) + (1 | image)");
+  CHECK(contains(analysis::identification::mixed_model_script(two),
+                 "methods <- c(\"adaptive\", \"tv-gabor\")"));
+  FakeStudy single(design::identification::classification());
   fill(single);
   const analysis::Outcomes one = analysis::load_outcomes(single.store(), single.key());
-  CHECK(analysis::mixed_model_formula(one) == "correct ~ 1 + (1 | participant) + (1 | image)");
-  CHECK(contains(analysis::mixed_model_script(one), "SIMULATED"));
+  CHECK(analysis::identification::mixed_model_formula(one) ==
+        "correct ~ 1 + (1 | participant) + (1 | image)");
+  CHECK(contains(analysis::identification::mixed_model_script(one), "SIMULATED"));
 }
 
 }  // namespace touchtrial

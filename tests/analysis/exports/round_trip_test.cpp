@@ -1,7 +1,7 @@
 #include "analysis/exports/csv_reading.hpp"
 #include "analysis/exports/export_csv.hpp"
 #include "analysis/fake_study.hpp"
-#include "analysis/report/report.hpp"
+#include "protocols/identification/analysis/report.hpp"
 #include "support/catch.hpp"
 
 #include <chrono>
@@ -45,8 +45,8 @@ void check_round_trip(FakeStudy& study) {
     CHECK(read_back.sessions[i].row == outcomes.sessions[i].row);
   }
   check_same_station(read_back.collection, outcomes.collection);
-  CHECK(analysis::report_json(analysis::make_report(read_back)) ==
-        analysis::report_json(analysis::make_report(outcomes)));
+  CHECK(analysis::identification::report_json(analysis::identification::make_report(read_back)) ==
+        analysis::identification::report_json(analysis::identification::make_report(outcomes)));
 }
 
 /// Wrong now and then, in a way that depends on who answers.
@@ -77,7 +77,8 @@ void fill(FakeStudy& study) {
 }  // namespace
 
 TEST_CASE("A classification study reports the same from its CSV files, to the last digit") {
-  FakeStudy study(design::Protocol::classification, {.label = "bark, \"old\" (two, three)"});
+  FakeStudy study(design::identification::classification(),
+                  {.label = "bark, \"old\" (two, three)"});
   fill(study);
   study.store().exclude(1, milliseconds(900), "fell asleep, \"twice\"");
   study.close_and_unblind();
@@ -85,7 +86,7 @@ TEST_CASE("A classification study reports the same from its CSV files, to the la
 }
 
 TEST_CASE("A comparison of methods reports the same from its CSV files, to the last digit") {
-  FakeStudy study(design::Protocol::comparison);
+  FakeStudy study(design::identification::comparison());
   fill(study);
   study.store().withdraw(2, milliseconds(900), "asked to");
   study.close_and_unblind();
@@ -93,7 +94,8 @@ TEST_CASE("A comparison of methods reports the same from its CSV files, to the l
 }
 
 TEST_CASE("A study with lead-ins and catch trials reports the same from its CSV files") {
-  FakeStudy study(design::Protocol::classification, {.trials = R"({"lead_in": 1, "catch": 2})"});
+  FakeStudy study(design::identification::classification(),
+                  {.trials = R"({"lead_in": 1, "catch": 2})"});
   fill(study);
   study.close_and_unblind();
   check_round_trip(study);
@@ -101,7 +103,7 @@ TEST_CASE("A study with lead-ins and catch trials reports the same from its CSV 
 }
 
 TEST_CASE("How a study was collected is the same from its CSV files, in words and figures") {
-  FakeStudy study(design::Protocol::classification, {.simulated = false});
+  FakeStudy study(design::identification::classification(), {.simulated = false});
   fill(study);
   FakeSession felt{.participant = "P07", .enrolment = 7, .answers = imperfect(7)};
   felt.station =
@@ -133,7 +135,7 @@ TEST_CASE("How a study was collected is the same from its CSV files, in words an
 }
 
 TEST_CASE("An interim look reports the same from its CSV files") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   fill(study);
   study.store().unblind(milliseconds(1000), "safety", true);
   study.add({.participant = "P07", .enrolment = 7, .answers = imperfect(7)});
@@ -141,7 +143,7 @@ TEST_CASE("An interim look reports the same from its CSV files") {
 }
 
 TEST_CASE("Participants who are no simulation are not stamped, and report the same") {
-  FakeStudy study(design::Protocol::classification, {.simulated = false});
+  FakeStudy study(design::identification::classification(), {.simulated = false});
   fill(study);
   study.close_and_unblind();
   check_round_trip(study);

@@ -7,15 +7,17 @@
 namespace touchtrial {
 namespace {
 
-analysis::MethodReport fake_method(const FakeReportOptions& options, std::size_t number) {
+analysis::identification::MethodReport fake_method(const FakeReportOptions& options,
+                                                   std::size_t number) {
   const auto classes = static_cast<int>(options.classes.size());
   RandomStream random(7, "fake report", number);
-  analysis::MethodReport method;
+  analysis::identification::MethodReport method;
   method.method = options.methods[number];
   method.confusion = analysis::ConfusionMatrix(classes);
   const int places = classes * options.repeats;
   std::vector<analysis::Proportion> by_place(static_cast<std::size_t>(places));
-  std::vector<analysis::ReactionTimes> reaction(static_cast<std::size_t>(classes) + 1);
+  std::vector<analysis::identification::ReactionTimes> reaction(static_cast<std::size_t>(classes) +
+                                                                1);
   std::vector<double> accuracies;
   for (int p = 0; p < options.participants; ++p) {
     const double skill = 0.55 + 0.4 * random.uniform() - 0.1 * static_cast<double>(number);
@@ -37,7 +39,7 @@ analysis::MethodReport fake_method(const FakeReportOptions& options, std::size_t
             3.0 + presented + 9.0 * random.uniform() * random.uniform());
       }
     }
-    analysis::ParticipantAccuracy one;
+    analysis::identification::ParticipantAccuracy one;
     one.participant = "P" + std::to_string(p + 1);
     one.accuracy = own.accuracy();
     accuracies.push_back(one.accuracy.share().value_or(0.0));
@@ -51,12 +53,12 @@ analysis::MethodReport fake_method(const FakeReportOptions& options, std::size_t
   }
   method.overall = method.confusion.accuracy();
   method.mean = analysis::participant_mean(accuracies);
-  for (analysis::ReactionTimes& times : reaction) {
+  for (analysis::identification::ReactionTimes& times : reaction) {
     std::sort(times.seconds.begin(), times.seconds.end());
     times.from_plane_on = analysis::quartiles(times.seconds);
   }
   method.reaction = std::move(reaction);
-  analysis::Breakdown trials{analysis::BreakdownKind::trial, {}};
+  analysis::identification::Breakdown trials{analysis::identification::BreakdownKind::trial, {}};
   for (int place = 0; place < places && options.participants > 0; ++place) {
     const analysis::Proportion at = by_place[static_cast<std::size_t>(place)];
     trials.groups.push_back({std::to_string(place + 1), at, analysis::wilson_interval(at)});
@@ -65,14 +67,15 @@ analysis::MethodReport fake_method(const FakeReportOptions& options, std::size_t
   return method;
 }
 
-analysis::MethodPair fake_pair(const analysis::StudyReport& report, int first, int second) {
+analysis::identification::MethodPair fake_pair(const analysis::identification::StudyReport& report,
+                                               int first, int second) {
   const auto& a = report.methods[static_cast<std::size_t>(first)].per_participant;
   const auto& b = report.methods[static_cast<std::size_t>(second)].per_participant;
   std::vector<analysis::PairedAccuracy> paired;
   for (std::size_t i = 0; i < a.size(); ++i) {
     paired.push_back({a[i].accuracy.share().value_or(0.0), b[i].accuracy.share().value_or(0.0)});
   }
-  analysis::MethodPair pair;
+  analysis::identification::MethodPair pair;
   pair.first = first;
   pair.second = second;
   pair.overall = analysis::compare_methods(paired);
@@ -81,8 +84,8 @@ analysis::MethodPair fake_pair(const analysis::StudyReport& report, int first, i
 
 }  // namespace
 
-analysis::StudyReport fake_report(const FakeReportOptions& options) {
-  analysis::StudyReport report;
+analysis::identification::StudyReport fake_report(const FakeReportOptions& options) {
+  analysis::identification::StudyReport report;
   report.study = "fake";
   report.simulated = true;
   report.participants = options.participants;
@@ -109,18 +112,18 @@ analysis::StudyReport fake_report(const FakeReportOptions& options) {
   return report;
 }
 
-analysis::CueReport fake_cues(const FakeReportOptions& options) {
-  analysis::CueReport cues;
+analysis::identification::CueReport fake_cues(const FakeReportOptions& options) {
+  analysis::identification::CueReport cues;
   cues.simulated = true;
   cues.classes = options.classes;
   cues.chance = 1.0 / static_cast<double>(options.classes.size());
   for (std::size_t m = 0; m < options.methods.size(); ++m) {
     RandomStream random(8, "fake cues", m);
-    analysis::MethodCues method;
+    analysis::identification::MethodCues method;
     method.method = options.methods[m];
-    for (std::size_t c = 0; c < analysis::kCues.size(); ++c) {
-      analysis::ObserverFigures observer;
-      observer.cue = analysis::kCues[c];
+    for (std::size_t c = 0; c < analysis::identification::kCues.size(); ++c) {
+      analysis::identification::ObserverFigures observer;
+      observer.cue = analysis::identification::kCues[c];
       for (int p = 0; p < options.participants; ++p) {
         observer.accuracy.push_back(
             std::min(1.0, 0.5 + 0.2 * static_cast<double>(c) + 0.2 * random.uniform()));

@@ -1,8 +1,8 @@
 /// \file A report with figures made up by a rule, for figures to be drawn from.
 #pragma once
 
-#include "analysis/cues/cue_report.hpp"
-#include "analysis/report/report.hpp"
+#include "protocols/identification/analysis/cues/cue_report.hpp"
+#include "protocols/identification/analysis/report.hpp"
 
 #include <string>
 #include <vector>
@@ -17,9 +17,10 @@ struct FakeReportOptions {
   int servo_trials = 0;
 };
 
-[[nodiscard]] analysis::StudyReport fake_report(const FakeReportOptions& options = {});
+[[nodiscard]] analysis::identification::StudyReport fake_report(
+    const FakeReportOptions& options = {});
 
 /// Of the same classes, methods and participants.
-[[nodiscard]] analysis::CueReport fake_cues(const FakeReportOptions& options = {});
+[[nodiscard]] analysis::identification::CueReport fake_cues(const FakeReportOptions& options = {});
 
 }  // namespace touchtrial

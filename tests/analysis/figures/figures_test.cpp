@@ -1,4 +1,4 @@
-#include "analysis/figures/figures.hpp"
+#include "protocols/identification/analysis/figures/figures.hpp"
 
 #include "analysis/figures/fake_report.hpp"
 #include "analysis/text_matching.hpp"
@@ -13,6 +13,7 @@
 
 using namespace touchtrial;
 using namespace touchtrial::analysis;
+using namespace touchtrial::analysis::identification;
 
 namespace {
 
@@ -112,7 +113,7 @@ TEST_CASE("figures of several methods hold them side by side, with participants'
   CHECK(contains(methods.alt, "adaptive − tv-gabor"));
 }
 
-TEST_CASE("figures of people bear no stamp") {
+TEST_CASE("figures of people have no stamp") {
   StudyReport report = fake_report();
   report.simulated = false;
   for (const Figure& figure : report_figures(report)) {
@@ -144,7 +145,7 @@ TEST_CASE("figures hold the report's counts and intervals") {
   CHECK(contains(cells, "'" + std::to_string(confusion.count(3, 3)) + "' at first 3.5, 3.32"));
 }
 
-TEST_CASE("figures show the paper's values on request alone, beside no class but of that name") {
+TEST_CASE("figures show the paper's values only on request, and only beside a class of that name") {
   const StudyReport report = fake_report();
   CHECK_FALSE(contains(figure_of(report_figures(report), "accuracy-by-class").script, "$paper"));
   const Figure apart =
@@ -159,7 +160,7 @@ TEST_CASE("figures show the paper's values on request alone, beside no class but
 }
 
 TEST_CASE(
-    "figures of a study in virtual time have no servo, and of one without participants nothing") {
+    "a study in virtual time has no figure of the servo, one without participants no figure") {
   const std::vector<std::string> ids = ids_of(report_figures(fake_report()));
   CHECK(std::find(ids.begin(), ids.end(), "servo-lateness") == ids.end());
   FakeReportOptions nobody;
@@ -168,7 +169,7 @@ TEST_CASE(
   CHECK(report_figures(StudyReport{}).empty());
 }
 
-TEST_CASE("figures leave out what is no number") {
+TEST_CASE("figures leave out values that are not finite") {
   StudyReport report = fake_report();
   report.methods[0].accuracy[1].wilson.low = std::numeric_limits<double>::quiet_NaN();
   const Figure figure = figure_of(report_figures(report), "accuracy-by-class");
@@ -176,7 +177,7 @@ TEST_CASE("figures leave out what is no number") {
   CHECK(balanced(drawn(figure, FigureFormat::svg)));
 }
 
-TEST_CASE("figures of one participant state no interval over participants") {
+TEST_CASE("figures of one participant give no interval over participants") {
   FakeReportOptions options;
   options.methods = {"adaptive", "tv-gabor"};
   options.participants = 1;
@@ -187,7 +188,7 @@ TEST_CASE("figures of one participant state no interval over participants") {
   }
 }
 
-TEST_CASE("figures cannot be broken out of by labels") {
+TEST_CASE("labels cannot break out of figures") {
   FakeReportOptions options;
   options.classes = hostile_labels();
   options.methods = {"it's", "</svg>\nEOD"};
@@ -259,7 +260,7 @@ TEST_CASE("figures as SVG are described, stand alone, and share a page without s
   }
 }
 
-TEST_CASE("figures are equal bytes whenever they are drawn, one by one or together") {
+TEST_CASE("figures drawn one by one or together, at any time, are equal bytes") {
   const std::vector<Figure> figures = report_figures(fake_report());
   for (const FigureFormat format : {FigureFormat::svg, FigureFormat::pdf}) {
     const std::vector<std::string> files = all_drawn(figures, format);

@@ -38,7 +38,7 @@ MeasuredPictures measured(const std::vector<LabelledPicture>& pictures,
 
 }  // namespace
 
-TEST_CASE("a picture's figures are those of its greys, texture and force") {
+TEST_CASE("a picture's measures are those of its greys, texture and force") {
   const auto result = measured({{"s", "flat", "flat.png", GreyImage(64, 64, 90)},
                                 {"s", "weak", "weak.png", blocks(1, 64, 20)},
                                 {"s", "strong", "strong.png", blocks(1, 64, 80)}});
@@ -59,7 +59,8 @@ TEST_CASE("a picture's figures are those of its greys, texture and force") {
 }
 
 TEST_CASE(
-    "strength alone tells a strong class from a weak one, and small pictures go without likeness") {
+    "strength alone distinguishes a strong class from a weak one, and small pictures have no "
+    "likeness") {
   const auto result = measured({{"s", "weak", "a", blocks(1, 80, 10)},
                                 {"s", "weak", "b", blocks(2, 80, 10)},
                                 {"s", "strong", "c", blocks(3, 80, 90)},
@@ -74,7 +75,7 @@ TEST_CASE(
   CHECK(set.rms_alone[0].unseen_picture == 1.0);
 }
 
-TEST_CASE("pictures that are alike within their class and not between have the likeness of that") {
+TEST_CASE("likeness tells pictures of one class from pictures of two") {
   const GreyImage one = blocks(1, 168, 60);
   const GreyImage other = blocks(2, 176, 60);
   int last = 0;
@@ -99,7 +100,7 @@ TEST_CASE("pictures that are alike within their class and not between have the l
   CHECK(result.sets[1].rms_alone.empty());
 }
 
-TEST_CASE("equalising is left out of account, and nothing to measure is refused") {
+TEST_CASE("equalising is ignored, and an empty set is refused") {
   RenderingOptions equalised;
   equalised.equalise = Equalise::rms;
   const std::vector<LabelledPicture> pictures = {{"s", "weak", "a", blocks(1, 64, 10)},
@@ -110,7 +111,7 @@ TEST_CASE("equalising is left out of account, and nothing to measure is refused"
   CHECK_THROWS_AS(measured({{"s", "a", "a", GreyImage(20, 20, 1)}}), std::invalid_argument);
 }
 
-TEST_CASE("measures are told in tables and in JSON") {
+TEST_CASE("measures are printed as tables and as JSON") {
   const auto result = measured({{"set one", "weak", "in/a.png", blocks(1, 64, 10)},
                                 {"set one", "strong", "in/b.png", blocks(2, 64, 90)}});
   const std::string text = measures_text(result);

@@ -37,7 +37,8 @@ TEST_CASE("a patch's strength is the logarithm of its rms force in newtons") {
                   std::invalid_argument);
 }
 
-TEST_CASE("classes of strengths far apart are always told, equal ones by chance alone") {
+TEST_CASE(
+    "classes of very different strength are always distinguished, equal ones only by chance") {
   const std::vector<PatchStrengths> apart = {{0, {1.0, 1.1}}, {1, {2.0, 2.1}}, {2, {3.0, 3.1}}};
   CHECK(rms_alone(apart, 3).unseen_patch == 1.0);
   CHECK(rms_alone(apart, 2).sets == 3);
@@ -46,7 +47,7 @@ TEST_CASE("classes of strengths far apart are always told, equal ones by chance 
   CHECK(rms_alone(mixed, 2).unseen_patch <= 0.5);
 }
 
-TEST_CASE("one class amid another is counted as by hand") {
+TEST_CASE("one class within another's range gives the count done by hand") {
   // Means 0 and 2. Without itself, 3.0 leaves mean 1 to its class: |3 - 1| = 2 < 3, right; 1.0
   // leaves mean 3: |1 - 3| = 2 > 1, wrong. The class of zeros is always right.
   const std::vector<PatchStrengths> pictures = {{0, {0.0, 0.0}}, {1, {1.0, 3.0}}};
@@ -54,7 +55,7 @@ TEST_CASE("one class amid another is counted as by hand") {
   CHECK(rms_alone(pictures, 2).unseen_picture == -1.0);
 }
 
-TEST_CASE("an unseen picture is told by the class's other pictures") {
+TEST_CASE("an unseen picture is judged by its class's other pictures") {
   // The second picture of class 0 is as strong as class 1, so it is never told; all others are.
   const std::vector<PatchStrengths> pictures = {
       {0, {0.0, 0.0}}, {0, {5.0, 5.0}}, {1, {5.0, 5.0}}, {1, {5.2, 5.2}}};

@@ -1,31 +1,29 @@
 #include "analysis/page/hand_made_report.hpp"
 
+#include "analysis/confusion_of_counts.hpp"
+
 #include <vector>
 
 namespace touchtrial {
 namespace {
 
+/// With one missing response to each class.
 analysis::ConfusionMatrix confusion_of(const std::vector<std::vector<int>>& counts) {
-  analysis::ConfusionMatrix confusion(static_cast<int>(counts.size()));
-  for (int i = 0; i < confusion.classes(); ++i) {
-    for (int j = 0; j < confusion.classes(); ++j) {
-      for (int k = 0; k < counts[i][j]; ++k) confusion.add({i, j});
-    }
-    confusion.add({i, std::nullopt});
-  }
+  analysis::ConfusionMatrix confusion = confusion_of_counts(counts);
+  for (int i = 0; i < confusion.classes(); ++i) confusion.add({i, std::nullopt});
   return confusion;
 }
 
-analysis::ReactionTimes times_of(double median) {
-  analysis::ReactionTimes times;
+analysis::identification::ReactionTimes times_of(double median) {
+  analysis::identification::ReactionTimes times;
   times.from_plane_on = {12, median - 1.0, median, median + 2.0};
   times.from_contact = {12, median - 1.5, median - 0.5, median + 1.5};
   return times;
 }
 
-void add_participants(analysis::MethodReport& method) {
+void add_participants(analysis::identification::MethodReport& method) {
   for (int i = 1; i <= 6; ++i) {
-    analysis::ParticipantAccuracy one{"P0" + std::to_string(i), {12, 6 + i}};
+    analysis::identification::ParticipantAccuracy one{"P0" + std::to_string(i), {12, 6 + i}};
     one.matching = {{12, 12}, {1, 0, 2}};
     one.consistency = 0.5;
     method.per_participant.push_back(one);
@@ -47,9 +45,9 @@ analysis::ChoiceModel choice_of() {
   return model;
 }
 
-analysis::MethodReport method_of(const std::string& name,
-                                 const std::vector<std::vector<int>>& counts) {
-  analysis::MethodReport method;
+analysis::identification::MethodReport method_of(const std::string& name,
+                                                 const std::vector<std::vector<int>>& counts) {
+  analysis::identification::MethodReport method;
   method.method = name;
   method.confusion = confusion_of(counts);
   method.overall = method.confusion.accuracy();
@@ -65,16 +63,17 @@ analysis::MethodReport method_of(const std::string& name,
   method.choice = choice_of();
   add_participants(method);
   for (const double median : {4.0, 5.5, 6.25, 5.0}) method.reaction.push_back(times_of(median));
-  method.breakdowns = {
-      {analysis::BreakdownKind::trial, {{"1", {6, 4}, {0.3, 0.9}}, {"2", {6, 5}, {0.4, 1}}}},
-      {analysis::BreakdownKind::previous_response, {{"cloth", {9, 6}, {0.35, 0.88}}}}};
-  method.robustness = {{analysis::TrialSubset::counted, {75, 57}, method.mean},
-                       {analysis::TrialSubset::answered, {72, 57}, method.mean}};
+  method.breakdowns = {{analysis::identification::BreakdownKind::trial,
+                        {{"1", {6, 4}, {0.3, 0.9}}, {"2", {6, 5}, {0.4, 1}}}},
+                       {analysis::identification::BreakdownKind::previous_response,
+                        {{"cloth", {9, 6}, {0.35, 0.88}}}}};
+  method.robustness = {{analysis::identification::TrialSubset::counted, {75, 57}, method.mean},
+                       {analysis::identification::TrialSubset::answered, {72, 57}, method.mean}};
   return method;
 }
 
-analysis::MethodPair pair_of() {
-  analysis::MethodPair pair;
+analysis::identification::MethodPair pair_of() {
+  analysis::identification::MethodPair pair;
   pair.overall = {6, -0.083, {-0.2, 0.034}, 0.125, -0.42, analysis::Interval{-0.16, -0.01}};
   pair.odds_ratio = analysis::OddsRatio{0.66, {0.31, 1.4}};
   for (int i = 0; i < 3; ++i) {
@@ -83,18 +82,18 @@ analysis::MethodPair pair_of() {
   return pair;
 }
 
-analysis::CueReport cues_of(const std::vector<std::string>& classes) {
-  analysis::CueReport cues;
+analysis::identification::CueReport cues_of(const std::vector<std::string>& classes) {
+  analysis::identification::CueReport cues;
   cues.chance = 1.0 / 3.0;
   cues.classes = classes;
-  analysis::MethodCues method;
+  analysis::identification::MethodCues method;
   method.method = "adaptive";
   method.trials = 70;
   method.without_trace = 5;
   method.participants = {"P01", "P02"};
   method.human_mean = {2, 0.7, {0.5, 0.9}};
-  for (const analysis::Cue cue : analysis::kCues) {
-    analysis::ObserverFigures observer;
+  for (const analysis::identification::Cue cue : analysis::identification::kCues) {
+    analysis::identification::ObserverFigures observer;
     observer.cue = cue;
     observer.mean = {2, 0.9, {0.8, 1.0}};
     observer.efficiency = {0.78, analysis::Interval{0.6, 0.95}};
@@ -103,10 +102,10 @@ analysis::CueReport cues_of(const std::vector<std::string>& classes) {
     observer.matched_divergence = {0.045, analysis::Interval{0.03, 0.06}};
     method.observers.push_back(observer);
   }
-  method.match = analysis::CueMatch{analysis::Cue::spectrum,
-                                    analysis::Cue::everything,
-                                    {0.02, analysis::Interval{-0.01, 0.05}},
-                                    false};
+  method.match = analysis::identification::CueMatch{analysis::identification::Cue::spectrum,
+                                                    analysis::identification::Cue::everything,
+                                                    {0.02, analysis::Interval{-0.01, 0.05}},
+                                                    false};
   cues.methods.push_back(method);
   return cues;
 }
@@ -144,8 +143,8 @@ analysis::Collection collection_of() {
 
 }  // namespace
 
-analysis::StudyReport hand_made_report(const std::string& label) {
-  analysis::StudyReport report;
+analysis::identification::StudyReport hand_made_report(const std::string& label) {
+  analysis::identification::StudyReport report;
   report.study = "hand-made";
   report.protocol = "comparison";
   report.simulated = true;

@@ -1,7 +1,7 @@
 /// \file A report whose every part has something, with labels that try to break out.
 #pragma once
 
-#include "analysis/page/study_document.hpp"
+#include "protocols/identification/analysis/page/sections.hpp"
 
 namespace touchtrial {
 
@@ -9,7 +9,8 @@ namespace touchtrial {
 inline constexpr const char* kHostile = "<script>alert('x')</script> & \"b|rk\" \\_$%#{~^}";
 
 /// Two methods and three classes, six participants. \param label  of the first class
-[[nodiscard]] analysis::StudyReport hand_made_report(const std::string& label = "bark");
+[[nodiscard]] analysis::identification::StudyReport hand_made_report(
+    const std::string& label = "bark");
 
 [[nodiscard]] analysis::Provenance hand_made_provenance();
 

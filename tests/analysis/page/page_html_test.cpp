@@ -1,11 +1,12 @@
 // The page of a report: whole, harmless, and readable without seeing it.
+#include "analysis/page/document.hpp"
 #include "analysis/page/hand_made_report.hpp"
 #include "analysis/page/page_checker.hpp"
-#include "analysis/page/renderings.hpp"
 #include "support/catch.hpp"
 
 using namespace touchtrial;
 using namespace touchtrial::analysis;
+using namespace touchtrial::analysis::identification;
 
 namespace {
 
@@ -19,7 +20,7 @@ std::string with_body(const std::string& body) {
 
 }  // namespace
 
-TEST_CASE("page: the checker finds what it looks for") {
+TEST_CASE("page: the checker finds the faults that it looks for") {
   CHECK(faults_of_page(with_body("<p>fine</p>")).empty());
   const auto fault = [](const std::string& body) {
     const std::vector<std::string> faults = faults_of_page(with_body(body));
@@ -71,7 +72,7 @@ TEST_CASE("page: an empty report is still a page") {
   CHECK(faults_of_page(page_of(report)) == std::vector<std::string>());
 }
 
-TEST_CASE("page: what is simulated says so on every table, and at both ends") {
+TEST_CASE("page: a simulated study says so on every table, and at both ends") {
   const Document document = study_document(hand_made_report(), hand_made_provenance());
   const std::string page = page_html(document);
   std::size_t stamps = 0;
@@ -86,7 +87,7 @@ TEST_CASE("page: what is simulated says so on every table, and at both ends") {
   CHECK(page_of(real).find("SIMULATED") == std::string::npos);
 }
 
-TEST_CASE("page: a picture's ids are its own, and one that holds a script is left out") {
+TEST_CASE("page: a picture's ids are unique, and a picture with a script is left out") {
   Picture bad = hand_made_picture("reaction-times");
   bad.svg.insert(bad.svg.find("<path"), "<script>1</script>");
   const std::string page = page_of(
@@ -101,7 +102,7 @@ TEST_CASE("page: a picture's ids are its own, and one that holds a script is lef
   CHECK_THAT(page, holds_text("Three bars: 80, 76 and 72%."));
 }
 
-TEST_CASE("page: a thousand participants are folded away") {
+TEST_CASE("page: a table of a thousand participants is folded away") {
   StudyReport report = hand_made_report();
   const ParticipantAccuracy one = report.methods[0].per_participant[0];
   report.methods[0].per_participant.assign(1000, one);
@@ -110,7 +111,7 @@ TEST_CASE("page: a thousand participants are folded away") {
   CHECK(faults_of_page(page) == std::vector<std::string>());
 }
 
-TEST_CASE("page: the report before unblinding tells nothing of outcomes") {
+TEST_CASE("page: the report before unblinding tells nothing about outcomes") {
   QualityReport quality;
   quality.study = "hand-made";
   quality.quality.by_position = {3, 4, 5};

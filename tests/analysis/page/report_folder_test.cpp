@@ -9,6 +9,7 @@
 
 using namespace touchtrial;
 using namespace touchtrial::analysis;
+using namespace touchtrial::analysis::identification;
 namespace fs = std::filesystem;
 
 namespace {
@@ -33,7 +34,7 @@ TEST_CASE("report folder: holds page, results and every table in both forms") {
   }
 }
 
-TEST_CASE("report folder: what an earlier report wrote goes, what others put there stays") {
+TEST_CASE("report folder: files of an earlier report are removed, files of others stay") {
   const TempFolder folder;
   const fs::path out = folder.path();
   write_report_folder(out, {{"results.json", "1"}, {"tables/old.md", "x"}, {"tables/a.md", "x"}});
@@ -46,7 +47,7 @@ TEST_CASE("report folder: what an earlier report wrote goes, what others put the
   CHECK(content_of(out / "notes.txt") == "mine");
 }
 
-TEST_CASE("report folder: a list that was tampered with takes away nothing outside") {
+TEST_CASE("report folder: a manipulated list removes nothing outside") {
   const TempFolder folder;
   const fs::path out = folder.path() / "report";
   write_report_folder(out, {{"results.json", "1"}});
@@ -60,7 +61,9 @@ TEST_CASE("report folder: a list that was tampered with takes away nothing outsi
   CHECK(is_there(out / "notes.txt"));
 }
 
-TEST_CASE("report folder: refuses the report of another study, and a results.json of no report") {
+TEST_CASE(
+    "report folder: refuses the report of another study, and a results.json that is not a "
+    "report's") {
   const TempFolder folder;
   const fs::path out = folder.path();
   CHECK_NOTHROW(refuse_other_study(out, "mine"));

@@ -1,6 +1,6 @@
 // What a report says, and under which name.
+#include "analysis/page/document.hpp"
 #include "analysis/page/hand_made_report.hpp"
-#include "analysis/page/renderings.hpp"
 #include "analysis/page/wording.hpp"
 #include "support/catch.hpp"
 
@@ -10,6 +10,7 @@
 
 using namespace touchtrial;
 using namespace touchtrial::analysis;
+using namespace touchtrial::analysis::identification;
 
 namespace {
 
@@ -41,7 +42,7 @@ TEST_CASE("document: sections come in the order of a results section") {
                                         "reaction-times", "cues", "servo-and-validity", "methods"});
 }
 
-TEST_CASE("document: every table has a name of its own and as many cells as columns") {
+TEST_CASE("document: every table has a unique name and as many cells as columns") {
   std::set<std::string> ids;
   StudyReport report = hand_made_report();
   report.methods[1].method = "Adaptive!";  // the same name once it is a file's
@@ -112,7 +113,7 @@ TEST_CASE("document: participants' flow is drawn once, explorations come last am
   }
 }
 
-TEST_CASE("document: which observer confuses alike is not told of few participants") {
+TEST_CASE("document: few participants give no verdict on which observer confuses alike") {
   StudyReport report = hand_made_report();
   const auto page = [&] { return page_html(study_document(report, hand_made_provenance())); };
   CHECK_THAT(page(), holds_text("with 2 participants it is not told whether the two differ"));
@@ -139,7 +140,7 @@ TEST_CASE("document: an interim look and a pilot stand on every table") {
   CHECK(stamped("SIMULATED: x", document.stamp) == "SIMULATED: x [PILOT, INTERIM LOOK]");
 }
 
-TEST_CASE("document: figures that were not drawn are told of, without their captions") {
+TEST_CASE("document: figures that were not drawn are described, without their captions") {
   Picture picture = hand_made_picture("methods");
   const auto page = [&] {
     return page_html(study_document(hand_made_report(), hand_made_provenance(), {picture}));
@@ -188,14 +189,14 @@ TEST_CASE("document: every cited source is in the list of references, once") {
   for (const Source source : references) CHECK_FALSE(citation_of(source).empty());
 }
 
-TEST_CASE("document: what was not asked for says how to ask") {
+TEST_CASE("document: parts that were not requested tell how to request them") {
   StudyReport report = hand_made_report();
   report.cues.reset();
   CHECK_THAT(page_html(study_document(report, hand_made_provenance())), holds_text("--cues yes"));
 }
 
 TEST_CASE(
-    "document: figures that do not exist are dashes, and what rounds to nothing has no sign") {
+    "document: numbers that do not exist are dashes, and those that round to 0 have no sign") {
   CHECK(share_figure({}) == "–");
   CHECK(points_figure(-0.0001) == "0.0");
   CHECK(points_figure(-0.083) == "−8.3");

@@ -1,13 +1,14 @@
 // A report's tables for papers: nothing in a label may become mark-up.
+#include "analysis/escaping.hpp"
+#include "analysis/page/document.hpp"
 #include "analysis/page/hand_made_report.hpp"
-#include "analysis/page/latex_escape.hpp"
-#include "analysis/page/renderings.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
 
 using namespace touchtrial;
 using namespace touchtrial::analysis;
+using namespace touchtrial::analysis::identification;
 
 namespace {
 
@@ -20,11 +21,11 @@ Table small_table(const std::string& label) {
 
 }  // namespace
 
-TEST_CASE("tables: Markdown is one line a row, with emphasis and a numbered reference") {
+TEST_CASE("tables: Markdown has one line per row, with emphasis and a numbered reference") {
   const std::string text = table_markdown(small_table("bark"), "");
   CHECK_THAT(text, holds_text("**What was answered**\n\n| texture | n |\n| :--- | ---: |\n"
                               "| bark | 3 |\n| cloth | **4** |\n\nWilson's. \\[1\\]\n\n1. "
-                              "Wilson, E. B. (1927)."));
+                              "Wilson EB (1927)."));
 }
 
 TEST_CASE("tables: Markdown shows a hostile label as it is") {
@@ -37,11 +38,10 @@ TEST_CASE("tables: LaTeX is a booktabs float with a stamp, a label and notes") {
   CHECK_THAT(text, holds_text("\\caption{What was answered {[}SIMULATED{]}}\n\\label{tab:small}"));
   CHECK_THAT(text, holds_text("\\toprule\ntexture & n \\\\\n\\midrule\nbark & 3 \\\\\n"
                               "cloth & \\textbf{4} \\\\\n\\bottomrule"));
-  CHECK_THAT(text, holds_text("% [1] Wilson, E. B. (1927)."));
+  CHECK_THAT(text, holds_text("% [1] Wilson EB (1927)."));
 }
 
-TEST_CASE(
-    "tables: LaTeX prints what it would take for commands, and names what it has no sign for") {
+TEST_CASE("tables: LaTeX prints would-be commands as text, and the codes of signs that it lacks") {
   CHECK(latex_escaped("50% & a_b #1 $x$ {y}") == "50\\% \\& a\\_b \\#1 \\$x\\$ \\{y\\}");
   CHECK(latex_escaped("\\input{x}") == "\\textbackslash{}input\\{x\\}");
   CHECK(latex_escaped("−1 – é") == "$-$1 -- é");
@@ -51,12 +51,12 @@ TEST_CASE(
 
 TEST_CASE("tables: a LaTeX table alone prints its references, all together print them once") {
   CHECK_THAT(table_latex(small_table("bark"), ""),
-             holds_text(". {[}1{]}\n\\par\\noindent {[}1{]} Wilson, E. B. (1927)."));
+             holds_text(". {[}1{]}\n\\par\\noindent {[}1{]} Wilson EB (1927)."));
   const Document document = study_document(hand_made_report(), hand_made_provenance());
   const std::string latex = tables_latex(document);
-  const std::size_t at = latex.find("Wilson, E. B. (1927).");
+  const std::size_t at = latex.find("Wilson EB (1927).");
   REQUIRE(at != std::string::npos);
-  CHECK(latex.find("Wilson, E. B. (1927).", at + 1) == std::string::npos);
+  CHECK(latex.find("Wilson EB (1927).", at + 1) == std::string::npos);
 }
 
 TEST_CASE("tables: all together hold the report's warnings") {
@@ -65,7 +65,7 @@ TEST_CASE("tables: all together hold the report's warnings") {
   CHECK_THAT(tables_latex(document), holds_text("\\item Intervals of a class pool all trials.\n"));
 }
 
-TEST_CASE("tables: Markdown leaves no formula to be set") {
+TEST_CASE("tables: Markdown typesets no formula from a label") {
   CHECK_THAT(table_markdown(small_table("$x^2$"), ""), holds_text("| \\$x\\^2\\$ | 3 |"));
 }
 

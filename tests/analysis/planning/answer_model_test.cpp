@@ -10,9 +10,9 @@ namespace {
 
 const std::vector<planning::PictureLayout> kLayouts = {{2, 0, 1, 4, 3}, {4, 3, 2, 1, 0}};
 
-/// Every kind of error that everybody makes alike.
-session::SubjectModel erring_subject() {
-  session::SubjectModel subject = planned_subject();
+/// A subject with every kind of error, equal for everybody.
+simulation::SubjectModel erring_subject() {
+  simulation::SubjectModel subject = planned_subject();
   subject.weber = 1.0;
   subject.lapse = 0.15;
   subject.position_bias = 0.8;
@@ -21,9 +21,9 @@ session::SubjectModel erring_subject() {
   return subject;
 }
 
-/// Shares of answers, counted one by one, against the model's probabilities, in standard errors of
-/// the counts. Participants' answers to one stimulus are summed over layouts with their weights.
-void require_alike(const PlannedStudy& planned, const session::SubjectModel& subject,
+/// Compares counted answers with the model's probabilities, summed over layouts.
+/// \param errors  largest difference, in standard errors of the counts
+void require_alike(const PlannedStudy& planned, const simulation::SubjectModel& subject,
                    double errors) {
   constexpr int kParticipants = 600;
   constexpr int kRepeats = 20;
@@ -48,19 +48,19 @@ void require_alike(const PlannedStudy& planned, const session::SubjectModel& sub
 
 TEST_CASE("probabilities of answers are the shares of answers given one by one") {
   const PlannedStudy planned(120);
-  // 25 cells: the largest of so many standard normal numbers is beyond 4 once in 600 times; what
-  // the quasi-random points leave is well below one.
+  // The largest of 25 standard normal numbers exceeds 4 once in 600 times. The error of the
+  // quasi-random points is well below one.
   require_alike(planned, erring_subject(), 4.5);
 }
 
-TEST_CASE("differences between people are integrated over, not added up") {
+TEST_CASE("probabilities of answers average over differences between people") {
   const PlannedStudy planned(60);
-  session::SubjectModel subject = erring_subject();
+  simulation::SubjectModel subject = erring_subject();
   subject.weber_spread = 0.5;
   subject.lapse_spread = 1.0;
   subject.position_bias_spread = 0.7;
   subject.class_bias_spread = 0.6;
-  // A person's answers hang together: 600 people are fewer than their trials.
+  // Answers of one person are correlated: 600 people count less than their trials.
   require_alike(planned, subject, 8.0);
 }
 
@@ -71,7 +71,7 @@ TEST_CASE("several images and methods have probabilities of their own") {
 
 TEST_CASE("probabilities add up to one, and do not depend on jobs or on codes") {
   const PlannedStudy planned(24);
-  session::SubjectModel subject = erring_subject();
+  simulation::SubjectModel subject = erring_subject();
   subject.weber_spread = 0.3;
   const planning::AnswerTable alone = planned.model(2, 1).answers(subject, kLayouts, true);
   const planning::AnswerTable crowd = planned.model(2, 4).answers(subject, kLayouts, true);
@@ -88,16 +88,16 @@ TEST_CASE("probabilities add up to one, and do not depend on jobs or on codes") 
   }
 }
 
-TEST_CASE("slopes by a picture's bias are those of differences") {
+TEST_CASE("slopes by a picture's bias agree with finite differences") {
   const PlannedStudy planned(80);
   const planning::AnswerModel model = planned.model(4);
-  const session::SubjectModel subject = erring_subject();
+  const simulation::SubjectModel subject = erring_subject();
   const planning::AnswerTable here = model.answers(subject, kLayouts, true);
   constexpr double kStep = 1e-3;
   for (int picture = 0; picture < 5; ++picture) {
-    session::SubjectModel more = subject;
+    simulation::SubjectModel more = subject;
     more.class_bias.push_back({planned.labels[picture], kStep});
-    session::SubjectModel less = subject;
+    simulation::SubjectModel less = subject;
     less.class_bias.push_back({planned.labels[picture], -kStep});
     const planning::AnswerTable above = model.answers(more, kLayouts);
     const planning::AnswerTable below = model.answers(less, kLayouts);
@@ -105,7 +105,7 @@ TEST_CASE("slopes by a picture's bias are those of differences") {
       for (int c = 0; c < 5; ++c) {
         const double slope =
             (above.answers(1, place)[c] - below.answers(1, place)[c]) / (2.0 * kStep);
-        // Lines change their course where a picture comes or goes: few do within a step.
+        // The difference is inexact where the winner changes within a step, which is rare.
         CHECK(here.slopes(1, place)[c * 5 + picture] == Approx(slope).margin(2e-3));
       }
     }
@@ -114,7 +114,7 @@ TEST_CASE("slopes by a picture's bias are those of differences") {
 
 TEST_CASE("stimuli that feel the same share their answers evenly, whatever the noise") {
   const PlannedStudy planned(8, {.smooth = true});
-  session::SubjectModel subject = planned_subject();
+  simulation::SubjectModel subject = planned_subject();
   subject.weber = GENERATE(1e-3, 0.5);
   const planning::AnswerTable table = planned.model().answers(subject, kLayouts);
   for (int place = 0; place < 5; ++place) {
@@ -122,9 +122,9 @@ TEST_CASE("stimuli that feel the same share their answers evenly, whatever the n
   }
 }
 
-TEST_CASE("lapses alone are chance, and noise without end is chance but for bias") {
+TEST_CASE("answers that are all lapses are at chance") {
   const PlannedStudy planned(8);
-  session::SubjectModel subject = planned_subject();
+  simulation::SubjectModel subject = planned_subject();
   subject.weber = 0.3;
   subject.lapse = 1.0;
   const planning::AnswerTable lapsing = planned.model().answers(subject, kLayouts);
@@ -132,7 +132,7 @@ TEST_CASE("lapses alone are chance, and noise without end is chance but for bias
 }
 
 TEST_CASE("the mean lapse of a population lies beyond its median lapse") {
-  session::SubjectModel subject;
+  simulation::SubjectModel subject;
   subject.lapse = 0.05;
   CHECK(planning::mean_lapse(subject) == 0.05);
   subject.lapse_spread = 1.0;

@@ -11,7 +11,8 @@
 namespace touchtrial {
 namespace {
 
-TEST_CASE("a length along a line is half normal squared in one dimension, and grows with them") {
+TEST_CASE(
+    "a length along a line is normal in one dimension, and has the known distribution in four") {
   const planning::RadialDistribution one(1);
   for (const double t : {-3.0, -0.7, 0.0, 0.2, 1.96, 5.0}) {
     CHECK(one.at(t).below == Approx(0.5 * std::erfc(-t / std::sqrt(2.0))).margin(1e-9));
@@ -29,7 +30,7 @@ TEST_CASE("a length along a line is half normal squared in one dimension, and gr
   CHECK(four.at(-1e300).below == 0.0);
 }
 
-/// The largest at every point of a fine grid, one by one.
+/// Slow reference: the largest support at every point of a fine grid.
 std::vector<double> by_grid(const std::vector<double>& at, const std::vector<double>& slope,
                             const std::vector<int>& picture, int pictures,
                             const planning::RadialDistribution& noise) {
@@ -47,7 +48,7 @@ std::vector<double> by_grid(const std::vector<double>& at, const std::vector<dou
   return answers;
 }
 
-TEST_CASE("winners along lines are those of a fine grid") {
+TEST_CASE("winners along lines agree with a fine grid") {
   const planning::RadialDistribution noise(4);
   RandomStream random(1, "noise_lines_test");
   const std::vector<int> picture = {0, 1, 2, 1, 3, 0, 2};
@@ -63,7 +64,7 @@ TEST_CASE("winners along lines are those of a fine grid") {
   }
 }
 
-TEST_CASE("lines that are the same everywhere share, by pictures and not by prototypes") {
+TEST_CASE("equal lines share their probability by pictures and not by prototypes") {
   const planning::RadialDistribution noise(2);
   std::array<double, 3> answers{};
   const std::vector<double> at = {1.0, 1.0, 1.0, 0.5};

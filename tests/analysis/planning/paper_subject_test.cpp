@@ -1,6 +1,6 @@
-/// docs/fitting.md, "Published accuracies": what it says of config/subjects/paper.json.
-#include "analysis/planning/felt_study.hpp"
-#include "analysis/planning/fit_counts.hpp"
+/// Checks what docs/fitting.md, "Published accuracies", says about config/subjects/paper.json.
+#include "analysis/planning/answer_model.hpp"
+#include "analysis/planning/fit_evidence.hpp"
 #include "protocols/design/prepare.hpp"
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
@@ -10,14 +10,16 @@ namespace {
 
 const std::filesystem::path kConfig = std::filesystem::path(TOUCHTRIAL_SOURCE_DIR) / "config";
 
-TEST_CASE("the paper's subject has the paper's accuracies, nearly, and so has quite another") {
+TEST_CASE(
+    "the paper's subject nearly has the paper's accuracies, and so has a very different subject") {
   const TempFolder folder;
   SeededEntropy entropy(1);
   const design::StudyKey key =
       design::make_study_key(design::load_study(kConfig / "classification.json"), entropy, true);
   design::prepare_pack(key, folder.path() / "pack");
-  const session::SubjectModel paper = session::load_subject_model(kConfig / "subjects/paper.json");
-  session::SubjectModel other = paper;
+  const simulation::SubjectModel paper =
+      simulation::load_subject_model(kConfig / "subjects/paper.json");
+  simulation::SubjectModel other = paper;
   other.weber = 0.157;
   other.lapse = 0.08;
   other.class_bias = {
@@ -28,7 +30,7 @@ TEST_CASE("the paper's subject has the paper's accuracies, nearly, and so has qu
   const std::vector<planning::PictureLayout> layouts = planning::layouts_of(key.study, 20);
   const std::vector<double> published = {0.87, 0.72, 0.81, 0.91, 0.83};
   std::vector<double> cloth_for_bark;
-  for (const session::SubjectModel& subject : {paper, other}) {
+  for (const simulation::SubjectModel& subject : {paper, other}) {
     const planning::AnswerTable table = model.answers(subject, layouts);
     cloth_for_bark.push_back(0.0);
     for (int c = 0; c < 5; ++c) {
@@ -37,7 +39,7 @@ TEST_CASE("the paper's subject has the paper's accuracies, nearly, and so has qu
         right += table.answers(layout, c)[c] / static_cast<double>(layouts.size());
       }
       INFO(key.study.classes[c].label);
-      // A quarter of the bank that it was fitted with: a point and a half of standard error.
+      // The bank is a quarter of the one of the fit: a standard error of 1.5 points.
       CHECK(right == Approx(published[c]).margin(0.05));
     }
     for (int layout = 0; layout < static_cast<int>(layouts.size()); ++layout) {

@@ -1,7 +1,7 @@
 #include "analysis/planning/planned_study.hpp"
 
-#include "analysis/planning/felt_study.hpp"
-#include "protocols/session/felt_decision.hpp"
+#include "analysis/planning/answer_model.hpp"
+#include "protocols/simulation/felt_decision.hpp"
 
 #include <algorithm>
 
@@ -10,14 +10,14 @@ namespace {
 
 /// One participant's answers.
 planning::CountedPerson answers_of(const PlannedStudy& planned,
-                                   const session::SubjectModel& subject, int number, int repeats,
+                                   const simulation::SubjectModel& subject, int number, int repeats,
                                    const planning::PictureLayout& layout, std::uint64_t seed) {
   std::vector<std::string> shown;
   for (const int picture : layout) shown.push_back(planned.labels[picture]);
-  const session::Individual individual(subject, seed, number);
-  const session::SeenPictures pictures =
-      session::see(shown, subject, individual, planned.knowledge);
-  const session::FeltDecision decision(individual, planned.knowledge);
+  const simulation::Individual individual(subject, seed, number);
+  const simulation::SeenPictures pictures =
+      simulation::see(shown, subject, individual, planned.knowledge);
+  const simulation::FeltDecision decision(individual, planned.knowledge);
   const auto classes = planned.labels.size();
   planning::CountedPerson person{0, std::vector<double>(planned.bank.stimuli() * classes, 0.0)};
   RandomStream paths(seed, "planned study: explorations", static_cast<std::uint64_t>(number));
@@ -25,7 +25,8 @@ planning::CountedPerson answers_of(const PlannedStudy& planned,
   for (int place = 0; place < planned.bank.stimuli(); ++place) {
     for (int repeat = 0; repeat < repeats; ++repeat) {
       const auto felt = planned.bank.felt(place)[paths.below(planned.bank.explorations())];
-      RandomStream random = session::stream_of_trial(seed, session::kAnswerPurpose, number, ++nth);
+      RandomStream random =
+          simulation::stream_of_trial(seed, simulation::kAnswerPurpose, number, ++nth);
       const int position = decision.answer(felt, pictures, random).position;
       person.counts[place * classes + layout[position]] += 1.0;
     }
@@ -36,7 +37,7 @@ planning::CountedPerson answers_of(const PlannedStudy& planned,
 }  // namespace
 
 planning::FitCounts simulated_counts(const PlannedStudy& planned,
-                                     const session::SubjectModel& subject, int participants,
+                                     const simulation::SubjectModel& subject, int participants,
                                      int repeats, std::uint64_t seed) {
   planning::FitCounts counts;
   counts.classes = planned.labels;

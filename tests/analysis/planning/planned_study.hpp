@@ -2,31 +2,31 @@
 #pragma once
 
 #include "analysis/planning/answer_model.hpp"
-#include "analysis/planning/fit_counts.hpp"
-#include "protocols/session/felt_bank.hpp"
-#include "protocols/session/felt_knowledge.hpp"
+#include "analysis/planning/fit_evidence.hpp"
 #include "protocols/session/tiny_study.hpp"
+#include "protocols/simulation/felt_bank.hpp"
+#include "protocols/simulation/felt_knowledge.hpp"
 
 #include <string>
 #include <vector>
 
 namespace touchtrial {
 
-/// Explores for a second and learns in four passes; makes no errors.
-[[nodiscard]] inline session::SubjectModel planned_subject() {
-  session::SubjectModel subject;
+/// A subject who explores for 1.2 s, learns in four passes and makes no errors.
+[[nodiscard]] inline simulation::SubjectModel planned_subject() {
+  simulation::SubjectModel subject;
   subject.explore_s = 1.2;
   subject.training_passes = 4;
   return subject;
 }
 
-/// A tiny study, what is learnt of it, and a bank of explorations.
+/// A tiny study, what the subject learns of it, and a bank of explorations.
 struct PlannedStudy {
   explicit PlannedStudy(int explorations, const TinyStudyOptions& options = {})
       : study(options),
         source(study.pack(), study.key().study.rendering),
         fields(study.key(), source),
-        knowledge(session::learn_by_feeling(fields, planned_subject(), 3.3, 1, 2)),
+        knowledge(simulation::learn_by_feeling(fields, planned_subject(), 3.3, 1, 2)),
         bank(fields, study.key().study, planned_subject(),
              {.explorations = explorations, .seed = 1, .jobs = 2}) {
     for (const design::StudyClass& one : study.key().study.classes) labels.push_back(one.label);
@@ -38,17 +38,17 @@ struct PlannedStudy {
 
   TinyStudy study;
   session::StimulusSource source;
-  session::LabelledFields fields;
-  session::FeltKnowledge knowledge;
-  session::FeltBank bank;
+  simulation::LabelledFields fields;
+  simulation::FeltKnowledge knowledge;
+  simulation::FeltBank bank;
   std::vector<std::string> labels;
 };
 
-/// So many participants' answers to `repeats` presentations of everything, one by one: each feels
-/// an exploration of the bank and decides as simulated participants do. The slow reference of
-/// AnswerModel.
+/// The slow reference of AnswerModel: participants' answers to `repeats` presentations of every
+/// stimulus, one by one. Each answer draws an exploration of the bank and decides as simulated
+/// participants do.
 [[nodiscard]] planning::FitCounts simulated_counts(const PlannedStudy& planned,
-                                                   const session::SubjectModel& subject,
+                                                   const simulation::SubjectModel& subject,
                                                    int participants, int repeats,
                                                    std::uint64_t seed);
 

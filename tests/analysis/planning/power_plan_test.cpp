@@ -32,14 +32,14 @@ std::vector<planning::PowerRun> runs_with(int significant, int of) {
   return runs;
 }
 
-TEST_CASE("sizes may come in any order, but each once") {
+TEST_CASE("sizes may be in any order, but each only once") {
   planning::PowerPlan plan = plan_of({20, 8, 12});
   planning::settle(plan);
   CHECK(plan.participants == std::vector<int>{8, 12, 20});
   CHECK_THAT(refusal(plan_of({8, 12, 8})), Catch::Contains("8 is given twice"));
 }
 
-TEST_CASE("a plan that cannot be is refused with the option and what it may be") {
+TEST_CASE("an impossible plan is refused with the option and its range") {
   CHECK_THAT(refusal(plan_of({})), Catch::Contains("--participants"));
   CHECK_THAT(refusal(plan_of({1, 8})), Catch::Contains("1 is out of range"));
   CHECK_THAT(refusal(plan_of({8, 1000000000})), Catch::Contains("1000000000"));
@@ -52,7 +52,7 @@ TEST_CASE("a plan that cannot be is refused with the option and what it may be")
   CHECK_THAT(refusal(plan_of(many, 100000)), Catch::Contains("in all"));
 }
 
-TEST_CASE("shards share out the runs: each run is in one of them") {
+TEST_CASE("each run belongs to exactly one shard") {
   for (const int count : {1, 3, 7, 16}) {
     for (const int runs : {1, 5, 16, 100}) {
       std::multiset<int> made;
@@ -80,7 +80,7 @@ TEST_CASE("every simulated study has a seed of its own") {
   CHECK(seeds.size() == 800);
 }
 
-TEST_CASE("looks double, and the last is at the plan's end") {
+TEST_CASE("the numbers of runs at the looks double, and the last look is at the plan's end") {
   CHECK(planning::looks_of(plan_of({8}, 1000)) == std::vector<int>{100, 200, 400, 800, 1000});
   CHECK(planning::looks_of(plan_of({8}, 100)) == std::vector<int>{100});
   CHECK(planning::looks_of(plan_of({8}, 7)) == std::vector<int>{7});
@@ -89,7 +89,7 @@ TEST_CASE("looks double, and the last is at the plan's end") {
   CHECK(planning::looks_of(patient) == std::vector<int>{1000});
 }
 
-TEST_CASE("a size stops where its power is beyond all targets, or below, and not in between") {
+TEST_CASE("a size stops if its power lies above or below all targets, but not in between") {
   const planning::PowerPlan plan = plan_of({8}, 1000);
   CHECK(planning::certain_after(plan, runs_with(100, 100)) == 100);
   CHECK(planning::certain_after(plan, runs_with(10, 150)) == 100);
@@ -100,7 +100,7 @@ TEST_CASE("a size stops where its power is beyond all targets, or below, and not
   CHECK_FALSE(planning::certain_after(patient, runs_with(100, 100)).has_value());
 }
 
-TEST_CASE("an answer that was certain stays: more runs do not move the place where it was") {
+TEST_CASE("once an answer is certain, more runs do not move its look") {
   const planning::PowerPlan plan = plan_of({8}, 1000);
   auto runs = runs_with(100, 100);
   const auto more = runs_with(0, 300);
@@ -108,8 +108,8 @@ TEST_CASE("an answer that was certain stays: more runs do not move the place whe
   CHECK(planning::certain_after(plan, runs) == 100);
 }
 
-TEST_CASE("stopping early is seldom wrong about its targets, also where they are nearest") {
-  // True powers a little beside each target: where a stop tells the wrong side.
+TEST_CASE("stopping early is seldom wrong about its targets, even for powers near them") {
+  // True powers close to each target, where stopping is most likely to be wrong.
   planning::PowerPlan plan = plan_of({8}, 1000);
   RandomStream random(4, "stopping early");
   constexpr int kStudies = 600;

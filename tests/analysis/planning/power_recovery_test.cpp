@@ -19,7 +19,7 @@ planning::PowerReport report_of(const RehearsedTinyStudy& study, std::vector<int
   return planning::make_power_report(progress);
 }
 
-/// Within four Monte-Carlo standard errors of what the test can reach, which is at most its level.
+/// The type-I error must lie within four Monte-Carlo standard errors of the attainable error.
 void check_type_one(const planning::PowerReport& report) {
   for (const planning::PowerRow& row : report.rows) {
     const double error = *row.false_alarms.share();
@@ -38,9 +38,9 @@ TinyStudyOptions briefly(const char* trials) {
   return options;
 }
 
-/// Who feels hardly anything: power that grows with the number of participants.
-session::SubjectModel dull_subject() {
-  session::SubjectModel subject = hasty_subject();
+/// A subject who feels hardly anything, so that power grows with the number of participants.
+simulation::SubjectModel dull_subject() {
+  simulation::SubjectModel subject = hasty_subject();
   subject.weber = 6.0;
   return subject;
 }
@@ -54,17 +54,18 @@ TEST_CASE("the test against chance has its type-I error, and more power with mor
   INFO(planning::power_text(report));
   CHECK(few.power.low < many.power.low);
   CHECK(*many.significant.share() > *few.significant.share() + 0.1);
-  // Eight times the participants: the interval is a third as wide, and less for Student's t.
+  // With eight times the participants, the interval is a third as wide, or narrower by Student's t.
   CHECK(many.width.mean < 0.5 * few.width.mean);
 }
 
-TEST_CASE("two methods that feel alike differ as often as the test says, with bias and lapses") {
+TEST_CASE(
+    "two methods that feel alike differ as often as the test's level says, with bias and lapses") {
   TinyStudyOptions options = briefly(R"({"repeats":2})");
   options.comparison = true;
   check_type_one(report_of(RehearsedTinyStudy(options), {8, 14}, 500));
 }
 
-TEST_CASE("orders that are drawn by the study's rule hold their type-I error too") {
+TEST_CASE("the test holds its type-I error with orders that the study's rule draws") {
   const RehearsedTinyStudy study(briefly(R"({"repeats":2,"max_run":1,"catch":1})"));
   check_type_one(report_of(study, {4}, 200));
 }

@@ -1,10 +1,11 @@
 #include "analysis/planning/rehearsed_study.hpp"
 
 #include "analysis/planning/rehearsed_tiny_study.hpp"
-#include "analysis/report/report.hpp"
 #include "core/errors.hpp"
+#include "protocols/identification/analysis/report.hpp"
+#include "protocols/identification/design/identification.hpp"
 #include "protocols/session/commitment.hpp"
-#include "protocols/session/simulation.hpp"
+#include "protocols/simulation/simulation.hpp"
 #include "protocols/store/study_store.hpp"
 #include "support/catch.hpp"
 
@@ -16,12 +17,12 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// What `simulate` and `report` make of the same participants: sessions, events, database and all.
-analysis::Outcomes simulated_and_loaded(TinyStudy& tiny, const session::SubjectModel& subject,
+/// Slow reference: outcomes of the same participants through sessions, events and a database.
+analysis::Outcomes simulated_and_loaded(TinyStudy& tiny, const simulation::SubjectModel& subject,
                                         int participants, std::uint64_t seed) {
   store::StudyStore store = store::StudyStore::create(
       tiny.next_database(), session::commitment_of(tiny.key(), tiny.pack(), true, false), 0ns);
-  session::simulate_study(tiny.key(), tiny.pack(), subject, {participants, seed, 2}, store);
+  simulation::simulate_study(tiny.key(), tiny.pack(), subject, {participants, seed, 2}, store);
   store.close_study(0ns);
   store.unblind(0ns, "test", false);
   return analysis::load_outcomes(store, tiny.key());
@@ -35,7 +36,7 @@ std::vector<analysis::TrialOutcome> scored(const analysis::Outcomes& outcomes) {
   return trials;
 }
 
-/// Presentations and answers, in the same order.
+/// Compares presentations and answers, in order.
 void check_same_answers(const analysis::Outcomes& one, const analysis::Outcomes& other) {
   const auto a = scored(one);
   const auto b = scored(other);
@@ -50,25 +51,29 @@ void check_same_answers(const analysis::Outcomes& one, const analysis::Outcomes&
   CHECK(same == static_cast<int>(a.size()));
 }
 
-void check_same_figures(const planning::PowerRun& run, const analysis::StudyReport& report) {
-  const analysis::MethodReport& method = report.methods.front();
+void check_same_figures(const planning::PowerRun& run,
+                        const analysis::identification::StudyReport& report) {
+  const analysis::identification::MethodReport& method = report.methods.front();
   CHECK(run.p == method.chance->p);
   CHECK(run.estimate == method.mean.mean);
   CHECK(run.low == method.mean.interval.low);
   CHECK(run.high == method.mean.interval.high);
 }
 
-TEST_CASE("a power run on the servo path gives the answers and figures of simulate and report") {
+TEST_CASE("a power run on the servo path gives the answers and numbers of simulate and report") {
   RehearsedTinyStudy study;
   const planning::RehearsedStudy planned = study.planned(study.servo);
   const std::uint64_t seed = planning::study_seed(1, 3, planning::Hypothesis::population, 0);
   const analysis::Outcomes fast = planned.outcomes(3, planning::Hypothesis::population, seed);
   const analysis::Outcomes whole = simulated_and_loaded(study.tiny, study.subject, 3, seed);
   check_same_answers(fast, whole);
-  check_same_figures(planning::judged(study.test, fast, false), analysis::make_report(whole));
+  check_same_figures(planning::judged(study.test, fast, false),
+                     analysis::identification::make_report(whole));
 }
 
-TEST_CASE("so it does with several exemplars, catch trials, lead-ins and breaks") {
+TEST_CASE(
+    "the servo path agrees with simulate for several exemplars, catch trials, lead-ins and "
+    "breaks") {
   TinyStudyOptions options;
   options.images = 2;
   options.side_px = 60;
@@ -79,13 +84,13 @@ TEST_CASE("so it does with several exemplars, catch trials, lead-ins and breaks"
   const analysis::Outcomes whole = simulated_and_loaded(study.tiny, study.subject, 2, 5);
   check_same_answers(fast, whole);
   const planning::PowerRun run = planning::judged(study.test, fast, false);
-  const analysis::StudyReport report = analysis::make_report(whole);
+  const analysis::identification::StudyReport report = analysis::identification::make_report(whole);
   CHECK(run.estimate == report.methods.front().mean.mean);
-  // Orders without long runs are drawn: 999 in place of 9,999 times.
+  // Orders without long runs are drawn 999 instead of 9,999 times.
   CHECK(std::abs(run.p - report.methods.front().chance->p) < 0.06);
 }
 
-TEST_CASE("so it does when two methods are compared") {
+TEST_CASE("the servo path agrees with simulate for a comparison of two methods") {
   TinyStudyOptions options;
   options.comparison = true;
   options.side_px = 60;
@@ -96,14 +101,15 @@ TEST_CASE("so it does when two methods are compared") {
   const analysis::Outcomes whole = simulated_and_loaded(study.tiny, study.subject, 3, 8);
   check_same_answers(fast, whole);
   const planning::PowerRun run = planning::judged(study.test, fast, true);
-  const analysis::MethodComparison overall = *analysis::make_report(whole).comparison;
+  const analysis::MethodComparison overall =
+      *analysis::identification::make_report(whole).comparison;
   CHECK(run.p == overall.p);
   CHECK(run.estimate == overall.difference);
   CHECK(run.low == overall.interval.low);
   CHECK(run.high == overall.interval.high);
 }
 
-/// Remembers what the servo path felt, and gives it back without a servo.
+/// Repeats what the servo path felt, without a servo.
 class RememberedFeelings final : public planning::Feelings {
  public:
   RememberedFeelings(const RehearsedTinyStudy& study, int participants, std::uint64_t seed)
@@ -116,7 +122,7 @@ class RememberedFeelings final : public planning::Feelings {
       }
     }
   }
-  [[nodiscard]] std::shared_ptr<const session::FeltKnowledge> knowledge(
+  [[nodiscard]] std::shared_ptr<const simulation::FeltKnowledge> knowledge(
       std::uint64_t) const override {
     return knowledge_;
   }
@@ -126,7 +132,7 @@ class RememberedFeelings final : public planning::Feelings {
   }
 
  private:
-  std::shared_ptr<const session::FeltKnowledge> knowledge_;
+  std::shared_ptr<const simulation::FeltKnowledge> knowledge_;
   std::map<std::pair<int, std::uint64_t>, engine::FeltFeatures> felt_;
 };
 
@@ -172,7 +178,7 @@ TEST_CASE("a bank of independent explorations gives the accuracies and confusion
   const Answers fast = answers_of(study.planned(bank), kStudies, 1);
   const Answers slow = answers_of(study.planned(study.servo), kStudies, 2);
   REQUIRE(fast.trials == slow.trials);
-  // People and trainings differ between the two, so that the error is more than binomial: four
+  // People and trainings differ between the two, so the error is more than binomial: allow four
   // standard errors at twice the binomial variance.
   const double n = fast.trials;
   const double p = (fast.correct + slow.correct) / (2.0 * n);
@@ -191,9 +197,9 @@ TEST_CASE("a bank of independent explorations gives the accuracies and confusion
   }
 }
 
-TEST_CASE("under the null nobody feels what is presented, and methods feel alike") {
+TEST_CASE("under the null nobody feels what is presented") {
   const RehearsedTinyStudy study({}, [] {
-    session::SubjectModel sure = hasty_subject();
+    simulation::SubjectModel sure = hasty_subject();
     sure.weber = 0.05;
     sure.lapse = 0.0;
     return sure;
@@ -210,7 +216,7 @@ TEST_CASE("under the null nobody feels what is presented, and methods feel alike
     }
   }
   REQUIRE(trials == 20 * 5 * 25);
-  // 1 in 5 of 2,500: 500, standard error 20 at most.
+  // 500 of 2,500 by chance; the standard error is at most 20.
   CHECK(std::abs(correct - 500) < 90);
 }
 
@@ -223,9 +229,9 @@ TEST_CASE("a study whose participants could never answer is refused") {
                     Catch::Contains("/explore_s") && Catch::Contains("explore_limit_s"));
 }
 
-TEST_CASE("the two methods of a primary test are named where there are three") {
+TEST_CASE("the two methods of a primary test must be named if there are three") {
   design::Study study;
-  study.protocol = design::Protocol::comparison;
+  study.protocol = &design::identification::comparison();
   for (const char* label : {"adaptive", "edge", "luminance"}) {
     study.methods.emplace_back();
     study.methods.back().label = label;
@@ -239,7 +245,7 @@ TEST_CASE("the two methods of a primary test are named where there are three") {
       planning::primary_test_of(study, planning::MethodLabels{"luminance", "adaptive"});
   CHECK(test.first == 2);
   CHECK(test.second == 0);
-  study.protocol = design::Protocol::classification;
+  study.protocol = &design::identification::classification();
   CHECK_THROWS_AS(planning::primary_test_of(study, planning::MethodLabels{"edge", "adaptive"}),
                   UsageError);
 }

@@ -1,7 +1,7 @@
-/// \file A tiny study that is simulated by the dozen.
+/// \file A tiny study for many simulations.
 #pragma once
 
-#include "analysis/planning/power_study.hpp"
+#include "analysis/planning/power_progress.hpp"
 #include "analysis/planning/rehearsed_study.hpp"
 #include "protocols/session/stimulus_source.hpp"
 #include "protocols/session/tiny_study.hpp"
@@ -10,9 +10,9 @@
 
 namespace touchtrial {
 
-/// Explores briefly: the tests need many explorations, and not good ones.
-[[nodiscard]] inline session::SubjectModel hasty_subject() {
-  session::SubjectModel subject;
+/// A subject who explores briefly: the tests need many explorations, but not good ones.
+[[nodiscard]] inline simulation::SubjectModel hasty_subject() {
+  simulation::SubjectModel subject;
   subject.weber = 0.5;
   subject.weber_spread = 0.3;
   subject.lapse = 0.05;
@@ -25,10 +25,10 @@ namespace touchtrial {
   return subject;
 }
 
-/// A tiny study and all that its simulated studies refer to.
+/// A tiny study and what its simulated studies refer to.
 struct RehearsedTinyStudy {
   explicit RehearsedTinyStudy(const TinyStudyOptions& options = {},
-                              const session::SubjectModel& model = hasty_subject())
+                              const simulation::SubjectModel& model = hasty_subject())
       : tiny(options),
         subject(model),
         test(planning::primary_test_of(tiny.key().study, {})),
@@ -46,10 +46,10 @@ struct RehearsedTinyStudy {
   }
 
   TinyStudy tiny;
-  session::SubjectModel subject;
+  simulation::SubjectModel subject;
   planning::PrimaryTest test;
   session::StimulusSource source;
-  session::LabelledFields fields;
+  simulation::LabelledFields fields;
   planning::ServoFeelings servo;
 };
 

@@ -14,8 +14,8 @@ const PlannedStudy& planned_study() {
   return planned;
 }
 
-session::SubjectModel start() {
-  session::SubjectModel subject = planned_subject();
+simulation::SubjectModel start() {
+  simulation::SubjectModel subject = planned_subject();
   subject.weber = 0.3;
   subject.lapse = 0.05;
   return subject;
@@ -47,8 +47,8 @@ bool warns_of(const planning::SubjectFit& fit, const std::string& words) {
   });
 }
 
-TEST_CASE("noise, lapses, biases and a swap are found again within their intervals") {
-  session::SubjectModel truth = planned_subject();
+TEST_CASE("the intervals of a fit hold the true noise, lapses and biases, and it finds the swap") {
+  simulation::SubjectModel truth = planned_subject();
   truth.weber = 0.9;
   truth.lapse = 0.08;
   truth.position_bias = 1.5;
@@ -63,19 +63,19 @@ TEST_CASE("noise, lapses, biases and a swap are found again within their interva
   CHECK(holds(named(fit, "class", "bark").profile, 1.2));
   CHECK(holds(named(fit, "class", "cloth").profile, 0.0));
   CHECK(holds(named(fit, "class", "straw").profile, -1.2));
-  // Intervals that say something: 960 trials are plenty.
+  // With 960 trials, the intervals are informative.
   CHECK(named(fit, "weber").profile.upper.value() < 1.3);
   CHECK(named(fit, "weber").profile.lower.value() > 0.6);
   CHECK(named(fit, "position").profile.lower.value() > 0.3);
   CHECK(named(fit, "lapse").profile.upper.value() < 0.25);
   CHECK(fit.p.value() > 0.01);
   double sum = 0.0;
-  for (const session::ClassBias& bias : fit.subject.class_bias) sum += bias.log_odds;
+  for (const simulation::ClassBias& bias : fit.subject.class_bias) sum += bias.log_odds;
   CHECK(sum == Approx(0.0).margin(1e-9));
 }
 
-TEST_CASE("intervals of the profile and of simulated studies are of one size") {
-  session::SubjectModel truth = planned_subject();
+TEST_CASE("intervals of the profile and of simulated studies have similar widths") {
+  simulation::SubjectModel truth = planned_subject();
   truth.weber = 0.9;
   truth.lapse = 0.1;
   const planning::SubjectFit fit =
@@ -92,7 +92,7 @@ TEST_CASE("intervals of the profile and of simulated studies are of one size") {
 }
 
 TEST_CASE("a fit is a function of its arguments, for any number of jobs") {
-  session::SubjectModel truth = planned_subject();
+  simulation::SubjectModel truth = planned_subject();
   truth.weber = 0.7;
   const planning::FitCounts counts = simulated_counts(planned_study(), truth, 6, 3, 4);
   const auto fit = [&](int jobs) {
@@ -107,8 +107,8 @@ TEST_CASE("a fit is a function of its arguments, for any number of jobs") {
   CHECK(named(alone, "weber").profile.upper == named(crowd, "weber").profile.upper);
 }
 
-TEST_CASE("no swap is taken where the answers call for none, and a fixed one stays") {
-  session::SubjectModel truth = planned_subject();
+TEST_CASE("a fit takes no swap that the answers do not call for, and keeps a fixed one") {
+  simulation::SubjectModel truth = planned_subject();
   truth.weber = 1.5;
   const planning::FitCounts counts = simulated_counts(planned_study(), truth, 10, 5, 2);
   const planning::SubjectFit fit = fitted(counts, {.bootstraps = 0});
@@ -116,7 +116,7 @@ TEST_CASE("no swap is taken where the answers call for none, and a fixed one sta
   REQUIRE_FALSE(fit.swaps.empty());
   CHECK(fit.swaps.front().gain < fit.swap_threshold);
   CHECK_FALSE(fit.p);
-  session::SubjectModel swapped = start();
+  simulation::SubjectModel swapped = start();
   swapped.label_swap = {{"bark", "straw"}};
   const planning::SubjectFit kept = planning::fit_subject(
       planned_study().model(1), counts, swapped, {.free = {.swaps = false}, .bootstraps = 0});
@@ -124,7 +124,8 @@ TEST_CASE("no swap is taken where the answers call for none, and a fixed one sta
   CHECK(kept.log_likelihood < fit.log_likelihood - 10.0);
 }
 
-/// Counts that somebody could have had: answers by presented class.
+/// Counts with the same answers for every person.
+/// \param rows  answers by presented class
 planning::FitCounts made_up(const std::vector<std::vector<double>>& rows, int people) {
   planning::FitCounts counts = simulated_counts(planned_study(), start(), people, 0, 1);
   for (planning::CountedPerson& person : counts.people) {
@@ -139,16 +140,16 @@ planning::FitCounts made_up(const std::vector<std::vector<double>>& rows, int pe
 const std::vector<std::vector<double>> kAllRight = {
     {5, 0, 0, 0, 0}, {0, 5, 0, 0, 0}, {0, 0, 5, 0, 0}, {0, 0, 0, 5, 0}, {0, 0, 0, 0, 5}};
 
-TEST_CASE("if all is right there is no lower limit to noise, and an upper one") {
+TEST_CASE("if all answers are right, noise has an upper limit but no lower one") {
   const planning::SubjectFit fit = fitted(made_up(kAllRight, 8));
   CHECK(warns_of(fit, "every answer is right"));
   CHECK_FALSE(named(fit, "weber").profile.lower);
   CHECK(named(fit, "weber").profile.upper.value() > fit.subject.weber);
   CHECK(named(fit, "lapse").profile.lower == 0.0);
   CHECK(named(fit, "lapse").profile.upper.value() < 0.1);
-  // Short explorations leave some errors to who has no noise; the fit is right at least as often.
+  // Short explorations cause some errors even without noise; the fit is right at least as often.
   const planning::FitCounts counts = made_up(kAllRight, 8);
-  session::SubjectModel still = planned_subject();
+  simulation::SubjectModel still = planned_subject();
   still.weber = 1e-3;
   const planning::Confusions best = planning::expected_confusions(
       counts, planned_study().model(1).answers(still, counts.layouts));
@@ -162,7 +163,7 @@ TEST_CASE("if all is right there is no lower limit to noise, and an upper one") 
   CHECK(right > 0.9 * 200.0);
 }
 
-TEST_CASE("if all is wrong the fit ends, says so, and does not pretend to fit") {
+TEST_CASE("if all answers are wrong, the fit ends and warns that it does not fit") {
   auto wrong = kAllRight;
   std::ranges::rotate(wrong, wrong.begin() + 1);
   const planning::SubjectFit fit = fitted(made_up(wrong, 4));
@@ -171,7 +172,8 @@ TEST_CASE("if all is wrong the fit ends, says so, and does not pretend to fit") 
   CHECK(std::isfinite(fit.log_likelihood));
 }
 
-TEST_CASE("one participant, a class never presented and one never answered are told of") {
+TEST_CASE(
+    "a fit warns of a single participant, of a class never presented and of one never answered") {
   auto some = kAllRight;
   some[1] = {0, 0, 0, 0, 0};
   some[0] = {3, 0, 1, 1, 0};
@@ -180,13 +182,14 @@ TEST_CASE("one participant, a class never presented and one never answered are t
   CHECK(warns_of(fit, "one participant"));
   CHECK(warns_of(fit, "\"cloth\" was never presented"));
   CHECK(warns_of(fit, "\"cloth\" was never answered"));
-  // One order of pictures: the position's preference is that of some classes.
+  // With one order of pictures, a preference for positions is one for classes.
   CHECK(warns_of(fit, "one order"));
   CHECK(fit.subject.position_bias == 0.0);
   for (const planning::ParameterEstimate& one : fit.estimates) CHECK(one.name != "position");
 }
 
-TEST_CASE("nothing but chance is fitted with much noise or many lapses, which are not told apart") {
+TEST_CASE(
+    "answers at chance are fitted with much noise or many lapses, which cannot be told apart") {
   const std::vector<std::vector<double>> chance(5, std::vector<double>(5, 2.0));
   const planning::SubjectFit fit = fitted(made_up(chance, 6), {.bootstraps = 20});
   const double right = fit.expected[0][0][0] / 60.0;

@@ -1,7 +1,6 @@
-#include "analysis/report/chance_of_study.hpp"
-
 #include "analysis/fake_study.hpp"
 #include "core/random.hpp"
+#include "protocols/identification/analysis/chance.hpp"
 #include "support/catch.hpp"
 
 #include <nlohmann/json.hpp>
@@ -13,7 +12,8 @@ namespace {
 enum class Sense { everything, nothing };
 
 design::Study study_with(const std::string& trials) {
-  auto text = nlohmann::json::parse(fake_study_text(design::Protocol::classification, "bark"));
+  auto text =
+      nlohmann::json::parse(fake_study_text(design::identification::classification(), "bark"));
   text["trials"].update(nlohmann::json::parse(trials));
   return design::parse_study(text.dump(), ".", "fake.json");
 }
@@ -54,11 +54,11 @@ constexpr const char* kRules[] = {R"({"order": "de-bruijn", "repeats": 3})",
 }  // namespace
 
 TEST_CASE("The order of a study says how chance is dealt") {
-  CHECK(analysis::dealt_order(study_with("{}")) == analysis::DealtOrder::permuted);
-  CHECK(analysis::dealt_order(study_with(R"({"order": "uniform"})")) ==
+  CHECK(analysis::identification::dealt_order(study_with("{}")) == analysis::DealtOrder::permuted);
+  CHECK(analysis::identification::dealt_order(study_with(R"({"order": "uniform"})")) ==
         analysis::DealtOrder::independent);
   for (const char* rule : kRules)
-    CHECK(analysis::dealt_order(study_with(rule)) == analysis::DealtOrder::redrawn);
+    CHECK(analysis::identification::dealt_order(study_with(rule)) == analysis::DealtOrder::redrawn);
 }
 
 TEST_CASE("Guesses are above chance no more often than p says, whatever the order") {
@@ -69,7 +69,8 @@ TEST_CASE("Guesses are above chance no more often than p says, whatever the orde
     int significant = 0;
     double sum = 0.0;
     for (int i = 0; i < kStudies; ++i) {
-      const auto test = analysis::chance_of(outcomes_of(study, Sense::nothing, 2, i), 0);
+      const auto test =
+          analysis::identification::chance_of(outcomes_of(study, Sense::nothing, 2, i), 0);
       REQUIRE(test);
       CHECK_FALSE(test->exact);
       significant += test->p <= 0.05 ? 1 : 0;
@@ -85,7 +86,7 @@ TEST_CASE("Everything right is as far above chance as deals can tell") {
   for (const char* rule : kRules) {
     CAPTURE(rule);
     const analysis::Outcomes outcomes = outcomes_of(study_with(rule), Sense::everything, 4, 0);
-    const auto test = analysis::chance_of(outcomes, 0);
+    const auto test = analysis::identification::chance_of(outcomes, 0);
     REQUIRE(test);
     CHECK(test->correct == test->trials);
     CHECK(test->p == Approx(1.0 / (test->deals + 1.0)));
@@ -95,11 +96,11 @@ TEST_CASE("Everything right is as far above chance as deals can tell") {
 
 TEST_CASE("Trials that do not count leave the places of the others as they are") {
   analysis::Outcomes outcomes = outcomes_of(study_with(kRules[0]), Sense::everything, 3, 0);
-  const int all = analysis::chance_of(outcomes, 0)->trials;
+  const int all = analysis::identification::chance_of(outcomes, 0)->trials;
   for (analysis::TrialOutcome& trial : outcomes.trials) {
     if (trial.scored && trial.row.trial % 3 == 0) trial.counted = false;
   }
-  const auto test = analysis::chance_of(outcomes, 0);
+  const auto test = analysis::identification::chance_of(outcomes, 0);
   REQUIRE(test);
   CHECK(test->trials < all);
   CHECK(test->correct == test->trials);
@@ -108,14 +109,14 @@ TEST_CASE("Trials that do not count leave the places of the others as they are")
 
 TEST_CASE("A block that began anew is dealt as one, without what is void") {
   analysis::Outcomes outcomes = outcomes_of(study_with(kRules[1]), Sense::everything, 2, 0);
-  const int all = analysis::chance_of(outcomes, 0)->trials;
+  const int all = analysis::identification::chance_of(outcomes, 0)->trials;
   std::vector<analysis::TrialOutcome> again = outcomes.trials;
   for (analysis::TrialOutcome& trial : again) {
     trial.row.state = store::TrialState::voided;
     trial.counted = false;
   }
   outcomes.trials.insert(outcomes.trials.begin(), again.begin(), again.end());
-  const auto test = analysis::chance_of(outcomes, 0);
+  const auto test = analysis::identification::chance_of(outcomes, 0);
   REQUIRE(test);
   CHECK(test->trials == all);
   CHECK_FALSE(test->exact);
@@ -125,14 +126,15 @@ TEST_CASE("A longer course than the study's is dealt without its rule") {
   analysis::Outcomes outcomes = outcomes_of(study_with(kRules[0]), Sense::everything, 2, 0);
   const std::vector<analysis::TrialOutcome> again = outcomes.trials;
   outcomes.trials.insert(outcomes.trials.end(), again.begin(), again.end());
-  const auto test = analysis::chance_of(outcomes, 0);
+  const auto test = analysis::identification::chance_of(outcomes, 0);
   REQUIRE(test);
   CHECK(test->exact);
 }
 
 TEST_CASE("The chance test of the same outcomes is the same") {
   const analysis::Outcomes outcomes = outcomes_of(study_with(kRules[0]), Sense::nothing, 2, 9);
-  CHECK(analysis::chance_of(outcomes, 0)->p == analysis::chance_of(outcomes, 0)->p);
+  CHECK(analysis::identification::chance_of(outcomes, 0)->p ==
+        analysis::identification::chance_of(outcomes, 0)->p);
 }
 
 }  // namespace touchtrial

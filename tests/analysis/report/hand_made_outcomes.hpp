@@ -2,6 +2,7 @@
 #pragma once
 
 #include "analysis/outcomes.hpp"
+#include "protocols/identification/design/identification.hpp"
 
 #include <chrono>
 #include <optional>
@@ -25,7 +26,10 @@ struct HandMadeTrial {
 class HandMadeOutcomes {
  public:
   explicit HandMadeOutcomes(std::vector<std::string> methods = {"adaptive"}) {
+    outcomes.design.protocol = methods.size() > 1 ? &design::identification::comparison()
+                                                  : &design::identification::classification();
     outcomes.classes = {"bark", "cloth"};
+    outcomes.choices = outcomes.classes;
     outcomes.exemplars = {{"bark.png"}, {"cloth.png"}};
     outcomes.methods = std::move(methods);
     outcomes.state.closed = true;
@@ -63,6 +67,7 @@ class HandMadeOutcomes {
     trial.scored = of.kind == design::PresentationKind::scored;
     trial.counted = trial.scored && outcomes.sessions.at(of.session - 1).counted;
     trial.response = of.answered;
+    if (of.kind != design::PresentationKind::catch_trial) trial.right = of.felt;
     outcomes.trials.push_back(trial);
   }
 

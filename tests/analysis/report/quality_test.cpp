@@ -1,8 +1,8 @@
-#include "analysis/report/quality.hpp"
+#include "analysis/quality.hpp"
 
 #include "analysis/fake_study.hpp"
-#include "analysis/report/report.hpp"
 #include "analysis/text_matching.hpp"
+#include "protocols/identification/analysis/report.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -34,7 +34,7 @@ void fill(FakeStudy& study) {
 }  // namespace
 
 TEST_CASE("make_quality counts sessions, answers and validity without a key") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   fill(study);
   const analysis::QualityReport report = analysis::make_quality(study.store());
   CHECK(report.participants == 2);
@@ -55,7 +55,7 @@ TEST_CASE("make_quality counts sessions, answers and validity without a key") {
 }
 
 TEST_CASE("make_quality counts every session once, and replaced ones apart") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   fill(study);
   using std::chrono::milliseconds;
   study.store().replace(3, "P04", milliseconds(10), "went home");
@@ -75,7 +75,7 @@ TEST_CASE("make_quality counts every session once, and replaced ones apart") {
 }
 
 TEST_CASE("A quality report names no class, no image and no method") {
-  FakeStudy study(design::Protocol::comparison, {.label = "petrified wood"});
+  FakeStudy study(design::identification::comparison(), {.label = "petrified wood"});
   study.add({.participant = "P01", .answers = FakeStudy::always_right()});
   const analysis::QualityReport report = analysis::make_quality(study.store());
   for (const std::string& text : {analysis::quality_json(report), analysis::quality_text(report)}) {
@@ -86,7 +86,7 @@ TEST_CASE("A quality report names no class, no image and no method") {
 }
 
 TEST_CASE("A quality report says how the study stands") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   CHECK(analysis::make_quality(study.store()).state.closed == false);
   const auto open =
       nlohmann::json::parse(analysis::quality_json(analysis::make_quality(study.store())));
@@ -107,7 +107,7 @@ TEST_CASE("A quality report says how the study stands") {
 }
 
 TEST_CASE("A quality report shows how the servo kept its time, where that was recorded") {
-  FakeStudy study(design::Protocol::classification, {.simulated = false});
+  FakeStudy study(design::identification::classification(), {.simulated = false});
   study.add({.participant = "P01", .answers = FakeStudy::always_right()});
   CHECK_FALSE(analysis::make_quality(study.store()).servo);
   CHECK_FALSE(contains(analysis::quality_text(analysis::make_quality(study.store())),
@@ -140,7 +140,7 @@ TEST_CASE("A quality report shows how the servo kept its time, where that was re
 }
 
 TEST_CASE("What was seen on a screen says so in every report") {
-  FakeStudy study(design::Protocol::classification, {.simulated = false, .pilot = true});
+  FakeStudy study(design::identification::classification(), {.simulated = false, .pilot = true});
   FakeSession session{.participant = "P01", .answers = FakeStudy::always_right()};
   session.station = store::StationRecord();
   session.station->visual = true;
@@ -150,14 +150,15 @@ TEST_CASE("What was seen on a screen says so in every report") {
   study.close_and_unblind();
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
   CHECK(outcomes.visual);
-  const std::vector<std::string> warnings = analysis::make_report(outcomes).warnings;
+  const std::vector<std::string> warnings =
+      analysis::identification::make_report(outcomes).warnings;
   CHECK(std::ranges::any_of(warnings, [](const std::string& warning) {
     return contains(warning, "Seen on a screen, not felt");
   }));
 }
 
 TEST_CASE("A quality report of real participants carries no stamp") {
-  FakeStudy study(design::Protocol::classification, {.simulated = false});
+  FakeStudy study(design::identification::classification(), {.simulated = false});
   const analysis::QualityReport report = analysis::make_quality(study.store());
   const auto json = nlohmann::json::parse(analysis::quality_json(report));
   CHECK(json["simulated"] == false);

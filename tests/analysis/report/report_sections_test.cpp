@@ -1,6 +1,7 @@
 #include "analysis/report/hand_made_outcomes.hpp"
-#include "analysis/report/report.hpp"
 #include "analysis/text_matching.hpp"
+#include "protocols/design/random_orders.hpp"
+#include "protocols/identification/analysis/report.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -29,11 +30,13 @@ HandMadeOutcomes five_trials() {
 
 using Groups = std::vector<std::pair<std::string, analysis::Proportion>>;
 
-Groups groups_of(const analysis::Outcomes& outcomes, analysis::BreakdownKind kind, int method = 0) {
+Groups groups_of(const analysis::Outcomes& outcomes, analysis::identification::BreakdownKind kind,
+                 int method = 0) {
   Groups groups;
-  for (const analysis::Breakdown& one : analysis::breakdowns(outcomes, method)) {
+  for (const analysis::identification::Breakdown& one :
+       analysis::identification::breakdowns(outcomes, method)) {
     if (one.kind != kind) continue;
-    for (const analysis::GroupAccuracy& group : one.groups) {
+    for (const analysis::identification::GroupAccuracy& group : one.groups) {
       CHECK(group.wilson == analysis::wilson_interval(group.accuracy));
       groups.emplace_back(group.group, group.accuracy);
     }
@@ -42,7 +45,7 @@ Groups groups_of(const analysis::Outcomes& outcomes, analysis::BreakdownKind kin
 }
 
 /// Three participants; the first method always right, the second with bark alone, the third never.
-analysis::StudyReport three_methods() {
+analysis::identification::StudyReport three_methods() {
   HandMadeOutcomes made({"a", "b", "c"});
   for (int session = 1; session <= 3; ++session) {
     made.session();
@@ -56,21 +59,21 @@ analysis::StudyReport three_methods() {
       }
     }
   }
-  return analysis::make_report(made.outcomes);
+  return analysis::identification::make_report(made.outcomes);
 }
 
 }  // namespace
 
 TEST_CASE("Accuracy is broken down by a trial's place and by what came before") {
   const analysis::Outcomes outcomes = five_trials().outcomes;
-  CHECK(groups_of(outcomes, analysis::BreakdownKind::trial) ==
+  CHECK(groups_of(outcomes, analysis::identification::BreakdownKind::trial) ==
         Groups{{"1", {1, 1}}, {"2", {1, 0}}, {"3", {1, 0}}, {"4", {1, 1}}});
-  CHECK(groups_of(outcomes, analysis::BreakdownKind::previous_stimulus) ==
+  CHECK(groups_of(outcomes, analysis::identification::BreakdownKind::previous_stimulus) ==
         Groups{{"bark", {2, 1}}, {"cloth", {1, 0}}, {"first of its block", {1, 1}}});
-  CHECK(groups_of(outcomes, analysis::BreakdownKind::previous_response) ==
+  CHECK(groups_of(outcomes, analysis::identification::BreakdownKind::previous_response) ==
         Groups{{"bark", {2, 0}}, {"no response", {1, 1}}, {"first of its block", {1, 1}}});
-  CHECK(groups_of(outcomes, analysis::BreakdownKind::exemplar).empty());
-  CHECK(groups_of(outcomes, analysis::BreakdownKind::order_group).empty());
+  CHECK(groups_of(outcomes, analysis::identification::BreakdownKind::exemplar).empty());
+  CHECK(groups_of(outcomes, analysis::identification::BreakdownKind::order_group).empty());
 }
 
 TEST_CASE("A catch trial and a lead-in come before, but have no accuracy") {
@@ -80,9 +83,9 @@ TEST_CASE("A catch trial and a lead-in come before, but have no accuracy") {
   made.trial({.felt = kBark, .answered = kBark});
   made.trial({.answered = kBark, .kind = design::PresentationKind::catch_trial});
   made.trial({.felt = kCloth, .answered = kBark});
-  CHECK(groups_of(made.outcomes, analysis::BreakdownKind::previous_stimulus) ==
+  CHECK(groups_of(made.outcomes, analysis::identification::BreakdownKind::previous_stimulus) ==
         Groups{{"cloth", {1, 1}}, {"no texture", {1, 0}}});
-  CHECK(groups_of(made.outcomes, analysis::BreakdownKind::trial) ==
+  CHECK(groups_of(made.outcomes, analysis::identification::BreakdownKind::trial) ==
         Groups{{"1", {1, 1}}, {"2", {1, 0}}});
 }
 
@@ -91,7 +94,7 @@ TEST_CASE("Images of a class are groups where a class has several") {
   made.outcomes.exemplars[kBark] = {"oak.png", "pine.png"};
   made.outcomes.trials[2].stimulus.exemplar = 1;
   CHECK(
-      groups_of(made.outcomes, analysis::BreakdownKind::exemplar) ==
+      groups_of(made.outcomes, analysis::identification::BreakdownKind::exemplar) ==
       Groups{{"bark: oak.png", {1, 1}}, {"bark: pine.png", {1, 0}}, {"cloth: cloth.png", {2, 1}}});
 }
 
@@ -103,7 +106,7 @@ TEST_CASE("Order groups are the orders in which methods came") {
   }
   std::map<std::string, analysis::Proportion> groups;
   for (const auto& [group, accuracy] :
-       groups_of(made.outcomes, analysis::BreakdownKind::order_group)) {
+       groups_of(made.outcomes, analysis::identification::BreakdownKind::order_group)) {
     groups[group] = accuracy;
   }
   const auto name = [](int enrolment) {
@@ -115,7 +118,7 @@ TEST_CASE("Order groups are the orders in which methods came") {
 }
 
 TEST_CASE("Reaction times are of answered trials, by class and all together") {
-  const auto times = analysis::reaction_times(five_trials().outcomes, 0);
+  const auto times = analysis::identification::reaction_times(five_trials().outcomes, 0);
   REQUIRE(times.size() == 3);
   CHECK(times[kBark].from_plane_on.n == 1);
   CHECK(times[kBark].from_plane_on.median == 1.0);
@@ -130,15 +133,15 @@ TEST_CASE("Reaction times are of answered trials, by class and all together") {
 }
 
 TEST_CASE("Robustness leaves out and puts back what its subsets say") {
-  const auto subsets = analysis::robustness(five_trials().outcomes, 0);
+  const auto subsets = analysis::identification::robustness(five_trials().outcomes, 0);
   REQUIRE(subsets.size() == 4);
-  CHECK(subsets[0].subset == analysis::TrialSubset::counted);
+  CHECK(subsets[0].subset == analysis::identification::TrialSubset::counted);
   CHECK(subsets[0].pooled == analysis::Proportion{4, 2});
-  CHECK(subsets[1].subset == analysis::TrialSubset::answered);
+  CHECK(subsets[1].subset == analysis::identification::TrialSubset::answered);
   CHECK(subsets[1].pooled == analysis::Proportion{3, 2});
-  CHECK(subsets[2].subset == analysis::TrialSubset::valid);
+  CHECK(subsets[2].subset == analysis::identification::TrialSubset::valid);
   CHECK(subsets[2].pooled == analysis::Proportion{3, 1});
-  CHECK(subsets[3].subset == analysis::TrialSubset::with_excluded_sessions);
+  CHECK(subsets[3].subset == analysis::identification::TrialSubset::with_excluded_sessions);
   CHECK(subsets[3].pooled == analysis::Proportion{5, 3});
   CHECK(subsets[3].mean.mean.value() == Approx(0.75));
 }
@@ -146,11 +149,12 @@ TEST_CASE("Robustness leaves out and puts back what its subsets say") {
 TEST_CASE("An excluded participant who began anew is not put back twice") {
   HandMadeOutcomes made = five_trials();
   made.outcomes.sessions[1].row.replaced_by = "P2";
-  CHECK(analysis::robustness(made.outcomes, 0)[3].pooled == analysis::Proportion{4, 2});
+  CHECK(analysis::identification::robustness(made.outcomes, 0)[3].pooled ==
+        analysis::Proportion{4, 2});
 }
 
 TEST_CASE("Of three methods every two are compared, adjusted, and all at once") {
-  const analysis::StudyReport report = three_methods();
+  const analysis::identification::StudyReport report = three_methods();
   CHECK_FALSE(report.comparison.has_value());
   REQUIRE(report.pairs.size() == 3);
   const double differences[] = {0.5, 1.0, 0.5};
@@ -160,7 +164,7 @@ TEST_CASE("Of three methods every two are compared, adjusted, and all at once") 
     CHECK(report.pairs[i].p_holm == 0.75);
     CHECK_FALSE(report.pairs[i].mcnemar_mid_p.has_value());  // two pairs a participant
   }
-  const analysis::ClassComparison& bark = report.pairs[1].classes[kBark];
+  const analysis::identification::ClassComparison& bark = report.pairs[1].classes[kBark];
   CHECK(bark.first == analysis::Proportion{3, 3});
   CHECK(bark.second == analysis::Proportion{3, 0});
   CHECK(bark.mcnemar_mid_p.value() == Approx(0.125));  // 2 / 8 less half of that
@@ -171,8 +175,8 @@ TEST_CASE("Of three methods every two are compared, adjusted, and all at once") 
 }
 
 TEST_CASE("Three methods stand in JSON and at the terminal") {
-  const analysis::StudyReport report = three_methods();
-  const auto json = nlohmann::json::parse(analysis::report_json(report));
+  const analysis::identification::StudyReport report = three_methods();
+  const auto json = nlohmann::json::parse(analysis::identification::report_json(report));
   CHECK_FALSE(json.contains("comparison"));
   CHECK(json["pairs"][1]["first"] == "a");
   CHECK(json["pairs"][1]["second"] == "c");
@@ -181,7 +185,7 @@ TEST_CASE("Three methods stand in JSON and at the terminal") {
   for (const auto& key : json["pairs"][0]["references"]) {
     CHECK(json["references"].contains(key.get<std::string>()));
   }
-  const std::string text = analysis::report_text(report);
+  const std::string text = analysis::identification::report_text(report);
   CHECK(contains(text, "a - c"));
   CHECK(contains(text, "Cochran's Q = 9.00, 2 degrees of freedom"));
 }
@@ -189,7 +193,8 @@ TEST_CASE("Three methods stand in JSON and at the terminal") {
 TEST_CASE("Figures do not depend on the order in which trials are read") {
   HandMadeOutcomes made = five_trials();
   const auto figures = [&] {
-    auto json = nlohmann::json::parse(analysis::report_json(analysis::make_report(made.outcomes)));
+    auto json = nlohmann::json::parse(analysis::identification::report_json(
+        analysis::identification::make_report(made.outcomes)));
     // A mean over random deals, which are dealt to trials as they come.
     json["methods"][0]["information_transfer"].erase("null_mean");
     return json;

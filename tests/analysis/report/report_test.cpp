@@ -1,4 +1,4 @@
-#include "analysis/report/report.hpp"
+#include "protocols/identification/analysis/report.hpp"
 
 #include "analysis/fake_study.hpp"
 #include "analysis/text_matching.hpp"
@@ -15,7 +15,7 @@ namespace touchtrial {
 namespace {
 
 /// The comparison with P01 always right and P02 taking bark for straw with tv-gabor only.
-analysis::StudyReport small_comparison(FakeStudy& study) {
+analysis::identification::StudyReport small_comparison(FakeStudy& study) {
   study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()});
   study.add(
       {.participant = "P02", .enrolment = 2, .answers = [](const design::Presentation& shown) {
@@ -23,10 +23,10 @@ analysis::StudyReport small_comparison(FakeStudy& study) {
          return mistaken ? 2 : shown.stimulus.class_index;
        }});
   study.close_and_unblind();
-  return analysis::make_report(analysis::load_outcomes(study.store(), study.key()));
+  return analysis::identification::make_report(analysis::load_outcomes(study.store(), study.key()));
 }
 
-bool warned_of(const analysis::StudyReport& report, const std::string& part) {
+bool warned_of(const analysis::identification::StudyReport& report, const std::string& part) {
   for (const std::string& warning : report.warnings) {
     if (contains(warning, part)) return true;
   }
@@ -36,13 +36,13 @@ bool warned_of(const analysis::StudyReport& report, const std::string& part) {
 }  // namespace
 
 TEST_CASE("make_report counts each method for itself and compares two") {
-  FakeStudy study(design::Protocol::comparison);
-  const analysis::StudyReport report = small_comparison(study);
+  FakeStudy study(design::identification::comparison());
+  const analysis::identification::StudyReport report = small_comparison(study);
   CHECK(report.participants == 2);
   CHECK(report.trials == 48);
   REQUIRE(report.methods.size() == 2);
   CHECK(report.methods[0].overall == analysis::Proportion{24, 24});
-  const analysis::MethodReport& second = report.methods[1];
+  const analysis::identification::MethodReport& second = report.methods[1];
   CHECK(second.overall == analysis::Proportion{24, 20});
   CHECK(second.confusion.count(0, 2) == 4);
   CHECK(second.accuracy[0].accuracy == analysis::Proportion{8, 4});
@@ -56,26 +56,27 @@ TEST_CASE("make_report counts each method for itself and compares two") {
 }
 
 TEST_CASE("A classification has one method and no comparison") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   study.add({.participant = "P01", .answers = FakeStudy::confusing(1, 0)});
   study.close_and_unblind();
-  const analysis::StudyReport report =
-      analysis::make_report(analysis::load_outcomes(study.store(), study.key()));
+  const analysis::identification::StudyReport report =
+      analysis::identification::make_report(analysis::load_outcomes(study.store(), study.key()));
   CHECK(report.methods.size() == 1);
   CHECK_FALSE(report.comparison.has_value());
-  CHECK_FALSE(nlohmann::json::parse(analysis::report_json(report)).contains("comparison"));
+  CHECK_FALSE(
+      nlohmann::json::parse(analysis::identification::report_json(report)).contains("comparison"));
   CHECK(warned_of(report, "One participant"));
   CHECK(warned_of(report, "information transfer from 12 trials"));
 }
 
 TEST_CASE("A report of an open study without sessions has no figures and says so") {
-  FakeStudy study(design::Protocol::comparison);
+  FakeStudy study(design::identification::comparison());
   study.store().unblind(std::chrono::seconds(1), "a look", true);
-  const analysis::StudyReport report =
-      analysis::make_report(analysis::load_outcomes(study.store(), study.key()));
+  const analysis::identification::StudyReport report =
+      analysis::identification::make_report(analysis::load_outcomes(study.store(), study.key()));
   CHECK(warned_of(report, "interim look"));
   CHECK(warned_of(report, "nothing to report"));
-  const auto json = nlohmann::json::parse(analysis::report_json(report));
+  const auto json = nlohmann::json::parse(analysis::identification::report_json(report));
   CHECK(json["trials"] == 0);
   CHECK(json["methods"][0]["overall"]["p"].is_null());
   CHECK(json["methods"][0]["information_transfer"]["raw"].is_null());
@@ -84,13 +85,13 @@ TEST_CASE("A report of an open study without sessions has no figures and says so
 }
 
 TEST_CASE("Time-outs are errors in accuracy, and their own column") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   study.add({.participant = "P01", .answers = [](const design::Presentation& shown) {
                return shown.trial <= 2 ? std::nullopt : std::optional(shown.stimulus.class_index);
              }});
   study.close_and_unblind();
-  const analysis::StudyReport report =
-      analysis::make_report(analysis::load_outcomes(study.store(), study.key()));
+  const analysis::identification::StudyReport report =
+      analysis::identification::make_report(analysis::load_outcomes(study.store(), study.key()));
   CHECK(report.trials == 12);
   CHECK(report.methods[0].overall == analysis::Proportion{12, 10});
   CHECK(warned_of(report,
@@ -98,7 +99,7 @@ TEST_CASE("Time-outs are errors in accuracy, and their own column") {
 }
 
 TEST_CASE("Sessions that are left out are told") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()});
   study.add({.participant = "P02",
              .enrolment = 2,
@@ -106,16 +107,18 @@ TEST_CASE("Sessions that are left out are told") {
              .complete = false});
   study.close_and_unblind();
   analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
-  CHECK(analysis::make_report(outcomes).participants == 1);
-  CHECK(warned_of(analysis::make_report(outcomes), "Left out: 1 session, not completed."));
+  CHECK(analysis::identification::make_report(outcomes).participants == 1);
+  CHECK(warned_of(analysis::identification::make_report(outcomes),
+                  "Left out: 1 session, not completed."));
   outcomes.sessions[1].row.excluded = true;
-  CHECK(warned_of(analysis::make_report(outcomes), "Left out: 1 session, excluded."));
+  CHECK(
+      warned_of(analysis::identification::make_report(outcomes), "Left out: 1 session, excluded."));
 }
 
 TEST_CASE("report_json has the published keys in their order") {
-  FakeStudy study(design::Protocol::comparison);
-  const analysis::StudyReport report = small_comparison(study);
-  const auto json = nlohmann::ordered_json::parse(analysis::report_json(report));
+  FakeStudy study(design::identification::comparison());
+  const analysis::identification::StudyReport report = small_comparison(study);
+  const auto json = nlohmann::ordered_json::parse(analysis::identification::report_json(report));
   const auto keys_of = [](const nlohmann::ordered_json& object) {
     std::string keys;
     for (const auto& [key, value] : object.items()) keys += key + ' ';
@@ -142,10 +145,10 @@ TEST_CASE("report_json has the published keys in their order") {
 }
 
 TEST_CASE("A report of real participants carries no stamp") {
-  FakeStudy study(design::Protocol::comparison, {.simulated = false});
-  const analysis::StudyReport report = small_comparison(study);
-  CHECK_FALSE(contains(analysis::report_json(report), "SIMULATED"));
-  CHECK_FALSE(contains(analysis::report_text(report), "SIMULATED"));
+  FakeStudy study(design::identification::comparison(), {.simulated = false});
+  const analysis::identification::StudyReport report = small_comparison(study);
+  CHECK_FALSE(contains(analysis::identification::report_json(report), "SIMULATED"));
+  CHECK_FALSE(contains(analysis::identification::report_text(report), "SIMULATED"));
 }
 
 TEST_CASE("A report has decimal dots whatever the locale") {
@@ -154,20 +157,21 @@ TEST_CASE("A report has decimal dots whatever the locale") {
     [[nodiscard]] char do_thousands_sep() const override { return '.'; }
     [[nodiscard]] std::string do_grouping() const override { return "\1"; }
   };
-  FakeStudy study(design::Protocol::comparison);
-  const analysis::StudyReport report = small_comparison(study);
-  const std::string json = analysis::report_json(report);
-  const std::string text = analysis::report_text(report);
+  FakeStudy study(design::identification::comparison());
+  const analysis::identification::StudyReport report = small_comparison(study);
+  const std::string json = analysis::identification::report_json(report);
+  const std::string text = analysis::identification::report_text(report);
   const std::locale before = std::locale::global(std::locale(std::locale(), new Commas));
-  const bool same = analysis::report_json(report) == json && analysis::report_text(report) == text;
+  const bool same = analysis::identification::report_json(report) == json &&
+                    analysis::identification::report_text(report) == text;
   std::locale::global(before);
   CHECK(same);
 }
 
 TEST_CASE("Every table of a simulated report is stamped and fits the terminal") {
-  FakeStudy study(design::Protocol::comparison,
+  FakeStudy study(design::identification::comparison(),
                   {.label = "an uncommonly long label for one texture"});
-  std::istringstream text(analysis::report_text(small_comparison(study)));
+  std::istringstream text(analysis::identification::report_text(small_comparison(study)));
   bool after_gap = false;
   std::string line;
   std::string last;
@@ -183,7 +187,7 @@ TEST_CASE("Every table of a simulated report is stamped and fits the terminal") 
 }
 
 TEST_CASE("report_text keeps its layout") {
-  FakeStudy study(design::Protocol::comparison);
+  FakeStudy study(design::identification::comparison());
   study.add(
       {.participant = "P01", .enrolment = 1, .answers = [](const design::Presentation& shown) {
          const bool mistaken = shown.stimulus.method == 1 && shown.stimulus.class_index == 0;
@@ -194,8 +198,8 @@ TEST_CASE("report_text keeps its layout") {
          return shown.trial == 24 ? std::nullopt : std::optional(shown.stimulus.class_index);
        }});
   study.close_and_unblind();
-  const std::string text = analysis::report_text(
-      analysis::make_report(analysis::load_outcomes(study.store(), study.key())));
+  const std::string text = analysis::identification::report_text(
+      analysis::identification::make_report(analysis::load_outcomes(study.store(), study.key())));
   CHECK(text == R"(SIMULATED: these figures come from simulated participants.
 pair (comparison): 2 participants, 48 trials; chance is 33.3%
 2 enrolled, 2 analysed

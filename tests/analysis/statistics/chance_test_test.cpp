@@ -1,6 +1,5 @@
 #include "analysis/statistics/chance_test.hpp"
 
-#include "analysis/statistics/match_counts.hpp"
 #include "core/random.hpp"
 #include "support/catch.hpp"
 
@@ -156,7 +155,7 @@ TEST_CASE("match_probabilities of hundreds of trials sum to 1 with the right mea
   CHECK(mean == Approx((60.0 * 80 + 60 * 20 + 100 * 90 + 80 * 100) / 300.0).epsilon(1e-12));
 }
 
-TEST_CASE("chance_test equals the listing of all orders, missing responses and all") {
+TEST_CASE("chance_test equals the listing of all orders, also with missing responses") {
   RandomStream random(4, "chance test test");
   for (int round = 0; round < 40; ++round) {
     const int classes = 2 + round % 4;
@@ -261,7 +260,7 @@ TEST_CASE("chance_test of a thousand participants nears the normal limit") {
   CHECK(test.p == Approx(0.5 * std::erfc(z / std::sqrt(2.0))).margin(0.002));
 }
 
-TEST_CASE("chance_test tells p values far below what a normal variable reaches") {
+TEST_CASE("chance_test gives p values far below what a normal approximation reaches") {
   const std::vector<analysis::AnsweredBlock> blocks(10, with_right(25));
   CHECK(analysis::chance_test(5, blocks, analysis::DealtOrder::permuted)->p ==
         Approx(std::pow(1.6042075331639573e-15, 10)).epsilon(1e-9));
@@ -290,12 +289,12 @@ TEST_CASE("chance_test at the ends: all right, all wrong, nothing answered, noth
                   .has_value());
 }
 
-TEST_CASE("Of a single class nobody can do better than chance") {
+TEST_CASE("With a single class nobody can do better than chance") {
   const std::vector<analysis::AnsweredBlock> one{{{1, 1, 1}, {1, 1, 0}}};
   CHECK(analysis::chance_test(2, one, analysis::DealtOrder::permuted)->p == 1.0);
 }
 
-TEST_CASE("chance_test refuses what cannot be") {
+TEST_CASE("chance_test refuses impossible arguments") {
   const std::vector<analysis::AnsweredBlock> uneven{{{0, 1}, {0}}};
   CHECK_THROWS_AS(analysis::chance_test(2, uneven, analysis::DealtOrder::permuted),
                   std::invalid_argument);

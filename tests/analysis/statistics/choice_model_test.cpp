@@ -1,5 +1,6 @@
 #include "analysis/statistics/choice_model.hpp"
 
+#include "analysis/confusion_of_counts.hpp"
 #include "core/random.hpp"
 #include "support/catch.hpp"
 
@@ -10,18 +11,6 @@ namespace touchtrial {
 namespace {
 
 using Counts = std::vector<std::vector<int>>;
-
-analysis::ConfusionMatrix matrix(const Counts& rows) {
-  analysis::ConfusionMatrix confusion(static_cast<int>(rows.size()));
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    for (std::size_t j = 0; j < rows.size(); ++j) {
-      for (int k = 0; k < rows[i][j]; ++k) {
-        confusion.add({static_cast<int>(i), static_cast<int>(j)});
-      }
-    }
-  }
-  return confusion;
-}
 
 const Counts kFive{
     {18, 3, 1, 2, 1}, {5, 14, 2, 3, 1}, {1, 4, 16, 1, 3}, {2, 1, 2, 19, 1}, {1, 2, 5, 2, 15}};
@@ -68,7 +57,7 @@ void check_margins(const Counts& counts, const analysis::ChoiceModel& model) {
 
 // Expected values: statsmodels 0.13, Poisson GLM of rows, columns and pairs off the diagonal.
 TEST_CASE("choice_model gives the values of an independent implementation") {
-  const analysis::ChoiceModel model = *analysis::choice_model(matrix(kFive));
+  const analysis::ChoiceModel model = *analysis::choice_model(confusion_of_counts(kFive));
   CHECK(model.converged);
   CHECK(model.groups == 1);
   CHECK(model.expected.at(0, 0) == 18.0);
@@ -82,7 +71,7 @@ TEST_CASE("choice_model gives the values of an independent implementation") {
 }
 
 TEST_CASE("choice_model keeps the margins, and its parameters make its expected counts") {
-  const analysis::ChoiceModel model = *analysis::choice_model(matrix(kFive));
+  const analysis::ChoiceModel model = *analysis::choice_model(confusion_of_counts(kFive));
   check_margins(kFive, model);
   double bias = 0.0;
   for (int i = 0; i < 5; ++i) {
@@ -96,10 +85,10 @@ TEST_CASE("choice_model keeps the margins, and its parameters make its expected 
   CHECK(bias == Approx(1.0));
 }
 
-TEST_CASE("choice_model finds the similarities and biases that counts were made of") {
+TEST_CASE("choice_model recovers the similarities and biases behind the counts") {
   // Bias 1 : 2 : 4, similarity 1/2, 1/4, 1/4; rows scaled so that all counts are whole.
   const analysis::ChoiceModel model =
-      *analysis::choice_model(matrix({{4, 4, 4}, {2, 8, 4}, {1, 2, 16}}));
+      *analysis::choice_model(confusion_of_counts({{4, 4, 4}, {2, 8, 4}, {1, 2, 16}}));
   CHECK(model.g_squared == Approx(0.0).margin(1e-9));
   CHECK(model.bias[0] == Approx(1.0 / 7.0).epsilon(1e-9));
   CHECK(model.bias[1] == Approx(2.0 / 7.0).epsilon(1e-9));
@@ -111,8 +100,9 @@ TEST_CASE("choice_model finds the similarities and biases that counts were made 
   CHECK(model.p.value() == Approx(1.0).margin(1e-4));
 }
 
-TEST_CASE("Of two classes choice_model fits everything and tests nothing") {
-  const analysis::ChoiceModel model = *analysis::choice_model(matrix({{8, 2}, {4, 6}}));
+TEST_CASE("With two classes choice_model fits everything and tests nothing") {
+  const analysis::ChoiceModel model =
+      *analysis::choice_model(confusion_of_counts({{8, 2}, {4, 6}}));
   CHECK(model.converged);
   CHECK(model.degrees_of_freedom == 0);
   CHECK_FALSE(model.p.has_value());
@@ -123,7 +113,7 @@ TEST_CASE("Of two classes choice_model fits everything and tests nothing") {
 
 TEST_CASE("Without wrong answers choice_model knows no similarity and compares no biases") {
   const analysis::ChoiceModel model =
-      *analysis::choice_model(matrix({{5, 0, 0}, {0, 5, 0}, {0, 0, 5}}));
+      *analysis::choice_model(confusion_of_counts({{5, 0, 0}, {0, 5, 0}, {0, 0, 5}}));
   CHECK(model.converged);
   CHECK(model.groups == 3);
   CHECK(model.similarity.at(0, 1) == 0.0);
@@ -135,7 +125,7 @@ TEST_CASE("Without wrong answers choice_model knows no similarity and compares n
 
 TEST_CASE("Groups never taken for each other are fitted each on its own") {
   const Counts counts{{8, 2, 0, 0}, {4, 6, 0, 0}, {0, 0, 7, 3}, {0, 0, 1, 9}};
-  const analysis::ChoiceModel model = *analysis::choice_model(matrix(counts));
+  const analysis::ChoiceModel model = *analysis::choice_model(confusion_of_counts(counts));
   CHECK(model.group == std::vector<int>{0, 0, 1, 1});
   CHECK(model.bias[0] + model.bias[1] == Approx(1.0));
   CHECK(model.bias[2] + model.bias[3] == Approx(1.0));
@@ -147,7 +137,7 @@ TEST_CASE("Groups never taken for each other are fitted each on its own") {
 TEST_CASE("Where answers go one way only the maximum lies at infinity, and the counts are fitted") {
   // Class 2 is taken for others, nothing is ever taken for it.
   const Counts counts{{8, 2, 0}, {3, 7, 0}, {2, 1, 7}};
-  const analysis::ChoiceModel model = *analysis::choice_model(matrix(counts));
+  const analysis::ChoiceModel model = *analysis::choice_model(confusion_of_counts(counts));
   CHECK(model.converged);
   CHECK(model.group == std::vector<int>{0, 0, 1});
   CHECK(model.expected.at(2, 0) == 2.0);
@@ -160,7 +150,7 @@ TEST_CASE("Where answers go one way only the maximum lies at infinity, and the c
 
 TEST_CASE("A circle of wrong answers is one group although no pair goes both ways") {
   const Counts counts{{4, 3, 0}, {0, 4, 3}, {3, 0, 4}};
-  const analysis::ChoiceModel model = *analysis::choice_model(matrix(counts));
+  const analysis::ChoiceModel model = *analysis::choice_model(confusion_of_counts(counts));
   CHECK(model.groups == 1);
   CHECK(model.expected.at(0, 1) == Approx(1.5));
   CHECK(model.expected.at(1, 0) == Approx(1.5));
@@ -171,7 +161,7 @@ TEST_CASE("A circle of wrong answers is one group although no pair goes both way
 
 TEST_CASE("A class that was never answered right has neither similarities nor a bias") {
   const Counts counts{{8, 1, 1}, {3, 0, 7}, {2, 2, 6}};
-  const analysis::ChoiceModel model = *analysis::choice_model(matrix(counts));
+  const analysis::ChoiceModel model = *analysis::choice_model(confusion_of_counts(counts));
   CHECK(std::isnan(model.similarity.at(0, 1)));
   CHECK(std::isnan(model.bias[1]));
   CHECK(model.bias[0] + model.bias[2] == Approx(1.0));
@@ -181,7 +171,7 @@ TEST_CASE("A class that was never answered right has neither similarities nor a 
 
 TEST_CASE("choice_model settles where one answer in thousands holds two groups together") {
   const Counts counts{{2000, 900, 1, 0}, {800, 2000, 0, 0}, {1, 0, 2000, 700}, {0, 0, 950, 2000}};
-  const analysis::ChoiceModel model = *analysis::choice_model(matrix(counts));
+  const analysis::ChoiceModel model = *analysis::choice_model(confusion_of_counts(counts));
   CHECK(model.converged);
   check_margins(counts, model);
 }
@@ -197,7 +187,8 @@ TEST_CASE("choice_model settles for any small table, its margins kept") {
       const bool feels = random.uniform() < 0.6;
       ++counts[shown][feels ? shown : static_cast<int>(random.below(classes))];
     }
-    const std::optional<analysis::ChoiceModel> model = analysis::choice_model(matrix(counts));
+    const std::optional<analysis::ChoiceModel> model =
+        analysis::choice_model(confusion_of_counts(counts));
     if (!model) continue;
     ++fitted;
     CHECK(model->converged);
@@ -211,9 +202,9 @@ TEST_CASE("choice_model settles for any small table, its margins kept") {
 
 TEST_CASE("choice_model is nothing where a class was never presented or never answered") {
   CHECK_FALSE(analysis::choice_model(analysis::ConfusionMatrix(3)).has_value());
-  CHECK_FALSE(analysis::choice_model(matrix({{3, 2}, {0, 0}})).has_value());
-  CHECK_FALSE(analysis::choice_model(matrix({{3, 0}, {2, 0}})).has_value());
-  analysis::ConfusionMatrix silent = matrix({{3, 2}, {0, 0}});
+  CHECK_FALSE(analysis::choice_model(confusion_of_counts({{3, 2}, {0, 0}})).has_value());
+  CHECK_FALSE(analysis::choice_model(confusion_of_counts({{3, 0}, {2, 0}})).has_value());
+  analysis::ConfusionMatrix silent = confusion_of_counts({{3, 2}, {0, 0}});
   silent.add({1, {}});
   CHECK_FALSE(analysis::choice_model(silent).has_value());
 }

@@ -42,7 +42,7 @@ TEST_CASE("cluster_bootstrap finds the quantiles of all possible draws") {
   CHECK(interval.high <= shares[static_cast<std::size_t>(0.9995 * 3125)]);
 }
 
-TEST_CASE("Of two participants a bootstrap gives the two") {
+TEST_CASE("With two participants a bootstrap gives the two") {
   const std::vector<analysis::Proportion> two{{25, 10}, {25, 20}};
   CHECK(analysis::cluster_bootstrap(two) == analysis::Interval{0.4, 0.8});
   const std::vector<double> values{-0.25, 0.5};
@@ -82,7 +82,7 @@ TEST_CASE("A bootstrap repeats itself, and another index draws anew") {
   CHECK_FALSE(analysis::bootstrap_mean(values, 1) == analysis::bootstrap_mean(values, 2));
 }
 
-TEST_CASE("A bootstrap moves and stretches with its values") {
+TEST_CASE("A bootstrap's interval moves and scales with its values") {
   const std::vector<double> values{0.1, 0.4, -0.3, 0.25, 0.9, 0.0, -0.6};
   std::vector<double> other;
   for (const double value : values) other.push_back(3.0 - 2.0 * value);
@@ -102,13 +102,13 @@ TEST_CASE("A higher level makes a bootstrap's interval wider") {
   CHECK(narrow.high < wide.high);
 }
 
-TEST_CASE("Where all participants are alike a bootstrap knows no spread") {
+TEST_CASE("A bootstrap of equal participants has an interval without width") {
   const std::vector<analysis::Proportion> alike(10, analysis::Proportion{25, 25});
   CHECK(analysis::cluster_bootstrap(alike) == analysis::Interval{1.0, 1.0});
   CHECK(analysis::bootstrap_mean(std::vector<double>(10, 0.5)) == analysis::Interval{0.5, 0.5});
 }
 
-TEST_CASE("A bootstrap needs two participants and says nothing of fewer") {
+TEST_CASE("A bootstrap gives nothing with fewer than two participants") {
   const std::vector<analysis::Proportion> one{{25, 20}};
   CHECK_FALSE(analysis::cluster_bootstrap(one).has_value());
   CHECK_FALSE(analysis::cluster_bootstrap({}).has_value());
@@ -121,7 +121,7 @@ TEST_CASE("A single draw is its own interval") {
   CHECK(interval.low == interval.high);
 }
 
-TEST_CASE("A bootstrap refuses what cannot be") {
+TEST_CASE("A bootstrap refuses impossible arguments") {
   const std::vector<analysis::Proportion> empty{{25, 20}, {0, 0}};
   CHECK_THROWS_AS(analysis::cluster_bootstrap(empty), std::invalid_argument);
   const std::vector<analysis::Proportion> impossible{{25, 20}, {5, 6}};

@@ -1,5 +1,4 @@
-#include "analysis/statistics/cochran_q.hpp"
-
+#include "analysis/statistics/paired_tests.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -53,7 +52,7 @@ TEST_CASE("cochran_q gives the values of an independent implementation") {
   CHECK(result.p == Approx(0.0301973834223185).epsilon(1e-12));
 }
 
-TEST_CASE("Of two methods cochran_q is McNemar's chi-square") {
+TEST_CASE("With two methods cochran_q is McNemar's chi-square") {
   Occasions occasions;
   for (int i = 0; i < 9; ++i) occasions.push_back({true, false});
   for (int i = 0; i < 4; ++i) occasions.push_back({false, true});
@@ -63,7 +62,7 @@ TEST_CASE("Of two methods cochran_q is McNemar's chi-square") {
   CHECK(result.p == Approx(std::erfc(std::sqrt(25.0 / 13.0 / 2.0))));
 }
 
-TEST_CASE("cochran_q takes no notice of occasions that tell nothing, nor of the methods' order") {
+TEST_CASE("cochran_q ignores occasions without information, and the methods' order") {
   Occasions occasions = kEight;
   for (std::vector<bool>& occasion : occasions) std::reverse(occasion.begin(), occasion.end());
   occasions.push_back({true, true, true});
@@ -71,7 +70,8 @@ TEST_CASE("cochran_q takes no notice of occasions that tell nothing, nor of the 
   CHECK(analysis::cochran_q(occasions)->q == Approx(analysis::cochran_q(kEight)->q));
 }
 
-TEST_CASE("cochran_q is 0 with p 1 where methods differ and balance, and nothing where none does") {
+TEST_CASE(
+    "cochran_q is 0 with p 1 where differences balance, and nothing where no methods differ") {
   CHECK(analysis::cochran_q(Occasions{{true, false}, {false, true}})->q == 0.0);
   CHECK(analysis::cochran_q(Occasions{{true, false}, {false, true}})->p == 1.0);
   CHECK_FALSE(analysis::cochran_q({}).has_value());

@@ -1,8 +1,13 @@
 #include "analysis/statistics/confusion.hpp"
 
+#include "analysis/confusion_of_counts.hpp"
+#include "core/random.hpp"
 #include "support/catch.hpp"
 
+#include <algorithm>
+#include <numeric>
 #include <stdexcept>
+#include <vector>
 
 namespace touchtrial {
 
@@ -17,6 +22,8 @@ TEST_CASE("A confusion matrix has presented classes in rows and answers in colum
   CHECK(confusion.count(2, 0) == 0);
   CHECK(confusion.presented(0) == 3);
   CHECK(confusion.presented(2) == 0);
+  CHECK(confusion.answered(2) == 2);
+  CHECK(confusion.answered(1) == 1);
   CHECK(confusion.accuracy(0) == analysis::Proportion{3, 1});
   CHECK(confusion.accuracy() == analysis::Proportion{4, 2});
 }
@@ -28,6 +35,7 @@ TEST_CASE("A trial without a response counts as wrong and stands in its own colu
   CHECK(confusion.no_response(0) == 1);
   CHECK(confusion.no_response(1) == 0);
   CHECK(confusion.answered() == 1);
+  CHECK(confusion.answered(0) == 1);
   CHECK(confusion.accuracy(0) == analysis::Proportion{2, 1});
 }
 
@@ -38,9 +46,99 @@ TEST_CASE("Classes that a confusion matrix does not have are refused") {
   CHECK_THROWS_AS(confusion.add({0, -1}), std::invalid_argument);
 }
 
+TEST_CASE("A confusion matrix made from choices is the one that they are added to") {
+  const std::vector<analysis::Choice> choices{{0, 1}, {1, 1}, {1, std::nullopt}};
+  analysis::ConfusionMatrix added(2);
+  for (const analysis::Choice& choice : choices) added.add(choice);
+  CHECK(analysis::ConfusionMatrix(2, choices) == added);
+  CHECK_THROWS_AS(analysis::ConfusionMatrix(1, choices), std::invalid_argument);
+}
+
 TEST_CASE("A percentage of nothing does not exist") {
   CHECK(analysis::percentage(1, 4) == 25.0);
   CHECK_FALSE(analysis::percentage(0, 0).has_value());
+}
+
+namespace {
+
+analysis::ConfusionMatrix random_matrix(int classes, int trials, RandomStream& random) {
+  analysis::ConfusionMatrix confusion(classes);
+  for (int i = 0; i < trials; ++i) {
+    confusion.add(
+        {static_cast<int>(random.below(classes)), static_cast<int>(random.below(classes))});
+  }
+  return confusion;
+}
+
+int trials_of(const analysis::ConfusionMatrix& confusion, const std::vector<int>& answer_of) {
+  int trials = 0;
+  for (int i = 0; i < confusion.classes(); ++i) trials += confusion.count(i, answer_of[i]);
+  return trials;
+}
+
+int kept(const std::vector<int>& answer_of) {
+  int same = 0;
+  for (std::size_t i = 0; i < answer_of.size(); ++i) same += answer_of[i] == static_cast<int>(i);
+  return same;
+}
+
+}  // namespace
+
+TEST_CASE("Somebody who swaps two labels is right in everything after the best exchange") {
+  const analysis::LabelMatching best = analysis::best_label_matching(confusion_of_counts(
+      {{5, 0, 0, 0, 0}, {0, 0, 0, 5, 0}, {0, 0, 5, 0, 0}, {0, 5, 0, 0, 0}, {0, 0, 0, 0, 5}}));
+  CHECK(best.accuracy == analysis::Proportion{25, 25});
+  CHECK(best.answer_of == std::vector<int>{0, 3, 2, 1, 4});
+}
+
+TEST_CASE("best_label_matching finds the most trials of all K! matchings, labels kept in a tie") {
+  RandomStream random(1, "label matching test");
+  for (int round = 0; round < 120; ++round) {
+    const int classes = 2 + round % 5;
+    const analysis::ConfusionMatrix confusion = random_matrix(classes, 3 * classes, random);
+    const analysis::LabelMatching best = analysis::best_label_matching(confusion);
+    REQUIRE(best.accuracy.correct == trials_of(confusion, best.answer_of));
+    std::vector<int> any(classes);
+    std::iota(any.begin(), any.end(), 0);
+    REQUIRE(std::is_permutation(any.begin(), any.end(), best.answer_of.begin()));
+    do {
+      const int trials = trials_of(confusion, any);
+      REQUIRE(trials <= best.accuracy.correct);
+      if (trials == best.accuracy.correct) REQUIRE(kept(any) <= kept(best.answer_of));
+    } while (std::next_permutation(any.begin(), any.end()));
+  }
+}
+
+TEST_CASE("best_label_matching keeps the labels where no trial decides") {
+  const analysis::LabelMatching best = analysis::best_label_matching(analysis::ConfusionMatrix(4));
+  CHECK(best.answer_of == std::vector<int>{0, 1, 2, 3});
+  CHECK(best.accuracy == analysis::Proportion{0, 0});
+  CHECK(analysis::best_label_matching(analysis::ConfusionMatrix(1)).answer_of ==
+        std::vector<int>{0});
+}
+
+TEST_CASE("best_label_matching counts trials without a response as wrong") {
+  analysis::ConfusionMatrix confusion(2);
+  confusion.add({0, 1});
+  confusion.add({1, 0});
+  confusion.add({1, {}});
+  const analysis::LabelMatching best = analysis::best_label_matching(confusion);
+  CHECK(best.accuracy == analysis::Proportion{3, 2});
+  CHECK(best.answer_of == std::vector<int>{1, 0});
+}
+
+TEST_CASE("best_label_matching of twelve classes undoes any exchange") {
+  RandomStream random(2, "label matching test");
+  std::vector<int> exchange(12);
+  std::iota(exchange.begin(), exchange.end(), 0);
+  shuffle(std::span(exchange), random);
+  analysis::ConfusionMatrix confusion(12);
+  for (int i = 0; i < 12; ++i) {
+    for (int k = 0; k < 3; ++k) confusion.add({i, exchange[i]});
+  }
+  const analysis::LabelMatching best = analysis::best_label_matching(confusion);
+  CHECK(best.answer_of == exchange);
+  CHECK(best.accuracy == analysis::Proportion{36, 36});
 }
 
 }  // namespace touchtrial

@@ -72,7 +72,7 @@ TEST_CASE("d_prime undoes proportion_correct_of") {
   }
 }
 
-TEST_CASE("d_prime refuses what cannot be") {
+TEST_CASE("d_prime refuses impossible arguments") {
   CHECK_THROWS_AS(analysis::d_prime({25, 20}, 1), std::invalid_argument);
   CHECK_THROWS_AS(analysis::d_prime({25, 26}, 5), std::invalid_argument);
   CHECK_THROWS_AS(analysis::proportion_correct_of(std::nan(""), 5), std::invalid_argument);

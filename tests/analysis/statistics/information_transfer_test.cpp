@@ -64,7 +64,7 @@ TEST_CASE("The null mean of 25 balanced trials of five classes is the known bias
         Approx(0.61469).margin(4.0 * 0.15331 / std::sqrt(500.0)).epsilon(0));
 }
 
-TEST_CASE("Answers are dealt within a participant only") {
+TEST_CASE("Answers are permuted only within a participant") {
   // Each always gives the same answer, so no deal of one's own answers changes anything.
   const std::vector<std::vector<analysis::Choice>> two{{{0, 0}, {0, 0}}, {{1, 1}, {1, 1}}};
   const analysis::InformationTransfer transfer = analysis::information_transfer(2, two);
@@ -81,7 +81,7 @@ TEST_CASE("Trials without a response do not enter information transfer") {
   CHECK_FALSE(analysis::information_transfer(2, none).null_mean.has_value());
 }
 
-TEST_CASE("information_transfer gives the same figures every time") {
+TEST_CASE("information_transfer gives the same numbers every time") {
   const analysis::InformationTransfer first = of({{8, 2}, {3, 7}});
   const analysis::InformationTransfer again = of({{8, 2}, {3, 7}});
   CHECK(first.null_mean == again.null_mean);

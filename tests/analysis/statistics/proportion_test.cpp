@@ -49,7 +49,7 @@ TEST_CASE("jeffreys_interval gives the values of an independent implementation")
                  0.9442386786366499);
 }
 
-TEST_CASE("Without trials an interval is everything") {
+TEST_CASE("Without trials an interval is the whole scale") {
   CHECK(analysis::jeffreys_interval({0, 0}) == analysis::Interval{0.0, 1.0});
   CHECK(analysis::wilson_interval({0, 0}) == analysis::Interval{0.0, 1.0});
   CHECK(analysis::clopper_pearson_interval({0, 0}) == analysis::Interval{0.0, 1.0});
@@ -79,7 +79,7 @@ TEST_CASE("Intervals reach the end of the scale exactly and mirror each other") 
   }
 }
 
-TEST_CASE("A Clopper-Pearson interval covers the truth at least as often as it says") {
+TEST_CASE("A Clopper-Pearson interval covers the truth at least at its level") {
   const int n = 25;
   for (int step = 1; step < 100; ++step) {
     const double truth = step / 100.0;
@@ -94,7 +94,7 @@ TEST_CASE("A Clopper-Pearson interval covers the truth at least as often as it s
   }
 }
 
-TEST_CASE("Proportions that cannot be are refused") {
+TEST_CASE("Impossible proportions are refused") {
   CHECK_THROWS_AS(analysis::wilson_interval({5, 6}), std::invalid_argument);
   CHECK_THROWS_AS(analysis::wilson_interval({5, -1}), std::invalid_argument);
   CHECK_THROWS_AS(analysis::jeffreys_interval({5, 6}), std::invalid_argument);

@@ -68,7 +68,7 @@ class RestartedSession {
 }  // namespace
 
 TEST_CASE("verify_study holds a restarted block against the order that the design gives it") {
-  FakeStudy study(design::Protocol::classification, kRestarting);
+  FakeStudy study(design::identification::classification(), kRestarting);
   RestartedSession(study).record(study, 0);
   const analysis::Verification verification =
       analysis::verify_study(study.store(), &study.key(), nullptr);
@@ -78,7 +78,7 @@ TEST_CASE("verify_study holds a restarted block against the order that the desig
 }
 
 TEST_CASE("verify_study finds another order of a restarted block") {
-  FakeStudy study(design::Protocol::classification, kRestarting);
+  FakeStudy study(design::identification::classification(), kRestarting);
   RestartedSession(study).record(study, 1);
   const analysis::Verification verification =
       analysis::verify_study(study.store(), &study.key(), nullptr);
@@ -86,7 +86,7 @@ TEST_CASE("verify_study finds another order of a restarted block") {
 }
 
 TEST_CASE("verify_study finds an old number that came after its block was restarted") {
-  FakeStudy study(design::Protocol::classification, kRestarting);
+  FakeStudy study(design::identification::classification(), kRestarting);
   RestartedSession(study).record(study, 0, true);
   const analysis::Verification verification =
       analysis::verify_study(study.store(), &study.key(), nullptr);
@@ -95,7 +95,7 @@ TEST_CASE("verify_study finds an old number that came after its block was restar
 }
 
 TEST_CASE("outcomes hold a restarted block's trials and count no voided one") {
-  FakeStudy study(design::Protocol::classification, kRestarting);
+  FakeStudy study(design::identification::classification(), kRestarting);
   RestartedSession(study).record(study, 0);
   study.close_and_unblind();
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
@@ -108,7 +108,7 @@ TEST_CASE("outcomes hold a restarted block's trials and count no voided one") {
 }
 
 TEST_CASE("a participant who was replaced enters no outcomes, but stays in the list") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()});
   study.store().exclude(1, milliseconds(2), "did not follow the instructions");
   study.store().replace(1, "P02", milliseconds(3), "place is wanted");

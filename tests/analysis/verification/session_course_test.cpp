@@ -108,7 +108,7 @@ const FakeOptions kLeavingOut{.trials = R"({"on_interruption": "leave-out"})"};
 /// A told session of a study with these options, opened as it should be.
 struct Told {
   explicit Told(const FakeOptions& options = {})
-      : study(design::Protocol::classification, options) {}
+      : study(design::identification::classification(), options) {}
   FakeStudy study;
   ToldSession session{study};
 };

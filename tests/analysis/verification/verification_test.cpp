@@ -77,7 +77,7 @@ void forge_answers(const std::filesystem::path& path) {
 }  // namespace
 
 TEST_CASE("verify_study passes every check of an untouched study") {
-  FakeStudy study(design::Protocol::comparison, {.with_pack = true});
+  FakeStudy study(design::identification::comparison(), {.with_pack = true});
   study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()});
   study.add({.participant = "P02", .enrolment = 2, .answers = FakeStudy::confusing(0, 1)});
   const engine::Pack pack(study.pack_folder());
@@ -97,7 +97,7 @@ TEST_CASE("verify_study passes every check of an untouched study") {
 }
 
 TEST_CASE("verify_study without key and pack says what it did not check") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   study.add({.participant = "P01", .answers = FakeStudy::always_right()});
   const analysis::Verification verification =
       analysis::verify_study(study.store(), nullptr, nullptr);
@@ -110,7 +110,7 @@ TEST_CASE("verify_study without key and pack says what it did not check") {
 }
 
 TEST_CASE("verify_study finds a key of another study") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   study.add({.participant = "P01", .answers = FakeStudy::always_right()});
   SeededEntropy entropy(99);
   const design::StudyKey foreign = design::make_study_key(study.key().study, entropy, true);
@@ -124,7 +124,7 @@ TEST_CASE("verify_study finds a key of another study") {
 }
 
 TEST_CASE("verify_study finds a key whose study was changed after the first trial") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   study.add({.participant = "P01", .answers = FakeStudy::always_right()});
   design::Study other = study.key().study;
   other.seed += 1;
@@ -138,7 +138,7 @@ TEST_CASE("verify_study finds a key whose study was changed after the first tria
 }
 
 TEST_CASE("verify_study names the first broken link") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   study.add({.participant = "P01", .enrolment = 1, .answers = FakeStudy::always_right()});
   study.add({.participant = "P02", .enrolment = 2, .answers = FakeStudy::always_right()});
   {
@@ -157,7 +157,7 @@ TEST_CASE("verify_study names the first broken link") {
 }
 
 TEST_CASE("verify_study finds a field that is not what was prepared") {
-  FakeStudy study(design::Protocol::classification, {.with_pack = true});
+  FakeStudy study(design::identification::classification(), {.with_pack = true});
   study.add({.participant = "P01", .answers = FakeStudy::always_right()});
   const std::string code = study.key().stimuli[1].code;
   flip_last_byte(study.pack_folder() / (code + ".field"));
@@ -168,7 +168,7 @@ TEST_CASE("verify_study finds a field that is not what was prepared") {
 }
 
 TEST_CASE("verify_study finds a pack that was exchanged as a whole") {
-  FakeStudy study(design::Protocol::classification, {.with_pack = true});
+  FakeStudy study(design::identification::classification(), {.with_pack = true});
   engine::PackManifest manifest = engine::Pack(study.pack_folder()).manifest();
   manifest.entries.front().gains.normal_n *= 2.0;
   engine::write_manifest(study.pack_folder(), manifest);
@@ -178,7 +178,7 @@ TEST_CASE("verify_study finds a pack that was exchanged as a whole") {
 }
 
 TEST_CASE("A verification says the same in JSON and in text") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   const analysis::Verification verification =
       analysis::verify_study(study.store(), &study.key(), nullptr);
   const auto json = nlohmann::json::parse(analysis::verification_json(verification));
@@ -198,7 +198,7 @@ TEST_CASE("A verification says the same in JSON and in text") {
 }
 
 TEST_CASE("verify_study finds a head that is no longer on the file's chain") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   const store::ChainHead before = study.store().file_head();
   study.add({.participant = "P01", .answers = FakeStudy::always_right()});
   const analysis::Verification kept =
@@ -211,7 +211,7 @@ TEST_CASE("verify_study finds a head that is no longer on the file's chain") {
 }
 
 TEST_CASE("verify_study with the key finds a chain that was made anew without it") {
-  FakeStudy study(design::Protocol::classification);
+  FakeStudy study(design::identification::classification());
   study.add({.participant = "P01", .answers = FakeStudy::always_right()});
   forge_answers(study.database());
   CHECK(analysis::verify_study(study.store(), nullptr, nullptr).holds());
@@ -223,7 +223,7 @@ TEST_CASE("verify_study with the key finds a chain that was made anew without it
 }
 
 TEST_CASE("verify_files makes a damaged key and a missing pack findings") {
-  FakeStudy study(design::Protocol::classification, {.with_pack = true});
+  FakeStudy study(design::identification::classification(), {.with_pack = true});
   const auto key_path = study.folder() / "study.db.key";
   analysis::StudyFiles files{
       .database = study.database(), .key = key_path, .key_named = false, .pack = {}};
@@ -246,7 +246,7 @@ TEST_CASE("verify_files makes a damaged key and a missing pack findings") {
 }
 
 TEST_CASE("verify_files holds a pack made anew against the study only if it is named") {
-  FakeStudy study(design::Protocol::classification, {.with_pack = true});
+  FakeStudy study(design::identification::classification(), {.with_pack = true});
   engine::PackManifest manifest = engine::Pack(study.pack_folder()).manifest();
   manifest.study_id = std::string(32, '0');
   engine::write_manifest(study.pack_folder(), manifest);
@@ -265,7 +265,7 @@ TEST_CASE("verify_files holds a pack made anew against the study only if it is n
 TEST_CASE("verify_files makes a dropped table and a missing first event findings") {
   for (const char* sql : {"DROP TABLE responses",
                           "DROP TRIGGER events_no_delete; DELETE FROM events WHERE session = 0"}) {
-    FakeStudy study(design::Protocol::classification);
+    FakeStudy study(design::identification::classification());
     SQLite::Database(study.database().string(), SQLite::OPEN_READWRITE).exec(sql);
     const analysis::StudyFiles files{
         .database = study.database(), .key = study.folder() / "k", .key_named = false, .pack = {}};

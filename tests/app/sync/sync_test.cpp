@@ -1,4 +1,4 @@
-// sync, and what reads a study from a server, run as people run them, against a real server.
+// sync, and the commands that read a study from a server, run against a real server.
 #include "app/study_folder.hpp"
 #include "core/random.hpp"
 #include "protocols/store/store_fixture.hpp"
@@ -98,7 +98,7 @@ void check_same_files(const std::map<std::string, std::string>& a,
   }
 }
 
-/// What is read from the address is what is read from the merged file.
+/// Checks that the address and the merged file give the same data.
 void check_equals_merged(const std::string& url) {
   const std::string merged = stations().in("merged.db");
   const ProgramResult from_file =
@@ -118,7 +118,7 @@ void check_equals_merged(const std::string& url) {
   CHECK(json::parse(verified.output).at("complete") == true);
 }
 
-/// One line, with this exit code and these words.
+/// Checks for one line with these words, and this exit code.
 void check_refused(const ProgramResult& result, int exit_code, const std::string& words) {
   INFO(result.output << result.errors);
   CHECK(result.exit_code == exit_code);
@@ -128,7 +128,7 @@ void check_refused(const ProgramResult& result, int exit_code, const std::string
 
 }  // namespace
 
-TEST_CASE("a study that four stations pushed is the one that merge makes of them") {
+TEST_CASE("a study that four stations pushed equals their merged file") {
   const std::string url = new_database(shared_server());
   push_all(url);
   check_equals_merged(url);
@@ -150,7 +150,7 @@ TEST_CASE("four stations push at once while programs and server are killed, and 
   for (int round = 0; round < 6; ++round) {
     std::vector<std::unique_ptr<ChildProcess>> programs;
     for (int station = 1; station <= 4; ++station) programs.push_back(start(station));
-    // Wherever this falls, the end must be the same.
+    // The result must be the same whenever this happens.
     std::this_thread::sleep_for(std::chrono::milliseconds(random.below(250)));
     programs[random.below(4)]->send_signal(SIGKILL);
     if (round % 2 == 1) {
@@ -213,7 +213,7 @@ TEST_CASE("a file that was tampered with is not pushed") {
         std::vector<std::string>{"0"});
 }
 
-TEST_CASE("what was altered on the server is refused by whoever reads, with exit code 3") {
+TEST_CASE("every reader refuses data that were altered on the server, with exit code 3") {
   const std::string url = new_database(shared_server());
   push_all(url);
   const std::string database = url.substr(14, url.find('?') - 14);
@@ -271,7 +271,7 @@ TEST_CASE("a page made from a server names neither user nor password") {
   check_refused(stations().run({"report", as_user}), 1, "name the study's key with --key");
 }
 
-TEST_CASE("a server that is not there is said in one line") {
+TEST_CASE("an unreachable server is reported in one line") {
   TempFolder empty;
   const std::string url = "postgresql:///study?host=" + empty.path().string();
   check_refused(sync(stations().file(1), url), 1, "cannot be reached");

@@ -11,7 +11,7 @@ namespace touchtrial {
 namespace {
 
 /// A handle of 150 g that hangs in the air, with a weight on a string, and motors that give
-/// `force_constant` times what they are told.
+/// `force_constant` times the commanded force.
 class Scale final : public device::HapticDevice {
  public:
   Scale(double force_constant, device::CalibrationAxis axis, double mass_g)
@@ -92,7 +92,8 @@ TEST_CASE("a hold commands the weight that hangs on the handle") {
   CHECK(figures.noise_mm < 0.02);
 }
 
-TEST_CASE("a force constant that is 5 percent off passes on every axis and says how much") {
+TEST_CASE(
+    "a force constant that is 5 percent off passes on every axis, and its error is reported") {
   for (const device::CalibrationAxis axis : device::kCalibrationAxes) {
     const device::AxisResult result = measured(0.95, axis, 100.0);
     CHECK(result.passed);
@@ -102,7 +103,7 @@ TEST_CASE("a force constant that is 5 percent off passes on every axis and says 
   }
 }
 
-TEST_CASE("a force constant that is 15 percent off fails on every axis and either way") {
+TEST_CASE("a force constant that is 15 percent off fails on every axis, in either direction") {
   for (const device::CalibrationAxis axis : device::kCalibrationAxes) {
     CHECK_FALSE(measured(0.85, axis, 100.0).passed);
     CHECK_FALSE(measured(1.15, axis, 100.0).passed);
@@ -118,7 +119,7 @@ TEST_CASE("a run that ended early measured nothing and passes nothing") {
   CHECK_FALSE(device::judge_axis(device::CalibrationAxis::y, 100.0, figures, held(whole)).passed);
 }
 
-TEST_CASE("a handle that falls is not at rest and one that lies still is") {
+TEST_CASE("a falling handle is not at rest, and one that lies still is") {
   Scale falling(1.0, device::CalibrationAxis::y, 0.0);
   Scale empty(1.0, device::CalibrationAxis::y, 0.0);
   const device::HoldFigures hold = held(empty);
@@ -137,7 +138,7 @@ TEST_CASE("a handle that falls is not at rest and one that lies still is") {
   CHECK(result.residual_n == Approx(0.15 * device::kStandardGravityMS2).epsilon(0.003));
 }
 
-TEST_CASE("a certificate is read as it was written and known by its hash") {
+TEST_CASE("a certificate is read as it was written, with its hash") {
   const TempFolder folder;
   const auto path = folder.path() / "certificate.json";
   const std::string text = device::certificate_json(passed_certificate());
@@ -149,7 +150,7 @@ TEST_CASE("a certificate is read as it was written and known by its hash") {
   CHECK(text.find("2026-02-28T09:00:05Z") != std::string::npos);
 }
 
-TEST_CASE("a certificate that was changed by hand is refused with its place") {
+TEST_CASE("a certificate that was changed by hand is refused with the place") {
   const TempFolder folder;
   const auto path = folder.path() / "certificate.json";
   const auto changed = [&](const std::string& from, const std::string& to) {
@@ -164,7 +165,8 @@ TEST_CASE("a certificate that was changed by hand is refused with its place") {
   CHECK_THAT(changed("\"serial\"", "\"cereal\""), holds_text("/cereal"));
 }
 
-TEST_CASE("a certificate whose results its figures do not bear is refused with its place") {
+TEST_CASE(
+    "a certificate whose results do not follow from its measurements is refused with the place") {
   const TempFolder folder;
   const auto path = folder.path() / "certificate.json";
   const auto refusal = [&](const std::function<void(device::Certificate&)>& change) {
@@ -189,7 +191,7 @@ TEST_CASE("a certificate whose results its figures do not bear is refused with i
              holds_text("/free_air/passed"));
 }
 
-TEST_CASE("a certificate serves its own device only and only if it passed") {
+TEST_CASE("a certificate is valid for its own device only, and only if it passed") {
   const device::Certificate certificate = passed_certificate();
   const device::DeviceInfo device{"falcon", "F1", 8.0};
   const auto soon = certificate.made + std::chrono::days(30);
@@ -206,7 +208,7 @@ TEST_CASE("a certificate serves its own device only and only if it passed") {
   CHECK_FALSE(failed.passed());
 }
 
-TEST_CASE("a certificate of half a year ago is warned of") {
+TEST_CASE("a certificate that is half a year old causes a warning") {
   const device::Certificate certificate = passed_certificate();
   const device::DeviceInfo device{"falcon", "F1", 8.0};
   CHECK(device::check_certificate(certificate, device, certificate.made + std::chrono::days(180))

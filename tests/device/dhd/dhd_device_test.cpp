@@ -1,9 +1,8 @@
 #include "device/dhd/dhd_device.hpp"
 
 #include "core/errors.hpp"
-#include "device/fakes/loaded_dhd.hpp"
-#include "device/flat_wall.hpp"
-#include "device/placed_device.hpp"
+#include "device/fakes/loaded_fake.hpp"
+#include "device/registry.hpp"
 #include "support/catch.hpp"
 
 #include <limits>
@@ -13,33 +12,13 @@ namespace {
 
 using fakes::eventually;
 using fakes::LoadedDhd;
-using Stepping = fakes::SteppingClock<fakes::FakeDhdExports>;
+using fakes::next_sample;
+using fakes::write_until;
 
 device::DhdSettings settings_of_fake() {
   device::DhdSettings settings;
   settings.library = TOUCHTRIAL_FAKE_DHD;
   return settings;
-}
-
-/// A sample that was read wholly after this call.
-device::DeviceSample next_sample(device::DhdDevice& device) {
-  device::DeviceSample before;
-  device::DeviceSample after;
-  (void)device.read(before);
-  REQUIRE(eventually([&] {
-    (void)device.read(after);
-    return after.sequence > before.sequence + 1;
-  }));
-  return after;
-}
-
-/// Writes as a servo would until the fake says so.
-template <typename Predicate>
-[[nodiscard]] bool write_until(device::DhdDevice& device, Vec3 force_n, Predicate holds) {
-  return eventually([&] {
-    (void)device.write(force_n);
-    return holds();
-  });
 }
 
 TEST_CASE("dhd: position, velocity and buttons arrive in the device frame, in millimetres") {
@@ -62,36 +41,22 @@ TEST_CASE("dhd: a force in the device frame reaches the library in its own") {
   }));
 }
 
-TEST_CASE("dhd: velocity is the hand's, in the device frame") {
+TEST_CASE("dhd: the velocity is the hand's, in the device frame") {
   LoadedDhd fake;
   fake->hand.push_n.set({0.008, 0.0, -0.016});  // through oil: 1 mm/s and -2 mm/s
   device::DhdDevice device(settings_of_fake());
   CHECK(norm(next_sample(device).velocity_mm_s - Vec3{0.0, -2.0, 1.0}) < 1e-9);
 }
 
-TEST_CASE("dhd: a wall bears the hand that is pushed against it") {
+TEST_CASE("dhd: a wall carries the hand that pushes against it") {
   LoadedDhd fake;
   fake->hand.position_mm.set({0.0, 5.0, 3.0});
   fake->hand.push_n.set({0.0, 0.0, -0.7});
   device::DhdDevice device(settings_of_fake());
-  device::PlacedDevice placed(device, {});
-  FlatWall wall;
-  KeptSamples kept;
-  Stepping clock(fake.exports());
-  const device::ServoReport report =
-      device::run_servo(placed, wall, kept, {.limit_ticks = 1000}, clock);
-  CHECK(report.end == device::ServoEnd::time_limit);
-  CHECK_FALSE(clock.hung());
-  REQUIRE(kept.samples.size() > 999);
-  const device::ServoSample& settled = kept.samples[999];
-  // Where the wall bears the push, or deeper: a stall of the machine lets forces lapse, see
-  // DeviceLink::kForceLifetime.
-  CHECK(settled.position_mm.z < -1.5);
-  CHECK(settled.position_mm.z > -4.0);
-  CHECK(settled.force_n.z == Approx(-0.4 * settled.position_mm.z).margin(1e-9));
+  fakes::WallRun(device, fake.exports()).check_carries_hand();
 }
 
-TEST_CASE("dhd: gravity compensation, mass and time guard are set as the settings say") {
+TEST_CASE("dhd: gravity compensation, mass and time guard follow the settings") {
   LoadedDhd fake;
   device::DhdSettings settings = settings_of_fake();
   settings.gravity_compensation = GENERATE(true, false);
@@ -113,7 +78,7 @@ TEST_CASE("dhd: a setting that the device refuses is named, and the device close
   CHECK(fake.calls() == "open force_off close open force_off close ");
 }
 
-TEST_CASE("dhd: the device says what it is") {
+TEST_CASE("dhd: the device describes itself") {
   LoadedDhd fake;
   device::DhdSettings settings = settings_of_fake();
   settings.max_force_n = 12.0;
@@ -128,7 +93,8 @@ TEST_CASE("dhd: the device says what it is") {
   CHECK_FALSE(info.simulated);
 }
 
-TEST_CASE("dhd: a library without names and expert mode serves, one without a function does not") {
+TEST_CASE(
+    "dhd: a library without names and expert mode works, one without another function does not") {
   device::DhdSettings settings;
   settings.library = TOUCHTRIAL_OLD_DHD;
   CHECK(device::DhdDevice(settings).info().model == "Force Dimension device");
@@ -139,12 +105,12 @@ TEST_CASE("dhd: a library without names and expert mode serves, one without a fu
                     holds_text("/nowhere/libdhd.so") && holds_text("dhd.library"));
 }
 
-TEST_CASE("dhd: a device that is not there, or does not open, is told with the remedy") {
+TEST_CASE("dhd: a device that is missing, or does not open, is reported with the remedy") {
   LoadedDhd fake;
   device::DhdSettings settings = settings_of_fake();
   SECTION("fewer devices") {
     settings.index = 1;
-    CHECK_THROWS_WITH(device::DhdDevice(settings), holds_text("no device 1, of 1 connected"));
+    CHECK_THROWS_WITH(device::DhdDevice(settings), holds_text("no device 1 (1 connected"));
     CHECK(fake.calls().empty());
   }
   SECTION("none that opens") {
@@ -168,7 +134,7 @@ TEST_CASE("dhd: without calibration the force stays zero") {
   CHECK(device.readiness() == device::DeviceReadiness::ready);
 }
 
-TEST_CASE("dhd: force that a person switches off at the device is not ready, and no fault") {
+TEST_CASE("dhd: a device at which a person switches force off is not ready, without a fault") {
   LoadedDhd fake;
   device::DhdDevice device(settings_of_fake());
   REQUIRE(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->force_n.get().z == 1.0; }));
@@ -184,7 +150,7 @@ TEST_CASE("dhd: force that a person switches off at the device is not ready, and
   CHECK(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->force_n.get().z == 1.0; }));
 }
 
-TEST_CASE("dhd: force that the device itself switches off is the fault that it means") {
+TEST_CASE("dhd: force that the device itself switches off is a fault by its cause") {
   const auto [cause, fault] =
       GENERATE(table<int, device::DeviceFault>({{2, device::DeviceFault::limit_passed},
                                                 {3, device::DeviceFault::driver},
@@ -197,7 +163,8 @@ TEST_CASE("dhd: force that the device itself switches off is the fault that it m
   CHECK(device.fault() == fault);
 }
 
-TEST_CASE("dhd: what fails while the device is there is the driver, what takes it away the link") {
+TEST_CASE(
+    "dhd: a failure while the device is connected is the driver's, otherwise the link is lost") {
   LoadedDhd fake;
   device::DhdDevice device(settings_of_fake());
   REQUIRE(write_until(device, {0.0, 1.0, 0.0}, [&] { return fake->force_n.get().z == 1.0; }));
@@ -212,7 +179,7 @@ TEST_CASE("dhd: what fails while the device is there is the driver, what takes i
     fake->connected = false;
     expected = device::DeviceFault::link_lost;
   }
-  SECTION("a position that is no number") {
+  SECTION("a position that is not a number") {
     fake->hand.rest_at({0.0, std::numeric_limits<double>::infinity(), 0.0});
     expected = device::DeviceFault::bad_data;
   }
@@ -224,24 +191,18 @@ TEST_CASE("dhd: what fails while the device is there is the driver, what takes i
   CHECK(device.write({}) == device::DeviceStatus::fault);
 }
 
-TEST_CASE("dhd: a device that is lost in the middle of a run ends it as a fault") {
+TEST_CASE("dhd: a device that is lost in the middle of a run ends it with a fault") {
   LoadedDhd fake;
   fake->hand.push_n.set({0.0, 0.0, -0.7});
   device::DhdDevice device(settings_of_fake());
-  device::PlacedDevice placed(device, {});
-  FlatWall wall;
-  KeptSamples kept;
-  Stepping clock(fake.exports());
-  REQUIRE(device::run_servo(placed, wall, kept, {.limit_ticks = 50}, clock).end ==
-          device::ServoEnd::time_limit);
+  fakes::WallRun wall(device, fake.exports());
+  REQUIRE(wall.run(50).end == device::ServoEnd::time_limit);
   fake->connected = false;
-  const device::ServoReport report =
-      device::run_servo(placed, wall, kept, {.limit_ticks = 50}, clock);
-  CHECK(report.end == device::ServoEnd::fault);
+  CHECK(wall.run(50).end == device::ServoEnd::fault);
   CHECK(device.fault() == device::DeviceFault::link_lost);
 }
 
-TEST_CASE("dhd: the time guard's answer is no new reading, and no fault") {
+TEST_CASE("dhd: the time guard's answer is neither a new reading nor a fault") {
   LoadedDhd fake;
   device::DhdDevice device(settings_of_fake());
   (void)next_sample(device);
@@ -258,7 +219,7 @@ TEST_CASE("dhd: the time guard's answer is no new reading, and no fault") {
   CHECK(next_sample(device).sequence > last);
 }
 
-TEST_CASE("dhd: saturated motors are no fault") {
+TEST_CASE("dhd: saturated motors are not a fault") {
   LoadedDhd fake;
   fake->saturated = true;
   device::DhdDevice device(settings_of_fake());
@@ -287,5 +248,60 @@ TEST_CASE("dhd: closing sends zeros, switches force off, and closes the device")
   CHECK(fake.calls() == "open force_on force_off close ");
 }
 
+std::vector<device::DeviceListing> listings_with(const std::filesystem::path& library) {
+  device::DeviceSettings settings;
+  settings.dhd.library = library;
+  return device::device_driver("dhd").list(settings);
+}
+
+TEST_CASE("the list of dhd names every connected device, and closes it") {
+  fakes::LoadedDhd fake;
+  fake->devices = 2;
+  const std::vector<device::DeviceListing> listings = listings_with(TOUCHTRIAL_FAKE_DHD);
+  REQUIRE(listings.size() == 2);
+  for (const device::DeviceListing& listing : listings) {
+    CHECK(listing.driver == "dhd");
+    CHECK(listing.present);
+    CHECK(listing.model == "omega.3");
+    CHECK(listing.serial == "4242");
+    CHECK(listing.missing.empty());
+  }
+  CHECK_THAT(listings[1].where, holds_text(", device 1"));
+  CHECK(fake->misuses == 0);
+  CHECK(fake.calls() == "open force_off close open force_off close ");
+}
+
+TEST_CASE("the list of dhd says what is missing: device, library, function, or access") {
+  fakes::LoadedDhd fake;
+  SECTION("no device, library or function") {
+    fake->devices = 0;
+    const auto [library, missing] = GENERATE(table<const char*, const char*>(
+        {{TOUCHTRIAL_FAKE_DHD, "no device is connected"},
+         {"/nowhere/libdhd.so", "install Force Dimension's SDK"},
+         {TOUCHTRIAL_PARTIAL_DHD, "has no function dhdEnableForce"}}));
+    const std::vector<device::DeviceListing> listings = listings_with(library);
+    REQUIRE(listings.size() == 1);
+    CHECK_FALSE(listings[0].present);
+    REQUIRE(listings[0].missing.size() == 1);
+    CHECK_THAT(listings[0].missing[0], holds_text(missing));
+  }
+  SECTION("a device that does not open") {
+    fake->opens = false;
+    const std::vector<device::DeviceListing> listings = listings_with(TOUCHTRIAL_FAKE_DHD);
+    REQUIRE(listings.size() == 1);
+    CHECK(listings[0].present);
+    REQUIRE(listings[0].missing.size() == 1);
+    CHECK_THAT(listings[0].missing[0], holds_text("close other programs"));
+  }
+}
+
+TEST_CASE("dhd is opened through the registry by its name") {
+  fakes::LoadedDhd fake;
+  device::DeviceSettings settings;
+  settings.dhd.library = TOUCHTRIAL_FAKE_DHD;
+  CHECK(device::open_device("dhd", settings)->info().name == "dhd");
+}
+
 }  // namespace
+
 }  // namespace touchtrial

@@ -2,9 +2,7 @@
 // driver but shares no declaration with it, so that a slip in either shows.
 #include "device/fakes/fake_dhd.hpp"
 
-#include "device/fakes/pace.hpp"
-
-#include <mutex>
+#include <atomic>
 
 namespace touchtrial::fakes {
 namespace {
@@ -15,8 +13,7 @@ constexpr double kMmPerM = 1000.0;
 FakeDhd* state = new FakeDhd;  // never freed: the driver keeps the library loaded for ever
 
 struct Inside {
-  std::mutex mutex;
-  std::string calls;
+  CallLog calls;
   Pace pace;
   std::atomic<int> open{-1};  ///< the open device
   std::atomic<bool> force_on{false};
@@ -28,11 +25,10 @@ Inside& inside() {
 }
 
 void note(const char* call) {
-  const std::lock_guard lock(inside().mutex);
-  inside().calls += std::string(call) + ' ';
+  inside().calls.note(call);
 }
 
-/// Whether this is the open device; another one is the driver's slip.
+/// \return whether this is the open device; another one is an error of the driver
 bool is_open(char device) {
   if (device >= 0 && inside().open == device) return true;
   ++state->misuses;
@@ -44,15 +40,13 @@ bool answers(char device) {
 }
 
 void reset() {
-  const std::lock_guard lock(inside().mutex);
   inside().calls.clear();
   state->~FakeDhd();
   new (state) FakeDhd;
 }
 
 std::string calls() {
-  const std::lock_guard lock(inside().mutex);
-  return inside().calls;
+  return inside().calls.text();
 }
 
 void give_m(Vec3 mm, double* x, double* y, double* z) {

@@ -1,7 +1,7 @@
-/// \file What a test may ask of the fake libdhd, and what the fake saw.
+/// \file A test's orders to the fake libdhd, and what the fake saw.
 #pragma once
 
-#include "device/fakes/fake_hand.hpp"
+#include "device/fakes/fake_parts.hpp"
 
 #include <atomic>
 #include <string>
@@ -9,21 +9,21 @@
 namespace touchtrial::fakes {
 
 struct FakeDhd {
-  // What it is to do.
+  // Orders.
   std::atomic<int> devices{1};
   std::atomic<bool> opens{true};
   std::atomic<bool> connected{true};
   std::atomic<bool> calibrated{true};
   std::atomic<bool> device_error{false};
-  std::atomic<int> force_off_cause{0};      ///< not 0: force is off because of it
-  std::atomic<bool> position_fails{false};  ///< though the device is there
-  std::atomic<bool> too_soon{false};        ///< every position is answered by the time guard
+  std::atomic<int> force_off_cause{0};      ///< not 0: force is off for this cause
+  std::atomic<bool> position_fails{false};  ///< although the device is connected
+  std::atomic<bool> too_soon{false};        ///< the time guard answers every position
   std::atomic<bool> saturated{false};
   std::atomic<bool> refuses_mass{false};
   std::atomic<unsigned> buttons{0};
   FakeHand hand;  ///< in DHD's frame, but mm
 
-  // What it saw.
+  // Observations.
   std::atomic<long> polls{0};
   std::atomic<long> zero_forces_last{0};  ///< in a row, until now
   std::atomic<long> misuses{0};           ///< calls with a wrong device, or after the end

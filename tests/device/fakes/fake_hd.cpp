@@ -2,8 +2,6 @@
 // driver but shares no declaration with it, so that a slip in either shows.
 #include "device/fakes/fake_hd.hpp"
 
-#include "device/fakes/pace.hpp"
-
 #include <cstring>
 #include <limits>
 #include <memory>
@@ -20,10 +18,10 @@ constexpr std::uint32_t kNoDevice = 0xFFFFFFFF;
 
 FakeHd* state = new FakeHd;  // never freed: the driver keeps the library loaded for ever
 
-/// What is the scheduler's and the library's own.
+/// The state of the scheduler and the library.
 struct Inside {
-  std::mutex mutex;  ///< of calls, errors and callbacks; not of anything inside a frame
-  std::string calls;
+  CallLog calls;
+  std::mutex mutex;  ///< of errors and callbacks; not of anything inside a frame
   std::vector<std::uint32_t> errors;
   std::vector<std::pair<Callback, void*>> callbacks;
   std::thread scheduler;
@@ -39,8 +37,7 @@ Inside& inside() {
 }
 
 void note(const char* call) {
-  const std::lock_guard lock(inside().mutex);
-  inside().calls += std::string(call) + ' ';
+  inside().calls.note(call);
 }
 
 void push_error(std::uint32_t code) {
@@ -103,8 +100,7 @@ void reset() {
 }
 
 std::string calls() {
-  const std::lock_guard lock(inside().mutex);
-  return inside().calls;
+  return inside().calls.text();
 }
 
 void give_temperatures(double* values) {

@@ -1,7 +1,7 @@
-/// \file What a test may ask of the fake libHD, and what the fake saw.
+/// \file A test's orders to the fake libHD, and what the fake saw.
 #pragma once
 
-#include "device/fakes/fake_hand.hpp"
+#include "device/fakes/fake_parts.hpp"
 
 #include <array>
 #include <atomic>
@@ -19,7 +19,7 @@ enum HdName : unsigned {
 };
 
 struct FakeHd {
-  // What it is to do.
+  // Orders.
   std::atomic<unsigned> opens_by{kHdNull};
   std::atomic<std::uint32_t> calibration{0x5000};
   std::atomic<int> calibration_styles{4};
@@ -30,11 +30,11 @@ struct FakeHd {
   std::atomic<bool> tells_max_workspace{true};
   std::array<std::atomic<double>, 6> warmth{};
   std::atomic<int> buttons{0};
-  std::atomic<bool> hold_callback{false};  ///< inside the library, until taken back
+  std::atomic<bool> hold_callback{false};  ///< inside the library, while set
   std::atomic<bool> lazy_stop{false};      ///< stopping the scheduler does not wait for callbacks
   FakeHand hand;
 
-  // What it saw.
+  // Observations.
   std::atomic<bool> callback_held{false};
   std::atomic<long> frames{0};
   std::atomic<long> zero_forces_last{0};  ///< in a row, until now

@@ -1,6 +1,11 @@
-/// \file A fake library as a test holds it: fresh for each test, free or going step by step.
+/// \file The fake libraries as a test uses them: fresh for each test, free or step by step.
 #pragma once
 
+#include "device/fakes/fake_dhd.hpp"
+#include "device/fakes/fake_hd.hpp"
+#include "device/flat_wall.hpp"
+#include "device/haptic_device.hpp"
+#include "device/placed_device.hpp"
 #include "device/platform/dynamic_library.hpp"
 #include "device/servo/servo_clock.hpp"
 #include "support/catch.hpp"
@@ -11,7 +16,8 @@
 
 namespace touchtrial::fakes {
 
-/// Polls until something holds. \return false if it does not within five minutes: something hangs
+/// Polls until a condition holds.
+/// \return false if it does not within five minutes, so that something hangs
 template <typename Predicate>
 [[nodiscard]] bool eventually(Predicate holds) {
   const auto give_up = std::chrono::steady_clock::now() + std::chrono::minutes(5);
@@ -20,6 +26,28 @@ template <typename Predicate>
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   return true;
+}
+
+/// \return a sample that the driver read entirely after this call
+[[nodiscard]] inline device::DeviceSample next_sample(device::HapticDevice& device) {
+  device::DeviceSample before;
+  device::DeviceSample after;
+  (void)device.read(before);
+  REQUIRE(eventually([&] {
+    (void)device.read(after);
+    return after.sequence > before.sequence + 1;
+  }));
+  return after;
+}
+
+/// Writes as a servo does until a condition of the fake holds.
+/// \return false if it does not within five minutes
+template <typename Predicate>
+[[nodiscard]] bool write_until(device::HapticDevice& device, Vec3 force_n, Predicate holds) {
+  return eventually([&] {
+    (void)device.write(force_n);
+    return holds();
+  });
 }
 
 /// The library that a driver under test loads too: both see the same state.
@@ -42,8 +70,8 @@ class LoadedFake {
   Exports& exports_;
 };
 
-/// The servo's time is the fake's: a tick of the servo is one of the fake, and nobody else's clock
-/// matters. Until it is gone the fake moves in these steps alone.
+/// The fake's steps as the servo's time: a tick of the servo is one of the fake, and no other clock
+/// matters. While this lives, the fake moves in these steps alone.
 template <typename Exports>
 class SteppingClock final : public device::ServoClock {
  public:
@@ -65,6 +93,44 @@ class SteppingClock final : public device::ServoClock {
   const Exports& fake_;
   Time now_{};
   bool hung_ = false;
+};
+
+/// A servo that presses a fake's hand on a flat wall.
+template <typename Exports>
+class WallRun {
+ public:
+  /// \param device,fake  must outlive this
+  WallRun(device::HapticDevice& device, const Exports& fake) : placed_(device, {}), clock_(fake) {}
+
+  [[nodiscard]] device::ServoReport run(std::int64_t ticks) {
+    return device::run_servo(placed_, wall_, kept_, {.limit_ticks = ticks}, clock_);
+  }
+
+  /// Runs for a second and checks that the hand, pushed by 0.7 N, settles where the wall carries
+  /// it, or deeper: a stall of the machine lets forces lapse, see DeviceLink::kForceLifetime.
+  void check_carries_hand() {
+    CHECK(run(1000).end == device::ServoEnd::time_limit);
+    CHECK_FALSE(clock_.hung());
+    REQUIRE(kept_.samples.size() > 999);
+    const device::ServoSample& settled = kept_.samples[999];
+    CHECK(settled.position_mm.z < -1.5);
+    CHECK(settled.position_mm.z > -4.0);
+    CHECK(settled.force_n.z == Approx(-0.4 * settled.position_mm.z).margin(1e-9));
+  }
+
+ private:
+  device::PlacedDevice placed_;
+  FlatWall wall_;
+  KeptSamples kept_;
+  SteppingClock<Exports> clock_;
+};
+
+struct LoadedDhd : LoadedFake<FakeDhdExports> {
+  LoadedDhd() : LoadedFake(TOUCHTRIAL_FAKE_DHD, "fake_dhd_exports") {}
+};
+
+struct LoadedHd : LoadedFake<FakeHdExports> {
+  LoadedHd() : LoadedFake(TOUCHTRIAL_FAKE_HD, "fake_hd_exports") {}
 };
 
 }  // namespace touchtrial::fakes

@@ -3,9 +3,7 @@
 
 #include "core/errors.hpp"
 #include "device/falcon/falcon_inverse.hpp"
-#include "device/falcon/rig/dummy_firmware.hpp"
-#include "device/falcon/rig/emulator_transport.hpp"
-#include "device/falcon/rig/lockstep.hpp"
+#include "device/falcon/rig/falcon_rig.hpp"
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 
@@ -37,7 +35,7 @@ struct Rig {
     status = device->read(newest);
     return newest;
   }
-  /// A tick in which the servo writes this.
+  /// Runs a tick in which the servo writes this force.
   void push(Vec3 force_n) {
     status = device->write(force_n);
     lockstep.step();
@@ -70,7 +68,7 @@ TEST_CASE("a Falcon that is not homed is not ready, shows red and gets no force"
   CHECK(rig.emulator.leds() == kRed);
 }
 
-TEST_CASE("moved through its range it homes, shows blue, and its forces pass") {
+TEST_CASE("a Falcon that is moved through its range homes, shows blue, and its forces pass") {
   Rig rig(false);
   rig.emulator.set_hand(swinging_hand());
   for (int i = 0; i < 1000; ++i) {
@@ -87,7 +85,7 @@ TEST_CASE("moved through its range it homes, shows blue, and its forces pass") {
   CHECK(rig.emulator.complaints().empty());
 }
 
-TEST_CASE("the jump of the origin on homing is no motion of the hand") {
+TEST_CASE("the jump of the origin on homing is not a motion of the hand") {
   Rig rig(false);
   rig.emulator.set_hand(swinging_hand());
   double fastest_mm_s = 0.0;
@@ -104,7 +102,7 @@ TEST_CASE("the jump of the origin on homing is no motion of the hand") {
   CHECK(fastest_mm_s < 200.0);
 }
 
-TEST_CASE("the lights go where the settings say") {
+TEST_CASE("the lights follow the settings") {
   device::FalconSettings settings;
   settings.led_order = {2, 1, 0};
   Rig rig(true, settings);
@@ -112,12 +110,12 @@ TEST_CASE("the lights go where the settings say") {
   CHECK(rig.emulator.leds() == 1);
 }
 
-TEST_CASE("the force at the hand is the one that was written, everywhere") {
+TEST_CASE("the force at the hand is the written one, everywhere") {
   Rig rig(true);
   const Vec3 place_mm = GENERATE(Vec3{}, Vec3{20.0, 0.0, 0.0}, Vec3{-15.0, 20.0, 10.0},
                                  Vec3{10.0, -20.0, -25.0}, Vec3{0.0, 0.0, 30.0});
   const Vec3 force_n = GENERATE(Vec3{1.0, 0.0, 0.0}, Vec3{0.0, -2.0, 0.0}, Vec3{0.3, 0.4, 3.0});
-  // Carried there no faster than a hand does.
+  // Carried there no faster than a hand moves.
   rig.emulator.set_hand(
       [place_mm, tick = 0](Vec3) mutable { return std::min(1.0, ++tick / 100.0) * place_mm; });
   rig.lockstep.steps(110);
@@ -137,14 +135,14 @@ TEST_CASE("a force beyond the motors keeps its direction") {
   CHECK(error_n((1.0 / norm(felt_n)) * felt_n, {0.6, 0.0, 0.8}) < 0.01);
 }
 
-TEST_CASE("a force that is not finite is sent as none") {
+TEST_CASE("a force that is not finite is sent as zero") {
   Rig rig(true);
   rig.lockstep.steps(2);
   rig.push({std::nan(""), 0.0, 1.0});
   CHECK(rig.emulator.motors() == kNoMotors);
 }
 
-TEST_CASE("the gravity bias is there while a servo runs, and not otherwise") {
+TEST_CASE("the gravity bias acts while a servo runs, and only then") {
   device::FalconSettings settings;
   settings.gravity_bias_n = {0.0, 0.5, 0.0};
   Rig rig(true, settings);
@@ -156,7 +154,7 @@ TEST_CASE("the gravity bias is there while a servo runs, and not otherwise") {
   CHECK(rig.emulator.motors() == kNoMotors);
 }
 
-TEST_CASE("the gravity bias comes slowly, each time that a servo begins") {
+TEST_CASE("the gravity bias rises slowly, each time that a servo begins") {
   device::FalconSettings settings;
   settings.gravity_bias_n = {0.0, 1.0, 0.0};
   Rig rig(true, settings);
@@ -166,7 +164,7 @@ TEST_CASE("the gravity bias comes slowly, each time that a servo begins") {
     for (int i = 0; i < 600; ++i) {
       rig.push({});
       const double bias_n = rig.emulator.force_n().y;
-      // 2 mN a millisecond, and what whole motor values round.
+      // 2 mN a millisecond, and the rounding of motor values.
       REQUIRE(std::abs(bias_n - before_n) < 0.012);
       before_n = bias_n;
     }
@@ -196,14 +194,14 @@ TEST_CASE("a halted Falcon gets no force, bias or other, until it is re-armed") 
 TEST_CASE("the velocity is that of the hand") {
   Rig rig(true);
   rig.emulator.set_hand([tick = 0](Vec3) mutable { return Vec3{0.1 * ++tick - 10.0, 0.0, 0.0}; });
-  // From where the grip was to where this hand begins, in jumps that are believed at last.
+  // From the grip's place to where this hand begins, in jumps that the driver accepts at last.
   rig.lockstep.steps(50);
   const device::DeviceSample sample = rig.sample();
   CHECK(sample.velocity_mm_s.x == Approx(100.0).margin(12.0));
   CHECK(std::abs(sample.velocity_mm_s.y) < 12.0);
 }
 
-TEST_CASE("buttons are told bit by bit") {
+TEST_CASE("buttons are reported bit by bit") {
   Rig rig(true);
   for (const std::uint32_t button : {kButtonPlus, kButtonForward, kButtonCentre, kButtonMinus}) {
     rig.emulator.press(button);
@@ -212,7 +210,7 @@ TEST_CASE("buttons are told bit by bit") {
   }
 }
 
-TEST_CASE("a few lost replies leave out samples and nothing else") {
+TEST_CASE("a few lost replies only leave out samples") {
   Rig rig(true);
   rig.lockstep.steps(10);
   rig.emulator.drop_replies(2);
@@ -223,7 +221,7 @@ TEST_CASE("a few lost replies leave out samples and nothing else") {
   CHECK(rig.status == device::DeviceStatus::ok);
 }
 
-TEST_CASE("while replies stay away no force is sent, as nobody knows where the hand is") {
+TEST_CASE("without replies no force is sent, as the hand's position is unknown") {
   Rig rig(true);
   rig.lockstep.steps(2);
   rig.emulator.drop_replies(10);
@@ -248,7 +246,7 @@ TEST_CASE("a Falcon that falls silent is a lost link") {
   CHECK(rig.emulator.motors() == kNoMotors);
 }
 
-TEST_CASE("a Falcon that answers without sense is bad data") {
+TEST_CASE("a Falcon whose answers make no sense is bad data") {
   Rig rig(true);
   rig.lockstep.steps(2);
   rig.emulator.shorten_replies(1'000'000, 9);
@@ -268,7 +266,7 @@ TEST_CASE("a little garbage between replies does no harm") {
   CHECK(norm(rig.sample().position_mm) < 0.06);
 }
 
-TEST_CASE("one reading that no hand can have is left out, several in a row are believed") {
+TEST_CASE("one impossible reading is left out, several in a row are accepted") {
   Rig rig(true);
   rig.lockstep.steps(5);
   rig.emulator.set_hand([tick = 0](Vec3) mutable {
@@ -284,7 +282,7 @@ TEST_CASE("one reading that no hand can have is left out, several in a row are b
   CHECK(rig.sample().position_mm.x == Approx(25.0).margin(0.06));
 }
 
-TEST_CASE("homing that is forgotten takes the force away") {
+TEST_CASE("a Falcon that loses its homing gets no force") {
   Rig rig(true);
   rig.lockstep.steps(2);
   rig.emulator.forget_homing();
@@ -294,7 +292,7 @@ TEST_CASE("homing that is forgotten takes the force away") {
   CHECK(rig.emulator.motors() == kNoMotors);
 }
 
-TEST_CASE("unplugging is a lost link, and the driver closes on it without a word") {
+TEST_CASE("unplugging is a lost link, and the driver still closes without an error") {
   Rig rig(true);
   rig.push({0.0, 0.0, 1.0});
   rig.emulator.unplug();
@@ -304,7 +302,7 @@ TEST_CASE("unplugging is a lost link, and the driver closes on it without a word
   CHECK(rig.emulator.motors() == kNoMotors);
 }
 
-TEST_CASE("closing sends packets without force and puts the lights out") {
+TEST_CASE("closing sends packets without force and switches the lights off") {
   Rig rig(true);
   rig.lockstep.steps(2);
   rig.push({0.0, 0.0, 1.0});
@@ -329,13 +327,13 @@ TEST_CASE("a Falcon without firmware is loaded from the user's file when it is o
   CHECK(device.readiness() == device::DeviceReadiness::needs_homing);
 }
 
-TEST_CASE("a Falcon without firmware and without a file says what to set") {
+TEST_CASE("a Falcon without firmware and without a file names the setting") {
   FalconEmulator emulator;
   CHECK_THROWS_WITH(FalconDevice(std::make_unique<EmulatorTransport>(emulator), {}),
                     holds_text("set falcon.firmware"));
 }
 
-TEST_CASE("a firmware that does not run is told as one") {
+TEST_CASE("a firmware that does not run is reported") {
   const TempFolder folder;
   FalconEmulator emulator({.boot_loader = {.image = {1, 2, 3}}});
   device::FalconSettings settings;
@@ -344,7 +342,7 @@ TEST_CASE("a firmware that does not run is told as one") {
                     holds_text("may not be a Falcon's firmware"));
 }
 
-TEST_CASE("a Falcon tells who it is") {
+TEST_CASE("a Falcon describes itself") {
   Rig rig(true);
   const device::DeviceInfo info = rig.device->info();
   CHECK(info.name == "falcon");

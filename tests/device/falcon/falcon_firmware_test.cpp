@@ -2,8 +2,7 @@
 
 #include "core/errors.hpp"
 #include "device/falcon/falcon_device.hpp"
-#include "device/falcon/rig/dummy_firmware.hpp"
-#include "device/falcon/rig/emulator_transport.hpp"
+#include "device/falcon/rig/falcon_rig.hpp"
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 
@@ -14,7 +13,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Changes what passes between driver and emulator.
+/// Damages the bytes between driver and emulator.
 class Meddler final : public FtdiTransport {
  public:
   explicit Meddler(FalconEmulator& emulator) : through_(emulator) {}
@@ -31,7 +30,7 @@ class Meddler final : public FtdiTransport {
   }
   [[nodiscard]] std::size_t receive(std::span<std::uint8_t, kUsbPacketSize> packet,
                                     milliseconds limit) override {
-    // At most this much of an answer at once.
+    // At most this many bytes of an answer at once.
     std::array<std::uint8_t, kUsbPacketSize> whole{};
     if (left_.empty()) {
       const std::size_t length = through_.receive(whole, limit);
@@ -51,7 +50,7 @@ class Meddler final : public FtdiTransport {
   [[nodiscard]] bool lost() const noexcept override { return through_.lost(); }
 
   int sends = 0;
-  int short_send = 0;  ///< the send that half goes through; 0: none
+  int short_send = 0;  ///< the send of which half goes out; 0: none
   std::size_t most_per_packet = kUsbPacketSize;
   std::function<void(std::span<const std::uint8_t>)> before_send = [](auto) {};
 
@@ -80,7 +79,7 @@ TEST_CASE("firmware is loaded byte for byte and then runs") {
   CHECK(emulator.complaints().empty());
 }
 
-TEST_CASE("asking whether firmware is loaded resets nothing where it is") {
+TEST_CASE("asking whether firmware is loaded does not reset a Falcon that has it") {
   FalconEmulator emulator({.firmware_runs = true, .homed = true});
   EmulatorTransport transport(emulator);
   set_up_running_falcon(transport);
@@ -99,7 +98,7 @@ TEST_CASE("a boot loader may answer late and with a zero in front") {
   CHECK(emulator.loads() == 1);
 }
 
-TEST_CASE("a boot loader that never answers is given up with the remedy") {
+TEST_CASE("a boot loader that never answers is given up, with the remedy") {
   FalconEmulator emulator({.boot_loader = {.unanswered_greetings = 1'000'000}});
   Meddler transport(emulator);
   const std::string failure = failure_of(transport);
@@ -108,7 +107,7 @@ TEST_CASE("a boot loader that never answers is given up with the remedy") {
   CHECK(transport.sends == kFirmwareLoads * kFirmwareHandshakes);
 }
 
-TEST_CASE("a load that goes wrong is begun anew, nine times if need be") {
+TEST_CASE("a failed load is repeated up to nine times") {
   const bool silent = GENERATE(false, true);
   FalconEmulator emulator(
       {.boot_loader = {.bad_loads = kFirmwareLoads - 1, .bad_block = 17, .silent_block = silent}});
@@ -119,7 +118,7 @@ TEST_CASE("a load that goes wrong is begun anew, nine times if need be") {
   CHECK(emulator.firmware_runs());
 }
 
-TEST_CASE("the tenth failed load is the last, and it is told where the echo parted") {
+TEST_CASE("the tenth failed load is the last, and the error says where the echo differed") {
   const bool silent = GENERATE(false, true);
   FalconEmulator emulator(
       {.boot_loader = {.bad_loads = kFirmwareLoads, .bad_block = 2, .silent_block = silent}});
@@ -129,7 +128,7 @@ TEST_CASE("the tenth failed load is the last, and it is told where the echo part
   CHECK_FALSE(emulator.firmware_runs());
 }
 
-TEST_CASE("answers and echoes may come in crumbs") {
+TEST_CASE("answers and echoes may come in small pieces") {
   FalconEmulator emulator({.boot_loader = {.leading_zero = true}});
   Meddler transport(emulator);
   transport.most_per_packet = GENERATE(std::size_t{1}, std::size_t{3}, std::size_t{61});
@@ -138,7 +137,7 @@ TEST_CASE("answers and echoes may come in crumbs") {
   CHECK(emulator.loads() == 1);
 }
 
-TEST_CASE("a block that leaves by half fails its load, and the next one succeeds") {
+TEST_CASE("a block of which only half leaves fails its load, and the next one succeeds") {
   FalconEmulator emulator;
   Meddler transport(emulator);
   transport.short_send = 30;
@@ -184,7 +183,7 @@ TEST_CASE("a firmware file is read whole") {
   CHECK(read_falcon_firmware(write_dummy_firmware(folder.path())) == dummy_firmware());
 }
 
-TEST_CASE("a firmware file that is not named, not there or of no image's size is refused") {
+TEST_CASE("a firmware file that is not named, is missing or has the wrong size is refused") {
   const TempFolder folder;
   CHECK_THROWS_WITH(read_falcon_firmware({}), holds_text("set falcon.firmware"));
   CHECK_THROWS_WITH(read_falcon_firmware(folder.path() / "none.bin"), holds_text("cannot be read"));
@@ -193,7 +192,7 @@ TEST_CASE("a firmware file that is not named, not there or of no image's size is
                             static_cast<int>(kMostFirmwareBytes) + 1);
   std::ofstream(folder.path() / "odd.bin") << std::string(static_cast<std::size_t>(size), 'x');
   CHECK_THROWS_WITH(read_falcon_firmware(folder.path() / "odd.bin"),
-                    holds_text("is no Falcon firmware"));
+                    holds_text("is not a Falcon's firmware"));
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #include "device/falcon/falcon_inverse.hpp"
 
-#include "device/falcon/falcon_geometry.hpp"
+#include "device/falcon/falcon_kinematics.hpp"
 
 #include <cmath>
 #include <cstddef>

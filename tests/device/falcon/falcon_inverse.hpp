@@ -1,5 +1,5 @@
-/// \file The other way round than the driver computes: from a hand's position to a Falcon's joint
-/// angles, in closed form. Source: as falcon_kinematics.hpp.
+/// \file The inverse of the driver's kinematics: a Falcon's joint angles from a hand's position, in
+/// closed form. Source: as falcon_kinematics.hpp.
 #pragma once
 
 #include "device/falcon/falcon_kinematics.hpp"
@@ -20,10 +20,10 @@ struct LegAngles {
 };
 using Legs = std::array<LegAngles, 3>;
 
-/// Inverse kinematics. \return nothing if the position is out of reach or not finite
+/// \return the joint angles; nothing if the position is out of reach or not finite
 [[nodiscard]] std::optional<Legs> inverse_kinematics(Vec3 native_m) noexcept;
 
-/// How the legs act on the hand, from their angles.
+/// \return the legs' action on the hand, from their angles
 [[nodiscard]] LegJacobian leg_jacobian(const Legs& legs) noexcept;
 
 }  // namespace touchtrial::device::falcon

@@ -21,7 +21,7 @@ Vec3 random_vector(RandomStream& random, double most) {
   return {random.uniform(-most, most), random.uniform(-most, most), random.uniform(-most, most)};
 }
 
-/// Somewhere in the sphere that the device promises.
+/// \return a position in the sphere that the device promises
 Vec3 random_position_m(RandomStream& random) {
   while (true) {
     const Vec3 device_mm = random_vector(random, kWorkspaceRadiusMm);
@@ -41,15 +41,11 @@ LegJacobian jacobian_at(Vec3 native_m) {
   return leg_jacobian(*legs);
 }
 
-double dot(Vec3 a, Vec3 b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
 double largest_difference(const PerLeg& a, const PerLeg& b) {
   return std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
 }
 
-/// How far a grip that stands at theta1 is from the position, along the leg's parallelogram.
+/// \return the distance of a grip at theta1 from the position, along the leg's parallelogram
 double gap_m(Vec3 p, double phi_rad, double theta1_rad) {
   const double across = p.x * std::cos(phi_rad) + p.y * std::sin(phi_rad) - 0.040 + 0.01443 -
                         0.060 * std::cos(theta1_rad);
@@ -81,7 +77,7 @@ TEST_CASE("falcon frames: the device frame is the native one from the centre, in
   CHECK(norm(there_and_back - Vec3{1.0, 2.0, 3.0}) < 1e-12);
 }
 
-TEST_CASE("falcon frames: the centre is the middle of what the legs reach on the axis") {
+TEST_CASE("falcon frames: the centre is the middle of the legs' reach on the axis") {
   const auto reached = [](double z_m) { return inverse_kinematics({0.0, 0.0, z_m}).has_value(); };
   double nearest = kCentreM.z;
   double farthest = kCentreM.z;
@@ -177,7 +173,7 @@ TEST_CASE("falcon forward kinematics finds the pose from any start, sensible or 
   }
 }
 
-TEST_CASE("falcon forward kinematics: what is out of reach gives a status in bounded time") {
+TEST_CASE("falcon forward kinematics: angles out of reach give a status in bounded time") {
   for (const double bad : {kNan, kInfinity, -kInfinity, 10.0, -10.0, 3.0}) {
     const Pose pose = forward_kinematics({bad, 0.5, 0.5});
     CHECK(pose.status == PoseStatus::out_of_reach);
@@ -189,7 +185,7 @@ TEST_CASE("falcon forward kinematics: what is out of reach gives a status in bou
   CHECK(torn.native_m == kCentreM);
 }
 
-/// What may be relied on, whatever the counts are.
+/// Checks that hold for all counts.
 void check_sane(const Pose& pose, const PerLeg& theta1_rad) {
   REQUIRE(pose.iterations <= 50);
   REQUIRE(is_finite(pose.native_m));
@@ -242,7 +238,7 @@ TEST_CASE("falcon Jacobian agrees with numerical differentiation") {
   }
 }
 
-TEST_CASE("falcon forward kinematics brings the Jacobian of its pose") {
+TEST_CASE("falcon forward kinematics gives the Jacobian of its pose") {
   RandomStream random(8, "falcon both jacobians");
   for (int i = 0; i < 500; ++i) {
     const Vec3 position = random_position_m(random);
@@ -271,7 +267,7 @@ TEST_CASE("falcon torques: torque times joint speed is force times hand speed") 
   }
 }
 
-TEST_CASE("falcon torques make the force that was asked for, along z as along x and y") {
+TEST_CASE("falcon torques make the requested force, along z as along x and y") {
   RandomStream random(10, "falcon force");
   for (int i = 0; i < 500; ++i) {
     const Vec3 position = random_position_m(random);
@@ -325,7 +321,8 @@ TEST_CASE("falcon forward kinematics: where the legs cannot hold the hand a pose
   CHECK(found > 20);
 }
 
-TEST_CASE("falcon torques: a pose that cannot be held, or no number, gives none") {
+TEST_CASE(
+    "falcon torques: a pose that cannot be held, or a number that is not finite, gives none") {
   LegJacobian flat = jacobian_at(kCentreM);
   CHECK(torques_nm(flat, {0.0, 0.0, 1.0}));
   CHECK_FALSE(torques_nm(flat, {kNan, 0.0, 0.0}));
@@ -338,7 +335,7 @@ TEST_CASE("falcon torques: a pose that cannot be held, or no number, gives none"
   CHECK_FALSE(torques_nm(broken, {0.0, 0.0, 1.0}));
 }
 
-TEST_CASE("falcon inverse kinematics refuses what is out of reach, and what is no number") {
+TEST_CASE("falcon inverse kinematics refuses positions that are out of reach or not finite") {
   CHECK_FALSE(inverse_kinematics({0.0, 0.0, 0.25}));
   CHECK_FALSE(inverse_kinematics({0.0, 0.0, 0.02}));
   CHECK_FALSE(inverse_kinematics({0.0, 0.0, -0.12}));

@@ -19,7 +19,7 @@ using Bytes = std::vector<std::uint8_t>;
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// A reply written by hand, as the device writes it.
+/// \return a reply as the device writes it, built by hand
 Packet packet_of(const EncoderCounts& counts, unsigned flags) {
   Packet packet;
   packet.fill('A');
@@ -35,7 +35,7 @@ Packet packet_of(const EncoderCounts& counts, unsigned flags) {
   return packet;
 }
 
-/// Bytes as one bulk transfer brings them, in USB packets with status bytes.
+/// \return the bytes as one bulk transfer, in USB packets with status bytes
 Bytes transfer_of(std::span<const std::uint8_t> payload) {
   Bytes transfer;
   do {
@@ -110,7 +110,7 @@ TEST_CASE("falcon packets: flags are four buttons and three homed axes") {
   CHECK(decode_reply(packet_of({}, 8))->buttons == kButtonMinus);
 }
 
-/// What a reply may hold at a place, by the table of the protocol.
+/// \return whether a byte is valid at a place of a reply, by the table of the protocol
 bool may_stand(unsigned byte, std::size_t at) {
   if (at == 0) return byte == '<';
   if (at == 15) return byte == '>';
@@ -118,7 +118,7 @@ bool may_stand(unsigned byte, std::size_t at) {
   return at == 13 ? byte >= 'A' : byte >= 'A' && byte <= 'P';
 }
 
-TEST_CASE("falcon packets: one wrong byte anywhere and there is no reply") {
+TEST_CASE("falcon packets: one wrong byte anywhere makes it no reply") {
   for (std::size_t at = 0; at < kPacketSize; ++at) {
     for (unsigned byte = 0; byte < 256; ++byte) {
       Packet packet = packet_of({1, 2, 3}, 0x70);
@@ -134,7 +134,7 @@ TEST_CASE("falcon motors: minus ten thousand for a newton metre, rounded") {
   CHECK(motor_values({0.00004, 0.00006, -0.00006}) == MotorValues{0, -1, 1});
 }
 
-TEST_CASE("falcon motors: beyond the range all three shrink by one scale") {
+TEST_CASE("falcon motors: beyond the range all three shrink by one factor") {
   CHECK(motor_values({-1.0, 0.0, 0.0}) == MotorValues{10000, 0, 0});
   CHECK(motor_values({-2.0, 1.0, 0.5}) == MotorValues{10000, -5000, -2500});
   RandomStream random(2, "falcon clamp");
@@ -151,7 +151,7 @@ TEST_CASE("falcon motors: beyond the range all three shrink by one scale") {
   }
 }
 
-TEST_CASE("falcon motors: what is no number, or too large for one, is zero or in range") {
+TEST_CASE("falcon motors: torques that are not finite or too large give zero or values in range") {
   for (const double bad : {kNan, kInfinity, -kInfinity}) {
     CHECK(motor_values({bad, 0.1, 0.1}) == MotorValues{});
     CHECK(motor_values({0.1, 0.1, bad}) == MotorValues{});
@@ -188,7 +188,7 @@ TEST_CASE("falcon stream: one transfer with one reply") {
   CHECK(stream.discarded_bytes() == 0);
 }
 
-TEST_CASE("falcon stream: status bytes alone, or half of them, bring nothing") {
+TEST_CASE("falcon stream: status bytes alone, or half of them, give no reply") {
   FalconStream stream;
   CHECK(stream.push_transfer({}) == 0);
   CHECK(stream.push_transfer(Bytes{0x01}) == 0);
@@ -232,7 +232,7 @@ TEST_CASE("falcon stream: a short packet is never a reply, and the next one is r
   }
 }
 
-TEST_CASE("falcon stream: a beginning cut off by a whole packet is thrown away") {
+TEST_CASE("falcon stream: an incomplete packet before a whole one is discarded") {
   for (std::size_t kept = 0; kept < kPacketSize; ++kept) {
     FalconStream stream;
     Bytes torn = reply_bytes({1, 1, 1});
@@ -243,7 +243,7 @@ TEST_CASE("falcon stream: a beginning cut off by a whole packet is thrown away")
   }
 }
 
-TEST_CASE("falcon stream: garbage before, between and after replies is counted and passed over") {
+TEST_CASE("falcon stream: garbage before, between and after replies is counted and ignored") {
   FalconStream stream;
   const Bytes payload = joined({bytes_of("noise>>A<<"),
                                 reply_bytes({1, 0, 0}),
@@ -278,7 +278,7 @@ TEST_CASE("falcon stream: after a purge the unfinished packet is forgotten") {
   CHECK(stream.discarded_bytes() == 16);
 }
 
-/// The replies in a payload, found by looking at every place.
+/// \return the replies in a payload, by a search at every place
 std::vector<EncoderCounts> replies_in(const Bytes& payload) {
   std::vector<EncoderCounts> found;
   for (std::size_t at = 0; at + kPacketSize <= payload.size(); ++at) {
@@ -332,7 +332,7 @@ TEST_CASE("falcon stream finds in random damage what a search at every place fin
   }
 }
 
-TEST_CASE("ftdi status bytes are taken out, and what does not fit is left out") {
+TEST_CASE("ftdi status bytes are removed, and bytes that do not fit are left out") {
   Bytes payload(200);
   for (std::size_t i = 0; i < payload.size(); ++i) payload[i] = static_cast<std::uint8_t>(i);
   const Bytes transfer = transfer_of(payload);

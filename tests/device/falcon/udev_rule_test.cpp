@@ -38,7 +38,7 @@ Outcome install(const std::string& arguments) {
   return outcome;
 }
 
-TEST_CASE("the udev rule is installed once, mended when it was changed, and told each time") {
+TEST_CASE("the udev rule is installed once, repaired if it was changed, and reported each time") {
   const TempFolder folder;
   const std::string root = "--root '" + folder.path().string() + "'";
   const fs::path installed = folder.path() / "etc/udev/rules.d" / kRule;
@@ -55,7 +55,7 @@ TEST_CASE("the udev rule is installed once, mended when it was changed, and told
   CHECK(text_of(installed) == rule);
 }
 
-TEST_CASE("a relative root of the udev rule is the caller's") {
+TEST_CASE("a relative root of the udev rule starts at the caller's folder") {
   const TempFolder folder;
   const fs::path before = fs::current_path();
   fs::current_path(folder.path());
@@ -64,7 +64,7 @@ TEST_CASE("a relative root of the udev rule is the caller's") {
   CHECK(fs::exists(folder.path() / "package/etc/udev/rules.d" / kRule));
 }
 
-TEST_CASE("the udev rule names the Falcon alone") {
+TEST_CASE("the udev rule names only the Falcon") {
   const std::string rule = text_of(kSource / "config/udev" / kRule);
   CHECK_THAT(rule, holds_text("ATTR{idVendor}==\"0403\", ATTR{idProduct}==\"cb48\""));
   CHECK_THAT(rule, holds_text("TAG+=\"uaccess\""));

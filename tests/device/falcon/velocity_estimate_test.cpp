@@ -10,7 +10,7 @@ namespace {
 using std::chrono::microseconds;
 using std::chrono::milliseconds;
 
-TEST_CASE("one reading says nothing of the velocity") {
+TEST_CASE("one reading gives no velocity") {
   VelocityEstimate estimate;
   CHECK(estimate.add({5.0, 6.0, 7.0}, milliseconds(3)) == Vec3{});
 }
@@ -55,7 +55,7 @@ TEST_CASE("readings from before a long pause are forgotten") {
   CHECK(estimate.add({2.0, 0.0, 0.0}, milliseconds(101)).x == Approx(1000.0));
 }
 
-TEST_CASE("readings at one moment have no velocity, rather than an infinite one") {
+TEST_CASE("readings at one moment have zero velocity, rather than an infinite one") {
   VelocityEstimate estimate;
   static_cast<void>(estimate.add({0.0, 0.0, 0.0}, milliseconds(1)));
   CHECK(estimate.add({1.0, 0.0, 0.0}, milliseconds(1)) == Vec3{});

@@ -1,4 +1,4 @@
-// Whether what the window shows is enough to tell coarse textures apart: docs/devices/mouse.md.
+// Whether the window shows enough to tell coarse textures apart: docs/devices/mouse.md.
 #include "device/mouse/path_observer.hpp"
 #include "support/catch.hpp"
 
@@ -25,7 +25,8 @@ TEST_CASE("an observer of the drawn path tells a weak grating from a strong one"
   CHECK(right >= 0.9);
 }
 
-TEST_CASE("the observer also names gratings and strokes that no setting was chosen by") {
+TEST_CASE(
+    "the observer also names gratings and strokes that did not serve to choose the settings") {
   const auto held_out = [](std::vector<Grating> pair) {
     const TextureMaker make = gratings(std::move(pair));
     return share_named_rightly(2, kStrokes, {make, 500'000}, {make, 900'000});
@@ -36,7 +37,7 @@ TEST_CASE("the observer also names gratings and strokes that no setting was chos
   CHECK(held_out({{6.0, 0.04}, {6.0, 0.06}}) >= 0.9);
 }
 
-TEST_CASE("an observer of the drawn path guesses where two textures are the same") {
+TEST_CASE("an observer of the drawn path guesses if the two textures are the same") {
   const double right = share_named_rightly(2, kStrokes, gratings({{5.0, 0.05}, {5.0, 0.05}}));
   CHECK(right == 0.5);
 }

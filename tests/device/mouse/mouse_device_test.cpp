@@ -1,30 +1,27 @@
 #include "device/mouse/mouse_device.hpp"
 
+#include "core/errors.hpp"
 #include "core/random.hpp"
 #include "device/flat_wall.hpp"
-#include "device/mouse/driver.hpp"
 #include "device/mouse/pointer_exchange.hpp"
 #include "device/mouse/scripted_pointer.hpp"
+#include "device/registry.hpp"
+#include "device/servo_fakes.hpp"
 #include "support/catch.hpp"
 
+#include <cstdlib>
 #include <limits>
+#include <optional>
 #include <stdexcept>
+
+#include <stdlib.h>
 
 namespace touchtrial {
 namespace {
 
 using namespace std::chrono_literals;
 
-class ConstantForce final : public device::ForceSource {
- public:
-  explicit ConstantForce(Vec3 force_n) : force_n_(force_n) {}
-  [[nodiscard]] Vec3 force_n(const device::DeviceSample&) noexcept override { return force_n_; }
-
- private:
-  Vec3 force_n_;
-};
-
-/// One run of a script, tick by tick. There is no safety chain between: the device's own laws.
+/// One run of a script, tick by tick, without a safety chain, to test the device's own laws.
 std::vector<device::ServoSample> run(const ScriptedPointer::Script& script,
                                      device::ForceSource& force, std::int64_t ticks,
                                      double rate_hz = 1000.0) {
@@ -129,7 +126,7 @@ TEST_CASE(
   CHECK(speed_mm_s == Approx(20.0 / (1.0 + rise_n_per_mm / 0.025)).epsilon(0.02));
 }
 
-TEST_CASE("pressing lands smoothly on the wall and holds 0.7 N, letting go lifts off") {
+TEST_CASE("pressing lands smoothly on the wall and holds 0.7 N, releasing lifts off") {
   FlatWall wall;
   const double rate_hz = GENERATE(1000.0, 4000.0, 10'000.0);
   const auto script = [](double time_s) { return at(0.0, 0.0, time_s >= 0.2 && time_s < 1.2); };
@@ -151,7 +148,7 @@ TEST_CASE("pressing lands smoothly on the wall and holds 0.7 N, letting go lifts
   CHECK(steepest_n_per_s < 25.0);
 }
 
-TEST_CASE("where there is no wall a pressing hand goes only as deep as it reaches") {
+TEST_CASE("without a wall a pressing hand goes no deeper than its reach") {
   ConstantForce none({});
   const auto samples = run([](double) { return at(0.0, 0.0, true); }, none, 2000);
   CHECK(samples.back().position_mm.z == -device::MouseDevice::kReachMm);
@@ -203,7 +200,7 @@ TEST_CASE("no pointer and no force moves the stylus faster than the servo lets a
   CHECK(fastest_mm_s > 400.0);
 }
 
-TEST_CASE("readings are numbered anew even while the pointer rests, and the window is shown them") {
+TEST_CASE("readings are numbered even while the pointer rests, and the window gets them") {
   device::VirtualClock clock;
   ScriptedPointer pointer(clock, [](double) { return at(3.0, 4.0, true); });
   device::MouseDevice mouse(pointer, clock);
@@ -217,7 +214,7 @@ TEST_CASE("readings are numbered anew even while the pointer rests, and the wind
   }
 }
 
-TEST_CASE("a window that hangs is a hand that lets go, and the stylus stays where it was") {
+TEST_CASE("while the window hangs the hand lets go, and the stylus stays where it was") {
   device::VirtualClock clock;
   ScriptedPointer pointer(clock, [](double) { return at(3.0, 4.0, true); });
   pointer.hangs_after = 100;
@@ -231,7 +228,7 @@ TEST_CASE("a window that hangs is a hand that lets go, and the stylus stays wher
   CHECK(kept.samples[2400].position_mm.x == 3.0);
 }
 
-TEST_CASE("a window that closes is a lost link, and the last force is zero") {
+TEST_CASE("a closed window is a lost link, and the last force is zero") {
   device::VirtualClock clock;
   ScriptedPointer pointer(clock, [](double time_s) {
     device::PointerState state = at(0.0, 0.0, true);
@@ -248,7 +245,7 @@ TEST_CASE("a window that closes is a lost link, and the last force is zero") {
   CHECK(report.ticks == 500);
 }
 
-TEST_CASE("halt makes the hand let go and takes the force from the stylus until rearmed") {
+TEST_CASE("halt makes the hand let go and takes the force from the stylus until it is re-armed") {
   device::VirtualClock clock;
   ScriptedPointer pointer(clock, [](double) { return at(0.0, 0.0, true); });
   device::MouseDevice mouse(pointer, clock);
@@ -274,7 +271,8 @@ TEST_CASE("halt makes the hand let go and takes the force from the stylus until 
 }
 
 TEST_CASE(
-    "a mouse is not ready before its window has begun, and a force that is no number is none") {
+    "a mouse is not ready before its window has begun, and takes a force that is not a number as "
+    "zero") {
   device::VirtualClock clock;
   device::PointerExchange exchange;
   device::MouseDevice mouse(exchange, clock);
@@ -300,7 +298,7 @@ TEST_CASE("the mouse says that it is visual, and refuses options out of range") 
                   std::invalid_argument);
 }
 
-TEST_CASE("a hand drawn smoothly never leaves what it was given, whatever the steps") {
+TEST_CASE("a smooth pull never leaves the range of its targets, whatever the steps") {
   device::SmoothPull pull(0.01);
   const double step_s = GENERATE(0.0, 1e-4, 1e-3, 0.5, 1e6);
   for (int i = 0; i < 500; ++i) {
@@ -311,5 +309,46 @@ TEST_CASE("a hand drawn smoothly never leaves what it was given, whatever the st
   }
 }
 
+/// Sets or removes a variable of the environment while this lives.
+class Variable {
+ public:
+  Variable(const char* name, const char* value) : name_(name) {
+    if (const char* before = std::getenv(name)) before_ = before;
+    value == nullptr ? ::unsetenv(name) : ::setenv(name, value, 1);
+  }
+  ~Variable() { before_ ? ::setenv(name_, before_->c_str(), 1) : ::unsetenv(name_); }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+
+ private:
+  const char* name_;
+  std::optional<std::string> before_;
+};
+
+TEST_CASE("the mouse is present where there is a display, and says what is missing elsewhere") {
+  const Variable wayland("WAYLAND_DISPLAY", nullptr);
+  {
+    const Variable display("DISPLAY", ":7");
+    const device::DeviceListing listing = device::device_driver("mouse").list({}).at(0);
+    CHECK(listing.present);
+    CHECK(listing.where == ":7");
+    CHECK(listing.missing.empty());
+  }
+  const Variable no_display("DISPLAY", nullptr);
+  const device::DeviceListing listing = device::device_driver("mouse").list({}).at(0);
+  CHECK_FALSE(listing.present);
+  REQUIRE(listing.missing.size() == 1);
+  CHECK_THAT(listing.missing[0], holds_text("graphical session"));
+}
+
+TEST_CASE("the registry knows the mouse, and says that only a window can open it") {
+  CHECK_THROWS_AS(device::open_device("mouse", {}), DeviceError);
+  bool listed = false;
+  for (const device::DeviceListing& listing : device::list_devices({}))
+    listed |= listing.driver == "mouse";
+  CHECK(listed);
+}
+
 }  // namespace
+
 }  // namespace touchtrial

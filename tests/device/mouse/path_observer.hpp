@@ -1,4 +1,4 @@
-/// \file An observer who looks at the pointer's drawn path and names the texture.
+/// \file A simulated observer that sees the pointer's drawn path and names the texture.
 #pragma once
 
 #include "core/random.hpp"
@@ -17,7 +17,7 @@
 
 namespace touchtrial {
 
-/// Strokes to and fro along x with a hand's own unsteadiness; another seed, another stroke.
+/// Strokes to and fro along x, as unsteady as a hand; every seed gives another stroke.
 class UnsteadyStroke {
  public:
   static constexpr double kDurationS = 4.0;
@@ -52,14 +52,14 @@ class UnsteadyStroke {
   std::array<Wave, 3> waves_;
 };
 
-/// What of a drawn path tells textures apart: how far it is displaced from the hand along x, and at
-/// which wavelengths of the plane, in six bands from 1.5 to 12 mm. Logarithms.
+/// Features of a drawn path that tell textures apart: its displacement from the hand along x, and
+/// the wavelengths of that on the plane, in six bands from 1.5 to 12 mm. Logarithms.
 using PathFeatures = std::array<double, 7>;
 
 /// One picture of the screen.
 struct SeenFrame {
-  double hand_mm = 0.0;       ///< where the hand is, which the observer feels
-  double displaced_mm = 0.0;  ///< how far from it the stylus is drawn
+  double hand_mm = 0.0;       ///< the hand's place, which the observer feels
+  double displaced_mm = 0.0;  ///< of the drawn stylus from the hand
 };
 
 /// Strokes a texture with a pressed pointer: the stylus as a screen draws it, 60 times a second in
@@ -119,13 +119,13 @@ inline PathFeatures features_of(std::span<const SeenFrame> frames) {
   return features;
 }
 
-/// What the observer has of one stroke over a texture.
+/// \return the observer's features of one stroke over a texture
 inline PathFeatures seen_features(device::ForceSource& texture, std::uint64_t stroke_seed,
                                   const device::MouseOptions& options = {}) {
   return features_of(seen_frames(texture, stroke_seed, options));
 }
 
-/// Means and common spread of what was seen of each texture.
+/// Means and common spread of the features of each texture.
 class PathObserver {
  public:
   /// \param seen  for each texture the features of as many strokes
@@ -144,7 +144,7 @@ class PathObserver {
     for (std::size_t i = 0; i < squares.size(); ++i) spread_[i] = std::sqrt(squares[i] / strokes);
   }
 
-  /// The index of the texture that these features are nearest to.
+  /// \return the index of the texture nearest to these features
   [[nodiscard]] std::size_t name(const PathFeatures& features) const {
     std::size_t best = 0;
     double least = std::numeric_limits<double>::infinity();
@@ -177,14 +177,14 @@ class PathObserver {
 /// Makes a fresh force source for a presentation of texture `index`.
 using TextureMaker = std::function<std::unique_ptr<device::ForceSource>(std::size_t index)>;
 
-/// What an observer strokes: textures, and the seed of the first stroke over each.
+/// The textures for an observer, and the seed of the first stroke over each.
 struct Presentations {
   TextureMaker make;
   std::uint64_t first_stroke = 0;
 };
 
-/// The share of strokes that an observer names rightly, who has learned from as many others. The
-/// same strokes go over each texture.
+/// The same strokes go over each texture.
+/// \return the share of strokes that an observer names correctly after learning from as many others
 inline double share_named_rightly(std::size_t textures, int strokes, const Presentations& to_learn,
                                   const Presentations& to_name,
                                   const device::MouseOptions& options = {}) {

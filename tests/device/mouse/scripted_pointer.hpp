@@ -13,8 +13,8 @@
 
 namespace touchtrial {
 
-/// Publishes the script's state a hundred times a second of the clock's time, and keeps what it was
-/// shown.
+/// Publishes the script's state a hundred times a second of the clock's time, and keeps the stylus
+/// states.
 class ScriptedPointer final : public device::PointerSource {
  public:
   using Script = std::function<device::PointerState(double time_s)>;
@@ -39,8 +39,7 @@ class ScriptedPointer final : public device::PointerSource {
   std::uint64_t last_round_ = 0;
 };
 
-/// A wall of 0.4 N/mm with a tangential force along x that alternates over the plane, as long as it
-/// is touched.
+/// A wall of 0.4 N/mm; on contact also a tangential force along x that alternates over the plane.
 class Grating final : public device::ForceSource {
  public:
   Grating(double wavelength_mm, double amplitude_n)

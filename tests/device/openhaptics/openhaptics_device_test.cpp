@@ -1,9 +1,8 @@
 #include "device/openhaptics/openhaptics_device.hpp"
 
 #include "core/errors.hpp"
-#include "device/fakes/loaded_hd.hpp"
-#include "device/flat_wall.hpp"
-#include "device/placed_device.hpp"
+#include "device/fakes/loaded_fake.hpp"
+#include "device/registry.hpp"
 #include "support/catch.hpp"
 
 #include <limits>
@@ -15,33 +14,13 @@ namespace {
 
 using fakes::eventually;
 using fakes::LoadedHd;
-using Stepping = fakes::SteppingClock<fakes::FakeHdExports>;
+using fakes::next_sample;
+using fakes::write_until;
 
 device::OpenHapticsSettings settings_of_fake() {
   device::OpenHapticsSettings settings;
   settings.library = TOUCHTRIAL_FAKE_HD;
   return settings;
-}
-
-/// The newest sample after the next tick of the fake.
-device::DeviceSample next_sample(device::OpenHapticsDevice& device) {
-  device::DeviceSample before;
-  device::DeviceSample after;
-  (void)device.read(before);
-  REQUIRE(eventually([&] {
-    (void)device.read(after);
-    return after.sequence > before.sequence + 1;
-  }));
-  return after;
-}
-
-/// Writes as a servo would until the fake says so.
-template <typename Predicate>
-[[nodiscard]] bool write_until(device::OpenHapticsDevice& device, Vec3 force_n, Predicate holds) {
-  return eventually([&] {
-    (void)device.write(force_n);
-    return holds();
-  });
 }
 
 TEST_CASE("openhaptics: the device is opened by the first of its default names that answers") {
@@ -52,7 +31,7 @@ TEST_CASE("openhaptics: the device is opened by the first of its default names t
   CHECK(device.fault() == device::DeviceFault::none);
 }
 
-TEST_CASE("openhaptics: a device that is named is opened by that name alone") {
+TEST_CASE("openhaptics: a named device is opened by that name alone") {
   LoadedHd fake;
   device::OpenHapticsSettings settings = settings_of_fake();
   settings.device = "Lab Touch";
@@ -62,7 +41,7 @@ TEST_CASE("openhaptics: a device that is named is opened by that name alone") {
   CHECK_THROWS_WITH(device::OpenHapticsDevice(settings), holds_text("Lab Touch does not open"));
 }
 
-TEST_CASE("openhaptics: a device that does not answer is told in the library's words") {
+TEST_CASE("openhaptics: a device that does not answer is reported in the library's words") {
   LoadedHd fake;
   fake->opens_by = 0;
   CHECK_THROWS_AS(device::OpenHapticsDevice(settings_of_fake()), DeviceError);
@@ -77,14 +56,14 @@ TEST_CASE("openhaptics: a library without one of the functions is refused by the
                     holds_text("has no function hdUnschedule"));
 }
 
-TEST_CASE("openhaptics: a library that is not there is refused with the setting that names it") {
+TEST_CASE("openhaptics: a missing library is refused with the setting that names it") {
   device::OpenHapticsSettings settings = settings_of_fake();
   settings.library = "/nowhere/libHD.so";
   CHECK_THROWS_WITH(device::OpenHapticsDevice(settings),
                     holds_text("/nowhere/libHD.so") && holds_text("openhaptics.library"));
 }
 
-TEST_CASE("openhaptics: the device says what it is") {
+TEST_CASE("openhaptics: the device describes itself") {
   LoadedHd fake;
   const device::DeviceInfo info = device::OpenHapticsDevice(settings_of_fake()).info();
   CHECK(info.name == "openhaptics");
@@ -101,7 +80,7 @@ TEST_CASE("openhaptics: the device says what it is") {
   CHECK(info.workspace->greatest_mm == Vec3{80.0, 60.0, 30.0});
 }
 
-TEST_CASE("openhaptics: a device that does not tell where it is usable has the room it reaches") {
+TEST_CASE("openhaptics: without a usable workspace the device has the one that it reaches") {
   LoadedHd fake;
   fake->tells_usable_workspace = false;
   const auto workspace = device::OpenHapticsDevice(settings_of_fake()).info().workspace;
@@ -110,7 +89,7 @@ TEST_CASE("openhaptics: a device that does not tell where it is usable has the r
   CHECK(workspace->greatest_mm == Vec3{210.0, 205.0, 130.0});
 }
 
-TEST_CASE("openhaptics: a device that tells no room at all still has a frame of its own") {
+TEST_CASE("openhaptics: without any workspace the device still has a frame of its own") {
   LoadedHd fake;
   fake->tells_usable_workspace = false;
   fake->tells_max_workspace = false;
@@ -129,29 +108,15 @@ TEST_CASE("openhaptics: position and buttons arrive as the library gives them") 
   CHECK(sample.buttons == 2);
 }
 
-TEST_CASE("openhaptics: a wall bears the hand that is pushed against it") {
+TEST_CASE("openhaptics: a wall carries the hand that pushes against it") {
   LoadedHd fake;
   fake->hand.position_mm.set({5.0, 3.0, 0.0});
   fake->hand.push_n.set({0.0, -0.7, 0.0});
   device::OpenHapticsDevice device(settings_of_fake());
-  device::PlacedDevice placed(device, {});
-  FlatWall wall;
-  KeptSamples kept;
-  Stepping clock(fake.exports());
-  const device::ServoReport report =
-      device::run_servo(placed, wall, kept, {.limit_ticks = 1000}, clock);
-  CHECK(report.end == device::ServoEnd::time_limit);
-  CHECK_FALSE(clock.hung());
-  REQUIRE(kept.samples.size() > 999);
-  const device::ServoSample& settled = kept.samples[999];
-  // Where the wall bears the push, or deeper: a stall of the machine lets forces lapse, see
-  // DeviceLink::kForceLifetime.
-  CHECK(settled.position_mm.z < -1.5);
-  CHECK(settled.position_mm.z > -4.0);
-  CHECK(settled.force_n.z == Approx(-0.4 * settled.position_mm.z).margin(1e-9));
+  fakes::WallRun(device, fake.exports()).check_carries_hand();
 }
 
-TEST_CASE("openhaptics: without calibration the force stays zero, and the person is told why") {
+TEST_CASE("openhaptics: without calibration the force stays zero, and the readiness says why") {
   LoadedHd fake;
   fake->calibration = 0x5002;
   device::OpenHapticsDevice device(settings_of_fake());
@@ -187,7 +152,7 @@ TEST_CASE("openhaptics: calibration is only done by a style that the device offe
   }
 }
 
-TEST_CASE("openhaptics: each of the library's errors is the fault that it means") {
+TEST_CASE("openhaptics: each of the library's errors becomes its own fault") {
   const auto [code, fault] = GENERATE(
       table<std::uint32_t, device::DeviceFault>({{0x200, device::DeviceFault::warm_motors},
                                                  {0x201, device::DeviceFault::limit_passed},
@@ -220,7 +185,7 @@ TEST_CASE("openhaptics: a motor that gets too warm is a fault before the library
   CHECK(eventually([&] { return device.fault() == device::DeviceFault::warm_motors; }));
 }
 
-TEST_CASE("openhaptics: a device that tells no temperature works without") {
+TEST_CASE("openhaptics: a device that gives no temperature works without one") {
   LoadedHd fake;
   fake->tells_temperature = false;
   device::OpenHapticsDevice device(settings_of_fake());
@@ -228,7 +193,7 @@ TEST_CASE("openhaptics: a device that tells no temperature works without") {
   CHECK(device.fault() == device::DeviceFault::none);
 }
 
-TEST_CASE("openhaptics: a position that is no number is a fault, and never reaches the servo") {
+TEST_CASE("openhaptics: a position that is not a number is a fault, and never reaches the servo") {
   LoadedHd fake;
   device::OpenHapticsDevice device(settings_of_fake());
   (void)next_sample(device);
@@ -239,20 +204,14 @@ TEST_CASE("openhaptics: a position that is no number is a fault, and never reach
   CHECK(is_finite(sample.position_mm));
 }
 
-TEST_CASE("openhaptics: a device that is lost in the middle of a run ends it as a fault") {
+TEST_CASE("openhaptics: a device that is lost in the middle of a run ends it with a fault") {
   LoadedHd fake;
   fake->hand.push_n.set({0.0, -0.7, 0.0});
   device::OpenHapticsDevice device(settings_of_fake());
-  device::PlacedDevice placed(device, {});
-  FlatWall wall;
-  KeptSamples kept;
-  Stepping clock(fake.exports());
-  REQUIRE(device::run_servo(placed, wall, kept, {.limit_ticks = 50}, clock).end ==
-          device::ServoEnd::time_limit);
+  fakes::WallRun wall(device, fake.exports());
+  REQUIRE(wall.run(50).end == device::ServoEnd::time_limit);
   fake->lost = true;
-  const device::ServoReport report =
-      device::run_servo(placed, wall, kept, {.limit_ticks = 50}, clock);
-  CHECK(report.end == device::ServoEnd::fault);
+  CHECK(wall.run(50).end == device::ServoEnd::fault);
   CHECK(device.fault() == device::DeviceFault::link_lost);
   CHECK(fake.exports().step(2));
   CHECK(fake->force_n.get() == Vec3{});
@@ -306,7 +265,7 @@ TEST_CASE("openhaptics: a second device in the same program is refused until the
   CHECK(next_sample(again).ready);
 }
 
-TEST_CASE("openhaptics: a rate that the scheduler refuses is told, and the device let go of") {
+TEST_CASE("openhaptics: a rate that the scheduler refuses is reported, and the device closed") {
   LoadedHd fake;
   device::OpenHapticsSettings settings = settings_of_fake();
   settings.rate_hz = 1234;
@@ -316,5 +275,47 @@ TEST_CASE("openhaptics: a rate that the scheduler refuses is told, and the devic
   CHECK(device::OpenHapticsDevice(settings).info().max_rate_hz == 500.0);
 }
 
+device::DeviceListing listing_with(const std::filesystem::path& library) {
+  device::DeviceSettings settings;
+  settings.openhaptics.library = library;
+  const std::vector<device::DeviceListing> listings =
+      device::device_driver("openhaptics").list(settings);
+  REQUIRE(listings.size() == 1);
+  CHECK(listings[0].driver == "openhaptics");
+  CHECK(listings[0].where == library.string());
+  return listings[0];
+}
+
+TEST_CASE("the list of openhaptics names the connected device, and closes it") {
+  fakes::LoadedHd fake;
+  const device::DeviceListing listing = listing_with(TOUCHTRIAL_FAKE_HD);
+  CHECK(listing.present);
+  CHECK(listing.model == "3D Systems Touch");
+  CHECK(listing.serial == "SN-4711");
+  CHECK(listing.missing.empty());
+  CHECK(fake.calls() == "init disable_device ");
+}
+
+TEST_CASE("the list of openhaptics says what is missing: device, library, function") {
+  fakes::LoadedHd fake;
+  fake->opens_by = 0;
+  const auto [library, missing] = GENERATE(
+      table<const char*, const char*>({{TOUCHTRIAL_FAKE_HD, "plug it in"},
+                                       {"/nowhere/libHD.so", "install the vendor's OpenHaptics"},
+                                       {TOUCHTRIAL_PARTIAL_HD, "has no function hdUnschedule"}}));
+  const device::DeviceListing listing = listing_with(library);
+  CHECK_FALSE(listing.present);
+  REQUIRE(listing.missing.size() == 1);
+  CHECK_THAT(listing.missing[0], holds_text(missing));
+}
+
+TEST_CASE("openhaptics is opened through the registry by its name") {
+  fakes::LoadedHd fake;
+  device::DeviceSettings settings;
+  settings.openhaptics.library = TOUCHTRIAL_FAKE_HD;
+  CHECK(device::open_device("openhaptics", settings)->info().name == "openhaptics");
+}
+
 }  // namespace
+
 }  // namespace touchtrial

@@ -10,7 +10,7 @@
 namespace touchtrial {
 namespace {
 
-TEST_CASE("a library that is not there is named with the remedy, on one line") {
+TEST_CASE("a missing library is named with the remedy, on one line") {
   const auto load = [] {
     device::DynamicLibrary("/nowhere/lib\nHD.so", device::Unload::when_closed, "do this");
   };
@@ -19,7 +19,7 @@ TEST_CASE("a library that is not there is named with the remedy, on one line") {
                                 holds_text("; do this") && !holds_text("\n"));
 }
 
-TEST_CASE("a file that is no library is refused with the linker's reason") {
+TEST_CASE("a file that is not a library is refused with the linker's reason") {
   const auto content = GENERATE(std::string_view(""), std::string_view("no library"),
                                 std::string_view("\x7f"
                                                  "ELF and nothing more"));
@@ -31,7 +31,7 @@ TEST_CASE("a file that is no library is refused with the linker's reason") {
   std::filesystem::remove(file);
 }
 
-TEST_CASE("an empty name is no library, and not the program itself") {
+TEST_CASE("an empty name is refused, and does not mean the program itself") {
   CHECK_THROWS_WITH(device::DynamicLibrary("", device::Unload::when_closed, "do this"),
                     holds_text("no library is named"));
 }
@@ -44,7 +44,7 @@ TEST_CASE("functions are found by name, and a missing one is named") {
                     holds_text("has no function hdNoSuchThing; do this"));
 }
 
-TEST_CASE("a library that was cut off is told apart from a whole one without loading it here") {
+TEST_CASE("a truncated library is found without loading it into this process") {
   const Bytes whole = read_file(TOUCHTRIAL_FAKE_HD);
   const TempFolder folder;
   const auto file = folder.path() / "cut-library.so";

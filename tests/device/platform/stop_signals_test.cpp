@@ -1,7 +1,8 @@
-// Every way out of the program, each taken by a child process whose device tells what it sent.
+// Every way out of the program, each in a child process whose device reports the forces that it
+// sent.
 #include "device/platform/stop_signals.hpp"
 
-#include "device/safety/safety_fakes.hpp"
+#include "device/servo_fakes.hpp"
 #include "support/catch.hpp"
 
 #include <csignal>
@@ -19,7 +20,7 @@
 namespace touchtrial {
 namespace {
 
-/// Sends from a thread of its own: into a pipe, 'F' for force and 'z' for zero.
+/// Sends from a thread of its own into a pipe: 'F' for force, 'z' for zero.
 class PipeDevice final : public device::HapticDevice {
  public:
   explicit PipeDevice(int pipe) : sender_([this, pipe] { send_to(pipe); }) {
@@ -90,13 +91,13 @@ void leave_by(const std::string& way, const device::ServoControl& control) {
   if (way == "SIGQUIT") std::raise(SIGQUIT);
 }
 
-int pipe_to_tell = -1;  ///< of the child, for what it does last
+int pipe_to_tell = -1;  ///< the child reports its last act here
 
 [[noreturn]] void be_the_child(const std::string& way, int pipe) {
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
   ::close(STDERR_FILENO);
-  // As the shell starts a program, whatever the test program itself has made of signals.
+  // As a shell starts a program, whatever the test program has done with signals.
   for (const auto& [name, signal] : asking_signals()) std::signal(signal, SIG_DFL);
   for (const int signal : {SIGABRT, SIGSEGV, SIGFPE, SIGQUIT}) std::signal(signal, SIG_DFL);
   std::set_terminate(nullptr);
@@ -131,7 +132,8 @@ char last_sent(const WayOut& out) {
   return out.sent[out.sent.find_last_not_of('L')];
 }
 
-TEST_CASE("asked to end, the program sends zero and leaves with the code that a shell expects") {
+TEST_CASE(
+    "a program that is asked to end sends zero and leaves with the code that a shell expects") {
   const auto& [way, signal] = *std::next(asking_signals().begin(), GENERATE(range(0, 8)));
   const WayOut out = take(way);
   CAPTURE(way, out.sent);
@@ -142,7 +144,7 @@ TEST_CASE("asked to end, the program sends zero and leaves with the code that a 
   CHECK(WEXITSTATUS(out.status) == 128 + signal);
 }
 
-TEST_CASE("asked twice, the program ends at once, with the force at zero") {
+TEST_CASE("a program that is asked twice ends at once, with the force at zero") {
   const WayOut out = take("SIGTERM twice");
   CHECK(last_sent(out) == 'z');
   CHECK(out.sent.find('L') != std::string::npos);
@@ -165,7 +167,7 @@ TEST_CASE("a crash sends zero before the program dies of it") {
   CHECK(WTERMSIG(out.status) == signal);
 }
 
-TEST_CASE("without being asked there is nothing to leave for, and signals are handled once") {
+TEST_CASE("without a signal there is no exit code, and only one handler may exist") {
   RestingDevice device;
   device::ServoControl control;
   const device::StopOnSignals stop(device, control);
@@ -175,7 +177,7 @@ TEST_CASE("without being asked there is nothing to leave for, and signals are ha
   CHECK_THROWS_AS(device::StopOnSignals(device, control), std::logic_error);
 }
 
-TEST_CASE("after it was asked to end, the program knows by what") {
+TEST_CASE("a program that was asked to end knows by which signal") {
   RestingDevice device;
   device::ServoControl control;
   const device::StopOnSignals stop(device, control);

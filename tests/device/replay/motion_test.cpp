@@ -10,7 +10,7 @@
 namespace touchtrial {
 namespace {
 
-/// A file that goes when the test ends.
+/// A file that is removed when the test ends.
 class CsvFile {
  public:
   explicit CsvFile(std::string_view content) { replace_file(path(), content); }
@@ -33,7 +33,7 @@ TEST_CASE("a motion's rate and positions come from its rows") {
   CHECK(motion.position_mm(2) == Vec3{7, -8, 9.25});
 }
 
-TEST_CASE("columns are found by name, in quotation marks too, with either line end") {
+TEST_CASE("columns are found by name, also in quotation marks, with either line end") {
   const device::RecordedMotion motion =
       CsvFile(
           "\xEF\xBB\xBFz_mm,\"force, \"\"n\"\"\",time_s,\"x_mm\",y_mm\r\n"
@@ -45,7 +45,7 @@ TEST_CASE("columns are found by name, in quotation marks too, with either line e
   CHECK(motion.position_mm(1) == Vec3{4, 5, 6});
 }
 
-TEST_CASE("where rows are missing the hand moves straight on") {
+TEST_CASE("where rows are missing the hand moves on in a straight line") {
   const device::RecordedMotion motion =
       CsvFile(std::string(kHeader) + "0,0,0,0\n0.001,1,0,0\n0.002,2,0,0\n0.006,6,8,0\n").read();
   CHECK(motion.rate_hz() == 1000.0);
@@ -54,7 +54,7 @@ TEST_CASE("where rows are missing the hand moves straight on") {
   CHECK(motion.position_mm(6) == Vec3{6, 8, 0});
 }
 
-TEST_CASE("times that were rounded when written do not add up to a wrong rate") {
+TEST_CASE("rounded times do not add up to a wrong rate") {
   std::string text = kHeader;
   for (std::int64_t i = 0; i <= 3000; ++i) {
     const std::string micros = std::to_string(1'000'000 + (i * 1'000'000 + 1500) / 3000);
@@ -71,27 +71,27 @@ TEST_CASE("a hostile motion file is refused in one line that names the place") {
        {"time_s,x_mm,y_mm\n0,1,2\n", "line 1: no column z_mm"},
        {"time_s,x_mm,y_mm,z_mm\n0,0,0,0\n", "fewer than two"},
        {"time_s,x_mm,y_mm,z_mm\n0,0,0,0\n0.001,0,0\n", "line 3: 3 fields where the header has 4"},
-       {"time_s,x_mm,y_mm,z_mm\n0,0,0,0\n0.001,0,0,0x\n", "line 3: z_mm is no number: '0x'"},
-       {"time_s,x_mm,y_mm,z_mm\n0,0,0,0\n0.001,nan,0,0\n", "x_mm is no number"},
-       {"time_s,x_mm,y_mm,z_mm\n0,0,0,0\n0.001,inf,0,0\n", "x_mm is no number"},
-       {"time_s,x_mm,y_mm,z_mm\n0,0,0,0\n0.001,1e999,0,0\n", "x_mm is no number"},
-       {"time_s,x_mm,y_mm,z_mm\n0,0,0,0\n0.001,\"1\n2\",0,0\n", "x_mm is no number: '1 2'"},
+       {"time_s,x_mm,y_mm,z_mm\n0,0,0,0\n0.001,0,0,0x\n", "line 3: z_mm is not a number: '0x'"},
+       {"time_s,x_mm,y_mm,z_mm\n0,0,0,0\n0.001,nan,0,0\n", "x_mm is not a number"},
+       {"time_s,x_mm,y_mm,z_mm\n0,0,0,0\n0.001,inf,0,0\n", "x_mm is not a number"},
+       {"time_s,x_mm,y_mm,z_mm\n0,0,0,0\n0.001,1e999,0,0\n", "x_mm is not a number"},
+       {"time_s,x_mm,y_mm,z_mm\n0,0,0,0\n0.001,\"1\n2\",0,0\n", "x_mm is not a number: '1 2'"},
        {"time_s,x_mm,y_mm,z_mm\n0,0,0,0\n0.001,20000,0,0\n", "x_mm is beyond 10 m"},
        {"time_s,x_mm,y_mm,z_mm\n0,0,0,0\n0,0,0,0\n", "line 3: time_s does not increase"},
-       {"time_s,x_mm,y_mm,z_mm\n0,0,0,0\n5,0,0,0\n", "10 to 20,000 to the second"},
-       {"time_s,x_mm,y_mm,z_mm\n0,0,0,0\n1e-9,0,0,0\n", "10 to 20,000 to the second"},
+       {"time_s,x_mm,y_mm,z_mm\n0,0,0,0\n5,0,0,0\n", "10 to 20,000 rows a second"},
+       {"time_s,x_mm,y_mm,z_mm\n0,0,0,0\n1e-9,0,0,0\n", "10 to 20,000 rows a second"},
        {"time_s,x_mm,y_mm,z_mm\n0,0,0,0\n1e-3,0,0,0\n2e-3,0,0,0\n1e18,0,0,0\n", "longer than"},
        {"time_s,x_mm,y_mm,z_mm\n0,0,0,0\n1e-3,0,0,0\n2e-3,0,0,0\n2.1e-3,0,0,0\n", "closer in time"},
        {"time_s,x_mm,y_mm,z_mm\n0,0,0,\"0\n", "line 2: a quotation mark is not closed"},
-       {"time_s,x_mm,y_mm,z_mm\n0,0,0,\"0\"0\n", "line 2: text after a closing quotation mark"},
+       {"time_s,x_mm,y_mm,z_mm\n0,0,0,\"0\"0\n", "line 2: text follows a closing quotation mark"},
        {std::string("\0\0\0\0", 4), "no column time_s"}}));
   const CsvFile file(content);
   CHECK_THROWS_AS(file.read(), FileError);
-  CHECK_THROWS_WITH(
-      file.read(), holds_text("motion.csv") && holds_text(message) && !holds_text("\n"));
+  CHECK_THROWS_WITH(file.read(),
+                    holds_text("motion.csv") && holds_text(message) && !holds_text("\n"));
 }
 
-TEST_CASE("a motion file that is not there is refused") {
+TEST_CASE("a missing motion file is refused") {
   CHECK_THROWS_AS(device::read_motion_csv("/nowhere/motion.csv"), FileError);
 }
 

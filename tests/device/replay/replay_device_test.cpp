@@ -1,15 +1,19 @@
 #include "device/replay/replay_device.hpp"
 
+#include "core/errors.hpp"
+#include "core/files.hpp"
 #include "device/flat_wall.hpp"
+#include "device/registry.hpp"
 #include "device/simulated/simulated_hand.hpp"
 #include "support/catch.hpp"
+#include "support/temp_folder.hpp"
 
 #include <stdexcept>
 
 namespace touchtrial {
 namespace {
 
-/// A wall with a damper, so that velocity matters too.
+/// A wall with a damper, so that the force depends on velocity too.
 class DampedWall final : public device::ForceSource {
  public:
   [[nodiscard]] Vec3 force_n(const device::DeviceSample& sample) noexcept override {
@@ -63,10 +67,34 @@ TEST_CASE("a replay goes through its positions once, with the velocity of each s
   CHECK(sample.position_mm == Vec3{2, -3, 1});
 }
 
-TEST_CASE("a motion of nothing, or at no rate, is refused") {
+TEST_CASE("a motion without positions or without a rate is refused") {
   CHECK_THROWS_AS(device::RecordedMotion({}, 1000.0), std::invalid_argument);
   CHECK_THROWS_AS(device::RecordedMotion({{}}, 0.0), std::invalid_argument);
 }
 
+TEST_CASE("replay without a recording says which setting names one") {
+  const std::vector<device::DeviceListing> listings = device::device_driver("replay").list({});
+  REQUIRE(listings.size() == 1);
+  CHECK_FALSE(listings[0].present);
+  REQUIRE(listings[0].missing.size() == 1);
+  CHECK_THAT(listings[0].missing[0], holds_text("replay.trace"));
+  CHECK_THROWS_AS(device::open_device("replay", {}), DeviceError);
+}
+
+TEST_CASE("replay is opened through the registry with the recording of the settings") {
+  const TempFolder folder;
+  const auto file = folder.path() / "motion.csv";
+  replace_file(file, "time_s,x_mm,y_mm,z_mm\n0,1,2,3\n0.001,1,2,3\n");
+  device::DeviceSettings settings;
+  settings.replay.trace = file;
+  CHECK(device::device_driver("replay").list(settings).at(0).present);
+  const std::unique_ptr<device::HapticDevice> device = device::open_device("replay", settings);
+  std::filesystem::remove(file);
+  device::DeviceSample sample;
+  CHECK(device->read(sample) == device::DeviceStatus::ok);
+  CHECK(sample.position_mm == Vec3{1, 2, 3});
+}
+
 }  // namespace
+
 }  // namespace touchtrial

@@ -1,4 +1,5 @@
-// The chain and the servo under hostile forces, devices, limits and time: what may reach a hand.
+// The chain and the servo under hostile forces, devices, limits and time: which forces reach a
+// hand.
 #include "core/random.hpp"
 #include "device/safety/safety_chain.hpp"
 #include "device/servo/servo.hpp"
@@ -16,7 +17,7 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Mostly sensible; now and then what no force or position should be.
+/// Mostly sensible; now and then a number that no force or position should be.
 double hostile_number(RandomStream& random, double size) {
   switch (random.below(40)) {
     case 0:
@@ -43,7 +44,7 @@ Vec3 hostile_force_n(RandomStream& random) {
   return {hostile_number(random, size), hostile_number(random, size), 0.0};
 }
 
-/// A hand that strokes, on a device that does whatever devices do.
+/// A hand that strokes, on a device that fails in many ways.
 class HostileReadings {
  public:
   explicit HostileReadings(RandomStream& random) : random_(random) {}
@@ -86,7 +87,7 @@ device::SafetyLimits hostile_limits(RandomStream& random) {
   return limits;
 }
 
-/// Holds every force against what was promised, and says what was broken first.
+/// Checks every force against the chain's promises, and names the first broken one.
 class Judge {
  public:
   Judge(const device::SafetyLimits& limits, double tick_s) : limits_(limits), tick_s_(tick_s) {}
@@ -123,8 +124,8 @@ bool must_fault(Vec3 force_n, const device::DeviceSample& sample) {
   return !is_finite(force_n) || !is_finite(sample.position_mm) || !is_finite(sample.velocity_mm_s);
 }
 
-/// What holds besides: latched until re-armed, closed until small, nothing on a device not ready,
-/// at rest, or stuck.
+/// Further promises: latched until re-armed, closed until small, zero on a device that is not
+/// ready, at rest, or stuck.
 class ChainRun {
  public:
   ChainRun(std::uint64_t seed, double rate_hz)
@@ -190,7 +191,8 @@ class ChainRun {
 };
 
 TEST_CASE(
-    "whatever comes, what the chain lets pass is finite, limited, smooth, and zero on faults") {
+    "whatever the input, the chain passes forces that are finite, limited, smooth, and zero on "
+    "faults") {
   std::int64_t forces = 0;
   for (std::uint64_t seed = 0; seed < 4000; ++seed) {
     CAPTURE(seed);
@@ -227,7 +229,7 @@ class HostileDevice final : public device::HapticDevice {
   double max_force_n_;
 };
 
-/// Small at first, so that runs come to force; then hostile, and with requests to the servo.
+/// Small at first, so that a run engages; then hostile, and with requests to the servo.
 class HostileForce final : public device::ForceSource {
  public:
   HostileForce(RandomStream& random, device::ServoControl& control)
@@ -279,7 +281,9 @@ class CountedSamples final : public device::SampleSink {
   std::int64_t count = 0;
 };
 
-TEST_CASE("whatever comes, what the servo writes is finite, limited and smooth, and zero at last") {
+TEST_CASE(
+    "whatever the input, the servo writes forces that are finite, limited and smooth, and zero "
+    "last") {
   std::int64_t forces = 0;
   for (std::uint64_t seed = 0; seed < 2000; ++seed) {
     CAPTURE(seed);

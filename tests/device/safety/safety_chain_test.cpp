@@ -1,6 +1,6 @@
 #include "device/safety/safety_chain.hpp"
 
-#include "device/safety/norm_limit_alone.hpp"
+#include "device/servo_fakes.hpp"
 #include "support/catch.hpp"
 
 #include <limits>
@@ -34,13 +34,13 @@ TEST_CASE("a force that is not finite sends zero and latches until it is re-arme
   CHECK(safety.check({0.0, 0.0, 1.0}, {}).force_n == Vec3{0.0, 0.0, 1.0});
 }
 
-TEST_CASE("a limit that is no positive number lets no force pass") {
+TEST_CASE("a limit that is not a positive number lets no force pass") {
   const double limit_n = GENERATE(0.0, -1.0, std::numeric_limits<double>::quiet_NaN());
   CHECK(device::SafetyChain(norm_limit_alone(limit_n)).check({0.0, 0.1, 0.0}, {}).force_n ==
         Vec3{});
 }
 
-/// A device in which nothing is wrong: it rests, and numbers its readings.
+/// A faultless device: it rests, and numbers its readings.
 class Readings {
  public:
   device::DeviceSample next() {
@@ -50,7 +50,8 @@ class Readings {
   device::DeviceSample sample{{1.0, 2.0, -1.0}, {}};
 };
 
-/// Past gate and ramp, under a force. \return the force that is sent
+/// Applies a force until gate and ramp have passed.
+/// \return the force that is sent
 Vec3 engage(device::SafetyChain& safety, Readings& device, Vec3 force_n) {
   static_cast<void>(safety.check({}, device.next()));
   for (int tick = 0; tick < 200; ++tick) {
@@ -103,11 +104,11 @@ TEST_CASE("while force is on, each of these is a fault: zero at once, latched") 
     bad.velocity_mm_s.z = -2500.0;
     fault = device::SafetyFault::overspeed;
   }
-  SECTION("a velocity that is no number") {
+  SECTION("a velocity that is not a number") {
     bad.velocity_mm_s.z = std::numeric_limits<double>::quiet_NaN();
     fault = device::SafetyFault::not_finite;
   }
-  SECTION("a position that is no number") {
+  SECTION("a position that is not a number") {
     bad.position_mm.x = std::numeric_limits<double>::infinity();
     fault = device::SafetyFault::not_finite;
   }
@@ -164,7 +165,7 @@ TEST_CASE("the force changes by at most the slew limit, also after an overrun") 
   CHECK(safety.check({0.0, 0.0, 2.0}, device.next(), 5).force_n.z == Approx(1.4));
 }
 
-TEST_CASE("an overrun counts as the time that it took") {
+TEST_CASE("an overrun counts with the time that it took") {
   device::SafetyChain safety({});
   Readings device;
   static_cast<void>(engage(safety, device, {}));
@@ -174,10 +175,10 @@ TEST_CASE("an overrun counts as the time that it took") {
   CHECK(safety.check({}, device.next()).verdict == device::SafetyVerdict::fault);
 }
 
-TEST_CASE("limits or a tick that make no sense let no force pass") {
+TEST_CASE("unsound limits or an unsound tick let no force pass") {
   device::SafetyLimits limits;
   double tick_s = 0.001;
-  SECTION("a slew that is no number") {
+  SECTION("a slew that is not a number") {
     limits.max_slew_n_per_s = std::numeric_limits<double>::quiet_NaN();
   }
   SECTION("a negative time") {
@@ -186,7 +187,7 @@ TEST_CASE("limits or a tick that make no sense let no force pass") {
   SECTION("a tick of no length") {
     tick_s = 0.0;
   }
-  SECTION("a tick that is no number") {
+  SECTION("a tick that is not a number") {
     tick_s = std::numeric_limits<double>::quiet_NaN();
   }
   device::SafetyChain safety(limits, tick_s);

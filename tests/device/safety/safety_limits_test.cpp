@@ -22,7 +22,7 @@ TEST_CASE("the default limits are sound") {
   CHECK(device::is_sound({}));
 }
 
-TEST_CASE("a limit that makes no sense is not sound, whichever it is") {
+TEST_CASE("a limit out of its range is unsound, whichever it is") {
   double device::SafetyLimits::*limit =
       GENERATE(&device::SafetyLimits::max_force_n, &device::SafetyLimits::continuous_force_n,
                &device::SafetyLimits::thermal_budget_s, &device::SafetyLimits::max_slew_n_per_s,
@@ -34,7 +34,7 @@ TEST_CASE("a limit that makes no sense is not sound, whichever it is") {
   CHECK_FALSE(device::is_sound(limits));
 }
 
-TEST_CASE("force and ramp have to be finite, what switches a link off need not") {
+TEST_CASE("force and ramp must be finite, the limits that switch a link off need not") {
   CHECK_FALSE(device::is_sound({.max_force_n = kInfinity, .max_slew_n_per_s = kInfinity}));
   CHECK_FALSE(device::is_sound({.ramp_up_s = kInfinity}));
   CHECK(device::is_sound({.max_slew_n_per_s = kInfinity,
@@ -43,7 +43,7 @@ TEST_CASE("force and ramp have to be finite, what switches a link off need not")
                           .stale_s = kInfinity}));
 }
 
-TEST_CASE("a slew limit that could not let go in time is not sound") {
+TEST_CASE("a slew limit that cannot let go in time is unsound") {
   CHECK(device::is_sound({.max_force_n = 3.3, .max_slew_n_per_s = 66.1}));
   CHECK_FALSE(device::is_sound({.max_force_n = 3.3, .max_slew_n_per_s = 65.9}));
 }
@@ -61,7 +61,7 @@ TEST_CASE("on a device the smaller limits hold") {
         0.5);
 }
 
-TEST_CASE("a device that does not know its own force gets none") {
+TEST_CASE("a device that does not know its own force limit gets no force") {
   CHECK_FALSE(device::is_sound(device::limits_on(device_of(kNaN, 0.0), {})));
   CHECK_FALSE(device::is_sound(device::limits_on(device_of(3.3, kNaN), {})));
   CHECK_FALSE(device::is_sound(device::limits_on(device_of(0.0, 0.0), {})));

@@ -1,6 +1,6 @@
 // What stops a running servo: comfort stop, emergency stop, and what they leave in the hand.
 #include "device/flat_wall.hpp"
-#include "device/safety/safety_fakes.hpp"
+#include "device/servo_fakes.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kTexturePeakN = 0.4;
 
-/// Presses and fluctuates like a texture under a stroke, and calls somebody at one tick.
+/// Presses and fluctuates like a texture under a stroke, and calls a function at one tick.
 class TextureForce final : public device::ForceSource {
  public:
   TextureForce(double rate_hz, double texture_n) : rate_hz_(rate_hz), texture_n_(texture_n) {}
@@ -79,7 +79,7 @@ TEST_CASE("a comfort stop brings the force to zero within 100 ms and without a s
   const Stopped stopped = stop_by(&device::ServoControl::comfort_stop, options, texture_n);
   CHECK(stopped.report.end == device::ServoEnd::comfort_stop);
   REQUIRE(stopped.written.size() > stopped.asked_at);
-  // The tick that asked, those of 100 ms, and the zero that ends every run.
+  // The tick of the request, those of 100 ms, and the zero that ends every run.
   CHECK(static_cast<double>(stopped.written.size() - stopped.asked_at) <= 0.1 * rate_hz + 2.0);
   CHECK(stopped.written.back() == Vec3{});
   CHECK(stopped.written[stopped.written.size() - 2] == Vec3{});
@@ -88,7 +88,7 @@ TEST_CASE("a comfort stop brings the force to zero within 100 ms and without a s
         1.001 * (texture_step_n(texture_n, rate_hz) + fade_step_n));
 }
 
-TEST_CASE("a comfort stop takes over from a longer fade where that is") {
+TEST_CASE("a comfort stop takes over a longer fade at its present share") {
   const device::ServoOptions options{.limit_ticks = 400, .fade_ticks = 1000};
   const Stopped stopped = stop_by(&device::ServoControl::comfort_stop, options, 0.0, 0.9);
   CHECK(stopped.report.end == device::ServoEnd::comfort_stop);
@@ -97,7 +97,7 @@ TEST_CASE("a comfort stop takes over from a longer fade where that is") {
   CHECK(largest_change_n(stopped.written, 300) < 0.02);
 }
 
-TEST_CASE("a comfort stop leaves alone a fade that is over sooner") {
+TEST_CASE("a comfort stop does not change a fade that ends sooner") {
   const device::ServoOptions options{.limit_ticks = 400, .fade_ticks = 50};
   const Stopped stopped = stop_by(&device::ServoControl::comfort_stop, options, 0.0, 0.42);
   CHECK(stopped.report.end == device::ServoEnd::time_limit);
@@ -118,7 +118,7 @@ TEST_CASE("an emergency stop, or a stall, sends zero at the very next tick and l
   CHECK(stopped.written.back() == Vec3{});
 }
 
-/// Keeps no list: it may be written to for as long as another thread takes.
+/// Keeps no list, as the run may last as long as another thread takes.
 class MeasuringDevice final : public device::HapticDevice {
  public:
   [[nodiscard]] device::DeviceInfo info() const override { return {"measuring", "", 3.3, true}; }

@@ -1,6 +1,6 @@
 #include "device/safety/watchdog.hpp"
 
-#include "device/safety/safety_fakes.hpp"
+#include "device/servo_fakes.hpp"
 #include "support/catch.hpp"
 
 #include <condition_variable>
@@ -12,7 +12,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Time that goes on by steps of the test: each lets the watchdog look once.
+/// Time in steps of the test: each lets the watchdog look once.
 class SteppedTime final : public device::WatchdogTime {
  public:
   [[nodiscard]] Time now() noexcept override {
@@ -27,7 +27,7 @@ class SteppedTime final : public device::WatchdogTime {
     if (granted_ > 0) --granted_;
   }
 
-  /// One pause of the watchdog takes so long; returns when it has looked.
+  /// Lets one pause of the watchdog last this long; returns when it has looked.
   void step(Time length) {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return pauses_ > steps_; });
@@ -92,7 +92,7 @@ TEST_CASE("a watchdog halts the device of a servo that has been silent for 10 ms
   CHECK(watched.watchdog->disarm());
 }
 
-TEST_CASE("a watchdog leaves a servo alone that beats, late now and then") {
+TEST_CASE("a watchdog leaves a beating servo alone, even if a beat is late") {
   Watched watched;
   watched.watchdog->arm();
   for (int i = 0; i < 20; ++i) {
@@ -114,7 +114,7 @@ TEST_CASE("a watchdog waits for the first beat, and knows the end of a run") {
   CHECK_FALSE(watched.is_stopped());
 }
 
-TEST_CASE("a watchdog that is not armed watches nothing, and armed anew begins anew") {
+TEST_CASE("a watchdog that is not armed watches nothing, and begins anew when it is armed") {
   Watched watched;
   watched.pass(milliseconds(10), true);
   watched.pass(milliseconds(100), false);
@@ -126,7 +126,7 @@ TEST_CASE("a watchdog that is not armed watches nothing, and armed anew begins a
   CHECK_FALSE(watched.is_stopped());
 }
 
-TEST_CASE("a machine that stood still as a whole is no silence of the servo") {
+TEST_CASE("to the watchdog a pause of the whole machine is no silence of the servo") {
   Watched watched;
   watched.watchdog->arm();
   watched.pass(milliseconds(10), true);

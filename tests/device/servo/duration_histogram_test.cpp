@@ -63,7 +63,7 @@ TEST_CASE("a histogram without durations has percentiles of zero") {
   CHECK(device::DurationHistogram().worst() == nanoseconds(0));
 }
 
-TEST_CASE("a histogram takes what is below and beyond its bins") {
+TEST_CASE("a histogram takes durations below and beyond its bins") {
   device::DurationHistogram histogram;
   histogram.add(nanoseconds(-5));
   histogram.add(std::chrono::hours(1));
@@ -72,7 +72,7 @@ TEST_CASE("a histogram takes what is below and beyond its bins") {
   CHECK(histogram.percentile_us(1.0) == 3.6e9);
 }
 
-TEST_CASE("histograms add up as if all durations had gone into one") {
+TEST_CASE("the sum of histograms equals one histogram of all durations") {
   device::DurationHistogram one;
   device::DurationHistogram other;
   one.add(nanoseconds(100));

@@ -1,7 +1,7 @@
 #include "device/servo/flight_recorder.hpp"
 
 #include "device/flat_wall.hpp"
-#include "device/servo/servo_fakes.hpp"
+#include "device/servo_fakes.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -41,7 +41,7 @@ TEST_CASE("a flight recorder holds the last seconds, oldest tick first") {
   }
 }
 
-TEST_CASE("a flight recorder shows what was asked for beside what was sent") {
+TEST_CASE("a flight recorder shows the requested force beside the sent one") {
   ScriptedDevice device;
   device::FlightRecorder recorder(1.0, 1000.0);
   const std::vector<device::FlightTick> ticks = fly(device, {0.0, 0.0, 5.0}, recorder);
@@ -81,7 +81,7 @@ TEST_CASE("the tick of a fault is the last one in a flight recorder") {
   }
 }
 
-TEST_CASE("a cleared flight recorder holds nothing of the trial before") {
+TEST_CASE("a cleared flight recorder holds nothing of the previous trial") {
   ScriptedDevice device;
   device::FlightRecorder recorder(1.0, 1000.0);
   REQUIRE_FALSE(fly(device, {}, recorder).empty());
@@ -115,7 +115,7 @@ TEST_CASE("a flight as CSV has a name for every column and one row a tick") {
   CHECK(std::count(header.begin(), header.end(), ',') == std::count(row.begin(), row.end(), ','));
 }
 
-TEST_CASE("the names of faults and ends are those that files promise") {
+TEST_CASE("the names of faults and ends are those that files use") {
   device::FlightTick tick;
   tick.verdict = device::SafetyVerdict::fault;
   tick.fault = device::SafetyFault::stale_sample;

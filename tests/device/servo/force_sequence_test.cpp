@@ -22,7 +22,7 @@ class SteadyForce final : public device::ForceSource {
   double z_n_;
 };
 
-/// What a sequence gives tick by tick, sent as it is.
+/// Runs a sequence tick by tick and sends its forces unchanged.
 std::vector<double> forces_of(device::ForceSequence& sequence, std::int64_t ticks) {
   std::vector<double> forces;
   for (std::int64_t tick = 0; tick < ticks; ++tick) {
@@ -32,7 +32,8 @@ std::vector<double> forces_of(device::ForceSequence& sequence, std::int64_t tick
   return forces;
 }
 
-TEST_CASE("a sequence of forces goes from one to the other smoothly and asks only who is needed") {
+TEST_CASE(
+    "a sequence of forces goes smoothly from one to the other and asks only the one that acts") {
   SteadyForce first(1.0);
   SteadyForce second(3.0);
   device::ForceSequence sequence(first, second, 100, 200);
@@ -51,7 +52,7 @@ TEST_CASE("a sequence of forces goes from one to the other smoothly and asks onl
   CHECK(second.asked == 300);
 }
 
-TEST_CASE("a sequence of forces tells what the hand met of each") {
+TEST_CASE("a sequence of forces reports what the hand met of each") {
   SteadyForce first(0.0);
   SteadyForce second(2.0);
   device::ForceSequence sequence(first, second, 30, 1);
@@ -63,7 +64,7 @@ TEST_CASE("a sequence of forces tells what the hand met of each") {
   CHECK(sequence.second().greatest_force_n == 2.0);
 }
 
-TEST_CASE("ticks that an overrun left out count for the change from one force to the other") {
+TEST_CASE("the change from one force to the other counts the ticks that an overrun left out") {
   SteadyForce first(1.0);
   SteadyForce second(3.0);
   device::ForceSequence sequence(first, second, 10, 10);

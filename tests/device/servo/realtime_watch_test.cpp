@@ -1,15 +1,15 @@
-// Nothing in the servo's loop asks for memory or a lock; and the watch that proves it sees those
-// who do.
+// Nothing in the servo's loop takes memory or a lock, and the watch that proves it detects code
+// that does.
 #include "support/realtime_watch.hpp"
 
 #include "device/device_link.hpp"
 #include "device/flat_wall.hpp"
 #include "device/placed_device.hpp"
+#include "device/platform/realtime.hpp"
 #include "device/servo/duration_histogram.hpp"
 #include "device/servo/flight_recorder.hpp"
-#include "device/servo/paced_clock.hpp"
-#include "device/servo/realtime_region.hpp"
 #include "device/servo/sample_ring.hpp"
+#include "device/servo/servo_clock.hpp"
 #include "device/simulated/simulated_hand.hpp"
 #include "support/catch.hpp"
 
@@ -29,7 +29,7 @@ device::SimulatedHand stroking_hand() {
                                device::ExplorationPath(PlaneGeometry{0.2, 200, 200}, {}, random));
 }
 
-/// A wall that does something else besides.
+/// A wall that also calls a function.
 class BusyWall final : public device::ForceSource {
  public:
   explicit BusyWall(std::function<void()> work) : work_(std::move(work)) {}
@@ -60,7 +60,7 @@ RealtimeOffences offences_of(device::HapticDevice& device, device::ForceSource& 
   return offences;
 }
 
-TEST_CASE("the loop with every hook and a simulated hand asks for no memory and no lock") {
+TEST_CASE("the loop with every hook and a simulated hand takes no memory and no lock") {
   device::SimulatedHand hand = stroking_hand();
   FlatWall wall;
   SECTION("in virtual time") {
@@ -78,7 +78,7 @@ TEST_CASE("the loop with every hook and a simulated hand asks for no memory and 
   }
 }
 
-TEST_CASE("a driver's link asks for no memory and no lock") {
+TEST_CASE("a driver's link takes no memory and no lock") {
   device::DeviceLink link;
   device::DeviceSample sample;
   static_cast<void>(take_realtime_offences());
@@ -93,7 +93,7 @@ TEST_CASE("a driver's link asks for no memory and no lock") {
   CHECK(take_realtime_offences() == RealtimeOffences{});
 }
 
-TEST_CASE("a force source that asks for memory in the loop is caught") {
+TEST_CASE("a force source that takes memory in the loop is caught") {
   device::SimulatedHand hand = stroking_hand();
   device::VirtualClock clock;
   SECTION("by growing") {
@@ -133,8 +133,7 @@ TEST_CASE("a force source that locks in the loop is caught") {
   }
 }
 
-TEST_CASE(
-    "memory and locks outside the loop, and of several threads at once, are nobody's offence") {
+TEST_CASE("memory and locks outside the loop, and of several threads at once, are no offence") {
   static_cast<void>(take_realtime_offences());
   std::mutex mutex;
   const auto work = [&] {

@@ -29,7 +29,7 @@ TEST_CASE("a ring gives samples back in their order, in batches") {
   CHECK(ring.pop(read) == 0);
 }
 
-TEST_CASE("a ring holds its capacity and refuses what is beyond") {
+TEST_CASE("a ring holds its capacity and refuses more") {
   const std::size_t capacity = GENERATE(1U, 7U, 1000U);
   device::SampleRing ring(capacity);
   CHECK(ring.capacity() == capacity);
@@ -42,7 +42,7 @@ TEST_CASE("a ring without room for a sample is refused") {
   CHECK_THROWS_AS(device::SampleRing(0), std::invalid_argument);
 }
 
-TEST_CASE("a full ring costs the newest samples, and each is counted") {
+TEST_CASE("a full ring loses the newest samples and counts each of them") {
   device::SampleRing ring(4);
   device::RingSink sink(ring);
   for (int i = 0; i < 7; ++i) sink.record(sample_of(i));
@@ -52,7 +52,7 @@ TEST_CASE("a full ring costs the newest samples, and each is counted") {
   CHECK(read[3].tick == 3);
 }
 
-TEST_CASE("between two threads a ring loses nothing, doubles nothing and keeps the order") {
+TEST_CASE("between two threads a ring loses nothing, repeats nothing and keeps the order") {
   constexpr std::int64_t kSamples = 200'000;
   device::SampleRing ring(64);
   std::int64_t expected = 0;

@@ -1,9 +1,8 @@
-// When ticks come, how late they were, and what is left out: by a clock that is late by script.
+// When ticks begin, how late they are, and which are left out, by a clock that is late by script.
 #include "device/flat_wall.hpp"
-#include "device/safety/norm_limit_alone.hpp"
 #include "device/servo/duration_histogram.hpp"
 #include "device/servo/servo.hpp"
-#include "device/servo/servo_fakes.hpp"
+#include "device/servo_fakes.hpp"
 #include "support/catch.hpp"
 
 #include <cmath>
@@ -33,7 +32,7 @@ PacedRun run(LateClock clock, device::ServoOptions options, const device::ServoH
   return run;
 }
 
-TEST_CASE("ticks on time have no lateness and the rate that was asked for") {
+TEST_CASE("ticks on time have no lateness and the requested rate") {
   const double rate_hz = GENERATE(1000.0, 3000.0, 4000.0, 10'000.0);
   const PacedRun done =
       run(LateClock({}), {.limit_ticks = 500, .fade_ticks = 0, .rate_hz = rate_hz});
@@ -43,7 +42,7 @@ TEST_CASE("ticks on time have no lateness and the rate that was asked for") {
   CHECK(done.report.rate_hz == Approx(rate_hz).epsilon(1e-5));
 }
 
-TEST_CASE("a tick that is late by less than a period is run, and the next one is on time again") {
+TEST_CASE("a tick that is late by less than a period runs, and the next one is on time again") {
   const PacedRun done =
       run(LateClock({kOnTime, microseconds(700), kOnTime}), {.limit_ticks = 4, .fade_ticks = 0});
   CHECK(done.ticks == std::vector<std::int64_t>{0, 1, 2, 3});
@@ -70,7 +69,7 @@ TEST_CASE("a tick that begins just as the next one is due is left out for that o
   CHECK(done.report.overruns == 1);
 }
 
-TEST_CASE("a loop that stood still until time was up sends no more than the zero") {
+TEST_CASE("a loop that stood still until time was up sends only the final zero") {
   ScriptedDevice device;
   ConstantForce force({0.0, 0.0, 0.5});
   KeptSamples kept;
@@ -84,7 +83,7 @@ TEST_CASE("a loop that stood still until time was up sends no more than the zero
   CHECK(device.written == std::vector<Vec3>{{0.0, 0.0, 0.5}, {}});
 }
 
-TEST_CASE("lateness is measured from the tick that was due first") {
+TEST_CASE("lateness counts from the tick that was due first") {
   device::DurationHistogram lateness;
   device::ServoHooks hooks;
   hooks.lateness = &lateness;
@@ -132,7 +131,7 @@ TEST_CASE("a rate or a number of ticks out of range is refused before the first 
   CHECK(device.reads == 0);
 }
 
-TEST_CASE("somebody who is done before a fade of no length ends the run without a fault") {
+TEST_CASE("finishing before a fade of no length ends the run without a fault") {
   ScriptedDevice device;
   ConstantForce force({0.0, 0.0, 0.5});
   KeptSamples kept;

@@ -1,8 +1,7 @@
 #include "device/servo/servo.hpp"
 
 #include "device/flat_wall.hpp"
-#include "device/safety/norm_limit_alone.hpp"
-#include "device/servo/servo_fakes.hpp"
+#include "device/servo_fakes.hpp"
 #include "support/catch.hpp"
 
 #include <cmath>
@@ -11,7 +10,7 @@
 namespace touchtrial {
 namespace {
 
-TEST_CASE("the servo runs until the hand stops and records what it sent where") {
+TEST_CASE("the servo runs until the hand stops and records each position with its force") {
   ScriptedDevice device;
   device.ticks = 5;
   ConstantForce force({0.0, 0.0, 0.5});
@@ -24,7 +23,7 @@ TEST_CASE("the servo runs until the hand stops and records what it sent where") 
   CHECK(kept.samples[3].force_n == device.written[3]);
 }
 
-TEST_CASE("when time is up the force fades to nothing, and zero is written last") {
+TEST_CASE("when time is up the force fades to zero, and the last write is zero") {
   ScriptedDevice device;
   ConstantForce force({0.0, 0.0, 1.0});
   KeptSamples kept;
@@ -81,7 +80,7 @@ TEST_CASE("a share of the force that changes while the servo runs is followed wi
   }
 }
 
-TEST_CASE("a share of the force that is no number is none of it") {
+TEST_CASE("a share of the force that is not a number counts as zero") {
   ScriptedDevice device;
   ConstantForce force({0.0, 0.0, 0.4});
   KeptSamples kept;
@@ -94,7 +93,7 @@ TEST_CASE("a share of the force that is no number is none of it") {
   CHECK(kept.samples.back().force_n == Vec3{});
 }
 
-TEST_CASE("motors that are warm from one run are warm in the next") {
+TEST_CASE("motors that one run has warmed are warm in the next") {
   device::MotorHeat heat;
   ConstantForce force({0.0, 0.0, 3.0});
   device::SafetyLimits limits = norm_limit_alone(3.3);
@@ -128,7 +127,7 @@ TEST_CASE("a force that is not a number ends the loop without reaching the devic
   CHECK(device.written == std::vector<Vec3>{{}});
 }
 
-TEST_CASE("a device that is lost ends the loop with a fault") {
+TEST_CASE("a lost device ends the loop with a fault") {
   ScriptedDevice device;
   ConstantForce force({});
   KeptSamples kept;

@@ -1,8 +1,8 @@
 #include "device/servo/servo_thread.hpp"
 
 #include "device/flat_wall.hpp"
-#include "device/servo/paced_clock.hpp"
-#include "device/servo/servo_fakes.hpp"
+#include "device/servo/servo_clock.hpp"
+#include "device/servo_fakes.hpp"
 #include "support/catch.hpp"
 
 #include <atomic>
@@ -13,7 +13,7 @@
 namespace touchtrial {
 namespace {
 
-/// Asks for nothing that changes the rest of the tests' process.
+/// Requests nothing that changes the process of the other tests.
 constexpr device::SchedulingRequest kOrdinary{device::SchedulingPolicy::other, 0, false};
 
 TEST_CASE("a servo thread does one piece of work after another on the same thread") {
@@ -26,7 +26,7 @@ TEST_CASE("a servo thread does one piece of work after another on the same threa
   CHECK(first != std::this_thread::get_id());
 }
 
-TEST_CASE("a servo thread works while others go on, and says when it is done") {
+TEST_CASE("a servo thread works while other threads go on, and says when it is done") {
   device::ServoThread servo(kOrdinary);
   CHECK_FALSE(servo.running());
   std::promise<void> go;
@@ -38,7 +38,7 @@ TEST_CASE("a servo thread works while others go on, and says when it is done") {
   CHECK_FALSE(servo.running());
 }
 
-TEST_CASE("what work on a servo thread throws is thrown by wait, and the thread serves on") {
+TEST_CASE("wait throws what work on a servo thread threw, and the servo thread goes on") {
   device::ServoThread servo(kOrdinary);
   CHECK_THROWS_AS(servo.run([] { throw std::runtime_error("no field"); }), std::runtime_error);
   bool ran = false;
@@ -46,7 +46,7 @@ TEST_CASE("what work on a servo thread throws is thrown by wait, and the thread 
   CHECK(ran);
 }
 
-TEST_CASE("a servo thread that is let go of ends its work first") {
+TEST_CASE("a servo thread that is destroyed ends its work first") {
   std::atomic<bool> ended{false};
   {
     device::ServoThread servo(kOrdinary);
@@ -55,7 +55,7 @@ TEST_CASE("a servo thread that is let go of ends its work first") {
   CHECK(ended);
 }
 
-TEST_CASE("an ordinary thread gets what it asked for, without a reason") {
+TEST_CASE("an ordinary thread gets what it requests, without a reason") {
   const device::ServoThread servo(kOrdinary);
   CHECK(servo.scheduling().policy == device::SchedulingPolicy::other);
   CHECK(servo.scheduling().priority == 0);
@@ -63,7 +63,7 @@ TEST_CASE("an ordinary thread gets what it asked for, without a reason") {
   CHECK(servo.scheduling().reason.empty());
 }
 
-TEST_CASE("a thread that asks for real time gets it, or the reason and remedy on one line") {
+TEST_CASE("a thread that requests real time gets it, or the reason and remedy on one line") {
   const device::ServoThread servo({device::SchedulingPolicy::fifo, 1000, false});
   const device::SchedulingObtained& had = servo.scheduling();
   if (had.policy == device::SchedulingPolicy::fifo) {
@@ -93,5 +93,62 @@ TEST_CASE("the servo on a servo thread never begins a tick before its time") {
   CHECK(report.ticks == static_cast<std::int64_t>(kept.samples.size()));
 }
 
+TEST_CASE(
+    "an exception of the thread that attends to a running servo leaves the hand without force") {
+  device::ServoThread thread(kOrdinary);
+  device::ServoControl control;
+  ScriptedDevice device;
+  device::ServoReport report;
+  const auto attend = [&] {
+    ConstantForce force({0.0, 0.0, 0.4});
+    KeptSamples kept;
+    std::atomic<std::int64_t> beats{0};
+    device::PacedClock clock(device::PacedClock::usual_spin(device::SchedulingPolicy::other));
+    // An hour, unless something ends it.
+    device::RunningServo running(thread, control, [&] {
+      report = device::run_servo(device, force, kept, {.limit_ticks = 3'600'000}, clock,
+                                 {.control = &control, .heartbeat = &beats});
+    });
+    while (beats.load() < 200 && running.runs(std::chrono::milliseconds(1))) {
+    }
+    throw std::runtime_error("the window is gone");
+  };
+  CHECK_THROWS_WITH(attend(), "the window is gone");
+  CHECK_FALSE(thread.running());
+  CHECK(report.fault == device::SafetyFault::emergency_stop);
+  REQUIRE_FALSE(device.written.empty());
+  CHECK(device.written.back() == Vec3{});
+  CHECK(device.written[device.written.size() - 2].z > 0.0);
+}
+
+TEST_CASE("a servo that ran to its end throws its exception once, and requests no stop") {
+  device::ServoThread thread(kOrdinary);
+  device::ServoControl control;
+  {
+    device::RunningServo running(thread, control, [] { throw std::runtime_error("no field"); });
+    while (running.runs(std::chrono::milliseconds(1))) {
+    }
+    CHECK_THROWS_WITH(running.finish(), "no field");
+  }
+  CHECK_FALSE(control.emergency_stop_asked());
+}
+
+TEST_CASE("requests are forgotten before a run, but stops hold until they are reset") {
+  device::ServoControl control;
+  control.finish();
+  control.comfort_stop();
+  control.emergency_stop();
+  control.stall();
+  control.forget_wishes();
+  CHECK_FALSE(control.finish_asked());
+  CHECK_FALSE(control.comfort_stop_asked());
+  CHECK(control.emergency_stop_asked());
+  CHECK(control.stall_seen());
+  control.reset();
+  CHECK_FALSE(control.emergency_stop_asked());
+  CHECK_FALSE(control.stall_seen());
+}
+
 }  // namespace
+
 }  // namespace touchtrial

@@ -39,7 +39,7 @@ TEST_CASE("an exploration path stays within its margin") {
   }
 }
 
-TEST_CASE("strokes are between 50 and 150 mm/s fast, and mostly at speed") {
+TEST_CASE("strokes have a speed of 50 to 150 mm/s, for most of their time") {
   const PlaneGeometry plane = GENERATE(as<PlaneGeometry>{}, kPlane, kOblong);
   const std::vector<device::PathPoint> points = points_of(plane, {}, GENERATE(1U, 2U, 3U));
   int at_speed = 0;
@@ -51,7 +51,7 @@ TEST_CASE("strokes are between 50 and 150 mm/s fast, and mostly at speed") {
   CHECK(at_speed > static_cast<int>(points.size()) * 6 / 10);
 }
 
-TEST_CASE("the speeds of strokes fill the range that was asked for") {
+TEST_CASE("the speeds of strokes fill the range of the options") {
   const std::vector<device::PathPoint> points =
       points_of(kPlane, {.slowest_mm_s = 80.0, .fastest_mm_s = 120.0, .duration_s = 60.0}, 5);
   double fastest_mm_s = 0.0;
@@ -61,7 +61,7 @@ TEST_CASE("the speeds of strokes fill the range that was asked for") {
   CHECK(fastest_mm_s <= 120.0);
 }
 
-TEST_CASE("position and velocity of a path belong to each other and never jump") {
+TEST_CASE("position and velocity of a path agree with each other and never jump") {
   const std::vector<device::PathPoint> points = points_of(kPlane, {}, 11);
   for (std::size_t i = 1; i < points.size(); ++i) {
     const Vec2 step_mm = points[i].position_mm - points[i - 1].position_mm;

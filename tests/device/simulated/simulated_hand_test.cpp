@@ -1,6 +1,7 @@
 #include "device/simulated/simulated_hand.hpp"
 
 #include "device/flat_wall.hpp"
+#include "device/registry.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -140,7 +141,7 @@ TEST_CASE("a hand's motion is a function of its seed") {
   }
 }
 
-TEST_CASE("a hand refuses options that no hand has") {
+TEST_CASE("a hand refuses impossible options") {
   device::HandOptions weightless;
   weightless.mass_kg = 0.0;
   CHECK_THROWS_AS(hand_with(weightless), std::invalid_argument);
@@ -149,5 +150,21 @@ TEST_CASE("a hand refuses options that no hand has") {
   CHECK_THROWS_AS(hand_with(pulling), std::invalid_argument);
 }
 
+TEST_CASE("the simulated device is always present, and still strokes after a minute") {
+  CHECK(device::device_driver("simulated").list({}).at(0).present);
+  const std::unique_ptr<device::HapticDevice> device = device::open_device("simulated", {});
+  CHECK(device->info().simulated);
+  FlatWall wall;
+  KeptSamples kept;
+  const device::ServoReport report = device::run_servo_in_virtual_time(*device, wall, kept, {});
+  CHECK(report.end == device::ServoEnd::time_limit);
+  CHECK(report.contact_ticks > 50'000);
+  for (const device::ServoSample& sample : kept.samples) {
+    REQUIRE(sample.position_mm.x > 0.0);
+    REQUIRE(sample.position_mm.x < 100.0);
+  }
+}
+
 }  // namespace
+
 }  // namespace touchtrial

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Measured plans in a folder while it lives.
+/// Uses measured plans in a folder during its lifetime.
 class MeasuredPlans {
  public:
   explicit MeasuredPlans(const fs::path& folder, std::size_t fewest_samples = 1) {
@@ -55,7 +55,7 @@ double largest_difference_of(const std::vector<std::complex<double>>& a,
   return largest;
 }
 
-TEST_CASE("a measured plan transforms as an estimated one does, and is kept") {
+TEST_CASE("a measured plan transforms like an estimated one, and is kept") {
   const TempFolder folder;
   const auto estimated = spectrum_of_noise();
   const fs::path cache = folder.path() / "deep" / "cache";
@@ -96,7 +96,7 @@ TEST_CASE("a kept plan that cannot be read is measured anew") {
   }
 }
 
-TEST_CASE("where plans cannot be kept they are estimated") {
+TEST_CASE("a plan that cannot be kept is estimated") {
   const TempFolder folder;
   const auto estimated = spectrum_of_noise();
   const fs::path file = folder.path() / "a file";
@@ -107,7 +107,7 @@ TEST_CASE("where plans cannot be kept they are estimated") {
   }
 }
 
-/// An environment variable that has its former value again afterwards.
+/// Sets an environment variable during its lifetime.
 class Variable {
  public:
   Variable(const char* name, const char* value) : name_(name) {
@@ -131,7 +131,7 @@ class Variable {
   std::optional<std::string> former_;
 };
 
-TEST_CASE("the cache folder is the user's, or none") {
+TEST_CASE("the cache folder is the user's, or empty") {
   const Variable home("HOME", "/somebody");
   const Variable cache("XDG_CACHE_HOME", "/elsewhere");
   CHECK(engine::user_cache_folder() == "/elsewhere/touchtrial");
@@ -141,7 +141,7 @@ TEST_CASE("the cache folder is the user's, or none") {
   CHECK(engine::user_cache_folder().empty());
 }
 
-TEST_CASE("small transforms are not measured, and measured ones leave the estimated alone") {
+TEST_CASE("small transforms are not measured, and measured plans do not affect estimated ones") {
   const TempFolder folder;
   const auto estimated = spectrum_of_noise();
   const MeasuredPlans measured(folder.path(), 2000);

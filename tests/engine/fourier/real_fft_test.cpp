@@ -61,7 +61,7 @@ TEMPLATE_TEST_CASE("a transform and its inverse multiply by the number of sample
   }
 }
 
-TEST_CASE("transforms can be made and used by several threads at once") {
+TEST_CASE("transforms can be created and used by several threads at once") {
   const auto transformed = [](std::vector<double>& result) {
     for (int round = 0; round < 20; ++round) {
       engine::RealFft<double> fft(40, 36);

@@ -1,9 +1,11 @@
 #include "engine/kernels/float_extraction.hpp"
 
 #include "engine/every_simd_target.hpp"
+#include "engine/example_images.hpp"
 #include "engine/force_field.hpp"
-#include "engine/kernels/kernel_images.hpp"
+#include "engine/gl_texture.hpp"
 #include "engine/plane_comparison.hpp"
+#include "engine/reference/extraction_reference.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -11,11 +13,35 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+#include <vector>
 
 namespace touchtrial {
 namespace {
 
-/// Grey levels, on any 8-bit image and on photographs at K = 2.
+/// Tiny sizes, and sizes just below and above the lengths of vectors and tiles.
+const std::vector<Size>& kernel_sizes() {
+  static const std::vector<Size> sizes = {{1, 1}, {1, 19}, {19, 1}, {2, 2},  {3, 3},
+                                          {5, 7}, {4, 32}, {6, 33}, {64, 63}};
+  return sizes;
+}
+
+/// One bright pixel in the dark.
+GreyImage impulse_image(Size size) {
+  GreyImage image(size.height, size.width);
+  image.at(size.height / 2, size.width / 2) = 255;
+  return image;
+}
+
+/// One image of each kind, an impulse, and a ramp of slope 4, whose CSGV is exactly at a branch
+/// point of the order map.
+std::vector<NamedImage> kernel_images(Size size) {
+  std::vector<NamedImage> images = example_images(size);
+  images.push_back({"impulse", impulse_image(size)});
+  images.push_back({"ramp of slope 4", ramp_image(size, 4)});
+  return images;
+}
+
+/// The promised errors in grey levels, on any 8-bit image and on photographs at K = 2.
 constexpr double kAnyTolerance = 4e-5;
 constexpr double kPhotographTolerance = 2e-5;
 
@@ -25,16 +51,11 @@ engine::ExtractionOptions adaptive_options(int radius) {
   return options;
 }
 
-/// Where CSGV is this close to 2 or 128, two ways of summing may take different branches.
-bool is_at_branch_point(double csgv) {
-  return std::abs(csgv - 2.0) < 1e-3 || std::abs(csgv - 128.0) < 1e-3;
-}
-
 /// The largest difference away from the branch points.
 double texture_error(const Plane<float>& texture, const engine::Extraction<double>& truth) {
   double largest = 0.0;
   for (std::size_t i = 0; i < texture.size(); ++i) {
-    if (is_at_branch_point(truth.csgv.samples()[i])) continue;
+    if (reference::is_at_branch_point(truth.csgv.samples()[i])) continue;
     largest = std::max(largest, std::abs(texture.samples()[i] - truth.texture.samples()[i]));
   }
   return largest;
@@ -48,9 +69,7 @@ void check_on_every_target(const GreyImage& image, int radius, double tolerance)
   });
 }
 
-TEST_CASE(
-    "the adaptive kernels agree with double on every target, at every "
-    "size and radius") {
+TEST_CASE("the adaptive kernels agree with double on every target, at every size and radius") {
   for (const Size size : kernel_sizes()) {
     for (const auto& [name, image] : kernel_images(size)) {
       for (const int radius : {1, 2, 3, 7, 63}) {
@@ -61,9 +80,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE(
-    "the adaptive kernels agree with double on every target on a real "
-    "stimulus size") {
+TEST_CASE("the adaptive kernels agree with double on every target on a real stimulus size") {
   for (const auto& [name, image] : kernel_images({501, 499})) {
     INFO(name);
     check_on_every_target(image, 2, name == "cloth" ? kPhotographTolerance : kAnyTolerance);
@@ -81,17 +98,13 @@ GreyImage uneven_checkerboard(Size size) {
   return image;
 }
 
-TEST_CASE(
-    "the adaptive kernels keep their precision where CSGV is small and "
-    "texture large") {
+TEST_CASE("the adaptive kernels keep their precision where CSGV is small and texture large") {
   for (const int radius : {1, 2, 7}) {
     check_on_every_target(uneven_checkerboard({64, 63}), radius, kAnyTolerance);
   }
 }
 
-TEST_CASE(
-    "the adaptive kernels see a ramp's CSGV exactly, even on the branch "
-    "point") {
+TEST_CASE("the adaptive kernels compute a ramp's CSGV exactly, even on the branch point") {
   on_every_simd_target([] {
     engine::WantedPlanes wanted;
     wanted.csgv = true;
@@ -129,7 +142,7 @@ TEST_CASE("the adaptive kernels give exactly the negative texture of a negative"
   });
 }
 
-TEST_CASE("the adaptive kernels do not see brightness") {
+TEST_CASE("the adaptive kernels do not depend on brightness") {
   on_every_simd_target([] {
     GreyImage dark = cloth_image({64, 63});
     for (std::uint8_t& sample : dark.samples()) sample = static_cast<std::uint8_t>(sample / 2);
@@ -155,7 +168,7 @@ void check_by_products(const GreyImage& image) {
   CHECK(largest_difference(result.force.x, force.x) < 2e-4);
   CHECK(largest_difference(result.force.y, force.y) < 2e-4);
   for (std::size_t i = 0; i < image.size(); ++i) {
-    if (is_at_branch_point(truth.csgv.samples()[i])) continue;
+    if (reference::is_at_branch_point(truth.csgv.samples()[i])) continue;
     REQUIRE(std::abs(result.order.samples()[i] - truth.order.samples()[i]) < 3e-7);
   }
 }
@@ -189,7 +202,7 @@ TEST_CASE(
   });
 }
 
-TEST_CASE("an image that is worked on in several strips has the CSGV of double") {
+TEST_CASE("an image that is processed in several strips has the CSGV of double") {
   const GreyImage image = noise_image({5, 2100});
   engine::WantedPlanes wanted;
   wanted.csgv = true;
@@ -200,9 +213,7 @@ TEST_CASE("an image that is worked on in several strips has the CSGV of double")
   });
 }
 
-TEST_CASE(
-    "an extraction that is used again holds what the last image and "
-    "wishes gave") {
+TEST_CASE("a reused extraction holds the wanted planes of the last image") {
   engine::Extraction<float> result;
   engine::extract_texture_into(noise_image({20, 30}), adaptive_options(3),
                                engine::WantedPlanes::all(), result);
@@ -229,6 +240,88 @@ TEST_CASE("extract_sub_bands gives the sub-bands that an extraction gives") {
   CHECK(result.sub_band_lh == expected.sub_band_lh);
   CHECK(result.sub_band_hl == expected.sub_band_hl);
   CHECK(result.sub_band_hh == expected.sub_band_hh);
+}
+
+/// Orders at half resolution that reach both ends of [0, 1).
+Plane<double> mixed_orders(const GreyImage& image) {
+  Plane<double> orders((image.height() + 1) / 2, (image.width() + 1) / 2);
+  constexpr double kOrders[] = {0.0, 1e-300, 0.3, 0.666, 0.999, 1.0 - 1e-7};
+  for (std::size_t i = 0; i < orders.size(); ++i) orders.samples()[i] = kOrders[i % 6];
+  return orders;
+}
+
+/// The texture of one order, by extract_fixed().
+Plane<float> texture_of(const GreyImage& image, int radius, double order) {
+  engine::ExtractionOptions options;
+  options.method = engine::Method::fixed;
+  options.radius = radius;
+  options.order = order;
+  return engine::extract_texture<float>(image, options).texture;
+}
+
+void check_against_double(const GreyImage& image, int radius) {
+  const Plane<double> orders = mixed_orders(image);
+  CHECK(largest_difference(engine::gl_texture<float>(image, radius, orders),
+                           engine::gl_texture<double>(image, radius, orders)) < kAnyTolerance);
+  for (const double order : {0.05, 0.55, 0.999}) {
+    CHECK(largest_difference(texture_of(image, radius, order),
+                             engine::gl_texture<double>(image, radius, order)) < kAnyTolerance);
+  }
+}
+
+TEST_CASE("gl_row agrees with double on every target, at every size and radius") {
+  on_every_simd_target([] {
+    for (const Size size : kernel_sizes()) {
+      for (const auto& [name, image] : kernel_images(size)) {
+        for (const int radius : {1, 2, 3, 7, 63}) {
+          INFO(name << ", " << size.height << " x " << size.width << ", radius " << radius);
+          check_against_double(image, radius);
+        }
+      }
+    }
+  });
+}
+
+TEST_CASE("gl_row agrees with double on every target if a row has more than one tile") {
+  const GreyImage image = speckle_image({7, 1100});
+  on_every_simd_target([&] {
+    for (const int radius : {1, 2, 7, 40, 63}) check_against_double(image, radius);
+  });
+}
+
+TEST_CASE("gl_row agrees with double on every target on a real stimulus") {
+  const GreyImage image = cloth_image({501, 499});
+  on_every_simd_target([&] { check_against_double(image, 2); });
+}
+
+TEST_CASE("gl_row keeps a flat image exactly flat on every target") {
+  on_every_simd_target([] {
+    for (const int level : {0, 1, 127, 128, 255}) {
+      const GreyImage image = flat_image({5, 37}, level);
+      for (const int radius : {1, 2, 5, 63}) {
+        CHECK(largest_magnitude(engine::gl_texture<float>(image, radius, mixed_orders(image))) ==
+              0.0);
+        CHECK(largest_magnitude(texture_of(image, radius, 0.999)) == 0.0);
+      }
+    }
+  });
+}
+
+TEST_CASE("gl_row of a negative is exactly the negative texture on every target") {
+  const GreyImage image = noise_image({31, 45});
+  on_every_simd_target([&] {
+    for (const int radius : {1, 2, 7, 63}) {
+      Plane<float> texture = engine::gl_texture<float>(image, radius, mixed_orders(image));
+      for (float& sample : texture.samples()) sample = -sample;
+      CHECK(engine::gl_texture<float>(negative_of(image), radius, mixed_orders(image)) == texture);
+    }
+  });
+}
+
+TEST_CASE("gl_row of order zero finds no texture on any target") {
+  on_every_simd_target([] {
+    CHECK(largest_magnitude(texture_of(noise_image({20, 45}), 3, 0.0)) == 0.0);
+  });
 }
 
 }  // namespace

@@ -60,7 +60,7 @@ TEST_CASE("glcm_statistics of Haralick's example are the published counts") {
   CHECK(table[kAt135].contrast == Approx(32.0 / 18).epsilon(1e-15));
 }
 
-TEST_CASE("glcm_statistics of the smallest image can be counted on one's fingers") {
+TEST_CASE("glcm_statistics of the smallest image agree with a count by hand") {
   const engine::GlcmTable table = engine::glcm_statistics(image_of({{0, 1}, {2, 3}}));
   CHECK(table[kAt0].angular_second_moment == 0.25);
   CHECK(table[kAt0].energy == 0.5);
@@ -89,7 +89,7 @@ TEST_CASE("glcm_statistics of a flat image are exact") {
   }
 }
 
-TEST_CASE("glcm_statistics of a checkerboard tell the straight directions from the diagonal ones") {
+TEST_CASE("glcm_statistics of a checkerboard distinguish straight and diagonal directions") {
   const engine::GlcmTable table = engine::glcm_statistics(checkerboard({20, 21}));
   for (const std::size_t straight : {kAt0, kAt90}) {
     CHECK(table[straight].contrast == 65025.0);
@@ -116,8 +116,7 @@ TEST_CASE("glcm_statistics agree with their definition on every image and size")
   }
 }
 
-TEST_CASE(
-    "glcm_statistics agree with their definition where counts outgrow the table of logarithms") {
+TEST_CASE("glcm_statistics agree with their definition for counts beyond the table of logarithms") {
   GreyImage image = step_image({300, 301});
   image.at(150, 30) = 41;
   const engine::GlcmTable table = engine::glcm_statistics(image);

@@ -43,7 +43,7 @@ struct SmallPack {
   engine::PackManifest manifest;
 };
 
-TEST_CASE("is_pack_code accepts 16 lower-case letters and digits alone") {
+TEST_CASE("is_pack_code accepts 16 lower-case letters and digits only") {
   CHECK(engine::is_pack_code(kFirst));
   CHECK(engine::is_pack_code(kSecond));
   CHECK_FALSE(engine::is_pack_code(""));
@@ -137,7 +137,7 @@ TEST_CASE("a pack's digest does not depend on the layout of pack.json") {
   CHECK(engine::Pack(made.folder.path()).digest() == original);
 }
 
-TEST_CASE("a pack refuses codes that it does not have, and paths in their place") {
+TEST_CASE("a pack refuses unknown codes, and paths in place of codes") {
   const SmallPack made;
   const engine::Pack pack(made.folder.path());
   CHECK_THROWS_AS(pack.entry("aaaaaaaaaaaaaaaa"), FileError);
@@ -148,7 +148,7 @@ TEST_CASE("a pack refuses codes that it does not have, and paths in their place"
       std::invalid_argument);
 }
 
-TEST_CASE("a pack refuses a field that is missing, cut or something else") {
+TEST_CASE("a pack refuses a field file that is missing, cut or of another kind") {
   const SmallPack made;
   const engine::Pack pack(made.folder.path());
   std::filesystem::resize_file(made.field(kFirst), 100);
@@ -161,7 +161,7 @@ TEST_CASE("a pack refuses a field that is missing, cut or something else") {
   CHECK_THROWS_AS(pack.is_intact(kFirst), FileError);
 }
 
-TEST_CASE("a pack that is not there is refused") {
+TEST_CASE("a missing pack is refused") {
   const TempFolder folder;
   CHECK_THROWS_AS(engine::Pack(folder.path()), FileError);
   CHECK_THROWS_AS(engine::Pack(folder.path() / "nowhere"), FileError);
@@ -169,7 +169,7 @@ TEST_CASE("a pack that is not there is refused") {
   CHECK_THROWS_AS(engine::Pack(folder.path()), FileError);
 }
 
-TEST_CASE("write_field and write_manifest report a folder that is not there") {
+TEST_CASE("write_field and write_manifest report a missing folder") {
   const TempFolder folder;
   const std::filesystem::path nowhere = folder.path() / "nowhere";
   CHECK_THROWS_AS(engine::write_field(nowhere, kFirst, random_field(3, 3, 1).view()), FileError);

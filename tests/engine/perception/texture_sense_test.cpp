@@ -21,8 +21,8 @@ struct Felt {
   Vec3 force_n;
 };
 
-/// A steady stroke along x over a force that is a function of place, as long as `samples` says
-/// once the landing is over.
+/// A steady stroke along x over a force that depends on the place: the landing, then `samples`
+/// samples.
 template <typename ForceAt>
 std::vector<Felt> stroke(double speed_mm_s, int samples, ForceAt force_at) {
   std::vector<Felt> felt;
@@ -58,7 +58,7 @@ TEST_CASE("a sine is felt in the band of its wavelength, with its root mean squa
   });
   const engine::FeltFeatures features = features_of(felt, 1e-6);
   const double log_rms = std::log(kAmplitudeN / std::sqrt(2.0));
-  // The longest waves are few to a window, and some of their power leaks over the band's edge.
+  // A window holds few of the longest waves, and some of their power leaks out of the band.
   const double tolerance = band == 0 ? 0.25 : 0.03;
   CHECK(features[band] == Approx(log_rms).margin(tolerance));
   CHECK(features[engine::kNormalBandsAt + band] ==
@@ -85,7 +85,7 @@ TEST_CASE("a lateral force is felt along its own direction") {
   CHECK(direction(along + 2) < log_rms - 5.0);
 }
 
-TEST_CASE("a texture is felt on the part of the plane where it lies") {
+TEST_CASE("a texture is felt on the part of the plane where it is") {
   constexpr PlaneGeometry kPlane{0.2, 300, 450};  // thirds of 30 mm across, 20 mm down
   engine::TextureSense sense({.threshold_n = 1e-6, .plane = kPlane});
   for (int i = 0; i < kSettling + 60'000; ++i) {
@@ -104,7 +104,7 @@ TEST_CASE("a texture is felt on the part of the plane where it lies") {
   }
 }
 
-TEST_CASE("a part of the plane where nobody went is felt like the whole") {
+TEST_CASE("an unexplored part of the plane feels like the whole") {
   const engine::FeltFeatures features = features_of(noisy_stroke(2, 1.0));
   CHECK(features[engine::kPartsAt + engine::kFeltParts - 1] ==
         Approx(0.5 * std::log(std::exp(2.0 * features[engine::kDirectionsAt]) +
@@ -191,7 +191,7 @@ TEST_CASE("a smooth plane and nothing felt at all leave every feature at the thr
   }
 }
 
-TEST_CASE("a sense that was reset feels as a new one does") {
+TEST_CASE("a sense after a reset feels like a new one") {
   engine::TextureSense used;
   for (const Felt& sample : noisy_stroke(3, 2.0)) used.feel(sample.position_mm, sample.force_n);
   used.reset(engine::SenseOptions{}.plane);
@@ -200,7 +200,7 @@ TEST_CASE("a sense that was reset feels as a new one does") {
   CHECK(used.features() == features_of(noisy_stroke(4, 1.0), engine::SenseOptions{}.threshold_n));
 }
 
-TEST_CASE("a sense refuses options that cannot be") {
+TEST_CASE("a sense refuses impossible options") {
   CHECK_THROWS_AS(engine::TextureSense({.rate_hz = 0.0}), std::invalid_argument);
   CHECK_THROWS_AS(engine::TextureSense({.threshold_n = -0.1}), std::invalid_argument);
   CHECK_THROWS_AS(engine::TextureSense({.plane = {0.2, 0, 10}}), std::invalid_argument);

@@ -10,7 +10,7 @@
 using namespace touchtrial;
 using namespace touchtrial::engine;
 
-TEST_CASE("a picture in memory is the PNG that would be written, in grey and in colour") {
+TEST_CASE("png_bytes gives the file that write_png writes, and encodes colours") {
   const TempFolder folder;
   const auto path = folder.path() / "picture.png";
   GreyImage grey(3, 5);
@@ -45,7 +45,7 @@ TEST_CASE("a picture shrinks to the means of its parts") {
   CHECK(resized(image, 4, 6) == image);
 }
 
-TEST_CASE("a picture grows without leaving the grey levels there are") {
+TEST_CASE("an enlarged picture stays within its grey levels") {
   GreyImage image(2, 2);
   image.at(0, 0) = 255;
   const GreyImage large = resized(image, 9, 11);

@@ -16,7 +16,7 @@ engine::ForceField<double> force_of(const GreyImage& image) {
   return engine::tangential_force(converted<double>(image), 3);
 }
 
-/// Flat but for one square.
+/// A flat image with one square.
 GreyImage square_in_flat(Size size, int top, int left, int side) {
   GreyImage image = flat_image(size, 100);
   for (int y = top; y < top + side; ++y) {
@@ -51,7 +51,7 @@ TEST_CASE("a texture smaller than a patch is the patch") {
   CHECK(patch.width == engine::kArrowPatchSide_px);
 }
 
-TEST_CASE("arrows point from bright to dark and stand where their pixels are") {
+TEST_CASE("arrows are drawn at the pixels beside a step, and nowhere else") {
   const TempFolder folder;
   const auto path = folder.path() / "arrows.png";
   const GreyImage step = step_image({24, 24}, 40, 200);  // brighter on the right
@@ -73,7 +73,7 @@ TEST_CASE("arrows point from bright to dark and stand where their pixels are") {
   CHECK(is_plain(14));
 }
 
-TEST_CASE("force arrows are drawn of any size of texture") {
+TEST_CASE("force arrows can be drawn for any size of texture") {
   const TempFolder folder;
   for (const Size size : {Size{1, 1}, Size{1, 3000}, Size{3000, 2}, Size{25, 7}}) {
     const GreyImage image = noise_image(size);
@@ -81,7 +81,7 @@ TEST_CASE("force arrows are drawn of any size of texture") {
   }
 }
 
-TEST_CASE("force arrows refuse a field of another size and a folder that is not there") {
+TEST_CASE("force arrows refuse a field of another size and a missing folder") {
   const GreyImage image = noise_image({6, 7});
   CHECK_FALSE(refusal_of([&] {
                 (void)engine::write_force_arrows("x.png", image, force_of(noise_image({7, 6})));

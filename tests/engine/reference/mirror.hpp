@@ -1,4 +1,4 @@
-/// \file Symmetric extension as it is written down: i mod 2n, and 2n - 1 - that if it is >= n.
+/// \file Symmetric extension by its definition: i mod 2n, mirrored if it is >= n.
 #pragma once
 
 #include "core/plane.hpp"

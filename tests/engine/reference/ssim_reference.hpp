@@ -1,5 +1,5 @@
 /// \file Structural similarity, slow and literal: every window's weighted moments by direct sums
-/// about its means, and l, c and s as they are written down.
+/// about its means, and l, c and s by their definitions.
 #pragma once
 
 #include "core/plane.hpp"

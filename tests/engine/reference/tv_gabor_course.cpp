@@ -2,12 +2,10 @@
 
 #include "engine/fourier/real_fft.hpp"
 #include "engine/tv_gabor/certificate.hpp"
-#include "engine/tv_gabor/domain.hpp"
 #include "engine/tv_gabor/problem.hpp"
 #include "engine/tv_gabor/row_kernels.hpp"
 #include "engine/tv_gabor/solver.hpp"
-#include "engine/tv_gabor/spectral_peak.hpp"
-#include "engine/tv_gabor/vector_field.hpp"
+#include "engine/tv_gabor/tv_gabor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +17,8 @@
 namespace touchtrial::reference {
 namespace {
 
-/// out = -div field. \param out  height x width samples, row-major
+/// out = -div field.
+/// \param out  height x width samples, row-major
 template <typename Real>
 void negative_divergence(const engine::VectorField<Real>& field, std::span<Real> out) noexcept {
   const int height = field.x.height();
@@ -45,7 +44,8 @@ class DualSlope {
         x_(static_cast<std::size_t>(problem.image.width())),
         y_(x_.size()) {}
 
-  /// Gets ready to give the rows of w = grad(M div p - lambda f). \param q  -p
+  /// Prepares the rows of w = grad(M div p - lambda f).
+  /// \param q  -p
   void at(const engine::VectorField<Real>& q) {
     negative_divergence(q, fft_.plane());
     fft_.forward();
@@ -60,7 +60,7 @@ class DualSlope {
     for (std::size_t i = 0; i < plane.size(); ++i) plane[i] -= lambda * problem_.image.samples()[i];
   }
 
-  /// w, of one row of the torus; valid until the next call.
+  /// Computes w of one row of the torus, for x() and y().
   void go_to_row(int y) {
     const int below = y + 1 == problem_.image.height() ? 0 : y + 1;
     const auto row = [this](int index) {
@@ -82,7 +82,7 @@ class DualSlope {
 template <typename Real>
 class Fista {
  public:
-  /// Keeps references to both; the transform is also used by others between steps.
+  /// Keeps references to both; others may use the transform between steps.
   Fista(const engine::TvGaborProblem<Real>& problem, engine::RealFft<Real>& fft)
       : slope_(problem, fft),
         q_(problem.image.height(), problem.image.width()),
@@ -115,7 +115,7 @@ class Fista {
     }
     t_ = next_t;
   }
-  /// q = -p, at most 1 long.
+  /// q = -p, with vectors of length at most 1.
   [[nodiscard]] const engine::VectorField<Real>& q() const noexcept { return q_; }
 
  private:
@@ -130,7 +130,7 @@ class Fista {
 template <typename Real>
 class FixedPoint {
  public:
-  /// Keeps references to both; the transform is also used by others between steps.
+  /// Keeps references to both; others may use the transform between steps.
   FixedPoint(const engine::TvGaborProblem<Real>& problem, engine::RealFft<Real>& fft)
       : slope_(problem, fft),
         q_(problem.image.height(), problem.image.width()),
@@ -151,7 +151,7 @@ class FixedPoint {
       }
     }
   }
-  /// q = -p, at most 1 long.
+  /// q = -p, with vectors of length at most 1.
   [[nodiscard]] const engine::VectorField<Real>& q() const noexcept { return q_; }
 
  private:
@@ -192,7 +192,7 @@ class TvGaborCourse<Real>::Admm final : public Solver {
   void advance(int steps) override {
     static_cast<void>(solver_.run(solver_.steps() + steps, engine::Patience::unlimited));
   }
-  /// The solver looks for the first time after its first steps, so the start is certified here.
+  /// The solver checks only after its first steps, so the start is certified here.
   engine::TvGaborCertificate<Real> certificate() override {
     if (solver_.steps() > 0) return solver_.certificate();
     const auto problem = engine::tv_gabor_problem<Real>(image_, options_);

@@ -1,5 +1,5 @@
 /// \file TV-Gabor by three solvers, step by step, to compare them: the engine's ADMM, and two
-/// slower ones on the dual, which share the engine's transforms and not its iteration. Source:
+/// slower ones on the dual, which share the engine's transforms but not its iteration. Source:
 /// docs/method.md, "TV-Gabor".
 #pragma once
 
@@ -20,7 +20,7 @@ enum class TvGaborAlgorithm {
   fixed_point,
 };
 
-/// What a solver has after some steps.
+/// A solver's result after some steps.
 template <typename Real>
 struct TvGaborPoint {
   int steps = 0;
@@ -28,13 +28,13 @@ struct TvGaborPoint {
   Plane<Real> texture;  ///< v, grey levels, of the image's shape
 };
 
-/// A solver in one precision throughout: float does not go on in double as extraction's does. One
+/// A solver that stays in one precision: float does not continue in double as in extraction. One
 /// object belongs to one thread at a time.
 template <typename Real>
 class TvGaborCourse {
  public:
-  /// \param image  at least 1 x 1 \param options  lambda and components count; gap and max_steps
-  /// do not
+  /// \param image  at least 1 x 1
+  /// \param options  gap and max_steps have no effect
   /// \throws std::invalid_argument if the image is empty or flat, or too small to choose a
   /// component
   TvGaborCourse(const GreyImage& image, const engine::TvGaborOptions& options,
@@ -43,10 +43,10 @@ class TvGaborCourse {
   TvGaborCourse(const TvGaborCourse&) = delete;
   TvGaborCourse& operator=(const TvGaborCourse&) = delete;
 
-  /// Takes steps: what a benchmark times. ADMM checks every tenth, and the last of each call.
+  /// Takes steps; benchmarks time this. ADMM checks every tenth step and the last one of each call.
   /// \param steps  >= 0
   void advance(int steps);
-  /// Texture and gap as they are; does not change the course. Costs about a step.
+  /// The present texture and gap; does not change the course. Costs about a step.
   [[nodiscard]] TvGaborPoint<Real> point();
 
  private:

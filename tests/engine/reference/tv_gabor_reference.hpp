@@ -1,5 +1,6 @@
 /// \file TV-Gabor by accelerated projected gradient (FISTA) on the dual, with M applied as a direct
-/// convolution: no Fourier transform, no ADMM, nothing shared with the product's code.
+/// convolution: it has no Fourier transform and no ADMM, and shares nothing with the product's
+/// code.
 #pragma once
 
 #include "core/plane.hpp"
@@ -15,7 +16,7 @@ struct Dual {
   Plane<double> y;
 };
 
-/// J(u) + (lambda / 2) <f - u, K (f - u)> and all that its dual needs, by definition.
+/// J(u) + (lambda / 2) <f - u, K (f - u)> and its dual, by definition.
 class TvGabor {
  public:
   TvGabor(const GreyImage& image, const engine::TvGaborOptions& options);

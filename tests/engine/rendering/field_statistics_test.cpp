@@ -1,7 +1,7 @@
 #include "engine/rendering/field_statistics.hpp"
 
+#include "engine/rendering/field_measures.hpp"
 #include "engine/rendering/gains.hpp"
-#include "engine/rendering/radial_power.hpp"
 #include "engine/rendering/sample_fields.hpp"
 #include "support/catch.hpp"
 
@@ -170,6 +170,32 @@ TEST_CASE("field_statistics refuses an empty field and samples that are not fini
   std::vector<engine::FieldSample> samples(9);
   samples[4].surface = std::numeric_limits<float>::infinity();
   CHECK_THROWS_AS(engine::field_statistics({{0.2, 3, 3}, samples}, {}), std::invalid_argument);
+}
+
+TEST_CASE("the lateral field of either model has the rms that its statistics state") {
+  const Plane<double> texture = random_texture(24, 31, 1);
+  for (const engine::ModelKind model : {engine::ModelKind::paper, engine::ModelKind::surface}) {
+    engine::RenderingOptions options;
+    options.model = model;
+    const engine::TextureField field = engine::make_texture_field(texture, options);
+    const engine::Gains gains = model == engine::ModelKind::paper ? engine::Gains{0.01, 0.02, 0.0}
+                                                                  : engine::Gains{0.0, 0.0, 0.003};
+    const engine::LateralField lateral = engine::lateral_field(field.view(), gains);
+    double squares = 0.0;
+    for (std::size_t i = 0; i < texture.size(); ++i) {
+      squares +=
+          std::pow(lateral.force.x.samples()[i], 2) + std::pow(lateral.force.y.samples()[i], 2);
+    }
+    const double rms_n =
+        lateral.n_per_grey * std::sqrt(squares / static_cast<double>(texture.size()));
+    CHECK(rms_n > 0.0);
+    CHECK(rms_n == Approx(engine::field_statistics(field.view(), gains, options).tangential_rms_n));
+  }
+}
+
+TEST_CASE("an empty field has no lateral field") {
+  CHECK_THROWS_AS((void)engine::lateral_field(engine::FieldView{}, engine::Gains{}),
+                  std::invalid_argument);
 }
 
 }  // namespace

@@ -38,15 +38,6 @@ std::vector<double> stiffness_slowly(engine::FieldView field,
   return norms;
 }
 
-/// NumPy's percentile, from a sorted list.
-double percentile_slowly(std::vector<double> values, double share) {
-  std::ranges::sort(values);
-  const double position = share * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(position);
-  const std::size_t above = std::min(below + 1, values.size() - 1);
-  return values[below] + (position - std::floor(position)) * (values[above] - values[below]);
-}
-
 struct Stiffness {
   double tangential_n_per_mm;
   double normal_n_per_mm;
@@ -193,7 +184,7 @@ TEST_CASE("choose_gains leaves flat fields out of the budget") {
   CHECK(equal.of_field == std::vector<engine::Gains>{alone_equalised, engine::Gains{}});
 }
 
-TEST_CASE("choose_gains goes by the maximum where almost all of a field is flat") {
+TEST_CASE("choose_gains uses the maximum where almost all of a field is flat") {
   const std::vector<engine::TextureField> fields = {
       unfiltered(60, 60, [](int y, int x) { return y == 30 && x == 30 ? 50.0 : 0.0; })};
   const engine::StudyGains gains = engine::choose_gains(views_of(fields), {});

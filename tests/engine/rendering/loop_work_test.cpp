@@ -1,5 +1,5 @@
-/// \file The law that sets the rendering models apart: whoever goes round a closed path under
-/// `surface` comes back with the energy that they had.
+/// \file The law that distinguishes the rendering models: a hand that goes round a closed path
+/// under `surface` returns with the energy that it had.
 #include "engine/rendering/loop_work.hpp"
 
 #include "engine/rendering/gains.hpp"
@@ -12,7 +12,7 @@
 namespace touchtrial {
 namespace {
 
-/// One of the textures that a law must survive.
+/// One of the textures on which the law must hold.
 Plane<double> hostile_texture(int which) {
   if (which == 0) return random_texture(40, 50, 1, 127.0);
   Plane<double> texture(40, 50);
@@ -31,7 +31,7 @@ engine::RenderingModel model_at_budget(engine::FieldView field,
   return {field, options, engine::choose_gains({&field, 1}, options).of_field[0]};
 }
 
-/// A closed path of random corners over, beside and above the plane, as deep as the stated load.
+/// A closed path of random corners on, beside and above the plane, down to the stated load's depth.
 std::vector<Vec3> random_loop(std::uint64_t seed) {
   RandomStream random(seed, "loop");
   std::vector<Vec3> corners;
@@ -67,7 +67,7 @@ TEST_CASE("surface does no work round closed loops, also across the plane's edge
   CHECK(largest_loop_mj(model_at_budget(field.view(), options)) < 1e-6);
 }
 
-TEST_CASE("what is left of surface's work is the quadrature's, and goes with the step") {
+TEST_CASE("the rest of surface's work comes from the quadrature, and shrinks with the step") {
   const engine::TextureField field = random_surface(40, 50, 2, 80.0);
   const engine::RenderingModel model = model_at_budget(field.view(), surface_options());
   const std::vector<Vec3> loop = engine::circle_path({5.0, 4.0, -1.75}, 3.0);
@@ -111,7 +111,7 @@ TEST_CASE("with friction a hand loses energy round every loop, and never gains")
   for (std::uint64_t seed = 0; seed < 10; ++seed) {
     CHECK(engine::loop_work_mj(model, random_loop(seed)) < 1e-6);
   }
-  // Kinetic friction over a long circle: about mu * load * way.
+  // Kinetic friction over a long circle: about mu * load * length.
   const double lost_mj = -engine::loop_work_mj(model, engine::circle_path({5.0, 4.0, -1.75}, 3.0));
   CHECK(lost_mj == Approx(options.friction * 0.7 * 6.0 * 3.14159).epsilon(0.15));
 }

@@ -1,9 +1,11 @@
-/// \file Textures and fields that several tests of rendering and packs use.
+/// \file Textures, fields and a percentile that several tests of rendering and packs use.
 #pragma once
 
 #include "core/random.hpp"
 #include "engine/rendering/texture_field.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -47,6 +49,15 @@ inline std::vector<engine::FieldView> views_of(const std::vector<engine::Texture
   std::vector<engine::FieldView> views;
   for (const engine::TextureField& field : fields) views.push_back(field.view());
   return views;
+}
+
+/// NumPy's percentile, from a sorted list.
+inline double percentile_slowly(std::vector<double> values, double share) {
+  std::ranges::sort(values);
+  const double position = share * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<std::size_t>(position);
+  const std::size_t above = std::min(below + 1, values.size() - 1);
+  return values[below] + (position - std::floor(position)) * (values[above] - values[below]);
 }
 
 }  // namespace touchtrial

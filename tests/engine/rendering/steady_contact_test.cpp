@@ -24,7 +24,7 @@ struct Hand {
     target_mm = -push_n / wall_n_per_mm - push_n / arm_n_per_mm;
   }
 
-  /// Semi-implicit Euler, as a servo at 1 kHz sees it.
+  /// A step of semi-implicit Euler at a servo's 1 kHz.
   void step(double wall_n) {
     constexpr double kStepS = 1e-3;
     const double arm_n = arm_n_per_mm * (target_mm - position_mm.z);
@@ -40,7 +40,7 @@ struct Contact {
   int landings = 0;
 };
 
-/// Lands, and watches the force from 0.5 s after first contact for a second.
+/// Lands, and observes the force for a second, from 0.5 s after first contact.
 Contact land(const engine::RenderingModel& model, double push_n, double stiffness_n_per_mm) {
   Hand hand;
   hand.push(push_n, stiffness_n_per_mm);

@@ -12,21 +12,13 @@
 namespace touchtrial {
 namespace {
 
-double percentile_slowly(std::vector<double> values, double share) {
-  std::ranges::sort(values);
-  const double position = share * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::size_t>(position);
-  const std::size_t above = std::min(below + 1, values.size() - 1);
-  return values[below] + (position - std::floor(position)) * (values[above] - values[below]);
-}
-
 struct Stiffness {
   std::vector<double> lateral_n_per_mm;
   std::vector<double> normal_n_per_mm;
 };
 
-/// Stiffness at every interior pixel, from the model's own forces around the point over it where
-/// the load is 0.7 N.
+/// Stiffness at every interior pixel, from the model's own forces around the height at which the
+/// pixel meets a load of 0.7 N.
 void append_stiffness(engine::FieldView field, engine::RenderingOptions options,
                       engine::Gains gains, Stiffness& all) {
   options.max_force_n = 1e30;
@@ -76,7 +68,7 @@ std::vector<engine::TextureField> three_surfaces() {
   return fields;
 }
 
-TEST_CASE("choose_gains gives surfaces the height at which they are as stiff as the budget") {
+TEST_CASE("choose_gains gives surfaces the height at which their stiffness meets the budget") {
   const std::vector<engine::TextureField> fields = three_surfaces();
   engine::RenderingOptions options = surface_options();
   options.equalise = GENERATE(engine::Equalise::none, engine::Equalise::rms);
@@ -131,8 +123,7 @@ TEST_CASE("choose_gains leaves flat surfaces without height, and out of the pool
   CHECK(engine::choose_gains(views_of(thin), surface_options()).of_field[0] == engine::Gains{});
 }
 
-TEST_CASE(
-    "choose_gains goes by the maximum where almost all of a surface is a spline's faint tail") {
+TEST_CASE("choose_gains uses the maximum where almost all of a surface is a spline's faint tail") {
   engine::RenderingOptions options = surface_options();
   options.filter_mm = 0.0;
   Plane<double> texture(200, 200, 0.0);
@@ -179,7 +170,7 @@ TEST_CASE("field_statistics of a surface are those of its forces at the stated l
       const Vec2 at = view.geometry.to_mm(x, y);
       engine::Bristle bristle;
       const Vec3 force_n = model.force_n({at.x, at.y, -1.75}, {}, bristle);
-      // Lateral force is in proportion to the load: brought to 0.7 N.
+      // Lateral force is proportional to the load: scaled to 0.7 N.
       strengths_n.push_back(std::hypot(force_n.x, force_n.y) * 0.7 / force_n.z);
       squares += strengths_n.back() * strengths_n.back();
       normal_squares += (force_n.z - 0.7) * (force_n.z - 0.7);

@@ -8,7 +8,7 @@
 namespace touchtrial {
 namespace {
 
-/// What this processor can run, asked before anything is forced.
+/// The targets that this processor can run, determined before one is forced.
 const std::vector<std::int64_t>& runnable() {
   static const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
   return targets;

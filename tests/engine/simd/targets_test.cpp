@@ -26,11 +26,11 @@ TEST_CASE("the kernels under test have the portable target besides those of this
     return name == "SCALAR" || name == "EMU128";
   });
   CHECK(has_portable);
-  // Every processor that the program runs on has SSE4 (x86-64-v2) or its like.
+  // Every processor that the program supports has SSE4 (x86-64-v2) or an equivalent.
   CHECK(names.size() >= 2);
 }
 
-TEST_CASE("force_simd_target leaves its target alone to choose from, and all of them afterwards") {
+TEST_CASE("force_simd_target leaves one target to choose from, and afterwards all again") {
   const std::vector<std::string> names = simd_targets();
   const std::int64_t all = hwy::SupportedTargets();
   for (const std::string& name : names) {

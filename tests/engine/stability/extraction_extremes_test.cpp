@@ -1,7 +1,8 @@
-// Every extractor on every extreme image: finite, bounded, the same each time; and its laws.
+// Every extractor on every extreme image is finite, bounded and deterministic, and obeys its laws.
 #include "engine/finite_plane.hpp"
-#include "engine/gl_norm.hpp"
+#include "engine/gl_texture.hpp"
 #include "engine/plane_comparison.hpp"
+#include "engine/reference/extraction_reference.hpp"
 #include "engine/stability/extreme_cases.hpp"
 #include "support/catch.hpp"
 
@@ -31,7 +32,7 @@ TEST_CASE("every texture of every extreme image is finite, bounded and the same 
   });
 }
 
-/// The largest that |T| - 255 (1 - S_K) gets; infinite if an order is none.
+/// The largest |T| - 255 (1 - S_K); infinite if an order is outside [0, 1).
 template <typename Real>
 double excess_over_bound(const engine::Extraction<Real>& result, int radius) {
   double excess = -255.0;
@@ -70,28 +71,27 @@ TEST_CASE("every extractor but luminance keeps a flat image exactly flat") {
   });
 }
 
-/// How far rounding may take two ways to one texture apart, in grey levels.
+/// How much two computations of one texture may differ by rounding, in grey levels.
 template <typename Real>
 double tolerance(const ExtractionCase& extraction) {
   const double digits = std::is_same_v<Real, float> ? 2e-7 : 1e-12;
   return digits * std::max(255.0, extraction.largest_texture);
 }
 
-/// Edge sees no sign; luminance is reflected at 127.5 instead of 128.
+/// Whether a negative has the negative texture. Edge ignores the sign; luminance reflects at 127.5
+/// instead of 128.
 bool is_odd(const ExtractionCase& extraction) {
   return extraction.options.method != engine::Method::edge &&
          extraction.options.method != engine::Method::luminance;
 }
 
-/// Orders are the same on both sides only away from the branch points of the order map.
+/// Whether no CSGV is near a branch point of the order map, where rounding could change the order.
 bool has_clear_branches(const GreyImage& image, const engine::ExtractionOptions& options) {
   if (options.method != engine::Method::adaptive) return true;
   engine::WantedPlanes wanted;
   wanted.csgv = true;
   const auto csgv = engine::extract_texture<double>(image, options, wanted).csgv;
-  return std::none_of(csgv.samples().begin(), csgv.samples().end(), [](double value) {
-    return std::abs(value - 2.0) < 1e-3 || std::abs(value - 128.0) < 1e-3;
-  });
+  return std::ranges::none_of(csgv.samples(), reference::is_at_branch_point);
 }
 
 TEST_CASE("the negative of an extreme image has the negative texture") {
@@ -107,7 +107,7 @@ TEST_CASE("the negative of an extreme image has the negative texture") {
   CHECK(compared > 5000);
 }
 
-TEST_CASE("edge and luminance answer a negative as their formulas say") {
+TEST_CASE("edge and luminance of a negative follow their formulas") {
   engine::ExtractionOptions edge;
   edge.method = engine::Method::edge;
   engine::ExtractionOptions luminance;
@@ -121,7 +121,7 @@ TEST_CASE("edge and luminance answer a negative as their formulas say") {
   });
 }
 
-TEST_CASE("no extractor but luminance sees how bright an extreme image is") {
+TEST_CASE("no extractor but luminance depends on the brightness of an extreme image") {
   for_every_extreme([]<typename Real>(const ExtractionCase& extraction, const GreyImage& image) {
     if (extraction.options.method == engine::Method::luminance) return;
     const GreyImage dark = rescaled(image, 2, 0);
@@ -132,7 +132,7 @@ TEST_CASE("no extractor but luminance sees how bright an extreme image is") {
   });
 }
 
-TEST_CASE("detail sub-bands and gradients do not see how bright an image is") {
+TEST_CASE("detail sub-bands and gradients do not depend on the brightness of an image") {
   engine::WantedPlanes wanted;
   wanted.sub_bands = wanted.csgv = true;
   in_both_precisions([&]<typename Real>() {
@@ -151,7 +151,7 @@ TEST_CASE("detail sub-bands and gradients do not see how bright an image is") {
   });
 }
 
-TEST_CASE("a fixed order is linear: textures of two images add up to that of their sum") {
+TEST_CASE("a fixed order is linear: the textures of two images add up to that of their sum") {
   in_both_precisions([]<typename Real>() {
     for (const ExtractionCase& extraction : extraction_cases()) {
       if (extraction.options.method != engine::Method::fixed) continue;
@@ -171,7 +171,7 @@ TEST_CASE("a fixed order is linear: textures of two images add up to that of the
   });
 }
 
-TEST_CASE("order 0 and an order that is next to nothing leave no texture but rounding") {
+TEST_CASE("order 0 and tiny orders leave no texture but rounding") {
   in_both_precisions([]<typename Real>() {
     for (const ExtractionCase& extraction : extraction_cases()) {
       const engine::ExtractionOptions& options = extraction.options;

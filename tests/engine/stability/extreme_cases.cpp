@@ -1,6 +1,6 @@
 #include "engine/stability/extreme_cases.hpp"
 
-#include "engine/gl_norm.hpp"
+#include "engine/gl_texture.hpp"
 
 #include <cmath>
 #include <utility>
@@ -16,7 +16,7 @@ GreyImage bright_pixel(Size size, int y, int x) {
   return image;
 }
 
-/// Rounding may take a texture this far beyond what its formula allows.
+/// A bound, plus a margin for rounding.
 double with_rounding(double bound) {
   return bound * (1.0 + 1e-6);
 }

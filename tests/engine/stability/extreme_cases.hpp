@@ -1,5 +1,5 @@
-/// \file What the engine is stressed with: the images, sizes and options at which arithmetic breaks
-/// first, and how to run a law in both precisions on every instruction set.
+/// \file Stress tests for the engine: the images, sizes and options at which arithmetic fails
+/// first, and functions that run a law in both precisions on every instruction set.
 #pragma once
 
 #include "core/plane.hpp"
@@ -12,25 +12,25 @@
 
 namespace touchtrial {
 
-/// From a single pixel on: lines, squares without an inside, odd sides.
+/// A single pixel, lines, squares without inner pixels, and odd sides.
 [[nodiscard]] const std::vector<Size>& extreme_sizes();
 
 /// Constants 0, 128 and 255, checkerboard, impulse, step, ramps (one of slope 4, whose CSGV is the
 /// branch point 128), noise, and one bright pixel in the corner.
 [[nodiscard]] std::vector<NamedImage> extreme_images(Size size);
 
-/// A method with its options, and what can be said of its textures.
+/// A method with its options, and the bound of its textures.
 struct ExtractionCase {
   std::string name;
   engine::ExtractionOptions options;
-  double largest_texture = 0.0;  ///< |T| of no 8-bit image exceeds this
+  double largest_texture = 0.0;  ///< the bound of |T| for any 8-bit image
 };
 
-/// Every method but tv-gabor, every norm, gradient, combination; radius 1 to 63, orders from 0 to
-/// the last number below 1, and the ends of all other ranges.
+/// Every method but tv-gabor, and every norm, gradient and combination; radii from 1 to 63, orders
+/// from 0 to the largest number below 1, and the ends of all other ranges.
 [[nodiscard]] const std::vector<ExtractionCase>& extraction_cases();
 
-/// Calls law<float>() on every target of this machine, and law<double>(), which has one way alone.
+/// Calls law<float>() on every target of this machine, and law<double>() once: it has no targets.
 template <typename Law>
 void in_both_precisions(const Law& law) {
   on_every_simd_target([&] { law.template operator()<float>(); });
@@ -38,8 +38,8 @@ void in_both_precisions(const Law& law) {
   law.template operator()<double>();
 }
 
-/// Whether a float texture of this case comes from a vectorised kernel; the others are rounded from
-/// double, so that one target stands for all.
+/// Whether a vectorised kernel computes the float textures of this case. The others are rounded
+/// from double, and so need to run on one target only.
 [[nodiscard]] bool has_kernel(const ExtractionCase& extraction);
 
 /// Calls law<Real>(extraction, image) for every case and every extreme image of every extreme size,

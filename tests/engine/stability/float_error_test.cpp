@@ -1,6 +1,7 @@
-// Single precision against double: how far apart textures, pictures and MS-SSIM may be.
+// How much textures, pictures and MS-SSIM may differ between single precision and double.
 #include "engine/metrics/ssim.hpp"
 #include "engine/plane_comparison.hpp"
+#include "engine/reference/extraction_reference.hpp"
 #include "engine/stability/extreme_cases.hpp"
 #include "support/catch.hpp"
 
@@ -13,16 +14,12 @@ namespace {
 
 constexpr double kTextureTolerance = 4e-5;  // grey levels, on any 8-bit image and radius
 
-bool is_at_branch_point(double csgv) {
-  return std::abs(csgv - 2.0) < 1e-3 || std::abs(csgv - 128.0) < 1e-3;
-}
-
 bool is_near_tie(double texture) {
   const double fraction = texture - std::floor(texture);
   return std::abs(fraction - 0.5) < 1e-4;
 }
 
-/// What the promise of equal pictures leaves out, and how often that happened.
+/// The exceptions from the promise of equal pictures, counted.
 struct Comparison {
   std::size_t pixels = 0;
   std::size_t at_branch_point = 0;
@@ -38,7 +35,7 @@ void compare(const GreyImage& image, int radius, Comparison& counts) {
   const auto single = engine::extract_texture<float>(image, options, wanted);
   for (std::size_t i = 0; i < image.size(); ++i) {
     ++counts.pixels;
-    if (is_at_branch_point(truth.csgv.samples()[i])) {
+    if (reference::is_at_branch_point(truth.csgv.samples()[i])) {
       ++counts.at_branch_point;
       continue;
     }
@@ -50,7 +47,7 @@ void compare(const GreyImage& image, int radius, Comparison& counts) {
   }
 }
 
-TEST_CASE("8-bit textures of both precisions are the same but at branch points and ties") {
+TEST_CASE("8-bit textures of both precisions are equal except at branch points and ties") {
   on_every_simd_target([] {
     Comparison noisy;
     Comparison smooth;
@@ -62,7 +59,7 @@ TEST_CASE("8-bit textures of both precisions are the same but at branch points a
         compare(cloth_image(size), radius, smooth);
       }
     }
-    // The exceptions are exceptions: none in noise lies on a branch point.
+    // The exceptions are rare.
     CHECK(noisy.at_branch_point * 1000 < noisy.pixels);
     CHECK(noisy.differ_at_tie * 1000 < noisy.pixels);
     CHECK(smooth.at_branch_point * 100 < smooth.pixels);

@@ -1,4 +1,4 @@
-// Tangential force and rendering at the ends of what textures, gains and hands can be.
+// Tangential force and rendering for extreme textures, gains and hand movements.
 #include "engine/finite_plane.hpp"
 #include "engine/plane_comparison.hpp"
 #include "engine/rendering/field_statistics.hpp"
@@ -31,7 +31,7 @@ Real sobel_y(const Plane<Real>& g, int y, int x) {
          2 * g.at(y - 1, x) - g.at(y - 1, x + 1);
 }
 
-/// How far the force inside is from half of minus the gradient of the texture.
+/// The largest difference of the force inside from half of minus the Sobel gradient of the texture.
 template <typename Real>
 double error_inside(const engine::Extraction<Real>& result) {
   const Plane<Real>& texture = result.texture;
@@ -46,7 +46,7 @@ double error_inside(const engine::Extraction<Real>& result) {
   return error;
 }
 
-/// One-sided: the sum over the neighbours that exist.
+/// The force from the existing neighbours alone.
 template <typename Real>
 double force_x_at(const Plane<Real>& g, int y, int x) {
   double force = 0.0;
@@ -87,7 +87,7 @@ engine::TextureField field_of(const GreyImage& image) {
   return engine::make_texture_field(engine::extract_texture<double>(image, {}).texture, {});
 }
 
-/// Positions and velocities that no hand has, but a broken device may report.
+/// Positions and velocities that no hand has, but that a broken device may report.
 const std::vector<Vec3>& wild_vectors() {
   static const std::vector<Vec3> vectors = {
       {0, 0, 0},          {1, 1, -0.5},       {-1e300, 1e300, -1e300},

@@ -1,6 +1,6 @@
 // Metrics of identical, flat and opposite pictures.
-#include "engine/entropy.hpp"
 #include "engine/metrics/glcm.hpp"
+#include "engine/metrics/picture_statistics.hpp"
 #include "engine/metrics/ssim.hpp"
 #include "engine/stability/extreme_cases.hpp"
 #include "support/catch.hpp"
@@ -12,12 +12,11 @@ namespace {
 
 constexpr Size kSize{161, 173};
 
-TEST_CASE("metrics of an extreme image and itself are exactly 1 in both precisions") {
+TEST_CASE("MS-SSIM of an extreme image and itself is exactly 1 in both precisions") {
   const std::vector<NamedImage> images = extreme_images(kSize);
   in_both_precisions([&]<typename Real>() {
     for (const auto& [name, image] : images) {
       INFO(name);
-      CHECK(engine::ssim<Real>(image, image) == 1.0);
       const engine::MsSsim similarity = engine::ms_ssim<Real>(image, image);
       CHECK(similarity.unit == 1.0);
       CHECK(similarity.wang == 1.0);
@@ -25,7 +24,7 @@ TEST_CASE("metrics of an extreme image and itself are exactly 1 in both precisio
   });
 }
 
-TEST_CASE("metrics of two extreme images are finite, in range and do not see which comes first") {
+TEST_CASE("MS-SSIM of two extreme images is finite, in range and independent of their order") {
   const std::vector<NamedImage> images = extreme_images(kSize);
   in_both_precisions([&]<typename Real>() {
     for (std::size_t i = 0; i < images.size(); ++i) {
@@ -38,15 +37,12 @@ TEST_CASE("metrics of two extreme images are finite, in range and do not see whi
         CHECK(std::abs(there.unit) <= 1.0);
         CHECK(there.wang >= 0.0);
         CHECK(there.wang <= 1.0);
-        const double single_scale = engine::ssim<Real>(images[i].image, images[j].image);
-        CHECK(single_scale == engine::ssim<Real>(images[j].image, images[i].image));
-        CHECK(std::abs(single_scale) <= 1.0);
       }
     }
   });
 }
 
-TEST_CASE("entropy and co-occurrence of a constant are those of certainty") {
+TEST_CASE("entropy and co-occurrence statistics of a constant image are exact") {
   for (int level = 0; level < 256; ++level) {
     const GreyImage image = flat_image({2, 3}, level);
     CHECK(engine::entropy(image) == 0.0);

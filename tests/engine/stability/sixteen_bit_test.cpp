@@ -31,7 +31,7 @@ TEST_CASE("every 16-bit level becomes its nearest 8-bit level, from every kind o
   }
 }
 
-TEST_CASE("16-bit noise and steps over the full range have textures like any other") {
+TEST_CASE("16-bit pictures over the full range have finite textures") {
   samples::Raster picture = all_levels();
   for (std::uint32_t i = 0; i < 65536; ++i) {
     // An odd factor visits every level once, far from its neighbours.

@@ -1,4 +1,4 @@
-// TV-Gabor on extreme images, over all of lambda that makes sense.
+// TV-Gabor on extreme images, over the whole useful range of lambda.
 #include "engine/finite_plane.hpp"
 #include "engine/plane_comparison.hpp"
 #include "engine/stability/extreme_cases.hpp"

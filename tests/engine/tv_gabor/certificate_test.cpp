@@ -4,8 +4,6 @@
 #include "engine/example_images.hpp"
 #include "engine/plane_comparison.hpp"
 #include "engine/reference/tv_gabor_reference.hpp"
-#include "engine/tv_gabor/domain.hpp"
-#include "engine/tv_gabor/gabor_spectrum.hpp"
 #include "support/catch.hpp"
 
 #include <cmath>
@@ -37,7 +35,7 @@ Plane<double> scaled(const Plane<double>& plane, double factor) {
   return result;
 }
 
-TEST_CASE("a certificate holds what primal and dual are by definition") {
+TEST_CASE("a certificate agrees with the definitions of primal and dual") {
   const GreyImage image = cloth_image({9, 14});
   engine::TvGaborOptions options;
   options.lambda = 0.02;

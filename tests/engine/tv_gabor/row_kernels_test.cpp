@@ -25,7 +25,7 @@ double target_of(double gradient, double z, double other_z, double limit) {
   return gradient - z + 2.0 * z * limit / std::max(limit, std::hypot(z, other_z));
 }
 
-TEMPLATE_TEST_CASE("TV-Gabor's row kernels do what defines them on every target", "", float,
+TEMPLATE_TEST_CASE("TV-Gabor's row kernels agree with their definition on every target", "", float,
                    double) {
   on_every_simd_target([] {
     for (const std::size_t width : {1U, 2U, 5U, 16U, 37U}) {

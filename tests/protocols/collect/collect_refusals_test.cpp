@@ -1,6 +1,6 @@
 // What is not collected, and in which words.
 #include "protocols/collect/lab_fixture.hpp"
-#include "protocols/store/damaged_store.hpp"
+#include "protocols/store/damage.hpp"
 #include "support/catch.hpp"
 #include "support/fault_vfs.hpp"
 
@@ -43,7 +43,7 @@ TEST_CASE("a station whose sessions were tampered with is refused by file and se
                  "session 2, event 0: the event belongs to another chain"));
 }
 
-TEST_CASE("a station that was tampered with is told from one that cannot be merged") {
+TEST_CASE("tampering with a station gives another error than a station that cannot be merged") {
   Lab lab;
   const auto [a, b] = lab.two_stations();
   tamper_file(b, "UPDATE responses SET position = 0 WHERE session = 1 AND trial = 1");
@@ -58,7 +58,7 @@ TEST_CASE("a station whose traces were tampered with is refused by file and sess
                  "session 1, event 5: trace of trial 1 is missing"));
 }
 
-TEST_CASE("what is no database of a station is refused with the remedy") {
+TEST_CASE("a file that is no station's database is refused with the remedy") {
   Lab lab;
   const auto [a, b] = lab.two_stations();
   CHECK(contains(merge_refusal(lab, {a, lab.file("none.db")}), "no such database"));
@@ -66,7 +66,7 @@ TEST_CASE("what is no database of a station is refused with the remedy") {
   CHECK(contains(merge_refusal(lab, {a, b}), "B.db: is truncated"));
 }
 
-TEST_CASE("a file that is there is never written over") {
+TEST_CASE("an existing file is never overwritten") {
   Lab lab;
   const auto [a, b] = lab.two_stations();
   const Bytes before = read_file(b);
@@ -116,7 +116,7 @@ TEST_CASE("pilots on a screen are not pooled with pilots by hand") {
                  "session 1 is seen on a screen, and others are felt"));
 }
 
-TEST_CASE("a participant who was taken at two stations is refused, and both are named") {
+TEST_CASE("a participant id that was used at two stations is refused, and both are named") {
   Lab lab;
   const auto [a, b] = lab.two_stations();
   const fs::path c = lab.station("D.db", {{"P8", 8, minutes(5)}, {"P3", 9, minutes(35)}});
@@ -125,7 +125,7 @@ TEST_CASE("a participant who was taken at two stations is refused, and both are 
                            " and by session 2 of " + c.string()));
 }
 
-TEST_CASE("an enrolment number that was taken at two stations is refused, and both are named") {
+TEST_CASE("an enrolment number that was used at two stations is refused, and both are named") {
   Lab lab;
   const auto [a, b] = lab.two_stations();
   const fs::path c = lab.station("D.db", {{"P9", 4, minutes(5)}});
@@ -134,7 +134,8 @@ TEST_CASE("an enrolment number that was taken at two stations is refused, and bo
                      c.string() + " and by session 2 of " + b.string()));
 }
 
-TEST_CASE("copies that each went on by themselves are refused, and where they part is told") {
+TEST_CASE(
+    "copies that each went on by themselves are refused, and the message says where they part") {
   Lab lab;
   const auto [a, b] = lab.two_stations();
   const fs::path fork = lab.file("fork.db");
@@ -173,7 +174,7 @@ TEST_CASE("a collected study takes no sessions and no replacements") {
   CHECK_FALSE(store.first_fault());
 }
 
-TEST_CASE("whatever fails on the disk leaves no collected file, or a whole one") {
+TEST_CASE("a failing disk leaves no collected file, or a whole one") {
   Lab lab;
   const auto [a, b] = lab.two_stations();
   for (const Fault::Kind kind : {Fault::Kind::full, Fault::Kind::error, Fault::Kind::short_write,

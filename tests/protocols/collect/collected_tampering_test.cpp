@@ -21,7 +21,7 @@ std::string fault_after(const std::string& sql) {
 
 }  // namespace
 
-TEST_CASE("whatever is altered in a collected study is found") {
+TEST_CASE("every alteration of a collected study is found") {
   CHECK(fault_after("SELECT 1").empty());
   CHECK(fault_after("UPDATE events SET body = '{}' WHERE session = -2 AND sequence = 3") ==
         "-2/3 the hash of the event does not match its content");

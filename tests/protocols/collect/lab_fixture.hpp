@@ -64,7 +64,8 @@ inline void begin(store::StudyStore& store, const Visitor& visitor) {
 /// A folder with stations' databases, which are closed between calls.
 class Lab {
  public:
-  /// Makes a station's database. \return its path
+  /// Makes a station's database.
+  /// \return its path
   fs::path station(const std::string& name, const std::vector<Visitor>& visitors,
                    const store::StudyCommitment& commitment = lab_commitment()) {
     const fs::path path = file(name);
@@ -72,7 +73,7 @@ class Lab {
     visit(store, visitors);
     return path;
   }
-  /// Something is done at a station.
+  /// Calls `work` with a station's open database.
   template <typename Work>
   static void at(const fs::path& path, Work&& work) {
     store::StudyStore store = store::StudyStore::open(path, Access::read_write);
@@ -80,7 +81,7 @@ class Lab {
   }
   [[nodiscard]] fs::path file(const std::string& name) const { return folder_.path() / name; }
 
-  /// Two stations whose sessions came by turns: P1 and P3 at A, P2 and P4 at B.
+  /// Two stations with sessions in turn: P1 and P3 at A, P2 and P4 at B.
   std::pair<fs::path, fs::path> two_stations() {
     return {station("A.db", {{"P1", 1, minutes(10)}, {"P3", 3, minutes(30)}}),
             station("B.db", {{"P2", 2, minutes(20)}, {"P4", 4, minutes(40)}})};
@@ -102,7 +103,8 @@ inline collect::CollectReport merge(const std::vector<fs::path>& files, const fs
   return collect::collect_into_file(stations_in(files), target);
 }
 
-/// The line with which a merge is refused, which then leaves nothing behind; empty if it is not.
+/// The line with which a merge is refused, after a check that it left nothing behind; empty if the
+/// merge is not refused.
 inline std::string merge_refusal(const Lab& lab, const std::vector<fs::path>& files) {
   const fs::path target = lab.file("refused.db");
   std::string line = refusal_of([&] { merge(files, target); });

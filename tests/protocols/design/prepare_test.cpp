@@ -2,7 +2,6 @@
 
 #include "core/errors.hpp"
 #include "protocols/design/laboratory.hpp"
-#include "protocols/design/pack_lock.hpp"
 #include "protocols/design/pack_upkeep.hpp"
 #include "protocols/design/refusal.hpp"
 #include "protocols/design/stimulus_field.hpp"

@@ -3,6 +3,7 @@
 #include "protocols/design/study.hpp"
 #include "protocols/design/study_examples.hpp"
 #include "protocols/design/study_sections.hpp"
+#include "protocols/identification/design/identification.hpp"
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 
@@ -38,7 +39,7 @@ bool contains(const std::string& text, const std::string& part) {
 TEST_CASE("a study with the required keys alone has the documented defaults") {
   const design::Study study = parsed(minimal_study());
   CHECK(study.name == "small");
-  CHECK(study.protocol == design::Protocol::classification);
+  CHECK(study.protocol == &design::identification::classification());
   REQUIRE(study.classes.size() == 2);
   CHECK(study.classes[1].label == "smooth");
   CHECK(study.classes[1].images == std::vector<std::filesystem::path>{"smooth.png"});
@@ -85,7 +86,7 @@ TEST_CASE("every key of a full study is read") {
                         {"resume_within_h", 2.5}};
   document["seed"] = 9007199254740992;
   const design::Study study = parsed(document);
-  CHECK(study.protocol == design::Protocol::comparison);
+  CHECK(study.protocol == &design::identification::comparison());
   CHECK(study.classes[2].images.size() == 2);
   CHECK(study.methods[0].method == engine::Method::fixed);
   CHECK(study.methods[0].radius == 4);

@@ -34,7 +34,7 @@ TEST_CASE("a device is armed once somebody consents, and then ready without aski
   CHECK(bench.cable.opened == 1);
 }
 
-TEST_CASE("what is missing is said until it is there") {
+TEST_CASE("a station names what is missing until it is there") {
   Bench bench;
   bench.cable.plugged = false;
   bench.cable.homed = false;
@@ -50,7 +50,7 @@ TEST_CASE("what is missing is said until it is there") {
         "the device is not homed; move its handle through the whole range");
 }
 
-TEST_CASE("a file that the device needs and that is missing is said and waited for as well") {
+TEST_CASE("a station names a missing file that the device needs, and waits for it") {
   Cable cable;
   FakeDevice* device = nullptr;
   Helper helper{cable};
@@ -67,7 +67,7 @@ TEST_CASE("a file that the device needs and that is missing is said and waited f
   CHECK(station.make_ready() == session::SupplyState::ready);
 }
 
-TEST_CASE("a device that was lost is opened anew and armed anew") {
+TEST_CASE("a lost device is opened again and armed again") {
   Bench bench;
   REQUIRE(bench.until_settled() == session::SupplyState::ready);
   bench.cable.plugged = false;
@@ -88,7 +88,7 @@ TEST_CASE("after an interruption the same device waits for consent") {
   CHECK(bench.helper.consents == 2);
 }
 
-TEST_CASE("another device is not taken for the one that the session began with") {
+TEST_CASE("a device other than the first one is refused") {
   Bench bench;
   REQUIRE(bench.until_settled() == session::SupplyState::ready);
   bench.cable.plugged = false;
@@ -104,7 +104,7 @@ TEST_CASE("another device is not taken for the one that the session began with")
   CHECK(bench.station.make_ready() == session::SupplyState::ready);
 }
 
-TEST_CASE("whoever gives up ends the wait") {
+TEST_CASE("an attendant who gives up ends the wait") {
   Bench bench;
   bench.cable.plugged = false;
   bench.helper.gives_up = true;

@@ -1,4 +1,4 @@
-/// \file A device on a cable that tests pull, with a hand that strokes the plane by itself.
+/// \file A device on a cable that tests can pull, with a hand that strokes the plane by itself.
 #pragma once
 
 #include "device/haptic_device.hpp"
@@ -13,14 +13,13 @@
 
 namespace touchtrial {
 
-/// What lies outside the program: whether the device is plugged in, and what has reached its
-/// motors.
+/// What is outside the program: whether the device is plugged in, and what reached its motors.
 struct Cable {
   std::atomic<bool> plugged{true};
   std::atomic<bool> homed{true};
   std::atomic<int> pull_at_tick{-1};  ///< the cable comes off in this tick, once
   std::atomic<int> opened{0};
-  std::atomic<int> writes_unarmed{0};     ///< forces other than zero that came while halted
+  std::atomic<int> writes_unarmed{0};     ///< forces other than zero while halted
   std::atomic<int> strong_writes{0};      ///< forces other than zero
   std::atomic<bool> last_was_zero{true};  ///< the last force that was written
   std::string serial = "A1";
@@ -43,7 +42,7 @@ class FakeDevice final : public device::HapticDevice {
   [[nodiscard]] device::DeviceReadiness readiness() const noexcept override {
     return cable_.homed ? device::DeviceReadiness::ready : device::DeviceReadiness::needs_homing;
   }
-  /// A new exploration: the hand is up again.
+  /// Begins a new exploration: raises the hand.
   void lift() noexcept { tick_ = 0; }
 
  private:
@@ -70,7 +69,7 @@ class Helper final : public session::Attendant {
   Cable& cable_;
 };
 
-/// Opens the fake; the newest one is `device` while it lives.
+/// Opens the fake device, and points `device` to it.
 [[nodiscard]] session::DeviceStation::Open opener(Cable& cable, FakeDevice*& device);
 
 }  // namespace touchtrial

@@ -1,14 +1,12 @@
-/// \file Of a pack only the pages that the stylus touches are read. Pages that it should not touch
-/// are taken away, so that reading one would end the test.
+// Only those pages of a field are read that the stylus touches. The test takes the others away, so
+// that reading one would end it.
 #include "protocols/session/exploration.hpp"
-#include "protocols/session/prompt_participant.hpp"
-#include "protocols/session/simulated_exploration.hpp"
+#include "protocols/session/stroker.hpp"
 #include "support/catch.hpp"
 #include "support/guarded_bytes.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <set>
 
 namespace touchtrial {
@@ -56,23 +54,8 @@ std::set<std::size_t> pages_under(const store::Trace& trace, const PlaneGeometry
   return pages;
 }
 
-class Explorer final : public session::PromptParticipant {
- public:
-  void see_pictures(const std::vector<std::string>&) override {}
-  [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& plane) override {
-    RandomStream random(1, "field_pages_test");
-    return hand_.emplace(session::make_exploring_hand(subject_, plane, random));
-  }
-  void feel(const device::ServoSample&) noexcept override {}
-  [[nodiscard]] session::ParticipantAnswer answer() override { return {}; }
-
- private:
-  session::SubjectModel subject_;
-  std::optional<device::SimulatedHand> hand_;
-};
-
 store::Trace explored(const engine::RenderingModel& model, const PlaneGeometry& plane) {
-  Explorer explorer;
+  Stroker explorer(RandomStream(1, "field_pages_test"));
   store::Trace trace;
   REQUIRE(session::VirtualExplorer().explore(model, plane, explorer, {}, trace).servo.end ==
           device::ServoEnd::hand_stopped);

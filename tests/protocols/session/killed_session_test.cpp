@@ -1,10 +1,10 @@
-// Whole sessions, ended at every commit by a kill or a power cut, and taken up again to their end.
+// Whole sessions, each ended at one commit by a kill or a power cut, taken up again and finished.
 #include "core/errors.hpp"
 #include "core/random.hpp"
 #include "protocols/session/commitment.hpp"
-#include "protocols/session/prompt_participant.hpp"
 #include "protocols/session/session_runner.hpp"
 #include "protocols/session/tiny_study.hpp"
+#include "protocols/simulation/prompt_participant.hpp"
 #include "protocols/store/noting_sink.hpp"
 #include "protocols/store/study_store.hpp"
 #include "support/catch.hpp"
@@ -46,7 +46,7 @@ class BriefStylus final : public device::HapticDevice {
 };
 
 /// Names one picture after the other.
-class Restless final : public session::PromptParticipant {
+class Restless final : public simulation::PromptParticipant {
  public:
   explicit Restless(int first) : next_(first) {}
 
@@ -56,7 +56,7 @@ class Restless final : public session::PromptParticipant {
     return stylus_;
   }
   void feel(const device::ServoSample&) noexcept override {}
-  [[nodiscard]] session::ParticipantAnswer answer() override {
+  [[nodiscard]] simulation::ParticipantAnswer answer() override {
     return {next_++ % 5, std::chrono::seconds(1)};
   }
 
@@ -83,7 +83,7 @@ Laboratory& laboratory() {
   return laboratory;
 }
 
-/// One session in a database of its own, from start to start of the program.
+/// One session in its own database, over several starts of the program.
 struct KilledSession {
   KilledSession() : path(laboratory().study.next_database()) {
     std::filesystem::copy_file(laboratory().empty, path);
@@ -93,14 +93,13 @@ struct KilledSession {
   KilledSession& operator=(const KilledSession&) = delete;
 
   /// Starts the program: a new session, or the open one taken up again, run to its end.
-  /// \return whether it came to its end
+  /// \return whether it reached its end
   bool start() try {
     ++starts;
     store::StudyStore store = store::StudyStore::open(path, Access::read_write);
-    const std::optional<store::SessionRow> open = store.open_session_of("P001");
-    const std::optional<store::SessionRow> any = store.session_of("P001");
-    if (any && !open) return true;  // it had ended, only nobody was told
-    run(store, open.has_value());
+    const std::optional<store::SessionRow> row = store.session_of("P001");
+    if (row && row->state != store::SessionState::open) return true;  // ended, but not reported
+    run(store, row.has_value());
     return true;
   } catch (const StoreError&) {
     return false;
@@ -147,7 +146,7 @@ struct KilledSession {
   }
 };
 
-/// Every acknowledged event is there, once, as it was acknowledged.
+/// Every acknowledged event is stored once, as it was acknowledged.
 void require_kept(const std::vector<store::Event>& stored,
                   const std::vector<store::Event>& acknowledged) {
   for (const store::Event& event : acknowledged) {
@@ -156,7 +155,7 @@ void require_kept(const std::vector<store::Event>& stored,
   }
 }
 
-/// 25 answers, five of each class, and a chain that holds.
+/// 25 answers, five of each class, and an intact chain.
 void require_complete(const KilledSession& session) {
   const store::StudyStore store = store::StudyStore::open(session.path, Access::read_only);
   REQUIRE_FALSE(store.first_fault());
@@ -180,8 +179,8 @@ void require_complete(const KilledSession& session) {
   REQUIRE(answers == kTrials);
 }
 
-/// One session that is ended once; then taken up and finished.
-/// \return whether the fault came
+/// Ends a session once, takes it up, and finishes it.
+/// \return whether the fault occurred
 bool is_finished_after(FaultVfs& vfs, const Fault& fault) {
   INFO("kind " << static_cast<int>(fault.kind) << " at " << fault.at);
   KilledSession session;
@@ -194,7 +193,7 @@ bool is_finished_after(FaultVfs& vfs, const Fault& fault) {
     REQUIRE_FALSE(store.first_fault());
     require_kept(store.events(1), session.acknowledged);
   }
-  // A fault in the closing of the file comes when all is done.
+  // A fault while the file is closed comes when everything is done.
   REQUIRE((ended || session.start()));
   require_complete(session);
   return true;

@@ -1,15 +1,15 @@
-// Sessions with the servo on a thread of its own, on a device that is lost and comes back. Nothing
-// here waits for a clock: servo time goes as fast as the processor.
+// Sessions with the servo on its own thread, on a device that is lost and comes back. Servo time
+// passes as fast as the processor allows, unless a test says otherwise.
 #include "core/cipher.hpp"
+#include "protocols/identification/simulation/identifying_participant.hpp"
 #include "protocols/session/commitment.hpp"
 #include "protocols/session/fake_station.hpp"
-#include "protocols/session/felt_knowledge.hpp"
-#include "protocols/session/prompt_participant.hpp"
 #include "protocols/session/real_time_explorer.hpp"
 #include "protocols/session/session_runner.hpp"
-#include "protocols/session/simulated_participant.hpp"
 #include "protocols/session/still_time.hpp"
 #include "protocols/session/tiny_study.hpp"
+#include "protocols/simulation/felt_knowledge.hpp"
+#include "protocols/simulation/prompt_participant.hpp"
 #include "protocols/store/payload_json.hpp"
 #include "protocols/store/study_store.hpp"
 #include "support/catch.hpp"
@@ -27,8 +27,8 @@ namespace {
 
 using std::chrono::seconds;
 
-/// Feels at a station, names a picture by what was felt, and remembers what was named.
-class PersonAtStation : public session::PromptParticipant {
+/// Feels at a station, names a picture by what was felt, and remembers it.
+class PersonAtStation : public simulation::PromptParticipant {
  public:
   PersonAtStation(session::DeviceStation& station, FakeDevice*& device)
       : station_(station), device_(device) {}
@@ -44,7 +44,7 @@ class PersonAtStation : public session::PromptParticipant {
     felt_n_ += std::abs(sample.force_n.x);
     ++samples_;
   }
-  [[nodiscard]] session::ParticipantAnswer answer() override {
+  [[nodiscard]] simulation::ParticipantAnswer answer() override {
     const auto tenths = static_cast<std::size_t>(felt_n_ * 10.0);
     const int position = static_cast<int>((tenths + named.size()) % pictures_);
     named.push_back(position);
@@ -61,15 +61,6 @@ class PersonAtStation : public session::PromptParticipant {
   double felt_n_ = 0.0;
   int samples_ = 0;
 };
-
-session::RealTimeOptions as_fast_as_it_goes() {
-  session::RealTimeOptions options;
-  options.scheduling.policy = device::SchedulingPolicy::other;
-  options.scheduling.lock_memory = false;
-  options.watchdog_time = &still_time();
-  options.clock = [] { return std::make_unique<device::VirtualClock>(); };
-  return options;
-}
 
 /// A session of 5 trials of 0.4 s at the fake station.
 struct Laboratory {
@@ -146,7 +137,8 @@ TEST_CASE("a real-time session stores every answer, every sample and the servo's
   CHECK(opening.station->scheduling == "other, memory not locked");
 }
 
-TEST_CASE("a cable that comes off in mid-trial interrupts it, and it is repeated at the end") {
+TEST_CASE(
+    "a cable that comes off during a trial interrupts it, and the trial is repeated at the end") {
   Laboratory lab;
   lab.cable.pull_at_tick = 200;
   const session::SessionTally tally = lab.run();
@@ -181,7 +173,7 @@ TEST_CASE("the flight record of an interruption is sealed and holds the ticks be
   CHECK(detail.flight.substr(0, 12) == "tick,time_s,");
 }
 
-TEST_CASE("a session ends when whoever attends gives up on the device") {
+TEST_CASE("a session ends when the attendant gives up on the device") {
   Laboratory lab;
   lab.cable.pull_at_tick = 200;
   lab.helper.gives_up = true;
@@ -252,7 +244,7 @@ TEST_CASE("a participant who is done ends the exploration before its time is up"
   }
 }
 
-TEST_CASE("a comfort stop interrupts the trial, and force comes back by consent alone") {
+TEST_CASE("a comfort stop interrupts the trial, and force comes back only with consent") {
   std::atomic<bool> gate{false};
   Laboratory lab(gated(gate));
   Acting person(lab, gate, true, [](device::ServoControl& servo) { servo.comfort_stop(); });
@@ -266,7 +258,7 @@ TEST_CASE("a comfort stop interrupts the trial, and force comes back by consent 
   CHECK(lab.all(store::EventKind::answered).size() == 5);
 }
 
-TEST_CASE("an emergency stop between two explorations holds for the next") {
+TEST_CASE("an emergency stop between two explorations applies to the next") {
   Laboratory lab;
   lab.explorer.control().emergency_stop();
   lab.run();
@@ -290,16 +282,16 @@ TEST_CASE("an error on the session's thread leaves the hand without force") {
   CHECK(lab.cable.last_was_zero);
 }
 
-TEST_CASE("a real-time session by the machine's own clock records how late its ticks were") {
+TEST_CASE("a real-time session on the machine's own clock records how late its ticks were") {
   const TinyStudy study({.trials = R"({"repeats": 1})"});
   const session::StimulusSource source(study.pack(), study.key().study.rendering);
-  session::SubjectModel subject;
+  simulation::SubjectModel subject;
   subject.explore_s = 0.2;
   subject.training_passes = 1;
-  const session::FeltKnowledge knowledge =
-      session::learn_by_feeling(session::LabelledFields(study.key(), source), subject, 3.3, 1, 1);
-  session::SimulatedParticipant participant(subject, knowledge, 1, 1);
-  session::RealTimeOptions patient;  // a paced clock, and the scheduling that can be had
+  const simulation::FeltKnowledge knowledge = simulation::learn_by_feeling(
+      simulation::LabelledFields(study.key(), source), subject, 3.3, 1, 1);
+  simulation::identification::IdentifyingParticipant participant(subject, knowledge, 1, 1);
+  session::RealTimeOptions patient;  // a paced clock, and the best scheduling available
   patient.watchdog_time = &still_time();
   session::RealTimeExplorer explorer(patient);
   session::SteadySessionClock clock;
@@ -314,7 +306,7 @@ TEST_CASE("a real-time session by the machine's own clock records how late its t
   const session::SessionTally tally =
       session::run_session(session, {study.key(), source, participant, clock, explorer, devices});
   CHECK(session.phase() == session::SessionPhase::closed);
-  // Ticks of 0.2 s that were not left out take that long: no clock runs faster.
+  // Ticks that were not left out take 1 ms each: no clock runs faster.
   CHECK(tally.duration >= std::chrono::milliseconds(tally.ticks - 5));
   int traces = 0;
   for (const store::Event& event : events.events) {

@@ -1,7 +1,7 @@
 #include "protocols/session/session_runner.hpp"
 
-#include "protocols/session/prompt_participant.hpp"
 #include "protocols/session/tiny_study.hpp"
+#include "protocols/simulation/prompt_participant.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace touchtrial {
 namespace {
 
-/// A stylus that rests on the plane for 100 ticks, or is unplugged before.
+/// A stylus that rests on the plane for 100 ticks, or is unplugged after 50.
 class RestingStylus final : public device::HapticDevice {
  public:
   explicit RestingStylus(bool is_lost) : is_lost_(is_lost) {}
@@ -35,8 +35,8 @@ class RestingStylus final : public device::HapticDevice {
   int tick_ = 0;
 };
 
-/// Always names the first picture; the device is lost in the first so many presentations.
-class Unlucky final : public session::PromptParticipant {
+/// Always names the first picture. The device is lost in the first `losses` presentations.
+class Unlucky final : public simulation::PromptParticipant {
  public:
   explicit Unlucky(int losses) : losses_(losses) {}
 
@@ -46,7 +46,7 @@ class Unlucky final : public session::PromptParticipant {
     return stylus_;
   }
   void feel(const device::ServoSample&) noexcept override { ++ticks; }
-  [[nodiscard]] session::ParticipantAnswer answer() override {
+  [[nodiscard]] simulation::ParticipantAnswer answer() override {
     return {0, std::chrono::seconds(1)};
   }
 
@@ -67,7 +67,10 @@ struct Ran {
   }
 };
 
-Ran run(session::Participant& participant) {
+/// Opens a session of 5 trials and runs it.
+/// \param run  called with the session, the study's key and the stimuli
+template <typename Run>
+Ran ran_session(const Run& run) {
   const TinyStudy study({.trials = R"({"repeats": 1})"});
   const session::StimulusSource source(study.pack(), study.key().study.rendering);
   Ran ran;
@@ -77,12 +80,20 @@ Ran run(session::Participant& participant) {
   opening.participant = "P001";
   opening.enrolment = 1;
   session.open({}, opening, "{}");
-  ran.tally = session::run_session_in_virtual_time(session, study.key(), source, participant);
-  CHECK(session.phase() == session::SessionPhase::closed);
+  ran.tally = run(session, study.key(), source);
   return ran;
 }
 
-/// Real time in which everything takes a while, whatever is asked or stored.
+Ran run(session::Participant& participant) {
+  return ran_session([&](session::Session& session, const design::StudyKey& key,
+                         const session::StimulusSource& source) {
+    const auto tally = session::run_session_in_virtual_time(session, key, source, participant);
+    CHECK(session.phase() == session::SessionPhase::closed);
+    return tally;
+  });
+}
+
+/// Real time in which every call takes a while.
 class CreepingClock final : public session::SessionClock {
  public:
   [[nodiscard]] Time now() override { return now_ += std::chrono::milliseconds(3); }
@@ -92,8 +103,8 @@ class CreepingClock final : public session::SessionClock {
   Time now_{};
 };
 
-/// Reads the field of each presentation before it is felt, as the servo would, and counts how often
-/// a page of it had to be fetched.
+/// Reads the field of each presentation before it is felt, as the servo would, and counts the pages
+/// that had to be fetched.
 class PageCountingExplorer final : public session::Explorer {
  public:
   explicit PageCountingExplorer(bool in_real_time) : in_real_time_(in_real_time) {}
@@ -129,7 +140,7 @@ class PageCountingExplorer final : public session::Explorer {
   session::VirtualExplorer usual_;
 };
 
-/// In virtual time, but the desk has its turn while the plane is on.
+/// In virtual time, but the experimenter is attended to while the plane is on.
 class AttendedExplorer final : public session::Explorer {
  public:
   [[nodiscard]] bool in_real_time() const noexcept override { return false; }
@@ -151,7 +162,7 @@ class AttendedExplorer final : public session::Explorer {
   session::VirtualExplorer usual_;
 };
 
-/// Says that the program is to end from the first exploration on, whenever asked.
+/// Asks to leave from the first exploration on, every time.
 class Insisting final : public session::Experimenter {
  public:
   void show(const session::SessionStatus& status) override {
@@ -170,23 +181,16 @@ class Insisting final : public session::Experimenter {
 
 Ran run_with(session::Explorer& explorer, session::SessionClock& clock,
              session::Experimenter& experimenter = session::no_experimenter()) {
-  const TinyStudy study({.trials = R"({"repeats": 1})"});
-  const session::StimulusSource source(study.pack(), study.key().study.rendering);
-  Ran ran;
-  session::Session session(design::make_schedule(study.key().study, 1), study.key().study.trials,
-                           store::SessionRecorder(1, SecretKey{}, ran.events));
-  store::SessionOpening opening;
-  opening.participant = "P001";
-  opening.enrolment = 1;
-  session.open({}, opening, "{}");
-  Unlucky person(1);
-  session::AlwaysReady devices;
-  ran.tally = session::run_session(session, {study.key(), source, person, clock, explorer, devices,
-                                             device::kServoRateHz, experimenter});
-  return ran;
+  return ran_session([&](session::Session& session, const design::StudyKey& key,
+                         const session::StimulusSource& source) {
+    Unlucky person(1);
+    session::AlwaysReady devices;
+    return session::run_session(session, {key, source, person, clock, explorer, devices,
+                                          device::kServoRateHz, experimenter});
+  });
 }
 
-TEST_CASE("in real time every field is in memory before it is felt, whichever it is") {
+TEST_CASE("in real time every field is in memory before it is felt") {
   session::VirtualSessionClock clock;
   PageCountingExplorer real(true);
   CHECK(run_with(real, clock).tally.presentations == 6);
@@ -219,7 +223,8 @@ TEST_CASE("times in clear say when an exploration ended, not how long its trace 
 }
 
 TEST_CASE(
-    "anybody can take part in a virtual session, and sees the pictures in the layout's order") {
+    "any participant can take part in a virtual session and sees the pictures in the layout's "
+    "order") {
   Unlucky lucky(0);
   const Ran ran = run(lucky);
   std::vector<std::string> sorted = lucky.pictures;
@@ -244,7 +249,7 @@ TEST_CASE("a presentation in which the device was lost is repeated and leaves no
   CHECK(ran.count(store::EventKind::stopped) == 0);
 }
 
-TEST_CASE("a session that is to end while the plane is on is left once, however often it is said") {
+TEST_CASE("a request to leave while the plane is on is obeyed once, however often it is repeated") {
   session::VirtualSessionClock clock;
   AttendedExplorer explorer;
   Insisting experimenter;

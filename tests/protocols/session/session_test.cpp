@@ -340,7 +340,7 @@ TEST_CASE("a session that was stopped closes as incomplete") {
   CHECK(lab.last_body().at("complete") == false);
 }
 
-session::BlockRestart two_trials_again() {
+session::BlockDrawing two_trials_again() {
   return {[](int block, int, int first_trial) {
             return std::vector<design::Presentation>{
                 {first_trial, block, design::PresentationKind::scored, {.class_index = 2}},

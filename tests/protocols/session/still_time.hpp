@@ -1,10 +1,12 @@
-/// \file Time that stands still for a watchdog: nothing in a test depends on how fast the machine
-/// is.
+/// \file Real time for tests that must not depend on the machine's speed: a watchdog's time that
+/// stands still, and an explorer whose servo runs as fast as the processor allows.
 #pragma once
 
 #include "device/safety/watchdog.hpp"
+#include "protocols/session/real_time_explorer.hpp"
 
 #include <chrono>
+#include <memory>
 #include <thread>
 
 namespace touchtrial {
@@ -18,6 +20,15 @@ class StillTime final : public device::WatchdogTime {
 [[nodiscard]] inline device::WatchdogTime& still_time() noexcept {
   static StillTime time;
   return time;
+}
+
+[[nodiscard]] inline session::RealTimeOptions as_fast_as_it_goes() {
+  session::RealTimeOptions options;
+  options.scheduling.policy = device::SchedulingPolicy::other;
+  options.scheduling.lock_memory = false;
+  options.watchdog_time = &still_time();
+  options.clock = [] { return std::make_unique<device::VirtualClock>(); };
+  return options;
 }
 
 }  // namespace touchtrial

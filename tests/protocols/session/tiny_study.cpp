@@ -34,11 +34,15 @@ design::Study study_with(const TinyStudyOptions& options) {
   }
   const std::string methods = options.comparison ? R"([{"name":"adaptive"},{"name":"tv-gabor"}])"
                                                  : R"([{"name":"adaptive"}])";
-  return design::parse_study(R"({"study":"tiny","protocol":")" +
-                                 std::string(options.comparison ? "comparison" : "classification") +
-                                 R"(","classes":[)" + classes + R"(],"methods":)" + methods +
-                                 R"(,"trials":)" + options.trials + R"(,"rendering":)" +
-                                 options.rendering + R"(,"seed":7})",
+  const std::string protocol = !options.protocol.empty() ? options.protocol
+                               : options.comparison      ? "comparison"
+                                                         : "classification";
+  const std::string section =
+      options.protocol.empty() ? "" : ",\"" + options.protocol + "\":" + options.section;
+  return design::parse_study(R"({"study":"tiny","protocol":")" + protocol + R"(","classes":[)" +
+                                 classes + R"(],"methods":)" + methods + R"(,"trials":)" +
+                                 options.trials + R"(,"rendering":)" + options.rendering + section +
+                                 R"(,"seed":7})",
                              ".", "tiny.json");
 }
 

@@ -1,4 +1,4 @@
-/// \file A small study with its pack, made without images: what the simulations are tested on.
+/// \file A small study with its pack, made without images.
 #pragma once
 
 #include "engine/pack/pack.hpp"
@@ -11,26 +11,28 @@
 
 namespace touchtrial {
 
-/// What a tiny study may have differently.
+/// Variations of the tiny study.
 struct TinyStudyOptions {
   int images = 1;                ///< a class
   bool comparison = false;       ///< two methods
   bool smooth = false;           ///< gains are zero
   int side_px = 120;             ///< of the pictures, of 0.2 mm
   std::uint64_t secret = 1;      ///< codes and secrets are a function of it
+  std::string protocol{};        ///< another one than classification and comparison
+  std::string section = "{}";    ///< that protocol's own object
   std::string trials = "{}";     ///< the study file's "trials"
   std::string rendering = "{}";  ///< the study file's "rendering"
 };
 
-/// Five square textures (waves of one length and direction each, with random
-/// phases), their key and their pack in a folder of its own.
+/// Five square textures (waves of one length and direction each, with random phases), with their
+/// key, and their pack in a temporary folder.
 class TinyStudy {
  public:
   explicit TinyStudy(const TinyStudyOptions& options = {});
 
   [[nodiscard]] const design::StudyKey& key() const noexcept { return key_; }
   [[nodiscard]] const engine::Pack& pack() const noexcept { return pack_; }
-  /// A place for a database that nobody else has.
+  /// A new path for a database.
   [[nodiscard]] std::filesystem::path next_database();
 
  private:

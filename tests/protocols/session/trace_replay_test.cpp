@@ -1,36 +1,16 @@
 #include "device/replay/replay_device.hpp"
 #include "protocols/session/exploration.hpp"
-#include "protocols/session/model_force.hpp"
-#include "protocols/session/prompt_participant.hpp"
-#include "protocols/session/simulated_exploration.hpp"
 #include "protocols/session/stimulus_source.hpp"
+#include "protocols/session/stroker.hpp"
 #include "protocols/session/tiny_study.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
 #include <vector>
 
 namespace touchtrial {
 namespace {
-
-/// Brings one simulated hand.
-class Stroker final : public session::PromptParticipant {
- public:
-  void see_pictures(const std::vector<std::string>&) override {}
-  [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& plane) override {
-    session::SubjectModel subject;
-    subject.explore_s = 2.0;
-    RandomStream random(3, "trace_replay_test");
-    return hand_.emplace(session::make_exploring_hand(subject, plane, random));
-  }
-  void feel(const device::ServoSample&) noexcept override {}
-  [[nodiscard]] session::ParticipantAnswer answer() override { return {}; }
-
- private:
-  std::optional<device::SimulatedHand> hand_;
-};
 
 class KeepingSink final : public device::SampleSink {
  public:
@@ -40,21 +20,23 @@ class KeepingSink final : public device::SampleSink {
   std::vector<Vec3> forces_n;
 };
 
-/// The positions of a trace. Under the same model and servo options they call forth the trace's
-/// forces again, to within its quantisation, as long as the model does not look at velocities
-/// (those of a replay are differences of positions).
+/// The positions of a trace. Under the same model and servo options they give the trace's forces
+/// again, to within its quantisation, unless the model uses velocities (those of a replay are
+/// differences of positions).
 device::RecordedMotion motion_of(const store::Trace& trace) {
   std::vector<Vec3> positions_mm;
   for (const store::TraceSample& sample : trace.samples) positions_mm.push_back(sample.position_mm);
   return {std::move(positions_mm), trace.rate_hz};
 }
 
-TEST_CASE("a stored trial, replayed through its model, calls forth the same forces") {
+TEST_CASE("a stored trial, replayed through its model, gives the same forces") {
   const TinyStudy study;
   const session::StimulusSource source(study.pack(), study.key().study.rendering);
+  simulation::SubjectModel subject;
+  subject.explore_s = 2.0;
   for (const design::KeyedStimulus& keyed : study.key().stimuli) {
     const engine::RenderingModel& model = source.model(keyed.code);
-    Stroker stroker;
+    Stroker stroker(RandomStream(3, "trace_replay_test"), subject);
     store::Trace recorded;
     static_cast<void>(
         session::VirtualExplorer().explore(model, source.plane(), stroker, {}, recorded));

@@ -52,7 +52,7 @@ const std::string kFourth = "session = 1 AND sequence = 5";  // trial 1's trace-
 
 }  // namespace
 
-TEST_CASE("an altered event is named, whatever was altered in it") {
+TEST_CASE("an altered event is named, whichever of its members was altered") {
   const std::string hash = "the hash of the event does not match its content";
   REQUIRE(fault_after(next_number("events", "at_ns", kFourth)) == "1/5 " + hash);
   REQUIRE(fault_after(flipped_blob("events", "sealed", kFourth)) == "1/5 " + hash);
@@ -120,7 +120,7 @@ TEST_CASE("the end of a session missing from the end of the file's chain is noti
           "2/0 the file's chain knows no such session");
 }
 
-TEST_CASE("a session of another making in the place of a stored one is noticed") {
+TEST_CASE("another session in the place of a stored one is noticed") {
   StoredFixture study(2);
   StoredFixture other(1);
   other.store.reset();
@@ -205,16 +205,6 @@ TEST_CASE("missing and added derived rows are noticed") {
           "1/0 derived table sessions disagrees with the events");
   REQUIRE(fault_after("UPDATE sessions SET session = 7 WHERE session = 2") ==
           "2/0 derived table sessions disagrees with the events");
-}
-
-TEST_CASE("tampered derived tables are put right by making them anew") {
-  StoredFixture study(2);
-  const auto trials = study.store->trials();
-  tamper(study, "UPDATE responses SET position = 1; DELETE FROM trials WHERE trial = 3");
-  REQUIRE(study.store->first_fault());
-  study.store->rebuild_derived();
-  REQUIRE_FALSE(study.store->first_fault());
-  REQUIRE(study.store->trials() == trials);
 }
 
 TEST_CASE("a tampered database answers with one line, not with invented data") {

@@ -102,7 +102,7 @@ TEST_CASE("a database opened for reading refuses every change") {
   REQUIRE(contains(refusal_of([&] { add(reader, 2); }), why));
   REQUIRE(contains(refusal_of([&] { reader.close_study(kUtc); }), why));
   REQUIRE(contains(refusal_of([&] { reader.withdraw(1, kUtc, "x"); }), why));
-  REQUIRE(contains(refusal_of([&] { reader.rebuild_derived(); }), why));
+  REQUIRE(contains(refusal_of([&] { reader.exclude(1, kUtc, "x"); }), why));
   REQUIRE(reader.next_session() == 2);
 }
 
@@ -144,7 +144,7 @@ TEST_CASE("a database that cannot be made leaves nothing behind") {
   REQUIRE(std::filesystem::is_empty(folder.path()));
 }
 
-TEST_CASE("what is no database of ours is refused untouched") {
+TEST_CASE("a file that is none of our databases is refused untouched") {
   TempFolder folder;
   const auto path = folder.path() / "file.db";
   for (const Access access : {Access::read_only, Access::read_write}) {
@@ -195,7 +195,7 @@ TEST_CASE("a truncated database is refused untouched, wherever it was cut") {
   }
 }
 
-TEST_CASE("garbage in a database is noticed, or has hit nothing") {
+TEST_CASE("garbage in a database is noticed, or hits unused bytes") {
   StoredFixture study(2);
   const auto trials = study.store->trials();
   study.store.reset();

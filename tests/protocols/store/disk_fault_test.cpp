@@ -81,7 +81,7 @@ TEST_CASE("an event whose write fails is refused, and stored when the disk is we
   REQUIRE(contains(*lines.begin(), "reading or writing failed (disk I/O error); check the disk"));
 }
 
-TEST_CASE("an event of which half was written is refused, and stored when the disk is well again") {
+TEST_CASE("an event that was half written is refused, and stored when the disk is well again") {
   int unnoticed = 0;
   fail_everywhere({.kind = Kind::short_write, .at = 1}, unnoticed);
   REQUIRE(unnoticed == 0);

@@ -1,6 +1,5 @@
 #include "protocols/store/event.hpp"
 
-#include "protocols/store/chain_link.hpp"
 #include "support/catch.hpp"
 
 #include <functional>

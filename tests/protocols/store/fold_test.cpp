@@ -75,7 +75,7 @@ TEST_CASE("an interrupted trial starts anew when it is presented again") {
   REQUIRE(session.row(1).state == TrialState::answered);
 }
 
-TEST_CASE("what cannot follow is refused with its place and leaves the rows as they were") {
+TEST_CASE("an impossible event is refused with its place and leaves the rows as they were") {
   FoldedSession session;
   const auto refused = [&](auto&& work, const std::string& why) {
     const DerivedRows before = session.rows;
@@ -126,7 +126,7 @@ TEST_CASE("exploring again is counted for each presentation") {
   REQUIRE_THROWS_AS(session.recorder.explored_again(seconds(2), 1), StoreError);
 }
 
-TEST_CASE("a block that is restarted voids what was presented of it, and nothing else") {
+TEST_CASE("restarting a block voids its presented trials and nothing else") {
   FoldedSession session;
   session.recorder.presented(seconds(1), 1, 0);
   session.answer(1);

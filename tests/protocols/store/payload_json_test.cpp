@@ -60,7 +60,7 @@ TEST_CASE("every body reads back as it was written") {
   REQUIRE(completion_from_json(completion_to_json(true)));
 }
 
-TEST_CASE("what only sessions in real time have is there for them alone, and reads back") {
+TEST_CASE("members for sessions in real time are written for those alone, and read back") {
   SessionOpening opening = fixture::opening(3);
   REQUIRE_FALSE(opening_from_json(to_json(opening)).station);
   REQUIRE(to_json(opening).find("station") == std::string::npos);
@@ -118,7 +118,7 @@ TEST_CASE("doubles in bodies survive to the last bit") {
   }
 }
 
-TEST_CASE("hostile bodies are refused by one line and never crash") {
+TEST_CASE("hostile bodies are refused with one line and never crash") {
   const std::vector<std::string> hostile = {"",
                                             "null",
                                             "[]",

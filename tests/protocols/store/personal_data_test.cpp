@@ -58,7 +58,7 @@ TEST_CASE("personal data are kept, changed, and removed without a trace in their
   REQUIRE_FALSE(contains(content_of(path), "seven@example.org"));
 }
 
-TEST_CASE("personal data are their owner's alone whatever the umask, else they are refused") {
+TEST_CASE("only their owner can read personal data whatever the umask, else they are refused") {
   const TempFolder folder;
   const auto path = personal_data_path(folder.path() / "study.db");
   const mode_t before = ::umask(0);

@@ -1,4 +1,4 @@
-/// \file Stories told to a database until something ends them, and what must be left then.
+/// \file Operations on a database (stories) that something breaks off, and what must be left then.
 #pragma once
 
 #include "protocols/store/noting_sink.hpp"
@@ -16,17 +16,17 @@ using testing::DiskOperation;
 using testing::Fault;
 using testing::FaultVfs;
 
-/// What a program was told is safe.
+/// What the database acknowledged as safe.
 struct Acknowledged {
   std::vector<store::Event> session;  ///< of session 2, event by event
   store::ChainHead file;      ///< where the file's chain ended, after a change of it returned
   std::size_t under_way = 2;  ///< the most events of session 2 that one step stores
 };
 
-/// What is done to a database that has session 1 and is open.
+/// Operations on an open database that has session 1.
 using Story = std::function<void(store::StudyStore&, Acknowledged&)>;
 
-/// Does one step of a session; may do it again if it is refused.
+/// Does one step of a session; may repeat it if it is refused.
 using Attempt = std::function<void(const std::function<void()>&)>;
 
 /// Session 2, each answer stored together with its trace.
@@ -52,7 +52,7 @@ inline void record_session(store::StudyStore& store, Acknowledged& acknowledged,
   attempt([&] { recorder.closed(seconds(90), true); });
 }
 
-/// The same, told once.
+/// The same, each step once.
 inline void tell_session(store::StudyStore& store, Acknowledged& acknowledged) {
   record_session(store, acknowledged, [](const std::function<void()>& step) { step(); });
 }
@@ -64,13 +64,13 @@ inline const std::filesystem::path& finished_session() {
   return study.path;
 }
 
-/// What a run of a story came to.
+/// The result of a story's run.
 struct Outcome {
   Acknowledged acknowledged;
   std::string refusal;  ///< with which line it ended early
 };
 
-/// Opens the database and tells the story until it ends, or is ended.
+/// Opens the database and runs the story until it ends or is broken off.
 inline Outcome tell(const std::filesystem::path& path, const Story& story) {
   Outcome outcome;
   outcome.refusal = refusal_of([&] {
@@ -87,7 +87,7 @@ inline void require_kept(const store::StudyStore& store, const Acknowledged& ack
   REQUIRE_FALSE(fault);
   const std::vector<store::Event> kept = store.events(2);
   REQUIRE(kept.size() >= acknowledged.session.size());
-  // Of what was under way no more than one step.
+  // At most one step was under way.
   REQUIRE(kept.size() <= acknowledged.session.size() + acknowledged.under_way);
   for (std::size_t i = 0; i < acknowledged.session.size(); ++i) {
     REQUIRE(kept[i].hash == acknowledged.session[i].hash);
@@ -102,8 +102,8 @@ inline void require_kept(const store::StudyStore& store, const Acknowledged& ack
 
 /// Goes on with session 2 where it broke off, to its end.
 inline void finish_session(store::StudyStore& store) {
-  const auto open = store.open_session_of(participant_of(2));
-  if (!open || store.state().closed) return;
+  const auto row = store.session_of(participant_of(2));
+  if (!row || row->state != store::SessionState::open || store.state().closed) return;
   const auto sink = store.continue_session(2, [] { return kUtc; });
   store::SessionRecorder recorder(2, participant_key(2), *sink);
   recorder.go_on_after(store.last_event(2).value());
@@ -121,7 +121,7 @@ inline void require_writable(const std::filesystem::path& path) {
   REQUIRE_FALSE(store.first_fault());
 }
 
-/// How many operations a story takes when nothing goes wrong.
+/// The number of disk operations of a story without faults.
 inline std::int64_t operations_of(FaultVfs& vfs, const Story& story) {
   StoredFixture study(finished_session());
   vfs.plan({});

@@ -73,7 +73,7 @@ TEST_CASE("a session whose power is cut at any operation keeps what was acknowle
   end_everywhere(tell_session, Kind::power_cut);
 }
 
-TEST_CASE("a session whose power is cut keeps it whatever part of the rest is on the disk") {
+TEST_CASE("a session whose power is cut keeps it whichever unsynced writes reached the disk") {
   end_everywhere(tell_session, Kind::torn_power_cut, 3);
 }
 
@@ -90,10 +90,6 @@ TEST_CASE("an exclusion, a look at outcomes and a closing survive kills and powe
   end_everywhere_in_every_way(
       changing([](StudyStore& store) { store.unblind(kUtc, "safety board", true); }));
   end_everywhere_in_every_way(changing([](StudyStore& store) { store.close_study(kUtc); }));
-}
-
-TEST_CASE("derived tables made anew survive kills and power cuts") {
-  end_everywhere_in_every_way([](StudyStore& store, Acknowledged&) { store.rebuild_derived(); });
 }
 
 TEST_CASE("a database that is being made is whole or not there after a kill or a power cut") {

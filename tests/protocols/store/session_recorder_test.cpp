@@ -1,7 +1,7 @@
 #include "protocols/store/session_recorder.hpp"
 
 #include "core/errors.hpp"
-#include "protocols/store/chain_link.hpp"
+#include "protocols/store/event.hpp"
 #include "protocols/store/payload_json.hpp"
 #include "protocols/store/store_fixture.hpp"
 #include "support/catch.hpp"
@@ -68,7 +68,7 @@ TEST_CASE("only schedule, measures and the end are sealed, and only the right ke
               .contact_s = 0.1, .path_mm = 512.5, .force_rms_n = 0.05, .saturated_share = 0.0});
 }
 
-TEST_CASE("what an interruption's size tells is the number of its flight record's ticks") {
+TEST_CASE("the size of an interruption depends on its flight record's number of ticks alone") {
   const auto sealed_size = [](const std::string& row, std::int64_t ticks) {
     BufferedEvents events;
     SessionRecorder recorder(1, participant_key(1), events);
@@ -109,18 +109,19 @@ TEST_CASE("a sealed part cannot be moved to another event") {
 TEST_CASE("a stored trace opens with its session, trial, key and number of samples alone") {
   const BufferedEvents session = session_of(4);
   const SealedTrace& sealed = session.traces[1];
+  REQUIRE(sealed.session == 4);
   REQUIRE(sealed.trial == 2);
-  const auto opened = unsealed_trace(4, 2, sealed.box, participant_key(4), 20);
+  const auto opened = unsealed_trace(sealed, participant_key(4), 20);
   REQUIRE(opened.has_value());
   REQUIRE(encode_trace(*opened) == encode_trace(stroking(20, 0.05)));
-  REQUIRE_FALSE(unsealed_trace(4, 1, sealed.box, participant_key(4), 20));
-  REQUIRE_FALSE(unsealed_trace(3, 2, sealed.box, participant_key(4), 20));
-  REQUIRE_FALSE(unsealed_trace(4, 2, sealed.box, participant_key(3), 20));
-  REQUIRE_FALSE(unsealed_trace(4, 2, sealed.box, participant_key(4), 21));
-  REQUIRE_FALSE(unsealed_trace(4, 2, Bytes{}, participant_key(4), 20));
+  REQUIRE_FALSE(unsealed_trace({4, 1, sealed.box}, participant_key(4), 20));
+  REQUIRE_FALSE(unsealed_trace({3, 2, sealed.box}, participant_key(4), 20));
+  REQUIRE_FALSE(unsealed_trace({4, 2, sealed.box}, participant_key(3), 20));
+  REQUIRE_FALSE(unsealed_trace({4, 2, sealed.box}, participant_key(4), 21));
+  REQUIRE_FALSE(unsealed_trace({4, 2, Bytes{}}, participant_key(4), 20));
 }
 
-TEST_CASE("sealed measures are of one size whatever their figures") {
+TEST_CASE("sealed measures are of one size whatever their values") {
   BufferedEvents events;
   SessionRecorder recorder(1, participant_key(1), events);
   std::set<std::size_t> sizes;

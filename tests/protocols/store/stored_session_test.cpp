@@ -11,6 +11,39 @@ UtcClock clock_at(nanoseconds utc) {
   return [utc] { return utc; };
 }
 
+/// A session that breaks off in its second trial.
+void break_off(StudyStore& store) {
+  const auto sink = store.begin_session(1, wrapped_key_of(1));
+  SessionRecorder recorder(1, participant_key(1), *sink);
+  recorder.opened(nanoseconds(0), opening(1), "{}");
+  recorder.presented(seconds(1), 1, 0);
+  recorder.answered(seconds(2),
+                    {.trial = 1, .position = 3, .first_position = {}, .confidence = {}});
+  recorder.presented(seconds(3), 2, 0);
+}
+
+void reopen(StoredFixture& study) {
+  study.store.reset();
+  study.store = StudyStore::open(study.path, StudyStore::Access::read_write);
+}
+
+SessionRecorder recorder_after_last(const StudyStore& store, EventSink& sink) {
+  SessionRecorder recorder(1, participant_key(1), sink);
+  recorder.go_on_after(store.last_event(1).value());
+  return recorder;
+}
+
+TrialEvidence evidence_of(const SessionRecorder& recorder, int trial) {
+  TraceBody body;
+  body.trial = trial;
+  body.rate_hz = 1000.0;
+  return recorder.packed(body, {}, stroking(20, 0.05));
+}
+
+AnswerBody answer_to(int trial) {
+  return {.trial = trial, .position = 2, .first_position = {}, .confidence = {}};
+}
+
 }  // namespace
 
 TEST_CASE("a session stored event by event equals one stored whole") {
@@ -127,4 +160,130 @@ TEST_CASE("a sink takes a trace with its event and with no other") {
                    "the trace of trial 1 is missing"));
   sink->accept(session.events[5], session.traces[0]);
   REQUIRE(study.store->sealed_trace(1, 1) == session.traces[0]);
+}
+
+TEST_CASE("a session that broke off goes on where it ended, and is one chain") {
+  StoredFixture study;
+  break_off(*study.store);
+  reopen(study);
+  const auto sink = study.store->continue_session(1);
+  SessionRecorder recorder = recorder_after_last(*study.store, *sink);
+  REQUIRE(recorder.length() == 4);
+  recorder.resumed(seconds(9), {.after = "program-ended", .away_s = 6.0, .program_version = "1"});
+  recorder.interrupted(seconds(9), 2, "program ended");
+  recorder.presented(seconds(10), 2, 0);
+  recorder.answered(seconds(12), answer_to(2), evidence_of(recorder, 2));
+  recorder.closed(seconds(13), true);
+
+  REQUIRE(study.store->sessions().at(0).state == SessionState::completed);
+  REQUIRE(study.store->trials().at(0).position == 3);
+  REQUIRE(study.store->trials().at(1).position == 2);
+  REQUIRE(study.store->events(0).size() == 3);
+  REQUIRE_FALSE(study.store->first_fault());
+}
+
+TEST_CASE("a continued session refuses events that were recorded before") {
+  StoredFixture study;
+  break_off(*study.store);
+  const auto sink = study.store->continue_session(1);
+  SessionRecorder recorder = recorder_after_last(*study.store, *sink);
+  REQUIRE(contains(refusal_of([&] { recorder.answered(seconds(4), answer_to(1)); }),
+                   "trial 1 is already answered"));
+  REQUIRE(contains(refusal_of([&] { recorder.presented(seconds(2), 2, 0); }),
+                   "the clock went backwards"));
+  SessionRecorder from_the_start(1, participant_key(1), *sink);
+  REQUIRE(
+      contains(refusal_of([&] { from_the_start.remarked(seconds(9), EventKind::noted, "again"); }),
+               "the sequence number repeats"));
+}
+
+TEST_CASE("only a stored, open session of an open study can go on") {
+  StoredFixture study(1);
+  REQUIRE(contains(refusal_of([&] { (void)study.store->continue_session(1); }),
+                   "session 1 (participant P1) has ended"));
+  REQUIRE(contains(refusal_of([&] { (void)study.store->continue_session(2); }),
+                   "there is no session 2"));
+  REQUIRE(contains(refusal_of([&] { (void)study.store->continue_session(0); }),
+                   "there is no session 0"));
+  StoredFixture closed;
+  break_off(*closed.store);
+  closed.store->close_study(kUtc);
+  REQUIRE(contains(refusal_of([&] { (void)closed.store->continue_session(1); }),
+                   "the study is closed"));
+}
+
+TEST_CASE(
+    "of two programs that go on with one session the slower is refused, and nothing is lost") {
+  StoredFixture study;
+  break_off(*study.store);
+  StudyStore other = StudyStore::open(study.path, StudyStore::Access::read_write);
+  const auto first = study.store->continue_session(1);
+  const auto second = other.continue_session(1);
+  SessionRecorder a = recorder_after_last(*study.store, *first);
+  SessionRecorder b = recorder_after_last(other, *second);
+  b.answered(seconds(5), answer_to(2));
+  REQUIRE(contains(refusal_of([&] { a.answered(seconds(6), answer_to(2)); }),
+                   "session 1 was continued by another program"));
+  REQUIRE(study.store->trials().at(1).answered_at == seconds(5));
+  REQUIRE_FALSE(study.store->first_fault());
+}
+
+TEST_CASE("after a withdrawal during the session only its end is recorded") {
+  StoredFixture study;
+  const auto sink = study.store->begin_session(1, wrapped_key_of(1));
+  SessionRecorder recorder(1, participant_key(1), *sink);
+  recorder.opened(nanoseconds(0), opening(1), "{}");
+  recorder.presented(seconds(1), 1, 0);
+  study.store->withdraw(1, kUtc, "asked to");
+  REQUIRE(contains(refusal_of([&] { recorder.answered(seconds(2), answer_to(1)); }),
+                   "participant P1 has withdrawn; end session 1"));
+  REQUIRE(contains(refusal_of([&] { (void)study.store->continue_session(1); }),
+                   "the participant has withdrawn"));
+  recorder.remarked(seconds(2), EventKind::stopped, "withdrawn");
+  recorder.closed(seconds(3), false);
+  REQUIRE_FALSE(study.store->first_fault());
+}
+
+TEST_CASE("events that belong together are stored all or none") {
+  StoredFixture study;
+  const auto sink = study.store->begin_session(1, wrapped_key_of(1));
+  SessionRecorder recorder(1, participant_key(1), *sink);
+  recorder.opened(nanoseconds(0), opening(1), "{}");
+  recorder.presented(seconds(1), 1, 0);
+  recorder.interrupted(seconds(2), 1, "device lost");
+  // The trace could be stored, the answer of an interrupted trial cannot.
+  REQUIRE(contains(
+      refusal_of([&] { recorder.answered(seconds(3), answer_to(1), evidence_of(recorder, 1)); }),
+      "trial 1 was interrupted"));
+  REQUIRE(study.store->events(1).size() == 3);
+  REQUIRE_FALSE(study.store->sealed_trace(1, 1));
+  REQUIRE(study.store->trials().at(0).samples == 0);
+  recorder.presented(seconds(4), 1, 0);
+  recorder.answered(seconds(5), answer_to(1), evidence_of(recorder, 1));
+  REQUIRE(study.store->events(1).size() == 6);
+  REQUIRE(study.store->sealed_trace(1, 1));
+  REQUIRE(study.store->events(1).at(4).at == study.store->events(1).at(5).at);
+  REQUIRE_FALSE(study.store->first_fault());
+}
+
+TEST_CASE("a participant's session and the smallest free enrolment are found") {
+  StoredFixture study;
+  REQUIRE(study.store->next_enrolment() == 1);
+  add(*study.store, 1);
+  SessionOpening third = opening(2);
+  third.enrolment = 3;
+  study.store->add_session(session_of(2, 3, stroking(20, 0.05), third), wrapped_key_of(2), kUtc);
+  REQUIRE(study.store->next_enrolment() == 2);
+  REQUIRE(study.store->session_of("P2").value().session == 2);
+  REQUIRE(study.store->session_of("P2").value().state == SessionState::completed);
+  REQUIRE_FALSE(study.store->session_of("P9"));
+  const auto sink = study.store->begin_session(3, wrapped_key_of(3));
+  SessionRecorder recorder(3, participant_key(3), *sink);
+  SessionOpening second = opening(3);
+  second.enrolment = 2;
+  recorder.opened(nanoseconds(0), second, "{}");
+  REQUIRE(study.store->session_of("P3").value().session == 3);
+  REQUIRE(study.store->session_of("P3").value().state == SessionState::open);
+  REQUIRE(study.store->last_event(3).value().kind == EventKind::opened);
+  REQUIRE(study.store->next_enrolment() == 4);
 }

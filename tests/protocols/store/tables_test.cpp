@@ -103,7 +103,7 @@ TEST_CASE("the tables of a new database are those that are described") {
   CHECK(names_of(database, "table") == names);
 }
 
-TEST_CASE("what is taken once is described as the indices of a new database have it") {
+TEST_CASE("unique columns are described as the indices of a new database have them") {
   const NewDatabase fresh;
   SQLite::Database& database = fresh.database;
   std::set<std::string> names;

@@ -116,7 +116,7 @@ TEST_CASE("a trace cut short anywhere is refused") {
   REQUIRE_THROWS_AS(decode_trace(longer), StoreError);
 }
 
-TEST_CASE("altered bytes give another trace or one clear error, never more") {
+TEST_CASE("altered bytes give another trace or one clear error, and nothing worse") {
   const Bytes bytes = encode_trace(fixture::stroking(60, 0.05));
   RandomStream random(3, "altered");
   int refused = 0;

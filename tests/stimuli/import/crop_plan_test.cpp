@@ -34,7 +34,7 @@ TEST_CASE("crops do not share a pixel while there is room, and never lie outside
   }
 }
 
-TEST_CASE("crops that must overlap share half their side at most and are all different") {
+TEST_CASE("crops that must overlap share at most half their side and are all different") {
   const PhotoSize photo{50, 64};
   for (const int side_px : {30, 31}) {
     const int most = overlapping_crops(photo, side_px);
@@ -53,7 +53,7 @@ TEST_CASE("crops that must overlap share half their side at most and are all dif
   }
 }
 
-TEST_CASE("a photograph as large as a crop gives one, and a smaller one none") {
+TEST_CASE("a photograph as large as a crop gives one crop, a smaller one none") {
   RandomStream random(1, "crop plan test");
   CHECK(crop_places({20, 20}, 20, 1, random) == std::vector<CropPlace>{{0, 0}});
   CHECK(overlapping_crops({20, 20}, 20) == 1);
@@ -70,7 +70,7 @@ TEST_CASE("a seed decides where crops are cut") {
   CHECK(places(1) != places(2));
 }
 
-TEST_CASE("photographs share the crops out evenly, and separate ones come first") {
+TEST_CASE("photographs share the crops evenly, and separate crops come first") {
   const std::vector<PhotoSize> photos = {{20, 20}, {40, 40}, {30, 60}};
   CHECK(shared_out(photos, 20, 3) == std::vector<int>{1, 1, 1});
   CHECK(shared_out(photos, 20, 5) == std::vector<int>{1, 2, 2});

@@ -5,7 +5,7 @@
 #include "core/hash.hpp"
 #include "core/random.hpp"
 #include "engine/image_file.hpp"
-#include "stimuli/import/photo_folder.hpp"
+#include "stimuli/import/photographs.hpp"
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 
@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// Each number another picture; no two parts of one are alike.
+/// A picture for each number; no two parts of it are alike.
 GreyImage noise(int height, int width, std::uint64_t number) {
   RandomStream random(number, "import test");
   GreyImage image(height, width);
@@ -59,7 +59,8 @@ struct Album {
     names.erase("album");
     return names;
   }
-  /// Imports, expects that it is refused with nothing written, and gives the reason.
+  /// Expects that an import is refused and writes nothing.
+  /// \return the reason
   [[nodiscard]] std::string refusal(const ImportOptions& options) const {
     const std::set<std::string> before = written();
     std::string reason = "not refused";
@@ -178,7 +179,7 @@ TEST_CASE("the same photographs and seed give the same files, another seed other
   CHECK(manifests[0] != manifests[2]);
 }
 
-TEST_CASE("photographs of known resolution are resampled to be felt as large as life") {
+TEST_CASE("photographs of known resolution are resampled to feel life-size") {
   const Album album;
   album.add("a.png", noise(160, 200, 1));
   album.add("b.png", noise(200, 160, 2));
@@ -188,7 +189,7 @@ TEST_CASE("photographs of known resolution are resampled to be felt as large as 
   const json manifest = album.read("study.pictures/manifest.json");
   CHECK(manifest.at("photographs")[0].at("scale") == 0.5);
   CHECK(manifest.at("photographs")[0].at("width_px") == 200);
-  // Means of four independent pixels vary half as much.
+  // The mean of four independent pixels varies half as much as one pixel.
   CHECK(manifest.at("pictures")[0].at("rms_grey").get<double>() ==
         Approx(200 / std::sqrt(12.0) / 2).epsilon(0.1));
   options.pixels_per_mm = 0.1;
@@ -223,13 +224,13 @@ TEST_CASE("crops that overlap, or features of an odd size, are warned about") {
   const ImportReport report = import_photographs(album.options());
   std::string all;
   for (const std::string& warning : report.warnings) all += warning + "\n";
-  CHECK_THAT(all, holds_text("class \"fine\": some crops share a part"));
+  CHECK_THAT(all, holds_text("class \"fine\": some crops overlap"));
   CHECK_THAT(all, holds_text("class \"fine\": features of about 0.6"));
   CHECK_THAT(all, holds_text("class \"ramp\": features of about"));
   CHECK_THAT(all, holds_text("coarse for a picture of 4 mm"));
 }
 
-TEST_CASE("photographs that are too small or too few are refused with what would do") {
+TEST_CASE("photographs that are too small or too few are refused with numbers that would do") {
   const TwoPhotographs album;
   ImportOptions options = album.options();
   options.size_px = 40;
@@ -246,7 +247,7 @@ TEST_CASE("photographs that are too small or too few are refused with what would
   CHECK_THAT(album.refusal(options), holds_text("does not exist"));
 }
 
-TEST_CASE("photographs that are there twice are refused, as files and as pictures") {
+TEST_CASE("equal photographs are refused, whether their bytes or their pixels are equal") {
   const TwoPhotographs album;
   fs::copy_file(album.photographs() / "D9.png", album.photographs() / "E.png");
   CHECK_THAT(album.refusal(), holds_text("E.png: is the same file as"));
@@ -269,10 +270,10 @@ TEST_CASE("photographs that cannot be read or felt are refused by name") {
   CHECK_THAT(album.refusal(), holds_text("E.jpg: is not an image of a known kind"));
   fs::remove(album.photographs() / "E.jpg");
   album.add("E.png", GreyImage(40, 40, 77));
-  CHECK_THAT(album.refusal(), holds_text("E.png: has one grey level all over the crop at x"));
+  CHECK_THAT(album.refusal(), holds_text("E.png: has only one grey level in the crop at x"));
 }
 
-TEST_CASE("names that cannot be labels are refused, and labels equal but for capitals") {
+TEST_CASE("names that cannot be labels are refused, and labels that differ in capitals only") {
   const TwoPhotographs album;
   const auto refused = [&](const std::string& name) {
     album.add(name, noise(50, 50, 9));
@@ -300,7 +301,7 @@ TEST_CASE("folders of classes that are empty or nested are refused") {
   CHECK_THAT(album.refusal(), holds_text("is a folder within a class"));
 }
 
-TEST_CASE("nothing is replaced unasked, and nothing that no import wrote at all") {
+TEST_CASE("nothing is replaced unasked, and never a folder that no import wrote") {
   const TwoPhotographs album;
   ImportOptions options = album.options();
   static_cast<void>(import_photographs(options));
@@ -328,7 +329,7 @@ TEST_CASE("a failed replacement leaves the earlier import as it was") {
   CHECK(is_there(album.folder.path() / "study.pictures/D9-3.png"));
 }
 
-TEST_CASE("places that would mix with the photographs, or are no places, are refused") {
+TEST_CASE("outputs among the photographs, or at impossible paths, are refused") {
   const TwoPhotographs album;
   ImportOptions options = album.options();
   options.study = album.photographs() / "study.json";

@@ -62,7 +62,7 @@ TEST_CASE("equalising gives every picture the same mean and rms, and clips next 
   }
 }
 
-TEST_CASE("equal contrast is cut where a picture has no room for more") {
+TEST_CASE("equal contrast is reduced where a picture has no room for more") {
   const std::vector<PictureLevels> set = {levels_of(wave(64, 16, 128, 100)),
                                           levels_of(wave(64, 16, 128, 100)),
                                           levels_of(wave(64, 16, 240, 5))};

@@ -1,4 +1,4 @@
-/// \file The program in a Falcon that takes its firmware.
+/// \file The program in a Falcon that receives its firmware.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@ namespace touchtrial::device::falcon {
 
 /// How a boot loader behaves, and misbehaves.
 struct BootLoaderOptions {
-  std::vector<std::uint8_t> image{};  ///< what alone runs; empty: any
+  std::vector<std::uint8_t> image{};  ///< the only one that runs; empty: any runs
   int unanswered_greetings = 0;       ///< before it answers one
   bool leading_zero = false;          ///< before the answer to a greeting
-  int bad_loads = 0;                  ///< how many loads go wrong before one goes well
+  int bad_loads = 0;                  ///< how many loads fail before one succeeds
   int bad_block = 0;                  ///< of a bad load: the block, from 0, with a wrong echo
   bool silent_block = false;          ///< that block has no echo instead
 };
@@ -26,11 +26,13 @@ class BootLoader {
 
   explicit BootLoader(BootLoaderOptions options) : options_(std::move(options)) {}
 
-  /// Bytes while the line is set for a greeting. \return what it answers
+  /// Takes bytes while the line is set for a greeting.
+  /// \return its answer
   [[nodiscard]] Bytes greet(std::span<const std::uint8_t> bytes);
-  /// Bytes while the line is set for loading. \return what it answers
+  /// Takes bytes while the line is set for loading.
+  /// \return its answer
   [[nodiscard]] Bytes load(std::span<const std::uint8_t> bytes);
-  /// Whether what was loaded is a firmware that runs.
+  /// \return whether the loaded bytes are a firmware that runs
   [[nodiscard]] bool can_run() const;
 
   [[nodiscard]] const Bytes& image() const { return image_; }

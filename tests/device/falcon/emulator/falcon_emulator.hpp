@@ -1,12 +1,11 @@
-/// \file A whole Falcon at the other end of a USB cable that is not there: FTDI chip, boot loader,
-/// firmware, legs, and a hand on the grip. It knows nothing of the driver and shares no code with
-/// it; whoever carries transfers (a shim of usbfs, a test) calls `control`, `bulk_out` and
-/// `bulk_in`.
+/// \file An emulated Falcon behind its USB cable: FTDI chip, boot loader, firmware, legs, and a
+/// hand on the grip. It knows nothing of the driver and shares no code with it. A carrier of
+/// transfers (a shim of usbfs, a test) calls `control`, `bulk_out` and `bulk_in`.
 ///
-/// Time is virtual: each command that the running Falcon takes is one millisecond of the hand's.
+/// Time is virtual: each command to the running Falcon is one millisecond of the hand's time.
 ///
-/// Threads: every function may be called from any thread; one mutex guards the whole. The hand's
-/// function is called with it held, on the thread that calls `bulk_out`, and must not call back.
+/// Threads: any thread may call every function; one mutex guards all. The emulator calls the hand's
+/// function under it, on the thread of `bulk_out`; that function must not call back.
 #pragma once
 
 #include "device/falcon/emulator/boot_loader.hpp"
@@ -41,10 +40,10 @@ class FalconEmulator {
   ///@{
   [[nodiscard]] UsbStatus control(const ControlRequest& request);
   [[nodiscard]] UsbStatus bulk_out(std::span<const std::uint8_t> bytes);
-  /// What an IN transfer for `most` bytes brings now. With nothing but status bytes to bring, a
-  /// real chip waits for its latency time first: see `waiting`.
+  /// Gives the bytes of an IN transfer of `most` bytes, at once. A real chip that has only status
+  /// bytes waits for its latency time first: see `waiting`.
   [[nodiscard]] UsbStatus bulk_in(std::size_t most, Bytes& bytes);
-  /// Bytes for the host, without status bytes.
+  /// \return the number of bytes that wait for the host, without status bytes
   [[nodiscard]] std::size_t waiting() const;
   [[nodiscard]] bool plugged() const;
   ///@}
@@ -52,9 +51,10 @@ class FalconEmulator {
   /// \name Mishaps. Those of replies begin with the next reply.
   ///@{
   void drop_replies(int count);
-  /// So many replies lose their ends. \param kept  bytes of each, 0 to 15
+  /// Cuts the ends off this many replies.
+  /// \param kept  bytes of each, 0 to 15
   void shorten_replies(int count, std::size_t kept);
-  /// Bytes to the host at once, out of the blue.
+  /// Sends bytes to the host at once, without a command.
   void send_garbage(std::span<const std::uint8_t> bytes);
   void stick_encoders(bool stuck);
   void unplug();
@@ -69,7 +69,7 @@ class FalconEmulator {
   void set_hand(HandModel hand);
   ///@}
 
-  /// \name What a test may look at
+  /// \name For checks of a test
   ///@{
   [[nodiscard]] bool firmware_runs() const;
   [[nodiscard]] bool all_homed() const;
@@ -78,12 +78,13 @@ class FalconEmulator {
   [[nodiscard]] Vec3 force_n() const;             ///< of the motors on the hand, device frame
   [[nodiscard]] std::array<std::int16_t, 3> motors() const;
   [[nodiscard]] unsigned leds() const;  ///< three bits
-  [[nodiscard]] int loads() const;      ///< of firmware, begun since power came on
-  [[nodiscard]] Bytes image() const;    ///< that was loaded last
+  [[nodiscard]] int loads() const;      ///< of firmware, that began since power came on
+  [[nodiscard]] Bytes image() const;    ///< of the last load
   /// Every control request that was not stalled, in order.
   [[nodiscard]] std::vector<ControlRequest> requests() const;
-  /// What a real device would suffer under or silently mistake: one line each. Empty at the end of
-  /// any test of a driver that does no wrong.
+  /// \return what a real device would suffer from or silently misread, one line each; empty at the
+  /// end
+  ///   of a test of a correct driver
   [[nodiscard]] std::vector<std::string> complaints() const;
   ///@}
 

@@ -1,4 +1,4 @@
-/// \file The simplest host of an emulated Falcon: no USB, one thread, one reply to a command.
+/// \file The simplest host of an emulated Falcon: no USB, one thread, one reply a command.
 #pragma once
 
 #include "device/falcon/emulator/falcon_emulator.hpp"
@@ -18,7 +18,7 @@ class FalconHost {
     return falcon_.control({0x40, request, value, 0}) == UsbStatus::ok;
   }
 
-  /// What comes back for some bytes, without status bytes.
+  /// \return the answer to some bytes, without status bytes
   std::vector<std::uint8_t> answer_to(std::vector<std::uint8_t> bytes) {
     static_cast<void>(falcon_.bulk_out(bytes));
     return payload();
@@ -52,7 +52,7 @@ class FalconHost {
     control(0, 2);
   }
 
-  /// \return nothing unless this brings a whole reply
+  /// \return nothing unless a whole reply came
   std::optional<Reply> exchange(const Command& command) {
     const Packet packet = encode_command(command);
     static_cast<void>(falcon_.bulk_out(packet));

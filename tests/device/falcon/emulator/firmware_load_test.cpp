@@ -17,7 +17,8 @@ Bytes dummy_image(std::size_t size = 7914) {
   return image;
 }
 
-/// Greets and loads in one attempt. \return the first block with a wrong echo, or -1
+/// Greets and loads in one attempt.
+/// \return the first block with a wrong echo, or -1
 int load(FalconHost& host, const Bytes& image, std::size_t block_size = 62) {
   host.set_up_for_greeting();
   REQUIRE(host.answer_to(kGreeting) == kWelcome);
@@ -58,7 +59,7 @@ TEST_CASE("emulated falcon: without firmware no packet is answered") {
   CHECK_FALSE(falcon.firmware_runs());
 }
 
-TEST_CASE("emulated falcon: it may let greetings pass, and begin its answer with a zero") {
+TEST_CASE("emulated falcon: it may ignore greetings, and begin its answer with a zero") {
   FalconEmulator falcon({.boot_loader = {.unanswered_greetings = 3, .leading_zero = true}});
   FalconHost host(falcon);
   host.set_up_for_greeting();
@@ -66,7 +67,7 @@ TEST_CASE("emulated falcon: it may let greetings pass, and begin its answer with
   CHECK(host.answer_to(kGreeting) == Bytes{0x00, 0x0A, 0x44, 0x2C, 0x0D});
 }
 
-TEST_CASE("emulated falcon: bad loads have a wrong echo or none, and a later one goes well") {
+TEST_CASE("emulated falcon: bad loads have a wrong echo or none, and a later one succeeds") {
   const bool silent = GENERATE(false, true);
   FalconEmulator falcon({.boot_loader = {.bad_loads = 2, .bad_block = 5, .silent_block = silent}});
   FalconHost host(falcon);
@@ -79,7 +80,7 @@ TEST_CASE("emulated falcon: bad loads have a wrong echo or none, and a later one
   CHECK(falcon.complaints().empty());
 }
 
-TEST_CASE("emulated falcon: what is not its firmware is echoed and does not run") {
+TEST_CASE("emulated falcon: bytes that are not its firmware are echoed and do not run") {
   FalconEmulator falcon({.boot_loader = {.image = dummy_image()}});
   FalconHost host(falcon);
   CHECK(load(host, dummy_image(7913)) == -1);
@@ -87,14 +88,14 @@ TEST_CASE("emulated falcon: what is not its firmware is echoed and does not run"
   CHECK_FALSE(host.exchange({}));
 }
 
-TEST_CASE("emulated falcon: blocks of more than 62 bytes are cut and complained of") {
+TEST_CASE("emulated falcon: blocks of more than 62 bytes are cut and cause a complaint") {
   FalconEmulator falcon;
   FalconHost host(falcon);
   CHECK(load(host, dummy_image(), 64) == 0);
   CHECK(falcon.complaints() == std::vector<std::string>{"a block of more than 62 bytes"});
 }
 
-TEST_CASE("emulated falcon: a greeting is answered on the right line alone") {
+TEST_CASE("emulated falcon: a greeting is answered only with the right line settings") {
   FalconEmulator falcon;
   FalconHost host(falcon);
   CHECK(host.answer_to(kGreeting).empty());
@@ -112,7 +113,7 @@ TEST_CASE("emulated falcon: a greeting is answered on the right line alone") {
   CHECK(falcon.complaints().empty());
 }
 
-TEST_CASE("emulated falcon: a set-up in another order is complained of") {
+TEST_CASE("emulated falcon: a set-up in another order causes a complaint") {
   FalconEmulator falcon;
   FalconHost host(falcon);
   for (const auto& [request, value] :

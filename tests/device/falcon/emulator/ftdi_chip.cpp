@@ -32,7 +32,7 @@ bool FtdiChip::control(const ControlRequest& r) {
 }
 
 void FtdiChip::set_modem_lines(std::uint16_t value) {
-  // The high byte says which lines are meant, the low one what they become.
+  // The high byte selects the lines, the low one gives their new states.
   if ((value & 0x100U) != 0) dtr_ = (value & 0x1U) != 0;
   if ((value & 0x200U) != 0) rts_ = (value & 0x2U) != 0;
 }

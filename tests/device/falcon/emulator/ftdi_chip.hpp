@@ -23,7 +23,7 @@ struct ControlRequest {
 class FtdiChip {
  public:
   enum Request : std::uint8_t {
-    kReset = 0,  ///< values: 0 both, 1 what waits for the host, 2 what waits for the device
+    kReset = 0,  ///< values: 0 both buffers, 1 that to the host, 2 that to the device
     kModemControl = 1,
     kFlowControl = 2,
     kBaudDivisor = 3,
@@ -33,12 +33,12 @@ class FtdiChip {
   static constexpr std::uint16_t kDivisor9600 = 0x4138;
   static constexpr std::uint16_t kDivisor140k = 0x15;
   static constexpr std::uint16_t kDivisorRunning = 0x02;
-  static constexpr std::size_t kBufferSize = 4096;  ///< what is more is lost
+  static constexpr std::size_t kBufferSize = 4096;  ///< further bytes are lost
 
   /// \return false for a stall: a request that the chip does not know
   bool control(const ControlRequest& request);
 
-  /// \name The line as it is set
+  /// \name The line's settings
   ///@{
   [[nodiscard]] bool is_set_for_greeting() const;  ///< 9600 baud, 8N1, no flow, RTS low, DTR high
   [[nodiscard]] bool is_set_for_loading() const;   ///< the same, but 140 k baud, DTR low
@@ -48,12 +48,12 @@ class FtdiChip {
   ///@}
 
   void to_host(std::span<const std::uint8_t> bytes);
-  /// One bulk IN transfer: packets of 64 bytes, each with two status bytes, up to a shorter one.
-  /// Two bytes alone if nothing waits.
+  /// \return one bulk IN transfer: packets of 64 bytes, each with two status bytes, up to a shorter
+  ///   one; two bytes alone if nothing waits
   [[nodiscard]] std::vector<std::uint8_t> bulk_in(std::size_t most);
   [[nodiscard]] std::size_t waiting() const { return to_host_.size(); }
 
-  /// As after plugging in.
+  /// Returns to the state after plugging in.
   void power_up() { *this = FtdiChip(); }
 
  private:

@@ -79,7 +79,7 @@ void HandOnFalcon::carry() {
 }
 
 void HandOnFalcon::explore_on(Vec3 force_n) {
-  // A simulated hand cannot fail; that it stops is told by its next reading.
+  // A simulated hand cannot fail; its next reading tells whether it has stopped.
   static_cast<void>(hand_->write(device::to_plane_direction(force_n, placement_.orientation)));
   position_mm_ = hand_position_mm();
   device::DeviceSample sample;

@@ -13,23 +13,24 @@ namespace touchtrial::device::falcon {
 /// })`. Every tick is a millisecond, as the simulated hand's own. Positions and forces of the
 /// emulator are in the device frame, those of the simulated hand in the plane's.
 ///
-/// Threads: `tick` on the emulator's, all else on any. A mutex guards the whole.
+/// Threads: `tick` on the emulator's, all other functions on any. One mutex guards all.
 class HandOnFalcon {
  public:
   /// \param rest_mm  where the grip waits between explorations, device frame
   HandOnFalcon(const device::PlanePlacement& placement, Vec3 rest_mm);
 
-  /// One millisecond. \return where the grip then is, device frame, mm
+  /// Runs one millisecond.
+  /// \return the place of the grip after it, device frame, mm
   [[nodiscard]] Vec3 tick(Vec3 force_n);
 
   /// Moves the grip through 20 mm to either side along the device's axis, which homes all three.
   void home();
   /// Carries the grip to the hand's start at 100 mm/s, lets the hand explore until it stops, and
-  /// carries the grip back to rest. What was being done before ends there.
+  /// carries the grip back to rest. Ends an earlier motion.
   void explore(device::SimulatedHand hand);
-  /// Whether the grip is at rest: nothing left to do.
+  /// \return whether the grip is at rest and has no motion left to do
   [[nodiscard]] bool at_rest() const;
-  /// Explorations that ended because their hand stopped.
+  /// \return the number of explorations that ended because their hand stopped
   [[nodiscard]] int explorations() const;
 
  private:
@@ -47,8 +48,8 @@ class HandOnFalcon {
   Vec3 from_mm_;
   Vec3 to_mm_;
   Doing doing_ = Doing::resting;
-  int tick_ = 0;   ///< of what it is doing
-  int ticks_ = 0;  ///< that this takes
+  int tick_ = 0;   ///< of the present motion
+  int ticks_ = 0;  ///< of the whole motion
   int explorations_ = 0;
   std::optional<device::SimulatedHand> hand_;
 };

@@ -26,14 +26,14 @@ Vec3 wall_force_n(Vec3 plane_mm) {
   return {0.0, 0.0, plane_mm.z < 0.0 ? -kWallNPerMm * plane_mm.z : 0.0};
 }
 
-/// The plainest servo: reads, computes a flat wall, writes.
+/// The simplest servo: reads, computes a flat wall, writes.
 struct FlatWallServo {
   FalconHost& host;
   device::PlanePlacement placement;
   MotorValues motors{};
   Vec3 last_m = kCentreM;
 
-  /// \return where the hand is on the plane
+  /// \return the hand's place on the plane
   Vec3 tick() {
     const auto reply = host.exchange({motors, 0, true});
     REQUIRE(reply);
@@ -76,7 +76,7 @@ TEST_CASE("hand on falcon: homing moves every axis far enough, and the grip retu
   CHECK(rig.falcon.complaints().empty());
 }
 
-TEST_CASE("hand on falcon: a wall through packets and legs feels as a wall written directly") {
+TEST_CASE("hand on falcon: a wall through packets and legs feels like a wall written directly") {
   const device::PlanePlacement placement = GENERATE(kTable, kWall);
   Rig rig(placement, true);
   rig.hand.explore(hand_for(2.0));

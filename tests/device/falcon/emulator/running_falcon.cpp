@@ -10,7 +10,7 @@ namespace touchtrial::device::falcon {
 namespace {
 
 constexpr double kCentreM = 0.1215;
-/// Where the encoders happen to begin before they are homed.
+/// Where the encoders begin before they are homed.
 constexpr std::array<int, 3> kUnhomedOrigin = {1234, -777, 2468};
 
 Vec3 native_of_mm(Vec3 mm) {
@@ -25,7 +25,7 @@ int nibble(std::uint8_t byte) {
   return byte >= 0x41 && byte <= 0x50 ? byte - 0x41 : -1;
 }
 
-/// A motor value of four nibbles. \return nothing if one is none
+/// \return a motor value of four nibbles; nothing if one of them is invalid
 std::optional<std::int16_t> motor_value(std::span<const std::uint8_t> nibbles) {
   int value = 0;
   for (std::size_t i = 4; i-- > 0;) {

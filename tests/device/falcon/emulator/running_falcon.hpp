@@ -13,8 +13,8 @@
 
 namespace touchtrial::device::falcon {
 
-/// Called once for every exchange, one millisecond of the hand's time: takes the force on it, N,
-/// and tells where it then is, mm, both in the device frame.
+/// Called once for every exchange, which is one millisecond of the hand's time. Takes the force on
+/// the hand, N, and returns its new place, mm, both in the device frame.
 using HandModel = std::function<Vec3(Vec3 force_n)>;
 
 /// Not thread-safe.
@@ -22,28 +22,28 @@ class RunningFalcon {
  public:
   static constexpr std::size_t kPacketSize = 16;
   using Packet = std::array<std::uint8_t, kPacketSize>;
-  /// An axis is homed when it has been moved over so many counts: 11 degrees.
+  /// An axis is homed when it has moved over this many counts: 11 degrees.
   static constexpr int kHomingTravel = 300;
 
-  /// The hand is asked for its first position.
+  /// Asks the hand for its first position.
   explicit RunningFalcon(HandModel hand, bool homed);
 
   /// Bytes from the host. \return a reply for every command among them
   [[nodiscard]] std::vector<Packet> receive(std::span<const std::uint8_t> bytes);
-  /// Throws a command away that has not come whole.
+  /// Discards an incomplete command.
   void purge() { received_.clear(); }
 
-  /// \name What a test may do
+  /// \name For acts of a test
   ///@{
   void press(std::uint32_t buttons) { buttons_ = buttons & 15U; }
   void stick_encoders(bool stuck) { stuck_ = stuck; }
   void set_hand(HandModel hand) { hand_ = std::move(hand); }
   void forget_homing();
-  /// The motors go limp when the host is gone, and half a command is forgotten.
+  /// The host is gone: the motors go limp, and an incomplete command is forgotten.
   void cut_cable();
   ///@}
 
-  /// \name What a test may look at
+  /// \name For checks of a test
   ///@{
   [[nodiscard]] std::uint64_t exchanges() const { return exchanges_; }
   [[nodiscard]] Vec3 position_mm() const;  ///< of the grip, device frame
@@ -51,7 +51,7 @@ class RunningFalcon {
   [[nodiscard]] const std::array<std::int16_t, 3>& motors() const { return motors_; }
   [[nodiscard]] unsigned leds() const { return leds_; }
   [[nodiscard]] bool all_homed() const { return homed_[0] && homed_[1] && homed_[2]; }
-  /// What a real device would suffer under or silently mistake: one line each.
+  /// \return what a real device would suffer from or silently misread, one line each
   [[nodiscard]] const std::vector<std::string>& complaints() const { return complaints_; }
   ///@}
 
@@ -69,7 +69,7 @@ class RunningFalcon {
   Vec3 force_n_;
   std::array<std::int16_t, 3> motors_{};
   std::array<int, 3> counts_{};    ///< from the true origin
-  std::array<int, 3> origin_{};    ///< what is added before an axis is homed
+  std::array<int, 3> origin_{};    ///< added to the counts before an axis is homed
   std::array<int, 3> least_{};     ///< since homing began
   std::array<int, 3> greatest_{};  ///< likewise
   std::array<bool, 3> homed_{};

@@ -22,7 +22,7 @@ Vec3 position_of(const Reply& reply) {
   return to_device_mm(pose.native_m);
 }
 
-TEST_CASE("emulated falcon: the driver's kinematics find the hand to the encoders' grain") {
+TEST_CASE("emulated falcon: the driver's kinematics find the hand to the encoders' resolution") {
   FalconEmulator falcon(homed_falcon());
   FalconHost host(falcon);
   host.set_up_for_running();
@@ -56,7 +56,7 @@ TEST_CASE("emulated falcon: the hand feels the force that the driver's kinematic
     const Pose pose = forward_kinematics(theta1_of_counts(host.exchange({}).value().counts));
     const PerLeg torques = torques_nm(pose.jacobian, force_n).value();
     REQUIRE(host.exchange({motor_values(torques), 0, true}));
-    // The grain of encoders and motor values.
+    // The resolution of encoders and motor values.
     REQUIRE(norm(felt - force_n) < 0.02);
     REQUIRE(falcon.force_n() == felt);
     place = {random.uniform(-25.0, 25.0), random.uniform(-25.0, 25.0), random.uniform(-25.0, 25.0)};
@@ -64,7 +64,7 @@ TEST_CASE("emulated falcon: the hand feels the force that the driver's kinematic
   CHECK(falcon.complaints().empty());
 }
 
-TEST_CASE("emulated falcon: axes are homed by motion alone, and their counts jump then") {
+TEST_CASE("emulated falcon: only motion homes the axes, and their counts jump then") {
   double z_mm = -15.0;
   FalconEmulator falcon({.firmware_runs = true}, [&](Vec3) { return Vec3{0.0, 0.0, z_mm}; });
   FalconHost host(falcon);
@@ -95,7 +95,7 @@ TEST_CASE("emulated falcon: without the homing bit no axis is homed") {
   CHECK(falcon.complaints() == std::vector<std::string>{"a command without homing"});
 }
 
-TEST_CASE("emulated falcon: force before homing is complained of") {
+TEST_CASE("emulated falcon: force before homing causes a complaint") {
   FalconEmulator falcon({.firmware_runs = true});
   FalconHost host(falcon);
   host.set_up_for_running();
@@ -105,7 +105,7 @@ TEST_CASE("emulated falcon: force before homing is complained of") {
   CHECK(falcon.complaints() == std::vector<std::string>{"force before homing"});
 }
 
-TEST_CASE("emulated falcon: buttons are told, lights are taken") {
+TEST_CASE("emulated falcon: buttons are reported, lights are set") {
   FalconEmulator falcon(homed_falcon());
   FalconHost host(falcon);
   host.set_up_for_running();
@@ -136,7 +136,7 @@ TEST_CASE("emulated falcon: replies can be dropped, shortened and surrounded by 
   CHECK(falcon.exchanges() == 8);
 }
 
-TEST_CASE("emulated falcon: stuck encoders stand while the hand moves on") {
+TEST_CASE("emulated falcon: stuck encoders stand still while the hand moves on") {
   double x_mm = 0.0;
   FalconEmulator falcon(homed_falcon(), [&](Vec3) { return Vec3{x_mm += 1.0, 0.0, 0.0}; });
   FalconHost host(falcon);
@@ -149,7 +149,7 @@ TEST_CASE("emulated falcon: stuck encoders stand while the hand moves on") {
   CHECK(host.exchange({})->counts != first);
 }
 
-TEST_CASE("emulated falcon: unplugged it is gone, and its motors are limp") {
+TEST_CASE("emulated falcon: an unplugged one is gone, and its motors are limp") {
   const bool keeps_power = GENERATE(false, true);
   FalconEmulator falcon(homed_falcon());
   FalconHost host(falcon);
@@ -192,7 +192,7 @@ TEST_CASE("emulated falcon: commands may come in pieces, several at once, or bro
   CHECK(falcon.complaints() == std::vector<std::string>{"a byte outside a command"});
 }
 
-TEST_CASE("emulated falcon: a latency timer left at 16 ms is complained of") {
+TEST_CASE("emulated falcon: a latency timer left at 16 ms causes a complaint") {
   FalconEmulator falcon(homed_falcon());
   FalconHost host(falcon);
   CHECK(host.control(3, 2));

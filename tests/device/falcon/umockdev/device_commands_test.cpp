@@ -1,8 +1,8 @@
-// The program itself with a Falcon on a bus of umockdev's: touchtrial device list and test.
+// The program itself with a Falcon on a bus of umockdev: touchtrial device list and test.
 #include "core/files.hpp"
-#include "device/falcon/rig/dummy_firmware.hpp"
+#include "device/falcon/rig/falcon_rig.hpp"
 #include "device/falcon/umockdev/umockdev_falcon.hpp"
-#include "device/falcon/usbfs_shim/emulator_usb_model.hpp"
+#include "device/falcon/usbfs_shim/usb_model.hpp"
 #include "support/catch.hpp"
 #include "support/child_process.hpp"
 #include "support/temp_folder.hpp"
@@ -46,7 +46,7 @@ json listed(const UmockdevBus& bus, const std::string& settings) {
   return {};
 }
 
-TEST_CASE("device list tells of a Falcon whether it is there, where, and what it misses") {
+TEST_CASE("device list shows whether a Falcon is present, where, and what it lacks") {
   const TempFolder folder;
   UmockdevBus bus;
   CHECK(listed(bus, settings_in(folder, true)).at("present") == false);
@@ -65,7 +65,7 @@ TEST_CASE("device list tells of a Falcon whether it is there, where, and what it
   CHECK(emulator.loads() == 0);
 }
 
-/// Waits at the front right, homes when it is asked for by being moved through its range.
+/// A hand that waits at the front right, and moves the grip through its range to home it.
 HandModel homing_hand(std::atomic<bool>& moves) {
   return [&moves, tick = 0](Vec3) mutable {
     if (!moves.load()) return Vec3{};
@@ -88,7 +88,7 @@ TEST_CASE("device test guides through homing and ends with the motors at rest") 
   moves = true;
   const int code = test.finish();
   INFO(test.output());
-  // A thousand transfers a second are too few for some machines: then the driver's words are due.
+  // On some machines a thousand transfers a second are too few; then the driver reports a fault.
   const bool stalled =
       code == 1 && test.output().find("falcon: fault while homing: stalled") != std::string::npos;
   CHECK((emulator.all_homed() || stalled));

@@ -1,4 +1,4 @@
-// A program for the tests: does with the Falcon what its argument says, and tells each step.
+// A program for the tests: does with the Falcon what its argument says, and prints each step.
 //   list            every Falcon on the bus
 //   push FIRMWARE   opens it, waits until it is homed, pushes with 1 N until it is lost, and again
 #include "core/errors.hpp"

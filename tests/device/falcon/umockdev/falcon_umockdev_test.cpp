@@ -1,7 +1,7 @@
-// Falcons that other processes find, open and lose, on a bus of umockdev's.
-#include "device/falcon/rig/dummy_firmware.hpp"
+// Falcons that other processes find, open and lose, on a bus of umockdev.
+#include "device/falcon/rig/falcon_rig.hpp"
 #include "device/falcon/umockdev/umockdev_falcon.hpp"
-#include "device/falcon/usbfs_shim/emulator_usb_model.hpp"
+#include "device/falcon/usbfs_shim/usb_model.hpp"
 #include "support/catch.hpp"
 #include "support/child_process.hpp"
 #include "support/temp_folder.hpp"
@@ -30,7 +30,7 @@ bool wait_until_pushed(const FalconEmulator& emulator) {
   return false;
 }
 
-TEST_CASE("another process finds no Falcon on an empty bus, and one that is plugged in") {
+TEST_CASE("another process finds no Falcon on an empty bus, and finds one that is plugged in") {
   UmockdevBus bus;
   ChildProcess before({FALCON_PROBE, "list"}, bus.environment());
   CHECK(before.finish() == 0);

@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include <umockdev.h>
-// Before the next, which lacks it.
+// Before the next header, which needs it without including it.
 #include <linux/usbdevice_fs.h>
 #include <sys/ioctl.h>
 
@@ -24,7 +24,7 @@ using Testbed = std::unique_ptr<UMockdevTestbed, Unref<UMockdevTestbed>>;
 using Handler = std::unique_ptr<UMockdevIoctlBase, Unref<UMockdevIoctlBase>>;
 using Memory = std::unique_ptr<UMockdevIoctlData, Unref<UMockdevIoctlData>>;
 
-/// Memory of the other process that a pointer in this memory leads to.
+/// The other process's memory to which a pointer in this memory leads.
 Memory at_pointer(UMockdevIoctlData* data, std::size_t offset, std::size_t length) {
   return Memory(umockdev_ioctl_data_resolve(data, offset, length, nullptr));
 }
@@ -33,7 +33,7 @@ std::span<std::uint8_t> bytes_of(const Memory& memory) {
   return {memory->data, static_cast<std::size_t>(memory->data_len)};
 }
 
-/// Tells umockdev that these bytes are to be written back.
+/// Tells umockdev to write these bytes back.
 void write_back(const Memory& memory) {
   std::vector<std::uint8_t> copy(memory->data, memory->data + memory->data_len);
   umockdev_ioctl_data_update(memory.get(), 0, copy.data(), static_cast<gint>(copy.size()));
@@ -82,7 +82,7 @@ struct UmockdevBus::State {
   UsbModel* model = nullptr;
   std::optional<UsbIdentity> plugged;
   std::deque<Urb> waiting;    ///< reads
-  std::deque<Urb> completed;  ///< to be reaped
+  std::deque<Urb> completed;  ///< for the process to reap
 
   static gboolean on_ioctl(UMockdevIoctlBase*, UMockdevIoctlClient* client, gpointer self) {
     auto& state = *static_cast<State*>(self);
@@ -183,7 +183,7 @@ struct UmockdevBus::State {
 };
 
 UmockdevBus::UmockdevBus() : state_(std::make_unique<State>()) {
-  // Asked after the bus is there, as the answer is kept.
+  // After the bus exists, as the library keeps the answer.
   if (!umockdev_in_mock_environment()) {
     throw std::runtime_error("run this test with ctest, or under umockdev-wrapper");
   }
@@ -233,7 +233,7 @@ void UmockdevBus::unplug() {
 std::vector<std::string> UmockdevBus::environment() const {
   gchar* const root = umockdev_testbed_get_root_dir(state_->testbed.get());
   std::vector<std::string> all = {std::string("UMOCKDEV_DIR=") + root,
-                                  // umockdev's library has to come before the sanitizer's.
+                                  // umockdev's library comes before the sanitizer's.
                                   "ASAN_OPTIONS=verify_asan_link_order=0:detect_leaks=0"};
   g_free(root);
   return all;

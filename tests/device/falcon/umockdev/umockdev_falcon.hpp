@@ -1,7 +1,6 @@
-/// \file A USB device on a bus of umockdev's, for programs that the test starts. The test itself
-/// has to run under umockdev-wrapper, as CTest runs it, and they with it. One bus at a time. Slow,
-/// about a thousand transfers a second: for what is plugged in and for whole commands, never for
-/// rates.
+/// \file A USB device on a bus of umockdev, for programs that the test starts. The test and these
+/// programs run under umockdev-wrapper, as CTest starts them. One bus at a time. About a thousand
+/// transfers a second, so use it for plugging in and for whole commands, never for rates.
 #pragma once
 
 #include "device/falcon/usbfs_shim/usb_model.hpp"
@@ -14,18 +13,18 @@ namespace touchtrial::testing {
 
 class UmockdevBus {
  public:
-  /// \throws std::runtime_error unless umockdev-wrapper is around
+  /// \throws std::runtime_error if the program does not run under umockdev-wrapper
   UmockdevBus();
   ~UmockdevBus();
   UmockdevBus(const UmockdevBus&) = delete;
   UmockdevBus& operator=(const UmockdevBus&) = delete;
 
-  /// Plugs a device in. Its calls come on a thread of umockdev's.
+  /// Plugs a device in. Its calls come on a thread of umockdev.
   /// \param model  must outlive this bus
   void plug(UsbModel& model, const UsbIdentity& identity = {});
   void unplug();
 
-  /// Of a program that is to see this bus.
+  /// For a program that uses this bus.
   [[nodiscard]] std::vector<std::string> environment() const;
 
  private:

@@ -1,13 +1,12 @@
 // The whole driver through the unmodified libusb: set-up, firmware, homing, forces, faults,
 // unplugging and plugging in again.
 #include "core/errors.hpp"
-#include "device/falcon/driver.hpp"
 #include "device/falcon/falcon_device.hpp"
-#include "device/falcon/rig/dummy_firmware.hpp"
-#include "device/falcon/rig/lockstep.hpp"
+#include "device/falcon/rig/falcon_rig.hpp"
 #include "device/falcon/usb_falcon.hpp"
-#include "device/falcon/usbfs_shim/emulator_usb_model.hpp"
+#include "device/falcon/usbfs_shim/usb_model.hpp"
 #include "device/falcon/usbfs_shim/usbfs_shim.hpp"
+#include "device/registry.hpp"
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 
@@ -48,7 +47,7 @@ std::unique_ptr<FalconDevice> open_in_lockstep(Lockstep& lockstep,
                                         std::move(options));
 }
 
-/// Waits in real time for what the USB thread brings; gives up after five minutes.
+/// Waits in real time for a condition that the USB thread fulfils; gives up after five minutes.
 template <typename Condition>
 bool wait_until(Condition holds) {
   for (int i = 0; i < 300'000; ++i) {
@@ -58,7 +57,7 @@ bool wait_until(Condition holds) {
   return false;
 }
 
-TEST_CASE("through libusb a Falcon is loaded, homed and pushes as it is told") {
+TEST_CASE("through libusb a Falcon is loaded, homed and pushes as requested") {
   const TempFolder folder;
   PluggedFalcon falcon(EmulatorOptions{});
   device::FalconSettings settings;
@@ -86,7 +85,8 @@ TEST_CASE("through libusb a Falcon is loaded, homed and pushes as it is told") {
     REQUIRE(paced.write(force_n) == device::DeviceStatus::ok);
     lockstep.step();
     ++i;
-    // Of the pose one exchange ago: the hand has moved by less than 0.2 mm.
+    // The force belongs to the pose of one exchange ago; the hand has moved by less than 0.2 mm
+    // since.
     worst_n = std::max(worst_n, norm(falcon.emulator.force_n() - force_n));
     REQUIRE(device->read(sample) == device::DeviceStatus::ok);
   }
@@ -127,7 +127,7 @@ TEST_CASE("in real time exchanges go on by themselves") {
   CHECK(wait_until([&] { return falcon.emulator.motors() == std::array<std::int16_t, 3>{}; }));
 }
 
-TEST_CASE("unplugged in the middle of a push, the Falcon is lost, and plugged in it opens anew") {
+TEST_CASE("a Falcon that is unplugged during a push is lost, and opens again when plugged in") {
   PluggedFalcon falcon;
   auto device = std::make_unique<FalconDevice>(open_usb_falcon(""), device::FalconSettings{});
   for (int round = 0; round < 3; ++round) {
@@ -142,7 +142,7 @@ TEST_CASE("unplugged in the middle of a push, the Falcon is lost, and plugged in
     CHECK(device->read(sample) == device::DeviceStatus::fault);
     CHECK(device->write({}) == device::DeviceStatus::fault);
     falcon.replug();
-    // The lost one is still open: both may be, but the old one never comes back.
+    // The lost one is still open. Both may be open, but the old one never works again.
     auto anew = std::make_unique<FalconDevice>(open_usb_falcon(""), device::FalconSettings{});
     CHECK(device->fault() == device::DeviceFault::link_lost);
     device = std::move(anew);
@@ -152,7 +152,7 @@ TEST_CASE("unplugged in the middle of a push, the Falcon is lost, and plugged in
   CHECK(falcon.usb.open_handles() == 0);
 }
 
-TEST_CASE("unplugged while it is being opened, the Falcon is told to be gone") {
+TEST_CASE("a Falcon that is unplugged while it is opened is reported as gone") {
   const TempFolder folder;
   PluggedFalcon falcon(EmulatorOptions{});
   device::FalconSettings settings;
@@ -163,7 +163,7 @@ TEST_CASE("unplugged while it is being opened, the Falcon is told to be gone") {
   CHECK(falcon.usb.open_handles() == 0);
 }
 
-TEST_CASE("while one program has the Falcon a second one cannot open it") {
+TEST_CASE("a Falcon that one program has open cannot be opened by a second one") {
   PluggedFalcon falcon;
   const FalconDevice device(open_usb_falcon(""), {});
   CHECK_THROWS_WITH(open_usb_falcon(""), holds_text("another program uses it"));
@@ -171,7 +171,7 @@ TEST_CASE("while one program has the Falcon a second one cannot open it") {
 
 TEST_CASE("the registry lists a Falcon with what is missing, and opens it") {
   device::DeviceSettings settings;
-  const device::DeviceDriver driver = device::falcon_driver();
+  const device::DeviceDriver& driver = device::device_driver("falcon");
   const auto none = driver.list(settings);
   REQUIRE(none.size() == 1);
   CHECK_FALSE(none[0].present);

@@ -15,7 +15,7 @@ using std::chrono::milliseconds;
 using testing::ShimmedUsbDevice;
 using testing::UsbIdentity;
 
-/// Gives back what it is sent, behind two status bytes.
+/// Returns the bytes that it gets, behind two status bytes.
 class Loopback final : public testing::UsbModel {
  public:
   bool vendor_request(std::uint8_t request, std::uint16_t value, std::uint16_t index) override {
@@ -57,7 +57,7 @@ std::string refusal(const std::string& serial = "") {
   return {};
 }
 
-/// Serves the stream until something holds; gives up after half a minute.
+/// Serves the stream until a condition holds; gives up after half a minute.
 template <typename Condition>
 bool serve_until(FtdiTransport& transport, Condition holds) {
   for (int i = 0; i < 3000; ++i) {
@@ -67,7 +67,7 @@ bool serve_until(FtdiTransport& transport, Condition holds) {
   return false;
 }
 
-TEST_CASE("an empty bus has no Falcon, and opening one says what to do") {
+TEST_CASE("an empty bus has no Falcon, and the error of opening one gives the remedy") {
   CHECK(find_usb_falcons().empty());
   CHECK_THAT(refusal(), holds_text("none is plugged in"));
 }
@@ -83,7 +83,7 @@ TEST_CASE("a Falcon on the bus is found with its place and serial number") {
   CHECK(device.open_handles() == 0);
 }
 
-TEST_CASE("a device of another maker is no Falcon") {
+TEST_CASE("a device of another maker is not taken for a Falcon") {
   Loopback model;
   const ShimmedUsbDevice device(model, {.product = 0x6001});
   CHECK(find_usb_falcons().empty());
@@ -109,7 +109,7 @@ TEST_CASE("a Falcon that another program has claimed is busy, and nothing stays 
   CHECK(device.open_handles() == 0);
 }
 
-TEST_CASE("a kernel driver gives way while the Falcon is open, and comes back") {
+TEST_CASE("a kernel driver is detached while the Falcon is open, and comes back") {
   Loopback model;
   ShimmedUsbDevice device(model);
   device.attach_kernel_driver(true);
@@ -124,7 +124,7 @@ TEST_CASE("a kernel driver gives way while the Falcon is open, and comes back") 
   CHECK_FALSE(device.is_claimed());
 }
 
-TEST_CASE("of several Falcons the settings have to name one") {
+TEST_CASE("the settings have to name one of several Falcons") {
   Loopback first, second;
   const ShimmedUsbDevice one(first, {.serial = "ONE"});
   const ShimmedUsbDevice two(second, {.address = 9, .port = "1-3", .serial = "TWO"});
@@ -136,10 +136,11 @@ TEST_CASE("of several Falcons the settings have to name one") {
   CHECK(one.open_handles() == 0);
 }
 
-TEST_CASE("a Falcon without a serial number is told as one where another number was asked for") {
+TEST_CASE("a Falcon without a serial number is reported as such if another number is requested") {
   Loopback model;
   const ShimmedUsbDevice device(model, {.serial = ""});
-  CHECK_THAT(refusal("A\nB"), holds_text("number A B, but there is one without; correct"));
+  CHECK_THAT(refusal("A\nB"),
+             holds_text("number A B, but there is one without a serial number; correct"));
 }
 
 TEST_CASE("requests and bytes reach the chip, and its packets come back with their status") {
@@ -155,7 +156,7 @@ TEST_CASE("requests and bytes reach the chip, and its packets come back with the
   CHECK(std::equal(sent.begin(), sent.end(), packet.begin() + 2));
 }
 
-TEST_CASE("a device that says nothing is waited for no longer than asked") {
+TEST_CASE("receiving from a silent device waits no longer than the limit") {
   Loopback model;
   const ShimmedUsbDevice device(model);
   const auto transport = open_usb_falcon("");
@@ -163,7 +164,7 @@ TEST_CASE("a device that says nothing is waited for no longer than asked") {
   CHECK(transport->receive(packet, milliseconds(5)) == 0);
 }
 
-TEST_CASE("setting up a device that was unplugged says so") {
+TEST_CASE("setting up an unplugged device says so") {
   Loopback model;
   ShimmedUsbDevice device(model);
   const auto transport = open_usb_falcon("");
@@ -192,7 +193,7 @@ TEST_CASE("the stream keeps a read queued: one packet after another arrives") {
   CHECK_FALSE(transport->lost());
 }
 
-TEST_CASE("a packet that is sent before the last one left is refused, not queued") {
+TEST_CASE("a packet is refused, not queued, while the previous one is under way") {
   Loopback model;
   const ShimmedUsbDevice device(model);
   const auto transport = open_usb_falcon("");
@@ -239,7 +240,7 @@ TEST_CASE(
   CHECK(device.open_handles() == 0);
 }
 
-TEST_CASE("a Falcon that is plugged in again is found and opened anew") {
+TEST_CASE("a Falcon that is plugged in again is found and opened again") {
   Loopback model;
   ShimmedUsbDevice device(model);
   auto transport = open_usb_falcon("");

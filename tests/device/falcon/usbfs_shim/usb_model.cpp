@@ -67,4 +67,22 @@ std::optional<std::size_t> answer_control(const UsbIdentity& identity, UsbModel&
   return length;
 }
 
+bool EmulatorUsbModel::vendor_request(std::uint8_t request, std::uint16_t value,
+                                      std::uint16_t index) {
+  return emulator_.control({0x40, request, value, index}) == device::falcon::UsbStatus::ok;
+}
+
+void EmulatorUsbModel::bulk_out(std::span<const std::uint8_t> bytes) {
+  // The emulator stays plugged in.
+  static_cast<void>(emulator_.bulk_out(bytes));
+}
+
+std::size_t EmulatorUsbModel::bulk_in(std::span<std::uint8_t> bytes) {
+  if (emulator_.waiting() == 0) return 0;
+  std::vector<std::uint8_t> transfer;
+  static_cast<void>(emulator_.bulk_in(bytes.size(), transfer));
+  std::ranges::copy(transfer, bytes.begin());
+  return transfer.size();
+}
+
 }  // namespace touchtrial::testing

@@ -23,7 +23,7 @@ int failed(int error) {
   return -1;
 }
 
-/// Not the program's own close, which is the shim's.
+/// The system's close, as the program's own is the shim's.
 void system_close(int descriptor) {
   syscall(SYS_close, descriptor);
 }
@@ -38,7 +38,7 @@ void drain_pipe(int reader) {
   [[maybe_unused]] const ssize_t taken = ::read(reader, filler.data(), filler.size());
 }
 
-/// A file that holds this and is read from its beginning.
+/// \return a file with this content, at its beginning
 int file_of(std::span<const std::uint8_t> bytes) {
   const int descriptor = memfd_create("usb-attribute", MFD_CLOEXEC);
   if (descriptor < 0) return -1;
@@ -60,7 +60,7 @@ std::vector<std::uint8_t> attribute(const UsbIdentity& identity, const std::stri
 }  // namespace
 
 UsbfsBus& UsbfsBus::instance() {
-  // Never destroyed: libusb's threads and the program's last closes may come after static objects.
+  // Never destroyed: libusb's threads and the last calls of close may outlive static objects.
   static auto* const bus = new UsbfsBus;
   return *bus;
 }

@@ -8,7 +8,7 @@
 #include <mutex>
 #include <set>
 
-// Before the next, which lacks it.
+// Before the next header, which needs it without including it.
 #include <linux/usbdevice_fs.h>
 #include <sys/ioctl.h>
 
@@ -20,27 +20,27 @@ struct BusDevice {
   bool permitted = true;
   bool used_elsewhere = false;
   bool kernel_driver = false;
-  bool deaf = false;    ///< what completed cannot be had any more
+  bool deaf = false;    ///< keeps completed transfers
   int claimed_by = -1;  ///< the handle's descriptor
 };
 
 /// An open node. Its descriptor is the writing end of a pipe that is kept full, so that POLLOUT
-/// comes with a completed transfer alone, and POLLERR, by closing the reading end, with unplugging.
+/// comes only with a completed transfer, and POLLERR, by closing the reading end, with unplugging.
 struct BusHandle {
   std::shared_ptr<BusDevice> device;
   int reader = -1;  ///< -1: unplugged
   bool signalled = false;
-  std::deque<usbdevfs_urb*> waiting;  ///< reads for which there is nothing yet
+  std::deque<usbdevfs_urb*> waiting;  ///< reads without data yet
   std::deque<usbdevfs_urb*> completed;
 };
 
-/// What libudev's monitor is to tell.
+/// An event for libudev's monitor.
 struct BusEvent {
   std::string action;
   UsbIdentity identity;
 };
 
-/// One for the program. Every function takes the lock itself.
+/// One a program. Every function takes the lock itself.
 class UsbfsBus {
  public:
   static UsbfsBus& instance();
@@ -51,7 +51,7 @@ class UsbfsBus {
   void change(const std::function<void()>& action);
   [[nodiscard]] int handles_of(const BusDevice& device);
 
-  /// \name What libusb calls; results as of the system calls, errno set
+  /// \name For libusb; results as of the system calls, with errno
   ///@{
   [[nodiscard]] bool serves(const std::string& path) const;
   int open(const std::string& path);
@@ -60,7 +60,7 @@ class UsbfsBus {
   void close(int descriptor);
   ///@}
 
-  /// \name What libudev would tell
+  /// \name In place of libudev
   ///@{
   [[nodiscard]] std::vector<UsbIdentity> present();
   int start_monitor();

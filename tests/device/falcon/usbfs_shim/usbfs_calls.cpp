@@ -1,5 +1,5 @@
 // The system calls that libusb makes on the bus. This program's functions come before the C
-// library's, so libusb finds these; what is not the bus's goes to the kernel.
+// library's, so libusb finds these; calls for other files go to the kernel.
 #include "device/falcon/usbfs_shim/usbfs_bus.hpp"
 
 #include <atomic>
@@ -18,7 +18,7 @@ int open_path(const char* path, int flags, mode_t mode) {
   return static_cast<int>(syscall(SYS_openat, AT_FDCWD, path, flags, mode));
 }
 
-/// The third argument of open, which is there only for some flags.
+/// The third argument of open, which exists only with some flags.
 mode_t mode_of(int flags, va_list arguments) {
   const bool given = (flags & O_CREAT) != 0 || (flags & O_TMPFILE) == O_TMPFILE;
   return given ? va_arg(arguments, mode_t) : 0;
@@ -44,7 +44,7 @@ int open64(const char* path, int flags, ...) {
   return open_path(path, flags | O_LARGEFILE, mode);
 }
 
-// What fortified programs call in place of open with two arguments.
+// Fortified programs call this in place of open with two arguments.
 int __open_2(const char* path, int flags) {
   return open_path(path, flags, 0);
 }

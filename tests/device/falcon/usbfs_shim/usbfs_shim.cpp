@@ -20,7 +20,7 @@ void ShimmedUsbDevice::unplug() {
 }
 
 void ShimmedUsbDevice::plug() {
-  // A new one, because handles of the old one are dead for good.
+  // A new one, because handles of the old one never work again.
   auto next = std::make_shared<BusDevice>(*device_);
   ++next->identity.address;
   next->claimed_by = -1;

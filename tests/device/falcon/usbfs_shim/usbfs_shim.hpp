@@ -1,6 +1,6 @@
-/// \file A USB bus inside the test program. The unmodified libusb-1.0 runs on it: open, close and
-/// ioctl of /dev/bus/usb and /sys/bus/usb, and libudev's enumeration and monitor, are answered
-/// here, because the program's own functions of these names come before the libraries'.
+/// \file A USB bus inside the test program, for the unmodified libusb-1.0. It answers open, close
+/// and ioctl of /dev/bus/usb and /sys/bus/usb, and libudev's enumeration and monitor, because the
+/// program's own functions of these names come before the libraries'.
 ///
 /// A program that links touchtrial_usbfs_shim has to link libusb dynamically and export its symbols
 /// (the library asks for both). Everything else that it opens goes to the system.
@@ -18,27 +18,28 @@ struct BusDevice;
 /// A device that may be plugged into the bus. Any thread.
 class ShimmedUsbDevice {
  public:
-  /// Is plugged in. \param model  must outlive this; called under the bus's lock alone, by whoever
-  ///   talks to libusb
+  /// Plugs it in.
+  /// \param model  must outlive this; called under the bus's lock only, by the thread that uses
+  /// libusb
   explicit ShimmedUsbDevice(UsbModel& model, const UsbIdentity& identity = {});
   ~ShimmedUsbDevice();  ///< unplugs
   ShimmedUsbDevice(const ShimmedUsbDevice&) = delete;
   ShimmedUsbDevice& operator=(const ShimmedUsbDevice&) = delete;
 
-  /// Open handles fail from now on, transfers under way end.
+  /// Unplugs it: open handles fail from now on, transfers under way end.
   void unplug();
-  /// Again, at the next address: the old one never works again, as on a real bus.
+  /// Plugs it in again, at the next address: the old one never works again, as on a real bus.
   void plug();
 
   void allow(bool permitted);     ///< whether the node may be opened
   void use_elsewhere(bool used);  ///< whether another program has claimed it
   void attach_kernel_driver(bool is_attached);
-  void deafen(bool deaf);  ///< whether transfers that ended cannot be had back
+  void deafen(bool deaf);  ///< whether the bus keeps transfers that ended
   [[nodiscard]] bool has_kernel_driver() const;
   [[nodiscard]] bool is_claimed() const;
   [[nodiscard]] int open_handles() const;  ///< that libusb has not closed
 
-  /// Does something with the model while nobody talks to it, then lets waiting reads see it.
+  /// Changes the model while nothing else uses it, then lets waiting reads see it.
   void with_model(const std::function<void()>& action);
 
  private:

@@ -104,7 +104,7 @@ TEST_CASE("a server that is killed in mid-push and comes back gets everything on
   CHECK(mortal.there.counts() == undisturbed(*study.store));
 }
 
-TEST_CASE("a server that stays away is given up after bounded attempts; what came stays") {
+TEST_CASE("pushing to a server that stays away ends after bounded attempts; what arrived stays") {
   MortalServer mortal;
   StoredFixture study(3);
   OpenStation station(*study.store);
@@ -207,7 +207,9 @@ TEST_CASE("a station that is pushed by two programs at once comes once") {
   CHECK(there.counts() == expected);
 }
 
-TEST_CASE("of two stations that bring one participant at once, one is refused and told by whom") {
+TEST_CASE(
+    "of two stations that bring one participant at once, one is refused and told which session "
+    "stays") {
   const ServerFixture there;
   std::latch start(2);
   const auto push = [&](int enrolment) {
@@ -227,7 +229,7 @@ TEST_CASE("of two stations that bring one participant at once, one is refused an
   CHECK(there.first("SELECT count(*) FROM sessions") == "1");
 }
 
-TEST_CASE("where nothing answers, that is said in one line, at once") {
+TEST_CASE("an address where nothing answers is refused in one line, at once") {
   StoredFixture study(1);
   int waits = 0;
   const PushOptions options{.wait = [&](std::chrono::milliseconds) { ++waits; }};
@@ -279,7 +281,7 @@ TEST_CASE("a server that hangs up in the handshake is not said to refuse a passw
   CHECK(line.find("password") == std::string::npos);
 }
 
-TEST_CASE("a database or a role that does not exist is said in one line, at once") {
+TEST_CASE("a database or a role that does not exist is reported in one line, at once") {
   const ServerFixture there;
   StoredFixture study(1);
   int waits = 0;
@@ -291,7 +293,7 @@ TEST_CASE("a database or a role that does not exist is said in one line, at once
   CHECK(waits == 0);
 }
 
-TEST_CASE("a disk that is full at the server is said, and nothing of the session kept") {
+TEST_CASE("a full disk of the server is reported, and nothing of the session is kept") {
   const ServerFixture there;
   StoredFixture study(1);
   there.push(*study.store);

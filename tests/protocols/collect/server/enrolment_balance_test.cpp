@@ -27,7 +27,7 @@ TEST_CASE("a study whose places are filled evenly has no imbalance") {
   CHECK(imbalances(balance).empty());
 }
 
-TEST_CASE("rows, stations and numbers that lag behind are said") {
+TEST_CASE("rows, stations and numbers that lag behind are reported") {
   const std::vector<EnrolledSession> sessions = {completed(1, 2), completed(1, 4), completed(1, 6),
                                                  completed(2, 7)};
   const EnrolmentBalance balance = enrolment_balance(sessions, 2);
@@ -49,7 +49,7 @@ TEST_CASE("sessions that do not count leave their number open") {
   CHECK(balance.gaps == std::vector<int>{1, 2});
 }
 
-TEST_CASE("of very many gaps the first are named") {
+TEST_CASE("only the first of very many gaps are named") {
   const std::vector<EnrolledSession> sessions = {completed(1, 1000)};
   const EnrolmentBalance balance = enrolment_balance(sessions, 1);
   CHECK(balance.gap_count == 999);
@@ -76,7 +76,7 @@ TEST_CASE("an empty study is balanced") {
   CHECK(enrolment_balance({}, 6).rows.size() == 6);
 }
 
-TEST_CASE("balance refuses what cannot be") {
+TEST_CASE("balance refuses impossible numbers") {
   const std::vector<EnrolledSession> sessions = {completed(1, 0)};
   CHECK_THROWS_AS(enrolment_balance(sessions, 2), std::invalid_argument);
   CHECK_THROWS_AS(enrolment_balance({}, 0), std::invalid_argument);

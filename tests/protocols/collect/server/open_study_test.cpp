@@ -1,8 +1,7 @@
 // A study on a server, read as one.
-#include "protocols/collect/open_study.hpp"
-
+#include "protocols/collect/collect.hpp"
 #include "protocols/collect/server/server_fixture.hpp"
-#include "protocols/store/damaged_store.hpp"
+#include "protocols/store/damage.hpp"
 #include "support/catch.hpp"
 
 using namespace touchtrial;
@@ -99,7 +98,7 @@ TEST_CASE("stations that each replaced one of a pair are read as they were pushe
   CHECK_FALSE(study.first_fault());
 }
 
-TEST_CASE("what is withdrawn at a station cannot be read from the server after the next push") {
+TEST_CASE("a session withdrawn at a station cannot be read from the server after the next push") {
   CollectedStudy study;
   study.second.store->withdraw(1, kUtc, "asked");
   study.there.push(*study.second.store);
@@ -111,7 +110,7 @@ TEST_CASE("what is withdrawn at a station cannot be read from the server after t
   CHECK_FALSE(server.wrapped_key(row->session));
 }
 
-TEST_CASE("whatever is altered on the server is found, and named by station and session") {
+TEST_CASE("every alteration on the server is found, and named by station and session") {
   // Sessions 1 and 2 are the first station's, 3 and 4 the second's.
   const auto check = [](const std::string& sql, const std::vector<std::string>& words) {
     const std::string line = refusal_after(sql);
@@ -158,7 +157,7 @@ TEST_CASE("an address with a password opens nothing, and is not repeated") {
   }
 }
 
-TEST_CASE("a study is called by its file, or by its server without the user") {
+TEST_CASE("a study is named by its file, or by its server without the user") {
   CHECK(study_name("/data/study.db") == "study.db");
   CHECK(study_name("postgresql://anna@lab/study") == "postgresql://lab/study");
 }

@@ -2,8 +2,8 @@
 // chain that went on by itself, no rights.
 #include "protocols/collect/server/server_fixture.hpp"
 #include "protocols/collect/server_schema.hpp"
-#include "protocols/collect/server_stations.hpp"
-#include "protocols/store/damaged_store.hpp"
+#include "protocols/collect/stations.hpp"
+#include "protocols/store/damage.hpp"
 #include "support/catch.hpp"
 
 using namespace touchtrial;
@@ -29,7 +29,7 @@ void add_another_table(pqxx::work& work) {
 
 }  // namespace
 
-TEST_CASE("a participant whom another station has is refused, by whom") {
+TEST_CASE("a participant id that another station has is refused, and that session is named") {
   const ServerFixture there;
   StoredFixture first(1);
   StoredFixture second;
@@ -53,7 +53,7 @@ TEST_CASE("a participant whom another station has is refused, by whom") {
   check_untouched(there, counts);
 }
 
-TEST_CASE("an enrolment number that another station has is refused, by whom") {
+TEST_CASE("an enrolment number that another station has is refused, and that session is named") {
   const ServerFixture there;
   StoredFixture first(2);
   StoredFixture second;
@@ -189,7 +189,7 @@ TEST_CASE("a step that fails leaves the schema as it was") {
         "0");
 }
 
-TEST_CASE("a copy that went on by itself is refused where it parts") {
+TEST_CASE("a copy that went on by itself is refused, and the message says where it parts") {
   const ServerFixture there;
   StoredFixture study(2);
   study.store.reset();
@@ -219,7 +219,7 @@ TEST_CASE("an older copy adds nothing, and is told of what the server has beyond
   CHECK(report.ahead == 2);
 }
 
-TEST_CASE("what is altered on its way does not arrive") {
+TEST_CASE("a session that is altered on its way does not arrive") {
   const ServerFixture there;
   StoredFixture study(2);
   OpenStation station(*study.store);
@@ -243,7 +243,7 @@ TEST_CASE("what is altered on its way does not arrive") {
   CHECK(there.push(station).pushed.size() == 2);
 }
 
-TEST_CASE("a role without rights is told so in one line") {
+TEST_CASE("a role without rights is refused in one line") {
   const ServerFixture there;
   there.ask("CREATE ROLE guest LOGIN");
   StoredFixture study(1);
@@ -302,7 +302,7 @@ TEST_CASE("a key that somebody deleted or changed comes back with the next push"
   CHECK(there.ask(keys).size() == 2);
 }
 
-TEST_CASE("an older copy brings no key of a person back who withdrew since") {
+TEST_CASE("an older copy does not bring back the key of a participant who withdrew since") {
   const ServerFixture there;
   StoredFixture study(2);
   TempFolder folder;
@@ -323,7 +323,7 @@ TEST_CASE("an older copy brings no key of a person back who withdrew since") {
   CHECK(there.first("SELECT count(*) FROM participant_keys") == "1");
 }
 
-TEST_CASE("the key of a person who withdrew is no longer in the table's file") {
+TEST_CASE("the key of a participant who withdrew is no longer in the table's file") {
   const ServerFixture there;
   StoredFixture study(2);
   there.push(*study.store);
@@ -341,7 +341,7 @@ TEST_CASE("the key of a person who withdrew is no longer in the table's file") {
   CHECK_FALSE(is_in_file());
 }
 
-TEST_CASE("a server that lost the end of a station's chain is told from a place that is taken") {
+TEST_CASE("a lost end of a station's chain gives another error than a place that is taken") {
   const ServerFixture there;
   StoredFixture study(2);
   there.push(*study.store);
@@ -359,7 +359,7 @@ TEST_CASE("a server that lost the end of a station's chain is told from a place 
   check_untouched(there, counts);
 }
 
-TEST_CASE("what is damaged on the server is said in one clean line, with a remedy") {
+TEST_CASE("damage on the server is reported in one clean line, with a remedy") {
   const auto refusal_after = [](const std::string& sql) {
     const ServerFixture there;
     StoredFixture study(1);
@@ -394,7 +394,7 @@ TEST_CASE("what is damaged on the server is said in one clean line, with a remed
              holds_text("sync all stations again"));
 }
 
-TEST_CASE("a database that takes no writes is said to be so") {
+TEST_CASE("a read-only database is reported") {
   const ServerFixture there;
   StoredFixture study(1);
   there.push(*study.store);

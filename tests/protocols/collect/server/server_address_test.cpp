@@ -21,7 +21,7 @@ std::string refusal_of(const std::string& where) {
 
 }  // namespace
 
-TEST_CASE("whatever has a scheme is an address and no file") {
+TEST_CASE("everything with a scheme is an address and no file") {
   CHECK(is_address("postgresql://host/study"));
   CHECK(is_address("postgressql://host/study"));
   CHECK_FALSE(is_address("study.db"));
@@ -36,7 +36,7 @@ TEST_CASE("an address is shown without its user") {
   CHECK(ServerAddress("postgresql://?service=lab").shown() == "postgresql:///?service=lab");
 }
 
-TEST_CASE("an address is handed on whole, and waits a bounded time") {
+TEST_CASE("an address is passed on whole, and waits a bounded time") {
   const std::string text =
       ServerAddress("postgresql://anna@lab.example/st%27u%5Cdy?options=-csearch_path%3Dpilot")
           .connection_string();
@@ -49,7 +49,7 @@ TEST_CASE("an address is handed on whole, and waits a bounded time") {
              holds_text("connect_timeout='3'"));
 }
 
-TEST_CASE("an address with a password is refused, and nothing of it repeated") {
+TEST_CASE("an address with a password is refused, and not repeated") {
   for (const char* const where :
        {"postgresql://anna:geheim@lab/study", "postgresql://lab/study?password=geheim",
         "postgresql://lab/study?sslpassword=geheim", "postgres://anna:geheim@lab/study"}) {
@@ -60,7 +60,7 @@ TEST_CASE("an address with a password is refused, and nothing of it repeated") {
   }
 }
 
-TEST_CASE("what is no address is refused, and nothing of it repeated") {
+TEST_CASE("a text that is no address is refused, and not repeated") {
   for (const char* const where : {"postgressql://anna:geheim@lab/study", "mysql://geheim@lab",
                                   "host=lab password=geheim", "postgresql://anna:geheim@[lab/study",
                                   "postgresql://lab/study?passwort=geheim", "study.db", ""}) {

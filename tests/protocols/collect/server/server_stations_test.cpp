@@ -1,8 +1,7 @@
 // What the server gives back of the stations.
-#include "protocols/collect/server_stations.hpp"
-
 #include "protocols/collect/server/server_fixture.hpp"
-#include "protocols/store/damaged_store.hpp"
+#include "protocols/collect/stations.hpp"
+#include "protocols/store/damage.hpp"
 #include "support/catch.hpp"
 
 using namespace touchtrial;
@@ -38,7 +37,7 @@ struct TwoStations {
 
 }  // namespace
 
-TEST_CASE("what the server gives of a station is what the station's file has") {
+TEST_CASE("a station read from the server equals the station's file") {
   TwoStations both;
   both.second.store->withdraw(2, kUtc, "asked");
   both.there.push(*both.second.store);
@@ -76,7 +75,7 @@ TEST_CASE("a reader sees one moment, whatever is pushed meanwhile") {
   CHECK(stations_of_server(there.address())[0]->file_chain().size() == 6);
 }
 
-TEST_CASE("many and large traces come in pieces and are the same") {
+TEST_CASE("many and large traces are read in pieces and are the same") {
   const ServerFixture there;
   StoredFixture study;
   const Trace large = stroking(60'000, 3.0);
@@ -92,7 +91,7 @@ TEST_CASE("many and large traces come in pieces and are the same") {
   CHECK(traces == 30);
 }
 
-TEST_CASE("a role that may only read reads; without rights, that is said") {
+TEST_CASE("a role that may only read can read, and a role without rights is refused") {
   TwoStations both;
   both.there.ask(
       "CREATE ROLE reader LOGIN; CREATE ROLE stranger LOGIN;"
@@ -103,7 +102,7 @@ TEST_CASE("a role that may only read reads; without rights, that is said") {
       holds_text("permission denied"));
 }
 
-TEST_CASE("a database without a study is said to be so") {
+TEST_CASE("a database without a study is reported") {
   const ServerFixture there;
   const auto refusal = [&] {
     return refusal_of([&] { static_cast<void>(stations_of_server(there.address())); });
@@ -114,13 +113,13 @@ TEST_CASE("a database without a study is said to be so") {
   CHECK_THAT(refusal(), holds_text("holds no study yet"));
 }
 
-TEST_CASE("a station that only has a name is nobody's") {
+TEST_CASE("a station that has only a name is ignored") {
   TwoStations both;
   both.there.ask("INSERT INTO stations VALUES(7, '\\x07', 'ghost.db')");
   CHECK(stations_of_server(both.there.address()).size() == 2);
 }
 
-TEST_CASE("rows that nobody pushed are damage") {
+TEST_CASE("rows that nobody pushed count as damage") {
   const auto refusal_after = [](const std::string& sql) {
     TwoStations both;
     both.there.tamper(sql);

@@ -1,5 +1,6 @@
 #include "protocols/collect/station_course.hpp"
 
+#include "protocols/store/payload_json.hpp"
 #include "protocols/store/store_fixture.hpp"
 #include "support/catch.hpp"
 
@@ -12,7 +13,7 @@ using namespace touchtrial::fixture;
 
 namespace {
 
-/// A file chain's events as far as their meaning goes; nothing is hashed.
+/// A station's file chain.
 class Chain {
  public:
   Chain() { add(EventKind::study_committed, to_json(commitment())); }
@@ -38,12 +39,7 @@ class Chain {
                to_json(ReplacementBody{.session = session, .by = by, .reason = "ill"}));
   }
   Chain& add(EventKind kind, const std::string& body) {
-    events.push_back({.session = 0,
-                      .sequence = static_cast<std::int64_t>(events.size()),
-                      .kind = kind,
-                      .at = kUtc,
-                      .body = body,
-                      .sealed = {}});
+    events.push_back(next_on_file(events.empty() ? nullptr : &events.back(), kind, kUtc, body));
     return *this;
   }
 
@@ -52,8 +48,14 @@ class Chain {
 
 using Segments = std::vector<ChainSegment>;
 
+Courses courses_of(const Chain& chain) {
+  FileChain file;
+  for (const Event& event : chain.events) file.add(event);
+  return file.sessions();
+}
+
 Segments cut(const Chain& chain, std::int64_t first = 0, const std::set<int>& without_key = {}) {
-  return segments_of(chain.events, first,
+  return segments_of(courses_of(chain), static_cast<std::int64_t>(chain.events.size()), first,
                      [&](int session) { return !without_key.contains(session); });
 }
 
@@ -95,14 +97,14 @@ TEST_CASE("a session that is still open is in no segment") {
   Chain chain;
   chain.opened(1).opened(2).closed(2);
   CHECK(cut(chain) == Segments{{0, 4, {2}}});
-  CHECK_FALSE(courses_of(chain.events).at(1).closed_at);
-  CHECK(courses_of(chain.events).at(2).closed_at == 3);
+  CHECK_FALSE(courses_of(chain).at(1).closed_at);
+  CHECK(courses_of(chain).at(2).closed_at == 3);
 }
 
-TEST_CASE("what is decided about a session is found among the events that tell it") {
+TEST_CASE("a decision about a session is found among the events of its chain") {
   Chain chain;
   chain.opened(1).closed(1).opened(2).closed(2).withdrawn(1).replaced(2, "P9");
-  const std::map<int, SessionCourse> courses = courses_of(chain.events);
+  const Courses courses = courses_of(chain);
   CHECK(is_decided_between(courses.at(1), 5, 6));
   CHECK(is_decided_between(courses.at(1), 0, 7));
   CHECK_FALSE(is_decided_between(courses.at(1), 0, 5));
@@ -111,9 +113,9 @@ TEST_CASE("what is decided about a session is found among the events that tell i
   CHECK_FALSE(is_decided_between(courses.at(2), 0, 6));
 }
 
-TEST_CASE("a chain that speaks of sessions that were not opened is refused") {
+TEST_CASE("a chain with events of sessions that were not opened is refused") {
   Chain chain;
   chain.opened(1).closed(2);
-  CHECK_THAT(refusal_of([&] { static_cast<void>(courses_of(chain.events)); }),
+  CHECK_THAT(refusal_of([&] { static_cast<void>(courses_of(chain)); }),
              holds_text("session 2 has not been opened"));
 }

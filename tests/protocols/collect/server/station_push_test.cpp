@@ -86,7 +86,7 @@ TEST_CASE("an open session is left for later and named") {
   CHECK(there.first("SELECT state FROM sessions WHERE own_session = 2") == "stopped");
 }
 
-TEST_CASE("a session that was replaced before it ended is not said to come later") {
+TEST_CASE("a session that was replaced before it ended is not announced for later") {
   const ServerFixture there;
   StoredFixture study(1);
   const auto sink = study.store->begin_session(2, wrapped_key_of(2));
@@ -100,7 +100,7 @@ TEST_CASE("a session that was replaced before it ended is not said to come later
   CHECK(there.first("SELECT count(*) FROM sessions") == "1");
 }
 
-TEST_CASE("what is decided at the station afterwards follows") {
+TEST_CASE("decisions at the station follow with the next push") {
   const ServerFixture there;
   StoredFixture study(3);
   there.push(*study.store);
@@ -119,7 +119,7 @@ TEST_CASE("what is decided at the station afterwards follows") {
         std::vector<std::string>{"1", "3"});
 }
 
-TEST_CASE("sessions that were withdrawn or replaced before the first push come as they are") {
+TEST_CASE("sessions that were withdrawn or replaced before the first push arrive as they are") {
   const ServerFixture there;
   StoredFixture study(2);
   study.store->withdraw(1, kUtc, "asked");
@@ -174,7 +174,7 @@ TEST_CASE("progress counts the sessions that are to be pushed") {
   CHECK(calls == std::vector<std::pair<int, int>>{{1, 3}, {2, 3}, {3, 3}});
 }
 
-TEST_CASE("the server tells all sessions of all stations for their balance") {
+TEST_CASE("the server lists all sessions of all stations for their balance") {
   const ServerFixture there;
   StoredFixture first(2);
   StoredFixture second;

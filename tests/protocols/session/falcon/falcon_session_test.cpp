@@ -1,16 +1,17 @@
 // A whole classification session on an emulated Falcon: study, pack, servo thread, driver, the
 // unmodified libusb, and the database. Servo ticks and USB exchanges go in lockstep, as fast as the
 // processor goes.
-#include "analysis/report/report.hpp"
 #include "analysis/sealed_sessions.hpp"
-#include "device/falcon/rig/dummy_firmware.hpp"
+#include "device/falcon/rig/falcon_rig.hpp"
+#include "protocols/identification/analysis/report.hpp"
+#include "protocols/identification/simulation/identifying_participant.hpp"
 #include "protocols/session/commitment.hpp"
 #include "protocols/session/falcon/stepped_falcon.hpp"
-#include "protocols/session/felt_knowledge.hpp"
 #include "protocols/session/real_time_explorer.hpp"
 #include "protocols/session/session_runner.hpp"
 #include "protocols/session/still_time.hpp"
 #include "protocols/session/tiny_study.hpp"
+#include "protocols/simulation/felt_knowledge.hpp"
 #include "protocols/store/payload_json.hpp"
 #include "support/catch.hpp"
 
@@ -23,17 +24,8 @@ namespace {
 constexpr device::PlanePlacement kPlacement{device::PlaneOrientation::horizontal,
                                             {-20.0, -10.0, -20.0}};
 
-session::RealTimeOptions as_fast_as_it_goes() {
-  session::RealTimeOptions options;
-  options.scheduling.policy = device::SchedulingPolicy::other;
-  options.scheduling.lock_memory = false;
-  options.watchdog_time = &still_time();
-  options.clock = [] { return std::make_unique<device::VirtualClock>(); };
-  return options;
-}
-
-session::SubjectModel quick_subject() {
-  session::SubjectModel subject;
+simulation::SubjectModel quick_subject() {
+  simulation::SubjectModel subject;
   subject.explore_s = 1.2;
   subject.training_passes = 4;
   return subject;
@@ -98,10 +90,10 @@ struct Laboratory {
   SteppedFalcon* device = nullptr;
   Experimenter experimenter{falcon, device};
   session::DeviceStation station{opener(), kPlacement, experimenter};
-  session::SubjectModel subject = quick_subject();
-  session::FeltKnowledge knowledge =
-      session::learn_by_feeling(session::LabelledFields(study.key(), source), subject, 3.3, 5, 1);
-  session::SimulatedParticipant mind{subject, knowledge, 5, 1};
+  simulation::SubjectModel subject = quick_subject();
+  simulation::FeltKnowledge knowledge = simulation::learn_by_feeling(
+      simulation::LabelledFields(study.key(), source), subject, 3.3, 5, 1);
+  simulation::identification::IdentifyingParticipant mind{subject, knowledge, 5, 1};
   PersonAtFalcon person{mind, falcon, station};
   session::VirtualSessionClock clock;
   session::RealTimeExplorer explorer{as_fast_as_it_goes()};
@@ -130,7 +122,8 @@ void check_closed_study(Laboratory& lab) {
   lab.store.close_study(Laboratory::kUtc);
   lab.store.unblind(Laboratory::kUtc, "planned", false);
   const analysis::Outcomes outcomes = analysis::load_outcomes(lab.store, lab.study.key());
-  const analysis::StudyReport report = analysis::make_report(outcomes);
+  const analysis::identification::StudyReport report =
+      analysis::identification::make_report(outcomes);
   CHECK(report.trials == 25);
   CHECK(report.participants == 1);
   // Chance is 5: the textures came through driver, USB and device.

@@ -80,8 +80,8 @@ void PersonAtFalcon::exploring(device::ServoControl& servo) {
   if (falcon_.hand.explorations() > explored_) servo.finish();
 }
 
-session::ParticipantAnswer PersonAtFalcon::answer() {
-  const session::ParticipantAnswer answer = mind_.answer();
+simulation::ParticipantAnswer PersonAtFalcon::answer() {
+  const simulation::ParticipantAnswer answer = mind_.answer();
   named.push_back(answer.position);
   return answer;
 }

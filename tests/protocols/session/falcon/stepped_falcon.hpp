@@ -3,12 +3,12 @@
 #pragma once
 
 #include "device/falcon/emulator/hand_on_falcon.hpp"
-#include "device/falcon/rig/lockstep.hpp"
-#include "device/falcon/usbfs_shim/emulator_usb_model.hpp"
+#include "device/falcon/rig/falcon_rig.hpp"
+#include "device/falcon/usbfs_shim/usb_model.hpp"
 #include "device/falcon/usbfs_shim/usbfs_shim.hpp"
 #include "protocols/session/device_station.hpp"
-#include "protocols/session/prompt_participant.hpp"
-#include "protocols/session/simulated_participant.hpp"
+#include "protocols/simulation/prompt_participant.hpp"
+#include "protocols/simulation/simulated_participant.hpp"
 
 #include <atomic>
 #include <functional>
@@ -73,9 +73,9 @@ class Experimenter final : public session::Attendant {
 };
 
 /// Somebody who knows the textures, feels them through the Falcon, and answers.
-class PersonAtFalcon final : public session::PromptParticipant {
+class PersonAtFalcon final : public simulation::PromptParticipant {
  public:
-  PersonAtFalcon(session::SimulatedParticipant& mind, EmulatedFalcon& falcon,
+  PersonAtFalcon(simulation::SimulatedParticipant& mind, EmulatedFalcon& falcon,
                  session::DeviceStation& station)
       : mind_(mind), falcon_(falcon), station_(station) {}
 
@@ -83,13 +83,13 @@ class PersonAtFalcon final : public session::PromptParticipant {
   [[nodiscard]] device::HapticDevice& begin_exploring(const PlaneGeometry& plane) override;
   void exploring(device::ServoControl& servo) override;
   void feel(const device::ServoSample& sample) noexcept override { mind_.feel(sample); }
-  [[nodiscard]] session::ParticipantAnswer answer() override;
+  [[nodiscard]] simulation::ParticipantAnswer answer() override;
 
   std::vector<int> named;     ///< every choice, in order
   std::atomic<int> begun{0};  ///< explorations
 
  private:
-  session::SimulatedParticipant& mind_;
+  simulation::SimulatedParticipant& mind_;
   EmulatedFalcon& falcon_;
   session::DeviceStation& station_;
   int explored_ = 0;

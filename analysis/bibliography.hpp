@@ -1,0 +1,47 @@
+/// \file The literature behind a report's statistics. How each is used: docs/statistics.md,
+/// docs/cues.md.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace touchtrial::analysis {
+
+/// A publication that a report may cite.
+enum class Source {
+  brown_cai_dasgupta,
+  clopper_pearson,
+  cochran,
+  davison_hinkley,
+  fagerland,
+  green_swets,
+  hacker_ratcliff,
+  hesterberg,
+  holm,
+  hyndman_fan,
+  kuhn,
+  lin,
+  luce,
+  mantel_haenszel,
+  miller,
+  phipson_smyth,
+  robins_breslow_greenland,
+  student,
+  tan_reed_durlach,
+  townsend_landon,
+  wilson,
+};
+
+struct Publication {
+  Source source{};
+  std::string_view key;   ///< "brown2001": the name in results.json
+  std::string_view text;  ///< authors, year, title and where it appeared; ASCII, without an address
+};
+
+/// All publications, in ascending order of keys, which is the order of Source.
+[[nodiscard]] std::span<const Publication> publications() noexcept;
+
+/// The text of one publication.
+[[nodiscard]] std::string_view citation_of(Source source) noexcept;
+
+}  // namespace touchtrial::analysis

@@ -1,0 +1,30 @@
+/// \file The evaluation of images as text, JSON and a gnuplot script: Table 1 and Fig. 3 of the
+/// paper.
+#pragma once
+
+#include "engine/evaluation.hpp"
+
+#include <span>
+#include <string>
+
+namespace touchtrial::analysis {
+
+struct EvaluatedImage {
+  std::string image;  ///< the name to report it by
+  engine::Evaluation evaluation;
+};
+
+/// Tables for a terminal, with an explanation of the paper's row "Entropy" and the fixed order that
+/// is closest to the adaptive texture.
+[[nodiscard]] std::string evaluation_text(std::span<const EvaluatedImage> images);
+
+/// {"images":[{"image","original","adaptive","orders"}]}; "orders" exists only after a sweep.
+/// docs/data-dictionary.md explains the numbers.
+[[nodiscard]] std::string evaluation_json(std::span<const EvaluatedImage> images);
+
+/// A gnuplot script that prints a PNG: entropy and MS-SSIM over the fixed order, with a colour for
+/// each image.
+/// \pre every image was swept
+[[nodiscard]] std::string order_sweep_script(std::span<const EvaluatedImage> images);
+
+}  // namespace touchtrial::analysis

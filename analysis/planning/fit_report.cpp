@@ -1,0 +1,231 @@
+#include "analysis/planning/fit_report.hpp"
+
+#include "analysis/text_figures.hpp"
+#include "analysis/text_table.hpp"
+#include "protocols/simulation/subject_model.hpp"
+
+#include <cmath>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace touchtrial::planning {
+namespace {
+
+std::string end_text(std::optional<double> end) {
+  return end ? fmt::format("{:.3f}", *end) : "open";
+}
+
+std::string title_of(const ParameterEstimate& estimate) {
+  if (estimate.name == "weber") return "noise (weber)";
+  if (estimate.name == "position") return "bias: first position";
+  return estimate.label.empty() ? estimate.name : "bias: " + estimate.label;
+}
+
+std::string estimates_text(const SubjectFit& fit, const FitOrigin& origin) {
+  analysis::TextTable table(
+      {"parameter", "estimate", "95 %, profile", "95 %, simulated studies", "error of the bank"});
+  for (const ParameterEstimate& one : fit.estimates) {
+    const std::string simulated =
+        one.bootstrap ? fmt::format("[{:.3f}, {:.3f}]", one.bootstrap->low, one.bootstrap->high)
+                      : "-";
+    // The error is that of ln(weber).
+    const double error = one.monte_carlo_error * (one.name == "weber" ? one.value : 1.0);
+    table.add({title_of(one), fmt::format("{:.3f}", one.value),
+               fmt::format("[{}, {}]", end_text(one.profile.lower), end_text(one.profile.upper)),
+               simulated, one.standard_error ? fmt::format("{:.3f}", error) : "-"});
+  }
+  return analysis::heading("what the answers tell about the participants", origin.simulated) +
+         table.text();
+}
+
+std::string swap_text(const SubjectFit& fit) {
+  std::string text;
+  for (const SwapCandidate& one : fit.swaps) {
+    text += analysis::wrapped(
+        "  ", fmt::format("pictures of \"{}\" and \"{}\" exchanged: log likelihood "
+                          "{:+.1f}, {:.1f} needed: {}",
+                          one.labels.first, one.labels.second, one.gain, fit.swap_threshold,
+                          one.taken ? "taken" : "not taken"));
+  }
+  return text;
+}
+
+std::string confusion_text(const SubjectFit& fit, std::size_t method, const FitOrigin& origin) {
+  std::vector<std::string> header{"presented"};
+  for (const std::string& label : fit.classes) header.push_back(label);
+  analysis::TextTable table(std::move(header));
+  for (std::size_t c = 0; c < fit.classes.size(); ++c) {
+    std::vector<std::string> row{fit.classes[c]};
+    for (std::size_t a = 0; a < fit.classes.size(); ++a) {
+      row.push_back(
+          fmt::format("{:.0f} ({:.1f})", fit.observed[method][c][a], fit.expected[method][c][a]));
+    }
+    table.add(std::move(row));
+  }
+  return analysis::heading(fit.methods[method] + ": answers, and what the fit expects of them",
+                           origin.simulated) +
+         table.text();
+}
+
+std::string goodness_text(const SubjectFit& fit) {
+  std::string text =
+      fmt::format("G^2 = {:.1f} with {} cells left", fit.g_squared, fit.degrees_of_freedom);
+  if (fit.p) {
+    text += fmt::format(", p = {} (of {} studies simulated from the fit)",
+                        analysis::p_value(*fit.p), fit.bootstraps);
+  }
+  return analysis::wrapped("  ", text);
+}
+
+std::string biases_text(const simulation::SubjectModel& subject) {
+  std::string text = fmt::format("weber {:.4f}, lapse {:.4f}, bias for the first position {:+.3f}",
+                                 subject.weber, subject.lapse, subject.position_bias);
+  for (const simulation::ClassBias& bias : subject.class_bias) {
+    text += fmt::format(", for {} {:+.3f}", bias.label, bias.log_odds);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string fit_text(const SubjectFit& fit, const FitOrigin& origin) {
+  std::string text = analysis::simulated_line(origin.simulated);
+  text += fmt::format(
+      "{}: {}, {} with an answer{}{}{}\n", origin.study,
+      analysis::counted(fit.participants, "participant"), analysis::counted(fit.trials, "trial"),
+      fit.no_response > 0 ? fmt::format(", {} without left out", fit.no_response) : "",
+      origin.pilot ? ", PILOT" : "", origin.interim ? ", INTERIM LOOK" : "");
+  text += estimates_text(fit, origin) + swap_text(fit);
+  for (std::size_t m = 0; m < fit.methods.size(); ++m) text += confusion_text(fit, m, origin);
+  text += goodness_text(fit);
+  if (!fit.warnings.empty()) text += analysis::heading("to bear in mind", origin.simulated);
+  for (const std::string& warning : fit.warnings) text += analysis::wrapped("  - ", warning);
+  return text + analysis::simulated_line(origin.simulated);
+}
+
+std::string fit_text(const AccuracyFit& fit, const FitOrigin& origin) {
+  std::string text = origin.study + ": a subject for published accuracies\n";
+  analysis::TextTable table({"class", "published", "expected of the fit", "difference, points"});
+  for (std::size_t c = 0; c < fit.classes.size(); ++c) {
+    table.add({fit.classes[c], analysis::percent_of_share(fit.wanted[c]),
+               analysis::percent_of_share(fit.reached[c]),
+               fmt::format("{:+.2f}", 100.0 * (fit.reached[c] - fit.wanted[c]))});
+  }
+  text += table.text() + analysis::wrapped("  ", biases_text(fit.subject));
+  const bool others_fit = fit.warnings.empty();
+  text += analysis::wrapped(
+      "  ", fmt::format("{} parameters for {} numbers{}", fit.parameters, fit.classes.size(),
+                        others_fit ? ": other subjects fit as well, see docs/fitting.md" : ""));
+  if (!fit.warnings.empty()) text += analysis::heading("to bear in mind", origin.simulated);
+  for (const std::string& warning : fit.warnings) text += analysis::wrapped("  - ", warning);
+  return text;
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json number(std::optional<double> value) {
+  if (!value || !std::isfinite(*value)) return nullptr;
+  return *value;
+}
+
+Json origin_json(const FitOrigin& origin) {
+  Json object = {{"study", origin.study}, {"subject", origin.subject}};
+  object["simulated"] = origin.simulated;
+  if (origin.simulated) object["stamp"] = "SIMULATED";
+  object["pilot"] = origin.pilot;
+  object["interim"] = origin.interim;
+  object["bank"] = {{"explorations", origin.explorations},
+                    {"directions", origin.directions},
+                    {"seed", origin.seed}};
+  return object;
+}
+
+Json estimate_json(const ParameterEstimate& estimate) {
+  Json object = {{"name", estimate.name}};
+  if (!estimate.label.empty()) object["label"] = estimate.label;
+  object["value"] = estimate.value;
+  // The errors are those of ln(weber).
+  const double unit = estimate.name == "weber" ? estimate.value : 1.0;
+  object["standard_error"] = nullptr;
+  if (estimate.standard_error) object["standard_error"] = number(*estimate.standard_error * unit);
+  object["profile"] = {number(estimate.profile.lower), number(estimate.profile.upper)};
+  object["bootstrap"] = nullptr;
+  if (estimate.bootstrap) {
+    object["bootstrap"] = {estimate.bootstrap->low, estimate.bootstrap->high};
+  }
+  object["monte_carlo_error"] = number(estimate.monte_carlo_error * unit);
+  object["at_bound"] = estimate.at_bound;
+  return object;
+}
+
+Json estimates_json(const SubjectFit& fit) {
+  Json all = Json::array();
+  for (const ParameterEstimate& one : fit.estimates) all.push_back(estimate_json(one));
+  return all;
+}
+
+Json swaps_json(const SubjectFit& fit) {
+  Json tried = Json::array();
+  for (const SwapCandidate& one : fit.swaps) {
+    tried.push_back({{"labels", {one.labels.first, one.labels.second}},
+                     {"gain", one.gain},
+                     {"taken", one.taken}});
+  }
+  return {{"threshold", fit.swap_threshold}, {"tried", std::move(tried)}};
+}
+
+Json confusions_json(const SubjectFit& fit) {
+  Json all = Json::array();
+  for (std::size_t m = 0; m < fit.methods.size(); ++m) {
+    all.push_back(
+        {{"method", fit.methods[m]}, {"observed", fit.observed[m]}, {"expected", fit.expected[m]}});
+  }
+  return all;
+}
+
+std::string shown(const Json& object) {
+  return object.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace
+
+std::string fit_json(const SubjectFit& fit, const FitOrigin& origin) {
+  Json object = origin_json(origin);
+  object["participants"] = fit.participants;
+  object["trials"] = fit.trials;
+  object["no_response"] = fit.no_response;
+  object["classes"] = fit.classes;
+  object["fitted"] = Json::parse(simulation::subject_model_json(fit.subject));
+  object["estimates"] = estimates_json(fit);
+  object["weber_lapse_correlation"] = number(fit.weber_lapse_correlation);
+  object["label_swaps"] = swaps_json(fit);
+  object["log_likelihood"] = number(fit.log_likelihood);
+  object["goodness_of_fit"] = {{"g_squared", number(fit.g_squared)},
+                               {"degrees_of_freedom", fit.degrees_of_freedom},
+                               {"p", number(fit.p)},
+                               {"bootstraps", fit.bootstraps}};
+  object["confusions"] = confusions_json(fit);
+  object["warnings"] = fit.warnings;
+  return shown(object);
+}
+
+std::string fit_json(const AccuracyFit& fit, const FitOrigin& origin) {
+  Json object = origin_json(origin);
+  Json classes = Json::array();
+  for (std::size_t c = 0; c < fit.classes.size(); ++c) {
+    classes.push_back(
+        {{"class", fit.classes[c]}, {"wanted", fit.wanted[c]}, {"reached", fit.reached[c]}});
+  }
+  object["accuracies"] = std::move(classes);
+  object["parameters"] = fit.parameters;
+  object["log_likelihood"] = number(fit.log_likelihood);
+  object["best_log_likelihood"] = number(fit.best_log_likelihood);
+  object["warnings"] = fit.warnings;
+  object["fitted"] = Json::parse(simulation::subject_model_json(fit.subject));
+  return shown(object);
+}
+
+}  // namespace touchtrial::planning

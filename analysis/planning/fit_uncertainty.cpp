@@ -1,0 +1,225 @@
+#include "analysis/planning/fit_uncertainty.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace touchtrial::planning {
+namespace {
+
+/// Fisher's information about the numbers, row-major.
+std::vector<double> information_of(const FitCounts& counts, const FitProblem::Tangent& tangent) {
+  const Cells sums = by_layout(counts, counts.people);
+  const auto& [table, slopes] = tangent;
+  const auto classes = static_cast<std::size_t>(table.classes());
+  std::vector<double> information(slopes.size() * slopes.size(), 0.0);
+  for (std::size_t layout = 0; layout < sums.size(); ++layout) {
+    for (std::size_t cell = 0; cell < sums[layout].size(); ++cell) {
+      const std::size_t row = cell - cell % classes;
+      const double presented = presentations(sums[layout], row, classes);
+      const auto answers =
+          table.answers(static_cast<int>(layout), static_cast<int>(cell / classes));
+      const double weight = presented / believed(answers[cell % classes]);
+      for (std::size_t i = 0; i < slopes.size(); ++i) {
+        for (std::size_t j = 0; j < slopes.size(); ++j) {
+          information[i * slopes.size() + j] +=
+              weight * slopes[i][layout][cell] * slopes[j][layout][cell];
+        }
+      }
+    }
+  }
+  return information;
+}
+
+/// Replaces the lower triangle by its Cholesky factor.
+/// \return false if there is none
+bool factorise(std::vector<double>& matrix, std::size_t n) {
+  constexpr double kLeastShare = 1e-10;
+  for (std::size_t j = 0; j < n; ++j) {
+    const double whole = matrix[j * n + j];
+    for (std::size_t i = j; i < n; ++i) {
+      double rest = matrix[i * n + j];
+      for (std::size_t k = 0; k < j; ++k) rest -= matrix[i * n + k] * matrix[j * n + k];
+      if (i == j && !(rest > kLeastShare * whole)) return false;
+      matrix[i * n + j] = i == j ? std::sqrt(rest) : rest / matrix[j * n + j];
+    }
+  }
+  return true;
+}
+
+/// \param matrix  row-major, symmetric, n x n
+/// \return nothing if it is not positive definite to about 10 digits
+std::optional<std::vector<double>> inverse_of(std::vector<double> matrix, std::size_t n) {
+  if (!factorise(matrix, n)) return std::nullopt;
+  std::vector<double> inverse(n * n, 0.0);
+  for (std::size_t column = 0; column < n; ++column) {
+    std::vector<double> x(n, 0.0);
+    x[column] = 1.0;
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t k = 0; k < i; ++k) x[i] -= matrix[i * n + k] * x[k];
+      x[i] /= matrix[i * n + i];
+    }
+    for (std::size_t i = n; i-- > 0;) {
+      for (std::size_t k = i + 1; k < n; ++k) x[i] -= matrix[k * n + i] * x[k];
+      x[i] /= matrix[i * n + i];
+    }
+    for (std::size_t i = 0; i < n; ++i) inverse[i * n + column] = x[i];
+  }
+  return inverse;
+}
+
+}  // namespace
+
+Fitted fitted_at(const FitProblem& problem, const FitCounts& counts, Optimum best) {
+  FitProblem::Tangent tangent = problem.tangent(best.at);
+  std::vector<double> information = information_of(counts, tangent);
+  const std::size_t n = best.at.size();
+  auto covariance = inverse_of(information, n);
+  // In a direction without information, the profile's search begins ten units away.
+  constexpr double kVague = 0.01;
+  for (std::size_t i = 0; i < n; ++i) information[i * n + i] += kVague;
+  auto vague = inverse_of(std::move(information), n);
+  return {problem,
+          counts,
+          std::move(best),
+          std::move(tangent),
+          covariance.has_value(),
+          covariance ? std::move(*covariance) : vague.value_or(std::vector<double>(n * n, 0.0))};
+}
+
+namespace {
+
+/// Square root of 3.84, the 95 % point of chi-square with one degree of freedom.
+constexpr double kRoot = 1.959964;
+constexpr double kCloseEnough = 0.02;
+constexpr int kMostFits = 12;
+/// An end nearer to a bound than this is the bound, which says nothing about the data.
+constexpr double kHair = 1e-6;
+/// In standard errors: only failed fits end nearer to the best point.
+constexpr double kCollapsed = 1e-3;
+
+/// The best point with one number held. Its root is the square root of twice the log likelihood
+/// that is lost.
+struct Held {
+  std::vector<double> at;
+  double root = 0.0;
+};
+
+Held fitted_with(const Fitted& fitted, std::size_t number, double value,
+                 const std::vector<double>& start) {
+  Bounds bounds = fitted.problem.bounds();
+  bounds.lower[number] = value;
+  bounds.upper[number] = value;
+  OptimiserOptions options{.tolerance = 1e-5, .most_evaluations = 40};
+  for (std::size_t i = 0; i < start.size(); ++i) {
+    options.scales.push_back(std::sqrt(fitted.covariance[i * start.size() + i]));
+  }
+  const Optimum held = fitted.problem.maximised(start, bounds, options);
+  return {held.at, std::sqrt(std::max(0.0, 2.0 * (fitted.best.value - held.value)))};
+}
+
+/// The best point with one number changed; the other numbers follow by the covariance.
+std::vector<double> moved(const Fitted& fitted, std::size_t number, double value) {
+  std::vector<double> start = fitted.best.at;
+  const std::size_t n = start.size();
+  const double variance = fitted.covariance[number * n + number];
+  for (std::size_t i = 0; i < n; ++i) {
+    start[i] += fitted.covariance[i * n + number] / variance * (value - fitted.best.at[number]);
+  }
+  start[number] = value;
+  return start;
+}
+
+/// Fits again from the best point where a bad start leaves the likelihood too low.
+Held best_with(const Fitted& fitted, std::size_t number, double value,
+               const std::vector<double>& start) {
+  Held held = fitted_with(fitted, number, value, start);
+  if (held.root < 2.0 * kRoot) return held;
+  std::vector<double> plain = fitted.best.at;
+  plain[number] = value;
+  Held again = fitted_with(fitted, number, value, plain);
+  return again.root < held.root ? again : held;
+}
+
+/// Follows secants from the best point: the roots are nearly linear in the value.
+/// \return nothing if there is no end between the best point and the bound
+std::optional<double> end_of(const Fitted& fitted, std::size_t number, double bound, double sign) {
+  const double middle = fitted.best.at[number];
+  const double deviation = std::sqrt(fitted.covariance[number * fitted.best.at.size() + number]);
+  const auto inside = [&](double value) {
+    return sign > 0.0 ? std::min(value, bound) : std::max(value, bound);
+  };
+  const auto is_end = [&](double value) {
+    return std::abs(value - bound) > kHair && std::abs(value - middle) > kCollapsed * deviation;
+  };
+  double near = middle;
+  double near_root = 0.0;
+  double value = inside(middle + sign * kRoot * deviation);
+  std::vector<double> start = moved(fitted, number, value);
+  for (int fit = 0; fit < kMostFits; ++fit) {
+    const Held held = best_with(fitted, number, value, start);
+    if (std::abs(held.root - kRoot) < kCloseEnough) {
+      return is_end(value) ? std::optional(value) : std::nullopt;
+    }
+    if (held.root < kRoot && value == bound) return std::nullopt;
+    const double rise = (held.root - near_root) / (value - near);
+    const double farthest = middle + 3.0 * (value - middle) + sign * 0.1 * deviation;
+    double next = sign * rise > 0.0 ? value + (kRoot - held.root) / rise : farthest;
+    if (sign * (next - farthest) > 0.0) next = farthest;
+    if (sign * (next - middle) <= 0.0) next = 0.5 * (middle + value);
+    start = held.at;
+    near = value;
+    near_root = held.root;
+    value = inside(next);
+    start[number] = value;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+OpenInterval profile_interval(const Fitted& fitted, std::size_t number) {
+  const auto end = [&](double bound, double sign) -> std::optional<double> {
+    if (fitted.best.at[number] == bound) return std::nullopt;
+    return end_of(fitted, number, bound, sign);
+  };
+  const Bounds& bounds = fitted.problem.bounds();
+  return {end(bounds.lower[number], -1.0), end(bounds.upper[number], 1.0)};
+}
+
+std::vector<double> monte_carlo_errors(const Fitted& fitted) {
+  constexpr int kBankParts = 8;
+  const std::size_t n = fitted.best.at.size();
+  std::vector<double> squares(n, 0.0);
+  if (!fitted.informed) return squares;
+  const FitProblem& problem = fitted.problem;
+  const simulation::SubjectModel subject = problem.subject_at(fitted.best.at);
+  const Cells counts = by_layout(fitted.counts, fitted.counts.people);
+  const std::size_t classes = fitted.counts.classes.size();
+  for (int part = 0; part < kBankParts; ++part) {
+    const AnswerTable own =
+        problem.model().answers(subject, fitted.counts.layouts, false, {part, kBankParts});
+    std::vector<double> score(n, 0.0);
+    for (std::size_t layout = 0; layout < counts.size(); ++layout) {
+      for (std::size_t cell = 0; cell < counts[layout].size(); ++cell) {
+        const auto place = static_cast<int>(cell / classes);
+        const std::size_t answer = cell % classes;
+        const double presented = presentations(counts[layout], cell - answer, classes);
+        const double p = fitted.tangent.table.answers(static_cast<int>(layout), place)[answer];
+        const double apart = own.answers(static_cast<int>(layout), place)[answer] - p;
+        const double weight = presented * apart / std::max(p, kLeastProbability);
+        for (std::size_t i = 0; i < n; ++i) {
+          score[i] += weight * fitted.tangent.slopes[i][layout][cell];
+        }
+      }
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      double shift = 0.0;
+      for (std::size_t j = 0; j < n; ++j) shift += fitted.covariance[i * n + j] * score[j];
+      squares[i] += shift * shift;
+    }
+  }
+  for (double& value : squares) value = std::sqrt(value / (kBankParts * (kBankParts - 1.0)));
+  return squares;
+}
+
+}  // namespace touchtrial::planning

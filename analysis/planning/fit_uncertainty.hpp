@@ -1,0 +1,51 @@
+/// \file How uncertain a fit's numbers are: covariance, profile intervals, studies simulated from
+/// the fit, and the error that the bank's finite size leaves.
+/// Private to analysis/planning. Source: docs/fitting.md, "Uncertainty".
+#pragma once
+
+#include "analysis/planning/fit_evidence.hpp"
+#include "analysis/planning/fit_problem.hpp"
+#include "analysis/planning/subject_fit.hpp"
+
+#include <cstdint>
+#include <vector>
+
+namespace touchtrial::planning {
+
+/// A fitted problem and what its uncertainty is computed from.
+struct Fitted {
+  const FitProblem& problem;
+  const FitCounts& counts;
+  Optimum best;
+  FitProblem::Tangent tangent;
+  bool informed = false;           ///< the answers tell about every number
+  std::vector<double> covariance;  ///< [number x numbers + number]; vague unless informed
+};
+
+/// \param best  of the problem
+[[nodiscard]] Fitted fitted_at(const FitProblem& problem, const FitCounts& counts, Optimum best);
+
+/// The interval of a number within which twice the log likelihood, all other numbers fitted anew,
+/// falls by less than 3.84 (95 %). An end is missing if the likelihood does not fall that far
+/// before the bound of the search, or if no end was found. Cost: some 5 fits a side, 24 at most.
+[[nodiscard]] OpenInterval profile_interval(const Fitted& fitted, std::size_t number);
+
+struct FitBootstrap {
+  std::vector<std::vector<double>> numbers;  ///< [draw][number]: refitted
+  std::vector<double> g_squared;             ///< [draw]: against the refitted confusions
+};
+
+/// Simulates studies from a fit and refits them. Each study has the same people, presentations and
+/// layouts; each person's noise, lapses and biases are drawn from the fitted population (32 people
+/// represent it). A log-linear model with the fit's probabilities and slopes is refitted to the
+/// drawn answers. Cost: some 1 ms a draw.
+/// \param jobs  threads; results do not depend on them
+[[nodiscard]] FitBootstrap bootstrap_fit(const Fitted& fitted, int draws, std::uint64_t seed,
+                                         int jobs);
+
+/// The standard error of each number that the bank's finite size leaves, from eight parts of the
+/// bank: their probabilities differ, and so does the score.
+/// \return by number; zeros unless the fit is informed
+[[nodiscard]] std::vector<double> monte_carlo_errors(const Fitted& fitted);
+
+}  // namespace touchtrial::planning

@@ -1,0 +1,189 @@
+#include "analysis/planning/subject_fit.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+
+#include <boost/math/distributions/chi_squared.hpp>
+#include <fmt/format.h>
+
+namespace touchtrial::planning {
+namespace {
+
+constexpr double kHardlyApart = 0.9;
+constexpr double kMisfit = 0.05;
+constexpr double kGuessing = 0.05;
+constexpr double kLargeMonteCarloShare = 0.3;
+
+/// Sums of confusions by presented and by answered class.
+struct Margins {
+  explicit Margins(std::size_t classes) : presented(classes, 0.0), answered(classes, 0.0) {}
+
+  void add(const std::vector<std::vector<double>>& table) {
+    for (std::size_t c = 0; c < table.size(); ++c) {
+      for (std::size_t a = 0; a < table.size(); ++a) {
+        presented[c] += table[c][a];
+        answered[a] += table[c][a];
+        all += table[c][a];
+      }
+      correct += table[c][c];
+    }
+  }
+
+  std::vector<double> presented;
+  std::vector<double> answered;
+  double all = 0.0;
+  double correct = 0.0;
+};
+
+/// Over all methods.
+Margins margins_of(const SubjectFit& fit) {
+  Margins margins(fit.classes.size());
+  for (const auto& method : fit.observed) margins.add(method);
+  return margins;
+}
+
+const ParameterEstimate* estimate_of(const SubjectFit& fit, std::string_view name) {
+  const auto found = std::ranges::find(fit.estimates, name, &ParameterEstimate::name);
+  return found == fit.estimates.end() ? nullptr : &*found;
+}
+
+void warn_of_extremes(const SubjectFit& fit, std::vector<std::string>& warnings) {
+  const Margins margins = margins_of(fit);
+  if (margins.correct == margins.all) {
+    warnings.push_back(
+        "every answer is right: the data set no lower limit to noise and lapses, and the biases "
+        "are arbitrary");
+  }
+  if (margins.correct == 0.0) {
+    warnings.push_back(
+        "no answer is right: worse than chance, which noise and lapses cannot make; look at the "
+        "label swaps");
+  }
+}
+
+/// Tests whether answers depend on what is presented, by method (Pearson's chi-square).
+void warn_of_guessing(const SubjectFit& fit, std::vector<std::string>& warnings) {
+  double chi_square = 0.0;
+  int freedom = 0;
+  for (const auto& method : fit.observed) {
+    Margins margins(method.size());
+    margins.add(method);
+    for (std::size_t c = 0; c < method.size(); ++c) {
+      for (std::size_t a = 0; a < method.size(); ++a) {
+        const double expected =
+            margins.all > 0.0 ? margins.presented[c] * margins.answered[a] / margins.all : 0.0;
+        if (expected > 0.0) chi_square += std::pow(method[c][a] - expected, 2) / expected;
+      }
+    }
+    const auto some = [](double count) { return count > 0.0; };
+    const auto rows = static_cast<int>(std::ranges::count_if(margins.presented, some));
+    const auto columns = static_cast<int>(std::ranges::count_if(margins.answered, some));
+    freedom += std::max(0, rows - 1) * std::max(0, columns - 1);
+  }
+  if (freedom > 0) {
+    const boost::math::chi_squared_distribution<> distribution(freedom);
+    const double p = boost::math::cdf(boost::math::complement(distribution, chi_square));
+    if (p <= kGuessing) return;
+  }
+  warnings.push_back(
+      "the answers are not told from guessing: they do not depend on what was presented by more "
+      "than chance; noise and lapses have no upper limit");
+}
+
+void warn_of_classes(const SubjectFit& fit, std::vector<std::string>& warnings) {
+  const Margins margins = margins_of(fit);
+  for (std::size_t c = 0; c < fit.classes.size(); ++c) {
+    if (margins.presented[c] == 0.0) {
+      warnings.push_back(fmt::format(
+          "\"{}\" was never presented: its confusions are the model's word alone", fit.classes[c]));
+    }
+    if (margins.answered[c] == 0.0) {
+      warnings.push_back(fmt::format("\"{}\" was never answered: the bias against it has no limit",
+                                     fit.classes[c]));
+    }
+  }
+}
+
+std::string name_of(const ParameterEstimate& one) {
+  return one.label.empty() ? one.name : "the bias of \"" + one.label + "\"";
+}
+
+/// Adds one line for all open ends.
+void warn_of_open_ends(const SubjectFit& fit, std::vector<std::string>& warnings) {
+  std::string names;
+  for (const ParameterEstimate& one : fit.estimates) {
+    if (one.profile.lower && one.profile.upper) continue;
+    names += (names.empty() ? "" : ", ") + name_of(one);
+  }
+  if (names.empty()) return;
+  warnings.push_back("an end of the profile's interval was not found within what is searched: " +
+                     names + "; take it as without limit there");
+}
+
+void warn_of_flatness(const SubjectFit& fit, std::vector<std::string>& warnings) {
+  const auto r = fit.weber_lapse_correlation;
+  if (r && std::abs(*r) > kHardlyApart) {
+    warnings.push_back(
+        fmt::format("noise and lapse can hardly be told apart (their estimates correlate {:.2f}): "
+                    "fix one of them with --fix",
+                    *r));
+  }
+  for (const ParameterEstimate& one : fit.estimates) {
+    const std::string name = name_of(one);
+    if (!one.standard_error) {
+      warnings.push_back(name +
+                         " cannot be told from the others by these answers: fix it with --fix");
+      continue;
+    }
+    const bool no_lapses = one.name == "lapse" && one.value == 0.0;
+    if (one.at_bound && !no_lapses) {
+      warnings.push_back(name +
+                         " lies at the end of what is searched: the answers set no limit to it");
+    }
+    if (one.monte_carlo_error > kLargeMonteCarloShare * *one.standard_error) {
+      warnings.push_back(name +
+                         " depends on which explorations the bank happens to have: give more "
+                         "--explorations");
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> fit_warnings(const FitCounts& counts, const SubjectFit& fit,
+                                      const FreeParameters& free, const FreeParameters& used) {
+  std::vector<std::string> warnings;
+  if (counts.people.size() == 1) {
+    warnings.push_back(
+        "one participant: the fit is of this person, and tells nothing of differences between "
+        "people");
+  }
+  if (free.position && !used.position) {
+    warnings.push_back(
+        "all participants had the pictures in one order: a preference for positions cannot be told "
+        "from one for classes, and stays as the subject model has it");
+  }
+  warn_of_extremes(fit, warnings);
+  warn_of_guessing(fit, warnings);
+  warn_of_classes(fit, warnings);
+  warn_of_flatness(fit, warnings);
+  warn_of_open_ends(fit, warnings);
+  if (const ParameterEstimate* lapse = estimate_of(fit, "lapse"); lapse && lapse->value == 0.0) {
+    warnings.push_back(
+        "the answers need no lapses: 0 is the most likely value, and the interval's end");
+  }
+  if (counts.methods.size() > 1) {
+    warnings.push_back(
+        "one noise, lapse and bias for all methods: methods differ by what is felt alone");
+  }
+  if (fit.p && *fit.p < kMisfit) {
+    warnings.push_back(
+        fmt::format("the model does not fit the confusions (p = {:.3f}): its parameters describe "
+                    "something else",
+                    *fit.p));
+  }
+  return warnings;
+}
+
+}  // namespace touchtrial::planning

@@ -1,0 +1,300 @@
+#include "analysis/exports/data_table.hpp"
+#include "analysis/page/document.hpp"
+#include "analysis/planning/power_report.hpp"
+#include "analysis/planning/primary_test.hpp"
+#include "analysis/statistics/chance_test.hpp"
+#include "analysis/text_figures.hpp"
+#include "analysis/text_table.hpp"
+
+#include <cstdint>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace touchtrial::planning {
+
+std::string power_per_cent(double share) {
+  return fmt::format("{:.1f}", 100.0 * share);
+}
+
+std::string power_range(const analysis::Interval& interval) {
+  return "[" + power_per_cent(interval.low) + ", " + power_per_cent(interval.high) + "]";
+}
+
+namespace {
+
+std::string looks_sentence(const PowerPlan& plan) {
+  if (!plan.stop_early) {
+    return "Every size has all its runs; the interval of a power is Wilson's at 95 %.";
+  }
+  return fmt::format(
+      "A size stops when its power's interval holds neither 80 nor 90 %, asked after {} runs. "
+      "Intervals are Clopper-Pearson's at {:.4g} %, so that all looks together are wrong in 5 % of "
+      "sizes at most (Bonferroni). Studies under the null are all made.",
+      fmt::join(looks_of(plan), ", "), 100.0 * power_level(plan));
+}
+
+std::string null_sentence(const PowerReport& report) {
+  return report.setting.estimate == kDifferenceWords
+             ? "Type-I error: methods that feel alike, each presentation felt by either method at "
+               "random."
+             : "Type-I error: participants who feel any texture at random, whatever is presented, "
+               "with the same biases and lapses.";
+}
+
+constexpr const char* kBankSentence =
+    "Monte-Carlo intervals do not hold the error of these explorations and trainings, which all "
+    "studies share: other seeds show it, and more runs do not make it smaller.";
+
+constexpr const char* kOrdersSentence =
+    "Orders of this study do not present every class equally often: all figures, and type-I "
+    "errors above all, are of the orders that this study's seed draws; another seed's differ.";
+
+/// One sentence for each target.
+std::vector<std::string> target_sentences(const PowerReport& report) {
+  std::vector<std::string> sentences;
+  for (const TargetSize& target : report.targets) {
+    const std::string power = fmt::format("{:.0f} % power", 100.0 * target.target);
+    if (!target.smallest) {
+      sentences.push_back(power + ": no size given reaches it.");
+    } else if (target.surely == target.smallest) {
+      sentences.push_back(fmt::format("{}: {} participants.", power, *target.smallest));
+    } else {
+      sentences.push_back(fmt::format(
+          "{}: {} participants by the estimate; {}.", power, *target.smallest,
+          target.surely ? fmt::format("{} beyond Monte-Carlo error", *target.surely)
+                        : std::string("no size beyond Monte-Carlo error, more runs would tell")));
+    }
+  }
+  return sentences;
+}
+
+/// How the numbers were obtained.
+std::vector<std::string> method_sentences(const PowerReport& report) {
+  const PowerPlan& plan = report.plan;
+  std::vector<std::string> sentences;
+  sentences.push_back(fmt::format(
+      "Up to {} simulated studies of each size and hypothesis, seed {}, no participant in two of "
+      "them; {}",
+      plan.runs, plan.seed,
+      plan.servo ? std::string("every exploration through the servo.")
+                 : fmt::format("feelings drawn from {} explorations of each stimulus and {} "
+                               "trainings through the servo.",
+                               plan.explorations, plan.trainings)));
+  if (!plan.servo) sentences.push_back(kBankSentence);
+  sentences.push_back(looks_sentence(plan));
+  sentences.push_back(null_sentence(report));
+  if (!report.setting.has_fixed_counts) sentences.push_back(kOrdersSentence);
+  sentences.push_back(fmt::format(
+      "Attainable: what the type-I error is exactly, as counts are whole numbers and no p lies at "
+      "{} itself; its Monte-Carlo interval is Wilson's at 95 %.",
+      analysis::kSignificanceLevel));
+  sentences.push_back("Interval width: of the 95 % t interval of the mean over participants.");
+  return sentences;
+}
+
+std::string power_table(const PowerReport& report) {
+  analysis::TextTable table({"participants", "runs", "power %", "MC interval", "type-I %", "MC 95%",
+                             "attainable %", "error"});
+  for (const PowerRow& row : report.rows) {
+    table.add({std::to_string(row.participants),
+               std::to_string(row.significant.n) + (row.stopped_early ? " (stopped)" : ""),
+               power_per_cent(row.estimated_power()), power_range(row.power),
+               power_per_cent(row.estimated_error()), power_range(row.type_one),
+               power_per_cent(row.attainable), std::string(name_of(verdict_of(row)))});
+  }
+  return table.text();
+}
+
+std::string width_table(const PowerReport& report) {
+  const bool compares = report.setting.estimate == kDifferenceWords;
+  analysis::TextTable table({"participants", compares ? "difference" : "accuracy", "SD of studies",
+                             "width", "MC error", "10%", "median", "90%"});
+  for (const PowerRow& row : report.rows) {
+    const WidthFigures& width = row.width;
+    table.add({std::to_string(row.participants), power_per_cent(row.estimate),
+               power_per_cent(row.estimate_sd), power_per_cent(width.mean),
+               fmt::format("{:.2f}", 100.0 * width.standard_error), power_per_cent(width.lower),
+               power_per_cent(width.median), power_per_cent(width.upper)});
+  }
+  return table.text();
+}
+
+}  // namespace
+
+std::string power_text(const PowerReport& report) {
+  std::string text = std::string(kPowerStamp) + "\n";
+  text += analysis::wrapped("study    ", report.setting.study + ", " + report.setting.protocol);
+  text += analysis::wrapped("test     ", report.setting.test);
+  text += analysis::wrapped("assumed  ", report.setting.subject);
+  text +=
+      analysis::heading("Power and type-I error of the primary test", true) + power_table(report);
+  text += analysis::heading(
+              "Estimate, and width of its 95 % interval: mean, and quantiles over studies (points)",
+              true) +
+          width_table(report) + "\n";
+  for (const std::string& sentence : target_sentences(report))
+    text += analysis::wrapped("", sentence);
+  for (const std::string& warning : report.warnings) text += analysis::wrapped("! ", warning);
+  text += "\n";
+  for (const std::string& sentence : method_sentences(report))
+    text += analysis::wrapped("", sentence);
+  return text + kPowerStamp + "\n";
+}
+
+namespace {
+
+std::vector<analysis::DataCell> csv_row(const PowerRow& row) {
+  return {std::int64_t{row.participants},
+          std::int64_t{row.significant.n},
+          std::int64_t{row.stopped_early ? 1 : 0},
+          row.estimated_power(),
+          row.power.low,
+          row.power.high,
+          std::int64_t{row.false_alarms.n},
+          row.estimated_error(),
+          row.type_one.low,
+          row.type_one.high,
+          row.attainable,
+          row.estimate,
+          row.estimate_sd,
+          row.width.mean,
+          row.width.standard_error,
+          row.width.lower,
+          row.width.median,
+          row.width.upper,
+          std::string("SIMULATED")};
+}
+
+std::vector<analysis::Cell> table_row(const PowerRow& row) {
+  return {std::to_string(row.participants),
+          std::to_string(row.significant.n) + (row.stopped_early ? ", stopped" : ""),
+          analysis::Cell(power_per_cent(row.estimated_power()), true),
+          power_range(row.power),
+          power_per_cent(row.estimated_error()),
+          power_range(row.type_one),
+          power_per_cent(row.attainable),
+          power_per_cent(row.estimate),
+          power_per_cent(row.width.mean),
+          power_range({row.width.lower, row.width.upper})};
+}
+
+analysis::Table table_of(const PowerReport& report) {
+  analysis::Table table{"power",
+                        "Power given the assumed sensitivity, type-I error and interval width: " +
+                            report.setting.study + ", " + report.setting.test,
+                        {{"participants"},
+                         {"runs"},
+                         {"power (%)"},
+                         {"Monte-Carlo interval"},
+                         {"type-I error (%)"},
+                         {"Monte-Carlo 95%"},
+                         {"attainable (%)"},
+                         {report.setting.estimate + " (%)"},
+                         {"interval width (points)"},
+                         {"10 to 90% of studies"}}};
+  for (const PowerRow& row : report.rows) table.rows.push_back(table_row(row));
+  for (const std::string& sentence : target_sentences(report)) table.notes.push_back({sentence});
+  for (const std::string& warning : report.warnings) table.notes.push_back({warning});
+  table.notes.push_back({"Assumed: " + report.setting.subject + "."});
+  for (const std::string& sentence : method_sentences(report)) table.notes.push_back({sentence});
+  return table;
+}
+
+}  // namespace
+
+std::string power_csv(const PowerReport& report) {
+  analysis::DataTable table{
+      {"participants", "runs", "stopped_early", "power", "power_low", "power_high", "null_runs",
+       "type_one_error", "type_one_low", "type_one_high", "attainable", "estimate", "estimate_sd",
+       "width_mean", "width_mean_se", "width_q10", "width_median", "width_q90", "stamp"},
+      {}};
+  for (const PowerRow& row : report.rows) table.rows.push_back(csv_row(row));
+  return analysis::csv_text(table);
+}
+
+std::string power_markdown(const PowerReport& report) {
+  return analysis::table_markdown(table_of(report), "SIMULATED");
+}
+
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json ends_of(const analysis::Interval& interval) {
+  return ordered_json::array({interval.low, interval.high});
+}
+
+ordered_json size_object(const PowerRow& row) {
+  ordered_json object{{"participants", row.participants}};
+  object["power"] = {{"runs", row.significant.n},
+                     {"significant", row.significant.correct},
+                     {"p", row.estimated_power()},
+                     {"interval", ends_of(row.power)},
+                     {"stopped_early", row.stopped_early}};
+  object["type_one_error"] = {
+      {"runs", row.false_alarms.n},   {"significant", row.false_alarms.correct},
+      {"p", row.estimated_error()},   {"interval", ends_of(row.type_one)},
+      {"attainable", row.attainable}, {"verdict", name_of(verdict_of(row))}};
+  object["estimate"] = {{"mean", row.estimate}, {"sd_between_studies", row.estimate_sd}};
+  object["interval_width"] = {
+      {"mean", row.width.mean},
+      {"standard_error", row.width.standard_error},
+      {"quantiles",
+       {{"0.1", row.width.lower}, {"0.5", row.width.median}, {"0.9", row.width.upper}}}};
+  return object;
+}
+
+ordered_json target_object(const TargetSize& target) {
+  const auto size = [](const std::optional<int>& participants) {
+    return participants ? ordered_json(*participants) : ordered_json(nullptr);
+  };
+  return {{"power", target.target},
+          {"smallest", size(target.smallest)},
+          {"surely", size(target.surely)}};
+}
+
+ordered_json plan_object(const PowerPlan& plan) {
+  return {{"participants", plan.participants}, {"runs", plan.runs},          {"seed", plan.seed},
+          {"stop_early", plan.stop_early},     {"looks", looks_of(plan)},    {"servo", plan.servo},
+          {"explorations", plan.explorations}, {"trainings", plan.trainings}};
+}
+
+ordered_json methods_object(const PowerReport& report) {
+  return {{"power_interval", power_interval_name(report.plan)},
+          {"power_level", power_level(report.plan)},
+          {"type_one_interval", "Wilson"},
+          {"type_one_level", analysis::kConfidenceLevel},
+          {"interval_width", "95 % t interval over participants"},
+          {"sentences", method_sentences(report)}};
+}
+
+}  // namespace
+
+std::string power_json(const PowerReport& report) {
+  const PowerSetting& setting = report.setting;
+  ordered_json object;
+  object["simulated"] = true;
+  object["stamp"] = "SIMULATED";
+  object["claim"] = kPowerStamp;
+  object["study"] = setting.study;
+  object["protocol"] = setting.protocol;
+  object["test"] = {{"words", setting.test},
+                    {"level", analysis::kSignificanceLevel},
+                    {"estimate", setting.estimate}};
+  object["assumed"] = setting.subject;
+  object["plan"] = plan_object(report.plan);
+  object["sizes"] = ordered_json::array();
+  for (const PowerRow& row : report.rows) object["sizes"].push_back(size_object(row));
+  object["targets"] = ordered_json::array();
+  for (const TargetSize& target : report.targets) {
+    object["targets"].push_back(target_object(target));
+  }
+  object["warnings"] = report.warnings;
+  object["methods"] = methods_object(report);
+  object["program"] = {
+      {"version", setting.program}, {"seal", setting.seal}, {"fields", setting.fields}};
+  return object.dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace touchtrial::planning

@@ -1,0 +1,277 @@
+#include "analysis/quality.hpp"
+
+#include "analysis/json_figures.hpp"
+#include "analysis/session_rules.hpp"
+#include "analysis/statistics/confusion.hpp"
+#include "analysis/text_figures.hpp"
+#include "analysis/text_table.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace touchtrial::analysis {
+
+namespace {
+
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+void add_trial(const store::ServoHealth& trial, ServoQuality& all) {
+  all.lowest_rate_hz =
+      all.trials == 0 ? trial.rate_hz : std::min(all.lowest_rate_hz, trial.rate_hz);
+  all.highest_p99_us = std::max(all.highest_p99_us, trial.lateness_p99_us);
+  all.worst_us = std::max(all.worst_us, trial.lateness_worst_us);
+  all.lost += trial.lost;
+  ++all.trials;
+}
+
+std::optional<ServoQuality> servo_quality(const Collection& collection) {
+  if (collection.servo_trials.empty()) return std::nullopt;
+  ServoQuality all;
+  std::vector<double> p99_us;
+  for (const ServoTrial& trial : collection.servo_trials) {
+    add_trial(trial.health, all);
+    p99_us.push_back(trial.health.lateness_p99_us);
+  }
+  all.median_p99_us = median_of(std::move(p99_us));
+  std::set<std::string> scheduling;
+  for (const SessionRecord& session : collection.sessions) {
+    if (session.station) scheduling.insert(session.station->scheduling);
+  }
+  all.scheduling.assign(scheduling.begin(), scheduling.end());
+  return all;
+}
+
+}  // namespace
+
+std::string flow_text(const ParticipantFlow& flow) {
+  const std::pair<int, const char*> lost[] = {{flow.withdrawn, "withdrawn"},
+                                              {flow.replaced, "replaced"},
+                                              {flow.excluded, "excluded"},
+                                              {flow.stopped, "stopped"},
+                                              {flow.open, "open"},
+                                              {flow.other_kind, "of another kind"},
+                                              {flow.unseen, "ended after the look"},
+                                              {flow.analysed, "analysed"}};
+  std::string text = fmt::format("{} enrolled", flow.enrolled);
+  for (const auto& [n, what] : lost) {
+    if (n > 0) text += fmt::format(", {} {}", n, what);
+  }
+  return wrapped("", text);
+}
+
+namespace {
+
+void count_session(const store::SessionRow& session, const store::StudyCommitment& commitment,
+                   SessionCounts& counts) {
+  if (session.pilot && !commitment.pilot) ++counts.pilot;
+  if (session.withdrawn) {
+    ++counts.withdrawn;
+  } else if (!session.replaced_by.empty()) {
+    ++counts.replaced;
+  } else if (session.excluded) {
+    ++counts.excluded;
+  } else if (session.state == store::SessionState::completed) {
+    ++counts.completed;
+  } else if (session.state == store::SessionState::stopped) {
+    ++counts.stopped;
+  } else {
+    ++counts.open;
+  }
+}
+
+void count_answer(const store::TrialRow& trial, TrialQuality& quality) {
+  ++quality.presented;
+  if (trial.state == store::TrialState::timed_out) ++quality.no_response;
+  if (trial.state == store::TrialState::interrupted) ++quality.interrupted;
+  if (trial.state != store::TrialState::answered || !trial.position) return;
+  ++quality.answered;
+  if (trial.first_position && trial.first_position != trial.position) ++quality.changed;
+  const int position = *trial.position;
+  if (position >= 0 && position < static_cast<int>(quality.by_position.size())) {
+    ++quality.by_position[position];
+  }
+}
+
+void count_trace(const store::TrialRow& trial, TrialQuality& quality) {
+  if (trial.samples == 0) return;
+  ++quality.with_trace;
+  if (trial.valid) ++quality.valid;
+  quality.overruns += trial.overruns;
+  if (trial.overruns > 0) ++quality.with_overruns;
+  quality.lowest_rate_hz = std::min(quality.lowest_rate_hz.value_or(trial.rate_hz), trial.rate_hz);
+}
+
+}  // namespace
+
+std::string name_of(const store::StudyState& state) {
+  if (state.unblinded) return "unblinded";
+  return state.closed ? "closed" : "collecting";
+}
+
+QualityReport make_quality(const store::StudyStore& store) {
+  const store::StudyCommitment& commitment = store.commitment();
+  QualityReport report;
+  report.study = commitment.study;
+  report.protocol = commitment.protocol;
+  report.state = store.state();
+  report.simulated = commitment.simulated;
+  report.pilot = commitment.pilot;
+  report.quality.by_position.resize(static_cast<std::size_t>(std::max(0, commitment.positions)));
+  std::set<int> withdrawn;
+  for (const store::SessionRow& session : store.sessions()) {
+    count_session(session, commitment, report.sessions);
+    if (session.withdrawn) withdrawn.insert(session.session);
+    if (session_counts(session, commitment)) ++report.participants;
+  }
+  report.trials = report.participants * commitment.scored_trials;
+  for (const store::TrialRow& trial : store.trials()) {
+    if (withdrawn.contains(trial.session)) continue;
+    count_answer(trial, report.quality);
+    count_trace(trial, report.quality);
+  }
+  report.collection = load_collection(store);
+  report.servo = servo_quality(report.collection);
+  report.visual = report.collection.visual;
+  return report;
+}
+
+namespace {
+
+void put_real_time(nlohmann::ordered_json& object, const ServoQuality& servo) {
+  object["trials_in_real_time"] = servo.trials;
+  object["lowest_rate_had_hz"] = servo.lowest_rate_hz;
+  object["lateness_us"] = {{"median_p99", servo.median_p99_us},
+                           {"highest_p99", servo.highest_p99_us},
+                           {"worst", servo.worst_us}};
+  object["lost_samples"] = servo.lost;
+  object["scheduling"] = servo.scheduling;
+}
+
+}  // namespace
+
+nlohmann::ordered_json quality_object(const QualityReport& report) {
+  const SessionCounts& sessions = report.sessions;
+  const TrialQuality& quality = report.quality;
+  nlohmann::ordered_json object{{"study", report.study}, {"protocol", report.protocol}};
+  put_stamp(object, report.simulated);
+  put_state(object, report.state, report.pilot);
+  object["blinded"] = !report.state.unblinded;
+  object["participants"] = report.participants;
+  object["trials"] = report.trials;
+  object["sessions"] = {{"completed", sessions.completed}, {"open", sessions.open},
+                        {"stopped", sessions.stopped},     {"excluded", sessions.excluded},
+                        {"replaced", sessions.replaced},   {"withdrawn", sessions.withdrawn},
+                        {"pilot", sessions.pilot}};
+  object["responses"] = {
+      {"presented", quality.presented},     {"answered", quality.answered},
+      {"changed", quality.changed},         {"no_response", quality.no_response},
+      {"interrupted", quality.interrupted}, {"by_position", quality.by_position}};
+  object["validity"] = {
+      {"trials", quality.with_trace},
+      {"valid", quality.valid},
+      {"share", figure_json(Proportion{quality.with_trace, quality.valid}.share())}};
+  object["servo"] = {{"overruns", quality.overruns},
+                     {"trials_with_overruns", quality.with_overruns},
+                     {"lowest_rate_hz", figure_json(quality.lowest_rate_hz)}};
+  if (report.servo) put_real_time(object["servo"], *report.servo);
+  if (report.visual) object["visual"] = true;
+  object["collection"] = collection_object(report.collection);
+  return object;
+}
+
+std::string quality_json(const QualityReport& report) {
+  return json_text(quality_object(report));
+}
+
+namespace {
+
+std::string sessions_text(const QualityReport& report) {
+  TextTable table(
+      {"sessions", "completed", "open", "stopped", "excluded", "replaced", "withdrawn", "pilot"});
+  const SessionCounts& counts = report.sessions;
+  table.add({"", std::to_string(counts.completed), std::to_string(counts.open),
+             std::to_string(counts.stopped), std::to_string(counts.excluded),
+             std::to_string(counts.replaced), std::to_string(counts.withdrawn),
+             std::to_string(counts.pilot)});
+  return heading("sessions", report.simulated) + table.text();
+}
+
+std::string positions_text(const QualityReport& report) {
+  std::vector<std::string> header{"position"};
+  std::vector<std::string> answers{"answers"};
+  std::vector<std::string> shares{"share"};
+  const TrialQuality& quality = report.quality;
+  for (std::size_t i = 0; i < quality.by_position.size(); ++i) {
+    header.push_back(std::to_string(i + 1));
+    answers.push_back(std::to_string(quality.by_position[i]));
+    shares.push_back(percent(percentage(quality.by_position[i], quality.answered), 1));
+  }
+  TextTable table(header);
+  table.add(answers);
+  table.add(shares);
+  return heading("answers by the picture's position", report.simulated) + table.text();
+}
+
+std::string health_text(const QualityReport& report) {
+  const TrialQuality& quality = report.quality;
+  std::string text = heading("trials", report.simulated);
+  text += fmt::format("  presented {}, answered {} ({} changed), no response {}, interrupted {}\n",
+                      quality.presented, quality.answered, quality.changed, quality.no_response,
+                      quality.interrupted);
+  text += fmt::format("  valid {} of {} with a trace ({})\n", quality.valid, quality.with_trace,
+                      percent_of({quality.with_trace, quality.valid}));
+  text += fmt::format("  servo overruns {} in {}", quality.overruns,
+                      counted(quality.with_overruns, "trial"));
+  if (quality.lowest_rate_hz) {
+    text += fmt::format(", lowest rate of a trace {:.1f} Hz", *quality.lowest_rate_hz);
+  }
+  return text + '\n';
+}
+
+/// A lateness, which may be microseconds or a second.
+std::string microseconds(double time_us) {
+  return fmt::format("{:.{}f} us", time_us, time_us < 10.0 ? 1 : 0);
+}
+
+std::string servo_text(const QualityReport& report) {
+  const ServoQuality& servo = *report.servo;
+  TextTable table({"servo", "trials", "lowest had rate", "late p99", "highest p99", "worst",
+                   "overruns", "lost"});
+  table.add({"", std::to_string(servo.trials), fmt::format("{:.1f} Hz", servo.lowest_rate_hz),
+             microseconds(servo.median_p99_us), microseconds(servo.highest_p99_us),
+             microseconds(servo.worst_us), std::to_string(report.quality.overruns),
+             std::to_string(servo.lost)});
+  std::string text = heading("servo in real time", report.simulated) + table.text();
+  for (const std::string& had : servo.scheduling) text += "  scheduling: " + had + '\n';
+  return text;
+}
+
+}  // namespace
+
+std::string quality_text(const QualityReport& report) {
+  std::string text = simulated_line(report.simulated);
+  text += fmt::format("{} ({}): {}, {}; {}\n", report.study, report.protocol,
+                      counted(report.participants, "participant"), counted(report.trials, "trial"),
+                      name_of(report.state));
+  if (!report.state.unblinded) {
+    text += wrapped("", "Blinded: outcomes are shown once the study has been unblinded.");
+  }
+  if (report.pilot) text += wrapped("", "PILOT: not to be pooled with the study's data.");
+  if (report.visual) {
+    text += wrapped("", "Seen on a screen, not felt: never to be pooled with what was felt.");
+  }
+  text += sessions_text(report) + health_text(report);
+  if (report.servo) text += servo_text(report);
+  text += positions_text(report);
+  if (report.simulated) text += '\n' + simulated_line(report.simulated);
+  return text;
+}
+
+}  // namespace touchtrial::analysis

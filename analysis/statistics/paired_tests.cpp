@@ -1,0 +1,328 @@
+#include "analysis/statistics/paired_tests.hpp"
+
+#include "analysis/statistics/common.hpp"
+#include "analysis/statistics/descriptive.hpp"
+#include "core/random.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <numeric>
+#include <stdexcept>
+
+#include <boost/math/distributions/binomial.hpp>
+#include <boost/math/distributions/chi_squared.hpp>
+#include <boost/math/distributions/normal.hpp>
+
+namespace touchtrial::analysis {
+namespace {
+
+/// Sums that differ by less than this share of the largest possible one are equal except for
+/// rounding.
+constexpr double kTie = 1e-9;
+
+/// The sums of all 2^n sign patterns, ascending.
+std::vector<double> sorted_sums(std::span<const double> differences) {
+  std::vector<double> sums{0.0};
+  for (const double difference : differences) {
+    const std::size_t half = sums.size();
+    sums.resize(2 * half);
+    for (std::size_t i = 0; i < half; ++i) {
+      sums[half + i] = sums[i] - difference;
+      sums[i] += difference;
+    }
+  }
+  std::sort(sums.begin(), sums.end());
+  return sums;
+}
+
+/// Counts the patterns with a sum of at least `threshold` without listing them all: as the sum of
+/// one half grows, smaller sums of the other half suffice.
+double exact_share_at_least(std::span<const double> differences, double threshold) {
+  const std::size_t middle = differences.size() / 2;
+  const std::vector<double> left = sorted_sums(differences.first(middle));
+  const std::vector<double> right = sorted_sums(differences.subspan(middle));
+  std::uint64_t count = 0;
+  std::size_t first_enough = right.size();
+  for (const double sum : left) {
+    while (first_enough > 0 && sum + right[first_enough - 1] >= threshold) --first_enough;
+    count += right.size() - first_enough;
+  }
+  return std::ldexp(static_cast<double>(count), -static_cast<int>(differences.size()));
+}
+
+/// The distances from zero of the sums of random sign patterns.
+std::vector<double> sampled_distances(std::span<const double> differences) {
+  constexpr std::size_t kPatterns = 99'999;
+  constexpr std::array<double, 2> kSign{-1.0, 1.0};
+  RandomStream random(0, "sign flips");
+  std::vector<double> distances(kPatterns);
+  for (double& distance : distances) {
+    double sum = 0.0;
+    std::uint64_t signs = 0;
+    for (std::size_t k = 0; k < differences.size(); ++k, signs >>= 1U) {
+      if (k % 64 == 0) signs = random.bits();
+      sum += kSign[signs & 1U] * differences[k];
+    }
+    distance = std::abs(sum);
+  }
+  return distances;
+}
+
+double share_as_far(const std::vector<double>& distances, double threshold) {
+  const auto as_far = std::count_if(distances.begin(), distances.end(),
+                                    [&](double distance) { return distance >= threshold; });
+  return p_of_draws(static_cast<double>(as_far), static_cast<double>(distances.size()));
+}
+
+/// The largest p of any distance that does not exceed the level.
+double sampled_attainable(std::span<const double> differences, double level, double tie) {
+  std::vector<double> distances = sampled_distances(differences);
+  std::sort(distances.begin(), distances.end(), std::greater<>());
+  double attainable = 0.0;
+  for (std::size_t i = 0; i < distances.size();) {
+    const double threshold = distances[i] - tie;
+    while (i < distances.size() && distances[i] >= threshold) ++i;
+    const double p = p_of_draws(static_cast<double>(i), static_cast<double>(distances.size()));
+    if (p > level) break;
+    attainable = p;
+  }
+  return attainable;
+}
+
+/// Two-sided p of a sum whose distance from zero is `threshold`.
+double two_sided_p(std::span<const double> differences, double threshold) {
+  if (differences.size() > kExactSignFlips) {
+    return share_as_far(sampled_distances(differences), threshold);
+  }
+  return 2.0 * exact_share_at_least(differences, threshold);
+}
+
+/// The largest possible sum.
+double total_size(std::span<const double> differences) {
+  require_finite(differences, "a sign-flip test");
+  double size = 0.0;
+  for (const double difference : differences) size += std::abs(difference);
+  return size;
+}
+
+/// The sums over strata from which the estimate and its variance follow, in the letters of Robins,
+/// Breslow and Greenland.
+struct StrataSums {
+  double r = 0.0, s = 0.0, pr = 0.0, ps_qr = 0.0, qs = 0.0;
+
+  void add(const Proportion& first, const Proportion& second) {
+    const double n = static_cast<double>(first.n) + second.n;
+    if (n == 0.0) return;
+    const double first_wrong = first.n - first.correct;
+    const double second_wrong = second.n - second.correct;
+    const double p = (first.correct + second_wrong) / n;
+    const double q = (first_wrong + second.correct) / n;
+    const double here_r = first.correct * second_wrong / n;
+    const double here_s = first_wrong * second.correct / n;
+    r += here_r;
+    s += here_s;
+    pr += p * here_r;
+    ps_qr += p * here_s + q * here_r;
+    qs += q * here_s;
+  }
+
+  [[nodiscard]] double variance_of_log() const {
+    return pr / (2.0 * r * r) + ps_qr / (2.0 * r * s) + qs / (2.0 * s * s);
+  }
+};
+
+using Occasions = std::span<const std::vector<bool>>;
+using RightByMethod = std::vector<std::int64_t>;
+
+void require_as_long(Occasions occasions, std::size_t methods) {
+  for (const std::vector<bool>& occasion : occasions) {
+    if (occasion.size() != methods) {
+      throw std::invalid_argument("Cochran's Q needs an answer of every method on every occasion");
+    }
+  }
+}
+
+std::int64_t right_on(const std::vector<bool>& occasion) {
+  return std::count(occasion.begin(), occasion.end(), true);
+}
+
+bool methods_differ(Occasions occasions) {
+  return std::any_of(occasions.begin(), occasions.end(), [](const std::vector<bool>& occasion) {
+    const std::int64_t right = right_on(occasion);
+    return right > 0 && right < static_cast<std::int64_t>(occasion.size());
+  });
+}
+
+RightByMethod right_by_method(Occasions occasions, std::size_t methods) {
+  RightByMethod right(methods);
+  for (const std::vector<bool>& occasion : occasions) {
+    for (std::size_t j = 0; j < methods; ++j) right[j] += occasion[j] ? 1 : 0;
+  }
+  return right;
+}
+
+std::int64_t sum_of_squares(const RightByMethod& right) {
+  return std::inner_product(right.begin(), right.end(), right.begin(), std::int64_t{0});
+}
+
+/// Exchanges the methods within every participant.
+/// \return the sum of squares that results
+std::int64_t exchanged(std::vector<RightByMethod>& participants, RandomStream& random) {
+  RightByMethod right(participants.front().size());
+  for (RightByMethod& mine : participants) {
+    shuffle(std::span(mine), random);
+    for (std::size_t j = 0; j < right.size(); ++j) right[j] += mine[j];
+  }
+  return sum_of_squares(right);
+}
+
+}  // namespace
+
+std::optional<double> decibels(double a, double b) {
+  if (!(a > 0.0 && b > 0.0)) return std::nullopt;
+  return without_noise(10.0 * std::log10(a / b));
+}
+
+MethodComparison compare_methods(std::span<const PairedAccuracy> participants, std::uint64_t index,
+                                 int draws) {
+  std::vector<double> differences;
+  double first = 0.0;
+  double second = 0.0;
+  for (const PairedAccuracy& participant : participants) {
+    differences.push_back(without_noise(participant.first - participant.second));
+    first += participant.first;
+    second += participant.second;
+  }
+  const MeanEstimate mean = participant_mean(differences, {-1.0, 1.0});
+  return {mean.participants,       mean.mean,
+          mean.interval,           sign_flip_p(differences),
+          decibels(first, second), bootstrap_mean(differences, index, draws)};
+}
+
+std::optional<double> sign_flip_p(std::span<const double> differences) {
+  if (differences.empty()) return std::nullopt;
+  const double size = total_size(differences);
+  const double sum = std::accumulate(differences.begin(), differences.end(), 0.0);
+  // Differences of proportions often tie; rounding must not break a tie.
+  const double threshold = std::abs(sum) - kTie * size;
+  if (threshold <= 0.0) return 1.0;
+  return two_sided_p(differences, threshold);
+}
+
+double sign_flip_attainable(std::span<const double> differences, double level) {
+  const double size = total_size(differences);
+  if (size > 0.0 && differences.size() > kExactSignFlips) {
+    return sampled_attainable(differences, level, kTie * size);
+  }
+  double enough = size * (1.0 - kTie);
+  if (size == 0.0 || two_sided_p(differences, enough) > level) return 0.0;
+  double too_little = 0.0;
+  while (enough - too_little > kTie * size) {
+    const double middle = 0.5 * (enough + too_little);
+    (two_sided_p(differences, middle) <= level ? enough : too_little) = middle;
+  }
+  return two_sided_p(differences, enough);
+}
+
+std::optional<OddsRatio> mantel_haenszel(
+    std::span<const std::pair<Proportion, Proportion>> participants, double level) {
+  require_level(level);
+  StrataSums sums;
+  for (const auto& [first, second] : participants) {
+    require_possible(first);
+    require_possible(second);
+    sums.add(first, second);
+  }
+  if (sums.r == 0.0 || sums.s == 0.0) return std::nullopt;
+  const double estimate = sums.r / sums.s;
+  const double z = boost::math::quantile(boost::math::normal_distribution<>(), 0.5 + level / 2.0);
+  const double factor = std::exp(z * std::sqrt(sums.variance_of_log()));
+  return OddsRatio{estimate, {estimate / factor, estimate * factor}};
+}
+
+double mcnemar_mid_p(int first_only, int second_only) {
+  if (first_only < 0 || second_only < 0) {
+    throw std::invalid_argument("McNemar's test needs counts of 0 or more");
+  }
+  const int pairs = first_only + second_only;
+  if (pairs == 0) return 1.0;
+  const boost::math::binomial_distribution<> half(pairs, 0.5);
+  const int fewer = std::min(first_only, second_only);
+  const double as_extreme = boost::math::pdf(half, fewer);
+  if (first_only == second_only) return 1.0 - 0.5 * as_extreme;  // this outcome counts once
+  return 2.0 * boost::math::cdf(half, fewer) - as_extreme;
+}
+
+std::optional<CochranQ> cochran_q(Occasions occasions) {
+  if (occasions.empty()) return std::nullopt;
+  const std::size_t methods = occasions.front().size();
+  require_as_long(occasions, methods);
+  if (methods < 2 || !methods_differ(occasions)) return std::nullopt;
+  const RightByMethod right = right_by_method(occasions, methods);
+  const std::int64_t all = std::accumulate(right.begin(), right.end(), std::int64_t{0});
+  std::int64_t squares_of_occasions = 0;
+  for (const std::vector<bool>& occasion : occasions) {
+    squares_of_occasions += right_on(occasion) * right_on(occasion);
+  }
+  const auto k = static_cast<std::int64_t>(methods);
+  const auto between = static_cast<double>(k * sum_of_squares(right) - all * all);
+  CochranQ result;
+  result.degrees_of_freedom = static_cast<int>(k - 1);
+  result.q =
+      result.degrees_of_freedom * between / static_cast<double>(k * all - squares_of_occasions);
+  const boost::math::chi_squared_distribution<> chi_squared(result.degrees_of_freedom);
+  result.p = boost::math::cdf(boost::math::complement(chi_squared, result.q));
+  return result;
+}
+
+std::optional<double> cochran_q_permuted_p(
+    std::span<const std::vector<std::vector<bool>>> by_participant, int deals,
+    std::uint64_t index) {
+  if (deals < 1) throw std::invalid_argument("a permutation test needs at least one deal");
+  std::optional<std::size_t> methods;
+  std::vector<RightByMethod> participants;
+  bool differ = false;
+  for (const std::vector<std::vector<bool>>& occasions : by_participant) {
+    if (occasions.empty()) continue;
+    if (!methods) methods = occasions.front().size();
+    require_as_long(occasions, *methods);
+    participants.push_back(right_by_method(occasions, *methods));
+    differ = differ || methods_differ(occasions);
+  }
+  if (!methods || *methods < 2 || !differ) return std::nullopt;
+  // Of Q, an exchange of methods changes only the sum of the methods' squares.
+  RightByMethod observed(*methods);
+  for (const RightByMethod& mine : participants) {
+    for (std::size_t j = 0; j < *methods; ++j) observed[j] += mine[j];
+  }
+  const std::int64_t threshold = sum_of_squares(observed);
+  RandomStream random(0, "Cochran's Q", index);
+  int as_far = 0;
+  for (int deal = 0; deal < deals; ++deal) {
+    if (exchanged(participants, random) >= threshold) ++as_far;
+  }
+  return p_of_draws(as_far, deals);
+}
+
+std::vector<double> holm_adjusted(std::span<const double> p_values) {
+  for (const double p : p_values) {
+    if (!(p >= 0.0 && p <= 1.0)) throw std::invalid_argument("a p lies between 0 and 1");
+  }
+  std::vector<std::size_t> rising(p_values.size());
+  std::iota(rising.begin(), rising.end(), std::size_t{0});
+  std::sort(rising.begin(), rising.end(),
+            [&](std::size_t a, std::size_t b) { return p_values[a] < p_values[b]; });
+  std::vector<double> adjusted(p_values.size());
+  double so_far = 0.0;
+  for (std::size_t rank = 0; rank < rising.size(); ++rank) {
+    const auto hypotheses_left = static_cast<double>(rising.size() - rank);
+    so_far = std::max(so_far, std::min(1.0, hypotheses_left * p_values[rising[rank]]));
+    adjusted[rising[rank]] = so_far;
+  }
+  return adjusted;
+}
+
+}  // namespace touchtrial::analysis

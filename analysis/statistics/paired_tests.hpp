@@ -1,0 +1,118 @@
+/// \file Tests of methods that the same participants felt, and the size of their difference. Two
+/// methods: sign flips, the common odds ratio, and McNemar's test where each participant gave one
+/// pair of answers. Three methods or more: Cochran's Q. Several tests at once: Holm's adjustment.
+/// Sources: docs/statistics.md, "Two methods", "Odds ratio", "Pairs", "Three methods or more" and
+/// "Several tests".
+#pragma once
+
+#include "analysis/statistics/cluster_bootstrap.hpp"
+#include "analysis/statistics/proportion.hpp"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace touchtrial::analysis {
+
+/// One participant's proportion correct with each method.
+struct PairedAccuracy {
+  double first = 0.0;
+  double second = 0.0;
+};
+
+/// How much better the first method is than the second.
+struct MethodComparison {
+  int participants = 0;
+  std::optional<double> difference;     ///< mean over participants of first minus second
+  Interval interval{-1.0, 1.0};         ///< t interval of that mean, within [-1, 1]
+  std::optional<double> p;              ///< sign_flip_p of the differences
+  std::optional<double> db;             ///< decibels of the two means
+  std::optional<Interval> bootstrap{};  ///< bootstrap_mean of the differences
+
+  /// The interval to show: `interval`, or nothing with fewer than two participants.
+  [[nodiscard]] std::optional<Interval> known_interval() const noexcept {
+    return participants < 2 ? std::nullopt : std::optional(interval);
+  }
+};
+
+/// \param index,draws  of the bootstrap
+/// \throws std::invalid_argument if a proportion is not finite, or draws < 1
+[[nodiscard]] MethodComparison compare_methods(std::span<const PairedAccuracy> participants,
+                                               std::uint64_t index = 0,
+                                               int draws = kBootstrapDraws);
+
+/// \return 10 log10(a / b); nothing unless both are > 0
+[[nodiscard]] std::optional<double> decibels(double a, double b);
+
+/// Up to this many participants sign_flip_p counts all sign patterns; beyond, 99,999 random ones.
+inline constexpr int kExactSignFlips = 32;
+
+/// The exact two-sided test of paired differences: if two methods do not differ, every
+/// participant's difference could as well have the other sign. p is the share of the sign patterns
+/// whose mean is as far from zero as the observed one; beyond kExactSignFlips it is (b + 1) / (m +
+/// 1) over m random patterns from a fixed seed (Phipson, Smyth 2010). \param differences  one per
+/// participant, finite \return in (0, 1], never below 2 * 2^-n; nothing without differences \throws
+/// std::invalid_argument if a difference is not finite
+[[nodiscard]] std::optional<double> sign_flip_p(std::span<const double> differences);
+
+/// The largest p within the level that these differences could have, whatever their signs: the rate
+/// at which the test rejects if the methods do not differ. 0 if it cannot reject.
+/// Cost: about thirty times that of sign_flip_p.
+/// \throws std::invalid_argument if a difference is not finite
+[[nodiscard]] double sign_flip_attainable(std::span<const double> differences, double level);
+
+struct OddsRatio {
+  double estimate = 1.0;
+  Interval interval;  ///< by Robins, Breslow and Greenland 1986
+};
+
+/// The odds of a right answer with the first method over those with the second: Mantel and
+/// Haenszel's (1959) common odds ratio, with one stratum per participant.
+/// \param participants  each participant's trials with the first and the second method
+/// \return nothing if the ratio is 0 or infinite
+/// \throws std::invalid_argument if a proportion is impossible, or the level is not in (0, 1)
+[[nodiscard]] std::optional<OddsRatio> mantel_haenszel(
+    std::span<const std::pair<Proportion, Proportion>> participants,
+    double level = kConfidenceLevel);
+
+/// McNemar's two-sided mid-p test of one pair of right-or-wrong answers per participant: the
+/// probability of more extreme outcomes plus half that of equally extreme ones. Source: Fagerland,
+/// Lydersen, Laake 2013.
+/// \param first_only  pairs in which only the first answer is right, >= 0
+/// \param second_only  pairs in which only the second answer is right, >= 0
+/// \return 1 if no pair disagrees
+/// \throws std::invalid_argument if a count is negative
+[[nodiscard]] double mcnemar_mid_p(int first_only, int second_only);
+
+struct CochranQ {
+  double q = 0.0;
+  int degrees_of_freedom = 0;  ///< methods - 1
+  double p = 1.0;              ///< of q under chi-square: valid for independent occasions
+};
+
+/// Cochran's (1950) test of several methods that are right or wrong on the same occasions.
+/// \param occasions  each tells for every method whether the answer was right; all equally long
+/// \return nothing if there are fewer than two methods, or no occasion on which methods differ
+/// \throws std::invalid_argument if lengths differ
+[[nodiscard]] std::optional<CochranQ> cochran_q(std::span<const std::vector<bool>> occasions);
+
+/// The p of the same statistic when methods are exchanged within whole participants: valid although
+/// a participant's occasions depend on each other. Monte Carlo, (b + 1) / (m + 1), fixed seed.
+/// \param by_participant  each participant's occasions
+/// \param deals  m, >= 1
+/// \param index  chooses the stream of random numbers
+/// \return nothing where cochran_q of all occasions returns nothing
+/// \throws std::invalid_argument if lengths differ or deals < 1
+[[nodiscard]] std::optional<double> cochran_q_permuted_p(
+    std::span<const std::vector<std::vector<bool>>> by_participant, int deals = 9999,
+    std::uint64_t index = 0);
+
+/// Holm's (1979) adjustment, which holds the error rate of a family of tests.
+/// \param p_values  each in [0, 1]
+/// \return the adjusted p values in the order given, each in [0, 1]
+/// \throws std::invalid_argument if a p is outside [0, 1]
+[[nodiscard]] std::vector<double> holm_adjusted(std::span<const double> p_values);
+
+}  // namespace touchtrial::analysis

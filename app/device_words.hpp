@@ -1,0 +1,19 @@
+/// \file Messages about a device and its servo, for the person beside it.
+#pragma once
+
+#include "device/servo/servo.hpp"
+
+#include <string>
+
+namespace touchtrial::app {
+
+/// The names of a report's faults: "device (link_lost)", or "none".
+[[nodiscard]] std::string fault_names(const device::ServoReport& report);
+
+/// What went wrong, and the remedy: "the device no longer answers; check its cable and power".
+[[nodiscard]] std::string fault_in_words(const device::ServoReport& report);
+
+/// What the person has to do before force may be sent; empty if nothing.
+[[nodiscard]] std::string readiness_in_words(device::DeviceReadiness readiness);
+
+}  // namespace touchtrial::app

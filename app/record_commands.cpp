@@ -1,0 +1,312 @@
+// Commands that record something beside the sessions: consent, exclude, replace, withdraw, note,
+// close and unblind; and migrate, which brings an older database up to date.
+#include "app/command_options.hpp"
+#include "app/commands.hpp"
+#include "app/console.hpp"
+#include "app/study_inputs.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "protocols/store/personal_data.hpp"
+#include "protocols/store/study_store.hpp"
+
+#include <chrono>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+namespace touchtrial::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+store::StudyStore opened(const fs::path& database) {
+  return store::StudyStore::open(database, store::StudyStore::Access::read_write);
+}
+
+// Consent, apart from everything that is analysed.
+
+struct ConsentArguments {
+  fs::path database;
+  store::PersonalRecord record;
+  int age = -1;  ///< -1: not given
+  bool reads_contact = false;
+};
+
+std::string contact_from_input() {
+  std::string line;
+  if (!std::getline(std::cin, line)) {
+    throw UsageError("consent: --contact reads a line from standard input, which has none");
+  }
+  return line;
+}
+
+int record_consent(const ConsentArguments& arguments) {
+  store::PersonalRecord record = arguments.record;
+  if (record.participant.empty() || record.consent_version.empty()) {
+    throw UsageError("consent: --participant and --version must not be empty");
+  }
+  if (arguments.age >= 0) record.age = arguments.age;
+  if (arguments.reads_contact) record.contact = contact_from_input();
+  const auto now = std::chrono::floor<std::chrono::seconds>(std::chrono::system_clock::now());
+  record.consented_utc = fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now));
+  const fs::path path = store::personal_data_path(arguments.database);
+  store::PersonalData(path).put(record);
+  print(fmt::format("{}: consent of participant {} to version {} recorded\n", path.string(),
+                    record.participant, record.consent_version));
+  return 0;
+}
+
+// Participants. None of these commands reads a key.
+
+struct PeopleArguments {
+  fs::path database;
+  std::string participant;
+  std::string reason;
+  std::string with;
+  std::string deviation;
+  std::string text;
+  bool after_outcomes = false;
+};
+
+std::string place_of(const PeopleArguments& arguments) {
+  return arguments.database.string() + ": participant " + arguments.participant;
+}
+
+/// \throws StoreError if the participant has no session
+std::vector<store::SessionRow> sessions_of(const store::StudyStore& store,
+                                           const PeopleArguments& arguments) {
+  std::vector<store::SessionRow> rows = store.sessions_of(arguments.participant);
+  if (rows.empty()) {
+    throw StoreError(one_line(place_of(arguments) + " has no session; check the participant id"));
+  }
+  return rows;
+}
+
+/// The session that counts, or the last one if all were replaced.
+int session_of(const store::StudyStore& store, const PeopleArguments& arguments) {
+  // Not simply the last one: two stations of a merged study may have used the same id.
+  if (const auto counts = store.session_of(arguments.participant)) return counts->session;
+  return sessions_of(store, arguments).back().session;
+}
+
+int exclude(const PeopleArguments& arguments) {
+  store::StudyStore store = opened(arguments.database);
+  const int session = session_of(store, arguments);
+  const bool seen = store.state().shows(session);
+  if (seen && !arguments.after_outcomes) {
+    throw StoreError(
+        one_line(place_of(arguments) +
+                 " cannot be excluded without notice: outcomes have been seen; give "
+                 "--after-outcomes to exclude anyway, which is recorded with the reason"));
+  }
+  store.exclude(
+      session, utc_now(),
+      (seen && !arguments.reason.empty() ? "after outcomes were seen: " : "") + arguments.reason);
+  print(place_of(arguments) + ": excluded (session " + std::to_string(session) + ")\n");
+  return 0;
+}
+
+int replace(const PeopleArguments& arguments) {
+  store::StudyStore store = opened(arguments.database);
+  const store::SessionRow row = sessions_of(store, arguments).back();
+  store.replace(row.session, arguments.with, utc_now(), arguments.reason);
+  print(place_of(arguments) + ": replaced; " + arguments.with + " inherits enrolment " +
+        std::to_string(row.enrolment) + "\n");
+  return 0;
+}
+
+int note(const PeopleArguments& arguments) {
+  store::StudyStore store = opened(arguments.database);
+  store.note(session_of(store, arguments), utc_now(), arguments.deviation, arguments.text);
+  print(place_of(arguments) + ": noted\n");
+  return 0;
+}
+
+constexpr const char* kOtherCopies =
+    "destroy every other copy of the database too (backups, snapshots, files that were sent): the "
+    "participant's data can still be read in them\n";
+
+/// Removes personal data even if an interrupted withdrawal destroyed the key before.
+bool remove_person(const PeopleArguments& arguments) {
+  const fs::path path = store::personal_data_path(arguments.database);
+  return is_there(path) && store::PersonalData(path).remove(arguments.participant);
+}
+
+int withdraw(const PeopleArguments& arguments) {
+  store::StudyStore store = opened(arguments.database);
+  std::vector<int> sessions;
+  const std::vector<store::SessionRow> rows = store.sessions_of(arguments.participant);
+  for (const store::SessionRow& row : rows) {
+    if (!row.withdrawn) sessions.push_back(row.session);
+  }
+  // The key first: a fault of the file of personal data must not prevent a withdrawal.
+  if (!sessions.empty()) store.withdraw(sessions, utc_now(), arguments.reason);
+  const bool removed = remove_person(arguments);
+  if (rows.empty() && removed) {
+    print(place_of(arguments) + ": had no session; the personal data are removed\n");
+    return 0;
+  }
+  if (rows.empty()) static_cast<void>(sessions_of(store, arguments));  // throws
+  if (sessions.empty() && !removed) {
+    throw StoreError(one_line(place_of(arguments) + " has already withdrawn"));
+  }
+  print(place_of(arguments) +
+        ": withdrawn; this person's sealed data cannot be read again by anybody" +
+        (removed ? ", and the personal data are removed\n" : "\n") +
+        (store.stations() > 0 ? "this is a merged database: withdraw at the station too\n" : "") +
+        kOtherCopies);
+  return 0;
+}
+
+// The study.
+
+struct UnblindArguments {
+  fs::path database;
+  fs::path key;
+  std::string reason;
+  bool interim = false;
+};
+
+/// The participants whose sessions are open and could be continued; empty if there are none.
+std::string left_open(const store::StudyStore& store) {
+  std::string participants;
+  for (const store::SessionRow& row : store.sessions()) {
+    if (row.state != store::SessionState::open || row.withdrawn || !row.replaced_by.empty())
+      continue;
+    participants += (participants.empty() ? "" : ", ") + row.participant;
+  }
+  return participants;
+}
+
+int close(const fs::path& database) {
+  store::StudyStore store = opened(database);
+  const std::string open = left_open(store);
+  store.close_study(utc_now());
+  if (!open.empty()) {
+    spdlog::warn("{}", one_line(database.string() +
+                                ": the sessions of these participants are open, and can no longer "
+                                "be continued: " +
+                                open));
+  }
+  print(database.string() + ": collection is closed\n");
+  return 0;
+}
+
+int unblind(const UnblindArguments& arguments) {
+  store::StudyStore store = opened(arguments.database);
+  // Outcomes cannot be shown without the key: check it before the look is recorded.
+  static_cast<void>(key_of_database(store, arguments.database, arguments.key));
+  store.unblind(utc_now(), arguments.reason, arguments.interim);
+  print(arguments.database.string() + ": unblinded" +
+        (arguments.interim ? " for an interim look\n" : "\n"));
+  return 0;
+}
+
+int migrate(const fs::path& database) {
+  static_cast<void>(opened(database));
+  print(database.string() + ": is up to date\n");
+  return 0;
+}
+
+void add_consent_command(CLI::App& program, Action& action) {
+  auto arguments = std::make_shared<ConsentArguments>();
+  CLI::App* command = program.add_subcommand(
+      "consent", "Record a participant's consent and demographics, in DB.personal only");
+  add_database_argument(*command, arguments->database,
+                        "Database of the study; it need not exist yet")
+      ->check(place_validator());
+  command->add_option("--participant", arguments->record.participant, "Id, for instance P07")
+      ->required();
+  command->add_option("--version", arguments->record.consent_version, "Version that was signed")
+      ->required();
+  command->add_option("--age", arguments->age, "Years")->check(CLI::Range(0, 130));
+  command->add_option("--gender", arguments->record.gender, "In the participant's own words");
+  command->add_flag("--contact", arguments->reads_contact,
+                    "Read the participant's contact details, one line, from standard input");
+  command->callback([=, &action] { action = [=] { return record_consent(*arguments); }; });
+}
+
+struct PeopleCommand {
+  CLI::App* command;
+  std::shared_ptr<PeopleArguments> arguments;
+};
+
+PeopleCommand people_command(CLI::App& program, Action& action, const char* name,
+                             const char* meaning, int (*work)(const PeopleArguments&)) {
+  auto arguments = std::make_shared<PeopleArguments>();
+  CLI::App* command = program.add_subcommand(name, meaning);
+  add_database_argument(*command, arguments->database);
+  command->add_option("--participant", arguments->participant, "Participant id")->required();
+  command->callback([=, &action] { action = [=] { return work(*arguments); }; });
+  return {command, arguments};
+}
+
+void add_reason(CLI::App& command, std::string& reason) {
+  command.add_option("--reason", reason, "Why; recorded")->required();
+}
+
+void add_people_commands(CLI::App& program, Action& action) {
+  const PeopleCommand excluded = people_command(program, action, "exclude",
+                                                "Leave a participant out of the outcomes", exclude);
+  add_reason(*excluded.command, excluded.arguments->reason);
+  excluded.command->add_flag("--after-outcomes", excluded.arguments->after_outcomes,
+                             "Although this participant's outcomes have been seen; recorded");
+  const PeopleCommand replaced = people_command(
+      program, action, "replace", "Give a participant's place to somebody new", replace);
+  replaced.command->add_option("--with", replaced.arguments->with, "Who takes the place")
+      ->required();
+  add_reason(*replaced.command, replaced.arguments->reason);
+  const PeopleCommand withdrawn =
+      people_command(program, action, "withdraw",
+                     "Make a participant's sealed data unreadable, for ever", withdraw);
+  add_reason(*withdrawn.command, withdrawn.arguments->reason);
+  const PeopleCommand noted = people_command(
+      program, action, "note", "Record a remark or a deviation from the protocol", note);
+  noted.command->add_option("--deviation", noted.arguments->deviation, "Code of the deviation");
+  noted.command->add_option("TEXT", noted.arguments->text, "What happened")->required();
+}
+
+void add_close_command(CLI::App& program, Action& action) {
+  auto database = std::make_shared<fs::path>();
+  CLI::App* command = program.add_subcommand("close", "End collection: no session can be added");
+  add_database_argument(*command, *database);
+  command->callback([=, &action] { action = [=] { return close(*database); }; });
+}
+
+void add_unblind_command(CLI::App& program, Action& action) {
+  auto arguments = std::make_shared<UnblindArguments>();
+  CLI::App* command = program.add_subcommand(
+      "unblind", "Record that outcomes are looked at; report then shows them");
+  add_database_argument(*command, arguments->database);
+  add_reason(*command, arguments->reason);
+  command->add_flag("--interim", arguments->interim,
+                    "Look at the sessions that have ended, before collection is closed");
+  add_key_option(*command, arguments->key);
+  command->callback([=, &action] { action = [=] { return unblind(*arguments); }; });
+}
+
+void add_migrate_command(CLI::App& program, Action& action) {
+  auto database = std::make_shared<fs::path>();
+  CLI::App* command = program.add_subcommand(
+      "migrate", "Bring an older database up to date; copy it first (there is none yet)");
+  add_database_argument(*command, *database);
+  command->callback([=, &action] { action = [=] { return migrate(*database); }; });
+}
+
+}  // namespace
+
+void add_record_commands(CLI::App& program, Action& action) {
+  add_consent_command(program, action);
+  add_people_commands(program, action);
+  add_close_command(program, action);
+  add_unblind_command(program, action);
+  add_migrate_command(program, action);
+}
+
+}  // namespace touchtrial::app

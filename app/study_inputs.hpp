@@ -1,0 +1,55 @@
+/// \file What several commands read: the keys of databases, the packs of studies, subject models.
+#pragma once
+
+#include "protocols/design/prepare.hpp"
+#include "protocols/design/study_key.hpp"
+#include "protocols/simulation/subject_model.hpp"
+#include "protocols/store/study_store.hpp"
+
+#include <filesystem>
+#include <string_view>
+
+namespace touchtrial::app {
+
+/// The key file of a database: `given`, or `<db>.key` beside it if `given` is empty.
+[[nodiscard]] std::filesystem::path key_path_for(const std::filesystem::path& database,
+                                                 const std::filesystem::path& given);
+
+/// Loads the key at key_path_for, and checks that it belongs to the database.
+/// \param database  a file, or the address of a study, which has no key beside it
+/// \throws FileError if the key is missing or damaged
+/// \throws VerificationError, naming both files, if the key is not the database's
+[[nodiscard]] design::StudyKey key_of_database(const store::StudyStore& store,
+                                               const std::filesystem::path& database,
+                                               const std::filesystem::path& given);
+
+/// The pack and key of a prepared study.
+/// \param pack  the pack's folder; empty: `<study>.pack` beside the study file
+[[nodiscard]] design::PackPlace pack_place_for(const std::filesystem::path& study_file,
+                                               const std::filesystem::path& pack);
+
+/// The key of a simulated study. Its secrets follow from the study's seed, so that its databases
+/// belong together and can be made again. The pack that it names is at simulated_pack_place.
+[[nodiscard]] design::StudyKey simulated_key(const design::Study& study,
+                                             const std::filesystem::path& study_file);
+
+/// Makes what is missing of the key's pack, with a progress bar, and prints the warnings.
+/// \param wait  whether to wait while another process prepares the pack
+/// \throws as prepare_pack
+void prepare_simulated_pack(const design::StudyKey& key, bool wait = false);
+
+/// Refuses to overwrite another key, of which there may be no copy. The same key may stay when its
+/// database was removed.
+/// \throws StoreError if another key is at `path`
+void refuse_other_key(const std::filesystem::path& path, const design::StudyKey& key);
+
+/// config/subjects/default.json as it was when the program was built, so that the program does not
+/// depend on the folder in which it starts.
+[[nodiscard]] std::string_view default_subject_json() noexcept;
+
+/// \param path  a subject model; empty: the built-in one
+/// \throws as load_subject_model and SubjectModel::check_labels
+[[nodiscard]] simulation::SubjectModel subject_for(const std::filesystem::path& path,
+                                                   const design::Study& study);
+
+}  // namespace touchtrial::app

@@ -1,0 +1,53 @@
+/// \file What all windows share of GLFW and OpenGL: starting GLFW, the scale of a screen, and what
+/// was drawn. Neither library shows here.
+#pragma once
+
+#include "engine/pictures/colour_image.hpp"
+
+#include <string>
+
+struct GLFWwindow;
+
+namespace touchtrial::app {
+
+/// Starts GLFW for as long as there is a window; one at a time. Main thread.
+class GlfwLibrary {
+ public:
+  /// \throws DeviceError with the remedy if there is no display
+  GlfwLibrary();
+  ~GlfwLibrary();
+  GlfwLibrary(const GlfwLibrary&) = delete;
+  GlfwLibrary& operator=(const GlfwLibrary&) = delete;
+};
+
+/// \throws DeviceError always: GLFW's last error and the remedy
+[[noreturn]] void refuse_window(const std::string& remedy);
+
+/// Requests OpenGL 3.2 for the next window. Main thread, GLFW running.
+void hint_opengl_3_2();
+
+/// The scale of the monitor that shows the largest part of a window.
+struct ScreenScale {
+  double mm_per_unit = 25.4 / 96.0;  ///< millimetres on the screen for one window unit
+  bool is_known = false;             ///< the monitor states a size that can be true
+  float density = 1.0F;              ///< factor for all sizes; 1 at 96 window units per inch
+  double refresh_hz = 60.0;
+};
+
+/// Main thread, GLFW running.
+[[nodiscard]] ScreenScale screen_scale(GLFWwindow* window);
+
+/// The density of the primary monitor, for a window that does not exist yet.
+[[nodiscard]] float primary_density();
+
+/// \param size_mm  as the monitor states it: many projectors and emulators state 0 or nonsense
+/// \param width  window units of the same monitor
+/// \return millimetres for one window unit, or 0 where the statement cannot be true: outside 40 to
+///   400 units per inch
+[[nodiscard]] double stated_mm_per_unit(int size_mm, int width) noexcept;
+
+/// The picture of the current OpenGL context, before its buffers are swapped.
+/// \param width,height  pixels, >= 1
+[[nodiscard]] engine::ColourImage drawn_picture(int width, int height);
+
+}  // namespace touchtrial::app

@@ -1,0 +1,217 @@
+// The program as a whole: the cost of a start, and a simulated study.
+#include "app/study_inputs.hpp"
+#include "bench/goals/goal.hpp"
+#include "bench/measure/timing.hpp"
+#include "core/cipher.hpp"
+#include "core/errors.hpp"
+#include "engine/pack/pack.hpp"
+#include "protocols/design/prepare.hpp"
+#include "protocols/registration/registration.hpp"
+#include "protocols/session/commitment.hpp"
+#include "protocols/simulation/simulation.hpp"
+#include "protocols/simulation/subject_model.hpp"
+#include "protocols/store/study_store.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+namespace touchtrial::bench {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A temporary folder, which is removed with this object.
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    std::string name = (fs::temp_directory_path() / "touchtrial-bench-XXXXXX").string();
+    if (mkdtemp(name.data()) == nullptr) {
+      throw FileError(name + ": cannot be made; make room or set TMPDIR");
+    }
+    path_ = name;
+  }
+  ~ScratchFolder() {
+    std::error_code ignored;
+    fs::remove_all(path_, ignored);
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+
+  [[nodiscard]] const fs::path& path() const noexcept { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+using Command = std::vector<std::string>;
+
+constexpr double kStartRatio = 8.0;
+constexpr double kMostLibraries = 45;
+constexpr double kReportRatio = 14.0;
+/// A single start is short and shares pages of its files with other processes; many starts average
+/// that out.
+constexpr int kStartsPerRound = 11;
+
+struct Start {
+  double us = 0.0;      ///< processor time, including the kernel's
+  double faults = 0.0;  ///< minor page faults
+};
+
+Start run_once(const Command& command) {
+  std::vector<char*> arguments;
+  for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  posix_spawn_file_actions_t silence;
+  posix_spawn_file_actions_init(&silence);
+  posix_spawn_file_actions_addopen(&silence, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  pid_t child = 0;
+  const int refused =
+      posix_spawn(&child, arguments[0], &silence, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&silence);
+  int status = 0;
+  rusage usage{};
+  if (refused != 0 || wait4(child, &status, 0, &usage) != child || status != 0) {
+    throw FileError(command[0] + ": does not run; build it with scripts/build bench");
+  }
+  const auto us = [](const timeval& time) {
+    return 1e6 * static_cast<double>(time.tv_sec) + static_cast<double>(time.tv_usec);
+  };
+  return {us(usage.ru_utime) + us(usage.ru_stime), static_cast<double>(usage.ru_minflt)};
+}
+
+/// Starts the command and the empty program by turns.
+GoalResult beside_empty(std::string name, const Command& command, double target, int rounds) {
+  std::vector<double> ours_us, peer_us, ratios, faults;
+  run_once(command);
+  for (int i = 0; i < rounds * kStartsPerRound; ++i) {
+    const Start ours = run_once(command);
+    const Start peer = run_once({TOUCHTRIAL_EMPTY_PROGRAM});
+    ours_us.push_back(ours.us);
+    peer_us.push_back(peer.us);
+    ratios.push_back(ours.us / peer.us);
+    faults.push_back(ours.faults);
+  }
+  GoalResult result;
+  result.goal = std::move(name);
+  result.peer = "empty C++ program";
+  result.ours_us = median(ours_us);
+  result.peer_us = median(peer_us);
+  result.ratio = median(ratios);
+  result.count = median(faults);
+  result.count_unit = "page faults";
+  result.target = target;
+  return result;
+}
+
+GoalResult libraries_loaded() {
+  const std::string ask = "LD_TRACE_LOADED_OBJECTS=1 '" TOUCHTRIAL_PROGRAM "'";
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> list(popen(ask.c_str(), "r"), pclose);
+  GoalResult result;
+  result.goal = "shared libraries of a start";
+  result.count = 0;
+  result.count_unit = "libraries";
+  result.limit = Limit::count;
+  result.target = kMostLibraries;
+  char line[4096];
+  while (list && std::fgets(line, sizeof line, list.get()) != nullptr) {
+    if (std::string(line).find("=>") != std::string::npos) ++result.count;
+  }
+  return result;
+}
+
+std::vector<GoalResult> measure_starts(int rounds) {
+  const ScratchFolder folder;
+  const std::string program = TOUCHTRIAL_PROGRAM;
+  const std::string database = (folder.path() / "study.db").string();
+  run_once({program, "simulate", TOUCHTRIAL_SOURCE_DIR "/config/classification.json",
+            "--participants", "20", "--seed", "1", "--db", database});
+  return {beside_empty("start, --version", {program, "--version"}, kStartRatio, rounds),
+          libraries_loaded(),
+          beside_empty("report of 20 participants", {program, "report", database}, kReportRatio,
+                       rounds)};
+}
+
+constexpr double kStudyTarget_us = 1e6;
+constexpr double kTrialTarget_bytes = 100e3;
+constexpr int kParticipants = 20;
+
+struct StudyFigures {
+  double us = 0.0;
+  double bytes_a_trial = 0.0;
+};
+
+/// Simulates the classification study that comes with the program, in one thread: 20 participants,
+/// 25 trials of 10 s, one transaction for each session. The time is wall-clock time, because it
+/// includes the disk.
+StudyFigures simulate_once(const design::StudyKey& key, const engine::Pack& pack,
+                           const fs::path& database) {
+  const simulation::SubjectModel subject = app::subject_for({}, key.study);
+  simulation::SimulationOptions options;
+  options.participants = kParticipants;
+  const auto start = std::chrono::steady_clock::now();
+  simulation::SimulationReport report;
+  {
+    store::StudyStore store = store::StudyStore::create(
+        database, session::commitment_of(key, pack, true, false), std::chrono::nanoseconds(0));
+    report = simulation::simulate_study(key, pack, subject, options, store);
+  }
+  const std::chrono::duration<double, std::micro> us = std::chrono::steady_clock::now() - start;
+  return {us.count(), static_cast<double>(fs::file_size(database)) / report.presentations};
+}
+
+std::vector<GoalResult> results_of(const StudyFigures& figures) {
+  GoalResult time;
+  time.goal = "study of 20 x 25 trials of 10 s, one thread";
+  time.ours_us = figures.us;
+  time.limit = Limit::time_us;
+  time.target = kStudyTarget_us;
+  GoalResult bytes;
+  bytes.goal = "database, a trial of 10 s";
+  bytes.count = std::round(figures.bytes_a_trial);
+  bytes.count_unit = "bytes";
+  bytes.limit = Limit::count;
+  bytes.target = kTrialTarget_bytes;
+  return {time, bytes};
+}
+
+std::vector<GoalResult> measure_study(int rounds) {
+  const ScratchFolder folder;
+  registration::register_protocols();
+  const design::Study study =
+      design::load_study(fs::path(TOUCHTRIAL_SOURCE_DIR) / "config/classification.json");
+  SeededEntropy entropy(study.seed);
+  design::StudyKey key = design::make_study_key(study, entropy, true);
+  key.pack_folder = folder.path() / "pack";
+  design::prepare_pack(key, key.pack_folder, {});
+  const engine::Pack pack(key.pack_folder);
+  std::vector<double> times_us;
+  StudyFigures figures;
+  for (int round = 0; round < rounds; ++round) {
+    figures = simulate_once(key, pack, folder.path() / (std::to_string(round) + ".db"));
+    times_us.push_back(figures.us);
+  }
+  figures.us = median(times_us);
+  return results_of(figures);
+}
+
+}  // namespace
+
+std::vector<Goal> program_goals() {
+  return {[](const Effort& effort) { return measure_study(effort.study_rounds); },
+          [](const Effort& effort) { return measure_starts(effort.study_rounds); }};
+}
+
+}  // namespace touchtrial::bench

@@ -1,0 +1,246 @@
+/// \file The links of the safety chain, in the order in which a force passes them. Source:
+/// docs/safety.md. Private to this folder.
+///
+/// Every link belongs to the servo thread; none allocates, locks or throws. A link whose limit is
+/// infinite lets everything pass.
+#pragma once
+
+#include "core/vec.hpp"
+#include "device/haptic_device.hpp"
+#include "device/safety/safety_limits.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace touchtrial::device {
+
+/// Times are whole ticks to this part of one: 0.010 / 0.001 is 10 ticks and not 11.
+inline constexpr double kTickRounding = 1e-6;
+
+/// \return whether force, position and velocity are finite. The sum of their squares also overflows
+///   for values that are absurd without being infinite, so those count as not finite.
+[[nodiscard]] inline bool is_finite_state(double force_squared_n2,
+                                          const DeviceSample& sample) noexcept {
+  const double all = force_squared_n2 + dot(sample.position_mm, sample.position_mm) +
+                     dot(sample.velocity_mm_s, sample.velocity_mm_s);
+  return all <= std::numeric_limits<double>::max();
+}
+
+/// Keeps a force from starting with a blow. Opens once the computed force is small, which means
+/// that the hand is off the plane or only just on it; then stays open until it is closed.
+class EngageGate {
+ public:
+  /// \param engage_force_n  >= 0; infinity: opens at once
+  explicit EngageGate(double engage_force_n) noexcept
+      : squared_n2_(engage_force_n * engage_force_n) {}
+
+  [[nodiscard]] bool is_open() const noexcept { return open_; }
+  /// \return whether it is open now
+  [[nodiscard]] bool try_open(double force_squared_n2) noexcept {
+    open_ = open_ || force_squared_n2 <= squared_n2_;
+    return open_;
+  }
+  void close() noexcept { open_ = false; }
+
+ private:
+  double squared_n2_;
+  bool open_ = false;
+};
+
+/// Trips on motion faster than a hand's: by the speed that the device reports, and by the change of
+/// its position since the last new reading, over the time since that reading. Readings come from
+/// another thread or over a bus, and two may arrive together; so a change is judged over at least
+/// kWindowS, from a reading that old.
+class VelocityTrip {
+ public:
+  static constexpr double kWindowS = 0.001;
+
+  /// \param max_speed_mm_s  > 0; infinity: no limit
+  /// \param tick_s  of the servo, > 0
+  VelocityTrip(double max_speed_mm_s, double tick_s) noexcept
+      : speed_squared_(max_speed_mm_s * max_speed_mm_s),
+        change_squared_(speed_squared_ * tick_s * tick_s),
+        window_ticks_(std::max(1.0, std::ceil(kWindowS / tick_s - kTickRounding))) {}
+
+  /// Judges changes from this reading on.
+  void start(const DeviceSample& sample) noexcept {
+    from_mm_ = sample.position_mm;
+    sequence_ = sample.sequence;
+    ticks_ = 0.0;
+  }
+
+  /// \param sample  finite
+  /// \param ticks  since the last call, >= 1
+  [[nodiscard]] bool is_exceeded(const DeviceSample& sample, double ticks) noexcept {
+    ticks_ += ticks;
+    const double time = std::max(ticks_, window_ticks_);
+    const Vec3 change_mm = sample.position_mm - from_mm_;
+    const bool exceeded = !(dot(sample.velocity_mm_s, sample.velocity_mm_s) <= speed_squared_) ||
+                          !(dot(change_mm, change_mm) <= change_squared_ * (time * time));
+    const bool is_new = sample.sequence != sequence_;
+    sequence_ = sample.sequence;
+    if (is_new && ticks_ >= window_ticks_) start(sample);
+    return exceeded;
+  }
+
+ private:
+  double speed_squared_;   ///< mm^2/s^2
+  double change_squared_;  ///< in one tick, mm^2
+  double window_ticks_;
+  Vec3 from_mm_;
+  double ticks_ = 0.0;  ///< since the reading at from_mm_
+  std::uint64_t sequence_ = 0;
+};
+
+/// Tells when a device gives no new readings. A device that is slower than the servo repeats its
+/// number between its readings; that is a fault only after stale_s.
+class Freshness {
+ public:
+  /// \param stale_s  > 0; infinity: never
+  /// \param tick_s  of the servo, > 0
+  Freshness(double stale_s, double tick_s) noexcept
+      : stale_ticks_(std::max(1.0, std::ceil(stale_s / tick_s - kTickRounding))),
+        most_at_once_(std::max(1.0, 0.5 * stale_ticks_)) {}
+
+  void start(std::uint64_t sequence) noexcept {
+    sequence_ = sequence;
+    old_ticks_ = 0.0;
+  }
+
+  /// \param ticks  since the last call, >= 1. A servo that slept sees an old reading first, as the
+  ///   device's thread may have slept with it: one look counts for half of stale_s at the most.
+  [[nodiscard]] bool is_stale(std::uint64_t sequence, double ticks) noexcept {
+    if (sequence != sequence_) {
+      start(sequence);
+      return false;
+    }
+    old_ticks_ += std::min(ticks, most_at_once_);
+    return old_ticks_ >= stale_ticks_;
+  }
+
+ private:
+  double stale_ticks_;
+  double most_at_once_;
+  double old_ticks_ = 0.0;
+  std::uint64_t sequence_ = 0;
+};
+
+/// What the motors can take for ever, and for a while. Motors warm with the square of the force.
+/// Their heat is modelled as its running mean, which fades exponentially; the force that they hold
+/// for ever gives the greatest heat allowed. Below the share kWarm of that heat the peak force is
+/// allowed; above it the limit falls in proportion, down to the continuous force, so that the
+/// greatest heat is never passed. The time constant follows from thermal_budget_s, the time in
+/// which peak force brings a cold motor to kWarm. Nobody has measured it on a device's motors.
+class ThermalBudget {
+ public:
+  static constexpr double kWarm = 0.9;
+
+  /// \param limits  sound; no budget if the continuous force is 0 or not below the peak force
+  /// \param tick_s  of the servo, > 0
+  ThermalBudget(const SafetyLimits& limits, double tick_s) noexcept
+      : peak_n_(limits.max_force_n), continuous_n_(limits.continuous_force_n) {
+    if (!(continuous_n_ > 0.0) || !(continuous_n_ < peak_n_)) return;
+    most_heat_ = continuous_n_ * continuous_n_;
+    // At peak force the heat is peak^2 (1 - exp(-t / tau)).
+    const double warm_share = kWarm * most_heat_ / (peak_n_ * peak_n_);
+    tau_s_ = -limits.thermal_budget_s / std::log1p(-warm_share);
+    share_per_tick_ = -std::expm1(-tick_s / tau_s_);
+  }
+
+  /// \return the limit of the force's norm for this tick, N: from the peak down to the continuous
+  ///   force
+  [[nodiscard]] double limit_n() const noexcept {
+    if (heat_ <= kWarm * most_heat_) return peak_n_;
+    const double cold = std::max(0.0, 1.0 - heat_ / most_heat_) / (1.0 - kWarm);
+    return continuous_n_ + std::min(cold, 1.0) * (peak_n_ - continuous_n_);
+  }
+
+  /// Warms the motors by a force.
+  /// \param ticks  for which it was sent, >= 0
+  void heat(double force_squared_n2, double ticks) noexcept {
+    heat_ += std::min(1.0, share_per_tick_ * ticks) * (force_squared_n2 - heat_);
+  }
+
+  /// \return the running mean of the force's square, N^2, for `begin_warm` of a later run on the
+  ///   same motors; 0 without a budget
+  [[nodiscard]] double heat_n2() const noexcept { return heat_; }
+  /// Begins with motors that come from earlier work.
+  /// \param heat_n2  when that ended; what is negative or not finite is ignored
+  /// \param rest_s  without force since then, >= 0
+  void begin_warm(double heat_n2, double rest_s) noexcept {
+    if (share_per_tick_ == 0.0 || !(heat_n2 >= 0.0) || !std::isfinite(heat_n2)) return;
+    heat_ = heat_n2 * std::exp(-std::max(rest_s, 0.0) / tau_s_);
+  }
+
+ private:
+  double peak_n_;
+  double continuous_n_;
+  double most_heat_ = std::numeric_limits<double>::infinity();  ///< N^2; infinite: no budget
+  double tau_s_ = 1.0;                                          ///< in which heat fades to 1/e
+  double share_per_tick_ = 0.0;  ///< of the way to the present force's heat
+  double heat_ = 0.0;            ///< N^2
+};
+
+/// Lets forces grow to their full size after engaging: a factor that rises evenly from 0 to 1. It
+/// counts calls and not time, as the hand has not felt the ticks that a servo slept through.
+class RampUp {
+ public:
+  /// \param ramp_s  >= 0, finite; 0: none
+  /// \param tick_s  of the servo, > 0
+  RampUp(double ramp_s, double tick_s) noexcept
+      : share_per_tick_(ramp_s > tick_s ? tick_s / ramp_s : 1.0),
+        first_(ramp_s > 0.0 ? 0.0 : 1.0) {}
+
+  void start() noexcept { share_ = first_; }
+
+  /// \return the force of this tick
+  [[nodiscard]] Vec3 of(Vec3 force_n) noexcept {
+    if (share_ >= 1.0) return force_n;
+    const double share = share_;
+    share_ += share_per_tick_;
+    return share * force_n;
+  }
+
+ private:
+  double share_per_tick_;
+  double first_;
+  double share_ = 1.0;
+};
+
+/// \param force_n  whose square is finite
+/// \param limit_n  > 0, finite
+/// \return the force, shortened to the limit with its direction kept (to rounding)
+[[nodiscard]] inline Vec3 within_norm(Vec3 force_n, double limit_n) noexcept {
+  const double squared_n2 = dot(force_n, force_n);
+  if (squared_n2 <= limit_n * limit_n) return force_n;
+  return (limit_n / std::sqrt(squared_n2)) * force_n;
+}
+
+/// Follows the forces that it is given, by at most one step a call. The step of a late call is no
+/// longer: the hand feels the step, whatever time went before it.
+class SlewLimit {
+ public:
+  /// \param max_slew_n_per_s  > 0; infinity: no limit
+  /// \param tick_s  of the servo, > 0
+  SlewLimit(double max_slew_n_per_s, double tick_s) noexcept : step_n_(max_slew_n_per_s * tick_s) {}
+
+  [[nodiscard]] Vec3 towards(Vec3 force_n) noexcept {
+    const Vec3 change_n = force_n - sent_n_;
+    const Vec3 step_n = within_norm(change_n, step_n_);
+    // A sum of differences would round, so a force within one step is taken as it is.
+    sent_n_ = step_n == change_n ? force_n : sent_n_ + step_n;
+    return sent_n_;
+  }
+
+  /// Goes to zero at once, for a fault.
+  void drop() noexcept { sent_n_ = {}; }
+  [[nodiscard]] Vec3 sent_n() const noexcept { return sent_n_; }
+
+ private:
+  double step_n_;
+  Vec3 sent_n_;
+};
+
+}  // namespace touchtrial::device

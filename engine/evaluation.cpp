@@ -1,0 +1,66 @@
+#include "engine/evaluation.hpp"
+
+#include "engine/extraction.hpp"
+#include "engine/metrics/picture_statistics.hpp"
+#include "engine/metrics/ssim.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+namespace touchtrial::engine {
+namespace {
+
+constexpr int kGlcmSmallestSide = 2;
+
+void refuse_smaller(const GreyImage& image, int side, const std::string& purpose) {
+  if (std::min(image.height(), image.width()) >= side) return;
+  throw std::invalid_argument("has " + std::to_string(image.width()) + " x " +
+                              std::to_string(image.height()) + " px; " + purpose + " at least " +
+                              std::to_string(side) + " px on each side");
+}
+
+void refuse_small(const GreyImage& image, bool sweep) {
+  if (sweep) refuse_smaller(image, kMsSsimSmallestSide, "MS-SSIM needs");
+  refuse_smaller(image, kGlcmSmallestSide, "co-occurrence statistics need");
+}
+
+PictureFigures figures_of(const GreyImage& picture) {
+  return {entropy(picture), glcm_statistics(picture)};
+}
+
+GreyImage picture_of(const GreyImage& image, const ExtractionOptions& options) {
+  return texture_picture(extract_texture<double>(image, options).texture);
+}
+
+OrderFigures figures_of_order(const GreyImage& image, double order, const GreyImage& adaptive) {
+  ExtractionOptions options;
+  options.method = Method::fixed;
+  options.order = order;
+  const GreyImage picture = picture_of(image, options);
+  const MsSsim likeness = ms_ssim<double>(picture, adaptive);
+  return {order, entropy(picture), likeness.unit, likeness.wang};
+}
+
+}  // namespace
+
+Evaluation evaluate_image(const GreyImage& image, bool sweep,
+                          const std::function<void()>& order_done) {
+  refuse_small(image, sweep);
+  const GreyImage adaptive = picture_of(image, {});
+  Evaluation evaluation{image.height(), image.width(), figures_of(image), figures_of(adaptive), {}};
+  if (!sweep) return evaluation;
+  for (int k = 1; k <= kSweptOrders; ++k) {
+    evaluation.orders.push_back(figures_of_order(image, k / 20.0, adaptive));
+    if (order_done) order_done();
+  }
+  return evaluation;
+}
+
+const OrderFigures& closest_order(const Evaluation& evaluation) {
+  return *std::max_element(
+      evaluation.orders.begin(), evaluation.orders.end(),
+      [](const OrderFigures& a, const OrderFigures& b) { return a.ms_ssim < b.ms_ssim; });
+}
+
+}  // namespace touchtrial::engine

@@ -1,0 +1,75 @@
+#include "engine/image_formats/tiff_directory.hpp"
+
+namespace touchtrial::engine {
+namespace {
+
+constexpr std::size_t kEntrySize = 12;
+constexpr std::uint32_t kLong = 4;
+constexpr std::uint32_t kRational = 5;
+
+/// Bytes of one value; 0 for types that no supported entry has.
+std::size_t size_of_type(std::uint32_t type) {
+  switch (type) {
+    case 1:
+      return 1;  // BYTE
+    case 3:
+      return 2;  // SHORT
+    case kLong:
+      return 4;
+    default:
+      return 0;
+  }
+}
+
+}  // namespace
+
+TiffDirectory::TiffDirectory(ByteView file)
+    : file_(file),
+      order_(bytes_at(file, 0, 2)[0] == std::uint8_t{'M'} ? ByteOrder::big : ByteOrder::little) {
+  const std::size_t start = number_at(file, 4, 4, order_);
+  const std::size_t count = number_at(file, start, 2, order_);
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t at = start + 2 + i * kEntrySize;
+    const auto tag = static_cast<TiffTag>(number_at(bytes_at(file, at, kEntrySize), 0, 2, order_));
+    const bool is_new = entries_.emplace(tag, at).second;
+    // Readers differ in which of two entries they use, so such a file is ambiguous.
+    if (!is_new) throw_truncated_image();
+  }
+  // The offset of the next directory ends this one; its value does not matter.
+  static_cast<void>(bytes_at(file, start + 2 + count * kEntrySize, 4));
+}
+
+std::vector<std::uint32_t> TiffDirectory::values(TiffTag tag) const {
+  const auto entry = entries_.find(tag);
+  if (entry == entries_.end()) return {};
+  const std::size_t at = entry->second;
+  const std::size_t size = size_of_type(number_at(file_, at + 2, 2, order_));
+  const std::size_t count = number_at(file_, at + 4, 4, order_);
+  const bool is_inline = size * count <= 4;
+  const std::size_t from = is_inline ? at + 8 : number_at(file_, at + 8, 4, order_);
+  const ByteView bytes = bytes_at(file_, from, size * count);
+  std::vector<std::uint32_t> values(size == 0 ? 0 : count);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = number_at(bytes, i * size, size, order_);
+  }
+  return values;
+}
+
+std::uint32_t TiffDirectory::value(TiffTag tag, std::uint32_t otherwise) const {
+  const std::vector<std::uint32_t> all = values(tag);
+  return all.empty() ? otherwise : all.front();
+}
+
+std::optional<double> TiffDirectory::fraction(TiffTag tag) const {
+  const auto entry = entries_.find(tag);
+  if (entry == entries_.end()) return std::nullopt;
+  const std::size_t at = entry->second;
+  if (number_at(file_, at + 2, 2, order_) != kRational) return std::nullopt;
+  const std::size_t place = number_at(file_, at + 8, 4, order_);
+  const std::uint32_t numerator = number_at(file_, place, 4, order_);
+  const std::uint32_t denominator = number_at(file_, place + 4, 4, order_);
+  if (denominator == 0) return std::nullopt;
+  return static_cast<double>(numerator) / denominator;
+}
+
+}  // namespace touchtrial::engine

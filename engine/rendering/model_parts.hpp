@@ -1,0 +1,58 @@
+/// \file What a rendering model provides besides its force law: the functions behind
+/// make_texture_field, choose_gains, field_statistics and lateral_field.
+/// Private to engine/rendering. How to add a model: docs/add-a-rendering-model.md.
+#pragma once
+
+#include "core/plane.hpp"
+#include "core/vec.hpp"
+#include "engine/rendering/field_statistics.hpp"
+#include "engine/rendering/gains.hpp"
+#include "engine/rendering/texture_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace touchtrial::engine {
+
+/// The parts of one model. Callers check the arguments first, except for samples that are not
+/// finite: the parts themselves throw std::invalid_argument for those.
+struct ModelParts {
+  /// \param smooth  the texture T after the reconstruction filter, grey levels
+  TextureField (*make_field)(Plane<double> smooth, const RenderingOptions& options);
+  StudyGains (*choose_gains)(std::span<const FieldView> fields, const RenderingOptions& options);
+  FieldStatistics (*statistics)(FieldView field, Gains gains, const RenderingOptions& options);
+  LateralField (*lateral)(FieldView field, Gains gains);
+};
+
+[[nodiscard]] ModelParts parts_of(ModelKind kind) noexcept;
+
+/// Defined in paper_model.cpp.
+[[nodiscard]] ModelParts paper_parts() noexcept;
+/// Defined in surface_model.cpp.
+[[nodiscard]] ModelParts surface_parts() noexcept;
+
+/// The statistics of a lateral force that is proportional to force planes; leaves the others at 0.
+/// \param planes  with samples
+/// \param n_per_grey  newtons of one grey level per pixel
+[[nodiscard]] FieldStatistics lateral_statistics(FieldView planes, double n_per_grey);
+
+/// The force planes of a field with samples, grey levels per pixel.
+[[nodiscard]] ForceField<double> force_planes(FieldView planes);
+
+/// Checks a field for field_statistics by its two rms values.
+/// \throws std::invalid_argument if one of them is not finite
+void require_finite_rms(double tangential, double normal);
+
+/// The force, shortened to the limit with its direction kept: every model limits its force so. Also
+/// takes forces whose squares overflow; a force that is not finite becomes zero.
+[[nodiscard]] inline Vec3 limited_in_norm(Vec3 force_n, double limit_n) noexcept {
+  const double squares = force_n.x * force_n.x + force_n.y * force_n.y + force_n.z * force_n.z;
+  if (squares <= limit_n * limit_n) return force_n;
+  if (!is_finite(force_n)) return {};
+  const double largest = std::max({std::abs(force_n.x), std::abs(force_n.y), std::abs(force_n.z)});
+  const Vec3 direction = (1.0 / largest) * force_n;
+  return (limit_n / norm(direction)) * direction;
+}
+
+}  // namespace touchtrial::engine

@@ -1,0 +1,64 @@
+/// \file Where the sessions of stations come from: SQLite files, stations in a collected file, a
+/// server.
+#pragma once
+
+#include "core/bytes.hpp"
+#include "protocols/collect/server_address.hpp"
+#include "protocols/store/event.hpp"
+#include "protocols/store/study_store.hpp"
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial::collect {
+
+/// One station's file, read as that station wrote it: sessions have their numbers there, and events
+/// are as they were hashed (Event::renumbered_from empty, the file chain's session 0). Its content
+/// is not trusted: whoever collects checks everything. Not to be shared between threads. Every
+/// function throws StoreError, naming the source, if it cannot be read.
+class StationFile {
+ public:
+  virtual ~StationFile() = default;
+
+  /// For messages: "A.db", or "postgresql://host/study, station 2".
+  [[nodiscard]] virtual const std::string& name() const = 0;
+  /// The file's own chain, from the study's commitment on.
+  [[nodiscard]] virtual std::vector<store::Event> file_chain() = 0;
+  /// A session's events in order; none if there is no such session.
+  /// \param own_session  its number at the station
+  [[nodiscard]] virtual std::vector<store::Event> events(int own_session) = 0;
+  /// Nothing after a withdrawal.
+  [[nodiscard]] virtual std::optional<Bytes> wrapped_key(int own_session) = 0;
+  /// The sealed trace of a trial, if there is one.
+  [[nodiscard]] virtual std::optional<Bytes> trace(int own_session, int trial) = 0;
+  /// Calls `visit` with every trial and sealed trace of a session, by trial. Only a few traces are
+  /// in memory at a time.
+  virtual void for_each_trace(int own_session,
+                              const std::function<void(int, const Bytes&)>& visit) = 0;
+};
+
+using Stations = std::vector<std::unique_ptr<StationFile>>;
+
+/// The station that an SQLite file is, or the stations that were collected into it.
+/// \throws DamagedStore, naming file and session, if it is damaged or was tampered with
+/// \throws StoreError if it is missing, of an older schema (with the remedy), or a collected file
+///   in which something was decided since
+[[nodiscard]] Stations stations_of_file(const std::filesystem::path& database);
+
+/// Holds the derived tables of a server against the study that was collected from it.
+/// \throws DamagedStore naming station and session if they disagree
+using DerivedTables = std::function<void(const store::StudyStore& collected)>;
+
+/// Every station on a server, all as they were at one moment, whatever is pushed meanwhile. They
+/// share one connection, which lives as long as any of them.
+/// \param derived  gets the check of the derived tables at the same moment; may be null
+/// \throws StoreError if the server cannot be reached or holds no study of this program's version
+/// \throws DamagedStore if a row there belongs to no session that was pushed
+[[nodiscard]] Stations stations_of_server(const ServerAddress& address,
+                                          DerivedTables* derived = nullptr);
+
+}  // namespace touchtrial::collect

@@ -1,0 +1,48 @@
+#include "protocols/identification/analysis/counted_trials.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace touchtrial::analysis::identification {
+
+CountedTrials counted_by_method(const Outcomes& outcomes) {
+  CountedTrials counted;
+  std::map<std::string, std::size_t> place;
+  for (const SessionOutcome& session : outcomes.sessions) {
+    const std::string& name = session.row.participant;
+    if (session.counted && place.emplace(name, counted.participants.size()).second) {
+      counted.participants.push_back(name);
+    }
+  }
+  counted.trials.assign(outcomes.methods.size(),
+                        std::vector<OwnTrials>(counted.participants.size()));
+  for (const TrialOutcome& trial : outcomes.trials) {
+    if (!trial.counted) continue;
+    counted.trials[trial.stimulus.method][place.at(trial.participant)].push_back(&trial);
+  }
+  return counted;
+}
+
+Choice choice_of(const TrialOutcome& trial) {
+  return {trial.stimulus.class_index, trial.response};
+}
+
+Proportion accuracy_of(const OwnTrials& trials) {
+  const auto correct = std::ranges::count_if(trials, &TrialOutcome::correct);
+  return {static_cast<int>(trials.size()), static_cast<int>(correct)};
+}
+
+OwnTrials of_class(const OwnTrials& trials, int class_index) {
+  OwnTrials own;
+  std::ranges::copy_if(trials, std::back_inserter(own), [class_index](const TrialOutcome* trial) {
+    return trial->stimulus.class_index == class_index;
+  });
+  return own;
+}
+
+bool has_ended(const TrialOutcome& trial) noexcept {
+  return trial.row.state == store::TrialState::answered ||
+         trial.row.state == store::TrialState::timed_out;
+}
+
+}  // namespace touchtrial::analysis::identification

@@ -1,0 +1,309 @@
+#include "protocols/identification/analysis/cues/cue_report.hpp"
+
+#include "analysis/outcomes.hpp"
+#include "analysis/text_figures.hpp"
+#include "protocols/identification/analysis/cues/cue_statistics.hpp"
+#include "protocols/identification/analysis/cues/felt_trials.hpp"
+#include "protocols/identification/analysis/cues/ideal_observer.hpp"
+#include "protocols/identification/analysis/cues/study_plane.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <span>
+
+#include <fmt/format.h>
+
+namespace touchtrial::analysis::identification {
+
+namespace {
+
+/// The counted trials of a study with what was felt in them.
+struct FeltStudy {
+  std::vector<const TrialOutcome*> trials;
+  FeltTrials felt;
+  int classes = 0;
+  int jobs = 0;
+};
+
+/// In the order of the outcomes.
+std::vector<const TrialOutcome*> counted_trials(const Outcomes& outcomes) {
+  std::vector<const TrialOutcome*> trials;
+  for (const TrialOutcome& trial : outcomes.trials) {
+    if (trial.counted) trials.push_back(&trial);
+  }
+  return trials;
+}
+
+StudyPlane plane_to_feel(const store::StudyStore& store, const design::StudyKey& key,
+                         std::span<const TrialOutcome* const> trials, const CueOptions& options) {
+  if (auto plane = study_plane(key, pack_of(store, key, options.pack))) return *plane;
+  return {touched_plane(store, key, trials, key.study.rendering.pitch_mm, options.jobs),
+          kPlaneFromTraces};
+}
+
+/// The places of a method's trials that can be felt.
+std::vector<std::size_t> felt_with(const FeltStudy& study, int method, MethodCues& cues) {
+  std::vector<std::size_t> places;
+  for (std::size_t place = 0; place < study.trials.size(); ++place) {
+    if (study.trials[place]->stimulus.method != method) continue;
+    if (study.felt.has_trace[place]) {
+      places.push_back(place);
+    } else {
+      ++cues.without_trace;
+    }
+  }
+  return places;
+}
+
+/// Of all observers, in the order of kCues; trials in the order of `places`.
+using Answers = std::vector<ObserverAnswers>;
+
+Answers all_answers(const FeltStudy& study, const std::vector<std::size_t>& places) {
+  std::vector<ObservedTrial> observed;
+  std::vector<std::optional<int>> responses;
+  for (const std::size_t place : places) {
+    const TrialOutcome& trial = *study.trials[place];
+    observed.push_back(
+        {trial.stimulus.class_index, trial.stimulus.exemplar, study.felt.felt[place]});
+    responses.push_back(trial.response);
+  }
+  Answers answers;
+  for (const Cue cue : kCues) {
+    answers.push_back(observer_answers(cue, observed, responses, study.classes, study.jobs));
+  }
+  return answers;
+}
+
+JudgedTrial judged(const TrialOutcome& trial, const Answers& answers, std::size_t i) {
+  JudgedTrial judged{trial.stimulus.class_index, trial.response, {}, {}};
+  for (std::size_t observer = 0; observer < kCues.size(); ++observer) {
+    judged.ideal[observer] = answers[observer].ideal[i];
+    judged.matched[observer] = answers[observer].matched[i];
+  }
+  return judged;
+}
+
+/// In the order of participants' first trials, which is the order of sessions.
+std::vector<ParticipantAnswers> by_participant(const FeltStudy& study,
+                                               const std::vector<std::size_t>& places,
+                                               const Answers& answers, MethodCues& cues) {
+  std::vector<ParticipantAnswers> all;
+  std::map<std::string, std::size_t> known;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (answers.front().ideal[i].empty()) {
+      ++cues.unjudged;
+      continue;
+    }
+    const TrialOutcome& trial = *study.trials[places[i]];
+    const auto [at, is_new] = known.try_emplace(trial.participant, all.size());
+    if (is_new) all.emplace_back(trial.participant, study.classes);
+    all[at->second].add(judged(trial, answers, i));
+  }
+  return all;
+}
+
+void add_counts(AnswerCounts& sum, const FlatCounts& counts) {
+  const std::size_t side = sum.size();
+  for (std::size_t i = 0; i < counts.size(); ++i) sum[i / side][i % side] += counts[i];
+}
+
+AnswerCounts no_answers(int classes) {
+  const auto side = static_cast<std::size_t>(classes);
+  return AnswerCounts(side, std::vector<double>(side, 0.0));
+}
+
+void put_participants(MethodCues& cues, const std::vector<ParticipantAnswers>& all, int classes) {
+  cues.human_confusion = no_answers(classes);
+  cues.no_response.assign(static_cast<std::size_t>(classes), 0);
+  for (const ParticipantAnswers& one : all) {
+    cues.trials += one.trials();
+    cues.participants.push_back(one.participant());
+    cues.participant_trials.push_back(one.trials());
+    cues.human_accuracy.push_back(one.human_accuracy());
+    add_counts(cues.human_confusion, one.human());
+    for (int i = 0; i < classes; ++i) cues.no_response[i] += one.no_response(i);
+  }
+  cues.human_mean = participant_mean(cues.human_accuracy);
+}
+
+int fewest_of_a_class(const std::vector<ParticipantAnswers>& all) {
+  int fewest = all.front().trials();
+  for (const ParticipantAnswers& one : all) {
+    for (int i = 0; i < one.classes(); ++i) fewest = std::min(fewest, one.presented(i));
+  }
+  return fewest;
+}
+
+ObserverFigures observer_figures(std::size_t observer, const std::vector<ParticipantAnswers>& all,
+                                 const CueStatistics& statistics) {
+  ObserverFigures figures;
+  figures.cue = kCues[observer];
+  figures.confusion = no_answers(all.front().classes());
+  figures.matched_confusion = figures.confusion;
+  for (const ParticipantAnswers& one : all) {
+    figures.accuracy.push_back(one.available(observer));
+    add_counts(figures.confusion, one.ideal(observer));
+    add_counts(figures.matched_confusion, one.matched(observer));
+  }
+  figures.mean = participant_mean(figures.accuracy);
+  figures.efficiency = statistics.efficiency[observer];
+  figures.corrected_efficiency = statistics.corrected[observer];
+  figures.divergence = statistics.divergence[observer];
+  figures.matched_divergence = statistics.matched_divergence[observer];
+  return figures;
+}
+
+MethodCues method_cues(const FeltStudy& study, int method, const std::string& label) {
+  MethodCues cues;
+  cues.method = label;
+  const std::vector<std::size_t> places = felt_with(study, method, cues);
+  const Answers answers = all_answers(study, places);
+  const std::vector<ParticipantAnswers> all = by_participant(study, places, answers, cues);
+  put_participants(cues, all, study.classes);
+  if (all.empty()) return cues;
+  const CueStatistics statistics =
+      cue_statistics(all, static_cast<std::uint64_t>(method), study.jobs);
+  for (std::size_t observer = 0; observer < kCues.size(); ++observer) {
+    cues.observers.push_back(observer_figures(observer, all, statistics));
+    cues.observers.back().matched_noise = answers[observer].matched_noise;
+  }
+  cues.match = statistics.match;
+  cues.fewest_of_a_class = fewest_of_a_class(all);
+  return cues;
+}
+
+using Warnings = std::vector<std::string>;
+
+constexpr int kFewestTrials = 2;
+
+void warn_of_study(const Outcomes& outcomes, const CueReport& report, Warnings& warnings) {
+  if (outcomes.visual) {
+    warnings.emplace_back(
+        "Seen on a screen, not felt: the observers use forces that no hand of this study had.");
+  }
+  if (report.plane_source == kPlaneFromTraces) {
+    warnings.emplace_back(
+        "Neither the study's pack nor its images were found: the parts of the plane are told from "
+        "where hands had contact, and what `everything` has from them is a little less sure.");
+  }
+}
+
+void warn_of_trials(const MethodCues& cues, Warnings& warnings) {
+  if (cues.without_trace > 0) {
+    warnings.push_back(
+        fmt::format("{}: {} without a trace left out; accuracy here is of the others alone.",
+                    cues.method, counted(cues.without_trace, "trial")));
+  }
+  if (cues.unjudged > 0) {
+    warnings.push_back(
+        fmt::format("{}: {} left out, because no other trial of the class tells an observer what "
+                    "it feels like.",
+                    cues.method, counted(cues.unjudged, "trial")));
+  }
+}
+
+void warn_of_numbers(const MethodCues& cues, Warnings& warnings) {
+  if (cues.trials == 0) {
+    warnings.push_back(cues.method + ": no trial can be judged by the observers.");
+    return;
+  }
+  if (cues.fewest_of_a_class < kFewestTrials) {
+    warnings.push_back(
+        fmt::format("{}: somebody has fewer than {} trials of a class, so the observers know that "
+                    "hand's way of "
+                    "feeling it from others' alone, and what they call available is too low.",
+                    cues.method, kFewestTrials));
+  }
+  const auto participants = static_cast<int>(cues.participants.size());
+  if (participants < kFewestForVerdict) {
+    warnings.push_back(
+        fmt::format("{}: {} cannot decide which cue was used: from {} on there is a verdict, and "
+                    "intervals over fewer are too narrow.",
+                    cues.method, counted(participants, "participant"), kFewestForVerdict));
+  } else if (cues.match && !cues.match->difference.interval) {
+    warnings.push_back(cues.method +
+                       ": the observers' difference has no interval, so there is no verdict on "
+                       "which cue was used.");
+  }
+}
+
+void warn_of_figures(const MethodCues& cues, double chance, Warnings& warnings) {
+  for (const ObserverFigures& one : cues.observers) {
+    const std::string_view title = title_of(one.cue);
+    if (one.mean.mean.value_or(0.0) <= chance) {
+      warnings.push_back(
+          fmt::format("{}: {} tells the classes apart no better than chance, so nothing can be "
+                      "said of how well it was used.",
+                      cues.method, title));
+    } else if (one.efficiency.value.value_or(0.0) > 1.0) {
+      warnings.push_back(
+          fmt::format("{}: participants did better than {} alone allows: they used something else "
+                      "as well, or the observer has too few trials to learn from.",
+                      cues.method, title));
+    }
+  }
+}
+
+/// \param report  complete except for its warnings
+std::vector<std::string> cue_warnings(const Outcomes& outcomes, const CueReport& report) {
+  Warnings warnings;
+  warn_of_study(outcomes, report, warnings);
+  for (const MethodCues& cues : report.methods) {
+    warn_of_trials(cues, warnings);
+    warn_of_numbers(cues, warnings);
+    warn_of_figures(cues, report.chance, warnings);
+  }
+  return warnings;
+}
+
+}  // namespace
+
+std::string_view name_of(Cue cue) noexcept {
+  switch (cue) {
+    case Cue::rms:
+      return "rms";
+    case Cue::spectrum:
+      return "spectrum";
+    case Cue::everything:
+      break;
+  }
+  return "everything";
+}
+
+std::string_view title_of(Cue cue) noexcept {
+  switch (cue) {
+    case Cue::rms:
+      return "force strength (rms)";
+    case Cue::spectrum:
+      return "spectrum's shape";
+    case Cue::everything:
+      break;
+  }
+  return "everything felt";
+}
+
+int traces_to_read(const Outcomes& outcomes) {
+  return static_cast<int>(counted_trials(outcomes).size());
+}
+
+CueReport make_cues(const store::StudyStore& store, const design::StudyKey& key,
+                    const Outcomes& outcomes, const CueOptions& options) {
+  CueReport report;
+  report.simulated = outcomes.simulated;
+  report.classes = outcomes.classes;
+  report.chance = 1.0 / static_cast<double>(outcomes.classes.size());
+  FeltStudy study{
+      counted_trials(outcomes), {}, static_cast<int>(outcomes.classes.size()), options.jobs};
+  const StudyPlane plane = plane_to_feel(store, key, study.trials, options);
+  report.plane_source = plane.source;
+  study.felt =
+      feel_traces(store, key, study.trials, plane.geometry, options.jobs, options.progress);
+  for (std::size_t i = 0; i < outcomes.methods.size(); ++i) {
+    report.methods.push_back(method_cues(study, static_cast<int>(i), outcomes.methods[i]));
+  }
+  report.warnings = cue_warnings(outcomes, report);
+  return report;
+}
+
+}  // namespace touchtrial::analysis::identification

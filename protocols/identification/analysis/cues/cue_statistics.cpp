@@ -1,0 +1,279 @@
+#include "protocols/identification/analysis/cues/cue_statistics.hpp"
+
+#include "analysis/statistics/cluster_bootstrap.hpp"
+#include "core/random.hpp"
+#include "protocols/identification/analysis/cues/jobs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+namespace touchtrial::analysis::identification {
+
+namespace {
+
+double total(std::span<const double> counts) noexcept {
+  return std::accumulate(counts.begin(), counts.end(), 0.0);
+}
+
+/// p log2 (p / middle), which is 0 where p is 0.
+double information(double p, double middle) noexcept {
+  return p > 0.0 ? p * std::log2(p / middle) : 0.0;
+}
+
+constexpr std::size_t kObservers = kCues.size();
+constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
+
+/// The sums behind all numbers, of one participant or over several. Two groups follow each other:
+/// the accuracies of the participant and of the observers; the answers, to trials with a response,
+/// of the participant, of the ideal observers and of the matched observers.
+class Sums {
+ public:
+  explicit Sums(int classes)
+      : classes_(classes),
+        cells_(static_cast<std::size_t>(classes) * static_cast<std::size_t>(classes)),
+        values_(1 + kObservers + (1 + 2 * kObservers) * cells_, 0.0) {}
+
+  explicit Sums(const ParticipantAnswers& one) : Sums(one.classes()) {
+    participants_ = 1;
+    values_[0] = one.human_accuracy();
+    std::ranges::copy(one.human(), values_.begin() + answers_at(0));
+    for (std::size_t i = 0; i < kObservers; ++i) {
+      values_[1 + i] = one.available(i);
+      std::ranges::copy(one.ideal_of_answered(i), values_.begin() + answers_at(1 + i));
+      std::ranges::copy(one.matched_of_answered(i),
+                        values_.begin() + answers_at(kFirstMatched + i));
+    }
+  }
+
+  void add(const Sums& other) noexcept {
+    participants_ += other.participants_;
+    for (std::size_t i = 0; i < values_.size(); ++i) values_[i] += other.values_[i];
+  }
+
+  /// NaN if the observer is never right.
+  [[nodiscard]] double efficiency(std::size_t observer) const noexcept {
+    const double available = values_[1 + observer];
+    return available > 0.0 ? values_[0] / available : kUndefined;
+  }
+
+  /// NaN unless the observer is above chance.
+  [[nodiscard]] double corrected(std::size_t observer) const noexcept {
+    const double by_chance = static_cast<double>(participants_) / classes_;
+    const double available = values_[1 + observer] - by_chance;
+    // A difference as small as rounding leaves counts as none.
+    return available > 1e-12 * participants_ ? (values_[0] - by_chance) / available : kUndefined;
+  }
+
+  /// NaN without a trial with a response.
+  [[nodiscard]] double divergence(std::size_t observer) const noexcept {
+    return answer_divergence(answers(0), answers(1 + observer), classes_).value_or(kUndefined);
+  }
+  [[nodiscard]] double matched_divergence(std::size_t observer) const noexcept {
+    return answer_divergence(answers(0), answers(kFirstMatched + observer), classes_)
+        .value_or(kUndefined);
+  }
+
+ private:
+  /// The place of the first matched observer's answers.
+  static constexpr std::size_t kFirstMatched = 1 + kObservers;
+
+  [[nodiscard]] std::ptrdiff_t answers_at(std::size_t whose) const noexcept {
+    return static_cast<std::ptrdiff_t>(1 + kObservers + whose * cells_);
+  }
+  [[nodiscard]] std::span<const double> answers(std::size_t whose) const noexcept {
+    return std::span(values_).subspan(static_cast<std::size_t>(answers_at(whose)), cells_);
+  }
+
+  int classes_;
+  int participants_ = 0;
+  std::size_t cells_;
+  std::vector<double> values_;
+};
+
+/// Indices into the numbers of one draw: three of each kind, then the difference of two matched
+/// divergences.
+enum : std::size_t {
+  kEfficiencyAt = 0,
+  kCorrectedAt = kObservers,
+  kDivergenceAt = 2 * kObservers,
+  kMatchedAt = 3 * kObservers,
+  kDifferenceAt = 4 * kObservers,
+  kFigures
+};
+using Figures = std::array<double, kFigures>;
+
+/// The two observers whose matched answers come nearest to the participants'.
+struct Ranking {
+  std::size_t best = 0;
+  std::size_t second = 1;
+};
+
+Ranking ranking_of(const Figures& figures) {
+  std::array<std::size_t, kObservers> order{};
+  for (std::size_t i = 0; i < kObservers; ++i) order[i] = i;
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return figures[kMatchedAt + i]; });
+  return {order[0], order[1]};
+}
+
+Figures figures_of(const Sums& sums) {
+  Figures figures{};
+  for (std::size_t i = 0; i < kObservers; ++i) {
+    figures[kEfficiencyAt + i] = sums.efficiency(i);
+    figures[kCorrectedAt + i] = sums.corrected(i);
+    figures[kDivergenceAt + i] = sums.divergence(i);
+    figures[kMatchedAt + i] = sums.matched_divergence(i);
+  }
+  return figures;
+}
+
+void put_difference(Figures& figures, const Ranking& ranking) {
+  figures[kDifferenceAt] =
+      figures[kMatchedAt + ranking.second] - figures[kMatchedAt + ranking.best];
+}
+
+/// The numbers of studies whose participants are drawn from these, equally many.
+struct Draws {
+  std::size_t participants = 0;
+  std::vector<Figures> figures{};  ///< empty with fewer than two participants
+};
+
+Draws drawn(const std::vector<Sums>& participants, int classes, const Ranking& ranking,
+            std::uint64_t index, int jobs) {
+  if (participants.size() < 2) return {participants.size()};
+  std::vector<Figures> draws(kBootstrapDraws);
+  const auto draw = [&](std::size_t i) {
+    // Each draw has its own stream, so the result does not depend on the threads.
+    RandomStream random(0, "cues: participants", (index << 32U) + i);
+    Sums sums(classes);
+    for (std::size_t p = 0; p < participants.size(); ++p) {
+      sums.add(participants[random.below(participants.size())]);
+    }
+    draws[i] = figures_of(sums);
+    put_difference(draws[i], ranking);
+  };
+  in_parallel(jobs, draws.size(), draw);
+  return {participants.size(), std::move(draws)};
+}
+
+/// Nothing if any draw leaves the number undefined.
+std::optional<Interval> interval_of(const Draws& draws, std::size_t figure) {
+  std::vector<double> values;
+  for (const Figures& one : draws.figures) {
+    if (std::isnan(one[figure])) return std::nullopt;
+    values.push_back(one[figure]);
+  }
+  if (values.empty()) return std::nullopt;
+  return expanded_percentiles(std::move(values), draws.participants);
+}
+
+CueFigure figure_at(std::size_t at, const Figures& observed, const Draws& draws) {
+  if (std::isnan(observed[at])) return {};
+  return {observed[at], interval_of(draws, at)};
+}
+
+std::optional<CueMatch> match_of(const Ranking& ranking, const Figures& observed,
+                                 const Draws& draws) {
+  if (std::isnan(observed[kDifferenceAt])) return std::nullopt;
+  CueMatch match;
+  match.best = kCues[ranking.best];
+  match.second = kCues[ranking.second];
+  match.difference = figure_at(kDifferenceAt, observed, draws);
+  match.told_apart = draws.participants >= kFewestForVerdict && match.difference.interval &&
+                     match.difference.interval->low > 0.0;
+  return match;
+}
+
+}  // namespace
+
+double jensen_shannon_bits(std::span<const double> a, std::span<const double> b) noexcept {
+  const double all_a = total(a);
+  const double all_b = total(b);
+  double bits = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double p = a[i] / all_a;
+    const double q = b[i] / all_b;
+    const double middle = 0.5 * (p + q);
+    bits += 0.5 * (information(p, middle) + information(q, middle));
+  }
+  // Rounding may leave the divergence's range.
+  return std::clamp(bits, 0.0, 1.0);
+}
+
+std::optional<double> answer_divergence(std::span<const double> a, std::span<const double> b,
+                                        int classes) noexcept {
+  const auto side = static_cast<std::size_t>(classes);
+  double sum = 0.0;
+  int presented = 0;
+  for (std::size_t row = 0; row < side; ++row) {
+    const std::span<const double> row_a = a.subspan(row * side, side);
+    const std::span<const double> row_b = b.subspan(row * side, side);
+    if (total(row_a) <= 0.0 || total(row_b) <= 0.0) continue;
+    sum += jensen_shannon_bits(row_a, row_b);
+    ++presented;
+  }
+  if (presented == 0) return std::nullopt;
+  return sum / presented;
+}
+
+CueStatistics cue_statistics(std::span<const ParticipantAnswers> participants, std::uint64_t index,
+                             int jobs) {
+  if (participants.empty()) return {};
+  const int classes = participants.front().classes();
+  std::vector<Sums> each;
+  Sums together(classes);
+  for (const ParticipantAnswers& one : participants) together.add(each.emplace_back(one));
+  Figures observed = figures_of(together);
+  const Ranking ranking = ranking_of(observed);
+  put_difference(observed, ranking);
+  const Draws draws = drawn(each, classes, ranking, index, jobs);
+  CueStatistics statistics;
+  for (std::size_t i = 0; i < kObservers; ++i) {
+    statistics.efficiency[i] = figure_at(kEfficiencyAt + i, observed, draws);
+    statistics.corrected[i] = figure_at(kCorrectedAt + i, observed, draws);
+    statistics.divergence[i] = figure_at(kDivergenceAt + i, observed, draws);
+    statistics.matched_divergence[i] = figure_at(kMatchedAt + i, observed, draws);
+  }
+  statistics.match = match_of(ranking, observed, draws);
+  return statistics;
+}
+
+ParticipantAnswers::ParticipantAnswers(std::string participant, int classes)
+    : participant_(std::move(participant)), classes_(classes) {
+  const auto side = static_cast<std::size_t>(classes);
+  presented_.resize(side, 0);
+  no_response_.resize(side, 0);
+  human_.resize(side * side, 0.0);
+  for (auto* counts : {&ideal_, &matched_, &ideal_of_answered_, &matched_of_answered_}) {
+    counts->fill(human_);
+  }
+}
+
+void ParticipantAnswers::add(const JudgedTrial& trial) {
+  const int row = trial.presented * classes_;
+  ++trials_;
+  ++presented_[trial.presented];
+  if (trial.response) {
+    human_[row + *trial.response] += 1.0;
+    human_right_ += *trial.response == trial.presented ? 1.0 : 0.0;
+  } else {
+    ++no_response_[trial.presented];
+  }
+  const auto add_shares = [&](FlatCounts& counts, const AnswerShares& shares) {
+    for (int answer = 0; answer < classes_; ++answer) counts[row + answer] += shares[answer];
+  };
+  for (std::size_t observer = 0; observer < kCues.size(); ++observer) {
+    right_[observer] += trial.ideal[observer][trial.presented];
+    add_shares(ideal_[observer], trial.ideal[observer]);
+    add_shares(matched_[observer], trial.matched[observer]);
+    if (!trial.response) continue;
+    add_shares(ideal_of_answered_[observer], trial.ideal[observer]);
+    add_shares(matched_of_answered_[observer], trial.matched[observer]);
+  }
+}
+
+}  // namespace touchtrial::analysis::identification

@@ -1,0 +1,119 @@
+/// \file What participants and observers answered to one method's trials, and what follows:
+/// efficiencies and divergences with intervals over participants. Sources: docs/cues.md;
+/// docs/statistics.md, "Participants as clusters"; Lin 1991, IEEE Transactions on Information
+/// Theory 37(1) (divergence).
+#pragma once
+
+#include "protocols/identification/analysis/cues/cue_report.hpp"
+#include "protocols/identification/analysis/cues/ideal_observer.hpp"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace touchtrial::analysis::identification {
+
+/// Counts of answers, classes x classes, row-major; rows are the presented class.
+using FlatCounts = std::vector<double>;
+
+/// One trial, judged by all observers.
+struct JudgedTrial {
+  int presented = 0;
+  std::optional<int> response;
+  std::array<AnswerShares, kCues.size()> ideal;    ///< in the order of kCues, none empty
+  std::array<AnswerShares, kCues.size()> matched;  ///< the same, as uncertain as participants
+};
+
+/// The answers of one participant, and of the observers in the participant's place.
+class ParticipantAnswers {
+ public:
+  ParticipantAnswers(std::string participant, int classes);
+
+  void add(const JudgedTrial& trial);
+
+  [[nodiscard]] const std::string& participant() const noexcept { return participant_; }
+  [[nodiscard]] int classes() const noexcept { return classes_; }
+  [[nodiscard]] int trials() const noexcept { return trials_; }
+  /// Trials of a class.
+  [[nodiscard]] int presented(int class_index) const noexcept { return presented_[class_index]; }
+  /// Trials of a class without a response.
+  [[nodiscard]] int no_response(int class_index) const noexcept {
+    return no_response_[class_index];
+  }
+
+  /// Of all trials; those without a response are wrong.
+  /// \pre trials() > 0
+  [[nodiscard]] double human_accuracy() const noexcept { return human_right_ / trials_; }
+  /// The observer's accuracy in all trials.
+  /// \param observer  in the order of kCues
+  [[nodiscard]] double available(std::size_t observer) const noexcept {
+    return right_[observer] / trials_;
+  }
+
+  /// Of the trials with a response.
+  [[nodiscard]] const FlatCounts& human() const noexcept { return human_; }
+  /// Of all trials.
+  [[nodiscard]] const FlatCounts& ideal(std::size_t observer) const noexcept {
+    return ideal_[observer];
+  }
+  [[nodiscard]] const FlatCounts& matched(std::size_t observer) const noexcept {
+    return matched_[observer];
+  }
+  /// Of the trials with a response, for comparison with human().
+  [[nodiscard]] const FlatCounts& ideal_of_answered(std::size_t observer) const noexcept {
+    return ideal_of_answered_[observer];
+  }
+  [[nodiscard]] const FlatCounts& matched_of_answered(std::size_t observer) const noexcept {
+    return matched_of_answered_[observer];
+  }
+
+ private:
+  std::string participant_;
+  int classes_;
+  int trials_ = 0;
+  double human_right_ = 0.0;
+  std::array<double, kCues.size()> right_{};
+  std::vector<int> presented_;
+  std::vector<int> no_response_;
+  FlatCounts human_;
+  std::array<FlatCounts, kCues.size()> ideal_;
+  std::array<FlatCounts, kCues.size()> matched_;
+  std::array<FlatCounts, kCues.size()> ideal_of_answered_;
+  std::array<FlatCounts, kCues.size()> matched_of_answered_;
+};
+
+/// The Jensen-Shannon divergence of two distributions that are given as counts.
+/// \param a,b  equally many counts, >= 0, the sum of each > 0
+/// \return bits: 0 if the shares are equal, 1 if they do not overlap
+[[nodiscard]] double jensen_shannon_bits(std::span<const double> a,
+                                         std::span<const double> b) noexcept;
+
+/// The mean over presented classes of the divergence between two observers' answers to them.
+/// Classes that were never presented to one of the two do not count. \param a,b  counts, classes x
+/// classes, row-major; rows are the presented class \return bits; nothing if no class counts
+[[nodiscard]] std::optional<double> answer_divergence(std::span<const double> a,
+                                                      std::span<const double> b,
+                                                      int classes) noexcept;
+
+/// The numbers of the observers, in the order of kCues.
+struct CueStatistics {
+  std::array<CueFigure, kCues.size()> efficiency;
+  std::array<CueFigure, kCues.size()> corrected;
+  std::array<CueFigure, kCues.size()> divergence;
+  std::array<CueFigure, kCues.size()> matched_divergence;
+  std::optional<CueMatch> match;
+};
+
+/// Every interval is expanded_percentiles (95 %) of 9,999 draws of whole participants with
+/// replacement, the same draws for all numbers. A number that is undefined in a draw (for instance
+/// a corrected efficiency when the observer is at chance or below) has no interval. \param
+/// participants  of the same number of classes, each with a trial \param index  chooses the stream
+/// of random numbers \param jobs  threads, on which the result does not depend; 0: one for each
+/// core
+[[nodiscard]] CueStatistics cue_statistics(std::span<const ParticipantAnswers> participants,
+                                           std::uint64_t index, int jobs = 0);
+
+}  // namespace touchtrial::analysis::identification

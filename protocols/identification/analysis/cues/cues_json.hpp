@@ -1,0 +1,15 @@
+/// \file Cues as JSON. Public headers must not include this: it exposes the JSON library.
+/// Format: docs/data-dictionary.md, "Cues".
+#pragma once
+
+#include "protocols/identification/analysis/cues/cue_report.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial::analysis::identification {
+
+/// The value of "cues" in the report, stamped if simulated. "by" tells how each kind of number is
+/// computed. Numbers that do not exist are null.
+[[nodiscard]] nlohmann::ordered_json cues_object(const CueReport& report);
+
+}  // namespace touchtrial::analysis::identification

@@ -1,0 +1,217 @@
+#include "protocols/identification/analysis/cues/exploration_path.hpp"
+
+#include "core/errors.hpp"
+#include "engine/image_file.hpp"
+#include "engine/rendering/cubic_spline.hpp"
+#include "protocols/identification/analysis/cues/felt_trials.hpp"
+#include "protocols/identification/analysis/cues/study_plane.hpp"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <optional>
+#include <span>
+#include <stdexcept>
+
+#include <fmt/format.h>
+
+namespace touchtrial::analysis::identification {
+
+namespace {
+
+const TrialOutcome& trial_of(const Outcomes& outcomes, int session, int trial) {
+  const auto found = std::ranges::find_if(outcomes.trials, [&](const TrialOutcome& one) {
+    return one.scored && one.row.session == session && one.row.trial == trial;
+  });
+  if (found == outcomes.trials.end()) {
+    throw StoreError(
+        fmt::format("session {}, trial {}: the study has no such scored trial; choose "
+                    "one that `touchtrial export` lists",
+                    session, trial));
+  }
+  return *found;
+}
+
+store::Trace trace_of(const store::StudyStore& store, const design::StudyKey& key,
+                      const TrialOutcome& trial) {
+  const std::array<const TrialOutcome*, 1> wanted{&trial};
+  store::Trace trace;
+  const auto missing = visit_traces(
+      store, key, wanted, 1, [&](std::size_t, const store::Trace& opened) { trace = opened; });
+  if (missing.empty()) return trace;
+  throw StoreError(fmt::format("session {}, trial {}: has no trace; choose another trial",
+                               trial.row.session, trial.row.trial));
+}
+
+PathTexture texture_in_pack(const engine::Pack& pack, const std::string& code) {
+  const engine::MappedField field = pack.map(code);
+  return {field.view().geometry, field_picture(field.view()), "the field in the study's pack"};
+}
+
+PathTexture texture_in_image(const design::Study& study, const design::StimulusIndex& stimulus) {
+  const auto& image = study.classes[stimulus.class_index].images[stimulus.exemplar];
+  GreyImage grey = engine::read_grey_image(study.folder / image);
+  const PlaneGeometry geometry{study.rendering.pitch_mm, grey.height(), grey.width()};
+  return {geometry, std::move(grey), "the study's image"};
+}
+
+PathTexture texture_of(const design::StudyKey& key, const design::StimulusIndex& stimulus,
+                       const std::optional<engine::Pack>& pack) {
+  try {
+    if (pack) return texture_in_pack(*pack, key.code_of(stimulus));
+  } catch (const FileError&) {
+    // The image serves instead.
+  }
+  try {
+    return texture_in_image(key.study, stimulus);
+  } catch (const FileError&) {
+    return {{}, {}, "neither pack nor image was found"};
+  }
+}
+
+double tangential_rms_n(std::span<const store::TraceSample> samples) {
+  double squares = 0.0;
+  for (const store::TraceSample& sample : samples) {
+    squares += sample.force_n.x * sample.force_n.x + sample.force_n.y * sample.force_n.y;
+  }
+  return std::sqrt(squares / static_cast<double>(samples.size()));
+}
+
+const TrialOutcome* trial_named(const Outcomes& outcomes, const TrialName& name) {
+  const TrialOutcome* found = nullptr;
+  for (const TrialOutcome& one : outcomes.trials) {
+    const bool fits =
+        one.scored && one.participant == name.participant && one.row.trial == name.trial;
+    if (fits && (found == nullptr || (one.counted && !found->counted))) found = &one;
+  }
+  return found;
+}
+
+constexpr double kMidGrey = 127.5;
+constexpr double kDeviations = 2.5;
+
+std::vector<double> surface_of(engine::FieldView field) {
+  std::vector<double> surface;
+  for (const engine::FieldSample& sample : field.samples) surface.push_back(sample.surface);
+  if (field.coefficients.empty()) return surface;
+  const PlaneGeometry& plane = field.geometry;
+  for (int y = 0; y < plane.height_px; ++y) {
+    for (int x = 0; x < plane.width_px; ++x) {
+      surface.push_back(
+          engine::spline_at(field.coefficients, plane.height_px, plane.width_px, x, y).value);
+    }
+  }
+  return surface;
+}
+
+struct Moments {
+  double mean = 0.0;
+  double deviation = 0.0;
+};
+
+Moments moments_of(const std::vector<double>& values) {
+  Moments moments;
+  const auto n = static_cast<double>(values.size());
+  for (const double value : values) moments.mean += value / n;
+  for (const double value : values) {
+    moments.deviation += (value - moments.mean) * (value - moments.mean) / n;
+  }
+  moments.deviation = std::sqrt(moments.deviation);
+  return moments;
+}
+
+}  // namespace
+
+std::vector<PathPoint> thinned_path(const store::Trace& trace, int count) {
+  if (count < 1) throw std::invalid_argument("thinned_path: there must be at least one point");
+  const std::span<const store::TraceSample> samples(trace.samples);
+  const auto most = static_cast<std::size_t>(count);
+  const std::size_t step = std::max<std::size_t>(1, (samples.size() + most - 1) / most);
+  std::vector<PathPoint> points;
+  for (std::size_t i = 0; i < samples.size(); i += step) {
+    const store::TraceSample& at = samples[i];
+    points.push_back({{at.position_mm.x, at.position_mm.y},
+                      {at.force_n.x, at.force_n.y},
+                      tangential_rms_n(samples.subspan(i, std::min(step, samples.size() - i))),
+                      at.force_n.z,
+                      at.force_n.z > 0.0});
+  }
+  return points;
+}
+
+ExplorationPath exploration_path(const store::StudyStore& store, const design::StudyKey& key,
+                                 const Outcomes& outcomes, int session, int trial,
+                                 const std::filesystem::path& pack) {
+  const TrialOutcome& felt = trial_of(outcomes, session, trial);
+  const store::Trace trace = trace_of(store, key, felt);
+  ExplorationPath path;
+  path.simulated = outcomes.simulated;
+  path.session = session;
+  path.trial = trial;
+  path.participant = felt.participant;
+  path.class_label = outcomes.classes[felt.stimulus.class_index];
+  path.exemplar = outcomes.exemplars[felt.stimulus.class_index][felt.stimulus.exemplar];
+  path.method = outcomes.methods[felt.stimulus.method];
+  path.answered_right = felt.correct();
+  path.duration_s = static_cast<double>(trace.samples.size()) / trace.rate_hz;
+  path.points = thinned_path(trace);
+  path.texture = texture_of(key, felt.stimulus, pack_of(store, key, pack));
+  return path;
+}
+
+TrialName trial_name(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  if (colon != std::string::npos && colon > 0) {
+    TrialName name{text.substr(0, colon), 0};
+    const char* end = text.data() + text.size();
+    const auto [rest, fault] = std::from_chars(text.data() + colon + 1, end, name.trial);
+    if (fault == std::errc() && rest == end && name.trial > 0) return name;
+  }
+  throw UsageError(
+      one_line(text) +
+      ": is not the name of a trial; write PARTICIPANT:N, like P01:3 for P01's third trial");
+}
+
+ExplorationPath exploration_named(const store::StudyStore& store, const design::StudyKey& key,
+                                  const Outcomes& outcomes, const TrialName& name) {
+  const TrialOutcome* trial = trial_named(outcomes, name);
+  if (trial == nullptr) {
+    throw UsageError(fmt::format(
+        "{}:{}: the study has no such scored trial; choose one that `touchtrial export` lists",
+        one_line(name.participant), name.trial));
+  }
+  return exploration_path(store, key, outcomes, trial->row.session, trial->row.trial);
+}
+
+std::vector<ExplorationPath> first_explorations(const store::StudyStore& store,
+                                                const design::StudyKey& key,
+                                                const Outcomes& outcomes) {
+  std::vector<ExplorationPath> paths;
+  for (int method = 0; method < static_cast<int>(outcomes.methods.size()); ++method) {
+    const auto first = std::ranges::find_if(outcomes.trials, [&](const TrialOutcome& one) {
+      return one.counted && one.stimulus.method == method &&
+             store.sealed_trace(one.row.session, one.row.trial).has_value();
+    });
+    if (first == outcomes.trials.end()) continue;
+    paths.push_back(exploration_path(store, key, outcomes, first->row.session, first->row.trial));
+  }
+  return paths;
+}
+
+GreyImage field_picture(engine::FieldView field) {
+  if (field.empty()) return {};
+  const std::vector<double> surface = surface_of(field);
+  const Moments moments = moments_of(surface);
+  // A field that varies only by rounding is flat.
+  const bool is_flat = moments.deviation <= 1e-6 * (1.0 + std::abs(moments.mean));
+  const double gain = is_flat ? 0.0 : kMidGrey / (kDeviations * moments.deviation);
+  GreyImage picture(field.geometry.height_px, field.geometry.width_px);
+  for (std::size_t i = 0; i < surface.size(); ++i) {
+    const double grey = kMidGrey + gain * (surface[i] - moments.mean);
+    picture.samples()[i] = static_cast<std::uint8_t>(std::lround(std::clamp(grey, 0.0, 255.0)));
+  }
+  return picture;
+}
+
+}  // namespace touchtrial::analysis::identification

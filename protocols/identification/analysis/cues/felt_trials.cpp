@@ -1,0 +1,137 @@
+#include "protocols/identification/analysis/cues/felt_trials.hpp"
+
+#include "analysis/sealed_sessions.hpp"
+#include "core/errors.hpp"
+#include "core/vec.hpp"
+#include "engine/perception/texture_sense.hpp"
+#include "protocols/identification/analysis/cues/jobs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+
+namespace touchtrial::analysis::identification {
+
+namespace {
+
+constexpr std::size_t kBatch = 64;
+
+struct WaitingTrace {
+  std::size_t place = 0;
+  const store::TrialRow* row = nullptr;
+  const SecretKey* own = nullptr;
+  store::SealedTrace box;
+  std::string fault;  ///< why it did not open; empty if it opened
+};
+
+std::string refusal(const store::TrialRow& row, const std::string& why) {
+  return fmt::format(
+      "session {}, trial {}: the trace {}; run `touchtrial verify` and restore the "
+      "database from a backup",
+      row.session, row.trial, why);
+}
+
+/// Keeps an error instead of throwing it, so that the first trial's error is reported, whichever
+/// thread meets one first.
+void open_and_visit(WaitingTrace& sealed, const TraceVisitor& visit) {
+  try {
+    const std::optional<store::Trace> trace = store::unsealed_trace(
+        sealed.box, *sealed.own, static_cast<std::size_t>(sealed.row->samples));
+    if (trace) {
+      visit(sealed.place, *trace);
+    } else {
+      sealed.fault = "does not open";
+    }
+  } catch (const StoreError& error) {
+    sealed.fault = fmt::format("does not decode ({})", error.what());
+  }
+}
+
+void visit_batch(std::vector<WaitingTrace>& batch, int jobs, const TraceVisitor& visit) {
+  in_parallel(jobs, batch.size(), [&](std::size_t i) { open_and_visit(batch[i], visit); });
+  for (const WaitingTrace& sealed : batch) {
+    if (!sealed.fault.empty()) throw VerificationError(refusal(*sealed.row, sealed.fault));
+  }
+  batch.clear();
+}
+
+engine::FeltFeatures felt_in(const store::Trace& trace, const PlaneGeometry& plane) {
+  engine::TextureSense sense({.rate_hz = trace.rate_hz, .plane = plane});
+  for (const store::TraceSample& sample : trace.samples)
+    sense.feel(sample.position_mm, sample.force_n);
+  return sense.features();
+}
+
+Vec2 farthest_contact_mm(const store::Trace& trace) {
+  Vec2 farthest_mm;
+  for (const store::TraceSample& sample : trace.samples) {
+    if (sample.force_n.z <= 0.0) continue;
+    farthest_mm.x = std::max(farthest_mm.x, sample.position_mm.x);
+    farthest_mm.y = std::max(farthest_mm.y, sample.position_mm.y);
+  }
+  return farthest_mm;
+}
+
+}  // namespace
+
+std::vector<std::size_t> visit_traces(const store::StudyStore& store, const design::StudyKey& key,
+                                      std::span<const TrialOutcome* const> trials, int jobs,
+                                      const TraceVisitor& visit, const TraceProgress& progress) {
+  const std::map<int, SecretKey> keys = participant_keys(store, key);
+  std::vector<std::size_t> missing;
+  std::vector<WaitingTrace> batch;
+  for (std::size_t place = 0; place < trials.size(); ++place) {
+    const store::TrialRow& row = trials[place]->row;
+    std::optional<store::SealedTrace> box = store.sealed_trace(row.session, row.trial);
+    const auto own = keys.find(row.session);
+    if (!box || own == keys.end()) {
+      missing.push_back(place);
+      continue;
+    }
+    batch.push_back({place, &row, &own->second, *std::move(box), {}});
+    if (batch.size() < kBatch) continue;
+    visit_batch(batch, jobs, visit);
+    if (progress) progress(static_cast<int>(place), static_cast<int>(trials.size()));
+  }
+  visit_batch(batch, jobs, visit);
+  if (progress) progress(static_cast<int>(trials.size()), static_cast<int>(trials.size()));
+  return missing;
+}
+
+FeltTrials feel_traces(const store::StudyStore& store, const design::StudyKey& key,
+                       std::span<const TrialOutcome* const> trials, const PlaneGeometry& plane,
+                       int jobs, const TraceProgress& progress) {
+  FeltTrials all;
+  all.felt.resize(trials.size());
+  all.has_trace.resize(trials.size(), true);
+  const auto feel = [&](std::size_t place, const store::Trace& trace) {
+    all.felt[place] = felt_in(trace, plane);
+  };
+  for (const std::size_t place : visit_traces(store, key, trials, jobs, feel, progress)) {
+    all.has_trace[place] = false;
+  }
+  return all;
+}
+
+PlaneGeometry touched_plane(const store::StudyStore& store, const design::StudyKey& key,
+                            std::span<const TrialOutcome* const> trials, double pitch_mm,
+                            int jobs) {
+  std::vector<Vec2> farthest_mm(trials.size());
+  static_cast<void>(
+      visit_traces(store, key, trials, jobs, [&](std::size_t place, const store::Trace& trace) {
+        farthest_mm[place] = farthest_contact_mm(trace);
+      }));
+  PlaneGeometry plane{pitch_mm, 1, 1};
+  for (const Vec2& reached_mm : farthest_mm) {
+    plane.width_px = std::max(plane.width_px, static_cast<int>(std::ceil(reached_mm.x / pitch_mm)));
+    plane.height_px =
+        std::max(plane.height_px, static_cast<int>(std::ceil(reached_mm.y / pitch_mm)));
+  }
+  return plane;
+}
+
+}  // namespace touchtrial::analysis::identification

@@ -1,0 +1,33 @@
+/// \file The plane that participants explored, from the files of a study that are still there.
+#pragma once
+
+#include "core/plane_geometry.hpp"
+#include "engine/pack/pack.hpp"
+#include "protocols/design/study_key.hpp"
+#include "protocols/store/study_store.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace touchtrial::analysis::identification {
+
+struct StudyPlane {
+  PlaneGeometry geometry;
+  std::string source;  ///< in words: "the study's pack"
+};
+
+/// The pack with which the database was recorded.
+/// \param folder  empty: where the key says
+/// \return nothing if there is no pack, or another one
+[[nodiscard]] std::optional<engine::Pack> pack_of(const store::StudyStore& store,
+                                                  const design::StudyKey& key,
+                                                  const std::filesystem::path& folder = {});
+
+/// The part of the plane that all stimuli share, which a session asks its participant to explore:
+/// from the pack's headers, else from the study's images.
+/// \return nothing if neither can be read
+[[nodiscard]] std::optional<StudyPlane> study_plane(const design::StudyKey& key,
+                                                    const std::optional<engine::Pack>& pack);
+
+}  // namespace touchtrial::analysis::identification

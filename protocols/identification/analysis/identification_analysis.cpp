@@ -1,0 +1,119 @@
+#include "protocols/identification/analysis/identification_analysis.hpp"
+
+#include "analysis/exports/trial_columns.hpp"
+#include "analysis/statistics/confusion.hpp"
+#include "protocols/identification/analysis/cues/cue_report.hpp"
+#include "protocols/identification/analysis/cues/exploration_path.hpp"
+#include "protocols/identification/analysis/figures/figures.hpp"
+#include "protocols/identification/analysis/mixed_model.hpp"
+#include "protocols/identification/analysis/page/sections.hpp"
+
+#include <utility>
+
+namespace touchtrial::analysis::identification {
+namespace {
+
+/// More traces than these are read only if somebody asks: it takes seconds.
+constexpr int kTracesUnasked = 2500;
+
+/// Counts of one method's counted trials: a row a presented class, a column an answer, then
+/// the trials without a response.
+DataTable confusion_table(const Outcomes& outcomes, int method) {
+  const auto classes = static_cast<int>(outcomes.classes.size());
+  ConfusionMatrix confusion(classes);
+  for (const TrialOutcome& trial : outcomes.trials) {
+    if (!trial.counted || trial.stimulus.method != method) continue;
+    confusion.add({trial.stimulus.class_index, trial.response});
+  }
+  DataTable table{{"presented"}, {}};
+  table.columns.insert(table.columns.end(), outcomes.classes.begin(), outcomes.classes.end());
+  table.columns.emplace_back("no_response");
+  table.columns.emplace_back("simulated");
+  for (int i = 0; i < classes; ++i) {
+    std::vector<DataCell> row{outcomes.classes[i]};
+    for (int j = 0; j < classes; ++j) row.emplace_back(std::int64_t{confusion.count(i, j)});
+    row.emplace_back(std::int64_t{confusion.no_response(i)});
+    row.push_back(flag(outcomes.simulated));
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+class IdentificationResults final : public Results {
+ public:
+  IdentificationResults(StudyReport report, std::vector<ExplorationPath> paths, bool paper_values)
+      : report_(std::move(report)), paths_(std::move(paths)), paper_values_(paper_values) {}
+
+  std::string json() const override { return report_json(report_); }
+  std::string text() const override { return report_text(report_); }
+  std::vector<Figure> figures(const std::string& stamp) const override {
+    return report_figures(report_, {.paper_values = paper_values_,
+                                    .cues = report_.cues ? &*report_.cues : nullptr,
+                                    .explorations = paths_,
+                                    .stamp = stamp});
+  }
+  Document document(const Provenance& provenance, const Pictures& pictures) const override {
+    return study_document(report_, provenance, pictures);
+  }
+
+ private:
+  StudyReport report_;
+  std::vector<ExplorationPath> paths_;
+  bool paper_values_;
+};
+
+bool reads_traces(const ReportWishes& wishes, const Outcomes& outcomes) {
+  if (wishes.source == nullptr) return false;
+  if (wishes.traces != ReportWishes::Traces::if_few) {
+    return wishes.traces == ReportWishes::Traces::yes;
+  }
+  return wishes.page && traces_to_read(outcomes) <= kTracesUnasked;
+}
+
+std::vector<ExplorationPath> explorations(const Outcomes& outcomes, const ReportWishes& wishes) {
+  if (wishes.source == nullptr) return {};
+  const auto& [store, key] = *wishes.source;
+  if (!wishes.trial.empty()) {
+    return {exploration_named(store, key, outcomes, trial_name(wishes.trial))};
+  }
+  if (!wishes.page || !reads_traces(wishes, outcomes)) return {};
+  return first_explorations(store, key, outcomes);
+}
+
+class IdentificationAnalysis final : public ProtocolAnalysis {
+ public:
+  std::unique_ptr<const Results> results(const Outcomes& outcomes,
+                                         const ReportWishes& wishes) const override {
+    // First what may be refused.
+    std::vector<ExplorationPath> paths = explorations(outcomes, wishes);
+    StudyReport report = make_report(outcomes);
+    if (reads_traces(wishes, outcomes)) {
+      report.cues = make_cues(wishes.source->store, wishes.source->key, outcomes,
+                              {.progress = wishes.progress});
+    }
+    return std::make_unique<IdentificationResults>(std::move(report), std::move(paths),
+                                                   wishes.published_values);
+  }
+  std::vector<ResultTable> tables(const Outcomes& outcomes) const override {
+    std::vector<ResultTable> tables;
+    for (const std::string& method : outcomes.methods) {
+      tables.push_back({"confusion_" + method + ".csv",
+                        confusion_table(outcomes, static_cast<int>(tables.size()))});
+    }
+    return tables;
+  }
+  std::vector<std::filesystem::path> export_model(
+      const store::StudyStore& store, const Outcomes& outcomes,
+      const std::filesystem::path& folder) const override {
+    return export_mixed_model(store, outcomes, folder);
+  }
+};
+
+}  // namespace
+
+const ProtocolAnalysis& identification_analysis() {
+  static const IdentificationAnalysis analysis;
+  return analysis;
+}
+
+}  // namespace touchtrial::analysis::identification

@@ -1,0 +1,188 @@
+#include "analysis/json_figures.hpp"
+#include "protocols/identification/analysis/report_sections.hpp"
+
+#include <fmt/format.h>
+
+namespace touchtrial::analysis::identification {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json rows_json(const Plane<double>& figures) {
+  Json rows = Json::array();
+  for (int i = 0; i < figures.height(); ++i) {
+    Json row = Json::array();
+    for (const double figure : figures.row(i)) row.push_back(figure_json(figure));
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+}  // namespace
+
+nlohmann::ordered_json choice_object(const ChoiceModel& model) {
+  Json bias = Json::array();
+  for (const double figure : model.bias) bias.push_back(figure_json(figure));
+  Json object{{"similarity", rows_json(model.similarity)},
+              {"bias", std::move(bias)},
+              {"group", model.group},
+              {"expected", rows_json(model.expected)},
+              {"g_squared", figure_json(model.g_squared)},
+              {"degrees_of_freedom", model.degrees_of_freedom},
+              {"p", figure_json(model.p)},
+              {"converged", model.converged}};
+  put_method(object,
+             "similarity choice model, maximum likelihood; biases sum to 1 within a group of "
+             "classes that answers lead between both ways; p of G squared under chi-square against "
+             "the saturated model",
+             {"luce1963", "townsend1982"});
+  return object;
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json counts_json(const ConfusionMatrix& confusion) {
+  Json rows = Json::array();
+  for (int i = 0; i < confusion.classes(); ++i) {
+    Json row = Json::array();
+    for (int j = 0; j < confusion.classes(); ++j) row.push_back(confusion.count(i, j));
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+Json no_response_json(const ConfusionMatrix& confusion) {
+  Json column = Json::array();
+  for (int i = 0; i < confusion.classes(); ++i) column.push_back(confusion.no_response(i));
+  return column;
+}
+
+/// Row and column sums; how often a class was answered beside how often it was there is the bias.
+Json marginals_json(const ConfusionMatrix& confusion) {
+  Json presented = Json::array();
+  Json answered = Json::array();
+  for (int i = 0; i < confusion.classes(); ++i) {
+    presented.push_back(confusion.presented(i));
+    answered.push_back(confusion.answered(i));
+  }
+  return {{"presented", std::move(presented)}, {"answered", std::move(answered)}};
+}
+
+Json classes_json(const MethodReport& method, const std::vector<std::string>& classes) {
+  Json all = Json::array();
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    const ClassAccuracy& one = method.accuracy[i];
+    Json entry{{"class", classes[i]}};
+    put_proportion(entry, one.accuracy);
+    entry["wilson"] = interval_json(known(one.wilson, one.accuracy));
+    entry["clopper_pearson"] = interval_json(known(one.clopper_pearson, one.accuracy));
+    entry["jeffreys"] = interval_json(known(one.jeffreys, one.accuracy));
+    all.push_back(std::move(entry));
+  }
+  return all;
+}
+
+Json matching_json(const LabelMatching& matching, const std::vector<std::string>& classes) {
+  Json object;
+  put_proportion(object, matching.accuracy);
+  object["answer_of"] = Json::array();
+  for (const int answer : matching.answer_of) object["answer_of"].push_back(classes[answer]);
+  return object;
+}
+
+Json participants_json(const MethodReport& method, const std::vector<std::string>& classes) {
+  Json all = Json::array();
+  for (const ParticipantAccuracy& one : method.per_participant) {
+    Json entry{{"participant", one.participant}};
+    put_proportion(entry, one.accuracy);
+    entry["best_matching"] = matching_json(one.matching, classes);
+    entry["consistency_bits"] = figure_json(one.consistency);
+    all.push_back(std::move(entry));
+  }
+  return all;
+}
+
+Json overall_json(const MethodReport& method) {
+  Json overall;
+  put_proportion(overall, method.overall);
+  overall["mean"] = figure_json(method.mean.mean);
+  overall["interval"] = interval_json(method.mean.known_interval());
+  overall["sd"] = figure_json(method.mean.sd);
+  overall["bootstrap"] = interval_json(method.bootstrap);
+  put_method(overall,
+             "mean: of participants' own accuracies, with Student's t interval; bootstrap: "
+             "expanded percentiles of the pooled share in 9,999 draws of whole participants; 95 %",
+             {"student1908", "davison1997", "hesterberg2015"});
+  return overall;
+}
+
+std::string how(const ChanceTest& test) {
+  if (test.exact) return "one-sided, exact, over the orders that the study could have had";
+  return fmt::format("one-sided, Monte Carlo over {} orders made by the study's rule, (b+1)/(m+1)",
+                     test.deals);
+}
+
+Json chance_json(const std::optional<ChanceTest>& test) {
+  if (!test) return nullptr;
+  Json object{{"correct", test->correct},
+              {"trials", test->trials},
+              {"expected", figure_json(test->expected)},
+              {"p", figure_json(test->p)},
+              {"exact", test->exact},
+              {"deals", test->deals}};
+  put_method(object, how(*test), {"phipson2010"});
+  return object;
+}
+
+Json d_prime_json(const DPrime& d_prime) {
+  Json object{{"estimate", figure_json(d_prime.estimate)},
+              {"low", figure_json(d_prime.low)},
+              {"high", figure_json(d_prime.high)}};
+  put_method(object,
+             "nominal, of the pooled share, as if all classes were equally distant and no answer "
+             "preferred; low and high of the Clopper-Pearson interval",
+             {"green1966", "hacker1979"});
+  return object;
+}
+
+Json information_json(const InformationTransfer& information) {
+  Json object{{"raw", figure_json(information.raw)},
+              {"corrected", figure_json(information.corrected)},
+              {"null_mean", figure_json(information.null_mean)}};
+  put_method(object,
+             fmt::format("bits, over trials with a response; corrected by Miller and Madow; "
+                         "null_mean: of {} deals, answers permuted within participants",
+                         information.deals),
+             {"tan2010", "miller1955"});
+  return object;
+}
+
+}  // namespace
+
+nlohmann::ordered_json method_object(const MethodReport& method,
+                                     const std::vector<std::string>& classes) {
+  Json object{{"method", method.method},
+              {"confusion", counts_json(method.confusion)},
+              {"no_response", no_response_json(method.confusion)},
+              {"accuracy", classes_json(method, classes)},
+              {"overall", overall_json(method)},
+              {"information_transfer", information_json(method.information)},
+              {"per_participant", participants_json(method, classes)},
+              {"marginals", marginals_json(method.confusion)},
+              {"chance", chance_json(method.chance)},
+              {"d_prime", d_prime_json(method.d_prime)}};
+  object["best_matching"] = matching_json(method.matching, classes);
+  put_method(object["best_matching"],
+             "accuracy under the exchange of labels that suits the answers best; biased upward",
+             {"kuhn1955"});
+  object["choice_model"] = method.choice ? choice_object(*method.choice) : Json(nullptr);
+  object["reaction_time_s"] = reaction_array(method.reaction, classes);
+  object["breakdowns"] = breakdowns_object(method.breakdowns);
+  object["robustness"] = robustness_array(method.robustness);
+  return object;
+}
+
+}  // namespace touchtrial::analysis::identification

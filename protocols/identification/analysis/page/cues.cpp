@@ -1,0 +1,156 @@
+#include "analysis/page/wording.hpp"
+#include "analysis/text_figures.hpp"
+#include "protocols/identification/analysis/page/sections.hpp"
+
+#include <fmt/format.h>
+
+namespace touchtrial::analysis::identification {
+
+namespace {
+
+std::string mean_range(const MeanEstimate& mean) {
+  return mean.participants > 1 ? share_range(mean.interval) : kNoFigure;
+}
+
+std::string prefix_of(const StudyReport& report, const MethodCues& method) {
+  return report.methods.size() > 1 ? method.method + ": " : "";
+}
+
+std::vector<Cell> observer_row(const ObserverFigures& observer) {
+  return {std::string(title_of(observer.cue)),
+          share_figure(observer.mean.mean),
+          mean_range(observer.mean),
+          plain_figure(observer.efficiency.value, 2),
+          plain_range(observer.efficiency.interval, 2),
+          plain_figure(observer.corrected_efficiency.value, 2),
+          plain_range(observer.corrected_efficiency.interval, 2)};
+}
+
+/// How much there was to feel.
+Table cue_table(const StudyReport& report, const MethodCues& method, std::size_t index) {
+  Table table{
+      "cues-" + std::to_string(index + 1),
+      prefix_of(report, method) + "what ideal observers would have made of what each hand felt",
+      {{"observer uses", Align::left},
+       {"accuracy"},
+       {"95% (%)"},
+       {"efficiency"},
+       {"95%"},
+       {"above chance"},
+       {"95%"}}};
+  table.rows.push_back({"(participants)", Cell(share_figure(method.human_mean.mean), true),
+                        mean_range(method.human_mean), "", "", "", ""});
+  for (const ObserverFigures& one : method.observers) table.rows.push_back(observer_row(one));
+  table.notes = {
+      {fmt::format("{} of {}; observers judge each trial by the others' and know nothing of "
+                   "answers. Accuracy: mean over participants with Student's t interval.",
+                   counted(method.trials, "trial"),
+                   counted(static_cast<std::int64_t>(method.participants.size()), "participant")),
+       {Source::student}},
+      {"Efficiency: participants' accuracy over the observer's; above chance: the same of what "
+       "both have above chance. Intervals: bootstrap over participants.",
+       {Source::davison_hinkley}}};
+  return table;
+}
+
+std::vector<Cell> confusing_row(const ObserverFigures& observer, bool best) {
+  return {std::string(title_of(observer.cue)),
+          plain_figure(observer.divergence.value, 3),
+          plain_range(observer.divergence.interval, 3),
+          plain_figure(observer.matched_noise, 2),
+          Cell(plain_figure(observer.matched_divergence.value, 3), best),
+          plain_range(observer.matched_divergence.interval, 3)};
+}
+
+/// Which of them confuses as participants do.
+Table confusing_table(const StudyReport& report, const MethodCues& method, std::size_t index) {
+  Table table{"cues-confusing-" + std::to_string(index + 1),
+              prefix_of(report, method) + "how far observers' confusions are from participants'",
+              {{"observer uses", Align::left},
+               {"divergence (bit)"},
+               {"95%"},
+               {"noise to match"},
+               {"divergence, matched (bit)"},
+               {"95%"}}};
+  for (const ObserverFigures& one : method.observers) {
+    table.rows.push_back(confusing_row(one, method.match && method.match->best == one.cue));
+  }
+  table.notes = {
+      {"Divergence: Jensen-Shannon, between participants' and the observer's answers, mean over "
+       "textures; 0 if they confuse alike, 1 at most. Intervals: bootstrap over participants.",
+       {Source::lin, Source::davison_hinkley}},
+      {"Matched: an observer that is hardly ever wrong has no confusions to be compared, so its "
+       "sense is given noise (a Weber fraction) until it is right as often as participants; 0 if "
+       "it is not right more often without. The least is emphasised."}};
+  return table;
+}
+
+/// With fewer a bootstrap over participants is no ground for a verdict.
+constexpr std::size_t kFewestToTell = 6;
+
+std::string verdict_of(const MethodCues& method, const CueMatch& match) {
+  const std::size_t participants = method.participants.size();
+  if (participants < kFewestToTell) {
+    return fmt::format("with {} it is not told whether the two differ",
+                       counted(static_cast<std::int64_t>(participants), "participant"));
+  }
+  if (!match.difference.interval) {
+    return "without an interval it is not told whether the two differ";
+  }
+  return "95% interval " + plain_range(match.difference.interval, 3) +
+         (match.told_apart ? ", so the two are told apart"
+                           : ", which holds 0, so the two are not told apart");
+}
+
+Cited match_of(const MethodCues& method) {
+  if (!method.match) return {method.method + ": no trial tells which observer confuses alike."};
+  const CueMatch& match = *method.match;
+  return {fmt::format("{}: once all are as uncertain as participants, their confusions are most "
+                      "like those of the observer of {} ({} bit less matched divergence than {}; "
+                      "{}).",
+                      method.method, title_of(match.best), plain_figure(match.difference.value, 3),
+                      title_of(match.second), verdict_of(method, match)),
+          {Source::lin}};
+}
+
+std::string left_out_of(const MethodCues& method) {
+  std::string text;
+  if (method.without_trace > 0) {
+    text += fmt::format("{}: {} left out for want of a readable trace. ", method.method,
+                        counted(method.without_trace, "trial"));
+  }
+  if (method.unjudged > 0) {
+    text += fmt::format("{}: {} left out because no other trial had their texture.", method.method,
+                        counted(method.unjudged, "trial"));
+  }
+  return text;
+}
+
+}  // namespace
+
+Section cues_section(const StudyReport& report) {
+  Section section{"cues", "Which cue was it?", {}};
+  if (!report.cues) {
+    section.blocks.emplace_back(
+        Cited{"Not looked at: ideal observers read every trace of the study. Ask for it with "
+              "touchtrial report DB --out DIR --cues yes.",
+              {}});
+    return section;
+  }
+  for (std::size_t i = 0; i < report.cues->methods.size(); ++i) {
+    const MethodCues& method = report.cues->methods[i];
+    if (method.observers.empty()) {
+      section.blocks.emplace_back(Cited{method.method + ": no trial could be judged.", {}});
+      continue;
+    }
+    section.blocks.emplace_back(match_of(method));
+    section.blocks.emplace_back(cue_table(report, method, i));
+    section.blocks.emplace_back(confusing_table(report, method, i));
+    const std::string left_out = left_out_of(method);
+    if (!left_out.empty()) section.blocks.emplace_back(Cited{left_out, {}});
+  }
+  if (!report.cues->warnings.empty()) section.blocks.emplace_back(Warnings{report.cues->warnings});
+  return section;
+}
+
+}  // namespace touchtrial::analysis::identification

@@ -1,0 +1,145 @@
+#include "analysis/page/wording.hpp"
+#include "protocols/identification/analysis/page/sections.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+namespace touchtrial::analysis::identification {
+namespace {
+
+using std::string_view;
+
+/// Where pictures stand: an id that begins so belongs to that section; the first that fits.
+struct PicturePlace {
+  string_view beginning;
+  string_view section;
+};
+constexpr std::array<PicturePlace, 12> kPlaces{{{"accuracy-by-class", "accuracy"},
+                                                {"accuracy-over-trials", "order"},
+                                                {"accuracy-by-trial", "order"},
+                                                {"accuracy", "accuracy"},
+                                                {"participants", "accuracy"},
+                                                {"methods", "methods-compared"},
+                                                {"confusion", "confusions"},
+                                                {"reaction", "reaction-times"},
+                                                {"observers", "cues"},
+                                                {"ideal", "cues"},
+                                                {"cue", "cues"},
+                                                {"servo", "servo-and-validity"}}};
+
+/// The page draws participants' flow itself, as text that can be read aloud: this is for papers.
+constexpr string_view kFlow = "participant-flow";
+constexpr string_view kExploration = "exploration";
+
+string_view section_for(const Picture& picture) {
+  const auto* place = std::find_if(kPlaces.begin(), kPlaces.end(), [&](const PicturePlace& one) {
+    return picture.id.starts_with(one.beginning);
+  });
+  return place == kPlaces.end() ? string_view() : place->section;
+}
+
+/// Pictures stand before the section's first table or subheading, and below its sentences.
+void add_picture(const Picture& picture, Section& section) {
+  const auto place =
+      std::find_if(section.blocks.begin(), section.blocks.end(), [](const Block& one) {
+        return std::holds_alternative<Table>(one) || std::holds_alternative<Subheading>(one);
+      });
+  section.blocks.insert(place, picture);
+}
+
+/// What single hands did comes last among the cues.
+void add_explorations(const Pictures& pictures, std::vector<Section>& sections) {
+  const auto cues = std::find_if(sections.begin(), sections.end(),
+                                 [](const Section& one) { return one.id == "cues"; });
+  if (cues == sections.end()) return;
+  bool first = true;
+  for (const Picture& picture : pictures) {
+    if (!picture.id.starts_with(kExploration)) continue;
+    if (first) cues->blocks.emplace_back(Subheading{"explorations", "How a hand explored"});
+    first = false;
+    cues->blocks.emplace_back(picture);
+  }
+}
+
+/// \return those that belong to no section
+Pictures place_pictures(const Pictures& pictures, std::vector<Section>& sections) {
+  Pictures left;
+  // Each is put before the section's first table, so the last one comes last.
+  for (const Picture& picture : pictures) {
+    if (picture.id == kFlow || picture.id.starts_with(kExploration)) continue;
+    const string_view wanted = section_for(picture);
+    const auto section = std::find_if(sections.begin(), sections.end(),
+                                      [&](const Section& one) { return one.id == wanted; });
+    if (section == sections.end()) {
+      left.push_back(picture);
+    } else {
+      add_picture(picture, *section);
+    }
+  }
+  add_explorations(pictures, sections);
+  return left;
+}
+
+/// With several methods a caption begins with a method's name, which stays as it is.
+void capitalise_captions(Document& document) {
+  for (Section& section : document.sections) {
+    for (Block& block : section.blocks) {
+      auto* table = std::get_if<Table>(&block);
+      if (table == nullptr || table->caption.empty()) continue;
+      char& first = table->caption.front();
+      if (first >= 'a' && first <= 'z') first = static_cast<char>(first - 'a' + 'A');
+    }
+  }
+}
+
+/// What is in the way is an unknown picture's: before the section on methods.
+void add_further(const Pictures& pictures, Document& document) {
+  if (pictures.empty()) return;
+  Section further{"further-figures", "Further figures", {}};
+  for (const Picture& one : pictures) further.blocks.emplace_back(one);
+  document.sections.insert(document.sections.end() - 1, std::move(further));
+}
+
+/// A name that is not taken by a method before.
+bool is_taken(const StudyReport& report, std::size_t method, const std::string& slug) {
+  for (std::size_t i = 0; i < method; ++i) {
+    if (slug_of(report.methods[i].method) == slug) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string method_slug(const StudyReport& report, std::size_t method) {
+  const std::string slug = slug_of(report.methods[method].method);
+  if (!slug.empty() && !is_taken(report, method, slug)) return slug;
+  // Two hyphens are in no slug.
+  return slug + "--" + std::to_string(method + 1);
+}
+
+void add_method_heading(const StudyReport& report, std::size_t method, Section& section) {
+  if (report.methods.size() < 2) return;
+  section.blocks.emplace_back(
+      Subheading{section.id + "-of-" + method_slug(report, method), report.methods[method].method});
+}
+
+std::string method_prefix(const StudyReport& report, std::size_t method) {
+  return report.methods.size() > 1 ? report.methods[method].method + ": " : "";
+}
+
+Document study_document(const StudyReport& report, const Provenance& provenance,
+                        const Pictures& pictures) {
+  const bool missing = std::ranges::any_of(pictures, &std::string::empty, &Picture::svg);
+  Document document =
+      framed_document(report, headline_section(report),
+                      {accuracy_section(report), confusions_section(report),
+                       comparison_section(report), order_section(report), times_section(report),
+                       cues_section(report), robustness_section(report), methods_section(report)},
+                      provenance, missing);
+  if (report.methods.size() < 2) capitalise_captions(document);
+  add_further(place_pictures(pictures, document.sections), document);
+  return document;
+}
+
+}  // namespace touchtrial::analysis::identification

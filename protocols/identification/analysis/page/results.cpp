@@ -1,0 +1,296 @@
+#include "analysis/page/frame_sections.hpp"
+#include "analysis/page/wording.hpp"
+#include "analysis/text_figures.hpp"
+#include "protocols/identification/analysis/page/sections.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace touchtrial::analysis::identification {
+
+namespace {
+
+double chance_share(const StudyReport& report) {
+  return report.classes.empty() ? 0.0 : 1.0 / static_cast<double>(report.classes.size());
+}
+
+std::string spread_phrase(const MeanEstimate& mean) {
+  if (!mean.sd) return "";
+  return fmt::format("; standard deviation between participants {} points",
+                     plain_figure(100.0 * *mean.sd, 1));
+}
+
+std::string chance_phrase(const MethodReport& method) {
+  if (!method.chance) return "";
+  const ChanceTest& test = *method.chance;
+  return fmt::format(
+      " Answers that have nothing to do with what was presented would give {} "
+      "right of {} on average; {} were right ({} permutation over the design, "
+      "one-sided {}).",
+      plain_figure(test.expected, 1), test.trials, test.correct,
+      test.exact ? "exact" : "Monte Carlo", p_phrase(test.p));
+}
+
+/// The sentence to quote.
+std::string headline_of(const StudyReport& report, const MethodReport& method) {
+  if (!method.mean.mean) return method.method + ": no participant's trials count yet.";
+  const std::string who = counted(method.mean.participants, "participant");
+  if (method.mean.participants < 2) {
+    return fmt::format(
+               "{}: {} was right in {} of trials ({} of {}). Of one participant there is "
+               "no interval over participants.",
+               method.method, who, share_figure(method.mean.mean), method.overall.correct,
+               method.overall.n) +
+           chance_phrase(method);
+  }
+  const std::string bootstrap =
+      method.bootstrap ? ", cluster bootstrap interval " + share_range(method.bootstrap) : "";
+  return fmt::format(
+             "{}: participants were right in {} of their trials on average "
+             "({}, {}; 95% t interval {}{}{}). Chance is {}.",
+             method.method, share_figure(method.mean.mean), who, counted(method.overall.n, "trial"),
+             share_range(method.mean.interval), bootstrap, spread_phrase(method.mean),
+             share_figure(chance_share(report))) +
+         chance_phrase(method);
+}
+
+std::vector<Cell> headline_row(const MethodReport& method) {
+  const MeanEstimate& mean = method.mean;
+  const bool interval = mean.participants > 1;
+  const auto p = method.chance ? std::optional(method.chance->p) : std::nullopt;
+  return {method.method,
+          std::to_string(mean.participants),
+          std::to_string(method.overall.n),
+          Cell(share_figure(mean.mean), true),
+          interval ? share_range(mean.interval) : kNoFigure,
+          share_range(method.bootstrap),
+          mean.sd ? plain_figure(100.0 * *mean.sd, 1) : kNoFigure,
+          p_figure(p)};
+}
+
+Table headline_table(const StudyReport& report) {
+  Table table{"headline",
+              "Proportion of right answers, mean over participants",
+              {{"method", Align::left},
+               {"participants"},
+               {"trials"},
+               {"mean"},
+               {"t 95% (%)"},
+               {"bootstrap 95% (%)"},
+               {"SD (points)"},
+               {"p, above chance"}}};
+  for (const MethodReport& method : report.methods) table.rows.push_back(headline_row(method));
+  table.notes = {
+      {"Mean of participants' own proportions, with Student's t interval.", {Source::student}},
+      {"Bootstrap: expanded percentiles over draws of whole participants with all their trials.",
+       {Source::davison_hinkley, Source::hesterberg}},
+      {"Above chance: permutation over the orders that the study's design could have dealt, "
+       "one-sided.",
+       {Source::phipson_smyth}},
+      {fmt::format("A trial without a response counts as wrong. Chance is {}.",
+                   share_figure(chance_share(report)))}};
+  return table;
+}
+
+}  // namespace
+
+Section headline_section(const StudyReport& report) {
+  Section section{"result", "Result", {}};
+  for (const MethodReport& method : report.methods) {
+    section.blocks.emplace_back(
+        Cited{headline_of(report, method), {Source::student, Source::phipson_smyth}});
+  }
+  section.blocks.emplace_back(headline_table(report));
+  return section;
+}
+
+namespace {
+
+struct KindWords {
+  const char* id;
+  const char* caption;
+  const char* column;
+};
+
+KindWords words_of(BreakdownKind kind) {
+  switch (kind) {
+    case BreakdownKind::exemplar:
+      return {"exemplar", "by exemplar: which picture of a texture", "exemplar"};
+    case BreakdownKind::trial:
+      return {"trial", "by trial: its place among a participant's scored trials", "trial"};
+    case BreakdownKind::order_group:
+      return {"order-group", "by order group: in which order methods came", "order group"};
+    case BreakdownKind::previous_stimulus:
+      return {"previous-texture", "by the texture presented just before", "before it"};
+    case BreakdownKind::previous_response:
+      return {"previous-answer", "by the answer given just before", "answered before it"};
+  }
+  return {"", "", ""};
+}
+
+Table breakdown_table(const StudyReport& report, std::size_t index, const Breakdown& breakdown) {
+  const KindWords words = words_of(breakdown.kind);
+  Table table{std::string("accuracy-by-") + words.id + "-" + method_slug(report, index),
+              method_prefix(report, index) + "right answers " + words.caption,
+              {{words.column, Align::left}, {"n"}, {"right"}, {"accuracy"}, {"Wilson 95% (%)"}}};
+  for (const GroupAccuracy& group : breakdown.groups) {
+    table.rows.push_back({group.group, std::to_string(group.accuracy.n),
+                          std::to_string(group.accuracy.correct),
+                          share_figure(group.accuracy.share()), share_range(group.wilson)});
+  }
+  table.notes = {
+      {"All participants' trials pooled as if independent: to look at, not to test "
+       "with. Of many such rows some stand out by chance.",
+       {Source::wilson}}};
+  return table;
+}
+
+}  // namespace
+
+Section order_section(const StudyReport& report) {
+  Section section{"order", "Order and carry-over", {}};
+  for (std::size_t i = 0; i < report.methods.size(); ++i) {
+    if (report.methods[i].breakdowns.empty()) continue;
+    add_method_heading(report, i, section);
+    for (const Breakdown& one : report.methods[i].breakdowns) {
+      section.blocks.emplace_back(breakdown_table(report, i, one));
+    }
+  }
+  return section;
+}
+
+namespace {
+
+std::vector<Cell> time_row(const std::string& name, const ReactionTimes& times) {
+  return {name,
+          std::to_string(times.from_plane_on.n),
+          plain_figure(times.from_plane_on.lower, 2),
+          plain_figure(times.from_plane_on.median, 2),
+          plain_figure(times.from_plane_on.upper, 2),
+          plain_figure(times.from_contact.lower, 2),
+          plain_figure(times.from_contact.median, 2),
+          plain_figure(times.from_contact.upper, 2)};
+}
+
+Table times_table(const StudyReport& report, std::size_t index) {
+  Table table{"reaction-times-" + method_slug(report, index),
+              method_prefix(report, index) +
+                  "reaction times in seconds by the texture presented: quartiles and medians",
+              {{"texture", Align::left},
+               {"n"},
+               {"plane on, 25%"},
+               {"plane on, median"},
+               {"plane on, 75%"},
+               {"contact, 25%"},
+               {"contact, median"},
+               {"contact, 75%"}}};
+  const std::vector<ReactionTimes>& times = report.methods[index].reaction;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const bool all = i >= report.classes.size();
+    table.rows.push_back(time_row(all ? "all" : report.classes[i], times[i]));
+  }
+  table.notes = {
+      {"Trials with a response, right or wrong. From the moment the plane can be felt, "
+       "and from first contact, to the answer; one monotonic clock, the servo's. "
+       "Quantiles by interpolation (definition 7).",
+       {Source::hyndman_fan}}};
+  return table;
+}
+
+}  // namespace
+
+Section times_section(const StudyReport& report) {
+  Section section{"reaction-times", "Reaction times", {}};
+  for (std::size_t i = 0; i < report.methods.size(); ++i) {
+    if (report.methods[i].reaction.empty()) continue;
+    section.blocks.emplace_back(times_table(report, i));
+  }
+  return section;
+}
+
+namespace {
+
+const char* words_of(TrialSubset subset) {
+  switch (subset) {
+    case TrialSubset::counted:
+      return "as counted (a missing response is wrong)";
+    case TrialSubset::answered:
+      return "trials without a response left out";
+    case TrialSubset::valid:
+      return "trials that break the validity rule left out";
+    case TrialSubset::with_excluded_sessions:
+      return "excluded participants' sessions put back";
+  }
+  return "";
+}
+
+Table robustness_table(const StudyReport& report, std::size_t index) {
+  Table table{"with-and-without-" + method_slug(report, index),
+              method_prefix(report, index) + "the headline with and without what could be left out",
+              {{"trials", Align::left},
+               {"n"},
+               {"right"},
+               {"pooled"},
+               {"participants"},
+               {"mean"},
+               {"t 95% (%)"}}};
+  for (const SubsetAccuracy& one : report.methods[index].robustness) {
+    table.rows.push_back({words_of(one.subset), std::to_string(one.pooled.n),
+                          std::to_string(one.pooled.correct), share_figure(one.pooled.share()),
+                          std::to_string(one.mean.participants), share_figure(one.mean.mean),
+                          one.mean.participants > 1 ? share_range(one.mean.interval) : kNoFigure});
+  }
+  table.notes = {
+      {"Mean over participants with Student's t interval. If a row's conclusion differs "
+       "from the first's, say so beside the headline.",
+       {Source::student}}};
+  return table;
+}
+
+}  // namespace
+
+Section robustness_section(const StudyReport& report) {
+  Section section{"servo-and-validity", "Servo and validity", {}};
+  if (const auto servo = servo_table(report.collection)) {
+    section.blocks.emplace_back(*servo);
+  } else {
+    section.blocks.emplace_back(
+        Cited{"There is no table and no figure of the servo: no trial ran in real time. In virtual "
+              "time every tick is on time by construction, and says nothing of a device.",
+              {}});
+  }
+  for (std::size_t i = 0; i < report.methods.size(); ++i) {
+    if (report.methods[i].robustness.empty()) continue;
+    section.blocks.emplace_back(robustness_table(report, i));
+  }
+  return section;
+}
+
+Section methods_section(const StudyReport& /*report*/) {
+  Section section{"methods", "How these figures were made", {}};
+  section.blocks.emplace_back(Cited{
+      "Every figure is made by the program named above from the database named above; "
+      "results.json, beside this page, holds the same figures with all their digits. Under each "
+      "table stands what its figures are and where the method comes from. Intervals hold 95% "
+      "nominally. Resampling draws from a random stream of fixed seed, so that the same database "
+      "gives the same figures on every machine.",
+      {}});
+  section.blocks.emplace_back(Definitions{
+      {{"unit of analysis",
+        "The participant. Trials pooled over participants are shown for looking at; intervals and "
+        "tests that take them as independent are marked."},
+       {"missing responses",
+        "Wrong in every accuracy; left out of information transfer and of the choice model. The "
+        "tables with and without show what depends on it."},
+       {"right or wrong",
+        "An answer is right if its picture is of the class that was presented, whichever exemplar "
+        "of it."},
+       {"blinding",
+        "What was presented was sealed before trial 1 and opened by a recorded event; touchtrial "
+        "verify DB holds every event, the seal and the schedules against each other, and the head "
+        "of the file's chain named above tells whether this report is of the same file."}}});
+  return section;
+}
+
+}  // namespace touchtrial::analysis::identification

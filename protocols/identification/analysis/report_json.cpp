@@ -1,0 +1,203 @@
+#include "analysis/bibliography.hpp"
+#include "analysis/json_figures.hpp"
+#include "protocols/identification/analysis/cues/cues_json.hpp"
+#include "protocols/identification/analysis/report_sections.hpp"
+
+namespace touchtrial::analysis::identification {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json quartiles_json(const Quartiles& quartiles) {
+  return {{"n", quartiles.n},
+          {"lower_quartile", figure_json(quartiles.lower)},
+          {"median", figure_json(quartiles.median)},
+          {"upper_quartile", figure_json(quartiles.upper)}};
+}
+
+Json groups_json(const Breakdown& breakdown) {
+  Json groups = Json::array();
+  for (const GroupAccuracy& one : breakdown.groups) {
+    Json entry{{"group", one.group}};
+    put_proportion(entry, one.accuracy);
+    entry["wilson"] = interval_json(known(one.wilson, one.accuracy));
+    groups.push_back(std::move(entry));
+  }
+  return groups;
+}
+
+}  // namespace
+
+nlohmann::ordered_json reaction_array(const std::vector<ReactionTimes>& reaction,
+                                      const std::vector<std::string>& classes) {
+  Json all = Json::array();
+  for (std::size_t i = 0; i < reaction.size(); ++i) {
+    const bool is_class = i < classes.size();
+    all.push_back({{"class", is_class ? Json(classes[i]) : Json(nullptr)},
+                   {"from_plane_on", quartiles_json(reaction[i].from_plane_on)},
+                   {"from_contact", quartiles_json(reaction[i].from_contact)}});
+  }
+  return all;
+}
+
+nlohmann::ordered_json breakdowns_object(const std::vector<Breakdown>& breakdowns) {
+  Json object = Json::object();
+  for (const Breakdown& one : breakdowns) object[name_of(one.kind)] = groups_json(one);
+  return object;
+}
+
+nlohmann::ordered_json robustness_array(const std::vector<SubsetAccuracy>& subsets) {
+  Json all = Json::array();
+  for (const SubsetAccuracy& one : subsets) {
+    Json entry{{"trials", name_of(one.subset)}};
+    put_proportion(entry, one.pooled);
+    entry["participants"] = one.mean.participants;
+    entry["mean"] = figure_json(one.mean.mean);
+    entry["interval"] = interval_json(one.mean.known_interval());
+    all.push_back(std::move(entry));
+  }
+  return all;
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json proportion_json(const Proportion& proportion) {
+  Json object;
+  put_proportion(object, proportion);
+  return object;
+}
+
+void put_comparison(Json& object, const MethodComparison& comparison) {
+  object["participants"] = comparison.participants;
+  object["difference"] = figure_json(comparison.difference);
+  object["interval"] = interval_json(comparison.known_interval());
+  object["bootstrap"] = interval_json(comparison.bootstrap);
+  object["p"] = figure_json(comparison.p);
+  object["db"] = figure_json(comparison.db);
+}
+
+Json class_json(const ClassComparison& one, const std::string& label) {
+  Json object{{"class", label},
+              {"first", proportion_json(one.first)},
+              {"second", proportion_json(one.second)}};
+  put_comparison(object, one.paired);
+  object["mcnemar_mid_p"] = figure_json(one.mcnemar_mid_p);
+  return object;
+}
+
+Json odds_ratio_json(const std::optional<OddsRatio>& ratio) {
+  if (!ratio) return nullptr;
+  Json object{{"estimate", figure_json(ratio->estimate)},
+              {"interval", interval_json(ratio->interval)}};
+  put_method(object,
+             "Mantel and Haenszel's common odds ratio, participants as strata; interval of Robins, "
+             "Breslow and Greenland",
+             {"mantel1959", "robins1986"});
+  return object;
+}
+
+Json pair_json(const MethodPair& pair, const StudyReport& report) {
+  Json object{{"first", report.methods[pair.first].method},
+              {"second", report.methods[pair.second].method}};
+  put_comparison(object, pair.overall);
+  object["p_holm"] = figure_json(pair.p_holm);
+  object["odds_ratio"] = odds_ratio_json(pair.odds_ratio);
+  object["mcnemar_mid_p"] = figure_json(pair.mcnemar_mid_p);
+  object["classes"] = Json::array();
+  for (std::size_t i = 0; i < pair.classes.size(); ++i) {
+    object["classes"].push_back(class_json(pair.classes[i], report.classes[i]));
+  }
+  put_method(
+      object,
+      "differences of participants' accuracies, first minus second: t interval, bootstrap "
+      "(expanded percentiles of 9,999 draws of participants), p of the two-sided sign-flip "
+      "test (exact up to 32 participants, then 99,999 random patterns); db: 10 log10 of the ratio "
+      "of "
+      "means; p_holm: adjusted over all pairs, with three methods or more; mcnemar_mid_p: "
+      "with one pair a participant; p of classes are not adjusted",
+      {"student1908", "davison1997", "hesterberg2015", "phipson2010", "holm1979", "fagerland2013"});
+  return object;
+}
+
+}  // namespace
+
+nlohmann::ordered_json pairs_array(const StudyReport& report) {
+  Json all = Json::array();
+  for (const MethodPair& pair : report.pairs) all.push_back(pair_json(pair, report));
+  return all;
+}
+
+nlohmann::ordered_json together_object(const MethodsTogether& together) {
+  Json object{{"q", figure_json(together.cochran.q)},
+              {"degrees_of_freedom", together.cochran.degrees_of_freedom},
+              {"p", figure_json(together.cochran.p)},
+              {"permuted_p", figure_json(together.permuted_p)}};
+  put_method(object,
+             "Cochran's Q over occasions (participant, class, n-th presentation); p under "
+             "chi-square takes occasions as independent; permuted_p exchanges methods within "
+             "participants, Monte Carlo over 9,999 deals, (b+1)/(m+1)",
+             {"cochran1950", "phipson2010"});
+  return object;
+}
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json comparison_json(const MethodComparison& comparison) {
+  return {{"difference", figure_json(comparison.difference)},
+          {"interval", interval_json(comparison.known_interval())},
+          {"p", figure_json(comparison.p)},
+          {"db", figure_json(comparison.db)}};
+}
+
+/// The accuracies' intervals, which every method has.
+Json intervals_json() {
+  Json object;
+  put_method(object,
+             "95 %, all participants' trials pooled as if independent; p is correct / n, with "
+             "trials without a response as wrong",
+             {"wilson1927", "clopper1934", "brown2001"});
+  return object;
+}
+
+Json quantiles_json() {
+  Json object;
+  put_method(object, "quartiles by definition 7, over trials with a response", {"hyndman1996"});
+  return object;
+}
+
+}  // namespace
+
+nlohmann::ordered_json report_object(const StudyReport& report) {
+  Json object{{"study", report.study}, {"protocol", report.protocol}};
+  put_stamp(object, report.simulated);
+  put_state(object, report.state, report.pilot);
+  object["participants"] = report.participants;
+  object["trials"] = report.trials;
+  object["classes"] = report.classes;
+  object["methods"] = Json::array();
+  for (const MethodReport& method : report.methods) {
+    object["methods"].push_back(method_object(method, report.classes));
+  }
+  if (report.comparison) object["comparison"] = comparison_json(*report.comparison);
+  object["warnings"] = report.warnings;
+  object["pairs"] = pairs_array(report);
+  if (report.together) object["together"] = together_object(*report.together);
+  object["accuracy_intervals"] = intervals_json();
+  object["reaction_times"] = quantiles_json();
+  object["registration"] = registration_object(report.registration);
+  object["collection"] = collection_object(report.collection);
+  if (report.cues) object["cues"] = cues_object(*report.cues);
+  object["references"] = references_object();
+  return object;
+}
+
+std::string report_json(const StudyReport& report) {
+  return json_text(report_object(report));
+}
+
+}  // namespace touchtrial::analysis::identification

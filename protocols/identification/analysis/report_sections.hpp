@@ -1,0 +1,24 @@
+/// \file The sections of the report's JSON, and the parts of its text. Private to
+/// protocols/identification: it shows the JSON library.
+#pragma once
+
+#include "protocols/identification/analysis/report.hpp"
+
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial::analysis::identification {
+
+[[nodiscard]] nlohmann::ordered_json method_object(const MethodReport& method,
+                                                   const std::vector<std::string>& classes);
+[[nodiscard]] nlohmann::ordered_json choice_object(const ChoiceModel& model);
+[[nodiscard]] nlohmann::ordered_json reaction_array(const std::vector<ReactionTimes>& reaction,
+                                                    const std::vector<std::string>& classes);
+[[nodiscard]] nlohmann::ordered_json breakdowns_object(const std::vector<Breakdown>& breakdowns);
+[[nodiscard]] nlohmann::ordered_json robustness_array(const std::vector<SubsetAccuracy>& subsets);
+[[nodiscard]] nlohmann::ordered_json pairs_array(const StudyReport& report);
+[[nodiscard]] nlohmann::ordered_json together_object(const MethodsTogether& together);
+
+}  // namespace touchtrial::analysis::identification

@@ -1,0 +1,284 @@
+#include "protocols/identification/analysis/subsets.hpp"
+
+#include "protocols/design/random_orders.hpp"
+#include "protocols/identification/analysis/counted_trials.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <map>
+#include <set>
+#include <tuple>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace touchtrial::analysis::identification {
+
+namespace {
+
+constexpr const char* kFirst = "first of its block";
+
+/// A counted trial, and where it stands among what the participant felt.
+struct PlacedTrial {
+  const TrialOutcome* trial = nullptr;
+  const TrialOutcome* previous = nullptr;  ///< in the same block; nothing: it was the first
+  int place = 0;                           ///< among the participant's scored ones of its method
+};
+
+/// All presentations that were felt and are not void, as they came. A trial that was interrupted
+/// stands where it was repeated; what was felt of it before is not seen here.
+std::vector<const TrialOutcome*> as_felt(const Outcomes& outcomes) {
+  std::vector<const TrialOutcome*> felt;
+  for (const TrialOutcome& trial : outcomes.trials) {
+    if (trial.row.state != store::TrialState::voided) felt.push_back(&trial);
+  }
+  std::ranges::stable_sort(felt, {}, [](const TrialOutcome* trial) {
+    return std::tuple(trial->row.session, trial->row.presented_at, trial->row.trial);
+  });
+  return felt;
+}
+
+bool same_block(const TrialOutcome& a, const TrialOutcome& b) {
+  return a.row.session == b.row.session && a.row.block == b.row.block;
+}
+
+std::vector<PlacedTrial> placed_trials(const Outcomes& outcomes, int method) {
+  std::vector<PlacedTrial> placed;
+  const TrialOutcome* before = nullptr;
+  int place = 0;
+  for (const TrialOutcome* trial : as_felt(outcomes)) {
+    if (before == nullptr || before->row.session != trial->row.session) place = 0;
+    const bool scored = trial->scored && trial->stimulus.method == method;
+    if (scored) ++place;
+    const bool follows = before != nullptr && same_block(*before, *trial);
+    if (scored && trial->counted) placed.push_back({trial, follows ? before : nullptr, place});
+    before = trial;
+  }
+  return placed;
+}
+
+/// A group's place in the table and its name.
+using Group = std::pair<int, std::string>;
+
+Group group_of_exemplar(const Outcomes& outcomes, const TrialOutcome& trial) {
+  const auto [class_index, exemplar, method] = trial.stimulus;
+  constexpr int kMostExemplars = 1 << 16;
+  return {class_index * kMostExemplars + exemplar,
+          outcomes.classes[class_index] + ": " + outcomes.exemplars[class_index][exemplar]};
+}
+
+Group group_of_order(const Outcomes& outcomes, int enrolment) {
+  const auto methods = static_cast<int>(outcomes.methods.size());
+  std::vector<std::string> labels;
+  for (const int method : design::williams_row(methods, enrolment)) {
+    labels.push_back(outcomes.methods[method]);
+  }
+  const int rows = methods % 2 == 1 ? 2 * methods : methods;
+  return {enrolment % rows, fmt::format("{}", fmt::join(labels, ", then "))};
+}
+
+Group group_felt_before(const Outcomes& outcomes, const PlacedTrial& placed) {
+  const auto classes = static_cast<int>(outcomes.classes.size());
+  if (placed.previous == nullptr) return {classes + 1, kFirst};
+  if (placed.previous->kind == design::PresentationKind::catch_trial)
+    return {classes, "no texture"};
+  const int before = placed.previous->stimulus.class_index;
+  return {before, outcomes.classes[before]};
+}
+
+Group group_answered_before(const Outcomes& outcomes, const PlacedTrial& placed) {
+  const auto classes = static_cast<int>(outcomes.classes.size());
+  if (placed.previous == nullptr) return {classes + 1, kFirst};
+  const std::optional<int> answered = placed.previous->response;
+  if (!answered) return {classes, "no response"};
+  return {*answered, outcomes.classes[*answered]};
+}
+
+std::map<int, int> enrolments(const Outcomes& outcomes) {
+  std::map<int, int> of_session;
+  for (const SessionOutcome& session : outcomes.sessions) {
+    of_session[session.row.session] = session.row.enrolment;
+  }
+  return of_session;
+}
+
+/// Counts trials by the group that `group_of` names.
+template <typename GroupOf>
+Breakdown broken_down(BreakdownKind kind, const std::vector<PlacedTrial>& trials,
+                      GroupOf group_of) {
+  std::map<Group, Proportion> groups;
+  for (const PlacedTrial& placed : trials) {
+    Proportion& accuracy = groups[group_of(placed)];
+    ++accuracy.n;
+    if (placed.trial->correct()) ++accuracy.correct;
+  }
+  Breakdown breakdown{kind, {}};
+  for (const auto& [group, accuracy] : groups) {
+    breakdown.groups.push_back({group.second, accuracy, wilson_interval(accuracy)});
+  }
+  return breakdown;
+}
+
+/// Images of a class are told apart only where it has several.
+bool has_several_exemplars(const Outcomes& outcomes) {
+  return std::ranges::any_of(outcomes.exemplars,
+                             [](const auto& images) { return images.size() > 1; });
+}
+
+}  // namespace
+
+std::string name_of(BreakdownKind kind) {
+  switch (kind) {
+    case BreakdownKind::exemplar:
+      return "exemplar";
+    case BreakdownKind::trial:
+      return "trial";
+    case BreakdownKind::order_group:
+      return "order_group";
+    case BreakdownKind::previous_stimulus:
+      return "previous_stimulus";
+    case BreakdownKind::previous_response:
+      break;
+  }
+  return "previous_response";
+}
+
+std::vector<Breakdown> breakdowns(const Outcomes& outcomes, int method) {
+  const std::vector<PlacedTrial> trials = placed_trials(outcomes, method);
+  std::vector<Breakdown> all;
+  const auto add = [&](BreakdownKind kind, auto group_of) {
+    Breakdown breakdown = broken_down(kind, trials, group_of);
+    if (breakdown.groups.size() > 1) all.push_back(std::move(breakdown));
+  };
+  if (has_several_exemplars(outcomes)) {
+    add(BreakdownKind::exemplar,
+        [&](const PlacedTrial& placed) { return group_of_exemplar(outcomes, *placed.trial); });
+  }
+  add(BreakdownKind::trial,
+      [](const PlacedTrial& placed) { return Group(placed.place, std::to_string(placed.place)); });
+  if (outcomes.methods.size() > 1 && outcomes.design.trials.blocks == design::Blocks::by_method) {
+    const std::map<int, int> enrolment = enrolments(outcomes);
+    add(BreakdownKind::order_group, [&](const PlacedTrial& placed) {
+      return group_of_order(outcomes, enrolment.at(placed.trial->row.session));
+    });
+  }
+  add(BreakdownKind::previous_stimulus,
+      [&](const PlacedTrial& placed) { return group_felt_before(outcomes, placed); });
+  add(BreakdownKind::previous_response,
+      [&](const PlacedTrial& placed) { return group_answered_before(outcomes, placed); });
+  return all;
+}
+
+namespace {
+
+constexpr TrialSubset kSubsets[] = {TrialSubset::counted, TrialSubset::answered, TrialSubset::valid,
+                                    TrialSubset::with_excluded_sessions};
+
+/// Completed sessions that do not count for no other reason than that they were excluded. Who was
+/// excluded and began anew is in the figures already.
+std::set<int> excluded_sessions(const Outcomes& outcomes) {
+  std::set<int> excluded;
+  for (const auto& [row, counted] : outcomes.sessions) {
+    const bool left_out = row.excluded && !row.withdrawn && row.replaced_by != row.participant;
+    const bool of_study = row.pilot == outcomes.pilot && row.simulated == outcomes.simulated;
+    if (left_out && of_study && row.state == store::SessionState::completed)
+      excluded.insert(row.session);
+  }
+  return excluded;
+}
+
+bool belongs_to(TrialSubset subset, const TrialOutcome& trial, const std::set<int>& excluded) {
+  switch (subset) {
+    case TrialSubset::counted:
+      return trial.counted;
+    case TrialSubset::answered:
+      return trial.counted && trial.response.has_value();
+    case TrialSubset::valid:
+      return trial.counted && trial.valid();
+    case TrialSubset::with_excluded_sessions:
+      break;
+  }
+  return trial.counted ||
+         (trial.scored && has_ended(trial) && excluded.contains(trial.row.session));
+}
+
+void count(Proportion& proportion, bool correct) {
+  ++proportion.n;
+  if (correct) ++proportion.correct;
+}
+
+}  // namespace
+
+std::string name_of(TrialSubset subset) {
+  switch (subset) {
+    case TrialSubset::counted:
+      return "counted";
+    case TrialSubset::answered:
+      return "answered";
+    case TrialSubset::valid:
+      return "valid";
+    case TrialSubset::with_excluded_sessions:
+      break;
+  }
+  return "with_excluded_sessions";
+}
+
+std::vector<SubsetAccuracy> robustness(const Outcomes& outcomes, int method) {
+  const std::set<int> excluded = excluded_sessions(outcomes);
+  std::vector<SubsetAccuracy> all;
+  for (const TrialSubset subset : kSubsets) {
+    SubsetAccuracy& here = all.emplace_back();
+    here.subset = subset;
+    std::map<int, Proportion> by_session;
+    for (const TrialOutcome& trial : outcomes.trials) {
+      const bool of_method = trial.scored && trial.stimulus.method == method;
+      if (!of_method || !belongs_to(subset, trial, excluded)) continue;
+      count(here.pooled, trial.correct());
+      count(by_session[trial.row.session], trial.correct());
+    }
+    std::vector<double> shares;
+    for (const auto& [session, own] : by_session) shares.push_back(own.share().value_or(0.0));
+    here.mean = participant_mean(shares);
+  }
+  return all;
+}
+
+namespace {
+
+double seconds_between(std::chrono::nanoseconds from, std::chrono::nanoseconds to) {
+  return std::chrono::duration<double>(to - from).count();
+}
+
+/// What has been collected of one class.
+struct Times {
+  std::vector<double> from_plane_on;
+  std::vector<double> from_contact;
+
+  void add(const store::TrialRow& row) {
+    from_plane_on.push_back(seconds_between(row.presented_at, *row.answered_at));
+    if (row.contact_at) from_contact.push_back(seconds_between(*row.contact_at, *row.answered_at));
+  }
+};
+
+ReactionTimes summary_of(Times times) {
+  std::ranges::sort(times.from_plane_on);
+  return {quartiles(times.from_plane_on), quartiles(std::move(times.from_contact)),
+          times.from_plane_on};
+}
+
+}  // namespace
+
+std::vector<ReactionTimes> reaction_times(const Outcomes& outcomes, int method) {
+  std::vector<Times> times(outcomes.classes.size() + 1);
+  for (const TrialOutcome& trial : outcomes.trials) {
+    const bool asked = trial.counted && trial.stimulus.method == method;
+    if (!asked || !trial.response || !trial.row.answered_at) continue;
+    times[trial.stimulus.class_index].add(trial.row);
+    times.back().add(trial.row);
+  }
+  std::vector<ReactionTimes> all;
+  for (Times& of_class : times) all.push_back(summary_of(std::move(of_class)));
+  return all;
+}
+
+}  // namespace touchtrial::analysis::identification

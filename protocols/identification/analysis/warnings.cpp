@@ -1,0 +1,369 @@
+#include "analysis/statistics/paired_tests.hpp"
+#include "analysis/text_figures.hpp"
+#include "protocols/identification/analysis/report_parts.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace touchtrial::analysis::identification {
+
+namespace {
+
+using Warnings = std::vector<std::string>;
+
+constexpr int kSmallCell = 5;
+constexpr std::size_t kMostNames = 5;
+/// Of trials at random the best of 5! exchanges of labels is some 18 points above accuracy.
+constexpr double kSuspectGain = 0.3;
+constexpr double kSuspectShare = 0.5;
+constexpr double kCeiling = 0.95;
+
+/// The first few names of many.
+std::string few(const std::vector<std::string>& names) {
+  const std::size_t shown = std::min(names.size(), kMostNames);
+  std::string text =
+      fmt::format("{}", fmt::join(names.begin(), names.begin() + static_cast<long>(shown), ", "));
+  if (shown < names.size()) text += fmt::format(" and {} more", names.size() - shown);
+  return text;
+}
+
+void warn_of_small_classes(const MethodReport& method, const std::vector<std::string>& classes,
+                           Warnings& warnings) {
+  std::vector<std::string> small;
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    const int n = method.accuracy[i].accuracy.n;
+    if (n > 0 && n <= kSmallCell) small.push_back(classes[i]);
+  }
+  if (small.empty()) return;
+  warnings.push_back(
+      fmt::format("{}: the interval of {} rests on {} trials or fewer and is nearly uninformative: "
+                  "even 5 of 5 has 56.6 to 100 % (Wilson).",
+                  method.method, few(small), kSmallCell));
+}
+
+void warn_of_unanswered_classes(const MethodReport& method, const std::vector<std::string>& classes,
+                                Warnings& warnings) {
+  if (method.confusion.answered() == 0) return;
+  std::vector<std::string> never;
+  for (int j = 0; j < method.confusion.classes(); ++j) {
+    if (method.confusion.answered(j) == 0) never.push_back(classes[j]);
+  }
+  if (never.empty()) return;
+  warnings.push_back(
+      fmt::format("{}: {} was never answered; accuracy with it tells of a preference as much as of "
+                  "sensitivity, and the choice model does not exist.",
+                  method.method, few(never)));
+}
+
+bool suspect_swap(const ParticipantAccuracy& one) {
+  const double accuracy = one.accuracy.share().value_or(0.0);
+  const double matched = one.matching.accuracy.share().value_or(0.0);
+  return matched >= kSuspectShare && matched - accuracy >= kSuspectGain;
+}
+
+void warn_of_swapped_labels(const MethodReport& method, Warnings& warnings) {
+  std::vector<std::string> suspects;
+  for (const ParticipantAccuracy& one : method.per_participant) {
+    if (!suspect_swap(one)) continue;
+    suspects.push_back(fmt::format("{} ({}, but {} under the best exchange)", one.participant,
+                                   percent_of(one.accuracy), percent_of(one.matching.accuracy)));
+  }
+  if (suspects.empty()) return;
+  warnings.push_back(
+      fmt::format("{}: labels may have been swapped by {}; accuracy says less than consistency "
+                  "there.",
+                  method.method, few(suspects)));
+}
+
+void warn_of_chance(const MethodReport& method, Warnings& warnings) {
+  if (!method.chance || method.chance->exact) return;
+  const double floor = 1.0 / (method.chance->deals + 1.0);
+  if (method.chance->p > 1.5 * floor) return;
+  warnings.push_back(
+      fmt::format("{}: the chance test's p = {} is the smallest that {} deals can give; the true "
+                  "one may be smaller.",
+                  method.method, p_value(method.chance->p), method.chance->deals));
+}
+
+void warn_of_ceiling(const MethodReport& method, Warnings& warnings) {
+  const Proportion all = method.overall;
+  if (all.n == 0) return;
+  if (all.correct == all.n) {
+    warnings.push_back(
+        method.method +
+        ": everything was right, so that d' has a lower bound alone and differences cannot show.");
+  } else if (all.share().value_or(0.0) >= kCeiling) {
+    warnings.push_back(fmt::format(
+        "{}: {} right is close to the ceiling; d' and differences there hang on few trials.",
+        method.method, percent_of(all)));
+  }
+}
+
+void warn_of_choice_model(const MethodReport& method, Warnings& warnings) {
+  if (!method.choice || method.choice->converged) return;
+  warnings.push_back(method.method +
+                     ": the choice model's estimates did not settle; do not quote them.");
+}
+
+/// Whether the headline hangs on trials that do not meet the study's own rule.
+void warn_of_validity(const MethodReport& method, Warnings& warnings) {
+  const auto of = [&](TrialSubset subset) {
+    return std::ranges::find(method.robustness, subset, &SubsetAccuracy::subset);
+  };
+  const auto all = of(TrialSubset::counted);
+  const auto valid = of(TrialSubset::valid);
+  if (all == method.robustness.end() || valid == method.robustness.end()) return;
+  const int invalid = all->pooled.n - valid->pooled.n;
+  if (invalid == 0) return;
+  if (!valid->mean.mean) {
+    warnings.push_back(method.method + ": no trial at all is valid by the study's rule.");
+    return;
+  }
+  warnings.push_back(fmt::format(
+      "{}: without {} not valid by the study's rule the mean over participants is {} in place of "
+      "{}.",
+      method.method, counted(invalid, "trial"), percent_of_share(valid->mean.mean),
+      percent_of_share(all->mean.mean)));
+}
+
+void warn_of_order(const Outcomes& outcomes, Warnings& warnings) {
+  if (outcomes.design.trials.order != design::TrialOrder::uniform) return;
+  warnings.emplace_back(
+      "Classes were drawn independently, so that they came unequally often; pooled accuracy weighs "
+      "them as they came.");
+}
+
+}  // namespace
+
+std::vector<std::string> figure_warnings(const Outcomes& outcomes, const StudyReport& report) {
+  Warnings warnings;
+  for (const MethodReport& method : report.methods) {
+    warn_of_validity(method, warnings);
+    warn_of_swapped_labels(method, warnings);
+    warn_of_small_classes(method, report.classes, warnings);
+    warn_of_unanswered_classes(method, report.classes, warnings);
+    warn_of_choice_model(method, warnings);
+    warn_of_ceiling(method, warnings);
+    warn_of_chance(method, warnings);
+  }
+  warn_of_order(outcomes, warnings);
+  return warnings;
+}
+
+namespace {
+
+using Warnings = std::vector<std::string>;
+
+constexpr int kFewParticipants = 10;
+constexpr double kLevel = 0.05;
+
+/// Of n participants all 2^n sign patterns are as likely, and Holm multiplies the least p of
+/// several pairs by their number. Powers of two print exactly.
+void warn_of_floor(int n, std::size_t pairs, Warnings& warnings) {
+  const double floor = std::ldexp(2.0, -n);
+  const double adjusted = std::min(1.0, floor * static_cast<double>(pairs));
+  if (adjusted <= kLevel) return;
+  std::string text =
+      fmt::format("With {} the sign-flip p cannot fall below {}", counted(n, "participant"), floor);
+  if (pairs > 1) text += fmt::format(", nor the least p adjusted by Holm below {}", adjusted);
+  warnings.push_back(text + ", whatever the methods do.");
+}
+
+/// Of the pair with the fewest participants: the floor under its p.
+void warn_of_sign_flips(const StudyReport& report, Warnings& warnings) {
+  int n = 0;
+  for (const MethodPair& pair : report.pairs) {
+    const int own = pair.overall.participants;
+    if (own > 0 && (n == 0 || own < n)) n = own;
+  }
+  if (n > 0) warn_of_floor(n, report.pairs.size(), warnings);
+  const auto at_floor = [](const MethodPair& pair) {
+    constexpr double kFloor = 1.5e-5;  // of 99,999 random patterns
+    return pair.overall.participants > kExactSignFlips && pair.overall.p.value_or(1.0) < kFloor;
+  };
+  if (std::ranges::any_of(report.pairs, at_floor)) {
+    warnings.emplace_back(
+        "A sign-flip p of 1e-05 is the smallest that 99,999 random patterns can give; the true one "
+        "may be smaller.");
+  }
+}
+
+void warn_of_several(const StudyReport& report, Warnings& warnings) {
+  if (report.methods.size() < 3) return;
+  warnings.push_back(
+      fmt::format("{} methods make {} pairs: quote the p adjusted by Holm; the p of single classes "
+                  "are not adjusted.",
+                  report.methods.size(), report.pairs.size()));
+  if (report.together) {
+    warnings.emplace_back(
+        "Cochran's Q: its p under chi-square takes a participant's trials as independent; the p to "
+        "quote is the permuted one.");
+  }
+}
+
+void warn_of_images(const Outcomes& outcomes, const StudyReport& report, Warnings& warnings) {
+  const bool one_image_each = std::ranges::all_of(
+      outcomes.exemplars, [](const auto& images) { return images.size() == 1; });
+  if (report.pairs.empty() || !one_image_each) return;
+  warnings.push_back(
+      fmt::format("The comparison holds for these {} images; it does not generalise over images.",
+                  outcomes.exemplars.size()));
+}
+
+void warn_of_few_participants(const StudyReport& report, Warnings& warnings) {
+  if (report.participants < 2 || report.participants >= kFewParticipants) return;
+  warnings.push_back(
+      fmt::format("{} participants are few: the design can show large effects alone, how people "
+                  "differ hardly at all, and the t interval leans on normality.",
+                  report.participants));
+}
+
+}  // namespace
+
+std::vector<std::string> comparison_warnings(const Outcomes& outcomes, const StudyReport& report) {
+  Warnings warnings;
+  warn_of_few_participants(report, warnings);
+  warn_of_several(report, warnings);
+  warn_of_sign_flips(report, warnings);
+  warn_of_images(outcomes, report, warnings);
+  return warnings;
+}
+
+namespace {
+
+using Warnings = std::vector<std::string>;
+
+template <typename Which>
+void warn_of_sessions(const Outcomes& outcomes, const std::string& why, Which which,
+                      Warnings& warnings) {
+  const auto n = std::count_if(outcomes.sessions.begin(), outcomes.sessions.end(),
+                               [&](const SessionOutcome& one) { return which(one.row); });
+  if (n > 0) warnings.push_back(fmt::format("Left out: {}, {}.", counted(n, "session"), why));
+}
+
+void warn_of_state(const Outcomes& outcomes, Warnings& warnings) {
+  if (outcomes.pilot) warnings.emplace_back("A pilot: not to be pooled with the study's data.");
+  if (outcomes.visual) {
+    warnings.emplace_back(
+        "Seen on a screen, not felt, and so not blind: never to be pooled with what was felt.");
+  }
+  if (!outcomes.state.closed) {
+    warnings.emplace_back(
+        "An interim look: the study is still open, and what is seen here may not decide when it "
+        "ends.");
+  }
+  if (outcomes.sessions_unseen > 0) {
+    warnings.push_back(
+        fmt::format("Left out: {}, not ended before the interim look; `touchtrial unblind` again "
+                    "to see more.",
+                    counted(outcomes.sessions_unseen, "session")));
+  }
+  warn_of_sessions(
+      outcomes, "withdrawn by the participant",
+      [](const store::SessionRow& row) { return row.withdrawn; }, warnings);
+  warn_of_sessions(
+      outcomes, "excluded",
+      [](const store::SessionRow& row) { return row.excluded && !row.withdrawn; }, warnings);
+  warn_of_sessions(
+      outcomes, "not completed",
+      [](const store::SessionRow& row) {
+        return row.state != store::SessionState::completed && !row.excluded && !row.withdrawn;
+      },
+      warnings);
+  warn_of_sessions(
+      outcomes, "a pilot or simulation among others",
+      [&](const store::SessionRow& row) {
+        return row.state == store::SessionState::completed && !row.excluded && !row.withdrawn &&
+               (row.pilot != outcomes.pilot || row.simulated != outcomes.simulated);
+      },
+      warnings);
+}
+
+void warn_of_trials(const Outcomes& outcomes, Warnings& warnings) {
+  std::set<int> counted_sessions;
+  for (const SessionOutcome& session : outcomes.sessions) {
+    if (session.counted) counted_sessions.insert(session.row.session);
+  }
+  const auto unfinished = [&](const TrialOutcome& trial) {
+    return trial.scored && !trial.counted && counted_sessions.contains(trial.row.session);
+  };
+  const auto interrupted =
+      std::count_if(outcomes.trials.begin(), outcomes.trials.end(), unfinished);
+  if (interrupted > 0) {
+    warnings.push_back(fmt::format("Left out: {}, interrupted and never repeated.",
+                                   counted(interrupted, "trial")));
+  }
+  const auto invalid =
+      std::count_if(outcomes.trials.begin(), outcomes.trials.end(),
+                    [](const TrialOutcome& trial) { return trial.counted && !trial.valid(); });
+  if (invalid > 0) {
+    warnings.push_back(fmt::format("Counted although not valid by the study's rule: {}.",
+                                   counted(invalid, "trial")));
+  }
+}
+
+void warn_of_time_outs(const StudyReport& report, Warnings& warnings) {
+  for (const MethodReport& method : report.methods) {
+    const int answered = method.confusion.answered();
+    const int missed = method.overall.n - answered;
+    if (missed == 0) continue;
+    warnings.push_back(fmt::format(
+        "{}: {} without a response, counted as wrong; with them excluded {} of {} are correct.",
+        method.method, counted(missed, "trial"), method.overall.correct, answered));
+  }
+}
+
+void warn_of_participants(const StudyReport& report, Warnings& warnings) {
+  if (report.participants == 0) {
+    warnings.emplace_back("No participant's session counts: there is nothing to report yet.");
+  } else if (report.participants == 1) {
+    warnings.emplace_back(
+        "One participant: intervals over participants do not exist, and those of a class say "
+        "next to nothing.");
+  } else {
+    warnings.emplace_back(
+        "Intervals of a class pool all participants' trials as if they were independent, so they "
+        "are too narrow; the interval to quote is that of the mean over participants.");
+  }
+  for (const MethodReport& method : report.methods) {
+    if (method.mean.participants > 1 && method.mean.interval.low == method.mean.interval.high) {
+      warnings.push_back(
+          method.method +
+          ": all participants have the same accuracy; the interval's zero width is no certainty.");
+    }
+  }
+}
+
+void warn_of_information(const StudyReport& report, Warnings& warnings) {
+  const int wanted = trials_for_information_transfer(static_cast<int>(report.classes.size()));
+  for (const MethodReport& method : report.methods) {
+    const int answered = method.confusion.answered();
+    if (answered == 0 || answered >= wanted) continue;
+    warnings.push_back(fmt::format(
+        "{}: information transfer from {} is biased upward; {} are the usual minimum for {} "
+        "classes.",
+        method.method, counted(answered, "trial"), wanted, report.classes.size()));
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> report_warnings(const Outcomes& outcomes, const StudyReport& report) {
+  Warnings warnings;
+  warn_of_state(outcomes, warnings);
+  warn_of_trials(outcomes, warnings);
+  warn_of_time_outs(report, warnings);
+  warn_of_participants(report, warnings);
+  warn_of_information(report, warnings);
+  for (const Warnings& more :
+       {figure_warnings(outcomes, report), comparison_warnings(outcomes, report)}) {
+    warnings.insert(warnings.end(), more.begin(), more.end());
+  }
+  return warnings;
+}
+
+}  // namespace touchtrial::analysis::identification

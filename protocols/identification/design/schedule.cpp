@@ -1,0 +1,205 @@
+#include "protocols/identification/design/schedule.hpp"
+
+#include "core/errors.hpp"
+#include "core/random.hpp"
+#include "protocols/design/random_orders.hpp"
+#include "protocols/identification/design/block_order.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <map>
+#include <numeric>
+#include <span>
+#include <stdexcept>
+#include <utility>
+
+namespace touchtrial::design::identification {
+namespace {
+
+/// The methods of each block, and the purpose of its random streams.
+struct BlockPlan {
+  std::vector<int> methods;
+  std::string purpose;
+};
+
+std::vector<BlockPlan> block_plans(const Study& study, int enrolment) {
+  const std::vector<int> methods = williams_row(study.presented_methods(), enrolment);
+  if (study.trials.blocks == Blocks::mixed) {
+    std::vector<int> in_file_order(methods.size());
+    std::iota(in_file_order.begin(), in_file_order.end(), 0);
+    return {{in_file_order, "all methods"}};
+  }
+  std::vector<BlockPlan> plans;
+  for (const int method : methods) plans.push_back({{method}, "method " + std::to_string(method)});
+  return plans;
+}
+
+/// Deals the images of each class and method like a pack of cards of one participant: all are used
+/// before any repeats, then they are shuffled anew.
+class ExemplarSupply {
+ public:
+  /// \param restart  ends the purposes of the random streams; empty in a participant's schedule
+  ExemplarSupply(const Study& study, int enrolment, std::string restart = {})
+      : study_(study), enrolment_(enrolment), restart_(std::move(restart)) {}
+
+  /// The next image of the class under the method.
+  int next(int class_index, int method);
+
+ private:
+  struct Deck {
+    RandomStream random;
+    std::vector<int> left;  ///< next at the back
+  };
+
+  const Study& study_;
+  int enrolment_;
+  std::string restart_;
+  std::map<std::pair<int, int>, Deck> decks_;
+};
+
+int ExemplarSupply::next(int class_index, int method) {
+  const std::size_t images = study_.classes[static_cast<std::size_t>(class_index)].images.size();
+  if (images == 1) return 0;
+  const auto key = std::pair(class_index, method);
+  auto deck = decks_.find(key);
+  if (deck == decks_.end()) {
+    const std::string purpose = "schedule: exemplars of class " + std::to_string(class_index) +
+                                ", method " + std::to_string(method) + restart_;
+    RandomStream random(study_.seed, purpose, static_cast<std::uint64_t>(enrolment_));
+    deck = decks_.emplace(key, Deck{random, {}}).first;
+  }
+  std::vector<int>& left = deck->second.left;
+  if (left.empty()) {
+    left.resize(images);
+    std::iota(left.begin(), left.end(), 0);
+    shuffle(std::span<int>(left), deck->second.random);
+  }
+  const int exemplar = left.back();
+  left.pop_back();
+  return exemplar;
+}
+
+/// Which of the places after the first are taken: `count` of `places`.
+std::vector<bool> random_places(std::size_t places, std::size_t count, RandomStream& random) {
+  std::vector<std::size_t> later(places - 1);
+  std::iota(later.begin(), later.end(), std::size_t{1});
+  shuffle(std::span<std::size_t>(later), random);
+  std::vector<bool> taken(places, false);
+  for (std::size_t i = 0; i < count; ++i) taken[later[i]] = true;
+  return taken;
+}
+
+/// Spreads catch trials among presentations: every choice of places is equally likely, except that
+/// the first presentation stays first. A catch trial belongs to the block of the presentation
+/// before it. Leaves trial numbers as they are. \pre there is a presentation if `count` > 0
+std::vector<Presentation> with_catch_trials(const std::vector<Presentation>& shown, int count,
+                                            RandomStream& random) {
+  if (count == 0) return shown;
+  const auto caught = static_cast<std::size_t>(count);
+  std::vector<Presentation> all;
+  auto next = shown.begin();
+  for (const bool is_catch : random_places(shown.size() + caught, caught, random)) {
+    if (is_catch) {
+      all.push_back(
+          {.block = all.back().block, .kind = PresentationKind::catch_trial, .stimulus = {}});
+    } else {
+      all.push_back(*next++);
+    }
+  }
+  return all;
+}
+
+/// A block's presentations without catch trials and numbers.
+std::vector<Presentation> presentations_of(const BlockOrder& order, int block,
+                                           ExemplarSupply& exemplars) {
+  std::vector<Presentation> shown;
+  for (std::size_t i = 0; i < order.items.size(); ++i) {
+    const auto [class_index, method] = order.items[i];
+    shown.push_back(
+        {.block = block,
+         .kind = i < order.lead_ins ? PresentationKind::lead_in : PresentationKind::scored,
+         .stimulus = {class_index, exemplars.next(class_index, method), method}});
+  }
+  return shown;
+}
+
+void number(std::vector<Presentation>& presentations, int first) {
+  for (Presentation& shown : presentations) shown.trial = first++;
+}
+
+std::vector<int> picture_layout(const Study& study, int enrolment) {
+  std::vector<int> layout(study.classes.size());
+  std::iota(layout.begin(), layout.end(), 0);
+  RandomStream random(study.seed, "schedule: layout", static_cast<std::uint64_t>(enrolment));
+  shuffle(std::span<int>(layout), random);
+  return layout;
+}
+
+void check_order(const Study& study) {
+  if (const auto obstacle = obstacle_to_order(study)) {
+    throw StudyError(
+        one_line("study " + study.name + ": /trials" + obstacle->key + ": " + obstacle->what));
+  }
+}
+
+}  // namespace
+
+Schedule scheduled(const Study& study, int enrolment) {
+  check_order(study);
+  Schedule schedule;
+  ExemplarSupply exemplars(study, enrolment);
+  int block = 0;
+  for (const auto& [methods, purpose] : block_plans(study, enrolment)) {
+    const BlockOrder order = make_block_order(study, methods, purpose, enrolment);
+    const auto shown = presentations_of(order, block++, exemplars);
+    schedule.presentations.insert(schedule.presentations.end(), shown.begin(), shown.end());
+  }
+  RandomStream random(study.seed, "schedule: catch", static_cast<std::uint64_t>(enrolment));
+  schedule.presentations =
+      with_catch_trials(schedule.presentations, study.trials.catch_trials, random);
+  number(schedule.presentations, 1);
+  schedule.layout = picture_layout(study, enrolment);
+  return schedule;
+}
+
+std::vector<Presentation> scheduled_again(const Study& study, int enrolment, int block,
+                                          int restarts_before, int first_trial) {
+  const std::vector<BlockPlan> plans = block_plans(study, enrolment);
+  if (block < 0 || block >= static_cast<int>(plans.size()) || restarts_before < 0) {
+    throw std::invalid_argument("restarted_block: the study has no such block or restart");
+  }
+  const Schedule first = scheduled(study, enrolment);
+  const auto caught = std::ranges::count_if(first.presentations, [block](const auto& shown) {
+    return shown.block == block && shown.kind == PresentationKind::catch_trial;
+  });
+  const std::string restart = ", restart " + std::to_string(restarts_before + 1);
+  const auto& [methods, purpose] = plans[static_cast<std::size_t>(block)];
+  ExemplarSupply exemplars(study, enrolment, restart);
+  const auto shown = presentations_of(
+      make_block_order(study, methods, purpose + restart, enrolment), block, exemplars);
+  RandomStream random(study.seed, "schedule: catch, " + purpose + restart,
+                      static_cast<std::uint64_t>(enrolment));
+  std::vector<Presentation> again = with_catch_trials(shown, static_cast<int>(caught), random);
+  number(again, first_trial);
+  return again;
+}
+
+std::string rule_of_schedule(const Study& study) {
+  std::string exemplars;
+  for (const StudyClass& study_class : study.classes) {
+    exemplars += (exemplars.empty() ? "" : ",") + std::to_string(study_class.images.size());
+  }
+  const TrialOptions& trials = study.trials;
+  return "touchtrial schedule 1: mt19937_64 streams by SHA-256(seed, purpose, enrolment)"
+         "; classes=" +
+         std::to_string(study.classes.size()) + "; exemplars=" + exemplars +
+         "; methods=" + std::to_string(study.presented_methods()) +
+         "; repeats=" + std::to_string(trials.repeats) +
+         "; order=" + std::string(name_of(trials.order)) +
+         "; blocks=" + std::string(name_of(trials.blocks)) +
+         "; lead_in=" + std::to_string(trials.lead_in) +
+         (trials.max_run > 0 ? "; max_run=" + std::to_string(trials.max_run) : "") +
+         (trials.catch_trials > 0 ? "; catch=" + std::to_string(trials.catch_trials) : "");
+}
+
+}  // namespace touchtrial::design::identification

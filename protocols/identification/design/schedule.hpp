@@ -1,0 +1,17 @@
+/// \file Schedules of identification: blocks of presentations by method or mixed, images dealt like
+/// cards, catch trials between them. Private to protocols/identification.
+#pragma once
+
+#include "protocols/design/schedule.hpp"
+#include "protocols/design/study.hpp"
+
+namespace touchtrial::design::identification {
+
+/// The functions of protocols/design/schedule.hpp for both protocols of identification.
+[[nodiscard]] Schedule scheduled(const Study& study, int enrolment);
+[[nodiscard]] std::vector<Presentation> scheduled_again(const Study& study, int enrolment,
+                                                        int block, int restarts_before,
+                                                        int first_trial);
+[[nodiscard]] std::string rule_of_schedule(const Study& study);
+
+}  // namespace touchtrial::design::identification

@@ -1,0 +1,135 @@
+#include "protocols/session/trial_trace.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace touchtrial::session {
+namespace {
+
+/// Counts and sums over the samples in contact.
+struct ContactSums {
+  std::int64_t samples = 0;
+  std::int64_t saturated = 0;
+  std::int64_t weak = 0;    ///< below the least median force
+  std::int64_t strong = 0;  ///< above the largest
+  double path_mm = 0.0;
+  double force_squares = 0.0;
+};
+
+ContactSums sums_of(const store::Trace& trace, double max_force_n, const ValidityRule& rule) {
+  const auto squared = [](double value) { return value * value; };
+  const double saturation = squared(0.999 * max_force_n);
+  ContactSums sums;
+  const store::TraceSample* before = nullptr;  // the previous sample, if it had contact
+  for (const store::TraceSample& sample : trace.samples) {
+    const Vec3& f = sample.force_n;
+    if (!(f.z > 0.0)) {
+      before = nullptr;
+      continue;
+    }
+    const double force_square = f.x * f.x + f.y * f.y + f.z * f.z;
+    ++sums.samples;
+    sums.force_squares += force_square;
+    sums.saturated += force_square >= saturation ? 1 : 0;
+    sums.weak += force_square < squared(rule.least_median_n) ? 1 : 0;
+    sums.strong += force_square > squared(rule.largest_median_n) ? 1 : 0;
+    if (before != nullptr) sums.path_mm += norm(sample.position_mm - before->position_mm);
+    before = &sample;
+  }
+  return sums;
+}
+
+double exploring_s(const store::Trace& trace) {
+  const auto landing = std::ranges::find_if(trace.samples, [](const store::TraceSample& sample) {
+    return sample.position_mm.z <= kLandingHeightMm;
+  });
+  return static_cast<double>(trace.samples.end() - landing) / trace.rate_hz;
+}
+
+/// All but the verdict.
+store::TrialMeasures measures_of(const ContactSums& sums, double rate_hz) {
+  if (sums.samples == 0) return {};
+  const auto samples = static_cast<double>(sums.samples);
+  return {samples / rate_hz, sums.path_mm, std::sqrt(sums.force_squares / samples),
+          static_cast<double>(sums.saturated) / samples};
+}
+
+/// The worse of two explorations in every respect.
+store::ServoHealth joined(const store::ServoHealth& one, const store::ServoHealth& other) {
+  return {.rate_hz = std::min(one.rate_hz, other.rate_hz),
+          .lateness_p50_us = std::max(one.lateness_p50_us, other.lateness_p50_us),
+          .lateness_p99_us = std::max(one.lateness_p99_us, other.lateness_p99_us),
+          .lateness_p999_us = std::max(one.lateness_p999_us, other.lateness_p999_us),
+          .lateness_worst_us = std::max(one.lateness_worst_us, other.lateness_worst_us),
+          .lost = one.lost + other.lost,
+          .held = one.held + other.held};
+}
+
+}  // namespace
+
+TrialFindings findings_of(const store::Trace& trace, double max_force_n, const ValidityRule& rule) {
+  const ContactSums sums = sums_of(trace, max_force_n, rule);
+  store::TrialMeasures measures = measures_of(sums, trace.rate_hz);
+  // The median is within its bounds if at most half of the samples are beyond each: no sorting.
+  const bool median_fits = 2 * sums.weak <= sums.samples && 2 * sums.strong <= sums.samples;
+  measures.within_limits = measures.contact_s >= rule.least_contact_s &&
+                           measures.path_mm >= rule.least_path_mm && median_fits &&
+                           measures.saturated_share < rule.saturated_share;
+  return {measures, exploring_s(trace) >= rule.least_exploring_s};
+}
+
+void TrialTrace::begin() {
+  if (packing_.valid()) packing_.wait();
+  packing_ = {};
+  trace_.samples.clear();
+  explorations_.clear();
+  ticks_ = overruns_ = limited_ticks_ = held_in_contact_ = 0;
+  health_.reset();
+}
+
+store::Trace& TrialTrace::next_part() {
+  if (packing_.valid()) packing_.wait();
+  return explorations_.empty() ? trace_ : more_;
+}
+
+void TrialTrace::add(const Exploration& done) {
+  const store::Trace& part = explorations_.empty() ? trace_ : more_;
+  explorations_.push_back(static_cast<std::int64_t>(part.samples.size()));
+  if (explorations_.size() > 1) {
+    trace_.samples.insert(trace_.samples.end(), more_.samples.begin(), more_.samples.end());
+  }
+  ticks_ += done.servo.ticks + done.servo.overruns;
+  overruns_ += done.servo.overruns;
+  limited_ticks_ += done.servo.limited_ticks;
+  held_in_contact_ += done.held_in_contact;
+  force_limit_n_ = done.servo.force_limit_n;
+  if (done.health) health_ = health_ ? joined(*health_, *done.health) : *done.health;
+}
+
+void TrialTrace::pack(const Session& session, bool beside) {
+  const int trial = session.current()->trial;
+  packing_ = std::async(beside ? std::launch::async : std::launch::deferred,
+                        [this, &session, trial] { return judged(session, trial); });
+}
+
+store::TraceBody TrialTrace::body(int trial) const {
+  store::TraceBody body;
+  body.trial = trial;
+  body.rate_hz = trace_.rate_hz;
+  body.overruns = overruns_;
+  body.servo = health_;
+  if (explorations_.size() > 1) body.explorations = explorations_;
+  return body;
+}
+
+JudgedEvidence TrialTrace::judged(const Session& session, int trial) const {
+  TrialFindings findings = findings_of(trace_, force_limit_n_);
+  if (held_in_contact_ > 0) findings.measures.within_limits = false;
+  store::TraceBody body = this->body(trial);
+  body.valid = findings.long_enough;
+  if (health_) findings.measures.limited_ticks = limited_ticks_;
+  return {session.packed(body, findings.measures, trace_), findings.valid()};
+}
+
+}  // namespace touchtrial::session

@@ -1,0 +1,90 @@
+/// \file The trace of one trial: what its samples amount to, the rule for a valid trial, and the
+/// evidence that is stored with the answer.
+#pragma once
+
+#include "protocols/session/exploration.hpp"
+#include "protocols/session/session.hpp"
+#include "protocols/store/payload.hpp"
+#include "protocols/store/trace.hpp"
+
+#include <cstdint>
+#include <future>
+#include <optional>
+#include <vector>
+
+namespace touchtrial::session {
+
+/// The validity rule, fixed before outcomes are seen. Forces differ between textures, and so do the
+/// path and the contact that forces bend. Whether these are within their limits is therefore known
+/// only after unblinding; whether the exploration was long enough is stored in clear.
+struct ValidityRule {
+  double least_exploring_s = 5.0;  ///< from landing to the last sample
+  double least_contact_s = 5.0;
+  double least_path_mm = 300.0;   ///< in contact
+  double least_median_n = 0.2;    ///< of the norm of the force in contact
+  double largest_median_n = 2.0;  ///< of the same
+  double saturated_share = 0.01;  ///< of the samples in contact; exclusive
+};
+
+struct TrialFindings {
+  store::TrialMeasures measures;
+  /// Follows from the number of samples and the time of landing, which are in clear as well, so
+  /// that it reveals nothing more.
+  bool long_enough = false;
+
+  /// Whether the whole rule is met, except that no tick in contact may be missing.
+  [[nodiscard]] bool valid() const noexcept { return long_enough && measures.within_limits; }
+};
+
+/// A sample has contact if its normal force is above zero; it is saturated if the norm of its force
+/// is within 0.1 % of the limit. The stylus has landed at the first sample that is not above
+/// kLandingHeightMm.
+/// \param max_force_n  limit of the norm of the force, > 0
+[[nodiscard]] TrialFindings findings_of(const store::Trace& trace, double max_force_n,
+                                        const ValidityRule& rule = {});
+
+/// Evidence, and whether the trial was valid.
+struct JudgedEvidence {
+  store::TrialEvidence evidence;
+  bool valid = false;
+};
+
+/// The trace of the current presentation, of one exploration or several. Its memory is reused by
+/// the next presentation. Belongs to the session's thread.
+class TrialTrace {
+ public:
+  /// Begins a new presentation.
+  void begin();
+  /// The trace of the next exploration, for the explorer. Waits until packing is over.
+  [[nodiscard]] store::Trace& next_part();
+  /// Appends that exploration.
+  void add(const Exploration& done);
+  /// Ticks of the servo's clock that the explorations took.
+  [[nodiscard]] std::int64_t ticks() const noexcept { return ticks_; }
+
+  /// Begins to judge and pack all samples, while the participant answers.
+  /// \param session  must outlive this
+  /// \param beside  on another thread. The duration differs between textures, and nobody should
+  ///   have to wait for it.
+  void pack(const Session& session, bool beside);
+  /// The result of `pack`, once.
+  /// \throws whatever packing threw
+  [[nodiscard]] JudgedEvidence take_evidence() { return packing_.get(); }
+
+ private:
+  [[nodiscard]] store::TraceBody body(int trial) const;
+  [[nodiscard]] JudgedEvidence judged(const Session& session, int trial) const;
+
+  store::Trace trace_;
+  store::Trace more_;                       ///< of an exploration after the first
+  std::vector<std::int64_t> explorations_;  ///< samples of each
+  std::int64_t ticks_ = 0;
+  std::int64_t overruns_ = 0;
+  std::int64_t limited_ticks_ = 0;
+  std::int64_t held_in_contact_ = 0;
+  double force_limit_n_ = 0.0;
+  std::optional<store::ServoHealth> health_;
+  std::future<JudgedEvidence> packing_;
+};
+
+}  // namespace touchtrial::session

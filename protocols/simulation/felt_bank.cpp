@@ -1,0 +1,81 @@
+#include "protocols/simulation/felt_bank.hpp"
+
+#include "protocols/session/exploration.hpp"
+#include "protocols/simulation/felt_decision.hpp"
+#include "protocols/simulation/felt_exploration.hpp"
+#include "protocols/simulation/job_arena.hpp"
+
+#include <algorithm>
+#include <mutex>
+#include <stdexcept>
+
+#include <tbb/parallel_for.h>
+
+namespace touchtrial::simulation {
+namespace {
+
+constexpr unsigned kExplorationBits = 24;
+
+void check(const FeltBankOptions& options) {
+  if (options.jobs < 1 || options.explorations < 1 ||
+      options.explorations >= (1 << kExplorationBits)) {
+    throw std::invalid_argument("FeltBank: explorations or jobs are out of range");
+  }
+}
+
+/// Reports progress, from any thread.
+class Count {
+ public:
+  Count(const design::Progress& progress, int of) : progress_(progress), of_(of) {}
+  void one_more() {
+    if (!progress_) return;
+    const std::lock_guard lock(mutex_);
+    progress_(++done_, of_);
+  }
+
+ private:
+  const design::Progress& progress_;
+  int of_;
+  int done_ = 0;
+  std::mutex mutex_;
+};
+
+}  // namespace
+
+FeltBank::FeltBank(const LabelledFields& fields, const design::Study& study,
+                   const SubjectModel& subject, const FeltBankOptions& options,
+                   const design::Progress& progress)
+    : explorations_(options.explorations) {
+  check(options);
+  for (const LabelledField& field : fields.all()) stimuli_.push_back(field.stimulus);
+  const auto each = static_cast<std::size_t>(explorations_);
+  felt_.resize(stimuli_.size() * each);
+  const device::ServoOptions servo = session::trial_servo_options(study, device::kServoRateHz, {});
+  Count count(progress, static_cast<int>(felt_.size()));
+  const auto feel = [&](std::size_t i) {
+    const std::size_t place = i / each;
+    const std::uint64_t index = (std::uint64_t{place} << kExplorationBits) + i % each;
+    felt_[i] = feel_exploration(*fields.all()[place].model, fields.plane(), subject, servo,
+                                RandomStream(options.seed, "subject: felt bank", index));
+    count.one_more();
+  };
+  JobArena(options.jobs).run([&] { tbb::parallel_for(std::size_t{0}, felt_.size(), feel); });
+}
+
+int FeltBank::place_of(const design::StimulusIndex& stimulus) const {
+  const auto found = std::ranges::lower_bound(stimuli_, stimulus);
+  if (found == stimuli_.end() || *found != stimulus) {
+    throw std::invalid_argument("FeltBank: the study does not present this stimulus");
+  }
+  return static_cast<int>(found - stimuli_.begin());
+}
+
+engine::FeltFeatures feel_trial(const LabelledField& field, const PlaneGeometry& plane,
+                                const design::Study& study, const SubjectModel& subject,
+                                std::uint64_t seed, int number, std::uint64_t nth) {
+  return feel_exploration(*field.model, plane, subject,
+                          session::trial_servo_options(study, device::kServoRateHz, {}),
+                          stream_of_trial(seed, kExplorationPurpose, number, nth));
+}
+
+}  // namespace touchtrial::simulation

@@ -1,0 +1,72 @@
+/// \file Explorations of every stimulus, felt once and used many times: planning draws from them
+/// and need not run the servo for every trial of every simulated study.
+#pragma once
+
+#include "core/random.hpp"
+#include "engine/perception/felt_features.hpp"
+#include "protocols/design/prepare.hpp"
+#include "protocols/simulation/felt_knowledge.hpp"
+#include "protocols/simulation/subject_model.hpp"
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace touchtrial::simulation {
+
+struct FeltBankOptions {
+  int explorations = 200;  ///< of each stimulus, 1 .. 2^24 - 1
+  std::uint64_t seed = 1;  ///< of their paths, which differ from those of trials and training
+  int jobs = 1;            ///< threads, >= 1; the bank does not depend on them
+};
+
+/// The features, before noise, of many explorations of each stimulus (class x exemplar x method).
+/// Hand, servo, force limit and sense are those of trials, so that exploration i of a stimulus is
+/// an independent draw from what any trial with it feels like. Exploration i is a function of
+/// study, fields, subject (hand and path alone, no noise or bias), seed, the stimulus's place and
+/// i: a larger bank begins with the smaller one. Refers to nothing; immutable, thread-safe.
+class FeltBank {
+ public:
+  /// Feels. Cost: explorations x stimuli x explore_s x 0.15 ms a thread (1.5 ms for 10 s);
+  /// memory: 184 bytes an exploration.
+  /// \param study  of the fields: gives exploration limit and force limit
+  /// \param progress  counts explorations; called from one thread at a time
+  /// \throws std::invalid_argument if an option is out of range
+  FeltBank(const LabelledFields& fields, const design::Study& study, const SubjectModel& subject,
+           const FeltBankOptions& options, const design::Progress& progress = {});
+
+  [[nodiscard]] int stimuli() const noexcept { return static_cast<int>(stimuli_.size()); }
+  [[nodiscard]] int explorations() const noexcept { return explorations_; }
+  /// The stimulus at a place. Places are in the order of LabelledFields::all and of the knowledge's
+  /// prototypes.
+  [[nodiscard]] const design::StimulusIndex& stimulus(int place) const noexcept {
+    return stimuli_[place];
+  }
+  /// \throws std::invalid_argument if the study does not present it
+  [[nodiscard]] int place_of(const design::StimulusIndex& stimulus) const;
+  /// All explorations of one stimulus.
+  /// \param place  0 .. stimuli() - 1
+  [[nodiscard]] std::span<const engine::FeltFeatures> felt(int place) const noexcept {
+    const auto count = static_cast<std::size_t>(explorations_);
+    return {felt_.data() + static_cast<std::size_t>(place) * count, count};
+  }
+
+ private:
+  int explorations_;
+  std::vector<design::StimulusIndex> stimuli_;
+  std::vector<engine::FeltFeatures> felt_;
+};
+
+/// The features that a participant of simulate_study feels in one presentation, to the bit: the
+/// same exploration without its session. Cost: that of one exploration of a bank.
+/// \param seed  of the simulation
+/// \param number  of the participant, from 1
+/// \param nth  place of the presentation among those that the participant begins, from 1; unscored
+///   ones count
+[[nodiscard]] engine::FeltFeatures feel_trial(const LabelledField& field,
+                                              const PlaneGeometry& plane,
+                                              const design::Study& study,
+                                              const SubjectModel& subject, std::uint64_t seed,
+                                              int number, std::uint64_t nth);
+
+}  // namespace touchtrial::simulation

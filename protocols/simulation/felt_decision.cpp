@@ -1,0 +1,135 @@
+#include "protocols/simulation/felt_decision.hpp"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string_view>
+
+namespace touchtrial::simulation {
+namespace {
+
+/// Standard normal. Each purpose has its own stream, so that one spread does not affect the others.
+double deviation(std::string_view purpose, std::uint64_t seed, std::uint64_t number) {
+  return RandomStream(seed, purpose, number).normal();
+}
+
+/// Varies the log odds, so that the result stays a probability. A median of 0 or 1 has none: then
+/// all participants are alike.
+double individual_lapse(const SubjectModel& subject, std::uint64_t seed, std::uint64_t number) {
+  const double median = subject.lapse;
+  if (subject.lapse_spread == 0.0 || median <= 0.0 || median >= 1.0) return median;
+  const double log_odds = std::log(median / (1.0 - median)) +
+                          subject.lapse_spread * deviation("subject: lapse", seed, number);
+  return 1.0 / (1.0 + std::exp(-log_odds));
+}
+
+double individual_position_bias(const SubjectModel& subject, std::uint64_t seed,
+                                std::uint64_t number) {
+  if (subject.position_bias_spread == 0.0) return subject.position_bias;
+  return subject.position_bias +
+         subject.position_bias_spread * deviation("subject: position bias", seed, number);
+}
+
+/// Preference for the class of this label, wherever its picture lies.
+double liking(const SubjectModel& subject, const std::string& label, std::uint64_t seed,
+              std::uint64_t number) {
+  if (subject.class_bias_spread == 0.0) return 0.0;
+  return subject.class_bias_spread * deviation("subject: bias for " + label, seed, number);
+}
+
+constexpr double kQuickestThoughtS = 0.8;
+constexpr double kSlowestThoughtS = 4.0;
+
+/// The label of the picture that a class is matched to, given the class's own label.
+const std::string& matched_label(const SubjectModel& subject, const std::string& label) {
+  for (const auto& [one, other] : subject.label_swap) {
+    if (label == one) return other;
+    if (label == other) return one;
+  }
+  return label;
+}
+
+/// Index of the largest value; a random one of several equal ones.
+int strongest(const std::vector<double>& support, RandomStream& random) {
+  const double most = *std::ranges::max_element(support);
+  std::vector<int> equals;
+  for (std::size_t i = 0; i < support.size(); ++i) {
+    if (support[i] == most) equals.push_back(static_cast<int>(i));
+  }
+  return equals[random.below(equals.size())];
+}
+
+}  // namespace
+
+RandomStream stream_of_trial(std::uint64_t seed, const char* purpose, int number,
+                             std::uint64_t nth) {
+  constexpr unsigned kTrialBits = 24;
+  return {seed, purpose, (static_cast<std::uint64_t>(number) << kTrialBits) + nth};
+}
+
+Individual::Individual(const SubjectModel& subject, std::uint64_t seed, int number)
+    : subject_(&subject),
+      seed_(seed),
+      number_(static_cast<std::uint64_t>(number)),
+      weber_(subject.weber *
+             std::exp(subject.weber_spread * deviation("subject: acuity", seed, number_))),
+      lapse_(individual_lapse(subject, seed, number_)),
+      position_bias_(individual_position_bias(subject, seed, number_)) {}
+
+std::vector<double> Individual::bias(const std::vector<std::string>& labels) const {
+  std::vector<double> bias(labels.size(), 0.0);
+  const double last = std::max(1.0, static_cast<double>(labels.size()) - 1.0);
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    bias[i] = position_bias_ * (1.0 - static_cast<double>(i) / last);
+    for (const ClassBias& preferred : subject_->class_bias) {
+      if (preferred.label == labels[i]) bias[i] += preferred.log_odds;
+    }
+    bias[i] += liking(*subject_, labels[i], seed_, number_);
+  }
+  return bias;
+}
+
+SeenPictures see(const std::vector<std::string>& labels, const SubjectModel& subject,
+                 const Individual& individual, const FeltKnowledge& knowledge) {
+  SeenPictures seen{individual.bias(labels), {}};
+  for (const std::string& felt : knowledge.label_of_prototype) {
+    const auto picture = std::ranges::find(labels, matched_label(subject, felt));
+    if (picture == labels.end()) {
+      throw std::invalid_argument("SimulatedParticipant: a class that was learnt has no picture");
+    }
+    seen.picture_of_prototype.push_back(static_cast<std::size_t>(picture - labels.begin()));
+  }
+  return seen;
+}
+
+std::vector<double> support_of_pictures(const engine::FeltClassifier& classifier,
+                                        const SeenPictures& pictures,
+                                        const engine::FeltFeatures& perceived) {
+  const std::vector<double> logs = classifier.log_likelihoods(perceived);
+  std::vector<double> support(pictures.bias.size(), -std::numeric_limits<double>::infinity());
+  for (std::size_t i = 0; i < logs.size(); ++i) {
+    const std::size_t picture = pictures.picture_of_prototype[i];
+    support[picture] = std::max(support[picture], logs[i] + pictures.bias[picture]);
+  }
+  return support;
+}
+
+FeltDecision::FeltDecision(const Individual& individual, const FeltKnowledge& knowledge)
+    : weber_(individual.weber()),
+      lapse_(individual.lapse()),
+      classifier_(knowledge.examples, individual.weber()) {}
+
+ParticipantAnswer FeltDecision::answer(const engine::FeltFeatures& felt,
+                                       const SeenPictures& pictures, RandomStream& random) const {
+  const bool lapses = random.uniform() < lapse_;
+  const int anything = static_cast<int>(random.below(pictures.bias.size()));
+  const double thought_s = random.uniform(kQuickestThoughtS, kSlowestThoughtS);
+  engine::FeltFeatures perceived = felt;
+  for (double& feature : perceived) feature += weber_ * random.normal();
+  const int named = strongest(support_of_pictures(classifier_, pictures, perceived), random);
+  return {lapses ? anything : named, std::chrono::milliseconds(std::llround(thought_s * 1000.0))};
+}
+
+}  // namespace touchtrial::simulation

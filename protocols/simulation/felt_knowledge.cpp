@@ -1,0 +1,65 @@
+#include "protocols/simulation/felt_knowledge.hpp"
+
+#include "core/random.hpp"
+#include "device/servo/servo.hpp"
+#include "protocols/simulation/felt_exploration.hpp"
+#include "protocols/simulation/job_arena.hpp"
+
+#include <cmath>
+#include <map>
+
+#include <tbb/parallel_for.h>
+
+namespace touchtrial::simulation {
+namespace {
+
+/// A pass has no time limit: it lasts as long as the subject explores.
+device::ServoOptions training_options(const SubjectModel& subject, double max_force_n) {
+  const auto ticks =
+      static_cast<std::int64_t>(std::ceil(subject.explore_s * device::kServoRateHz)) + 1;
+  return {.limit_ticks = ticks, .fade_ticks = 0, .limits = {.max_force_n = max_force_n}};
+}
+
+}  // namespace
+
+LabelledFields::LabelledFields(const design::StudyKey& key, const session::StimulusSource& source)
+    : plane_(source.plane()) {
+  // Sorted by stimulus and not by code: codes are random, and training must not depend on them.
+  std::map<design::StimulusIndex, const engine::RenderingModel*> by_stimulus;
+  for (const design::KeyedStimulus& keyed : key.stimuli) {
+    by_stimulus[keyed.stimulus] = &source.model(keyed.code);
+  }
+  for (const auto& [stimulus, model] : by_stimulus) {
+    fields_.push_back({key.study.classes[stimulus.class_index].label, model, stimulus});
+  }
+}
+
+FeltKnowledge learn_by_feeling(const LabelledFields& fields, const SubjectModel& subject,
+                               double max_force_n, std::uint64_t seed, int jobs) {
+  FeltKnowledge knowledge;
+  for (const LabelledField& field : fields.all()) {
+    knowledge.label_of_prototype.push_back(field.label);
+  }
+  const auto passes = static_cast<std::size_t>(subject.training_passes);
+  knowledge.examples.resize(fields.all().size() * passes);
+  const device::ServoOptions options = training_options(subject, max_force_n);
+  const auto feel_example = [&](std::size_t i) {
+    const std::size_t prototype = i / passes;
+    // The same strokes on every field, so that prototypes differ by texture and not by the places
+    // that happened to be stroked, and fields without a difference are learnt as equals.
+    const engine::FeltFeatures felt =
+        feel_exploration(*fields.all()[prototype].model, fields.plane(), subject, options,
+                         RandomStream(seed, "subject: training pass", i % passes));
+    knowledge.examples[i] = {static_cast<int>(prototype), {felt.begin(), felt.end()}};
+  };
+  const std::size_t count = knowledge.examples.size();
+  if (jobs == 1) {
+    // On the caller's thread, which may be one of many that learn at the same time.
+    for (std::size_t i = 0; i < count; ++i) feel_example(i);
+    return knowledge;
+  }
+  JobArena(jobs).run([&] { tbb::parallel_for(std::size_t{0}, count, feel_example); });
+  return knowledge;
+}
+
+}  // namespace touchtrial::simulation

@@ -1,0 +1,30 @@
+#include "protocols/simulation/population.hpp"
+
+#include "core/errors.hpp"
+#include "protocols/design/protocol.hpp"
+
+#include <map>
+
+namespace touchtrial::simulation {
+namespace {
+
+std::map<std::string_view, MakePopulation>& known_populations() {
+  static std::map<std::string_view, MakePopulation> all;
+  return all;
+}
+
+}  // namespace
+
+void add_population(std::string_view protocol, MakePopulation make) {
+  known_populations()[protocol] = make;
+}
+
+std::unique_ptr<const Population> population_of(const PopulationSetting& setting) {
+  const design::Study& study = setting.key.study;
+  const auto found = known_populations().find(study.protocol->name());
+  if (found != known_populations().end()) return found->second(setting);
+  throw StudyError(one_line("study " + study.name + ": the protocol " + study.protocol_name() +
+                            " has no simulated participants; run it with people"));
+}
+
+}  // namespace touchtrial::simulation

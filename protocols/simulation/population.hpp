@@ -1,0 +1,44 @@
+/// \file The simulated participants of a study. How they answer is up to its protocol.
+#pragma once
+
+#include "protocols/design/study_key.hpp"
+#include "protocols/session/stimulus_source.hpp"
+#include "protocols/simulation/simulated_participant.hpp"
+#include "protocols/simulation/subject_model.hpp"
+
+#include <cstdint>
+#include <memory>
+#include <string_view>
+
+namespace touchtrial::simulation {
+
+/// What a population is made from; everything must outlive it.
+struct PopulationSetting {
+  const design::StudyKey& key;
+  const session::StimulusSource& source;
+  const SubjectModel& subject;
+  std::uint64_t seed = 1;  ///< of everything random in participants
+  int jobs = 1;            ///< threads for what is learnt before the first trial, >= 1
+};
+
+/// Participants who learnt what their study's protocol asks of them. Immutable and thread-safe.
+class Population {
+ public:
+  virtual ~Population() = default;
+  /// \param number  of the participant, from 1
+  /// \return somebody who must not outlive the population
+  [[nodiscard]] virtual std::unique_ptr<SimulatedParticipant> participant(int number) const = 0;
+};
+
+using MakePopulation = std::unique_ptr<const Population> (*)(const PopulationSetting&);
+
+/// Says how a protocol's simulated participants are made. Call before the first simulation; not
+/// thread-safe.
+/// \param protocol  its name; outlives the program's use of it
+void add_population(std::string_view protocol, MakePopulation make);
+
+/// The participants of a study. May take as long as they need to learn.
+/// \throws StudyError if its protocol has no simulated participants
+[[nodiscard]] std::unique_ptr<const Population> population_of(const PopulationSetting& setting);
+
+}  // namespace touchtrial::simulation

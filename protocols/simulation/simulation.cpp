@@ -1,0 +1,155 @@
+#include "protocols/simulation/simulation.hpp"
+
+#include "protocols/session/session_runner.hpp"
+#include "protocols/simulation/job_arena.hpp"
+#include "protocols/simulation/population.hpp"
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+
+#include <tbb/parallel_pipeline.h>
+
+namespace touchtrial::simulation {
+namespace {
+
+/// Shared by all sessions of a simulation, read-only.
+struct Setting {
+  const design::StudyKey& key;
+  const session::StimulusSource& source;
+  const Population& population;
+  std::uint64_t seed;
+  Digest seal;
+};
+
+/// A session and its participant.
+struct Place {
+  int session = 0;
+  int number = 0;  ///< participant's, and enrolment number
+};
+
+/// A session on its way to the database.
+struct FinishedSession {
+  store::BufferedEvents events;
+  Bytes wrapped_key;
+  session::SessionTally tally;
+};
+
+std::string participant_id(int number) {
+  constexpr std::size_t kDigits = 3;
+  std::string digits = std::to_string(number);
+  if (digits.size() < kDigits) digits.insert(0, kDigits - digits.size(), '0');
+  return "P" + digits;
+}
+
+store::SessionOpening opening_of(const Setting& setting, int number) {
+  store::SessionOpening opening;
+  opening.participant = participant_id(number);
+  opening.enrolment = number;
+  opening.study_id = setting.key.study_id;
+  opening.seal = setting.seal;
+  opening.device = "simulated";
+  opening.simulated = true;
+  return opening;
+}
+
+/// A function of the simulation's seed, so that it can be repeated, and of the study's secret.
+SecretKey participant_key(const Setting& setting, int number) {
+  SeededEntropy entropy(setting.seed);
+  const SecretKey drawn = entropy.secret("participant key of " + participant_id(number));
+  return keyed_hash(setting.key.master, ByteView(drawn));
+}
+
+FinishedSession run_session(const Setting& setting, const Place& place) {
+  FinishedSession finished;
+  const SecretKey key = participant_key(setting, place.number);
+  const design::Schedule schedule = design::make_schedule(setting.key.study, place.number);
+  session::Session session(schedule, setting.key.study.trials,
+                           store::SessionRecorder(place.session, key, finished.events));
+  session.open({}, opening_of(setting, place.number),
+               design::schedule_to_json(schedule, setting.key));
+  const std::unique_ptr<SimulatedParticipant> participant =
+      setting.population.participant(place.number);
+  finished.tally =
+      session::run_session_in_virtual_time(session, setting.key, setting.source, *participant);
+  finished.wrapped_key = store::wrap_participant_key(setting.key.master, place.session, key);
+  return finished;
+}
+
+/// Stores sessions in the order in which they arrive, and counts.
+class Collector {
+ public:
+  Collector(store::StudyStore& store, const design::Progress& progress, int participants)
+      : store_(store), progress_(progress), participants_(participants) {
+    const std::vector<store::Event> file_chain = store.events(0);
+    if (!file_chain.empty()) at_ = file_chain.back().at;
+  }
+
+  void take(const FinishedSession& session) {
+    // Virtual sessions follow one another without a pause.
+    at_ += session.tally.duration;
+    store_.add_session(session.events, session.wrapped_key, at_);
+    ++report_.sessions;
+    report_.presentations += session.tally.presentations;
+    report_.invalid_trials += session.tally.invalid_trials;
+    report_.ticks += session.tally.ticks;
+    if (progress_) progress_(report_.sessions, participants_);
+  }
+  [[nodiscard]] const SimulationReport& report() const noexcept { return report_; }
+
+ private:
+  store::StudyStore& store_;
+  const design::Progress& progress_;
+  int participants_;
+  std::chrono::nanoseconds at_{};
+  SimulationReport report_;
+};
+
+void check(const SimulationOptions& options) {
+  if (options.participants < 1 || options.jobs < 1 || options.first_participant < 1) {
+    throw std::invalid_argument(
+        "simulate_study: participants, jobs and first participant start at 1");
+  }
+}
+
+/// Runs sessions in parallel and stores them in the order of the participants.
+void run_sessions(const Setting& setting, const SimulationOptions& options, int first_session,
+                  Collector& collector) {
+  int started = 0;
+  const auto next = [&](tbb::flow_control& flow) {
+    if (started == options.participants) flow.stop();
+    return started++;
+  };
+  using Finished = std::shared_ptr<const FinishedSession>;
+  const auto run = [&](int i) -> Finished {
+    const Place place{first_session + i, options.first_participant + i};
+    return std::make_shared<const FinishedSession>(run_session(setting, place));
+  };
+  const auto store = [&](const Finished& session) { collector.take(*session); };
+  const auto in_order = tbb::filter_mode::serial_in_order;
+  const auto pipeline = tbb::make_filter<void, int>(in_order, next) &
+                        tbb::make_filter<int, Finished>(tbb::filter_mode::parallel, run) &
+                        tbb::make_filter<Finished, void>(in_order, store);
+  JobArena arena(options.jobs);
+  const auto in_flight = 2 * static_cast<std::size_t>(arena.jobs());
+  arena.run([&] { tbb::parallel_pipeline(in_flight, pipeline); });
+}
+
+}  // namespace
+
+SimulationReport simulate_study(const design::StudyKey& key, const engine::Pack& pack,
+                                const SubjectModel& subject, const SimulationOptions& options,
+                                store::StudyStore& store, const design::Progress& progress) {
+  check(options);
+  const session::StimulusSource source(pack, key.study.rendering);
+  const std::unique_ptr<const Population> population =
+      population_of({key, source, subject, options.seed, options.jobs});
+  const Setting setting{key, source, *population, options.seed, design::study_seal(key)};
+  Collector collector(store, progress, options.participants);
+  run_sessions(setting, options, store.next_session(), collector);
+  return collector.report();
+}
+
+}  // namespace touchtrial::simulation

@@ -1,0 +1,44 @@
+/// \file A whole study with simulated participants, in virtual time.
+#pragma once
+
+#include "engine/pack/pack.hpp"
+#include "protocols/design/prepare.hpp"
+#include "protocols/design/study_key.hpp"
+#include "protocols/simulation/subject_model.hpp"
+#include "protocols/store/study_store.hpp"
+
+#include <cstdint>
+
+namespace touchtrial::simulation {
+
+struct SimulationOptions {
+  int participants = 20;      ///< >= 1
+  std::uint64_t seed = 1;     ///< of everything random in participants
+  int jobs = 1;               ///< threads, >= 1; results do not depend on them
+  int first_participant = 1;  ///< >= 1; P001 is the first, and has enrolment number 1
+};
+
+/// Counts of what was done, without outcomes.
+struct SimulationReport {
+  int sessions = 0;
+  int presentations = 0;
+  int invalid_trials = 0;
+  std::int64_t ticks = 0;  ///< of the servo, without training
+};
+
+/// Trains the subject model once on the study's labelled fields: all participants know the classes
+/// equally well, and differ in acuity, paths and noise. Then runs one session for each participant
+/// through the session state machine and stores it, in the participants' order. The stored data are
+/// a function of key, pack, subject, seed and first participant. At most a few sessions are in
+/// memory at a time.
+/// \param progress  called after each session, from one thread at a time
+/// \throws StudyError if the subject names a class that the study does not have
+/// \throws FileError if the pack lacks a stimulus
+/// \throws StoreError if a participant is already in the database or it refuses a write; the
+///   sessions stored before remain
+/// \throws std::invalid_argument if an option is out of range
+SimulationReport simulate_study(const design::StudyKey& key, const engine::Pack& pack,
+                                const SubjectModel& subject, const SimulationOptions& options,
+                                store::StudyStore& store, const design::Progress& progress = {});
+
+}  // namespace touchtrial::simulation

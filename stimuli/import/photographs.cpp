@@ -1,0 +1,265 @@
+#include "stimuli/import/photographs.hpp"
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/strict_json.hpp"
+#include "engine/image_file.hpp"
+#include "engine/image_notes.hpp"
+#include "engine/pictures/colour_image.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string_view>
+#include <system_error>
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial::stimuli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kLongestLabel = 64;  // bytes, as in study files
+
+/// Endings of photographs, including those that this program cannot read: such files are refused by
+/// name rather than ignored.
+constexpr std::array<std::string_view, 26> kPictureEndings = {
+    ".png", ".jpg", ".jpeg", ".jpe",  ".tif",  ".tiff", ".bmp", ".pgm", ".ppm",
+    ".pnm", ".gif", ".webp", ".heic", ".heif", ".avif", ".jp2", ".jxl", ".dng",
+    ".cr2", ".cr3", ".nef",  ".arw",  ".raw",  ".psd",  ".exr", ".pbm"};
+
+bool is_digit(char c) {
+  return c >= '0' && c <= '9';
+}
+
+std::string lower_case(std::string text) {
+  std::ranges::transform(text, text.begin(), [](char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  });
+  return text;
+}
+
+bool is_picture(const fs::path& file) {
+  return std::ranges::count(kPictureEndings, lower_case(file.extension().string())) != 0;
+}
+
+[[noreturn]] void refuse(const fs::path& path, const std::string& what) {
+  throw FileError(one_line(path.string() + ": " + what));
+}
+
+struct Listing {
+  std::vector<fs::path> folders;
+  std::vector<fs::path> pictures;
+  std::vector<std::string> others;
+};
+
+/// Lists a folder in natural order of the names, which does not depend on the disk.
+Listing list(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> paths;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    if (!entry->path().filename().string().starts_with('.')) paths.push_back(entry->path());
+  }
+  if (error)
+    refuse(folder, "cannot be listed (" + error.message() + "); give a folder you may read");
+  std::ranges::sort(paths, [](const fs::path& a, const fs::path& b) {
+    return naturally_before(a.filename().string(), b.filename().string());
+  });
+  Listing listing;
+  for (const fs::path& path : paths) {
+    std::error_code ignored;
+    if (fs::is_directory(path, ignored)) {
+      listing.folders.push_back(path);
+    } else if (is_picture(path)) {
+      listing.pictures.push_back(path);
+    } else {
+      listing.others.push_back(path.filename().string());
+    }
+  }
+  return listing;
+}
+
+/// Applies the rules of study files; a message names the file or folder that breaks them.
+void check_label(const std::string& label, const fs::path& origin) {
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < 0x20 || c == 0x7f; };
+  const bool has_c1 = [&] {
+    for (std::size_t i = 0; i + 1 < label.size(); ++i) {
+      if (label[i] == '\xc2' && static_cast<unsigned char>(label[i + 1]) < 0xa0) return true;
+    }
+    return false;
+  }();
+  if (!is_utf8(label)) refuse(origin, "its name is not UTF-8 and cannot be a label; rename it");
+  if (has_c1 || std::ranges::any_of(label, is_control)) {
+    refuse(origin, "its name has a control character and cannot be a label; rename it");
+  }
+  if (label.front() == ' ' || label.back() == ' ') {
+    refuse(origin, "its name begins or ends with a blank and cannot be a label; rename it");
+  }
+  if (label.size() > kLongestLabel) {
+    refuse(origin, "its name has more than " + std::to_string(kLongestLabel) +
+                       " bytes and cannot be a label; shorten it");
+  }
+}
+
+/// Collects classes and refuses labels that differ in capitals only.
+class Classes {
+ public:
+  void add(const std::string& label, const fs::path& origin, std::vector<fs::path> files) {
+    check_label(label, origin);
+    const auto [other, is_new] = origins_.emplace(lower_case(label), origin);
+    if (!is_new) {
+      refuse(origin, "would be the class \"" + label + "\" like " +
+                         other->second.filename().string() + "; rename one, or put both into a " +
+                         "folder of the class's name");
+    }
+    classes_.push_back({label, std::move(files)});
+  }
+  std::vector<PhotoClass> take() { return std::move(classes_); }
+
+ private:
+  std::map<std::string, fs::path> origins_;
+  std::vector<PhotoClass> classes_;
+};
+
+std::vector<PhotoClass> classes_of_folders(const Listing& listing,
+                                           std::vector<std::string>& ignored) {
+  Classes classes;
+  for (const fs::path& folder : listing.folders) {
+    Listing inside = list(folder);
+    if (!inside.folders.empty()) {
+      refuse(inside.folders.front(),
+             "is a folder within a class's folder; put the photographs of "
+             "a class into one folder");
+    }
+    if (inside.pictures.empty()) {
+      refuse(folder, "holds no photograph; add some, or remove the folder");
+    }
+    for (const std::string& other : inside.others) {
+      ignored.push_back(folder.filename().string() + "/" + other);
+    }
+    classes.add(folder.filename().string(), folder, std::move(inside.pictures));
+  }
+  return classes.take();
+}
+
+std::vector<PhotoClass> classes_of_files(const Listing& listing) {
+  Classes classes;
+  for (const fs::path& file : listing.pictures) classes.add(file.stem().string(), file, {file});
+  return classes.take();
+}
+
+constexpr double kMostEnlarged = 4.0;
+constexpr double kMostShrunk = 1.0 / 64;
+
+double scale_for(const Photograph& photo, const ImportOptions& options) {
+  const std::string name = one_line(photo.path.string());
+  const auto pixels_per_mm =
+      options.pixels_per_mm_of_files ? photo.said_pixels_per_mm : options.pixels_per_mm;
+  if (!pixels_per_mm && !options.pixels_per_mm_of_files) return 1.0;
+  if (!pixels_per_mm) {
+    throw FileError(name +
+                    ": does not say how many pixels a millimetre has (programs that do not know "
+                    "write 72 or 96 dpi); give --pixels-per-mm a number");
+  }
+  const double scale = 1.0 / (*pixels_per_mm * options.pitch_mm);
+  if (scale > kMostEnlarged || scale < kMostShrunk) {
+    throw FileError(name + ": " + number_text(*pixels_per_mm) +
+                    " pixels a millimetre at a pitch of " + number_text(options.pitch_mm) +
+                    " mm means scaling by " + number_text(scale) +
+                    ", beyond 1/64 to 4; check --pixels-per-mm and --pitch-mm");
+  }
+  return scale;
+}
+
+int scaled(int length_px, double scale) {
+  return static_cast<int>(std::max(1L, std::lround(length_px * scale)));
+}
+
+}  // namespace
+
+bool is_utf8(const std::string& text) {
+  try {
+    static_cast<void>(nlohmann::json(text).dump());
+    return true;
+  } catch (const nlohmann::json::type_error&) {
+    return false;
+  }
+}
+
+bool naturally_before(const std::string& a, const std::string& b) {
+  std::size_t i = 0;
+  std::size_t j = 0;
+  const auto number = [](const std::string& text, std::size_t& at) {
+    const std::size_t start = std::min(text.find_first_not_of('0', at), text.size());
+    for (at = start; at < text.size() && is_digit(text[at]);) ++at;
+    return std::string_view(text).substr(start, at - start);
+  };
+  while (i < a.size() && j < b.size()) {
+    if (is_digit(a[i]) && is_digit(b[j])) {
+      const std::string_view left = number(a, i);
+      const std::string_view right = number(b, j);
+      if (left.size() != right.size()) return left.size() < right.size();
+      if (left != right) return left < right;
+    } else if (a[i] != b[j]) {
+      return a[i] < b[j];
+    } else {
+      ++i;
+      ++j;
+    }
+  }
+  const std::size_t left_over = a.size() - i;
+  const std::size_t right_over = b.size() - j;
+  return left_over != right_over ? left_over < right_over : a < b;
+}
+
+PhotoFolder list_photographs(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::is_directory(folder, error)) {
+    refuse(folder, fs::exists(folder, error) ? "is not a folder; give the folder of the photographs"
+                                             : "does not exist; check the path");
+  }
+  Listing listing = list(folder);
+  PhotoFolder result;
+  result.ignored = std::move(listing.others);
+  if (!listing.folders.empty() && !listing.pictures.empty()) {
+    refuse(listing.pictures.front(),
+           "lies beside folders; give a folder of class folders, or one of photographs alone");
+  }
+  result.classes = listing.folders.empty() ? classes_of_files(listing)
+                                           : classes_of_folders(listing, result.ignored);
+  if (result.classes.empty()) {
+    refuse(folder,
+           "holds no photograph; give a folder of PNG, JPEG, TIFF, BMP or PGM files, or "
+           "of folders of them");
+  }
+  return result;
+}
+
+Photograph read_photograph(const fs::path& path, const ImportOptions& options) {
+  const Bytes file = read_file(path);
+  const engine::ImageNotes notes = engine::notes_of_image(file);
+  Photograph photo;
+  photo.path = path;
+  photo.image = engine::upright(engine::decode_grey_image(file, path.string()), notes.orientation);
+  photo.sha256 = sha256(file);
+  photo.pixels_sha256 = FieldHasher()
+                            .add(std::int64_t{photo.image.height()})
+                            .add(std::int64_t{photo.image.width()})
+                            .add(ByteView(photo.image.samples()))
+                            .finish();
+  photo.orientation = notes.orientation;
+  photo.height_px = photo.image.height();
+  photo.width_px = photo.image.width();
+  photo.said_pixels_per_mm = notes.pixels_per_mm;
+  photo.scale = scale_for(photo, options);
+  if (photo.scale != 1.0) {
+    photo.image = engine::resized(photo.image, scaled(photo.height_px, photo.scale),
+                                  scaled(photo.width_px, photo.scale));
+  }
+  return photo;
+}
+
+}  // namespace touchtrial::stimuli

@@ -1,0 +1,58 @@
+/// \file The photographs of a folder: their classes, and each one upright, grey, and resampled to
+/// the size in which it is felt. Private to stimuli/import.
+#pragma once
+
+#include "core/hash.hpp"
+#include "core/plane.hpp"
+#include "stimuli/import/import.hpp"
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial::stimuli {
+
+/// The photographs of one label, in natural order of their names.
+struct PhotoClass {
+  std::string label;
+  std::vector<std::filesystem::path> files;
+};
+
+struct PhotoFolder {
+  std::vector<PhotoClass> classes;   ///< in natural order of their labels
+  std::vector<std::string> ignored;  ///< names of other files
+};
+
+/// In a folder of folders, each folder is a class of its name. In a folder of files, each file is a
+/// class of its stem, as in an album of D1.png, D2.png, ... Hidden files and folders do not count;
+/// files without the ending of a picture are ignored.
+/// \throws FileError if `folder` is not a folder or is empty, has pictures beside folders, or has a
+///   name that cannot be a label or differs from another in capitals only
+[[nodiscard]] PhotoFolder list_photographs(const std::filesystem::path& folder);
+
+/// Whether `a` comes before `b` when numbers count as numbers: D2 before D10.
+[[nodiscard]] bool naturally_before(const std::string& a, const std::string& b);
+
+/// Whether a text is UTF-8, as JSON files must be.
+[[nodiscard]] bool is_utf8(const std::string& text);
+
+/// A photograph, and what its manifest entry says of it.
+struct Photograph {
+  std::filesystem::path path;
+  Digest sha256{};         ///< of the file
+  Digest pixels_sha256{};  ///< of shape and grey levels, upright, before resampling
+  int orientation = 1;     ///< by Exif; the image is turned upright
+  int height_px = 0;       ///< upright, before resampling
+  int width_px = 0;
+  std::optional<double> said_pixels_per_mm;  ///< according to the file
+  double scale = 1.0;                        ///< of the resampling, new pixels per old pixel
+  GreyImage image;                           ///< upright and resampled
+};
+
+/// \throws FileError if the file cannot be read, does not state its resolution although the options
+///   ask for it, or needs scaling beyond 1/64 to 4
+[[nodiscard]] Photograph read_photograph(const std::filesystem::path& path,
+                                         const ImportOptions& options);
+
+}  // namespace touchtrial::stimuli

@@ -1,0 +1,74 @@
+#include "analysis/measures/evaluation_report.hpp"
+
+#include "support/catch.hpp"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+using namespace touchtrial;
+using namespace touchtrial::analysis;
+using namespace touchtrial::engine;
+using nlohmann::json;
+
+namespace {
+
+EvaluatedImage example(bool swept) {
+  EvaluatedImage image{"folder/it's.png", {}};
+  Evaluation& evaluation = image.evaluation;
+  evaluation.height = 200;
+  evaluation.width = 300;
+  evaluation.original = {5.25, {}};
+  evaluation.adaptive = {4.125, {}};
+  evaluation.original.glcm[1] = {0.0004, 0.02, 9.5, 782.97, 0.602};
+  if (swept) evaluation.orders = {{0.05, 2.0, 0.25, 0.75}, {0.1, 3.0, 0.995, 0.999}};
+  return image;
+}
+
+}  // namespace
+
+TEST_CASE("the evaluation's JSON has its documented shape") {
+  const std::vector<EvaluatedImage> images = {example(true), example(false)};
+  const json object = json::parse(evaluation_json(images));
+  CHECK(object.size() == 1);
+  REQUIRE(object["images"].size() == 2);
+  const json& first = object["images"][0];
+  CHECK(first["image"] == "folder/it's.png");
+  CHECK(first["original"]["entropy"] == 5.25);
+  CHECK(first["adaptive"]["entropy"] == 4.125);
+  for (const char* direction : {"0", "45", "90", "135"}) {
+    CHECK(first["adaptive"]["glcm"][direction].size() == 5);
+  }
+  CHECK(first["original"]["glcm"]["45"] == json{{"asm", 0.0004},
+                                                {"energy", 0.02},
+                                                {"entropy", 9.5},
+                                                {"contrast", 782.97},
+                                                {"correlation", 0.602}});
+  REQUIRE(first["orders"].size() == 2);
+  CHECK(first["orders"][1] ==
+        json{{"order", 0.1}, {"entropy", 3.0}, {"ms_ssim", 0.995}, {"ms_ssim_wang", 0.999}});
+  CHECK_FALSE(object["images"][1].contains("orders"));
+}
+
+TEST_CASE("the evaluation's text names the paper's entropy and the closest fixed order") {
+  const std::vector<EvaluatedImage> swept = {example(true)};
+  const std::string text = evaluation_text(swept);
+  CHECK_THAT(text, holds_text("300 x 200 px"));
+  CHECK_THAT(text, holds_text("The paper's Table 1 prints, as \"Entropy\", what is called energy"));
+  CHECK_THAT(text, holds_text("the fixed order 0.10: MS-SSIM 0.99500 (Wang 0.99900)"));
+  CHECK_THAT(text, holds_text("782.97"));
+  const std::vector<EvaluatedImage> unswept = {example(false)};
+  CHECK(evaluation_text(unswept).find("fixed order") == std::string::npos);
+}
+
+TEST_CASE("the sweep's script contains every number, and no name that gnuplot could misread") {
+  const std::vector<EvaluatedImage> images = {example(true), example(true)};
+  const std::string script = order_sweep_script(images);
+  CHECK_THAT(script, holds_text("set terminal pngcairo"));
+  CHECK_THAT(script, holds_text("0.1 3 0.995 0.999\n"));
+  CHECK_THAT(script, holds_text("$sweep1 using 1:3"));
+  CHECK_THAT(script, holds_text("title 'it''s'"));
+  CHECK(script.find("$sweep2") == std::string::npos);
+}

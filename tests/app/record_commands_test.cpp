@@ -1,0 +1,351 @@
+// The commands that record something beside the sessions: consent, exclude, replace, withdraw,
+// note; and migrate.
+#include "app/study_folder.hpp"
+#include "app/touchtrial_process.hpp"
+#include "core/cipher.hpp"
+#include "core/files.hpp"
+#include "protocols/design/study_key.hpp"
+#include "protocols/store/personal_data.hpp"
+#include "protocols/store/study_store.hpp"
+#include "support/catch.hpp"
+#include "support/temp_folder.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <SQLiteCpp/Database.h>
+
+using namespace touchtrial;
+using namespace touchtrial::design;
+using namespace touchtrial::store;
+
+namespace {
+
+/// A blind study of four simulated participants, P001 to P004, in `study.db`.
+struct PeopleStudy : StudyFolder {
+  PeopleStudy() {
+    const ProgramResult simulated = simulate("study.db", {"--keep-blind"});
+    INFO(simulated.errors);
+    REQUIRE(simulated.exit_code == 0);
+  }
+
+  [[nodiscard]] fs::path database() const { return path() / "study.db"; }
+
+  /// `COMMAND study.db --participant ID ...`
+  [[nodiscard]] ProgramResult people(const std::string& command, const std::string& participant,
+                                     const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> arguments = {command, in("study.db"), "--participant", participant};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return StudyFolder::run(arguments);
+  }
+  /// One more participant, in virtual time.
+  [[nodiscard]] ProgramResult session_of(const std::string& participant) const {
+    return StudyFolder::run({"run", in("cloths.json"), "--participant", participant, "--db",
+                             in("study.db"), "--subject", in("quick.json"), "--headless"});
+  }
+  [[nodiscard]] StudyStore store() const {
+    return StudyStore::open(database(), StudyStore::Access::read_only);
+  }
+  [[nodiscard]] json quality() const {
+    const ProgramResult reported = StudyFolder::run({"report", in("study.db"), "--json"});
+    REQUIRE(reported.exit_code == 0);
+    return json::parse(reported.output);
+  }
+  [[nodiscard]] json outcomes() const {
+    REQUIRE(StudyFolder::run({"close", in("study.db")}).exit_code == 0);
+    REQUIRE(StudyFolder::run({"unblind", in("study.db"), "--reason", "test"}).exit_code == 0);
+    return quality();
+  }
+};
+
+/// Checks for one line on standard error, which contains every word, and no output.
+void check_refused(const ProgramResult& result, int exit_code,
+                   const std::vector<std::string>& words) {
+  INFO(result.output << result.errors);
+  CHECK(result.exit_code == exit_code);
+  CHECK(result.output.empty());
+  CHECK(line_count(result.errors) == 1);
+  for (const std::string& word : words) {
+    INFO(word);
+    CHECK(result.errors.find(word) != std::string::npos);
+  }
+}
+
+/// Checks that there are as many answers as trials, and that all checks of `verify` pass.
+void check_verified(const PeopleStudy& study) {
+  const ProgramResult verified = study.run({"verify", study.in("study.db"), "--json"});
+  INFO(verified.output << verified.errors);
+  CHECK(verified.exit_code == 0);
+  CHECK(json::parse(verified.output).at("complete") == true);
+}
+
+SessionRow session_of(const StudyStore& store, const std::string& participant) {
+  return store.sessions_of(participant).at(0);
+}
+
+StudyKey key_of(const PeopleStudy& study) {
+  return load_study_key(study.path() / "study.db.key");
+}
+
+/// The files in and below the study's folder that contain these bytes.
+std::set<std::string> files_with(const PeopleStudy& study, ByteView bytes) {
+  std::set<std::string> found;
+  for (const auto& entry : fs::recursive_directory_iterator(study.path())) {
+    if (!entry.is_regular_file()) continue;
+    const Bytes file = read_file(entry.path());
+    if (std::search(file.begin(), file.end(), bytes.begin(), bytes.end()) != file.end()) {
+      found.insert(entry.path().filename().string());
+    }
+  }
+  return found;
+}
+
+/// The number of a session's sealed event parts and traces that a key opens.
+struct Opened {
+  int parts = 0;
+  int questionnaires = 0;
+  int traces = 0;
+};
+
+Opened opened_by(const StudyStore& store, int session, const SecretKey& key) {
+  Opened opened;
+  for (const Event& event : store.events(session)) {
+    if (!event.sealed.empty() && unsealed(event, key)) {
+      ++opened.parts;
+      if (event.kind == EventKind::questioned) ++opened.questionnaires;
+    }
+    if (event.kind != EventKind::trace_stored) continue;
+    const auto body = json::parse(event.body);
+    const int trial = body.at("trial");
+    const auto box = store.sealed_trace(session, trial);
+    if (box && unsealed_trace(*box, key, body.at("samples"))) ++opened.traces;
+  }
+  return opened;
+}
+
+TEST_CASE("consent is recorded in a file of its own that only its owner may read") {
+  const TempFolder folder;
+  const fs::path database = folder.path() / "study.db";
+  const ProgramResult done =
+      run_touchtrial(folder.path(), {"consent", database.string(), "--participant", "P07",
+                                     "--version", "2026-03", "--age", "34"});
+  INFO(done.errors);
+  REQUIRE(done.exit_code == 0);
+  const fs::path file = personal_data_path(database);
+  CHECK((fs::status(file).permissions() & fs::perms(0777)) == fs::perms(0600));
+  const auto record = PersonalData(file).find("P07");
+  REQUIRE(record);
+  CHECK(record->consent_version == "2026-03");
+  CHECK(record->age == 34);
+  CHECK(record->contact.empty());
+  CHECK_FALSE(fs::exists(database));
+}
+
+TEST_CASE("consent records nothing if the line for --contact is missing") {
+  const TempFolder folder;
+  const fs::path database = folder.path() / "study.db";
+  const ProgramResult done = run_touchtrial(
+      folder.path(),
+      {"consent", database.string(), "--participant", "P07", "--version", "1", "--contact"});
+  CHECK(done.exit_code == 2);
+  CHECK_FALSE(fs::exists(personal_data_path(database)));
+}
+
+}  // namespace
+
+TEST_CASE("an excluded participant is left out of outcomes, and the reason is recorded") {
+  const PeopleStudy study;
+  const ProgramResult excluded = study.people("exclude", "P002", {"--reason", "fell asleep"});
+  INFO(excluded.errors);
+  REQUIRE(excluded.exit_code == 0);
+  CHECK(excluded.output.find("P002: excluded") != std::string::npos);
+  CHECK(session_of(study.store(), "P002").excluded);
+  CHECK(study.store().events(0).back().body.find("fell asleep") != std::string::npos);
+  CHECK(study.quality().at("participants") == 3);
+  CHECK(study.quality().at("sessions").at("excluded") == 1);
+  check_verified(study);
+
+  check_refused(study.people("exclude", "P002", {"--reason", "again"}), 1,
+                {"study.db", "already excluded"});
+  check_refused(study.people("exclude", "P9", {"--reason", "who"}), 1,
+                {"study.db", "P9", "no session", "check the participant id"});
+  check_refused(study.people("exclude", "P001", {"--reason", ""}), 1, {"reason"});
+  check_refused(study.people("exclude", "P001"), 2, {"--reason"});
+  check_refused(
+      study.run({"exclude", study.in("none.db"), "--participant", "P001", "--reason", "gone"}), 1,
+      {"none.db", "no such database"});
+  CHECK(study.outcomes().at("trials") == 3 * 6);
+}
+
+TEST_CASE("an exclusion after outcomes were seen is accepted only if that is recorded") {
+  const PeopleStudy study;
+  CHECK(study.outcomes().at("participants") == 4);
+  check_refused(study.people("exclude", "P001", {"--reason", "bad figures"}), 1,
+                {"P001", "outcomes have been seen", "--after-outcomes"});
+  REQUIRE(
+      study.people("exclude", "P001", {"--reason", "bad figures", "--after-outcomes"}).exit_code ==
+      0);
+  CHECK(study.store().events(0).back().body.find("after outcomes were seen: bad figures") !=
+        std::string::npos);
+  CHECK(study.quality().at("participants") == 3);
+}
+
+TEST_CASE("a replacement inherits the participant's enrolment number and its schedule") {
+  const PeopleStudy study;
+  check_refused(study.people("replace", "P002", {"--with", "P021", "--reason", "ill"}), 1,
+                {"P002", "complete", "stopped, excluded or withdrawn"});
+  REQUIRE(study.people("exclude", "P002", {"--reason", "ill"}).exit_code == 0);
+  check_refused(study.people("replace", "P002", {"--with", "P003", "--reason", "ill"}), 1,
+                {"P003", "already has session"});
+  check_refused(study.people("replace", "P002", {"--with", "no id", "--reason", "ill"}), 1,
+                {"'no id'", "no participant id"});
+  check_refused(study.people("replace", "P9", {"--with", "P021", "--reason", "ill"}), 1,
+                {"P9", "no session"});
+  check_refused(study.people("replace", "P002", {"--reason", "ill"}), 2, {"--with"});
+  const ProgramResult replaced =
+      study.people("replace", "P002", {"--with", "P021", "--reason", "ill"});
+  INFO(replaced.errors);
+  REQUIRE(replaced.exit_code == 0);
+  CHECK(replaced.output.find("P021 inherits enrolment 2") != std::string::npos);
+  check_refused(study.people("replace", "P002", {"--with", "P022", "--reason", "ill"}), 1,
+                {"already replaced by participant P021"});
+
+  const ProgramResult other = study.session_of("P005");
+  INFO(other.errors);
+  REQUIRE(other.exit_code == 0);
+  REQUIRE(study.session_of("P021").exit_code == 0);
+  const StudyStore store = study.store();
+  CHECK(session_of(store, "P005").enrolment == 5);
+  CHECK(session_of(store, "P021").enrolment == 2);
+  CHECK(session_of(store, "P002").replaced_by == "P021");
+  check_verified(study);
+  const json quality = study.quality();
+  CHECK(quality.at("participants") == 5);
+  CHECK(quality.at("sessions").at("completed") == 5);
+  CHECK(quality.at("sessions").at("replaced") == 1);
+  CHECK(quality.at("sessions").at("excluded") == 0);
+  CHECK(study.outcomes().at("participants") == 5);
+}
+
+TEST_CASE("after a withdrawal, nobody can open the person's sealed data again") {
+  const PeopleStudy study;
+  REQUIRE(study.session_of("P005").exit_code == 0);
+  PersonalData(personal_data_path(study.database()))
+      .put({.participant = "P005",
+            .consent_version = "3",
+            .consented_utc = "2026-01-02T03:04:05Z",
+            .age = 30,
+            .gender = "",
+            .contact = "somebody@example.org"});
+  const SecretKey master = key_of(study).master;
+  const int session = session_of(study.store(), "P005").session;
+  const Bytes wrapped = study.store().wrapped_key(session).value();
+  const SecretKey lost = unwrap_participant_key(master, session, wrapped).value();
+  const Opened before = opened_by(study.store(), session, lost);
+  CHECK(before.parts >= 6);
+  CHECK(before.questionnaires >= 1);
+  CHECK(before.traces == 6);
+  REQUIRE(files_with(study, wrapped).contains("study.db"));
+  REQUIRE_FALSE(files_with(study, bytes_of("somebody@example.org")).empty());
+
+  const ProgramResult withdrawn = study.people("withdraw", "P005", {"--reason", "asked to"});
+  INFO(withdrawn.errors);
+  REQUIRE(withdrawn.exit_code == 0);
+  CHECK(withdrawn.output.find("cannot be read again") != std::string::npos);
+  CHECK(withdrawn.output.find("personal data are removed") != std::string::npos);
+
+  // No part of the key is left, wrapped or not, in any file: database, log, index, backup, or pack.
+  constexpr std::size_t kPart = 16;
+  for (std::size_t at = 0; at + kPart <= wrapped.size(); at += kPart) {
+    CHECK(files_with(study, ByteView(wrapped).subspan(at, kPart)).empty());
+  }
+  for (std::size_t at = 0; at < lost.size(); at += kPart) {
+    CHECK(files_with(study, ByteView(lost).subspan(at, kPart)).empty());
+  }
+  CHECK(files_with(study, bytes_of("somebody@example.org")).empty());
+  const StudyStore store = study.store();
+  CHECK_FALSE(store.wrapped_key(session));
+  CHECK(session_of(store, "P005").withdrawn);
+  // The boxes are still there, because the chain needs them; nothing that is left opens one.
+  CHECK(opened_by(store, session, lost).parts == before.parts);
+  std::vector<SecretKey> left = {master, derive_key(master, "participant keys"),
+                                 derive_key(master, "participant key")};
+  for (const SessionRow& other : store.sessions()) {
+    if (const auto key = store.wrapped_key(other.session)) {
+      left.push_back(unwrap_participant_key(master, other.session, *key).value());
+    }
+  }
+  CHECK(left.size() == 3 + 4);
+  for (const SecretKey& key : left) {
+    const Opened now = opened_by(store, session, key);
+    CHECK(now.parts == 0);
+    CHECK(now.traces == 0);
+  }
+  check_verified(study);
+  const json quality = study.quality();
+  CHECK(quality.at("participants") == 4);
+  CHECK(quality.at("sessions").at("withdrawn") == 1);
+  CHECK(study.outcomes().at("trials") == 4 * 6);
+}
+
+TEST_CASE("a participant who withdrew can be replaced, and copies must be destroyed") {
+  const PeopleStudy study;
+  const ProgramResult withdrawn = study.people("withdraw", "P001", {"--reason", "asked to"});
+  REQUIRE(withdrawn.exit_code == 0);
+  CHECK(withdrawn.output.find("destroy every other copy of the database") != std::string::npos);
+  check_refused(study.people("withdraw", "P001", {"--reason", "again"}), 1,
+                {"P001", "already withdrawn"});
+  check_refused(study.people("withdraw", "P9", {"--reason", "who"}), 1, {"P9", "no session"});
+  check_refused(study.people("withdraw", "P002"), 2, {"--reason"});
+  REQUIRE(study.people("replace", "P001", {"--with", "P031", "--reason", "place is wanted"})
+              .exit_code == 0);
+  check_refused(study.session_of("P001"), 1, {"P001"});
+  REQUIRE(study.session_of("P031").exit_code == 0);
+  CHECK(session_of(study.store(), "P031").enrolment == 1);
+  check_verified(study);
+  const json sessions = study.quality().at("sessions");
+  CHECK(sessions.at("withdrawn") == 1);
+  CHECK(sessions.at("replaced") == 0);
+}
+
+TEST_CASE("notes and deviations are on the file's chain, before and after closing") {
+  const PeopleStudy study;
+  REQUIRE(study.people("note", "P003", {"came late"}).exit_code == 0);
+  REQUIRE(
+      study.people("note", "P003", {"--deviation", "no-curtain", "it was in the wash"}).exit_code ==
+      0);
+  check_refused(study.people("note", "P003", {""}), 1, {"study.db"});
+  check_refused(study.people("note", "P9", {"who"}), 1, {"P9", "no session"});
+  check_refused(study.people("note", "P003"), 2, {"TEXT"});
+  const std::vector<Event> chain = study.store().events(0);
+  const json deviation = json::parse(chain.back().body);
+  const json remark = json::parse(chain.at(chain.size() - 2).body);
+  CHECK(chain.back().kind == EventKind::participant_noted);
+  CHECK(deviation.at("code") == "no-curtain");
+  CHECK(deviation.at("text") == "it was in the wash");
+  CHECK(remark.at("code") == "");
+  CHECK(remark.at("text") == "came late");
+  check_verified(study);
+  CHECK(study.outcomes().at("participants") == 4);
+  CHECK(study.people("note", "P003", {"wrote a letter"}).exit_code == 0);
+  check_verified(study);
+}
+
+TEST_CASE("migrate does not change a current database, and refuses an unknown one") {
+  const PeopleStudy study;
+  const Bytes before = read_file(study.database());
+  CHECK(study.run({"migrate", study.in("study.db")}).exit_code == 0);
+  CHECK(read_file(study.database()) == before);
+  check_refused(study.run({"migrate", study.in("none.db")}), 1, {"none.db", "no such database"});
+  SQLite::Database(study.database().string(), SQLite::OPEN_READWRITE)
+      .exec("PRAGMA user_version = 2");
+  const Bytes older = read_file(study.database());
+  for (const char* const command : {"migrate", "report", "verify"}) {
+    check_refused(study.run({command, study.in("study.db")}), 1,
+                  {"study.db", "older Touchtrial (schema 2", "use the program that wrote it"});
+  }
+  CHECK(read_file(study.database()) == older);
+}

@@ -1,0 +1,81 @@
+#include "engine/evaluation.hpp"
+
+#include "engine/example_images.hpp"
+#include "engine/extraction.hpp"
+#include "engine/metrics/picture_statistics.hpp"
+#include "engine/metrics/ssim.hpp"
+#include "engine/refusal.hpp"
+#include "support/catch.hpp"
+
+namespace touchtrial {
+namespace {
+
+GreyImage fixed_picture(const GreyImage& image, double order) {
+  engine::ExtractionOptions options;
+  options.method = engine::Method::fixed;
+  options.order = order;
+  return engine::texture_picture(engine::extract_texture<double>(image, options).texture);
+}
+
+TEST_CASE("an evaluation measures the image and its adaptive texture") {
+  const GreyImage image = cloth_image({20, 31});
+  const engine::Evaluation evaluation = engine::evaluate_image(image, false);
+  const GreyImage texture =
+      engine::texture_picture(engine::extract_texture<double>(image, {}).texture);
+  CHECK(evaluation.height == 20);
+  CHECK(evaluation.width == 31);
+  CHECK(evaluation.original.entropy == engine::entropy(image));
+  CHECK(evaluation.adaptive.entropy == engine::entropy(texture));
+  const engine::GlcmTable original = engine::glcm_statistics(image);
+  const engine::GlcmTable adaptive = engine::glcm_statistics(texture);
+  for (std::size_t i = 0; i < engine::kGlcmOffsets.size(); ++i) {
+    CHECK(evaluation.original.glcm[i].contrast == original[i].contrast);
+    CHECK(evaluation.adaptive.glcm[i].contrast == adaptive[i].contrast);
+  }
+  CHECK(evaluation.orders.empty());
+}
+
+TEST_CASE("a sweep compares the adaptive texture with every fixed order") {
+  const GreyImage image = cloth_image({170, 163});
+  int calls = 0;
+  const engine::Evaluation evaluation = engine::evaluate_image(image, true, [&] { ++calls; });
+  CHECK(calls == engine::kSweptOrders);
+  REQUIRE(evaluation.orders.size() == engine::kSweptOrders);
+  CHECK(evaluation.orders.front().order == 0.05);
+  CHECK(evaluation.orders[2].order == 0.15);
+  CHECK(evaluation.orders.back().order == 0.95);
+  const GreyImage adaptive =
+      engine::texture_picture(engine::extract_texture<double>(image, {}).texture);
+  for (const std::size_t i : {std::size_t{0}, std::size_t{12}}) {
+    const engine::OrderFigures& figures = evaluation.orders[i];
+    const GreyImage fixed = fixed_picture(image, figures.order);
+    CHECK(figures.entropy == engine::entropy(fixed));
+    CHECK(figures.ms_ssim == engine::ms_ssim<double>(adaptive, fixed).unit);
+    CHECK(figures.ms_ssim_wang == engine::ms_ssim<double>(adaptive, fixed).wang);
+  }
+  for (const engine::OrderFigures& figures : evaluation.orders) {
+    CHECK(engine::closest_order(evaluation).ms_ssim >= figures.ms_ssim);
+  }
+}
+
+TEST_CASE("for a flat image every fixed order gives the adaptive texture") {
+  const engine::Evaluation evaluation = engine::evaluate_image(flat_image({161, 161}, 77), true);
+  for (const engine::OrderFigures& figures : evaluation.orders) {
+    CHECK(figures.ms_ssim == 1.0);
+    CHECK(figures.entropy == 0.0);
+  }
+  CHECK(engine::closest_order(evaluation).order == 0.05);
+}
+
+TEST_CASE("an image that is too small is refused with its size and the least size") {
+  CHECK(refusal_of([] {
+          (void)engine::evaluate_image(noise_image({160, 500}), true);
+        }) == "has 500 x 160 px; MS-SSIM needs at least 161 px on each side");
+  CHECK(refusal_of([] { (void)engine::evaluate_image(noise_image({160, 500}), false); }).empty());
+  CHECK(refusal_of([] {
+          (void)engine::evaluate_image(noise_image({1, 9}), false);
+        }) == "has 9 x 1 px; co-occurrence statistics need at least 2 px on each side");
+}
+
+}  // namespace
+}  // namespace touchtrial

@@ -1,0 +1,184 @@
+// A whole protocol: a participant feels the study's first texture or a smooth wall, at random, and
+// says which. docs/add-a-protocol.md goes through this file part by part.
+#include "add_a_protocol/presence.hpp"
+
+#include "analysis/results.hpp"
+#include "analysis/statistics/proportion.hpp"
+#include "analysis/study_head.hpp"
+#include "core/random.hpp"
+#include "protocols/design/protocol.hpp"
+#include "protocols/design/study.hpp"
+#include "protocols/simulation/population.hpp"
+
+#include <cmath>
+#include <numeric>
+#include <span>
+
+namespace touchtrial::example {
+namespace {
+
+using design::Presentation;
+using design::PresentationKind;
+using design::Study;
+
+constexpr int kTexture = 0;  // indices into the choices
+constexpr int kSmooth = 1;
+
+// 1. What the study file says, what is presented, and what counts as an answer.
+
+struct PresenceOptions final : design::ProtocolOptions {
+  int each = 10;  ///< presentations of the texture, and as many of the smooth wall
+};
+
+const PresenceOptions& options_of(const Study& study) {
+  return static_cast<const PresenceOptions&>(*study.options);
+}
+
+class Presence final : public design::Protocol {
+ public:
+  std::string_view name() const noexcept override { return "presence"; }
+  std::string_view section() const noexcept override { return "presence"; }
+  std::string instruction() const override {
+    return "In each trial you feel a texture or a smooth wall. Say which it was.";
+  }
+  bool presents_all_methods() const noexcept override { return false; }
+
+  std::shared_ptr<const design::ProtocolOptions> read(
+      const std::optional<JsonValue>& section) const override {
+    auto options = std::make_shared<PresenceOptions>();
+    if (section) {
+      const JsonObject object = section->object({"each"});
+      if (const auto each = object.find("each")) {
+        options->each = static_cast<int>(each->integer(1, 500));
+      }
+    }
+    return options;
+  }
+  std::string options_in_clear(const Study& study) const override {
+    return R"({"each": )" + std::to_string(options_of(study).each) + "}";
+  }
+  void check(const JsonValue& file, const Study& study) const override {
+    if (study.trials.catch_trials > 0) {
+      file.refuse_below("/trials/catch", "must be 0: half of the trials are smooth already");
+    }
+  }
+  int scored_trials(const Study& study) const override { return options_of(study).each; }
+
+  design::Schedule schedule(const Study& study, int enrolment) const override {
+    design::Schedule schedule{{}, {kTexture, kSmooth}};
+    const int each = options_of(study).each;
+    for (int i = 0; i < 2 * each; ++i) {
+      schedule.presentations.push_back(
+          {.kind = i < each ? PresentationKind::scored : PresentationKind::catch_trial,
+           .stimulus = {}});
+    }
+    RandomStream random(study.seed, "presence", static_cast<std::uint64_t>(enrolment));
+    shuffle(std::span<Presentation>(schedule.presentations), random);
+    for (int i = 0; i < 2 * each; ++i) {
+      schedule.presentations[static_cast<std::size_t>(i)].trial = i + 1;
+    }
+    return schedule;
+  }
+  std::string rule(const Study& study) const override {
+    return "presence 1; each=" + std::to_string(options_of(study).each);
+  }
+  std::vector<design::Choice> choices(const Study&) const override {
+    return {{"texture"}, {"smooth"}};
+  }
+  std::optional<int> right_choice(const Study&, const Presentation&) const override {
+    return kTexture;  // asked of presentations with a stimulus alone
+  }
+};
+
+// 2. How a simulated participant answers.
+
+class PresenceParticipant final : public simulation::SimulatedParticipant {
+ public:
+  using SimulatedParticipant::SimulatedParticipant;
+  void see_pictures(const std::vector<std::string>&) override {}
+
+ private:
+  /// "Texture" if the lateral force is above 5 mN in root mean square.
+  simulation::ParticipantAnswer choose(const engine::FeltFeatures& felt, RandomStream&) override {
+    double square_n2 = 0.0;
+    for (int band = 0; band < engine::kFeltBands; ++band) {
+      square_n2 += std::exp(2.0 * felt[static_cast<std::size_t>(engine::kLateralBandsAt + band)]);
+    }
+    constexpr double kThreshold_n = 0.005;
+    return {std::sqrt(square_n2) > kThreshold_n ? kTexture : kSmooth, std::chrono::seconds(1)};
+  }
+};
+
+class PresencePopulation final : public simulation::Population {
+ public:
+  explicit PresencePopulation(const simulation::PopulationSetting& setting)
+      : subject_(setting.subject), seed_(setting.seed) {}
+  std::unique_ptr<simulation::SimulatedParticipant> participant(int number) const override {
+    return std::make_unique<PresenceParticipant>(subject_, seed_, number);
+  }
+
+ private:
+  const simulation::SubjectModel& subject_;
+  std::uint64_t seed_;
+};
+
+std::unique_ptr<const simulation::Population> make_presence(
+    const simulation::PopulationSetting& setting) {
+  return std::make_unique<PresencePopulation>(setting);
+}
+
+// 3. What the report says.
+
+class PresenceResults final : public analysis::Results {
+ public:
+  explicit PresenceResults(const analysis::Outcomes& outcomes) : head_(head_of(outcomes)) {
+    for (const analysis::TrialOutcome& trial : outcomes.trials) {
+      if (!trial.response) continue;
+      const bool said_texture = *trial.response == kTexture;
+      analysis::Proportion& of = trial.scored ? hits_ : false_alarms_;
+      ++of.n;
+      of.correct += said_texture ? 1 : 0;
+    }
+  }
+  std::string json() const override {
+    return framed_json(head_, R"({"hits": )" + std::to_string(hits_.correct) +
+                                  R"(, "false_alarms": )" + std::to_string(false_alarms_.correct) +
+                                  "}");
+  }
+  analysis::Document document(const analysis::Provenance& provenance,
+                              const analysis::Pictures&) const override {
+    analysis::Table table{
+        "presence", "Answers", {{"presented", analysis::Align::left}, {"n"}, {"said texture"}}};
+    const auto add = [&](const char* what, const analysis::Proportion& of) {
+      table.rows.push_back({what, std::to_string(of.n), std::to_string(of.correct)});
+    };
+    add("texture", hits_);
+    add("smooth wall", false_alarms_);
+    return framed_document(head_, {"result", "Result", {table}}, {}, provenance);
+  }
+
+ private:
+  analysis::StudyHead head_;
+  analysis::Proportion hits_;
+  analysis::Proportion false_alarms_;
+};
+
+class PresenceAnalysis final : public analysis::ProtocolAnalysis {
+ public:
+  std::unique_ptr<const analysis::Results> results(const analysis::Outcomes& outcomes,
+                                                   const analysis::ReportWishes&) const override {
+    return std::make_unique<PresenceResults>(outcomes);
+  }
+};
+
+}  // namespace
+
+void register_presence() {
+  static const Presence protocol;
+  static const PresenceAnalysis analysis;
+  design::add_protocol(protocol);
+  simulation::add_population(protocol.name(), make_presence);
+  analysis::add_analysis(protocol.name(), analysis);
+}
+
+}  // namespace touchtrial::example

@@ -1,0 +1,320 @@
+#include "protocols/design/schedule.hpp"
+
+#include "core/errors.hpp"
+#include "protocols/design/order_test_support.hpp"
+#include "protocols/design/random_orders.hpp"
+#include "protocols/design/study_examples.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <utility>
+
+namespace touchtrial {
+namespace {
+
+using nlohmann::json;
+
+design::Study seeded(json document, std::uint64_t seed) {
+  document["seed"] = seed;
+  return parsed(document);
+}
+
+std::vector<int> classes_of(const design::Schedule& schedule) {
+  std::vector<int> classes;
+  for (const design::Presentation& shown : schedule.presentations) {
+    classes.push_back(shown.stimulus.class_index);
+  }
+  return classes;
+}
+
+/// How often each class and method is scored.
+std::map<std::pair<int, int>, int> scored_counts(const design::Schedule& schedule) {
+  std::map<std::pair<int, int>, int> counts;
+  for (const design::Presentation& shown : schedule.presentations) {
+    if (shown.kind == design::PresentationKind::lead_in) continue;
+    ++counts[{shown.stimulus.class_index, shown.stimulus.method}];
+  }
+  return counts;
+}
+
+}  // namespace
+
+TEST_CASE("schedules of seed 31875542 are the same on every platform") {
+  const design::Study study = seeded(study_of(5), 31875542);
+  const design::Schedule first = design::make_schedule(study, 1);
+  CHECK(classes_of(first) == std::vector<int>{3, 2, 1, 4, 0, 0, 4, 1, 2, 2, 4, 3, 0,
+                                              0, 1, 4, 3, 1, 3, 1, 2, 3, 0, 4, 2});
+  CHECK(first.layout == std::vector<int>{0, 3, 1, 2, 4});
+  const design::Schedule twentieth = design::make_schedule(study, 20);
+  CHECK(classes_of(twentieth) == std::vector<int>{0, 3, 2, 0, 4, 3, 4, 2, 1, 1, 2, 0, 3,
+                                                  4, 2, 1, 3, 4, 3, 0, 2, 0, 1, 1, 4});
+  CHECK(twentieth.layout == std::vector<int>{1, 2, 3, 0, 4});
+}
+
+TEST_CASE("orders de-bruijn and uniform, lead-ins and exemplars are the same on every platform") {
+  json document = study_of(3, 3);
+  document["trials"] = {{"order", "de-bruijn"}, {"repeats", 3}};
+  const design::Schedule cycle = design::make_schedule(seeded(document, 7), 2);
+  CHECK(classes_of(cycle) == std::vector<int>{0, 1, 1, 2, 1, 0, 2, 2, 0, 0});
+  std::vector<int> exemplars;
+  for (const design::Presentation& shown : cycle.presentations) {
+    exemplars.push_back(shown.stimulus.exemplar);
+  }
+  CHECK(exemplars == std::vector<int>{2, 2, 1, 2, 0, 0, 0, 1, 1, 2});
+  document["trials"] = {{"order", "uniform"}, {"repeats", 3}, {"lead_in", 2}};
+  CHECK(classes_of(design::make_schedule(seeded(document, 7), 2)) ==
+        std::vector<int>{2, 1, 0, 2, 2, 0, 0, 1, 2, 0, 1});
+}
+
+TEST_CASE("a shuffled schedule presents every class equally often to every participant") {
+  const design::Study study = seeded(study_of(5), 3);
+  for (int enrolment = 1; enrolment <= 50; ++enrolment) {
+    const design::Schedule schedule = design::make_schedule(study, enrolment);
+    REQUIRE(schedule.presentations.size() == 25);
+    for (std::size_t i = 0; i < 25; ++i) {
+      CHECK(schedule.presentations[i].trial == static_cast<int>(i) + 1);
+      CHECK(schedule.presentations[i].kind == design::PresentationKind::scored);
+    }
+    const auto counts = scored_counts(schedule);
+    CHECK(counts.size() == 5);
+    for (const auto& [item, count] : counts) CHECK(count == 5);
+  }
+}
+
+TEST_CASE("each order of two classes twice is equally likely over enrolments") {
+  json document = study_of(2);
+  document["trials"] = {{"repeats", 2}};
+  const design::Study study = seeded(document, 11);
+  std::map<std::vector<int>, int> counts;
+  for (int enrolment = 1; enrolment <= 6000; ++enrolment) {
+    ++counts[classes_of(design::make_schedule(study, enrolment))];
+  }
+  CHECK(counts.size() == 6);                    // 4! / (2! 2!)
+  CHECK(chi_square_uniform(counts, 6) < 35.9);  // 99.9999 % with 5 degrees of freedom
+}
+
+TEST_CASE("each layout of four pictures is equally likely over enrolments") {
+  const design::Study study = seeded(study_of(4), 12);
+  std::map<std::vector<int>, int> counts;
+  for (int enrolment = 1; enrolment <= 4800; ++enrolment) {
+    ++counts[design::make_schedule(study, enrolment).layout];
+  }
+  CHECK(counts.size() == 24);
+  CHECK(chi_square_uniform(counts, 24) < 69.0);  // 99.9999 % with 23 degrees of freedom
+}
+
+TEST_CASE("uniform draws have the same number of trials, each class equally likely at each") {
+  json document = study_of(4);
+  document["trials"] = {{"order", "uniform"}, {"repeats", 2}};
+  const design::Study study = seeded(document, 13);
+  std::map<std::pair<int, int>, int> first_and_last;
+  bool unbalanced = false;
+  for (int enrolment = 1; enrolment <= 3200; ++enrolment) {
+    const design::Schedule schedule = design::make_schedule(study, enrolment);
+    REQUIRE(schedule.presentations.size() == 8);
+    const std::vector<int> classes = classes_of(schedule);
+    ++first_and_last[{classes.front(), classes.back()}];
+    unbalanced =
+        unbalanced || scored_counts(schedule) != scored_counts(design::make_schedule(study, 1));
+  }
+  CHECK(first_and_last.size() == 16);
+  CHECK(chi_square_uniform(first_and_last, 16) < 55.5);  // 99.9999 %, 15 degrees of freedom
+  CHECK(unbalanced);
+}
+
+TEST_CASE("a de-bruijn schedule has every transition once, after one lead-in") {
+  json document = study_of(5);
+  document["trials"] = {{"order", "de-bruijn"}, {"repeats", 5}};
+  const design::Study study = seeded(document, 14);
+  std::set<std::vector<int>> orders;
+  for (int enrolment = 1; enrolment <= 30; ++enrolment) {
+    const design::Schedule schedule = design::make_schedule(study, enrolment);
+    REQUIRE(schedule.presentations.size() == 26);
+    const std::vector<int> classes = classes_of(schedule);
+    orders.insert(classes);
+    std::set<std::pair<int, int>> transitions;
+    for (std::size_t i = 1; i < classes.size(); ++i) {
+      transitions.emplace(classes[i - 1], classes[i]);
+      CHECK(schedule.presentations[i].kind == design::PresentationKind::scored);
+    }
+    CHECK(transitions.size() == 25);
+    CHECK(schedule.presentations[0].kind == design::PresentationKind::lead_in);
+    for (const auto& [item, count] : scored_counts(schedule)) CHECK(count == 5);
+  }
+  CHECK(orders.size() == 30);
+}
+
+TEST_CASE("an impossible order is refused when the schedule is made") {
+  design::Study study = seeded(study_of(5), 1);
+  study.trials.order = design::TrialOrder::de_bruijn;
+  study.trials.repeats = 4;
+  CHECK_THROWS_AS(design::make_schedule(study, 1), StudyError);
+  CHECK_THROWS_AS(design::make_schedule(seeded(study_of(5), 1), 0), std::invalid_argument);
+}
+
+TEST_CASE("lead-ins open each block, are not scored, and leave the scored order as it was") {
+  json document = comparison_of(4);
+  const design::Schedule without = design::make_schedule(seeded(document, 15), 3);
+  document["trials"] = {{"lead_in", 2}};
+  const design::Schedule with = design::make_schedule(seeded(document, 15), 3);
+  REQUIRE(with.presentations.size() == without.presentations.size() + 4);
+  std::vector<design::StimulusIndex> scored;
+  for (std::size_t i = 0; i < with.presentations.size(); ++i) {
+    const design::Presentation& shown = with.presentations[i];
+    const bool opens_block = i % 22 < 2;
+    CHECK((shown.kind == design::PresentationKind::lead_in) == opens_block);
+    CHECK(shown.block == static_cast<int>(i) / 22);
+    if (!opens_block) scored.push_back(shown.stimulus);
+  }
+  std::vector<design::StimulusIndex> expected;
+  for (const design::Presentation& shown : without.presentations)
+    expected.push_back(shown.stimulus);
+  CHECK(scored == expected);
+}
+
+TEST_CASE("blocks by method follow the Williams row of the enrolment") {
+  const design::Study study = seeded(comparison_of(4), 16);
+  for (int enrolment = 1; enrolment <= 6; ++enrolment) {
+    const design::Schedule schedule = design::make_schedule(study, enrolment);
+    const std::vector<int> row = design::williams_row(2, enrolment);
+    for (const design::Presentation& shown : schedule.presentations) {
+      CHECK(shown.stimulus.method == row[static_cast<std::size_t>(shown.block)]);
+    }
+    for (const auto& [item, count] : scored_counts(schedule)) CHECK(count == 5);
+  }
+}
+
+TEST_CASE("methods of one participant have orders of their own") {
+  const design::Schedule schedule = design::make_schedule(seeded(comparison_of(4), 17), 1);
+  const std::vector<int> classes = classes_of(schedule);
+  CHECK(std::vector<int>(classes.begin(), classes.begin() + 20) !=
+        std::vector<int>(classes.begin() + 20, classes.end()));
+}
+
+TEST_CASE("a mixed block has every class and method equally often, interleaved") {
+  json document = comparison_of(4);
+  document["trials"] = {{"blocks", "mixed"}};
+  const design::Schedule schedule = design::make_schedule(seeded(document, 18), 1);
+  REQUIRE(schedule.presentations.size() == 40);
+  const auto counts = scored_counts(schedule);
+  CHECK(counts.size() == 8);
+  for (const auto& [item, count] : counts) CHECK(count == 5);
+  int changes = 0;
+  for (std::size_t i = 1; i < 40; ++i) {
+    CHECK(schedule.presentations[i].block == 0);
+    const auto& [before, now] = std::pair(schedule.presentations[i - 1], schedule.presentations[i]);
+    changes += before.stimulus.method != now.stimulus.method ? 1 : 0;
+  }
+  CHECK(changes > 5);
+}
+
+TEST_CASE("all images of a class are used before any repeats, for each method anew") {
+  json document = comparison_of(3, 4);
+  document["trials"] = {{"repeats", 10}};
+  const design::Study study = seeded(document, 19);
+  std::set<std::vector<int>> decks;
+  for (int enrolment = 1; enrolment <= 10; ++enrolment) {
+    std::map<std::pair<int, int>, std::vector<int>> dealt;
+    for (const design::Presentation& shown :
+         design::make_schedule(study, enrolment).presentations) {
+      dealt[{shown.stimulus.class_index, shown.stimulus.method}].push_back(shown.stimulus.exemplar);
+    }
+    CHECK(dealt.size() == 6);
+    for (const auto& [item, exemplars] : dealt) {
+      REQUIRE(exemplars.size() == 10);
+      const std::set<int> first(exemplars.begin(), exemplars.begin() + 4);
+      const std::set<int> second(exemplars.begin() + 4, exemplars.begin() + 8);
+      CHECK(first == std::set<int>{0, 1, 2, 3});
+      CHECK(second == first);
+      CHECK(exemplars[8] != exemplars[9]);
+      decks.insert(exemplars);
+    }
+  }
+  CHECK(decks.size() > 50);
+}
+
+TEST_CASE("the number of images does not change which classes come when") {
+  const design::Schedule one = design::make_schedule(seeded(study_of(4, 1), 20), 5);
+  const design::Schedule many = design::make_schedule(seeded(study_of(4, 6), 20), 5);
+  CHECK(classes_of(one) == classes_of(many));
+  CHECK(one.layout == many.layout);
+}
+
+TEST_CASE("a schedule depends on seed and enrolment") {
+  const design::Study study = seeded(study_of(5), 21);
+  CHECK(design::make_schedule(study, 4) == design::make_schedule(study, 4));
+  CHECK_FALSE(design::make_schedule(study, 4) == design::make_schedule(study, 5));
+  CHECK_FALSE(design::make_schedule(study, 4) == design::make_schedule(seeded(study_of(5), 22), 4));
+}
+
+TEST_CASE("a schedule does not depend on names, rendering or methods that are not presented") {
+  json document = study_of(5);
+  const design::Schedule before = design::make_schedule(seeded(document, 23), 4);
+  document["study"] = "renamed";
+  document["classes"][0]["label"] = "other";
+  document["rendering"] = {{"pitch_mm", 0.1}};
+  document["methods"].push_back({{"name", "tv-gabor"}});
+  CHECK(design::make_schedule(seeded(document, 23), 4) == before);
+}
+
+TEST_CASE("a Williams design has each method in each place equally often") {
+  for (int methods = 1; methods <= 9; ++methods) {
+    const int rows = methods % 2 == 0 ? methods : 2 * methods;
+    std::map<std::pair<int, int>, int> places;
+    for (int enrolment = 1; enrolment <= rows; ++enrolment) {
+      const std::vector<int> row = design::williams_row(methods, enrolment);
+      REQUIRE(row.size() == static_cast<std::size_t>(methods));
+      for (int i = 0; i < methods; ++i) ++places[{i, row[static_cast<std::size_t>(i)]}];
+    }
+    INFO(methods << " methods");
+    CHECK(places.size() == static_cast<std::size_t>(methods) * methods);
+    for (const auto& [place, count] : places) CHECK(count == rows / methods);
+  }
+}
+
+TEST_CASE("a Williams design has each method after each other equally often") {
+  for (int methods = 2; methods <= 9; ++methods) {
+    const int rows = methods % 2 == 0 ? methods : 2 * methods;
+    std::map<std::pair<int, int>, int> neighbours;
+    for (int enrolment = 1; enrolment <= rows; ++enrolment) {
+      const std::vector<int> row = design::williams_row(methods, enrolment);
+      for (std::size_t i = 1; i < row.size(); ++i) ++neighbours[{row[i - 1], row[i]}];
+    }
+    INFO(methods << " methods");
+    CHECK(neighbours.size() == static_cast<std::size_t>(methods) * (methods - 1));
+    for (const auto& [pair, count] : neighbours) CHECK(count == rows / methods);
+  }
+}
+
+TEST_CASE("williams_row follows the published square of four") {
+  CHECK(design::williams_row(4, 4) == std::vector<int>{0, 1, 3, 2});
+  CHECK(design::williams_rows(4) == 4);
+  CHECK(design::williams_rows(3) == 6);
+  CHECK_THROWS_AS(design::williams_rows(0), std::invalid_argument);
+  CHECK(design::williams_row(4, 1) == std::vector<int>{1, 2, 0, 3});
+  CHECK(design::williams_row(4, 5) == design::williams_row(4, 1));
+  CHECK(design::williams_row(3, 3) == std::vector<int>{2, 1, 0});
+  CHECK_THROWS_AS(design::williams_row(0, 1), std::invalid_argument);
+}
+
+TEST_CASE("the schedule rule names everything that decides a schedule but the seed") {
+  const std::string rule = design::schedule_rule(seeded(study_of(5), 1));
+  CHECK(rule == design::schedule_rule(seeded(study_of(5), 2)));
+  CHECK(rule.find("touchtrial schedule 1: ") == 0);
+  CHECK(rule.find("classes=5; exemplars=1,1,1,1,1; methods=1; repeats=5; order=shuffled; "
+                  "blocks=by-method; lead_in=0") != std::string::npos);
+  std::set<std::string> rules = {rule, design::schedule_rule(parsed(study_of(4))),
+                                 design::schedule_rule(parsed(study_of(5, 2))),
+                                 design::schedule_rule(parsed(comparison_of(5)))};
+  const json changes = {{"repeats", 4}, {"order", "uniform"}, {"blocks", "mixed"}, {"lead_in", 1}};
+  for (const auto& [key, value] : changes.items()) {
+    json document = study_of(5);
+    document["trials"][key] = value;
+    rules.insert(design::schedule_rule(parsed(document)));
+  }
+  CHECK(rules.size() == 8);
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,84 @@
+#include "protocols/session/trial_trace.hpp"
+
+#include "support/catch.hpp"
+
+namespace touchtrial {
+namespace {
+
+constexpr double kLimitN = 3.3;
+
+/// A stroke of 100 mm/s at 1 kHz with one force all along.
+store::Trace stroke(double seconds, Vec3 force_n) {
+  store::Trace trace;
+  for (int i = 0; i < static_cast<int>(seconds * 1000.0); ++i) {
+    trace.samples.push_back({{0.1 * i, 5.0, -1.0}, force_n});
+  }
+  return trace;
+}
+
+TEST_CASE("measures of a steady stroke are those of its one force") {
+  const session::TrialFindings found = session::findings_of(stroke(6.0, {0.3, 0.0, 0.4}), kLimitN);
+  CHECK(found.measures.contact_s == Approx(6.0));
+  CHECK(found.measures.path_mm == Approx(599.9));
+  CHECK(found.measures.force_rms_n == Approx(0.5));
+  CHECK(found.measures.saturated_share == 0.0);
+  CHECK(found.valid());
+}
+
+TEST_CASE("time and path without contact do not count") {
+  store::Trace trace = stroke(8.0, {0.0, 0.0, 0.7});
+  for (int i = 2000; i < 4000; ++i) trace.samples[i].force_n = {};
+  const session::TrialFindings found = session::findings_of(trace, kLimitN);
+  CHECK(found.measures.contact_s == Approx(6.0));
+  CHECK(found.measures.path_mm == Approx(199.9 + 399.9));
+  CHECK(found.measures.force_rms_n == Approx(0.7));
+}
+
+TEST_CASE("a trial without contact measures nothing and is invalid") {
+  const session::TrialFindings found = session::findings_of(stroke(10.0, {}), kLimitN);
+  CHECK(found.measures == store::TrialMeasures{.within_limits = false});
+  CHECK_FALSE(found.valid());
+  CHECK_FALSE(session::findings_of({}, kLimitN).valid());
+}
+
+TEST_CASE("each clause of the validity rule that depends on forces can fail alone, and is sealed") {
+  const auto fails_within = [](const store::Trace& trace) {
+    const session::TrialFindings found = session::findings_of(trace, kLimitN);
+    return found.long_enough && !found.measures.within_limits && !found.valid();
+  };
+  CHECK(fails_within(stroke(6.0, {0.0, 0.0, 0.19})));
+  CHECK(fails_within(stroke(6.0, {0.0, 0.0, 2.01})));
+  store::Trace lifted = stroke(6.0, {0.0, 0.0, 0.7});
+  for (int i = 0; i < 1100; ++i) lifted.samples[i].force_n = {};
+  CHECK(fails_within(lifted));
+  store::Trace still = stroke(6.0, {0.0, 0.0, 0.7});
+  for (store::TraceSample& sample : still.samples) sample.position_mm.x *= 0.4;
+  CHECK(fails_within(still));
+  store::Trace saturated = stroke(6.0, {0.0, 0.0, 0.7});
+  for (int i = 0; i < 60; ++i) saturated.samples[100 * i].force_n = {0.0, 0.0, kLimitN};
+  CHECK(session::findings_of(saturated, kLimitN).measures.saturated_share == Approx(0.01));
+  CHECK(fails_within(saturated));
+}
+
+TEST_CASE("an exploration is long enough from its landing on, whatever is felt") {
+  CHECK(session::findings_of(stroke(5.0, {0.0, 0.0, 0.7}), kLimitN).long_enough);
+  CHECK_FALSE(session::findings_of(stroke(4.999, {0.0, 0.0, 0.7}), kLimitN).long_enough);
+  CHECK(session::findings_of(stroke(5.0, {}), kLimitN).long_enough);
+  store::Trace late = stroke(6.0, {0.0, 0.0, 0.7});
+  for (int i = 0; i < 1001; ++i) late.samples[i].position_mm.z = 3.1;
+  CHECK_FALSE(session::findings_of(late, kLimitN).long_enough);
+  late.samples[1000].position_mm.z = 3.0;
+  CHECK(session::findings_of(late, kLimitN).long_enough);
+}
+
+TEST_CASE("the validity rule uses the median force and ignores extremes") {
+  store::Trace trace = stroke(6.0, {0.0, 0.0, 0.7});
+  for (std::size_t i = 0; i < trace.samples.size(); ++i) {
+    if (i % 5 == 0) trace.samples[i].force_n.z = 0.01;
+    if (i % 5 == 1) trace.samples[i].force_n.z = 2.5;
+  }
+  CHECK(session::findings_of(trace, kLimitN).valid());
+}
+
+}  // namespace
+}  // namespace touchtrial
