@@ -1,4 +1,4 @@
-/// \file The literature behind a report's statistics. How each is used: docs/statistics.md,
+/// \file The publications behind a report's statistics. How each is used: docs/statistics.md,
 /// docs/cues.md.
 #pragma once
 
@@ -35,13 +35,13 @@ enum class Source {
 struct Publication {
   Source source{};
   std::string_view key;   ///< "brown2001": the name in results.json
-  std::string_view text;  ///< authors, year, title and where it appeared; ASCII, without an address
+  std::string_view text;  ///< authors, year, title, journal or publisher; ASCII, without an address
 };
 
-/// All publications, in ascending order of keys, which is the order of Source.
+/// All publications, in ascending order of their keys, which is also the order of Source.
 [[nodiscard]] std::span<const Publication> publications() noexcept;
 
-/// The text of one publication.
+/// The citation text of one publication.
 [[nodiscard]] std::string_view citation_of(Source source) noexcept;
 
 }  // namespace touchtrial::analysis

@@ -9,7 +9,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// Of who has withdrawn nothing is told but that.
+/// The row of a withdrawn session, without any data of the participant.
 store::SessionRow without_participant(const store::SessionRow& row) {
   store::SessionRow bare;
   bare.session = row.session;
@@ -26,7 +26,7 @@ std::map<int, SessionRecord> empty_records(const std::vector<store::SessionRow>&
   return records;
 }
 
-/// The session that an event is about, wherever it stands.
+/// The session that an event is about, on whichever chain the event is.
 int session_named_by(const store::Event& event) {
   switch (event.kind) {
     case store::EventKind::participant_excluded:
@@ -44,12 +44,12 @@ bool is_practice_failure(const Deviation& deviation) {
   return deviation.code == "practice-not-passed";
 }
 
-/// What follows from a session's events together.
+/// Sets the values that follow from all of a session's events together.
 void finish(SessionRecord& record) {
   if (record.practice) {
     record.practice->passed = std::ranges::none_of(record.deviations, is_practice_failure);
   }
-  // A stop from which the session was taken up again is none.
+  // A stop does not count if the session was resumed after it.
   if (record.row.state != store::SessionState::stopped) record.stop_reason.clear();
 }
 
@@ -68,7 +68,7 @@ Collection load_collection(const store::StudyStore& store) {
     if (const auto servo = servo_trial_of(event)) collection.servo_trials.push_back(*servo);
   };
   store.for_each_of(kinds_in_sessions(), add);
-  for (const store::Event& event : store.events(0)) add(event);  // what was noted later comes after
+  for (const store::Event& event : store.events(0)) add(event);  // later notes come last
   for (auto& [session, record] : records) {
     finish(record);
     collection.visual = collection.visual || (record.station && record.station->visual);

@@ -1,5 +1,6 @@
-/// \file How a study was collected: everything about its sessions that is in clear and that a
-/// results section has to state. Nothing here tells of outcomes, so it may be shown at any time.
+/// \file How a study was collected: the facts about its sessions that are stored in clear and that
+/// a results section must state. They reveal nothing about outcomes, so they may be shown at any
+/// time.
 #pragma once
 
 #include "protocols/store/study_store.hpp"
@@ -10,35 +11,35 @@
 
 namespace touchtrial::analysis {
 
-/// A deviation from the protocol, by its code (docs/data-dictionary.md) and in words.
+/// A deviation from the protocol: its code (docs/data-dictionary.md) and a description.
 struct Deviation {
   std::string code;
   std::string text;
 };
 
-/// How practice went.
+/// The course of a session's practice.
 struct PracticeRecord {
   int rounds = 0;
   int presentations = 0;
   int correct = 0;
-  bool passed = true;  ///< no deviation `practice-not-passed`
+  bool passed = true;  ///< whether there is no deviation `practice-not-passed`
 };
 
-/// One session, withdrawn ones with nothing but their number and state.
+/// One session. A withdrawn session has only its number and state.
 struct SessionRecord {
   store::SessionRow row;
   std::string device_serial;                    ///< empty if none
-  std::optional<store::StationRecord> station;  ///< real time only
+  std::optional<store::StationRecord> station;  ///< only for sessions in real time
   std::string opened_utc;                       ///< ISO 8601; empty for simulated sessions
   std::optional<PracticeRecord> practice;
-  std::vector<Deviation> deviations;  ///< each code and text once, those noted later too
+  std::vector<Deviation> deviations;  ///< including those noted later; duplicates appear once
   std::string exclusion_reason;
   std::string replacement_reason;
   std::string stop_reason;
-  int resumed = 0;  ///< times that it was taken up again
+  int resumed = 0;  ///< how often the session was resumed after the program had ended
 };
 
-/// How the servo kept its time in one trial, in real time.
+/// The timing of the servo in one trial in real time.
 struct ServoTrial {
   int session = 0;
   int trial = 0;
@@ -46,28 +47,28 @@ struct ServoTrial {
   std::int64_t overruns = 0;
 };
 
-/// Participants on their way from enrolment to analysis; a participant is counted once, by the
-/// session that stands.
+/// The numbers of participants from enrolment to analysis. Each participant is counted once, by the
+/// participant's last session.
 struct ParticipantFlow {
   int enrolled = 0;
   int withdrawn = 0;
-  int replaced = 0;  ///< of them: somebody else took their place
+  int replaced = 0;  ///< somebody else took their place
   int excluded = 0;
-  std::vector<std::string> exclusion_reasons;  ///< one a participant, in the order of sessions
+  std::vector<std::string> exclusion_reasons;  ///< one per exclusion, in order of sessions
   int stopped = 0;
   int open = 0;
-  int other_kind = 0;  ///< pilots or simulations among others
+  int other_kind = 0;  ///< pilot or simulated sessions in a study that is not, or the reverse
   int unseen = 0;      ///< completed after an interim look
-  int analysed = 0;    ///< enrolled less all above
+  int analysed = 0;    ///< enrolled minus all of the above
 };
 
-/// What the study prescribes of a session, from its configuration in clear.
+/// What the study prescribes for a session, from its configuration in clear.
 struct Prescription {
   double explore_limit_s = 0.0;
   std::string on_timeout;
   std::string order;
   int repeats = 0;
-  int method_orders = 1;  ///< that participants take in turn, by their enrolment numbers
+  int method_orders = 1;  ///< orders of methods that participants get in turn, by enrolment number
   std::string sight;      ///< "curtain" or "blindfold"
   bool masking_wanted = true;
   double masking_dbfs = 0.0;
@@ -75,17 +76,18 @@ struct Prescription {
 
 struct Collection {
   Prescription prescription;
-  std::vector<SessionRecord> sessions;   ///< by number
-  std::vector<ServoTrial> servo_trials;  ///< by session and trial; of withdrawn ones none
+  std::vector<SessionRecord> sessions;   ///< in order of session numbers
+  std::vector<ServoTrial> servo_trials;  ///< by session and trial, without withdrawn sessions
   ParticipantFlow flow;
-  bool visual = false;  ///< sessions were seen on a screen, not felt; a database holds one kind
+  bool visual = false;  ///< textures were seen on a screen, not felt; the same for all sessions
 };
 
-/// \param configuration  as the study's commitment has it, in clear
-/// \throws StoreError if it is not what this program writes
+/// Reads what a study prescribes.
+/// \param configuration  the configuration in clear from the study's commitment
+/// \throws StoreError if the configuration does not have the form that this program writes
 [[nodiscard]] Prescription prescription_from_json(const std::string& configuration);
 
-/// Reads the clear part of every session's events; traces and sealed parts are not looked at.
+/// Reads the clear part of every session's events, but neither traces nor sealed parts.
 [[nodiscard]] Collection load_collection(const store::StudyStore& store);
 
 }  // namespace touchtrial::analysis

@@ -72,7 +72,7 @@ Json session_json(const SessionRecord& session) {
   return object;
 }
 
-/// In how many sessions each deviation was recorded.
+/// The number of sessions with each deviation.
 Json deviations_json(const Collection& collection) {
   std::map<std::string, int> sessions;
   for (const SessionRecord& session : collection.sessions) {

@@ -65,7 +65,7 @@ void add_to_record(const store::Event& event, SessionRecord& session) {
       session.stop_reason = store::remark_from_json(event.body);
       return;
     case store::EventKind::resumed:
-      // After a pause the program was there all the time.
+      // A session that was only paused does not count as resumed.
       if (store::resumed_from_json(event.body).after == "program-ended") ++session.resumed;
       return;
     default:
@@ -74,7 +74,7 @@ void add_to_record(const store::Event& event, SessionRecord& session) {
 }
 
 std::optional<ServoTrial> servo_trial_of(const store::Event& trace_stored) {
-  // Most traces are of simulated sessions: what does not name a servo need not be parsed.
+  // Most traces come from simulated sessions; a body that names no servo need not be parsed.
   if (trace_stored.body.find("\"servo\"") == std::string::npos) return std::nullopt;
   const store::TraceBody body = store::trace_body_from_json(trace_stored.body);
   if (!body.servo) return std::nullopt;

@@ -1,4 +1,4 @@
-/// \file What single events say of a session. Private to analysis.
+/// \file Reads the facts about a session from its events. Private to analysis.
 #pragma once
 
 #include "analysis/collection.hpp"
@@ -7,17 +7,19 @@
 
 namespace touchtrial::analysis {
 
-/// The kinds of events on sessions' chains that tell how they were collected.
+/// The kinds of events on sessions' chains that describe how the sessions were collected.
 [[nodiscard]] std::span<const store::EventKind> kinds_in_sessions();
 
-/// Adds what one event says, of the session's chain or of the file's. \param session  that it is of
+/// Adds the facts from one event to a session's record.
+/// \param event  an event of the session's chain or of the file's chain
+/// \param session  record of the session that the event is about
 void add_to_record(const store::Event& event, SessionRecord& session);
 
-/// The trial's servo, if it was in real time.
+/// \return the timing of the trial's servo, or nothing if the trial was not in real time
 [[nodiscard]] std::optional<ServoTrial> servo_trial_of(const store::Event& trace_stored);
 
-/// Participants, each by the last of their sessions.
-/// \param rows  by number
+/// Counts participants, each by the participant's last session.
+/// \param rows  sessions in order of their numbers
 [[nodiscard]] ParticipantFlow participant_flow(const std::vector<store::SessionRow>& rows,
                                                const std::vector<SessionRecord>& records,
                                                const store::StudyCommitment& commitment,

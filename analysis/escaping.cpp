@@ -14,7 +14,7 @@ bool is_control(char c) {
   return code < 0x20 || code == 0x7f;
 }
 
-/// Signs that LaTeX writes in its own way.
+/// Characters with a LaTeX command of their own.
 const std::map<std::uint32_t, const char*>& named_signs() {
   static const std::map<std::uint32_t, const char*> kSigns{
       {'\\', "\\textbackslash{}"},
@@ -77,7 +77,7 @@ std::uint32_t continued(const std::string& text, std::size_t at, std::size_t byt
   return code;
 }
 
-/// Reads the character at `at` and moves `at` behind it. A byte that is not UTF-8 counts as one
+/// Reads the character at `at` and moves `at` past it. A byte that is not valid UTF-8 counts as one
 /// kNoCharacter.
 std::uint32_t next_character(const std::string& text, std::size_t& at) {
   const auto first = static_cast<unsigned char>(text[at]);

@@ -63,7 +63,7 @@ void put_method(nlohmann::ordered_json& object, const std::string& method,
 nlohmann::ordered_json references_object() {
   nlohmann::ordered_json all = nlohmann::ordered_json::object();
   for (const Publication& one : publications()) {
-    // Only the cues cite Lin, and name the publication themselves.
+    // Only the cues cite Lin, and they name the publication themselves.
     if (one.source != Source::lin) all[std::string(one.key)] = std::string(one.text);
   }
   return all;

@@ -19,7 +19,7 @@ std::string shown(const store::TrialRow& row) {
   return fmt::format("session {}, trial {}", row.session, row.trial);
 }
 
-/// File names without folders, unless two images of one class share theirs.
+/// The file names of a class's images, with folders only if two images have the same file name.
 std::vector<std::string> exemplar_names(const design::StudyClass& of) {
   std::set<std::string> distinct;
   for (const auto& image : of.images) distinct.insert(image.filename().string());
@@ -94,7 +94,7 @@ TrialOutcome outcome_of(const store::TrialRow& row, const SessionOutcome& sessio
   return trial;
 }
 
-/// What is derived is only believed if it follows from the events, and they from each other.
+/// Requires that chains are intact and that the derived tables follow from the events.
 void require_whole(const store::StudyStore& store) {
   if (const auto fault = store.first_fault(store::TraceCheck::skip)) {
     throw VerificationError(analysis::shown(*fault) +

@@ -6,8 +6,8 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// The session by which each participant is counted, in the order of those sessions: all before it
-/// were replaced by the participant's own next one.
+/// The session by which each participant is counted, in order of these sessions. This is the
+/// participant's last session; it replaced all earlier ones.
 std::map<int, const store::SessionRow*> sessions_that_stand(
     const std::vector<store::SessionRow>& rows) {
   std::map<std::string, const store::SessionRow*> last;
@@ -21,7 +21,7 @@ bool unseen_after_interim_look(const store::SessionRow& row, const store::StudyS
   return state.unblinded && !state.shows(row.session);
 }
 
-/// Exactly one of the flow's ends.
+/// The one counter of the flow that a participant's session belongs to.
 int& end_of(const store::SessionRow& row, const store::StudyCommitment& commitment,
             const store::StudyState& state, ParticipantFlow& flow) {
   if (row.withdrawn) return flow.withdrawn;

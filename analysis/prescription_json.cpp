@@ -1,4 +1,4 @@
-/// What a study prescribes, from its configuration in clear.
+/// \file Reads what a study prescribes from its configuration in clear.
 #include "analysis/collection.hpp"
 #include "core/errors.hpp"
 #include "protocols/design/protocol.hpp"
@@ -12,14 +12,15 @@ namespace {
 
 using nlohmann::json;
 
-/// A study without this section is as if it were all usual.
+/// Reads the section "session". A study without it uses the defaults.
 void read_session(const json& session, Prescription& prescription) {
   prescription.sight = session.at("sight").get<std::string>();
   prescription.masking_wanted = session.at("masking").at("wanted").get<bool>();
   prescription.masking_dbfs = session.at("masking").at("level_dbfs").get<double>();
 }
 
-/// Methods have an order only where several are presented, each in a block of its own.
+/// The number of orders of methods. Methods have an order only if several are presented, each in
+/// its own block.
 int method_orders_of(const json& configuration) {
   const design::Protocol* protocol = design::find_protocol(configuration.value("protocol", ""));
   const bool several = protocol != nullptr && protocol->presents_all_methods();

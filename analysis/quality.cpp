@@ -235,7 +235,7 @@ std::string health_text(const QualityReport& report) {
   return text + '\n';
 }
 
-/// A lateness, which may be microseconds or a second.
+/// A lateness as text. It can reach a second, so only values below 10 us get a decimal.
 std::string microseconds(double time_us) {
   return fmt::format("{:.{}f} us", time_us, time_us < 10.0 ? 1 : 0);
 }

@@ -1,5 +1,6 @@
-/// \file How collection goes, without a word on outcomes: what may be seen before a study is
-/// unblinded. Made from what the database holds in clear; it takes no key.
+/// \file The report on the quality of data collection. It reveals nothing about outcomes, so it may
+/// be seen before a study is unblinded. It uses only what the database stores in clear and needs no
+/// key.
 #pragma once
 
 #include "analysis/collection.hpp"
@@ -12,42 +13,42 @@
 
 namespace touchtrial::analysis {
 
-/// Sessions by how they stand, each counted once: withdrawn, else replaced, else excluded, else by
-/// its state.
+/// The numbers of sessions by status. Each session is counted once: as withdrawn, else as replaced,
+/// else as excluded, else by its state.
 struct SessionCounts {
   int completed = 0;
   int open = 0;
   int stopped = 0;
   int excluded = 0;
-  int replaced = 0;  ///< somebody took the place, or the session was restarted
+  int replaced = 0;  ///< somebody else took the place, or the session was restarted
   int withdrawn = 0;
-  int pilot = 0;  ///< of all these, in a study that is no pilot
+  int pilot = 0;  ///< pilot sessions among all of these, if the study itself is not a pilot
 };
 
-/// Of all sessions' trials but the withdrawn ones'.
+/// Quality of the trials of all sessions that are not withdrawn.
 struct TrialQuality {
   int presented = 0;
   int answered = 0;
   int no_response = 0;           ///< time ran out
-  int interrupted = 0;           ///< and not repeated yet
-  int changed = 0;               ///< answers changed before they were given
-  std::vector<int> by_position;  ///< answers, by the picture's place in the layout: bias of hand
+  int interrupted = 0;           ///< interrupted and not yet repeated
+  int changed = 0;               ///< answers that were changed before they were given
+  std::vector<int> by_position;  ///< answers by position in the layout, to reveal a position bias
   int with_trace = 0;
-  int valid = 0;              ///< of those with a trace, by the study's rule
+  int valid = 0;              ///< trials with a trace that are valid by the study's rule
   std::int64_t overruns = 0;  ///< servo ticks that came late
   int with_overruns = 0;
-  std::optional<double> lowest_rate_hz;  ///< of a trace: as it was asked of the servo
+  std::optional<double> lowest_rate_hz;  ///< lowest requested rate of a trace
 };
 
-/// How the servo kept its time, of all trials in real time whose participant has not withdrawn.
+/// The timing of the servo in all trials in real time of participants who have not withdrawn.
 struct ServoQuality {
   int trials = 0;
-  double median_p99_us = 0.0;  ///< of the trials' 99th percentiles of lateness
+  double median_p99_us = 0.0;  ///< median of the trials' 99th percentiles of lateness
   double highest_p99_us = 0.0;
-  double worst_us = 0.0;                ///< the latest tick of all
-  double lowest_rate_hz = 0.0;          ///< that the servo had, over a trial
+  double worst_us = 0.0;                ///< lateness of the latest tick of all trials
+  double lowest_rate_hz = 0.0;          ///< lowest rate that the servo reached over a trial
   std::int64_t lost = 0;                ///< samples that did not reach their trace
-  std::vector<std::string> scheduling;  ///< what sessions' servo threads obtained, each kind once
+  std::vector<std::string> scheduling;  ///< scheduling that servo threads obtained, each kind once
 };
 
 struct QualityReport {
@@ -56,12 +57,12 @@ struct QualityReport {
   store::StudyState state;
   bool simulated = false;
   bool pilot = false;
-  int participants = 0;  ///< whose session is completed, not excluded, not withdrawn
+  int participants = 0;  ///< participants with a session that counts, see session_counts
   int trials = 0;        ///< their scored trials
   SessionCounts sessions;
   TrialQuality quality;
-  std::optional<ServoQuality> servo;  ///< nothing if no session was in real time
-  bool visual = false;                ///< sessions were seen on a screen, not felt
+  std::optional<ServoQuality> servo;  ///< empty if no session was in real time
+  bool visual = false;                ///< textures were seen on a screen, not felt
   Collection collection;              ///< participant flow, deviations, stations
 };
 
@@ -76,7 +77,8 @@ struct QualityReport {
 /// A page for a terminal, ending with a line feed.
 [[nodiscard]] std::string quality_text(const QualityReport& report);
 
-/// One line: how many enrolled, and where those went who are not analysed. Empty if nobody did.
+/// A paragraph with the number of enrolled participants and the number in each other part of the
+/// flow that is not zero. Ends with a line feed.
 [[nodiscard]] std::string flow_text(const ParticipantFlow& flow);
 
 }  // namespace touchtrial::analysis

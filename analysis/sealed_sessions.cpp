@@ -14,7 +14,7 @@ std::string place_of(const store::Event& event) {
   return fmt::format("session {}, event {}", event.session, event.sequence);
 }
 
-/// Calls `visit` with the secret text of each event of a kind whose session has a key.
+/// Calls `visit` with each event of a kind and its secret text, for all sessions that have a key.
 template <typename Visit>
 void for_each_secret(const store::StudyStore& store, const design::StudyKey& key,
                      store::EventKind kind, Visit visit) {

@@ -1,12 +1,13 @@
-/// \file Which sessions enter a study's figures: one rule for all of them.
+/// \file The rule that decides which sessions count in a study's results.
 #pragma once
 
 #include "protocols/store/study_store.hpp"
 
 namespace touchtrial::analysis {
 
-/// Completed, neither excluded, withdrawn nor replaced, and pilot or simulated only if the whole
-/// study is.
+/// Whether a session counts: it is completed and is neither excluded, withdrawn nor replaced. It is
+/// a pilot session exactly if the study is a pilot, and simulated exactly if the study is
+/// simulated.
 [[nodiscard]] inline bool session_counts(const store::SessionRow& session,
                                          const store::StudyCommitment& commitment) noexcept {
   return session.state == store::SessionState::completed && !session.excluded &&

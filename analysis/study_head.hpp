@@ -1,4 +1,4 @@
-/// \file What every report says of its study, whatever the protocol.
+/// \file The part that all reports have in common, whatever the protocol.
 #pragma once
 
 #include "analysis/collection.hpp"
@@ -14,21 +14,21 @@ struct StudyHead {
   std::string protocol;
   bool simulated = false;
   bool pilot = false;
-  int participants = 0;  ///< whose session counts
-  int trials = 0;        ///< that count
+  int participants = 0;  ///< participants with a session that counts
+  int trials = 0;        ///< trials that count
   std::vector<std::string> classes;
   Collection collection;              ///< how it was collected
-  store::StudyState state{};          ///< unblinded; not closed: an interim look
-  design::Registration registration;  ///< what was deposited beforehand
-  std::vector<std::string> warnings;  ///< what a reader could take a number for, wrongly
+  store::StudyState state{};          ///< unblinded; an interim look if not closed
+  design::Registration registration;  ///< the registration deposited before collection
+  std::vector<std::string> warnings;  ///< how a reader could misread the numbers
 };
 
-/// Everything but the warnings.
+/// Fills in everything except the warnings.
 [[nodiscard]] StudyHead head_of(const Outcomes& outcomes);
 
-/// The JSON object of a report: the head's members, the protocol's own, then warnings, registration
-/// and collection. Indented, ending with a line feed.
-/// \param members  a JSON object
+/// The JSON object of a report: the head's members, the protocol's own members, then warnings,
+/// registration and collection. Indented, ending with a line feed.
+/// \param members  the protocol's members, as a JSON object
 [[nodiscard]] std::string framed_json(const StudyHead& head, const std::string& members);
 
 }  // namespace touchtrial::analysis

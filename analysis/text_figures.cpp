@@ -38,12 +38,12 @@ std::string points_range(const std::optional<Interval>& interval) {
 std::string signed_figure(std::optional<double> figure, int decimals) {
   if (!figure) return "-";
   const std::string text = fmt::format("{:+.{}f}", *figure, decimals);
-  // What rounds to zero has no sign.
+  // A number that rounds to zero has no sign.
   return text.find_first_of("123456789") == std::string::npos ? text.substr(1) : text;
 }
 
 std::string p_value(double p) {
-  // Half up: the floor 0.03125 may not come out as less.
+  // Rounds halves up, so that 0.03125, a smallest possible p, is not shown as less.
   return fmt::format("{:.3g}", p * (1.0 + 1e-9));
 }
 

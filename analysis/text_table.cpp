@@ -32,7 +32,7 @@ std::string without_trailing_spaces(std::string line) {
 }  // namespace
 
 std::size_t display_width(std::string_view text) {
-  // Whatever fmt thinks of a character, padding and measuring must agree: pad, and see how much.
+  // Measures a text by padding it with fmt, so that measuring and padding agree on every character.
   const std::size_t wide = 2 * text.size() + 1;
   return wide - (left(text, wide).size() - text.size());
 }

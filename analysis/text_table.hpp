@@ -1,4 +1,4 @@
-/// \file Tables for a terminal: padded columns, folded into several parts where they are too wide.
+/// \file Tables for a terminal, with padded columns, split into several parts if they are too wide.
 #pragma once
 
 #include <cstddef>
@@ -8,25 +8,26 @@
 
 namespace touchtrial::analysis {
 
-/// How wide the program's tables and paragraphs get, in columns.
+/// Maximum width of the program's tables and paragraphs, columns.
 inline constexpr std::size_t kTextWidth = 100;
 
-/// Columns that a UTF-8 text takes on a terminal; East Asian wide characters take two.
+/// The number of columns of a UTF-8 text on a terminal. East Asian wide characters take two.
 [[nodiscard]] std::size_t display_width(std::string_view text);
 
-/// The text, cut at a character to at most `width` columns; what was cut shows as an ellipsis.
+/// The text, cut between characters to at most `width` columns. An ellipsis marks a cut.
 [[nodiscard]] std::string fitted(std::string_view text, std::size_t width);
 
-/// A paragraph broken at spaces to kTextWidth columns. \param first  before its first line; the
-///   others are indented as far. Ends with a line feed.
+/// A paragraph broken at spaces to kTextWidth columns, ending with a line feed.
+/// \param first  text before the first line; the other lines are indented by its width
 [[nodiscard]] std::string wrapped(std::string_view first, std::string_view paragraph);
 
-/// Rows of text under a header. The first column is aligned to the left, the others to the right.
+/// Rows of text under a header. The first column is left-aligned, the others are right-aligned.
 class TextTable {
  public:
   explicit TextTable(std::vector<std::string> header);
 
-  /// \throws std::invalid_argument if the number of cells is not the header's
+  /// Adds a row.
+  /// \throws std::invalid_argument if the number of cells differs from the header's
   void add(std::vector<std::string> cells);
 
   /// All rows, indented by two columns, each ending with a line feed. Columns that do not fit

@@ -12,7 +12,7 @@ namespace {
 struct RecordColumn {
   const char* name;
   DataCell (*value)(const SessionRecord&);
-  bool after_unblinding = false;  ///< exists only then
+  bool after_unblinding = false;  ///< the column exists only after unblinding
 };
 
 template <int PracticeRecord::*kNumber>
@@ -33,7 +33,8 @@ DataCell station_number(const SessionRecord& record) {
   return (*record.station).*kNumber;
 }
 
-/// How a session was collected, without the deviations, of which there may be several.
+/// How a session was collected. Deviations have a table of their own, because a session may have
+/// several.
 constexpr RecordColumn kRecordColumns[] = {
     {"practice_rounds", practised<&PracticeRecord::rounds>},
     {"practice_presentations", practised<&PracticeRecord::presentations>},

@@ -1,4 +1,4 @@
-/// \file How a study was collected, as tables. Columns: docs/data-dictionary.md, "Exports".
+/// \file Tables on how a study was collected. Columns: docs/data-dictionary.md, "Exports".
 #pragma once
 
 #include "analysis/collection.hpp"
@@ -6,18 +6,19 @@
 
 namespace touchtrial::analysis {
 
-/// One row a session; `counted` is 1 if its trials enter the report. Of who has withdrawn nothing
-/// is told of practice, reasons and device.
+/// One row for each session; `counted` is 1 if the session's trials enter the report. For
+/// participants who withdrew, the cells about practice, resumptions, reasons and equipment are
+/// empty.
 [[nodiscard]] DataTable participants_table(const store::StudyStore& store,
                                            const Collection& collection);
 
-/// One row for each deviation from the protocol, by session, in the order in which they were noted.
+/// One row for each deviation from the protocol, ordered by session and then by when it was noted.
 [[nodiscard]] DataTable deviations_table(const Collection& collection, bool simulated);
 
-/// One row for each trial in real time: how the servo kept its time. None for simulated sessions.
+/// The servo's timing: one row for each trial that ran in real time, none for simulated sessions.
 [[nodiscard]] DataTable servo_table(const Collection& collection, bool simulated);
 
-/// What the study prescribes of every session: rows of study.csv.
+/// Adds the study's prescriptions for every session to the rows of study.csv.
 void add_prescription(DataTable& study, const Prescription& prescription);
 
 }  // namespace touchtrial::analysis

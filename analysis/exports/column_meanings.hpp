@@ -1,5 +1,5 @@
-/// \file What each exported column means, for the sidecars and dictionaries of datasets.
-/// The same as in docs/data-dictionary.md, "Exports".
+/// \file The meaning of each exported column, for the sidecars and dictionaries of datasets.
+/// docs/data-dictionary.md, "Exports", gives the same meanings.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,7 @@ struct ColumnMeaning {
   std::vector<std::pair<std::string, std::string>> levels{};  ///< values and what they mean
 };
 
-/// \param column  as in the CSV files, or by BIDS's name for it
+/// \param column  its name in the CSV files or in BIDS
 /// \throws std::out_of_range if no export has such a column
 [[nodiscard]] const ColumnMeaning& meaning_of(const std::string& column);
 

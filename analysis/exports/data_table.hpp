@@ -1,4 +1,4 @@
-/// \file Rows of named columns on their way into a file for others.
+/// \file The table of named columns that exports write, and its text as CSV.
 #pragma once
 
 #include <chrono>
@@ -18,13 +18,14 @@ struct DataTable {
   std::vector<std::vector<DataCell>> rows;  ///< each as long as `columns`
 };
 
-/// Seconds with as many decimals as the nanoseconds need: exact, with a decimal dot.
+/// The exact time in seconds, with a decimal point and as many decimals as the nanoseconds need.
 [[nodiscard]] std::string seconds_text(std::chrono::nanoseconds time);
 
-/// RFC 4180 but for its line ends, which are single line feeds: UTF-8 without a byte order mark, a
-/// header, a text quoted where it holds a comma, a quote or a line end, numbers with a decimal dot
-/// and the fewest digits that read back the same, nothing for a missing value.
-/// \throws std::invalid_argument if a row's length is not the header's
+/// CSV as in RFC 4180, except that each line ends with a single line feed. The text is UTF-8
+/// without a byte order mark and begins with a header. A text that contains a comma, a quote or a
+/// line end is quoted. Numbers have a decimal point and the fewest digits that read back the same.
+/// A missing value is an empty field.
+/// \throws std::invalid_argument if a row and the header differ in length
 [[nodiscard]] std::string csv_text(const DataTable& table);
 
 }  // namespace touchtrial::analysis

@@ -5,7 +5,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// Whatever the locale.
+/// Tells whether a character is an ASCII letter or digit, in every locale.
 bool is_plain(char c) {
   return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 }

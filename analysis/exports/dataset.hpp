@@ -1,4 +1,4 @@
-/// \file What datasets for archives are made from, and what whoever publishes them decides.
+/// \file The source of the datasets for archives, and the options that their publisher chooses.
 #pragma once
 
 #include "analysis/outcomes.hpp"
@@ -10,7 +10,7 @@
 
 namespace touchtrial::analysis {
 
-/// A study, and, once it is unblinded, what it means; both or neither.
+/// A study and, after unblinding, its outcomes and its key: both or neither.
 struct DatasetSource {
   const store::StudyStore& store;
   const Outcomes* outcomes = nullptr;
@@ -20,15 +20,16 @@ struct DatasetSource {
 struct DatasetOptions {
   std::vector<std::string> authors{};
   std::string license{};             ///< for instance "CC0"; empty: not stated
-  std::string institution{};         ///< where it was collected; empty: not stated
-  bool traces = false;               ///< positions and forces of every trial
-  bool stimuli = false;              ///< the study's images
-  std::filesystem::path database{};  ///< copied along; empty: not
+  std::string institution{};         ///< where the data were collected; empty: not stated
+  bool traces = false;               ///< includes positions and forces of every trial
+  bool stimuli = false;              ///< includes the study's images
+  std::filesystem::path database{};  ///< a database to copy into the dataset; empty: none
   std::function<void(int done, int of)> progress{};
 };
 
-/// A label for file names, unique among participants: letters and digits stand for themselves but
-/// Z, which is "ZZ"; "-" is "Zd", "_" is "Zu" and "+" is "Zp". "P-07" becomes "PZd07".
+/// A label for file names that is unique among participants. Letters and digits stay as they are,
+/// except that "Z" becomes "ZZ"; "-" becomes "Zd", "_" becomes "Zu" and "+" becomes "Zp". For
+/// example, "P-07" becomes "PZd07".
 [[nodiscard]] std::string participant_label(const std::string& participant);
 
 /// The letters and digits of a name; "study" if it has none.

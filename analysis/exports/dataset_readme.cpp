@@ -10,7 +10,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// What holds whatever the format: what was done, by whom, and how much may be seen.
+/// The part that both formats share: how the data were collected, and what is still sealed.
 std::string about(const DatasetSource& study) {
   const store::StudyCommitment& commitment = study.store.commitment();
   const std::vector<store::SessionRow> sessions = study.store.sessions();

@@ -1,4 +1,4 @@
-/// \file What whoever finds a dataset reads first. Private to exports.
+/// \file The README files of datasets. Private to exports.
 #pragma once
 
 #include "analysis/exports/dataset.hpp"
@@ -7,10 +7,10 @@
 
 namespace touchtrial::analysis {
 
-/// Plain text.
+/// The README of a BIDS dataset, as plain text.
 [[nodiscard]] std::string bids_readme(const DatasetSource& study, const DatasetOptions& options);
 
-/// Markdown.
+/// The README.md of a Psych-DS dataset.
 [[nodiscard]] std::string psych_ds_readme(const DatasetSource& study);
 
 }  // namespace touchtrial::analysis

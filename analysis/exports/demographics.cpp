@@ -13,7 +13,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// ASCII alone, whatever the locale.
+/// Changes ASCII letters only, in every locale.
 std::string lower_case(std::string text) {
   for (char& c : text) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
@@ -21,7 +21,7 @@ std::string lower_case(std::string text) {
   return text;
 }
 
-/// The option's words, in English if the study has them.
+/// The text of an option in lower case, in English if the study has it in English.
 std::optional<std::string> option_text(const design::Study& study, const std::string& question,
                                        int option) {
   for (const design::Question& one : study.session.closing_questions) {

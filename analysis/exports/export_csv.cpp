@@ -11,7 +11,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// What the folder holds, for whoever finds it without us.
+/// The contents of the folder, for readers who do not know the program.
 std::string contents_json(const store::StudyCommitment& commitment, bool blinded,
                           const std::vector<ExportFile>& files) {
   nlohmann::ordered_json contents{{"study", commitment.study}, {"protocol", commitment.protocol}};

@@ -1,5 +1,4 @@
-/// \file A study's data for others, as CSV files.
-/// Format: docs/data-dictionary.md, "Exports".
+/// \file Exports a study's data as CSV files. Format: docs/data-dictionary.md, "Exports".
 #pragma once
 
 #include "analysis/outcomes.hpp"
@@ -10,9 +9,11 @@
 
 namespace touchtrial::analysis {
 
-/// Writes trials.csv, participants.csv, with outcomes one confusion_<method>.csv a presented
-/// method, and last export.json, which says what the others are and whether they are simulated.
-/// The folder is made if need be; other files in it stay. Equal studies give equal bytes.
+/// Writes trials.csv, participants.csv, deviations.csv, servo.csv and study.csv. With outcomes it
+/// also writes the tables of the protocol's analysis (for example, confusion_<method>.csv for each
+/// presented method), unscored_trials.csv and study_file.json. The last file is export.json, which
+/// lists the others and says whether they are simulated. Creates the folder if necessary; files
+/// that no export wrote stay. Equal studies give equal bytes.
 /// \param outcomes  of this store; nothing before unblinding
 /// \return the files, in the order written
 /// \throws FileError if the folder or a file cannot be written

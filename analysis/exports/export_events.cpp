@@ -16,7 +16,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// Those that no other export tells one by one.
+/// The kinds of events that no other export lists one by one.
 constexpr std::array kKinds = {store::EventKind::participant_noted,
                                store::EventKind::calibrated,
                                store::EventKind::instructed,
@@ -33,7 +33,7 @@ constexpr std::array kKinds = {store::EventKind::participant_noted,
                                store::EventKind::block_restarted,
                                store::EventKind::resumed};
 
-/// Of other events, and of interruptions in virtual time, nothing.
+/// The detail of an interruption. Empty for other events, and for interruptions in virtual time.
 store::InterruptionDetail detail_of(const store::Event& event, const SecretKey& own) {
   if (event.kind != store::EventKind::interrupted || event.sealed.empty()) return {};
   return store::interruption_from_json(opened_part(event, own));
@@ -45,7 +45,7 @@ int session_of(const store::Event& event) {
              : event.session;
 }
 
-/// All files of an export have single line feeds.
+/// Removes carriage returns, because all files of an export end their lines with single line feeds.
 ExportFile flight_file(const std::string& name, std::string flight) {
   std::erase(flight, '\r');
   return text_file(name, std::move(flight));

@@ -1,6 +1,5 @@
-/// \file What happened in sessions beside their trials, for whoever has to explain it: remarks,
-/// breaks, pauses, and the last seconds before every interruption.
-/// Format: docs/data-dictionary.md, "Exports".
+/// \file Exports the events of sessions beside their trials: remarks, breaks, pauses, and the last
+/// seconds before every interruption. Format: docs/data-dictionary.md, "Exports".
 #pragma once
 
 #include "analysis/outcomes.hpp"
@@ -10,9 +9,9 @@
 
 namespace touchtrial::analysis {
 
-/// Writes events.csv and one file for each flight record, of the sessions that outcomes may be
-/// shown of and that have not withdrawn. Forces before a fault tell textures apart, so that there
-/// is none of it before unblinding.
+/// Writes events.csv and one file for each flight record. Contains the sessions whose outcomes may
+/// be shown, without those of participants who withdrew. Requires unblinding, because the forces
+/// before a fault can tell textures apart.
 /// \param outcomes  of this store, opened with `key`
 /// \return the files, in the order written
 /// \throws VerificationError, naming the event, if a sealed part does not open

@@ -24,7 +24,7 @@ void make_export_folder(const fs::path& folder) {
                   "); give another folder or change its permissions");
 }
 
-/// Names as they stand in marks; sorted.
+/// The names of the files as a mark lists them, sorted.
 std::set<std::string> names_of(const std::vector<ExportFile>& files) {
   std::set<std::string> names;
   for (const ExportFile& file : files) names.insert(file.name.generic_string());
@@ -41,8 +41,8 @@ FolderMark mark_of(const fs::path& folder, const ExportMark& mark) {
                   "), another than this one; give another folder");
 }
 
-/// Any format may replace what another of this study's wrote under the same name, but for whole
-/// datasets: two in one folder would be neither.
+/// An export may replace a file that another format of this study wrote under the same name.
+/// Datasets are the exception: two of them in one folder would leave neither valid.
 void require_no_other_dataset(const fs::path& folder, const ExportMark& mark,
                               const FolderMark& found) {
   const auto is_dataset = [](const std::string& format) {
@@ -68,7 +68,8 @@ void require_own_files(const fs::path& folder, const FolderMark& found,
   }
 }
 
-/// With the folders that are empty then. What cannot be removed is told by its name.
+/// Removes a file, and then the folders above it that are empty.
+/// \throws FileError, naming the file, if it cannot be removed
 void remove_obsolete(const fs::path& folder, const std::string& name) {
   std::error_code error;
   fs::remove(folder / name, error);
@@ -101,7 +102,8 @@ void write_all(const fs::path& folder, const std::vector<ExportFile>& files) {
                     [&](std::size_t i) { write_one(folder, *concurrent[i]); });
 }
 
-/// A name comes from a file that anybody may have edited: it must stay in the folder.
+/// Tells whether a name stays inside the folder. The name comes from a file that anybody may have
+/// edited.
 bool stays_inside(const std::string& name) {
   const fs::path path(name);
   return !path.empty() && path.is_relative() &&

@@ -1,4 +1,5 @@
-/// \file Where exports go: a folder holds one study's, and nothing of it that has become obsolete.
+/// \file Writes exports into a folder. A folder holds the exports of one study and no obsolete
+/// files of them.
 #pragma once
 
 #include <filesystem>
@@ -10,38 +11,38 @@ namespace touchtrial::analysis {
 
 /// One file of an export.
 struct ExportFile {
-  std::filesystem::path name;  ///< below the export's folder
-  /// Makes the file whole or throws; its folder exists.
+  std::filesystem::path name;  ///< relative to the export's folder
+  /// Writes the whole file or throws. The folder of the file exists.
   std::function<void(const std::filesystem::path&)> write;
-  /// Its writing takes long, and may run on any thread beside that of other such files.
+  /// Writing takes long and may run on any thread, at the same time as other concurrent files.
   bool concurrent = false;
 };
 
-/// One whose content is made when its turn comes.
+/// A file whose content is made when the file is written.
 [[nodiscard]] ExportFile text_file(std::filesystem::path name,
                                    std::function<std::string()> content);
-/// One whose content is there.
+/// A file whose content is known already.
 [[nodiscard]] ExportFile text_file(std::filesystem::path name, std::string content);
 
-/// Whose export it is.
+/// The study and the format of an export.
 struct ExportMark {
   std::string study;     ///< name
-  std::string study_id;  ///< public identity of its key
+  std::string study_id;  ///< public identity of the study's key
   std::string format;    ///< for instance "csv"
 };
 
-/// What a folder's mark is called.
+/// The file name of a folder's mark.
 inline constexpr const char* kExportMark = ".touchtrial-export.json";
 
-/// Writes every file, each atomically, into a folder that is made if need be, and then removes what
-/// the last export of this format wrote there and this one does not hold (of a participant who
-/// withdrew since, for instance). A mark in the folder keeps the list, and is brought up to date
-/// before the first file is written, so that a broken-off export can be repeated. Files that are
-/// concurrent are written last, as many at a time as there are cores.
+/// Writes every file atomically into a folder, which it creates if necessary. Then removes the
+/// files that the last export of this format wrote there and that this export does not have (for
+/// example, those of a participant who has since withdrawn). A mark in the folder keeps the list of
+/// files. The mark is updated before the first file is written, so that an export that was cut
+/// short can be repeated. Concurrent files are written last, as many at a time as there are cores.
 /// \return the files, in the order given
-/// \throws FileError if the folder or a file cannot be written, holds another study's export, or
-/// has
-///   a file of one of these names that no export of this study wrote; nothing is written then
+/// \throws FileError if the folder or a file cannot be written
+/// \throws FileError, before anything is written, if the folder holds the export of another study,
+/// or a file with one of these names that no export of this study wrote
 std::vector<std::filesystem::path> write_export(const std::filesystem::path& folder,
                                                 const ExportMark& mark,
                                                 const std::vector<ExportFile>& files);

@@ -23,7 +23,7 @@ struct JsonValue {
   }
 };
 
-/// An array of objects with the columns as keys.
+/// The rows as an array of objects whose keys are the columns.
 Json rows_json(const DataTable& table) {
   Json rows = Json::array();
   for (const std::vector<DataCell>& cells : table.rows) {

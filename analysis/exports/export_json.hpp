@@ -1,5 +1,4 @@
-/// \file A study's data for others, as one JSON file.
-/// Format: docs/data-dictionary.md, "Exports".
+/// \file Exports a study's data as one JSON file. Format: docs/data-dictionary.md, "Exports".
 #pragma once
 
 #include "analysis/outcomes.hpp"
@@ -9,9 +8,9 @@
 
 namespace touchtrial::analysis {
 
-/// Writes study.json: the report (before unblinding the quality report), participants and trials
-/// with the columns of the CSV files as keys; a missing value is null, times are in seconds.
-/// Arguments and errors as export_csv.
+/// Writes study.json: the report (before unblinding, the quality report) and the tables of the CSV
+/// export, with their columns as keys. A missing value is null; times are in seconds. Arguments and
+/// errors are those of export_csv.
 /// \return the file
 std::filesystem::path export_json(const store::StudyStore& store,
                                   const std::optional<Outcomes>& outcomes,

@@ -11,11 +11,11 @@ namespace touchtrial::analysis {
 struct FolderMark {
   std::string study;
   std::string study_id;
-  std::map<std::string, std::set<std::string>> files{};  ///< names by format
+  std::map<std::string, std::set<std::string>> files{};  ///< file names by format
 };
 
 [[nodiscard]] std::string folder_mark_json(const FolderMark& mark);
-/// \throws FileError if the file is no such mark
+/// \throws FileError if the file is not a mark
 [[nodiscard]] FolderMark read_folder_mark(const std::filesystem::path& path);
 
 }  // namespace touchtrial::analysis

@@ -13,8 +13,9 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// participants.csv without those who withdrew, and without names that mean something else of
-/// trials: a variable of a dataset has one meaning.
+/// The table of participants.csv without participants who withdrew. Columns that have the name of a
+/// column of trials.csv but another meaning are renamed, because a variable of a dataset has one
+/// meaning.
 DataTable people_table(const store::StudyStore& store, const Collection& collection) {
   DataTable table = participants_table(store, collection);
   std::replace(table.columns.begin(), table.columns.end(), std::string("state"),

@@ -1,4 +1,4 @@
-/// \file A study as a Psych-DS dataset. Source: Psych-DS schema 1.5.1; what stands where:
+/// \file Exports a study as a Psych-DS dataset. Source: Psych-DS schema 1.5.1. Layout:
 /// docs/exports.md.
 #pragma once
 
@@ -9,10 +9,11 @@
 
 namespace touchtrial::analysis {
 
-/// Of `options` authors and license alone count. Before unblinding the trials say no more than the
-/// CSV export does then.
+/// Uses only `authors` and `license` of the options. Before unblinding, the trials contain no more
+/// than those of the CSV export.
 /// \return the files, in the order written
-/// \throws FileError if the folder or a file cannot be written or holds something else's files
+/// \throws FileError if the folder or a file cannot be written, or the folder holds files of
+/// something else
 std::vector<std::filesystem::path> export_psych_ds(const DatasetSource& study,
                                                    const DatasetOptions& options,
                                                    const std::filesystem::path& folder);

@@ -1,4 +1,4 @@
-/// \file gzip files in memory.
+/// \file Compresses bytes with gzip in memory.
 #pragma once
 
 #include "core/bytes.hpp"
@@ -7,8 +7,9 @@
 
 namespace touchtrial::analysis {
 
-/// RFC 1952 with level 4; no name and no time in the header, so that equal contents give equal
-/// bytes. \throws FileError if there is no memory
+/// Compresses at level 4 in the format of RFC 1952. The header has no name and no time, so that
+/// equal contents give equal bytes.
+/// \throws FileError if there is not enough memory
 [[nodiscard]] Bytes gzip(std::string_view content);
 
 }  // namespace touchtrial::analysis

@@ -10,7 +10,7 @@ bool has_stimulus(const TrialView& trial) {
   return trial.outcome->kind != design::PresentationKind::catch_trial;
 }
 
-/// From one moment of a trial to another, if both came.
+/// The time between two moments of a trial; missing unless both occurred.
 DataCell time_between(const std::optional<std::chrono::nanoseconds>& from,
                       const std::optional<std::chrono::nanoseconds>& to) {
   if (!from || !to) return std::monostate{};
@@ -22,7 +22,7 @@ DataCell response_of(const TrialView& trial) {
   return trial.study->choices[*trial.outcome->response];
 }
 
-/// Empty for a trial that never ended, so that a mean over the column is an accuracy.
+/// Empty for a trial that did not end, so that the mean of the column is an accuracy.
 DataCell correctness_of(const TrialView& trial) {
   if (!has_stimulus(trial)) return std::monostate{};
   const store::TrialState state = trial.row.state;
@@ -96,8 +96,8 @@ DataCell limited_ticks_of(const TrialView& trial) {
   return *trial.outcome->measures->limited_ticks;
 }
 
-/// The rule judges traces; without one there is no verdict. Before unblinding, that of its part in
-/// clear.
+/// The verdict of the validity rule, which judges the trace; missing without a trace. Before
+/// unblinding, the verdict of the part of the rule that is in clear.
 DataCell validity_of(const TrialView& trial) {
   if (trial.row.samples == 0) return std::monostate{};
   return flag(trial.outcome != nullptr ? trial.outcome->valid() : trial.row.valid);

@@ -1,5 +1,5 @@
-/// \file What trials.csv and its kin hold of a trial, column by column.
-/// Columns: docs/data-dictionary.md, "Exports".
+/// \file The columns of trials.csv and of the tables like it. Columns: docs/data-dictionary.md,
+/// "Exports".
 #pragma once
 
 #include "analysis/exports/data_table.hpp"
@@ -10,7 +10,7 @@
 
 namespace touchtrial::analysis {
 
-/// What a cell is made from; before unblinding the last two are missing.
+/// The source of a cell. `study` and `outcome` are null before unblinding.
 struct TrialView {
   const std::string& participant;
   const store::TrialRow& row;
@@ -21,14 +21,14 @@ struct TrialView {
 
 struct TrialColumn {
   const char* name;
-  bool after_unblinding;  ///< exists only then
+  bool after_unblinding;  ///< the column exists only after unblinding
   DataCell (*value)(const TrialView&);
 };
 
-/// In the order in which they stand in trials.csv.
+/// The columns in the order of trials.csv.
 [[nodiscard]] std::span<const TrialColumn> trial_columns();
 
-/// The file name, as the study calls it, of a trial's image.
+/// The file name of a trial's image, as the study gives it.
 [[nodiscard]] const std::string& image_of(const Outcomes& study, const TrialOutcome& trial);
 
 [[nodiscard]] DataCell flag(bool value);

@@ -1,6 +1,6 @@
-/// \file A report as a document, and its renderings as HTML, Markdown and LaTeX. All texts are
-/// plain UTF-8 that may contain anything (labels and reasons are the user's); renderings escape
-/// them. Equal documents give equal bytes. All functions are thread-safe.
+/// \file A report as a document, and its renderings as HTML, Markdown, LaTeX and plain text. All
+/// texts are plain UTF-8 that may contain anything (labels and reasons are the user's); the
+/// renderings escape them. Equal documents give equal bytes. All functions are thread-safe.
 #pragma once
 
 #include "analysis/bibliography.hpp"
@@ -28,25 +28,24 @@ struct Column {
 
 struct Cell {
   std::string text;
-  bool strong = false;  ///< emphasised, like the right answers of a confusion matrix
+  bool strong = false;  ///< emphasised, for example the correct answers in a confusion matrix
 
   Cell(std::string shown, bool emphasised = false)  // NOLINT(google-explicit-constructor)
       : text(std::move(shown)), strong(emphasised) {}
   Cell(const char* shown) : text(shown) {}  // NOLINT(google-explicit-constructor)
 };
 
-/// The first cell of a row is its header.
+/// The first cell of each row is the header of the row.
 struct Table {
-  std::string id;  ///< unique, of [a-z0-9-]: anchor and file name
+  std::string id;  ///< unique; characters [a-z0-9-]; anchor and file name
   std::string caption;
   std::vector<Column> columns;
   std::vector<std::vector<Cell>> rows{};
-  std::vector<Cited> notes{};  ///< below the table: what its numbers are
+  std::vector<Cited> notes{};  ///< stand below the table and explain its numbers
 };
 
-/// A drawn picture.
 struct Picture {
-  std::string id;       ///< unique, as a table's
+  std::string id;       ///< unique; characters [a-z0-9-]
   std::string caption;  ///< with its stamp, if any
   std::string alt;      ///< what it shows, in words
   std::string svg;      ///< a whole SVG file; empty if it could not be drawn
@@ -57,7 +56,7 @@ struct Subheading {
   std::string title;
 };
 
-/// Warnings against misreadings.
+/// Warnings against misreading the report.
 struct Warnings {
   std::vector<std::string> sentences;
 };
@@ -67,7 +66,7 @@ struct Definitions {
   std::vector<std::pair<std::string, std::string>> entries;
 };
 
-/// One step of the participants' flow, with those who leave before the next.
+/// One step of the participants' flow, and the participants who leave before the next step.
 struct FlowStep {
   std::string text;
   std::vector<std::string> leaving{};
@@ -86,30 +85,30 @@ struct Section {
   std::vector<Block> blocks;
 };
 
-/// Tells whether a section has a part in a file of tables.
+/// Tells whether the files of tables include anything from a section.
 [[nodiscard]] bool has_tables_or_warnings(const Section& section);
 
 struct Document {
   std::string title;
-  std::string stamp;                 ///< "SIMULATED" or empty; stands on every table
+  std::string stamp;  ///< for example "SIMULATED"; may be empty; stands on every table
   std::vector<std::string> banners;  ///< what readers must know first
   Definitions header;                ///< study, program and evidence
   std::vector<Section> sections;
   std::string colophon;  ///< last line
 };
 
-/// Every cited source in the order of first citations: reference n is element n - 1.
+/// Every cited source, in the order of first citation. Reference number n is element n - 1.
 [[nodiscard]] std::vector<Source> references_of(const Document& document);
-/// Every source that one table cites, in the same order.
+/// Every source that one table cites, in the order of first citation.
 [[nodiscard]] std::vector<Source> references_of(const Table& table);
 
-/// " [1, 3]", or nothing without a source.
+/// The citations of a text, for example " [1, 3]"; empty without a source.
 [[nodiscard]] std::string citation_mark(const Cited& cited, const std::vector<Source>& references);
 
-/// The place of a source in a list of references, from 1; 0 if it is not there.
+/// The number of a source in a list of references, from 1; 0 if the list does not contain it.
 [[nodiscard]] std::size_t reference_number(Source source, const std::vector<Source>& references);
 
-/// A caption with every word of the document's stamp, each once.
+/// The caption, followed by the words of the document's stamp that it does not contain yet.
 [[nodiscard]] std::string stamped(const std::string& caption, const std::string& stamp);
 
 /// Every table of a document, in order.
@@ -118,18 +117,20 @@ struct Document {
 /// One HTML page without scripts and without references to other files.
 [[nodiscard]] std::string page_html(const Document& document);
 
-/// One table as GitHub's Markdown, with its notes and their references.
+/// One table in GitHub's Markdown, with its notes and references.
 [[nodiscard]] std::string table_markdown(const Table& table, const std::string& stamp);
-/// Every table of the document under its section's title, and the references at the end.
+/// Every table of the document under its section's title, in GitHub's Markdown, with the references
+/// at the end.
 [[nodiscard]] std::string tables_markdown(const Document& document);
 
-/// One table as LaTeX for \input: a float, or a longtable if it is long. The preamble needs
-/// booktabs, longtable, and for pdfLaTeX T1 fonts and UTF-8 input.
+/// One table as LaTeX for \input: a float, or a longtable if it has many rows. The preamble needs
+/// booktabs and longtable, and for pdfLaTeX also T1 fonts and UTF-8 input.
 [[nodiscard]] std::string table_latex(const Table& table, const std::string& stamp);
-/// Every table of the document in sections, and the references at the end; also for \input.
+/// Every table of the document in sections, as LaTeX for \input, with the references at the end.
 [[nodiscard]] std::string tables_latex(const Document& document);
 
-/// The document for a terminal of 100 columns: sentences, tables and warnings; no pictures.
+/// The document as text for a terminal of 100 columns: sentences, tables and warnings, without
+/// pictures.
 [[nodiscard]] std::string document_text(const Document& document);
 
 }  // namespace touchtrial::analysis

@@ -1,4 +1,4 @@
-// A document on a terminal.
+// The document as text for a terminal.
 #include "analysis/page/document.hpp"
 #include "analysis/text_table.hpp"
 

@@ -29,7 +29,8 @@ void add_leaving(int n, const std::string& why, FlowStep& step) {
   if (n > 0) step.leaving.push_back(fmt::format("{} {}", n, why));
 }
 
-/// "2 excluded: moved the device; fell asleep", each reason with how often it was given.
+/// Adds a line like "2 excluded: moved the device; fell asleep". A reason that was given several
+/// times is followed by its count.
 void add_excluded(const ParticipantFlow& flow, FlowStep& step) {
   if (flow.excluded == 0) return;
   std::map<std::string, int> reasons;
@@ -105,7 +106,7 @@ Definitions conditions_of(const Collection& collection) {
   return definitions;
 }
 
-/// Each deviation with the sessions that had it.
+/// Each deviation with the participants in whose sessions it occurred.
 std::optional<Table> deviations_table(const std::vector<SessionRecord>& sessions) {
   std::map<std::pair<std::string, std::string>, std::set<std::string>> found;
   for (const SessionRecord& one : sessions) {
@@ -150,7 +151,7 @@ std::string practice_of(const SessionRecord& one) {
                      one.practice->passed ? "" : ", not passed");
 }
 
-/// Sessions of whom there is anything to tell but that they were completed.
+/// Tells whether the table of sessions has more to say about a session than that it was completed.
 bool is_remarkable(const SessionRecord& one) {
   return one.row.withdrawn || one.row.excluded || one.row.state != store::SessionState::completed ||
          one.resumed > 0 || !one.row.replaced_by.empty() || one.practice.has_value();

@@ -11,14 +11,16 @@ namespace touchtrial::analysis {
 
 [[nodiscard]] Section warnings_section(const std::vector<std::string>& warnings);
 
-/// How participants came, and what of the protocol was not kept: tells nothing of outcomes.
+/// The flow of participants, the conditions, and deviations from the protocol. Contains nothing
+/// about outcomes.
 [[nodiscard]] Section participants_section(const Collection& collection);
-/// What was deposited beforehand.
+/// What was registered before the study.
 [[nodiscard]] Section registration_section(const design::Registration& registration);
-/// How the servo kept its time, over trials in real time. \return without blocks if there is none
+/// The timing of the servo over the trials that ran in real time.
+/// \return nothing if there is no such trial
 [[nodiscard]] std::optional<Table> servo_table(const Collection& collection);
 
-/// What the header says of study and evidence.
+/// The part of the header about the state of the study and the evidence for the report.
 [[nodiscard]] Definitions evidence_header(const Provenance& provenance);
 
 }  // namespace touchtrial::analysis

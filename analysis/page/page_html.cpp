@@ -23,7 +23,7 @@ constexpr const char* kHead = R"(<!doctype html>
 <meta http-equiv="Content-Security-Policy" content="default-src 'none'; style-src 'unsafe-inline'; img-src data:">
 )";
 
-/// The document with its references, and the numbers of tables and figures written so far.
+/// The document with its references, and the number of tables and of figures written so far.
 struct Writer {
   const Document& document;
   std::vector<Source> references;
@@ -140,7 +140,8 @@ std::string html_of(Writer& writer, const Picture& picture) {
         number, xml_escaped(picture.alt), svg);
   }
   if (svg.empty()) {
-    // The caption describes marks and bars that are not there.
+    // The caption would describe marks and bars that are missing, so the description stands
+    // instead.
     return html +
            fmt::format("<figcaption><b>Figure {}, not drawn.</b> {}</figcaption>\n</figure>\n",
                        number, xml_escaped(stamped(picture.alt, writer.document.stamp)));

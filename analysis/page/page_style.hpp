@@ -3,8 +3,8 @@
 
 namespace touchtrial::analysis {
 
-/// Colours have a contrast of at least 4.5 to their background, in both schemes. Figures keep a
-/// white background: they are drawn for paper.
+/// Colours have a contrast of at least 4.5 to their background, in the light and in the dark
+/// scheme. Figures keep a white background because they are drawn for paper.
 inline constexpr const char* kPageStyle = R"(
 :root {
   color-scheme: light dark;

@@ -19,8 +19,8 @@ namespace fs = std::filesystem;
 constexpr const char* kList = "report-files.txt";
 constexpr std::uintmax_t kLongestList = 1U << 20U;
 
-/// Tells whether a report could have written this name: nothing else may be removed, whatever a
-/// list says.
+/// Tells whether a report could have written a file of this name. No other file may be removed,
+/// even if a list names it.
 bool could_be_ours(const std::string& path) {
   if (!path.starts_with("tables/") && !path.starts_with("figures/")) return false;
   const std::string name = path.substr(path.find('/') + 1);
@@ -38,7 +38,7 @@ std::set<std::string> claimed_in(const fs::path& folder) {
   return paths;
 }
 
-/// The paths that may be removed.
+/// The listed paths that may be removed.
 std::set<std::string> removable(const std::set<std::string>& claimed) {
   std::set<std::string> paths;
   for (const std::string& path : claimed) {
@@ -61,7 +61,7 @@ std::string list_of(const ReportFiles& files) {
   return list;
 }
 
-/// Why gnuplot cannot be used; empty if it can.
+/// The reason why gnuplot cannot be used; empty if it can.
 std::string gnuplot_complaint() {
   try {
     require_gnuplot();
@@ -96,7 +96,8 @@ void write_report_folder(const fs::path& folder, const ReportFiles& files) {
   const std::set<std::string> claimed = claimed_in(folder);
   for (const auto& [path, content] : files) require_own(folder, claimed, path);
   const std::set<std::string> before = removable(claimed);
-  // The list is written first: after a crash the next report still knows its own files.
+  // The list is written first, so that after a crash the next report still recognises its own
+  // files.
   std::string list = list_of(files);
   for (const std::string& path : before) {
     if (!files.contains(path)) list += path + '\n';

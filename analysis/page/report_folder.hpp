@@ -1,5 +1,5 @@
-/// \file The folder that `report DB --out DIR` fills: page, tables, figures and results.
-/// Layout: docs/report.md.
+/// \file The folder that `report DB --out DIR` fills: page, tables, figures and results. Layout:
+/// docs/report.md.
 #pragma once
 
 #include "analysis/figures/figure.hpp"
@@ -12,38 +12,40 @@
 
 namespace touchtrial::analysis {
 
-/// Whole files by their path within the folder, with "/" between its parts.
+/// The contents of files by their path within the folder, with "/" as separator.
 using ReportFiles = std::map<std::string, std::string>;
 
-/// Page, tables and results, without figures.
-/// \param results  what `report --json` prints
+/// The page, the tables and the results, without the figures.
+/// \param results  the text that `report --json` prints
 [[nodiscard]] ReportFiles report_files(const Document& document, const std::string& results);
 
-/// The figures of a report as parts of its page and as files beside it.
+/// The figures of a report as pictures for its page and as files beside it.
 struct DrawnFigures {
   std::vector<Picture> pictures;
   ReportFiles files;    ///< "figures/<id>.svg" and ".pdf"
-  std::string missing;  ///< why nothing could be drawn, one line; empty if all is drawn
+  std::string missing;  ///< one line on why gnuplot could not draw; empty if it could
 };
 
-/// Without gnuplot the pictures have only their words, and there are no files.
-/// \throws Error if gnuplot is there and refuses a figure
+/// Draws the figures. Without gnuplot the pictures have only their captions and descriptions, and
+/// there are no files.
+/// \throws Error if gnuplot is installed and rejects a figure
 [[nodiscard]] DrawnFigures draw_report_figures(const std::vector<Figure>& figures);
 
-/// Checks a folder before long work. Does not make it.
+/// Checks a folder before long work. Does not create it.
 /// \throws FileError if the folder holds the report of another study, or a results.json that is not
-/// a
-///   report's
+/// a report's
 void refuse_other_study(const std::filesystem::path& folder, const std::string& study);
 
-/// Checks a folder before long work: a page or results that no report's list names belong to
-/// somebody else. \throws FileError if there is such a file
+/// Checks a folder before long work. A page or a results.json that no report's list names belongs
+/// to somebody else.
+/// \throws FileError if the folder has such a file
 void refuse_strangers(const std::filesystem::path& folder);
 
-/// Writes every file, each as a whole, and removes the files of an earlier report that this one
-/// does not have (their list is "report-files.txt"). Leaves everything else in the folder alone.
-/// \throws FileError if the folder has one of the files and the list does not name it (then nothing
-///   is written), or if a folder or file cannot be written
+/// Writes each file as a whole, and removes the files of an earlier report that this report does
+/// not have ("report-files.txt" lists them). Leaves everything else in the folder alone.
+/// \throws FileError if a folder or file cannot be written
+/// \throws FileError, before anything is written, if the folder has a file of the same name that
+/// the list does not name
 void write_report_folder(const std::filesystem::path& folder, const ReportFiles& files);
 
 }  // namespace touchtrial::analysis

@@ -1,4 +1,4 @@
-/// \file What a study's report says, in the order of a results section. Docs: docs/report.md.
+/// \file The document of a study's report, in the order of a results section. Docs: docs/report.md.
 #pragma once
 
 #include "analysis/page/document.hpp"
@@ -10,34 +10,35 @@
 
 namespace touchtrial::analysis {
 
-/// By what a reader can tell that a report is of this database.
+/// Shows a reader from which database a report was made.
 struct Provenance {
   std::string database;         ///< file name, without its folder
-  std::string program_version;  ///< that made the report
-  std::string seal;             ///< commitment before trial 1, hexadecimal
-  store::ChainHead head;        ///< of the file's chain
+  std::string program_version;  ///< version of the program that made the report
+  std::string seal;             ///< commitment made before trial 1, hexadecimal
+  store::ChainHead head;        ///< head of the file's chain
   store::StudyState state;
 };
 
 /// \param database  file name to show
 [[nodiscard]] Provenance provenance_of(const store::StudyStore& store, const std::string& database);
 
-/// What stands on every table and figure beside SIMULATED: PILOT, INTERIM LOOK, or nothing.
+/// The stamp that follows SIMULATED on every table and figure: PILOT, INTERIM LOOK, both, or empty.
 [[nodiscard]] std::string further_stamp(bool pilot, const Provenance& provenance);
 
-/// A picture for a report, whose id says to which section it belongs (docs/report.md).
+/// Pictures for a report. The id of a picture tells to which section it belongs (docs/report.md).
 using Pictures = std::vector<Picture>;
 
 /// The frame of every protocol's report: title, banners, header, and the sections on warnings,
-/// people and registration.
-/// \param headline  the result in a few sentences: stands first
-/// \param results  the protocol's other sections, in their order; those without blocks are left out
+/// participants and registration.
+/// \param headline  the result in a few sentences; stands first
+/// \param results  the protocol's other sections, in their order; sections without blocks are left
+/// out
 /// \param figures_missing  whether the header says that figures could not be drawn
 [[nodiscard]] Document framed_document(const StudyHead& head, Section headline,
                                        std::vector<Section> results, const Provenance& provenance,
                                        bool figures_missing = false);
 
-/// The report before unblinding: how collection goes, and nothing of outcomes.
+/// The report before unblinding: how data collection proceeds, and nothing about outcomes.
 [[nodiscard]] Document quality_document(const QualityReport& report, const Collection& collection,
                                         const Provenance& provenance);
 

@@ -54,7 +54,7 @@ std::string rows_latex(const Table& table) {
   return lines;
 }
 
-/// A table that stands alone has its references beneath it.
+/// Where references stand: a table in a file of its own has them beneath it.
 enum class References { elsewhere, beneath };
 
 std::string references_beneath(const std::vector<Source>& references) {
@@ -79,7 +79,7 @@ std::string notes_latex(const Table& table, const std::vector<Source>& reference
              : "\\begin{minipage}{\\linewidth}\\footnotesize\n" + text + "\\end{minipage}\n";
 }
 
-/// Smaller type for tables with many columns.
+/// The LaTeX commands for the type size: smaller for tables with many columns.
 std::string size_of(const Table& table) {
   if (table.columns.size() > 9) return "\\scriptsize\\setlength{\\tabcolsep}{2.5pt}";
   return table.columns.size() > 6 ? "\\footnotesize\\setlength{\\tabcolsep}{3.5pt}" : "\\small";
@@ -122,7 +122,7 @@ std::string references_latex(const std::vector<Source>& references) {
   return text + "\\end{enumerate}\n";
 }
 
-/// The references once more, for authors who delete the printed list in favour of their own.
+/// The references again as a comment, for authors who replace the printed list by their own.
 std::string references_as_comment(const std::vector<Source>& references) {
   std::string text;
   for (std::size_t i = 0; i < references.size(); ++i) {

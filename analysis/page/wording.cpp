@@ -9,7 +9,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// A number with a minus sign instead of a hyphen, and without a sign if it rounds to 0.
+/// The number with a minus sign instead of a hyphen, or without a sign if it rounds to 0.
 std::string typeset(const std::string& number) {
   if (number.empty() || number[0] != '-') return number;
   const bool rounds_to_zero = number.find_first_of("123456789") == std::string::npos;

@@ -49,7 +49,7 @@ void SessionCourse::follow(const store::Event& event) {
     case store::EventKind::closed:
       return close(event);
     default:
-      return;  // remarks, practice and traces stand anywhere
+      return;  // remarks, practice and traces may occur anywhere
   }
 }
 

@@ -1,4 +1,4 @@
-/// \file What a session presented, in which order, held against the study that it is of.
+/// \file Checks that a session's presentations and their order agree with its study.
 #pragma once
 
 #include "protocols/design/course.hpp"
@@ -9,19 +9,22 @@
 
 namespace touchtrial::analysis {
 
-/// Goes through a session's events as its runner did, which presents what is due and nothing else:
-/// catch trials and lead-ins in their places, what was interrupted as the study's policy has it,
-/// blocks that were restarted in the order that the study gives them.
+/// Follows a session's events in the same way as the runner, which presents exactly what is due:
+/// catch trials and lead-ins in their places, interrupted presentations as the study's policy
+/// requires, and restarted blocks in the order that the study gives them.
 class SessionCourse {
  public:
-  /// \param study  must outlive this \throws StudyError if the study has no order for it
+  /// \param study  must outlive this object
+  /// \param enrolment  the participant's enrolment number, from 1
+  /// \throws StudyError if the study has no order for this enrolment number
   SessionCourse(const design::Study& study, int enrolment);
 
-  /// Takes the session's next event.
-  /// \throws VerificationError, naming session and trial, if it is not what can follow
+  /// Checks the session's next event.
+  /// \throws VerificationError, naming the session and its event or trial, if the event cannot
+  ///   follow the earlier ones
   void follow(const store::Event& event);
 
-  /// The schedule with which the session began, and after it the blocks that came again.
+  /// The schedule with which the session began, followed by the restarted blocks.
   [[nodiscard]] const design::Schedule& schedule() const noexcept { return course_.schedule(); }
   [[nodiscard]] int presentations() const noexcept { return presentations_; }
 
@@ -38,7 +41,7 @@ class SessionCourse {
   const design::Study& study_;
   design::Course course_;
   bool is_under_way_ = false;  ///< the course's current presentation waits for its answer
-  bool is_spoilt_ = false;     ///< the program ended in it
+  bool is_spoilt_ = false;     ///< the program ended during the current presentation
   bool is_paused_ = false;
   bool is_stopped_ = false;
   int presentations_ = 0;

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file that was opened, or what to say in place of its check.
+/// An opened file, or the result to report instead of its check.
 template <typename File>
 struct Opened {
   std::optional<File> file;
@@ -20,7 +20,7 @@ struct Opened {
   std::string why;
 };
 
-/// Only what surely is not there: what cannot be looked at fails when it is opened.
+/// Whether a file certainly does not exist. A file whose status is unknown fails when it is opened.
 bool is_absent(const fs::path& path) {
   std::error_code error;
   return fs::status(path, error).type() == fs::file_type::not_found;
@@ -56,9 +56,10 @@ bool has_code_of(const design::StudyKey& key, const engine::Pack& pack) {
       });
 }
 
-/// The pack where the key says may since have been made anew for another study, or, with the same
-/// seed and hence the same identity, for an edited study that is simulated. Codes of other studies
-/// are drawn at random: a pack that has one of the key's is the study's, whatever it says.
+/// Whether the pack that the key names has since been rebuilt. It may now belong to another study,
+/// or to an edited simulated study, which has the same identity because it has the same seed. Codes
+/// of other studies are random, so a pack with one of the key's codes belongs to this study,
+/// whatever identity it states.
 bool was_made_anew(const store::StudyStore& store, const design::StudyKey& key,
                    const engine::Pack& pack) {
   const store::StudyCommitment& commitment = store.commitment();
@@ -81,7 +82,7 @@ Opened<engine::Pack> find_pack(const store::StudyStore& store, const design::Stu
       return leave(folder + " was made anew for another study, or for this one after a change");
     }
   } catch (const StoreError&) {
-    // A first event that cannot be read is the business of the chain's check.
+    // The check of the chain reports a first event that cannot be read.
   }
   return pack;
 }

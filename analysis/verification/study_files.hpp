@@ -1,4 +1,4 @@
-/// \file A study as it lies on disk, verified: files that are damaged are findings, not errors.
+/// \file Verification of a study's files on disk. A damaged file is a finding, not an error.
 #pragma once
 
 #include "analysis/verification/verification.hpp"
@@ -9,20 +9,25 @@
 
 namespace touchtrial::analysis {
 
-/// Where a study's files are.
+/// The paths of a study's files.
 struct StudyFiles {
   std::filesystem::path database;
   std::filesystem::path key;
-  bool key_named = false;      ///< then it must be there; else it is the one beside the database
-  std::filesystem::path pack;  ///< empty: where the key says, if it is there and of this study
+  /// Whether the user named the key, which must then exist. Otherwise `key` is the path beside the
+  /// database, where the key may be missing.
+  bool key_named = false;
+  /// Empty: the pack that the key names, if it exists and belongs to this study.
+  std::filesystem::path pack;
 };
 
-/// How the database is opened; it may throw what StudyStore::open throws.
+/// Opens the database; may throw what StudyStore::open throws.
 using StudyOpener = std::function<store::StudyStore(const std::filesystem::path&)>;
 
-/// As verify_study. A damaged database, key or pack is a failed check.
-/// \param open  for reading; empty: as StudyStore does
-/// \throws StoreError if the database is missing, none of Touchtrial, or of a newer schema
+/// Opens a study's files and verifies them with verify_study. A damaged database, key or pack is a
+/// failed check.
+/// \param head  as for verify_study
+/// \param open  opens the database for reading; empty: StudyStore::open
+/// \throws StoreError if the database is missing, is not one of Touchtrial, or has a newer schema
 [[nodiscard]] Verification verify_files(const StudyFiles& files, const std::optional<Digest>& head,
                                         const StudyOpener& open = {});
 

@@ -17,7 +17,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-// Every check below returns what it held against what, and throws an Error where that fails.
+// Every check below returns a description of what it checked, and throws an Error if that fails.
 
 std::string check_chain(const store::StudyStore& store) {
   if (const auto fault = store.first_fault()) throw VerificationError(shown(*fault));
@@ -59,13 +59,14 @@ std::string check_configuration(const store::StudyStore& store, const design::St
   require(key.study.scored_trials() == commitment.scored_trials, "the number of scored trials");
   require(static_cast<int>(key.study.protocol->choices(key.study).size()) == commitment.positions,
           "the number of pictures");
-  // A prepared study may be rehearsed with simulated participants, in a database of its own; a
-  // simulated study is nothing for people.
+  // A prepared study may be rehearsed with simulated participants in a separate database. A
+  // simulated study must not be run with people.
   require(!key.simulated || commitment.simulated, "whether the study is simulated");
   return "what the database holds in clear is the key's study";
 }
 
-/// A session's events as the study and its enrolment number alone have them follow.
+/// Checks a session's events against the course that follows from the study and the session's
+/// enrolment number alone.
 SessionCourse course_of(const store::StudyStore& store, const design::Study& study,
                         const store::SessionRow& session) {
   try {
@@ -175,7 +176,7 @@ std::string check_pack(const store::StudyStore& store, const design::StudyKey* k
                      pack.manifest().entries.size());
 }
 
-/// Where a hash stands on a chain, in words; empty: nowhere.
+/// The place of a hash on a chain, in words; empty if the chain does not contain it.
 std::string place_on(const std::vector<store::Event>& chain, const Digest& head,
                      const std::string& name) {
   const auto found = std::find_if(chain.begin(), chain.end(),
@@ -184,7 +185,8 @@ std::string place_on(const std::vector<store::Event>& chain, const Digest& head,
   return fmt::format("event {} of {}, which has {}", found->sequence, name, chain.size());
 }
 
-/// In what was collected, heads of the stations' own files count as well.
+/// Accepts a hash on the file's chain, and in a database collected from several stations also one
+/// on the chain of a station's own file.
 std::string check_head(const store::StudyStore& store, const Digest& head) {
   std::string place = place_on(store.events(0), head, "the file's chain");
   for (int station = 1; place.empty() && station <= store.stations(); ++station) {
@@ -243,7 +245,7 @@ Verification verify_study(const store::StudyStore& store, const design::StudyKey
     verification.head = store.file_head();
     verification.simulated = store.commitment().simulated;
   } catch (const StoreError&) {
-    // The first check says what is wrong with the file's chain.
+    // The first check reports what is wrong with the file's chain.
   }
   const auto with_key = [&](const char* name, std::string (*check)(const store::StudyStore&,
                                                                    const design::StudyKey&)) {

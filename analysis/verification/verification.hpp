@@ -1,4 +1,4 @@
-/// \file Chain, seal, schedule, payloads and pack of a study, held against each other.
+/// \file Checks that a study's chain, seal, schedule, payloads and pack are consistent.
 #pragma once
 
 #include "engine/pack/pack.hpp"
@@ -18,27 +18,28 @@ enum class CheckState { passed, failed, not_checked };
 struct Check {
   std::string name;  ///< "chain", "key", "seal", "configuration", ...
   CheckState state = CheckState::not_checked;
-  std::string detail;  ///< one line: what was held against what, or what does not hold and where
+  std::string detail;  ///< one line: what was checked, or what is wrong and where
 };
 
 struct Verification {
   bool simulated = false;
   std::vector<Check> checks;
-  /// Where the file's chain ends; whoever keeps it elsewhere can show that nothing was cut off.
+  /// The end of the file's chain. A copy kept elsewhere can show that nothing was cut off.
   std::optional<store::ChainHead> head;
 
-  /// Whether nothing failed; what could not be checked does not fail.
+  /// Whether no check failed. A check that was not made does not count as failed.
   [[nodiscard]] bool holds() const noexcept;
   /// Whether every check was made.
   [[nodiscard]] bool complete() const noexcept;
 };
 
-/// Never throws for evidence that does not hold: that is a failed check, which names the first
-/// place. In order: chain; key; seal, configuration, schedule (these with the key); responses;
-/// payloads, traces (with the key); pack (better with the key); head, if one is given. Tells
-/// nothing of outcomes: it may be used on a running study. \param key,pack  null: the checks that
-/// need it are not made \param head  a hash that was once the end of the file's chain, which must
-/// still be on it
+/// Verifies a study. Inconsistent evidence never throws: it is a failed check, which names the
+/// first place. The checks are, in order: chain; key; seal, configuration and schedule (these need
+/// the key); responses; payloads and traces (these need the key); pack (more thorough with the
+/// key); head, if one is given. The result reveals nothing about outcomes, so a running study may
+/// be verified.
+/// \param key,pack  null: the checks that need it are not made
+/// \param head  a hash that was once the end of the file's chain and must still be on the chain
 [[nodiscard]] Verification verify_study(const store::StudyStore& store, const design::StudyKey* key,
                                         const engine::Pack* pack,
                                         const std::optional<Digest>& head = {});
@@ -46,7 +47,7 @@ struct Verification {
 /// One JSON object, indented, ending with a line feed.
 [[nodiscard]] std::string verification_json(const Verification& verification);
 
-/// One line a check, ending with a line feed.
+/// One line for each check, ending with a line feed.
 [[nodiscard]] std::string verification_text(const Verification& verification);
 
 }  // namespace touchtrial::analysis

@@ -12,7 +12,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// Which checks were not made, lest their absence be taken for success.
+/// Lists the checks that were not made, so that their absence is not taken for success.
 std::string unmade_line(const Verification& verification) {
   std::vector<std::string> names;
   for (const Check& check : verification.checks) {

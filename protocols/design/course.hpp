@@ -1,5 +1,6 @@
-/// \file A session's way through its schedule: what is due next, given what became of what was
-/// presented. The runner and `verify` take the same course over the same events.
+/// \file A session's course through its schedule, which decides what is presented next, given how
+/// the earlier presentations ended. The runner and `verify` follow the same course over the same
+/// events.
 #pragma once
 
 #include "protocols/design/schedule.hpp"
@@ -14,8 +15,8 @@
 
 namespace touchtrial::design {
 
-/// A block that comes again in a fresh order, under new trial numbers: nothing in clear then links
-/// two presentations of one stimulus.
+/// A block that is presented again in a fresh order and under new trial numbers, so that nothing in
+/// clear links two presentations of one stimulus.
 struct BlockRestart {
   int block = 0;
   std::vector<Presentation> presentations;
@@ -26,48 +27,50 @@ struct BlockRestart {
 /// A queue of presentations. Not thread-safe.
 class Course {
  public:
-  /// Draws a block's presentations anew, as restarted_block does for a study and an enrolment.
+  /// Draws a block's presentations again, as restarted_block does for a study and an enrolment.
   using DrawBlock =
       std::function<std::vector<Presentation>(int block, int restarts_before, int first_trial)>;
 
   /// \param policy  what follows a presentation that was spoilt
   /// \param draw  needed only if the policy restarts blocks
-  /// \throws std::invalid_argument if it is needed and missing
+  /// \throws std::invalid_argument if `draw` is needed and missing
   Course(Schedule schedule, OnInterruption policy, DrawBlock draw = {});
 
-  /// The schedule with which the session began, followed by the blocks that were restarted.
+  /// The schedule with which the session began, followed by the restarted blocks.
   [[nodiscard]] const Schedule& schedule() const noexcept { return schedule_; }
-  /// The presentation that is under way or due next; null when all are done.
+  /// The presentation that is under way or is next; null when all are done.
   [[nodiscard]] const Presentation* current() const noexcept;
-  /// Presentations still to be done, the current one included.
+  /// The number of remaining presentations, including the current one.
   [[nodiscard]] int left() const noexcept { return static_cast<int>(queue_.size()); }
   [[nodiscard]] bool is_over() const noexcept { return queue_.empty(); }
 
-  /// The current presentation is done. \pre there is one
+  /// Marks the current presentation as done.
+  /// \pre there is a current presentation
   void finish();
-  /// The current presentation was spoilt: it comes again at the end, is left out, or waits for its
-  /// block's restart, as the policy says. \pre there is one
+  /// Marks the current presentation as spoilt. Depending on the policy, it is repeated at the end,
+  /// is left out, or waits for its block's restart.
+  /// \pre there is a current presentation
   void spoil();
 
   /// The block that must be restarted before anything else is presented.
   [[nodiscard]] std::optional<int> block_to_restart() const noexcept { return to_restart_; }
-  /// Draws the next restart of a block; changes nothing. The new trials are numbered after all
-  /// others.
+  /// Draws the next restart of a block without changing the course. The new trials get the numbers
+  /// after all existing ones.
   [[nodiscard]] BlockRestart drawn_again(int block) const;
-  /// Puts the restarted block in place of what was left of it, before everything else.
+  /// Replaces the rest of the block by the restarted block, which comes before everything else.
   void restart(const BlockRestart& again);
-  /// Whether a trial's number was given up when its block was restarted.
+  /// Whether a trial's number became invalid when its block was restarted.
   [[nodiscard]] bool was_given_up(int trial) const;
-  /// \return whether the schedule has a trial of this number
+  /// Whether the schedule has a trial of this number.
   [[nodiscard]] bool has(int trial) const;
 
  private:
   Schedule schedule_;
   OnInterruption policy_;
   DrawBlock draw_;
-  std::deque<std::size_t> queue_;    ///< indices into the schedule, the current one first
-  std::map<int, int> restarts_;      ///< of each block
-  std::map<int, int> first_trials_;  ///< of each block's last restart
+  std::deque<std::size_t> queue_;    ///< indices into the schedule, current one first
+  std::map<int, int> restarts_;      ///< number of restarts, by block
+  std::map<int, int> first_trials_;  ///< first trial of the last restart, by block
   std::optional<int> to_restart_;
 };
 

@@ -33,9 +33,10 @@ void require_station_name(const std::string& name) {
                    " is no name of a station; use 1 to 32 of 0-9, A-Z, a-z, '+', '-', '_'");
 }
 
-/// How many more numbers each station gets: always one to the smallest, the first of several.
+/// How many more numbers each station gets. Each number goes to the station with the fewest, and
+/// among equals to the first.
 std::vector<int> numbers_to_hand_out(const EnrolmentPlan& plan, int number) {
-  using Standing = std::pair<int, std::size_t>;  // numbers so far, place
+  using Standing = std::pair<int, std::size_t>;  // numbers so far, index of the station
   std::priority_queue<Standing, std::vector<Standing>, std::greater<>> smallest;
   for (std::size_t i = 0; i < plan.stations.size(); ++i) {
     smallest.emplace(plan.stations[i].size(), i);
@@ -58,18 +59,19 @@ void add_number(StationShare& share, int number) {
   }
 }
 
-/// What a station still gets, and how often each order of methods has come there.
+/// How many numbers a station still gets, and how often each order of methods has occurred there.
 struct Recipient {
   int wanted = 0;
   std::vector<int> orders;
 
-  /// How much oftener this order has come than the one that came least.
+  /// How many more times this order has occurred than the rarest order.
   [[nodiscard]] int excess(std::size_t order) const {
     return orders[order] - *std::ranges::min_element(orders);
   }
 };
 
-/// The one whose orders a number makes evenest: `current` if none is better.
+/// The recipient for a number with this order of methods: the one where the order has the smallest
+/// excess, or `current` if no other is better.
 std::size_t best_recipient(const std::vector<Recipient>& recipients, std::size_t order,
                            std::size_t current) {
   std::size_t best = recipients.size();
@@ -105,7 +107,7 @@ StationShare read_share(const JsonValue& value) {
   return share;
 }
 
-/// Every number up to the last belongs to one station.
+/// Requires that every number up to the last belongs to exactly one station.
 void require_partition(const JsonValue& stations, const EnrolmentPlan& plan) {
   std::vector<EnrolmentRange> all;
   for (const StationShare& share : plan.stations) {

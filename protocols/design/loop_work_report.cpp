@@ -20,11 +20,11 @@ constexpr int kLoopsOfStimulus = 50;
 constexpr double kLargestMm = 10.0;
 constexpr double kSmallestMm = 1.0;
 
-/// The loops that every model and stimulus gets.
+/// A loop that is followed on every model and stimulus.
 struct Loop {
   double size_mm = 0.0;
   double direction = 0.0;
-  Vec2 place;  ///< share of the room that the loop leaves on the plane
+  Vec2 place;  ///< position, as a share of the room around the loop on the plane
 };
 
 std::vector<Loop> random_loops() {
@@ -38,7 +38,7 @@ std::vector<Loop> random_loops() {
   return loops;
 }
 
-/// A loop's middle and half its size on a plane; loops shrink to fit small planes.
+/// The centre of a loop and half its size on a plane. Loops shrink to fit small planes.
 struct Placed {
   Vec2 middle_mm;
   double radius_mm = 0.0;
@@ -54,7 +54,7 @@ Placed placed(const Loop& loop, const PlaneGeometry& plane) {
           0.5 * size_mm};
 }
 
-/// Magnitudes of the work round all loops so far.
+/// Magnitudes of the work along all loops so far, mJ.
 struct Works {
   std::vector<double> planar;
   std::vector<double> press_slide_lift;
@@ -94,7 +94,7 @@ std::vector<Plane<double>> textures_of(const Study& study) {
   return textures;
 }
 
-/// A height that no stimulus reaches, for the way back.
+/// A height above the whole stimulus, for the way back through the air.
 double air_mm(engine::FieldView field, const engine::RenderingOptions& options,
               engine::Gains gains) {
   const double paper_mm =

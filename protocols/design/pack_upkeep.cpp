@@ -22,7 +22,7 @@ bool is_number(std::string_view text) {
   return !text.empty() && std::ranges::all_of(text, [](char c) { return c >= '0' && c <= '9'; });
 }
 
-/// The code of a field's file name, or nothing if it is not one.
+/// \return the code in the file name of a field, or nothing for any other file name
 std::optional<std::string> code_of_file(std::string_view name) {
   if (!name.ends_with(kFieldEnding)) return std::nullopt;
   name.remove_suffix(kFieldEnding.size());
@@ -30,7 +30,7 @@ std::optional<std::string> code_of_file(std::string_view name) {
   return std::string(name);
 }
 
-/// Whether `name` is what a file of the pack is called while it is being written.
+/// Whether `name` is the name of a pack's file while it is being written.
 bool is_draft(std::string_view name) {
   const std::size_t mark = name.rfind(kDraftMark);
   if (mark == std::string_view::npos || !is_number(name.substr(mark + kDraftMark.size()))) {
@@ -81,7 +81,7 @@ const engine::PackEntry* EarlierPack::reusable(const std::string& code, const Di
   try {
     return pack->is_intact(code) ? entry : nullptr;
   } catch (const FileError&) {
-    return nullptr;  // missing or unreadable: it is written anew
+    return nullptr;  // missing or unreadable, so it is written again
   }
 }
 
@@ -119,7 +119,7 @@ void remove_leftovers(const std::filesystem::path& folder, const engine::PackMan
     if (stale || is_draft(name)) leftovers.push_back(file.path());
   }
   for (const auto& path : leftovers) {
-    std::error_code ignored;  // a leftover that stays harms nothing
+    std::error_code ignored;  // a leftover that stays does no harm
     std::filesystem::remove(path, ignored);
   }
 }

@@ -1,5 +1,5 @@
-/// \file Care of a pack's folder: one writer at a time, what an earlier pack offers to the next
-/// `prepare`, and what is left over. Private to protocols/design.
+/// \file Upkeep of a pack's folder: the lock for one writer at a time, reuse of an earlier pack's
+/// fields, and removal of leftovers. Private to protocols/design.
 #pragma once
 
 #include "engine/pack/pack.hpp"
@@ -13,11 +13,11 @@
 
 namespace touchtrial::design {
 
-/// Holds `prepare.lock` in the pack's folder; the system lets go of it however the process ends.
+/// Holds `prepare.lock` in the pack's folder. The system releases it however the process ends.
 class PackLock {
  public:
-  /// \param wait  as long as another process or thread prepares this pack
-  /// \throws FileError if one does and `wait` is not set, or the file cannot be made
+  /// \param wait  whether to wait while another process or thread prepares this pack
+  /// \throws FileError if another one prepares it and `wait` is false, or the file cannot be made
   explicit PackLock(const std::filesystem::path& folder, bool wait = false);
   ~PackLock();
   PackLock(const PackLock&) = delete;
@@ -27,31 +27,32 @@ class PackLock {
   int descriptor_;
 };
 
-/// The identity that a pack has while it is being built: nothing is presented from such a pack,
-/// because it is not the study's, and the next `prepare` knows it as its own.
+/// The identity of a pack while it is being built. Because it differs from the study's identity,
+/// nothing is presented from such a pack; the next `prepare` recognises it and completes the pack.
 [[nodiscard]] std::string unfinished_id(const StudyKey& key);
 
-/// What lay in the folder before.
+/// What the folder contained before this run.
 struct EarlierPack {
   std::optional<engine::Pack> pack;  ///< of this study, finished or not
-  std::string damage;  ///< why a table of contents could not be used; empty if all is well
+  std::string damage;  ///< why the table of contents was unusable; empty if it was usable
 
-  /// The entry whose field is whole and made from this input.
+  /// \return the entry of an intact field made from this input; null if there is none
   [[nodiscard]] const engine::PackEntry* reusable(const std::string& code, const Digest& tag) const;
-  /// Of a field that is not reusable, for people who ask what was built.
+  /// Why a field is not reusable, for an explanation of what was built.
   [[nodiscard]] std::string_view why_not_reusable(const std::string& code, const Digest& tag) const;
 
  private:
-  /// The entry of a field made from this input, whole or not.
+  /// \return the entry of a field made from this input, intact or not; null if there is none
   [[nodiscard]] const engine::PackEntry* recorded(const std::string& code, const Digest& tag) const;
 };
 
-/// \throws FileError if the folder holds another study's pack. A simulated study replaces it:
-///   simulated packs can be made again from the study file.
+/// Opens the pack that is already in the folder. A simulated study ignores and replaces another
+/// study's pack, because simulated packs can be made again from the study file.
+/// \throws FileError if the study is not simulated and the folder holds another study's pack
 [[nodiscard]] EarlierPack earlier_pack(const std::filesystem::path& folder, const StudyKey& key);
 
-/// Removes fields that the manifest does not name, and drafts of writers that were interrupted.
-/// Other files stay. Only while the pack is locked.
+/// Removes fields that the manifest does not name, and drafts that interrupted writers left.
+/// Keeps all other files. Call only while the pack is locked.
 void remove_leftovers(const std::filesystem::path& folder, const engine::PackManifest& manifest);
 
 }  // namespace touchtrial::design

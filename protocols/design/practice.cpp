@@ -71,7 +71,7 @@ engine::Gains weaker(const engine::Gains& one, const engine::Gains& other) {
           .height_mm = std::min(one.height_mm, other.height_mm)};
 }
 
-/// One for each field.
+/// The gains of each field.
 std::vector<engine::Gains> practice_gains(const std::vector<engine::TextureField>& fields,
                                           const engine::Gains& of_pack,
                                           const engine::RenderingOptions& rendering) {

@@ -32,7 +32,7 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// An image of the study; its stimuli, one a method, stand together in the key.
+/// An image of the study. Its stimuli, one for each method, are adjacent in the key.
 struct ImageOfStudy {
   int class_index = 0;
   int exemplar = 0;
@@ -61,8 +61,8 @@ std::vector<ImageOfStudy> images_of(const Study& study) {
                    std::to_string(image.exemplar) + ": " + what);
 }
 
-/// One run of prepare_pack. Stimuli are worked on in parallel; everything lands in the place of its
-/// stimulus, so results do not depend on who was first.
+/// One run of prepare_pack. Stimuli are processed in parallel. Each result is stored at the index
+/// of its stimulus, so results do not depend on the order in which threads finish.
 class Preparation {
  public:
   Preparation(const StudyKey& key, std::filesystem::path folder, const Progress& progress,
@@ -115,7 +115,8 @@ class Preparation {
     }
   }
 
-  /// The order of work: the times of the files then tell nothing of the order of classes.
+  /// The images sorted by code, which is the order of work. The times of the files therefore reveal
+  /// nothing about the order of classes.
   [[nodiscard]] std::vector<ImageOfStudy*> images_by_code() {
     std::vector<ImageOfStudy*> order;
     for (ImageOfStudy& image : images_) order.push_back(&image);
@@ -125,7 +126,7 @@ class Preparation {
     return order;
   }
 
-  /// \param large_too  false leaves a large image for later
+  /// \param large_too  whether to process a large image now; false leaves it for later
   void provide_fields_of(ImageOfStudy& image, bool large_too) {
     engine::StageTimer timer(log_of(image.first_stimulus));
     const GreyImage grey = read(image);
@@ -147,7 +148,7 @@ class Preparation {
     return options_.explain ? &logs_[stimulus] : nullptr;
   }
 
-  /// Whether a later stimulus of the same image is made of the same texture.
+  /// Whether a later stimulus of the same image uses the same texture.
   [[nodiscard]] bool is_needed_again(std::size_t i) const {
     const StimulusIndex& stimulus = key_.stimuli[i].stimulus;
     const auto& methods = key_.study.methods;
@@ -206,15 +207,15 @@ class Preparation {
                   size_of_field(key_.stimuli[i].code)});
   }
 
-  /// Before the first field is replaced, the pack stops being one that can be presented.
+  /// Marks the pack as unfinished before the first field is replaced, so that it cannot be
+  /// presented.
   void announce_building() {
     const std::lock_guard lock(mutex_);
     if (!building_) write_unfinished();
     building_ = true;
   }
 
-  /// Finished fields are put on record once a second, so that an interrupted run is not for
-  /// nothing.
+  /// Records finished fields once a second, so that an interrupted run keeps its work.
   void note_done(const engine::PackEntry& entry) {
     const std::lock_guard lock(mutex_);
     on_disk_[entry.code] = entry;
@@ -340,11 +341,11 @@ class Preparation {
   std::vector<engine::PackEntry> entries_;
   std::vector<std::string> solver_warnings_;
   std::vector<std::uint8_t> flat_;
-  std::vector<engine::StageLog> logs_;  ///< of the stimuli, if an explanation is wanted
+  std::vector<engine::StageLog> logs_;  ///< one per stimulus; empty if no explanation is requested
   engine::StageLog study_log_;
   PrepareReport report_;
 
-  std::mutex mutex_;  ///< of what follows
+  std::mutex mutex_;  ///< guards the members below
   std::map<std::string, engine::PackEntry> on_disk_;
   bool building_ = false;
   Clock::time_point recorded_;
@@ -362,7 +363,7 @@ PackPlace simulated_pack_place(const std::filesystem::path& study_file) {
 }
 
 PackPlace pack_place_at(const std::filesystem::path& pack_folder) {
-  // "name.pack/" ends in an empty file name; the folder is what comes before.
+  // "name.pack/" ends in an empty file name, so the folder is its parent path.
   const auto pack = pack_folder.has_filename() ? pack_folder : pack_folder.parent_path();
   std::filesystem::path key = pack;
   if (key.extension() == ".pack") key.replace_extension();
@@ -372,7 +373,8 @@ PackPlace pack_place_at(const std::filesystem::path& pack_folder) {
 
 namespace {
 
-/// They are not in the pack, but a session should not be the first to miss one.
+/// Practice images are not in the pack, but a missing one should be found before a session needs
+/// it.
 void check_practice_images_exist(const Study& study) {
   if (study.trials.practice == 0) return;
   for (std::size_t i = 0; i < study.practice.classes.size(); ++i) {

@@ -1,4 +1,4 @@
-/// \file Makes the pack of a study: only what is missing or changed.
+/// \file Builds the pack of a study. Only fields that are missing or out of date are built.
 #pragma once
 
 #include "engine/pack/pack.hpp"
@@ -14,7 +14,7 @@
 
 namespace touchtrial::design {
 
-/// Where a study's pack and key lie.
+/// The paths of a study's pack and key.
 struct PackPlace {
   std::filesystem::path pack;
   std::filesystem::path key;
@@ -22,64 +22,66 @@ struct PackPlace {
 
 /// `<study>.pack` and `<study>.key` beside the study file.
 [[nodiscard]] PackPlace default_pack_place(const std::filesystem::path& study_file);
-/// `<study>.sim.pack` beside the study file; the key is empty, because each simulated database has
-/// its own copy of it.
+/// `<study>.sim.pack` beside the study file; the key's path is empty, because each simulated
+/// database has its own copy of the key.
 [[nodiscard]] PackPlace simulated_pack_place(const std::filesystem::path& study_file);
-/// DIR, and DIR with `.key` for `.pack`.
+/// The given folder as the pack, and the same path with `.key` in place of `.pack` as the key.
 [[nodiscard]] PackPlace pack_place_at(const std::filesystem::path& pack_folder);
 
-/// What became of one stimulus. For people who prepare, never for a running study.
+/// How one stimulus was prepared. Shown to those who prepare a study, never during the study.
 struct PreparedStimulus {
   std::string class_label;
   int exemplar = 0;
-  std::string method;  ///< its label
+  std::string method;  ///< label of the method
   bool reused = false;
-  engine::FieldStatistics statistics;  ///< zeros if they were not asked for
+  engine::FieldStatistics statistics;  ///< zeros if not requested
   engine::Gains gains;
   double seconds = 0.0;
   std::uintmax_t bytes = 0;
-  std::vector<engine::Stage> stages;  ///< if an explanation was asked for
+  std::vector<engine::Stage> stages;  ///< empty unless an explanation was requested
 };
 
-/// Work that was not done, and why.
+/// Work that was skipped, and the reason.
 struct SkippedWork {
   std::string what;
   std::string why;
-  std::uintmax_t bytes = 0;  ///< that were not written for it
+  std::uintmax_t bytes = 0;  ///< bytes that were not written
 };
 
 struct PrepareReport {
   std::vector<PreparedStimulus> stimuli;
   std::vector<SkippedWork> skipped;
   std::vector<std::string> warnings;
-  std::vector<engine::Stage>
-      study_stages;  ///< of all stimuli together, if an explanation was asked for
+  /// Stages that cover all stimuli together; empty unless an explanation was requested.
+  std::vector<engine::Stage> study_stages;
 };
 
 inline constexpr std::int64_t kLargeImagePixels = std::int64_t{1} << 22;
 
-/// What is wanted besides the pack.
+/// What prepare_pack does besides building the pack.
 struct PrepareOptions {
-  bool statistics = true;  ///< PreparedStimulus::statistics: two Fourier transforms a stimulus
-  bool explain = false;    ///< the stages, with their times and bytes
-  bool wait = false;       ///< while another process prepares the pack, in place of an error
-  std::int64_t large_image_px = kLargeImagePixels;  ///< from one more pixel on, one at a time
+  bool statistics = true;  ///< fill in PreparedStimulus::statistics; two Fourier transforms each
+  bool explain = false;    ///< report the stages with their times and bytes
+  bool wait = false;       ///< wait while another process prepares the pack, instead of throwing
+  std::int64_t large_image_px = kLargeImagePixels;  ///< larger images are processed one at a time
 };
 
-/// Whether every image that the study presents is there; to be asked before anything is written.
-/// \throws StudyError with the place of the first that is not
+/// Checks that every image of the study exists, and every practice image if there is practice. Call
+/// before anything is written.
+/// \throws StudyError with the place in the study file of the first missing image
 void check_images_exist(const Study& study);
 
-/// Called after each stimulus, from any thread but never twice at a time.
+/// Called after each stimulus, from any thread, but never by two threads at the same time.
 using Progress = std::function<void(int done, int of)>;
 
 /// Extracts, renders and writes every presented stimulus whose field is missing, damaged or made
-/// from other input; chooses gains; writes the table of contents; removes fields that no stimulus
-/// has any more. A run that is interrupted leaves a pack from which nothing is presented and which
-/// the next run completes; a run that has nothing to do leaves the pack's files untouched.
-/// The pack's bytes depend on key, study and images alone, not on the number of threads.
-/// Images of more than kLargeImagePixels are worked on one after another: what a large one needs
-/// (docs/benchmarks/memory.md) is needed once, whatever the number of threads.
+/// from different input. Then chooses the gains, writes the table of contents, and removes fields
+/// that no stimulus uses any more. An interrupted run leaves a pack that cannot be presented and
+/// that the next run completes. A run with nothing to do leaves the pack's files untouched.
+/// The pack's bytes depend only on key, study and images, not on the number of threads.
+/// Images of more than PrepareOptions::large_image_px pixels are processed one after another, so
+/// that the memory for a large image (docs/benchmarks/memory.md) is needed only once, whatever the
+/// number of threads.
 /// \throws StudyError if an image cannot be read, with its place in the study
 /// \throws FileError if the pack cannot be written, is being prepared by another process, or
 ///   belongs to another key

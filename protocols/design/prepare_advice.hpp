@@ -1,4 +1,5 @@
-/// \file What `prepare` tells people about a study. Private to protocols/design.
+/// \file Descriptions and warnings that `prepare` prints about a study. Private to
+/// protocols/design.
 #pragma once
 
 #include "engine/rendering/gains.hpp"
@@ -14,19 +15,20 @@ namespace touchtrial::design {
 /// A stimulus in words: class, image and method.
 [[nodiscard]] std::string described(const Study& study, const StimulusIndex& stimulus);
 
-/// Methods of the study file that the protocol does not present. \param pixels  of all its images
+/// Methods of the study file that the protocol does not present.
+/// \param pixels  number of pixels of all the study's images together
 [[nodiscard]] std::vector<SkippedWork> skipped_work(const Study& study, std::uintmax_t pixels);
 
-/// Options that are allowed and probably not meant.
+/// Warnings about options that are allowed but probably unintended.
 [[nodiscard]] std::vector<std::string> rendering_warnings(const engine::RenderingOptions& rendering,
                                                           const engine::StudyGains& gains);
 
-/// \return a warning if the solver gave up on the stimulus, else nothing
+/// \return a warning if the solver stopped before it converged on the stimulus, else empty
 [[nodiscard]] std::string solver_warning(const Study& study, const StimulusIndex& stimulus,
                                          const BuiltField& built);
 
-/// Images that no participant could tell apart. \param pixels  a digest of each image, in the
-/// study's order of classes and images
+/// Warnings about images with identical pixels, which no participant could tell apart.
+/// \param pixels  a digest of each image, in the study's order of classes and images
 [[nodiscard]] std::vector<std::string> twin_warnings(const Study& study,
                                                      std::span<const Digest> pixels);
 

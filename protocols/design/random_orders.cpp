@@ -18,8 +18,8 @@ namespace {
 
 using BigCount = boost::multiprecision::cpp_int;
 
-/// Draws a number in [0, bound), each equally likely: by rejection, with fewer than two tries on
-/// average. \pre bound >= 1
+/// Draws a uniform whole number in [0, bound) by rejection, with fewer than two tries on average.
+/// \pre bound >= 1
 BigCount draw_below(const BigCount& bound, RandomStream& random) {
   constexpr unsigned kWord = 64;
   if (bound == 1) return 0;
@@ -35,9 +35,11 @@ BigCount draw_below(const BigCount& bound, RandomStream& random) {
   }
 }
 
-using State = std::u16string;  ///< how many symbols have 0, 1, .. copies left; then the last one's
+/// How many symbols have 0, 1, .. copies left, then 1 + the copies left of the last symbol.
+using State = std::u16string;
 
-/// Sequences as runs: a symbol and how many of it, no two neighbours of one symbol.
+/// Counts sequences of runs. A run is a symbol and its number of repetitions; adjacent runs have
+/// different symbols.
 class RunCounter {
  public:
   RunCounter(const std::vector<int>& counts, int max_run)
@@ -57,16 +59,18 @@ class RunCounter {
     left -= copies;
   }
 
-  /// Completions after a run of `last` (negative: nothing came before): the next symbol is another.
+  /// The number of completions after a run of `last` (negative: nothing came before). The next
+  /// symbol differs from `last`.
   [[nodiscard]] BigCount completions(int last) { return count(last < 0 ? -1 : left(last)); }
 
  private:
-  /// A symbol that had `from` copies left has `to`.
+  /// Records that a symbol with `from` copies left now has `to`.
   void move(int from, int to) {
     --histogram_[static_cast<std::size_t>(from)];
     ++histogram_[static_cast<std::size_t>(to)];
   }
 
+  /// Counts completions from the current state.
   /// \param last  copies left of the symbol before; negative if there is none
   const BigCount& count(int last) {
     State state = histogram_;
@@ -100,7 +104,7 @@ class RunCounter {
   std::unordered_map<State, BigCount> counts_;
 };
 
-/// How many more of the symbol before may come first, from 0.
+/// The largest number of copies of the symbol before that may come first, >= 0.
 int longest_continuation(const RunCounter& counter, int max_run, RunBefore before) {
   return std::min(max_run - before.length, counter.left(before.symbol));
 }
@@ -117,12 +121,13 @@ BigCount count_all(RunCounter& counter, int max_run, RunBefore before) {
   return total;
 }
 
-/// Goes from order to order of a numbered list down to the one with the number.
+/// Finds the order with a given number in the list of all orders, run by run.
 class Descent {
  public:
   Descent(RunCounter& counter, BigCount number) : counter_(counter), number_(std::move(number)) {}
 
-  /// \return whether the order goes on with this run
+  /// Appends a run if the order continues with it.
+  /// \return whether it does
   bool takes(int symbol, int run) {
     counter_.take(symbol, run);
     const BigCount below = counter_.completions(symbol);
@@ -135,7 +140,8 @@ class Descent {
     return true;
   }
 
-  /// \return the symbol of the run that was taken
+  /// Appends the next run.
+  /// \return the run's symbol
   int take_next_run(int last) {
     for (int symbol = 0; symbol < counter_.symbols(); ++symbol) {
       if (symbol == last) continue;
@@ -155,8 +161,9 @@ class Descent {
   std::vector<int> order_;
 };
 
-/// How many sequences of fewer than `m` symbols there are whose first is not the one before, for
-/// m = 0 .. length + 1: sums, so that what a range of lengths has is one difference.
+/// The number of sequences with fewer than `m` symbols whose first symbol differs from the symbol
+/// before, for m = 0 .. length + 1. These are cumulative sums, so that one difference gives the
+/// number for a range of lengths.
 std::vector<BigCount> sequences_below(int symbols, int length, int max_run) {
   std::vector<BigCount> below = {0, 1};
   for (int m = 1; m <= length; ++m) {
@@ -166,10 +173,10 @@ std::vector<BigCount> sequences_below(int symbols, int length, int max_run) {
   return below;
 }
 
-/// How long the next run is, each in proportion to what can follow it.
+/// Draws the length of the next run, in proportion to the number of sequences that can follow it.
 int draw_run(const std::vector<BigCount>& below, int left, int shortest, int longest,
              RandomStream& random) {
-  // A run of r is followed by left - r symbols: the shortest run comes first, with most to follow.
+  // left - r symbols follow a run of r. The numbers begin with the shortest run.
   const auto at = [&below](int length) -> const BigCount& {
     return below[static_cast<std::size_t>(length)];
   };
@@ -183,10 +190,11 @@ int draw_run(const std::vector<BigCount>& below, int left, int shortest, int lon
 
 // De Bruijn cycles.
 
-constexpr int kRoot = 0;  // any will do: circuits have no beginning
+constexpr int kRoot = 0;  // any vertex serves, because circuits have no beginning
 
-/// Wilson's algorithm: from each vertex walk at random to the tree; the last exit that the walk
-/// took from a vertex is its edge, which erases the walk's loops.
+/// Wilson's algorithm: walks at random from each vertex to the tree. The last exit that the walk
+/// takes from a vertex becomes its edge, which erases the walk's loops.
+/// \return the exit of each vertex
 std::vector<int> random_arborescence(int vertices, RandomStream& random) {
   const auto count = static_cast<std::size_t>(vertices);
   std::vector<int> exit(count, kRoot);
@@ -201,7 +209,8 @@ std::vector<int> random_arborescence(int vertices, RandomStream& random) {
   return exit;
 }
 
-/// The exits of one vertex in the order they are taken. \param last  taken last; negative: any
+/// The exits of one vertex in the order in which they are taken.
+/// \param last  the exit that is taken last; negative: any
 std::vector<int> ordered_exits(int vertices, int last, RandomStream& random) {
   std::vector<int> exits(static_cast<std::size_t>(vertices));
   std::iota(exits.begin(), exits.end(), 0);
@@ -223,7 +232,7 @@ std::vector<int> shuffled_numbers(int first, int count, RandomStream& random) {
   return numbers;
 }
 
-/// The rows one after the other.
+/// Concatenates rows of a Williams design.
 std::vector<int> joined(int symbols, std::span<const int> rows) {
   std::vector<int> order;
   for (const int row : rows) {
@@ -240,7 +249,7 @@ bool keeps_limit(const std::vector<int>& order, int max_run, RunBefore before) {
   });
 }
 
-/// Some rows of the square whose first is `first`, in an order that keeps the limit.
+/// Draws `rows` rows of the square that starts at row `first`, in an order that keeps the limit.
 std::vector<int> square_rows(int symbols, int first, int rows, int max_run, RunBefore before,
                              RandomStream& random) {
   while (true) {
@@ -256,7 +265,7 @@ bool limited_order_exists(const std::vector<int>& counts, int max_run, RunBefore
   const int total = std::accumulate(counts.begin(), counts.end(), 0);
   for (int symbol = 0; symbol < static_cast<int>(counts.size()); ++symbol) {
     const int copies = counts[static_cast<std::size_t>(symbol)];
-    // What came before takes its share of the first place.
+    // The run before uses up part of the first place.
     const int taken = symbol == before.symbol ? before.length : 0;
     const std::int64_t places = std::int64_t{total} - copies + 1;
     if (copies + taken > places * max_run) return false;
@@ -358,11 +367,11 @@ std::vector<int> williams_row(int symbols, int number) {
   const int row = number % williams_rows(symbols);
   std::vector<int> order;
   for (int i = 0; i < symbols; ++i) {
-    // 0, 1, m-1, 2, m-2, ..: the differences of neighbours are all different modulo m.
+    // In 0, 1, m-1, 2, m-2, .. all differences of neighbours are different modulo m.
     const int first_row = i % 2 == 1 ? (i + 1) / 2 : (symbols - i / 2) % symbols;
     order.push_back((first_row + row) % symbols);
   }
-  // An odd square is unbalanced alone; its mirror image has the missing neighbours.
+  // One odd square alone is unbalanced; its mirror image has the missing pairs of neighbours.
   if (odd && row >= symbols) return {order.rbegin(), order.rend()};
   return order;
 }

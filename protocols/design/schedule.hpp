@@ -1,4 +1,4 @@
-/// \file What a participant is presented, in which order.
+/// \file The presentations of one participant and their order.
 #pragma once
 
 #include <optional>
@@ -18,7 +18,7 @@ struct StimulusIndex {
   friend auto operator<=>(const StimulusIndex&, const StimulusIndex&) = default;
 };
 
-/// A catch trial presents a plane without texture: its `stimulus` has no meaning.
+/// A catch trial presents a plane without texture; its `stimulus` has no meaning.
 enum class PresentationKind { scored, lead_in, catch_trial };
 
 struct Presentation {
@@ -32,26 +32,27 @@ struct Presentation {
 
 struct Schedule {
   std::vector<Presentation> presentations;
-  /// The choice at each position of the answer screen: an index into the protocol's choices.
+  /// The choice at each position of the answer screen, as an index into the protocol's choices.
   std::vector<int> layout;
 
   friend bool operator==(const Schedule&, const Schedule&) = default;
 };
 
-/// The schedule of one participant, as the study's protocol makes it: a function of the study's
-/// seed, classes, methods and trial options and of the enrolment number alone, equal on every
+/// Makes the schedule of one participant with the study's protocol. It depends only on the study's
+/// seed, classes, methods and trial options and on the enrolment number, and is the same on every
 /// platform.
 /// \param enrolment  from 1
 /// \throws StudyError if the order is impossible for the study
+/// \throws std::invalid_argument if `enrolment` is less than 1
 [[nodiscard]] Schedule make_schedule(const Study& study, int enrolment);
 
-/// A block of a participant's schedule in a fresh order, with as many catch trials as before: a
-/// function of the arguments alone. The new order tells nothing about the old one.
+/// Makes a block of a participant's schedule in a fresh order, with as many catch trials as before.
+/// It depends only on the arguments. The new order reveals nothing about the old one.
 /// \param block  from 0
-/// \param restarts_before  of this block by this participant, from 0
-/// \param first_trial  the number of the block's first presentation; the others follow
+/// \param restarts_before  earlier restarts of this block for this participant, from 0
+/// \param first_trial  trial number of the block's first presentation; the others count up from it
 /// \throws StudyError if the order is impossible for the study
-/// \throws std::invalid_argument if there is no such block
+/// \throws std::invalid_argument if the schedule has no such block
 [[nodiscard]] std::vector<Presentation> restarted_block(const Study& study, int enrolment,
                                                         int block, int restarts_before,
                                                         int first_trial);

@@ -1,4 +1,4 @@
-/// The secret part of a session's opening.
+/// \file Schedules and blocks as JSON, for the secret parts of a session's events.
 #include "core/errors.hpp"
 #include "protocols/design/protocol.hpp"
 #include "protocols/design/study_key.hpp"
@@ -100,7 +100,8 @@ Schedule schedule_of(const json& document, const StudyKey& key) {
 }  // namespace
 
 std::string schedule_to_json(const Schedule& schedule, const StudyKey& key) {
-  // A class's picture is named by the code of its first stimulus, another choice by its index.
+  // The layout names a class's picture by the code of its first stimulus, any other choice by
+  // index.
   const std::vector<Choice> choices = key.study.protocol->choices(key.study);
   json layout = json::array();
   for (const int choice : schedule.layout) {

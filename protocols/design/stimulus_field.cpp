@@ -10,11 +10,12 @@
 namespace touchtrial::design {
 namespace {
 
-/// To be raised with every change of the engine that changes fields: all packs are built anew then.
+/// Raise this number with every change of the engine that changes fields; all packs are then
+/// rebuilt.
 constexpr std::string_view kComputation = "touchtrial field 2";
 
-/// The rendering options that the field's bytes depend on. Gains are not among them: they are
-/// applied when the field is felt.
+/// The rendering options that the field's bytes depend on. Gains are not among them, because they
+/// are applied when the field is felt.
 std::string rendering_text(const engine::RenderingOptions& rendering) {
   nlohmann::json text{{"model", word_for(kModelNames, rendering.model)},
                       {"pitch_mm", rendering.pitch_mm},
@@ -45,7 +46,7 @@ engine::TextureField rendered(Plane<double> texture, const engine::RenderingOpti
   return field;
 }
 
-/// What every method takes from a flat image: nothing, or as luminance a level.
+/// The texture of a flat image: a constant level for luminance, zero for every other method.
 Plane<double> flat_texture(const GreyImage& image, const engine::ExtractionOptions& method) {
   const double level = method.method == engine::Method::luminance
                            ? engine::luminance_texture<double>(image).at(0, 0)
@@ -53,7 +54,7 @@ Plane<double> flat_texture(const GreyImage& image, const engine::ExtractionOptio
   return {image.height(), image.width(), level};
 }
 
-/// On a level neither control nor filter has anything to do.
+/// The field of a flat image. Neither control nor filter changes a constant level.
 BuiltField flat_field(const GreyImage& image, const engine::ExtractionOptions& method,
                       engine::RenderingOptions rendering, engine::StageLog* log) {
   if (log != nullptr) {

@@ -1,4 +1,5 @@
-/// \file One stimulus from image to field, and whether a field of a pack was made so.
+/// \file Makes the field of one stimulus from its image, and checks that a field of a pack was made
+/// in this way.
 #pragma once
 
 #include "core/cipher.hpp"
@@ -12,27 +13,27 @@
 
 namespace touchtrial::design {
 
-/// A stimulus' method with the seed of its control, which is its own: derived from the study's seed
-/// and from what the stimulus is, so that exemplars and methods differ, and that a stimulus keeps
-/// its phases when others come or go.
+/// A stimulus's method with the stimulus's own seed for its control. The seed is derived from the
+/// study's seed and from the stimulus's label, image and method, so that exemplars and methods
+/// differ, and a stimulus keeps its phases when others are added or removed.
 [[nodiscard]] engine::ExtractionOptions method_of(const Study& study,
                                                   const StimulusIndex& stimulus);
 
-/// A keyed hash of everything that decides a field's bytes: pixels, method, model, pitch, filter,
-/// neighbourhood (`paper`), and the version of this computation. Equal tags: the field need not be
-/// built.
+/// A keyed hash of everything that determines a field's bytes: pixels, method, model, pitch,
+/// filter, neighbourhood (`paper`), and the version of this computation. A field with an equal tag
+/// need not be rebuilt.
 [[nodiscard]] Digest input_tag(const SecretKey& master, const GreyImage& image,
                                const engine::ExtractionOptions& method,
                                const engine::RenderingOptions& rendering);
 
-/// Whether a field was made from this image by the stimulus's method and the study's rendering, as
-/// the key's study has them and by the computation of this program.
-/// \param entry  the field's, in the pack that the key belongs to
+/// Whether a field was made from this image by this program's computation, with the stimulus's
+/// method and the rendering of the key's study.
+/// \param entry  entry of the field in the pack that the key belongs to
 /// \throws StudyError if the study does not present the stimulus
 [[nodiscard]] bool is_made_from(const engine::PackEntry& entry, const StudyKey& key,
                                 const GreyImage& image, const StimulusIndex& stimulus);
 
-/// A field with what the solver said of it.
+/// A field with the solver's report on it.
 struct BuiltField {
   engine::TextureField field;
   double gap = 0.0;
@@ -40,27 +41,28 @@ struct BuiltField {
   bool converged = true;
 };
 
-/// The same method without a control.
+/// Removes the control from a method.
 [[nodiscard]] engine::ExtractionOptions without_control(engine::ExtractionOptions method);
 
-/// A texture that has been taken from an image, for stimuli of the same image that differ in their
-/// control only.
+/// A texture extracted from an image, for reuse by stimuli of the same image that differ only in
+/// their control.
 struct TakenTexture {
   engine::ExtractionOptions method;  ///< without its control
   engine::Extraction<double> extraction;
 };
 
-/// \param taken  used if it is of this method, replaced if not; nothing may have been taken yet. A
-///   flat image needs none, and changes nothing of it.
-/// \param keep  whether the texture is to be left there: another stimulus needs it
-/// \param log  takes the stages, if there is one
+/// Makes a stimulus's field.
+/// \param taken  a texture to reuse if it is of this method, and replaced otherwise; may be empty.
+///   A flat image neither uses nor changes it.
+/// \param keep  whether to leave the texture in `taken` because another stimulus needs it
+/// \param log  receives the stages; may be null
 [[nodiscard]] BuiltField build_field(const GreyImage& image,
                                      const engine::ExtractionOptions& method,
                                      const engine::RenderingOptions& rendering,
                                      std::optional<TakenTexture>& taken, bool keep,
                                      engine::StageLog* log);
 
-/// Whether nothing can be felt in the field but a smooth wall.
+/// Whether the field feels like a smooth wall without texture.
 [[nodiscard]] bool is_flat(engine::FieldView field) noexcept;
 
 }  // namespace touchtrial::design

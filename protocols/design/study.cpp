@@ -12,7 +12,7 @@ namespace touchtrial::design {
 namespace {
 
 constexpr std::uintmax_t kMaxFileBytes = std::uintmax_t{16} << 20U;
-constexpr std::int64_t kMaxSeed = std::int64_t{1} << 53U;  // what every JSON reader holds exactly
+constexpr std::int64_t kMaxSeed = std::int64_t{1} << 53U;  // exact in every JSON reader
 constexpr std::array kBlindingNames = {Named<int>{"double", 0}};
 
 }  // namespace
@@ -32,15 +32,15 @@ std::string read_plain_name(const JsonValue& place) {
 
 namespace {
 
-/// The protocol named in the file.
+/// The protocol that the file names.
 const Protocol& read_protocol(const JsonValue& place) {
   std::vector<std::string_view> names;
   for (const Protocol* one : protocols()) names.push_back(one->name());
   return *protocols()[place.choice(names)];
 }
 
-/// The keys of every study, and the sections of all protocols: one of another protocol's is refused
-/// under its own name.
+/// The keys of every study, and the sections of all protocols, so that the error for another
+/// protocol's section can name that protocol.
 std::vector<std::string_view> keys_of_studies() {
   std::vector<std::string_view> keys = {"study",        "protocol", "classes",  "methods",
                                         "rendering",    "trials",   "practice", "session",
@@ -81,7 +81,8 @@ void check_size(const JsonValue& place, const Study& study) {
   }
 }
 
-/// What a participant has learnt must not be in the study, by name or by picture.
+/// Checks that a practice class shares neither label nor image with the study, nor its image with
+/// another practice class.
 void check_practice_class(const JsonValue& place, const Study& study, std::size_t index) {
   const StudyClass& learnt = study.practice.classes[index];
   const std::string at = "/practice/classes/" + std::to_string(index);

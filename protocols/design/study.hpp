@@ -1,4 +1,4 @@
-/// \file The study file: what is presented, how it is rendered, in which trials.
+/// \file The study file: the stimuli, their rendering, and the trials.
 /// Format: docs/study-file.md and config/schema/study.schema.json.
 #pragma once
 
@@ -18,14 +18,14 @@ namespace touchtrial::design {
 class Protocol;
 class ProtocolOptions;
 
-/// A way of taking textures, and what tables and files call it.
+/// An extraction method, and its label in tables and files.
 struct StudyMethod : engine::ExtractionOptions {
   std::string label;  ///< unique in the study
 
   friend bool operator==(const StudyMethod&, const StudyMethod&) = default;
 };
 
-/// The label of a method that is given none: its name, and its control's if it has one.
+/// The label of a method without an explicit one: its name, and its control's name if it has one.
 [[nodiscard]] std::string default_label(const engine::ExtractionOptions& method);
 
 enum class TrialOrder { shuffled, de_bruijn, uniform, williams };
@@ -35,25 +35,23 @@ enum class Blocks { by_method, mixed };
 [[nodiscard]] std::string_view name_of(Blocks blocks);
 /// The study file's word for a rendering model.
 [[nodiscard]] std::string_view name_of(engine::ModelKind model);
-/// What becomes of a presentation that was spoilt: by a fault, a comfort stop, or the program's
-/// end.
+/// What follows a presentation that was spoilt by a fault, a comfort stop, or the program's end.
 enum class OnInterruption { repeat, leave_out, restart_block };
 
 /// The study file's "trials" object.
 struct TrialOptions {
-  int repeats = 5;  ///< presentations of each class (and method) a participant, >= 1
+  int repeats = 5;  ///< presentations of each class (and method) per participant, >= 1
   TrialOrder order = TrialOrder::shuffled;
   double explore_limit_s = 60.0;  ///< > 0
   OnTimeout on_timeout = OnTimeout::fade;
-  int practice = 0;      ///< presentations of a practice round
+  int practice = 0;      ///< presentations in a practice round
   int break_every = 0;   ///< trials between breaks; 0: none
   int catch_trials = 0;  ///< unscored presentations of a plane without texture, among the others
   int lead_in = 0;       ///< unscored presentations at the start of each block
   Blocks blocks = Blocks::by_method;
-  int max_run = 0;  ///< presentations of one class in a row, at most; 0: any number
+  int max_run = 0;  ///< maximum number of presentations of one class in a row; 0: no limit
   OnInterruption on_interruption = OnInterruption::repeat;
-  double resume_within_h =
-      24.0;  ///< a session that was broken off can be taken up for so long, > 0
+  double resume_within_h = 24.0;  ///< how long an interrupted session can still be resumed, > 0
 
   friend bool operator==(const TrialOptions&, const TrialOptions&) = default;
 };
@@ -61,8 +59,8 @@ struct TrialOptions {
 /// A study as read from its file.
 struct Study {
   std::string name;
-  const Protocol* protocol = nullptr;              ///< never null in a study that was read
-  std::shared_ptr<const ProtocolOptions> options;  ///< of the protocol's own section; may be null
+  const Protocol* protocol = nullptr;              ///< never null in a study read from a file
+  std::shared_ptr<const ProtocolOptions> options;  ///< from the protocol's own section; may be null
   std::vector<StudyClass> classes;                 ///< >= 2, labels unique
   std::vector<StudyMethod> methods;                ///< >= 1, labels unique
   engine::RenderingOptions rendering;
@@ -71,23 +69,24 @@ struct Study {
   SessionPlan session;
   Registration registration;
   std::uint64_t seed = 0;
-  std::filesystem::path folder;  ///< that image paths are relative to
+  std::filesystem::path folder;  ///< image paths are relative to this folder
   std::string source;            ///< the file's name, for errors
   std::string text;              ///< the file's content
 
-  /// The protocol's name, as the file has it.
+  /// The protocol's name, as in the file.
   [[nodiscard]] std::string protocol_name() const;
-  /// How many methods are presented, from the first on.
+  /// The number of methods that are presented; these are the first ones in the file.
   [[nodiscard]] int presented_methods() const;
-  /// Scored presentations of one participant.
+  /// The number of scored presentations of one participant.
   [[nodiscard]] int scored_trials() const;
 };
 
-/// Reads a study file strictly: unknown keys, wrong types and impossible values are refused.
+/// Reads a study file strictly: refuses unknown keys, wrong types and impossible values.
 /// \throws StudyError with the file, the JSON pointer, and the nearest known key or value
 [[nodiscard]] Study load_study(const std::filesystem::path& path);
 
-/// The same from text. \param source  names the origin in errors
+/// Reads a study from text, with the same errors.
+/// \param source  name of the text's origin, for error messages
 [[nodiscard]] Study parse_study(std::string_view text, const std::filesystem::path& folder,
                                 const std::string& source);
 

@@ -17,8 +17,8 @@ std::string first_hex(const Digest& digest, std::size_t bytes) {
   return to_hex(ByteView(digest).first(bytes));
 }
 
-/// Depends on what the stimulus is and on nothing around it, so that a code stays with its stimulus
-/// when others come or go.
+/// The code of a stimulus. It depends only on the stimulus itself, so that a stimulus keeps its
+/// code when others are added or removed.
 std::string code_for(const SecretKey& code_key, const Study& study, const StimulusIndex& stimulus) {
   const StudyClass& shown = study.classes[static_cast<std::size_t>(stimulus.class_index)];
   const auto& image = shown.images[static_cast<std::size_t>(stimulus.exemplar)];
@@ -64,8 +64,8 @@ StudyKey key_from(const SecretKey& master, const SecretKey& nonce, const Study& 
   return key;
 }
 
-/// Everything that people read, as a hash that only the key's holder can check: names of textures
-/// are among it.
+/// A keyed hash of all sections with texts, which only the key's holder can check. The texts
+/// include names of textures, so they do not appear in clear.
 std::string texts_tag(const StudyKey& key) {
   const Study& study = key.study;
   const nlohmann::json texts = {{"practice", to_json(study.practice)},
@@ -75,8 +75,8 @@ std::string texts_tag(const StudyKey& key) {
   return to_hex(keyed_hash(derive_key(key.master, "texts"), ByteView(hash)));
 }
 
-/// What is said of the sections that are not in studies from before they existed: nothing where
-/// they are as if they were not there, so that such a study's configuration stays as it was.
+/// Adds the sections that older studies do not have. A section that equals its default adds
+/// nothing, so that the configuration of an older study stays the same.
 void add_plans(nlohmann::json& configuration, const StudyKey& key) {
   const Study& study = key.study;
   if (study.practice != PracticePlan{}) {

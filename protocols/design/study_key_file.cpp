@@ -1,5 +1,5 @@
-/// The key's file. The whole file is a function of its content and of one checksum over it, so that
-/// any other byte is noticed.
+/// \file The key's file. Its bytes follow entirely from its content and one checksum over it, so
+/// that a change of any byte is detected.
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "protocols/design/study_key.hpp"
@@ -36,7 +36,7 @@ std::filesystem::path folder_of(const std::filesystem::path& file) {
   return whole(file).parent_path();
 }
 
-/// Relative to the key, so that a study can be moved with its key; "" stays.
+/// A path relative to the key, so that a study can be moved with its key. "" stays "".
 std::string relative_to_key(const std::filesystem::path& target, const std::filesystem::path& key) {
   if (target.empty()) return "";
   const auto relative = whole(target).lexically_relative(folder_of(key));
@@ -67,7 +67,7 @@ json stimuli_to_json(const StudyKey& key) {
 }
 
 json document_of(const StudyKey& key, const std::filesystem::path& path) {
-  // An unnamed folder is the working one; it is written as the key's neighbour all the same.
+  // An empty folder means the working directory; it is written relative to the key as well.
   const auto study_folder = key.study.folder.empty() ? "." : key.study.folder;
   return {{"format", kFormat},
           {"version", kVersion},
@@ -87,7 +87,7 @@ SecretKey secret_from(const json& value) {
   return *secret;
 }
 
-/// A stored secret, so that a key is rebuilt by the same code that makes one.
+/// Supplies stored secrets, so that the same code makes and rebuilds a key.
 class StoredEntropy final : public Entropy {
  public:
   StoredEntropy(const SecretKey& master, const SecretKey& nonce) : master_(master), nonce_(nonce) {}

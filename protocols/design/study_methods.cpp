@@ -1,4 +1,4 @@
-/// The study file's "methods".
+/// \file The study file's "methods".
 #include "protocols/design/study_sections.hpp"
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 namespace touchtrial::design {
 namespace {
 
-/// A key besides "name", and the methods that it means something to.
+/// A key besides "name", and the methods that use it.
 struct MethodKey {
   std::string_view key;
   std::vector<engine::Method> methods;
@@ -71,7 +71,7 @@ void refuse_foreign_keys(const JsonObject& object, engine::Method method) {
   }
 }
 
-/// A list, or the word "auto".
+/// Reads a list, or the word "auto".
 void read_components(const JsonValue& place, engine::TvGaborOptions& options) {
   constexpr std::size_t kMost = 64;
   constexpr std::array<std::string_view, 1> kWords = {"auto"};

@@ -1,4 +1,4 @@
-/// The study file's "rendering".
+/// \file The study file's "rendering".
 #include "protocols/design/study_sections.hpp"
 
 namespace touchtrial::design {

@@ -1,4 +1,4 @@
-// The study file's "classes", "trials", "practice" and "registration".
+/// \file The study file's "classes", "trials", "practice" and "registration".
 #include "protocols/design/study_sections.hpp"
 
 #include <algorithm>
@@ -51,7 +51,7 @@ void read_count(const JsonObject& object, std::string_view key, int low, int hig
   if (const auto member = object.find(key)) count = static_cast<int>(member->integer(low, high));
 }
 
-/// What becomes of what was broken off.
+/// Reads what follows an interrupted presentation, and how long a session can be resumed.
 void read_resumption(const JsonObject& object, TrialOptions& options) {
   constexpr double kYear_h = 8760.0;
   if (const auto member = object.find("on_interruption")) {

@@ -1,5 +1,5 @@
-/// \file The sections of the study file: the words in them and what they stand for, their readers,
-/// and their JSON form again. For sources only.
+/// \file The sections of the study file: the words that they use, functions that read them, and
+/// functions that write them as JSON. Include only from source files.
 #pragma once
 
 #include "core/strict_json.hpp"
@@ -59,35 +59,40 @@ template <typename Value, std::size_t size>
   return {};
 }
 
-/// The languages that the program's own texts come in, and so those of a study's.
+/// The languages of the program's own texts, and therefore of a study's texts.
 inline constexpr std::array<std::string_view, 2> kLanguages = {"en", "de"};
 
-/// Whether a text has C0 (a line's end and a tab count too), DEL, or C1.
+/// Whether a text contains a C0 character (line feeds and tabs included), DEL, or a C1 character.
 [[nodiscard]] bool has_control_character(std::string_view text);
 
-/// One line, without blanks at its ends. \param longest  bytes
-/// \throws StudyError if it is longer, or is empty, or has a control character
+/// Reads one line.
+/// \param longest  maximum length, bytes
+/// \throws StudyError if the line is too long, is empty, begins or ends with a blank, or has a
+///   control character
 [[nodiscard]] std::string read_line(const JsonValue& place, std::size_t longest);
 
-/// Paragraphs: may have line ends and be empty. \throws StudyError as above
+/// Reads paragraphs, which may contain line feeds and may be empty.
+/// \throws StudyError if the text is too long, or has another control character
 [[nodiscard]] std::string read_paragraphs(const JsonValue& place, std::size_t longest);
 
-/// A line in some of the languages. \throws StudyError if the study's language is not among them
+/// Reads a line in one or more of the languages.
+/// \throws StudyError if the study's language is missing
 [[nodiscard]] Translated read_translated(const JsonValue& place, const std::string& language);
 
-/// What a study may have at most. The limits keep schedules, packs and pictures of a size that one
-/// participant, one disk and one screen can take.
+/// Upper limits of a study. They keep schedules, packs and pictures small enough for one
+/// participant, one disk and one screen.
 inline constexpr std::size_t kMaxClasses = 64;
 inline constexpr std::size_t kMaxImagesOfClass = 1000;
 inline constexpr std::size_t kMaxMethods = 8;
 inline constexpr int kMaxStimuli = 10'000;
 inline constexpr int kMaxScoredTrials = 10'000;
 
-/// A text that may stand in file names, tables and BIDS labels: 1 to 64 of 0-9 A-Z a-z _ -
-/// \throws StudyError if it is not such
+/// Reads a name that is safe in file names, tables and BIDS labels: 1 to 64 of 0-9 A-Z a-z _ -
+/// \throws StudyError if the text is not such a name
 [[nodiscard]] std::string read_plain_name(const JsonValue& place);
 
-/// All throw StudyError with the place of what they cannot accept.
+/// These functions read one section each.
+/// \throws StudyError with the place of a value that they do not accept
 [[nodiscard]] std::vector<StudyClass> read_classes(const JsonValue& place,
                                                    std::size_t most_images = kMaxImagesOfClass);
 [[nodiscard]] std::vector<StudyMethod> read_methods(const JsonValue& place);
@@ -97,10 +102,10 @@ inline constexpr int kMaxScoredTrials = 10'000;
 [[nodiscard]] SessionPlan read_session(const JsonValue& place);
 [[nodiscard]] Registration read_registration(const JsonValue& place);
 
-/// The sections as the study file writes them, every key explicit; a method has the keys that
-/// belong to it and no others, "control" if it has one, and "label" if it is not the default. Of
-/// the trials, "max_run", "on_interruption" and "resume_within_h" are there only where they are not
-/// the default, so that what was sealed before they existed stays as it was. Equal options give
+/// The sections in the form of the study file, with every key explicit. A method has only the keys
+/// that belong to it, "control" if it has one, and "label" if it is not the default. The trials
+/// have "max_run", "on_interruption" and "resume_within_h" only if these differ from their
+/// defaults, so that studies sealed before these keys existed keep their seals. Equal options give
 /// equal JSON.
 [[nodiscard]] nlohmann::json to_json(const engine::ExtractionOptions& method);
 [[nodiscard]] nlohmann::json to_json(const StudyMethod& method);
@@ -110,13 +115,13 @@ inline constexpr int kMaxScoredTrials = 10'000;
 [[nodiscard]] nlohmann::json to_json(const SessionPlan& session);
 [[nodiscard]] nlohmann::json to_json(const Registration& registration);
 
-/// Questions of the study file.
-/// \param language  the study's: every text must have it
-/// \throws StudyError with the place of what it cannot accept
+/// Reads the questions of the study file.
+/// \param language  the study's language, in which every text must exist
+/// \throws StudyError with the place of a value that is not accepted
 [[nodiscard]] std::vector<Question> read_questions(const JsonValue& place,
                                                    const std::string& language);
 
-/// As the study file writes them, every key explicit but "options" where there are none.
+/// The questions in the form of the study file, with every key explicit except empty "options".
 [[nodiscard]] nlohmann::json to_json(const std::vector<Question>& questions);
 
 }  // namespace touchtrial::design

@@ -1,4 +1,4 @@
-// The study file's "session": its texts, its questions, and what else a session has beside trials.
+/// \file The study file's "session": its texts, its questions, and its other settings.
 #include "protocols/design/study_sections.hpp"
 
 #include <algorithm>
@@ -99,7 +99,7 @@ std::vector<std::string> read_day_sheet(const JsonValue& place) {
   return sheet;
 }
 
-/// A version or a number: a line that may be empty.
+/// Reads a version or a number, as a line that may be empty.
 void read_name(const JsonObject& object, std::string_view key, std::string& name) {
   const auto member = object.find(key);
   if (member && !member->text().empty()) name = read_line(*member, kLongestName);

@@ -1,9 +1,9 @@
-/// \file The protocols that the program knows. A new protocol is added here and nowhere else.
+/// \file Registration of all protocols of the program. A new protocol is added only here.
 #pragma once
 
 namespace touchtrial::registration {
 
-/// Makes all protocols known to every layer. Call before the first study is read; further calls do
+/// Registers all protocols with every layer. Call before the first study is read. Further calls do
 /// nothing. Not thread-safe.
 void register_protocols();
 

@@ -12,7 +12,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// A column of participants.tsv that is there if anybody has a value.
+/// A column of participants.tsv that exists only if at least one participant has a value.
 struct OptionalColumn {
   const char* name;
   DataCell (*value)(const Demographics&);
@@ -38,7 +38,8 @@ constexpr std::array<OptionalColumn, 4> kOptionalColumns{{
      }},
 }};
 
-/// Adds the column unless all its values are missing. Rows are those of `standing`.
+/// Adds the column unless all its values are missing.
+/// \param people  one entry for each row of the table
 void add_if_known(DataTable& table, const OptionalColumn& column,
                   const std::vector<Demographics>& people) {
   std::vector<DataCell> values;
@@ -52,7 +53,7 @@ void add_if_known(DataTable& table, const OptionalColumn& column,
   for (std::size_t i = 0; i < values.size(); ++i) table.rows[i].push_back(std::move(values[i]));
 }
 
-/// What is of a session; the columns of session_cells.
+/// The columns that describe a session, in the order of session_cells.
 const std::vector<std::string>& session_columns() {
   static const std::vector<std::string> kColumns{"session",         "enrolment", "session_state",
                                                  "excluded",        "pilot",     "simulated",
@@ -73,7 +74,7 @@ std::vector<DataCell> session_cells(const BidsSession& session) {
           row.replaced_by};
 }
 
-/// One session a participant: the last.
+/// The last session of each participant.
 std::vector<const BidsSession*> standing_sessions(const std::vector<BidsSession>& sessions) {
   std::vector<const BidsSession*> standing;
   for (const BidsSession& session : sessions) {
@@ -89,7 +90,7 @@ std::vector<const BidsSession*> standing_sessions(const std::vector<BidsSession>
   return standing;
 }
 
-/// What a participant said in any session, the last word of each.
+/// The last answer that a participant gave to each question, over all sessions.
 Demographics said_by(const std::string& subject, const std::vector<BidsSession>& sessions,
                      const std::map<int, Demographics>& by_session) {
   Demographics said;

@@ -1,4 +1,5 @@
-/// \file Who is in a BIDS dataset, and what their files are called. Private to exports.
+/// \file The sessions and participants in a BIDS dataset, and the names of their files. Private to
+/// exports.
 #pragma once
 
 #include "analysis/exports/data_table.hpp"
@@ -9,24 +10,25 @@
 
 namespace touchtrial::analysis {
 
-/// One session that is in the dataset.
+/// A session in the dataset.
 struct BidsSession {
   store::SessionRow row;
   bool counted = false;
-  std::string subject;  ///< "sub-P01"
-  std::string label;    ///< "ses-1"; empty if nobody has more than one session
-  /// "sub-P01/ses-1/beh", where its files are.
+  std::string subject;  ///< for example "sub-P01"
+  std::string label;    ///< for example "ses-1"; empty if nobody has more than one session
+  /// The folder of its files, for example "sub-P01/ses-1/beh".
   [[nodiscard]] std::string folder() const;
-  /// "sub-P01_ses-1", what their names begin with.
+  /// The beginning of their names, for example "sub-P01_ses-1".
   [[nodiscard]] std::string stem() const;
 };
 
-/// All sessions but those of participants who withdrew, or that an interim look does not show.
+/// All sessions except those of participants who withdrew and those that an interim look does not
+/// show.
 [[nodiscard]] std::vector<BidsSession> bids_sessions(const store::StudyStore& store);
 
-/// participants.tsv: one row a participant, of the session that stands. Age (in bands), sex and
-/// handedness come from what participants answered in sealed questionnaires, after unblinding, and
-/// are no columns where nobody answered; the file of personal data is never read.
+/// participants.tsv: one row for each participant, with the data of the participant's last session.
+/// Age (in bands), sex and handedness come from sealed questionnaires after unblinding; a column is
+/// missing if nobody has a value. The file of personal data is never read.
 [[nodiscard]] DataTable bids_participants(const DatasetSource& source,
                                           const std::vector<BidsSession>& sessions);
 

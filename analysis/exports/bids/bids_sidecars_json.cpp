@@ -45,7 +45,7 @@ std::string task_description(const DatasetSource& study) {
       commitment.positions, commitment.protocol);
 }
 
-/// The study's own, or which of the program's.
+/// The study's own instructions, or the name of the program's instructions that it uses.
 std::string instructions(const design::Study& study) {
   const auto own = study.session.instructions.find(study.session.language);
   if (own == study.session.instructions.end()) {

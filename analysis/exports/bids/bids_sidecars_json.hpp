@@ -9,22 +9,22 @@
 
 namespace touchtrial::analysis {
 
-/// The version of BIDS that datasets keep to.
+/// The version of BIDS that the datasets follow.
 inline constexpr const char* kBidsVersion = "1.10.0";
 
 [[nodiscard]] std::string dataset_description_json(const DatasetSource& study,
                                                    const DatasetOptions& options);
-/// Of derivatives/touchtrial.
+/// dataset_description.json of derivatives/touchtrial.
 [[nodiscard]] std::string derivative_description_json(const DatasetSource& study);
 
-/// Describes every column of a table but `participant_id` and `session_id`, which BIDS defines.
+/// Describes every column of a table except `participant_id` and `session_id`, which BIDS defines.
 [[nodiscard]] std::string columns_json(const std::vector<std::string>& columns, bool simulated);
 
-/// task-*_beh.json: the task, and the columns of every *_beh.tsv.
+/// task-*_beh.json: describes the task and the columns of every *_beh.tsv.
 [[nodiscard]] std::string task_json(const DatasetSource& study, const DatasetOptions& options,
                                     const std::vector<std::string>& columns);
 
-/// Of one recording, whose time counts from the session's opening.
+/// Describes one recording. Its StartTime counts from the opening of the session.
 [[nodiscard]] std::string trace_sidecar_json(const store::TrialRow& row, bool simulated);
 
 }  // namespace touchtrial::analysis

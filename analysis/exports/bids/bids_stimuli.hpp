@@ -9,11 +9,12 @@
 
 namespace touchtrial::analysis {
 
-/// What an image is called below stimuli/: its class and image by number, from 1, and the class's
-/// letters and digits: "01-bark-01.png".
+/// The name of an image below stimuli/: the numbers of its class and of the image, from 1, with the
+/// letters and digits of the class between them, for example "01-bark-01.png".
 [[nodiscard]] std::string stimulus_name(const design::Study& study, int class_index, int exemplar);
 
-/// Copies of every image. \throws FileError if one is missing
+/// Copies of every image.
+/// \throws FileError if an image is missing
 [[nodiscard]] std::vector<ExportFile> stimulus_files(const design::Study& study);
 
 }  // namespace touchtrial::analysis

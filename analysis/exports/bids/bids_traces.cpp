@@ -18,10 +18,10 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// What recordings that are written at the same time share.
+/// Shared by the recordings that are written at the same time.
 struct SharedReading {
   std::map<int, SecretKey> keys;  ///< by session
-  std::mutex store;               ///< which one thread reads at a time
+  std::mutex store;               ///< held by the one thread that reads the store
 };
 
 store::Trace opened_trace(const DatasetSource& study, const store::TrialRow& row,
@@ -41,8 +41,8 @@ store::Trace opened_trace(const DatasetSource& study, const store::TrialRow& row
       row.session, row.trial));
 }
 
-/// Appends a value with its decimals and what comes after it. Whole steps are several times faster
-/// than a general formatting of doubles, and have no -0.000.
+/// Appends a value with kDecimals decimals, and the character after it. Counting in whole steps is
+/// several times faster than general formatting of doubles, and never gives -0.000.
 template <int kDecimals>
 void put_fixed(std::string& text, double value, char after) {
   constexpr std::int64_t kSteps = kDecimals == 3 ? 1000 : 10'000;

@@ -14,12 +14,12 @@ namespace touchtrial::analysis {
 /// The columns of a recording, in order; meaning_of describes them.
 [[nodiscard]] const std::vector<std::string>& trace_columns();
 
-/// Rows without a header: millimetres with three decimals and newtons with four, which tell all
-/// steps that a trace stores apart (1 um and 1/4096 N).
+/// Rows without a header. Millimetres have three decimals and newtons four, which keeps apart all
+/// steps that a trace stores (1 um and 1/4096 N).
 [[nodiscard]] std::string trace_text(const store::Trace& trace);
 
-/// For every trial with a trace a recording and its JSON. Traces are opened when they are written,
-/// several at a time.
+/// A recording and its JSON file for every trial with a trace. Each trace is opened when its file
+/// is written, several at a time.
 /// \param study  unblinded, with its key
 [[nodiscard]] std::vector<ExportFile> trace_files(const DatasetSource& study,
                                                   const std::vector<BidsSession>& sessions,

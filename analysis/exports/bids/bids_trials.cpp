@@ -9,7 +9,7 @@
 namespace touchtrial::analysis {
 namespace {
 
-/// Columns that BIDS has names for; those of the file's name are left out.
+/// The name that BIDS gives to a column, or its own name.
 std::string bids_name(std::string_view column) {
   if (column == "class") return "trial_type";
   if (column == "reaction_time_s") return "response_time";
@@ -27,7 +27,7 @@ DataCell stimulus_file(const TrialView& trial) {
   return stimulus_name(trial.study->design, shown.class_index, shown.exemplar);
 }
 
-/// Of each row what may be shown; trials that an interim look does not show are left out.
+/// What each row may show. Leaves out trials that an interim look does not show.
 std::vector<TrialView> views_of(const DatasetSource& study,
                                 const std::vector<store::TrialRow>& rows) {
   static const std::string kNobody;
@@ -50,7 +50,7 @@ std::vector<TrialView> views_of(const DatasetSource& study,
   return views;
 }
 
-/// By session, and in it by time.
+/// Sorts by session, then by time.
 void sort_by_presentation(std::vector<store::TrialRow>& rows) {
   std::sort(rows.begin(), rows.end(), [](const store::TrialRow& a, const store::TrialRow& b) {
     return std::pair(a.session, a.presented_at) < std::pair(b.session, b.presented_at);

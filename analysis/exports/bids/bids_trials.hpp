@@ -8,14 +8,14 @@
 
 namespace touchtrial::analysis {
 
-/// The columns of trials.csv by BIDS's names, and of every session its trials in the order of
-/// presentation, unscored ones too; sessions without a trial are there with none.
+/// The trials of each session in the order of presentation, unscored trials included. The columns
+/// are those of trials.csv under the names of BIDS. A session without trials has an empty table.
 struct BidsTrials {
   std::vector<std::string> columns;
   std::map<int, DataTable> by_session;
 };
 
-/// \param stimuli  whether the images are in the dataset, so that stim_file can name them
+/// \param stimuli  whether the dataset includes the images, so that stim_file can name them
 [[nodiscard]] BidsTrials bids_trials(const DatasetSource& study, bool stimuli);
 
 }  // namespace touchtrial::analysis

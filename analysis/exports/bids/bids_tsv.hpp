@@ -1,5 +1,5 @@
-/// \file Tables as BIDS wants them: tab-separated, "n/a" for what is missing.
-/// Source: BIDS specification 1.10, "Tabular files".
+/// \file Tables in the form of BIDS: tab-separated, with "n/a" for a missing value. Source: BIDS
+/// specification 1.10, "Tabular files".
 #pragma once
 
 #include "analysis/exports/data_table.hpp"
@@ -8,9 +8,9 @@
 
 namespace touchtrial::analysis {
 
-/// UTF-8 without a byte order mark, line feeds, decimal dots; an empty text is missing too, and a
-/// tab or line end in a text becomes a space.
-/// \throws std::invalid_argument if a row's length is not the header's
+/// Tab-separated text in UTF-8 without a byte order mark, with line feeds and decimal points. An
+/// empty text counts as missing; a tab or line end in a text becomes a space.
+/// \throws std::invalid_argument if a row and the header differ in length
 [[nodiscard]] std::string tsv_text(const DataTable& table);
 
 }  // namespace touchtrial::analysis

@@ -73,7 +73,7 @@ void add_report(Files& files, const DatasetSource& study) {
           : text_file(folder + "quality.json", quality_json(make_quality(study.store))));
 }
 
-/// How many files are written, told by one thread at a time.
+/// Reports how many files are written. One thread reports at a time.
 class Progress {
  public:
   Progress(std::function<void(int, int)> tell, int of) : tell_(std::move(tell)), of_(of) {}

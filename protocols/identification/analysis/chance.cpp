@@ -17,12 +17,12 @@ namespace touchtrial::analysis::identification {
 
 namespace {
 
-/// Orders that the study's rule made. Names of classes are exchangeable in every rule, so that each
-/// stands for all its renamings.
+/// The number of orders that the study's rule makes. Every rule treats all classes alike, so each
+/// order also stands for its renamings.
 constexpr int kOrders = 300;
 constexpr int kRenamings = 120;
 constexpr int kFewestDeals = 999;
-constexpr int kMostBlockDeals = 1'000'000;  ///< one second's worth at most
+constexpr int kMostBlockDeals = 1'000'000;  ///< takes at most one second
 
 /// A block's counted trials, each with its place among the scored presentations of the method.
 struct PlacedBlock {
@@ -30,7 +30,8 @@ struct PlacedBlock {
   std::vector<int> places;
 };
 
-/// By session and block. Void trials have no place: their block began anew.
+/// The blocks with trials of one method, ordered by session and block. Voided trials have no place,
+/// because their block was restarted.
 std::vector<PlacedBlock> blocks_of(const Outcomes& outcomes, int method) {
   std::map<std::pair<int, int>, PlacedBlock> blocks;
   std::map<std::pair<int, int>, int> next_place;
@@ -51,7 +52,7 @@ std::vector<PlacedBlock> blocks_of(const Outcomes& outcomes, int method) {
   return all;
 }
 
-/// Classes of the scored presentations of a method in the first block that has it.
+/// The classes of the scored presentations of one method, in the order of a schedule.
 std::vector<int> order_in(const design::Schedule& schedule, int method) {
   std::vector<int> order;
   for (const design::Presentation& shown : schedule.presentations) {
@@ -62,13 +63,13 @@ std::vector<int> order_in(const design::Schedule& schedule, int method) {
   return order;
 }
 
-/// Draws orders of a block by the study's rule: some from its maker of schedules, each under any of
-/// some renamings of the classes.
+/// Draws orders of a block by the study's rule: takes one of kOrders orders from the study's
+/// schedules and one of kRenamings renamings of the classes.
 class OrderDraws {
  public:
   OrderDraws(design::Study study, int method, std::size_t blocks, int deals)
       : blocks_(blocks), random_(0, "chance test", static_cast<std::uint64_t>(method)) {
-    // Another seed: the participants' own orders are not among those drawn.
+    // A seed of its own keeps the participants' own orders out of the draws.
     study.seed = RandomStream(study.seed, "chance test: schedules").below(~std::uint64_t{0});
     for (int i = 1; i <= kOrders; ++i)
       orders_.push_back(order_in(design::make_schedule(study, i), method));
@@ -84,7 +85,7 @@ class OrderDraws {
 
   [[nodiscard]] std::size_t length() const { return orders_.front().size(); }
 
-  /// \param places  of the order, in rising order, that are asked for
+  /// \param places  the places in the order whose classes are returned, ascending
   [[nodiscard]] std::vector<int> drawn(std::size_t block, int deal,
                                        const std::vector<int>& places) const {
     const int pick = picks_[static_cast<std::size_t>(deal) * blocks_ + block];
@@ -104,7 +105,7 @@ class OrderDraws {
   std::vector<int> picks_;
 };
 
-/// Large studies need fewer deals: the sum over many blocks varies little.
+/// The number of draws. Large studies need fewer, because the sum over many blocks varies little.
 int deals_for(std::size_t blocks, int most_deals) {
   const auto affordable = kMostBlockDeals / static_cast<int>(std::max<std::size_t>(1, blocks));
   return std::clamp(affordable, std::min(kFewestDeals, most_deals), most_deals);
@@ -132,7 +133,8 @@ std::optional<ChanceTest> chance_of(const Outcomes& outcomes, int method, int mo
   const auto fits = [&](const PlacedBlock& block) {
     return static_cast<std::size_t>(block.places.back()) < draws.length();
   };
-  // A course that the design does not know is dealt without its rule.
+  // If a block has places that the schedules do not have, the test permutes the block's classes
+  // without the study's rule.
   if (!std::ranges::all_of(placed, fits)) {
     return chance_test(classes, blocks, DealtOrder::permuted);
   }

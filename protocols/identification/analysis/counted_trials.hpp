@@ -1,4 +1,5 @@
-/// \file The trials that count, by method and participant. Private to analysis/report.
+/// \file The trials that count, by method and participant. Private to
+/// protocols/identification/analysis.
 #pragma once
 
 #include "analysis/outcomes.hpp"
@@ -9,11 +10,12 @@
 
 namespace touchtrial::analysis::identification {
 
-/// One participant's trials with one method, by number. They point into the outcomes.
+/// One participant's trials with one method, ordered by trial number. The pointers refer to the
+/// outcomes.
 using OwnTrials = std::vector<const TrialOutcome*>;
 
 struct CountedTrials {
-  std::vector<std::string> participants;       ///< whose session counts, by session
+  std::vector<std::string> participants;       ///< whose session counts, in session order
   std::vector<std::vector<OwnTrials>> trials;  ///< [method][participant]; may be empty
 };
 
@@ -22,10 +24,10 @@ struct CountedTrials {
 
 [[nodiscard]] Choice choice_of(const TrialOutcome& trial);
 [[nodiscard]] Proportion accuracy_of(const OwnTrials& trials);
-/// Of the trials that presented one class.
+/// The trials that presented one class.
 [[nodiscard]] OwnTrials of_class(const OwnTrials& trials, int class_index);
 
-/// Whether a trial came to an end that counts: an answer, or the time's end without one.
+/// Tells whether a trial ended in a way that counts: with an answer, or by a time-out.
 [[nodiscard]] bool has_ended(const TrialOutcome& trial) noexcept;
 
 }  // namespace touchtrial::analysis::identification

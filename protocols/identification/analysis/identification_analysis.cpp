@@ -13,11 +13,11 @@
 namespace touchtrial::analysis::identification {
 namespace {
 
-/// More traces than these are read only if somebody asks: it takes seconds.
+/// The most traces that a report reads without being asked, because reading more takes seconds.
 constexpr int kTracesUnasked = 2500;
 
-/// Counts of one method's counted trials: a row a presented class, a column an answer, then
-/// the trials without a response.
+/// Counts of one method's counted trials. Each row is a presented class; the columns are the
+/// answers, followed by trials without a response.
 DataTable confusion_table(const Outcomes& outcomes, int method) {
   const auto classes = static_cast<int>(outcomes.classes.size());
   ConfusionMatrix confusion(classes);
@@ -84,7 +84,7 @@ class IdentificationAnalysis final : public ProtocolAnalysis {
  public:
   std::unique_ptr<const Results> results(const Outcomes& outcomes,
                                          const ReportWishes& wishes) const override {
-    // First what may be refused.
+    // Paths are read first, because the request for them may be refused.
     std::vector<ExplorationPath> paths = explorations(outcomes, wishes);
     StudyReport report = make_report(outcomes);
     if (reads_traces(wishes, outcomes)) {

@@ -1,12 +1,12 @@
-/// \file How well participants told the classes apart: confusions, accuracies, methods compared,
-/// what ideal observers would have answered.
+/// \file The analysis of how well participants told the classes apart: confusions, accuracies,
+/// comparisons of methods, and ideal observers.
 #pragma once
 
 #include "analysis/results.hpp"
 
 namespace touchtrial::analysis::identification {
 
-/// Of classification and comparison alike.
+/// The analysis of both protocols, classification and comparison.
 [[nodiscard]] const ProtocolAnalysis& identification_analysis();
 
 }  // namespace touchtrial::analysis::identification

@@ -60,7 +60,8 @@ Json no_response_json(const ConfusionMatrix& confusion) {
   return column;
 }
 
-/// Row and column sums; how often a class was answered beside how often it was there is the bias.
+/// The row and column sums. The bias shows in how often a class was answered, compared with how
+/// often it was presented.
 Json marginals_json(const ConfusionMatrix& confusion) {
   Json presented = Json::array();
   Json answered = Json::array();

@@ -29,7 +29,8 @@ DataCell whole_or_nothing(const std::optional<int>& number) {
   return std::int64_t{*number};
 }
 
-/// The class is part of the name: two classes may have an image of one name.
+/// The name of an image, preceded by its class, because two classes may have images of the same
+/// name.
 std::string image_name(const Outcomes& outcomes, const TrialOutcome& trial) {
   return outcomes.classes[trial.stimulus.class_index] + ": " + image_of(outcomes, trial);
 }
@@ -44,7 +45,7 @@ std::vector<const TrialOutcome*> in_order_of_presentation(const Outcomes& outcom
   return trials;
 }
 
-/// What came before a trial: in the same block, and no catch trial.
+/// The presentation before a trial, if it is in the same block and is not a catch trial.
 const TrialOutcome* before(const TrialOutcome* previous, const TrialOutcome& trial) {
   const bool told = previous != nullptr && previous->row.session == trial.row.session &&
                     previous->row.block == trial.row.block &&
@@ -229,7 +230,7 @@ if (several_methods) {
 stamp()
 )R";
 
-/// An R string.
+/// The text as a quoted R string.
 std::string r_text(const std::string& text) {
   std::string quoted = "\"";
   for (const char c : text) {

@@ -1,5 +1,5 @@
-/// \file A long table for a mixed model in R, and the script that fits it.
-/// Format: docs/exports.md.
+/// \file Exports a long table for a mixed model in R, and the script that fits the model. Format:
+/// docs/exports.md.
 #pragma once
 
 #include "analysis/exports/data_table.hpp"
@@ -11,20 +11,22 @@
 
 namespace touchtrial::analysis::identification {
 
-/// One row a trial that counts, in the order of presentation, with what came before it in its block
-/// (a lead-in too; nothing after a catch trial).
+/// One row for each counted trial, in the order of presentation, with the class and the answer of
+/// the presentation before it, which may be a lead-in. These two cells are empty at the start of a
+/// block and after a catch trial.
 [[nodiscard]] DataTable mixed_model_table(const Outcomes& outcomes);
 
-/// The model as lme4 takes it: participants and images are random, methods fixed where several are
-/// compared.
+/// The model as an lme4 formula: participants and images are random effects; the method is a fixed
+/// effect if several methods are compared.
 [[nodiscard]] std::string mixed_model_formula(const Outcomes& outcomes);
 
-/// mixed_model.R.
+/// The text of mixed_model.R.
 [[nodiscard]] std::string mixed_model_script(const Outcomes& outcomes);
 
 /// Writes mixed_model.csv, mixed_model.R and mixed_model.md.
 /// \return the files, in the order written
-/// \throws FileError if the folder or a file cannot be written or holds something else's files
+/// \throws FileError if the folder or a file cannot be written, or the folder holds files of
+/// something else
 std::vector<std::filesystem::path> export_mixed_model(const store::StudyStore& store,
                                                       const Outcomes& outcomes,
                                                       const std::filesystem::path& folder);

@@ -40,7 +40,8 @@ Choices choices_of(const OwnTrials& trials) {
   return choices;
 }
 
-/// The null mean of many trials varies little from deal to deal, and each deal takes longer.
+/// The number of deals for the null mean. With many trials the mean varies little from deal to deal
+/// and each deal takes longer, so fewer suffice.
 int null_deals(int trials) {
   return std::clamp(kMostNullTrials / std::max(1, trials), kFewestNullDeals, kNullDeals);
 }
@@ -111,7 +112,7 @@ namespace {
 using PairedTrials = std::pair<OwnTrials, OwnTrials>;
 using PairedProportions = std::pair<Proportion, Proportion>;
 
-/// Of the participants who felt both methods.
+/// The trials of the participants who felt both methods.
 std::vector<PairedTrials> paired_trials(const CountedTrials& counted, int first, int second) {
   std::vector<PairedTrials> pairs;
   for (std::size_t i = 0; i < counted.participants.size(); ++i) {
@@ -147,7 +148,8 @@ MethodComparison compared(const std::vector<PairedProportions>& pairs) {
   return compare_methods(accuracies);
 }
 
-/// Only where every participant has one trial with each: pairs that are independent.
+/// McNemar's mid-p. Exists only if every participant has one trial with each method, because then
+/// the pairs are independent.
 std::optional<double> mcnemar_of(const std::vector<PairedProportions>& pairs) {
   int first_only = 0;
   int second_only = 0;
@@ -192,7 +194,8 @@ MethodPair method_pair(int classes, const CountedTrials& counted, int first, int
   return pair;
 }
 
-/// Pairs without a p (nobody felt both) are not in the family.
+/// Adjusts the p values by Holm. A pair has no p if nobody felt both methods; such pairs are left
+/// out.
 void adjust(std::vector<MethodPair>& pairs) {
   std::vector<MethodPair*> family;
   std::vector<double> p_values;
@@ -205,7 +208,8 @@ void adjust(std::vector<MethodPair>& pairs) {
   for (std::size_t i = 0; i < family.size(); ++i) family[i]->p_holm = adjusted[i];
 }
 
-/// A participant's n-th presentations of a class that every method has: right or wrong with each.
+/// Adds one participant's occasions with a class. The n-th occasion is the n-th presentation of the
+/// class with every method; it says whether each of these answers was right.
 void add_occasions(int class_index, const std::vector<const OwnTrials*>& methods,
                    std::vector<std::vector<bool>>& occasions) {
   std::vector<OwnTrials> own;

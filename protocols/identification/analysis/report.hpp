@@ -1,5 +1,5 @@
-/// \file How well participants told the textures apart: the study's tables.
-/// Format of the JSON: docs/data-dictionary.md, "Report".
+/// \file The report of a study: how well participants told the textures apart. Format of the JSON:
+/// docs/data-dictionary.md, "Report".
 #pragma once
 
 #include "analysis/statistics/chance_test.hpp"
@@ -20,7 +20,7 @@
 
 namespace touchtrial::analysis::identification {
 
-/// Accuracy with a class, all participants' trials pooled.
+/// Accuracy with a class, pooled over all participants' trials.
 struct ClassAccuracy {
   Proportion accuracy;
   Interval wilson;
@@ -31,69 +31,71 @@ struct ClassAccuracy {
 struct ParticipantAccuracy {
   std::string participant;
   Proportion accuracy;
-  LabelMatching matching{};             ///< what the best exchange of labels would give
-  std::optional<double> consistency{};  ///< raw information transfer, bits; never to be headlined
+  LabelMatching matching{};             ///< accuracy under the best exchange of labels
+  std::optional<double> consistency{};  ///< raw information transfer, bits; never a headline
 };
 
-/// One method's figures; trials without a response are wrong in all but information transfer.
+/// The numbers of one method. Trials without a response are wrong everywhere except in information
+/// transfer.
 struct MethodReport {
   std::string method;
   ConfusionMatrix confusion{1};
   std::vector<ClassAccuracy> accuracy;  ///< by class
   Proportion overall;                   ///< all trials pooled
-  MeanEstimate mean;                    ///< over participants' own accuracies: the headline
+  MeanEstimate mean;                    ///< mean of the participants' accuracies: the headline
   InformationTransfer information;
-  std::vector<ParticipantAccuracy> per_participant;  ///< by session
+  std::vector<ParticipantAccuracy> per_participant;  ///< in the order of sessions
   std::optional<Interval> bootstrap{};               ///< cluster_bootstrap of the headline
   std::optional<ChanceTest> chance{};
-  DPrime d_prime{};  ///< of the pooled trials, nominal
+  DPrime d_prime{};  ///< nominal, from the pooled trials
   std::optional<ChoiceModel> choice{};
   LabelMatching matching{};             ///< of the pooled trials
-  std::vector<ReactionTimes> reaction;  ///< by class, then all
+  std::vector<ReactionTimes> reaction;  ///< by class, then of all classes together
   std::vector<Breakdown> breakdowns;
   std::vector<SubsetAccuracy> robustness;
 };
 
-/// Two methods with one class (Fig. 7).
+/// Two methods with one class (Fig. 7 of the source paper).
 struct ClassComparison {
   Proportion first;
   Proportion second;
-  MethodComparison paired;                ///< over participants; its p is not adjusted
-  std::optional<double> mcnemar_mid_p{};  ///< only with one pair a participant
+  MethodComparison paired;                ///< over participants; p is not adjusted
+  std::optional<double> mcnemar_mid_p{};  ///< only with one pair for each participant
 };
 
-/// Two of the study's methods, first minus second.
+/// The difference between two of the study's methods, first minus second.
 struct MethodPair {
   int first = 0;  ///< indices into StudyReport::methods
   int second = 1;
   MethodComparison overall;
-  std::optional<double> p_holm{};         ///< adjusted over all pairs, with three methods or more
+  std::optional<double> p_holm{};  ///< adjusted over all pairs; only with three or more methods
   std::optional<OddsRatio> odds_ratio{};  ///< stratified by participant
-  std::optional<double> mcnemar_mid_p{};  ///< only with one pair a participant
+  std::optional<double> mcnemar_mid_p{};  ///< only with one pair for each participant
   std::vector<ClassComparison> classes;
 };
 
-/// Three methods or more at once.
+/// Three or more methods, compared at once.
 struct MethodsTogether {
   CochranQ cochran;
-  std::optional<double> permuted_p;  ///< methods exchanged within participants
+  std::optional<double> permuted_p;  ///< p when methods are exchanged within participants
 };
 
 struct StudyReport : StudyHead {
   std::vector<MethodReport> methods;
-  std::optional<MethodComparison> comparison;  ///< of exactly two methods
-  std::vector<MethodPair> pairs;               ///< of two methods or more: every pair
-  std::optional<MethodsTogether> together;     ///< of three methods or more
-  std::optional<CueReport> cues{};             ///< if asked for: it takes reading every trace
+  std::optional<MethodComparison> comparison;  ///< if there are exactly two methods
+  std::vector<MethodPair> pairs;               ///< every pair, if there are two or more methods
+  std::optional<MethodsTogether> together;     ///< if there are three or more methods
+  std::optional<CueReport> cues{};             ///< only if the traces were read
 };
 
-/// Counts the outcomes that count.
+/// Makes the report from the outcomes that count.
 [[nodiscard]] StudyReport make_report(const Outcomes& outcomes);
 
-/// One JSON object, indented, ending with a line feed. Figures that do not exist are null.
+/// The report as one JSON object, indented, with a line feed at the end. Numbers that do not exist
+/// are null.
 [[nodiscard]] std::string report_json(const StudyReport& report);
 
-/// Tables for a terminal of 100 columns or more, ending with a line feed.
+/// The report as tables for a terminal of at least 100 columns, with a line feed at the end.
 [[nodiscard]] std::string report_text(const StudyReport& report);
 
 }  // namespace touchtrial::analysis::identification

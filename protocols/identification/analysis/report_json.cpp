@@ -154,7 +154,7 @@ Json comparison_json(const MethodComparison& comparison) {
           {"db", figure_json(comparison.db)}};
 }
 
-/// The accuracies' intervals, which every method has.
+/// The description of the intervals of accuracies, which is the same for every method.
 Json intervals_json() {
   Json object;
   put_method(object,

@@ -1,5 +1,5 @@
-/// \file The sections of the report's JSON, and the parts of its text. Private to
-/// protocols/identification: it shows the JSON library.
+/// \file The sections of the report's JSON. Private to protocols/identification, because it exposes
+/// the JSON library.
 #pragma once
 
 #include "protocols/identification/analysis/report.hpp"

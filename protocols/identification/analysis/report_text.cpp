@@ -55,7 +55,7 @@ std::string reaction_line(const MethodReport& method) {
   return text;
 }
 
-/// Subsets that are other trials than the headline's.
+/// The mean in each subset that differs from the headline's trials.
 std::string robustness_line(const MethodReport& method) {
   constexpr std::pair<TrialSubset, const char*> kTold[] = {
       {TrialSubset::answered, "answered trials alone"},
@@ -165,7 +165,8 @@ std::string cell(int count, int row_total) {
   return fmt::format("{} {:>6}", count, '(' + percent(percentage(count, row_total), 0) + ')');
 }
 
-/// How often each answer was given: beside how often it was there, what is preferred.
+/// How often each answer was given; beside how often each class was presented, this shows
+/// preferences.
 std::vector<std::string> answered_row(const ConfusionMatrix& confusion) {
   std::vector<std::string> row{"all"};
   int missing = 0;
@@ -209,7 +210,7 @@ std::string accuracy_text(const MethodReport& method, const std::vector<std::str
   return table.text();
 }
 
-/// Several participants a line.
+/// Participants' accuracies, several to a line.
 std::string participants_text(const MethodReport& method) {
   std::size_t name_width = 0;
   for (const ParticipantAccuracy& one : method.per_participant) {

@@ -18,15 +18,15 @@ namespace {
 
 constexpr const char* kFirst = "first of its block";
 
-/// A counted trial, and where it stands among what the participant felt.
+/// A counted trial, and its place among the trials that the participant felt.
 struct PlacedTrial {
   const TrialOutcome* trial = nullptr;
-  const TrialOutcome* previous = nullptr;  ///< in the same block; nothing: it was the first
-  int place = 0;                           ///< among the participant's scored ones of its method
+  const TrialOutcome* previous = nullptr;  ///< in the same block; null: none
+  int place = 0;  ///< from 1, among the participant's scored trials with the method
 };
 
-/// All presentations that were felt and are not void, as they came. A trial that was interrupted
-/// stands where it was repeated; what was felt of it before is not seen here.
+/// All presentations that are not void, in the order in which they were felt. An interrupted trial
+/// stands where it was repeated; what the participant felt before the interruption does not appear.
 std::vector<const TrialOutcome*> as_felt(const Outcomes& outcomes) {
   std::vector<const TrialOutcome*> felt;
   for (const TrialOutcome& trial : outcomes.trials) {
@@ -102,7 +102,7 @@ std::map<int, int> enrolments(const Outcomes& outcomes) {
   return of_session;
 }
 
-/// Counts trials by the group that `group_of` names.
+/// Counts trials and correct answers by the group that `group_of` returns.
 template <typename GroupOf>
 Breakdown broken_down(BreakdownKind kind, const std::vector<PlacedTrial>& trials,
                       GroupOf group_of) {
@@ -119,7 +119,7 @@ Breakdown broken_down(BreakdownKind kind, const std::vector<PlacedTrial>& trials
   return breakdown;
 }
 
-/// Images of a class are told apart only where it has several.
+/// Tells whether any class has several images; only then does accuracy have a breakdown by image.
 bool has_several_exemplars(const Outcomes& outcomes) {
   return std::ranges::any_of(outcomes.exemplars,
                              [](const auto& images) { return images.size() > 1; });
@@ -174,8 +174,8 @@ namespace {
 constexpr TrialSubset kSubsets[] = {TrialSubset::counted, TrialSubset::answered, TrialSubset::valid,
                                     TrialSubset::with_excluded_sessions};
 
-/// Completed sessions that do not count for no other reason than that they were excluded. Who was
-/// excluded and began anew is in the figures already.
+/// Completed sessions whose exclusion is the only reason why they do not count. A participant who
+/// was excluded and started again is left out, because the new session counts already.
 std::set<int> excluded_sessions(const Outcomes& outcomes) {
   std::set<int> excluded;
   for (const auto& [row, counted] : outcomes.sessions) {
@@ -249,7 +249,7 @@ double seconds_between(std::chrono::nanoseconds from, std::chrono::nanoseconds t
   return std::chrono::duration<double>(to - from).count();
 }
 
-/// What has been collected of one class.
+/// The reaction times of one class, in seconds.
 struct Times {
   std::vector<double> from_plane_on;
   std::vector<double> from_contact;

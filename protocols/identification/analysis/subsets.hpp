@@ -1,5 +1,5 @@
-/// \file Accuracy of subsets of trials: by place, by what came before, with and without what may be
-/// left out; and reaction times.
+/// \file Accuracy in subsets of trials: by place, by what came before, with and without trials that
+/// may be left out; and reaction times.
 #pragma once
 
 #include "analysis/outcomes.hpp"
@@ -12,11 +12,11 @@
 namespace touchtrial::analysis::identification {
 
 enum class BreakdownKind {
-  exemplar,           ///< groups "class: image"
+  exemplar,           ///< groups are named "class: image"
   trial,              ///< the place among a participant's scored trials of the method, from 1
   order_group,        ///< row of the Williams design of method blocks
-  previous_stimulus,  ///< class of the presentation before, in the same block
-  previous_response,  ///< class answered to it
+  previous_stimulus,  ///< class of the previous presentation in the same block
+  previous_response,  ///< class that was answered to that presentation
 };
 
 struct GroupAccuracy {
@@ -27,20 +27,20 @@ struct GroupAccuracy {
 
 struct Breakdown {
   BreakdownKind kind{};
-  std::vector<GroupAccuracy> groups;  ///< in a sensible order; none is empty
+  std::vector<GroupAccuracy> groups;  ///< in the order of the study; none is empty
 };
 
 /// "exemplar", "trial", "order_group", "previous_stimulus", "previous_response"
 [[nodiscard]] std::string name_of(BreakdownKind kind);
 
-/// All kinds that tell anything (two groups or more) for one method's counted trials.
+/// The breakdowns of one method's counted trials that have at least two groups.
 [[nodiscard]] std::vector<Breakdown> breakdowns(const Outcomes& outcomes, int method);
 
 enum class TrialSubset {
-  counted,                ///< the headline: missing responses are wrong
-  answered,               ///< trials without a response left out
-  valid,                  ///< trials that do not meet the study's validity rule left out
-  with_excluded_sessions  ///< excluded participants' completed sessions put back
+  counted,                ///< trials of the headline; missing responses are wrong
+  answered,               ///< without trials that have no response
+  valid,                  ///< without trials that break the study's validity rule
+  with_excluded_sessions  ///< also completed sessions of excluded participants
 };
 
 struct SubsetAccuracy {
@@ -52,17 +52,18 @@ struct SubsetAccuracy {
 /// "counted", "answered", "valid", "with_excluded_sessions"
 [[nodiscard]] std::string name_of(TrialSubset subset);
 
-/// One method's, the headline first; a subset that is the same trials as the headline is there too.
+/// The accuracy of one method in each subset, the headline first. A subset that has the same trials
+/// as the headline is included too.
 [[nodiscard]] std::vector<SubsetAccuracy> robustness(const Outcomes& outcomes, int method);
 
-/// Of trials with a response, in seconds, on the servo's monotonic clock.
+/// Times of the trials with a response, in seconds on the servo's monotonic clock.
 struct ReactionTimes {
   Quartiles from_plane_on;        ///< from the moment the plane can be felt to the answer
   Quartiles from_contact;         ///< from first contact to the answer
-  std::vector<double> seconds{};  ///< from plane-on, rising: for the figure
+  std::vector<double> seconds{};  ///< from plane-on, ascending; for the figure
 };
 
-/// One method's, by class; the last entry is all classes together.
+/// The reaction times of one method, by class; the last entry is for all classes together.
 [[nodiscard]] std::vector<ReactionTimes> reaction_times(const Outcomes& outcomes, int method);
 
 }  // namespace touchtrial::analysis::identification

@@ -17,7 +17,8 @@ using Warnings = std::vector<std::string>;
 
 constexpr int kSmallCell = 5;
 constexpr std::size_t kMostNames = 5;
-/// Of trials at random the best of 5! exchanges of labels is some 18 points above accuracy.
+/// With random answers to 5 classes, the best of the 5! exchanges of labels gains about 18
+/// percentage points over the accuracy.
 constexpr double kSuspectGain = 0.3;
 constexpr double kSuspectShare = 0.5;
 constexpr double kCeiling = 0.95;
@@ -109,7 +110,7 @@ void warn_of_choice_model(const MethodReport& method, Warnings& warnings) {
                      ": the choice model's estimates did not settle; do not quote them.");
 }
 
-/// Whether the headline hangs on trials that do not meet the study's own rule.
+/// Warns if the headline depends on trials that do not meet the study's own rule.
 void warn_of_validity(const MethodReport& method, Warnings& warnings) {
   const auto of = [&](TrialSubset subset) {
     return std::ranges::find(method.robustness, subset, &SubsetAccuracy::subset);
@@ -161,8 +162,8 @@ using Warnings = std::vector<std::string>;
 constexpr int kFewParticipants = 10;
 constexpr double kLevel = 0.05;
 
-/// Of n participants all 2^n sign patterns are as likely, and Holm multiplies the least p of
-/// several pairs by their number. Powers of two print exactly.
+/// Warns of the smallest p that n participants can give. All 2^n sign patterns are equally likely,
+/// and Holm multiplies the smallest p by the number of pairs. Powers of two print exactly.
 void warn_of_floor(int n, std::size_t pairs, Warnings& warnings) {
   const double floor = std::ldexp(2.0, -n);
   const double adjusted = std::min(1.0, floor * static_cast<double>(pairs));
@@ -173,7 +174,7 @@ void warn_of_floor(int n, std::size_t pairs, Warnings& warnings) {
   warnings.push_back(text + ", whatever the methods do.");
 }
 
-/// Of the pair with the fewest participants: the floor under its p.
+/// Warns of the smallest p that the pair with the fewest participants can give.
 void warn_of_sign_flips(const StudyReport& report, Warnings& warnings) {
   int n = 0;
   for (const MethodPair& pair : report.pairs) {
@@ -182,7 +183,7 @@ void warn_of_sign_flips(const StudyReport& report, Warnings& warnings) {
   }
   if (n > 0) warn_of_floor(n, report.pairs.size(), warnings);
   const auto at_floor = [](const MethodPair& pair) {
-    constexpr double kFloor = 1.5e-5;  // of 99,999 random patterns
+    constexpr double kFloor = 1.5e-5;  // 1.5 times the smallest p of 99,999 patterns
     return pair.overall.participants > kExactSignFlips && pair.overall.p.value_or(1.0) < kFloor;
   };
   if (std::ranges::any_of(report.pairs, at_floor)) {

@@ -11,7 +11,7 @@ int classes_of(const Study& study) {
   return static_cast<int>(study.classes.size());
 }
 
-/// Presentations of a class in one block.
+/// The number of scored presentations of a class in one block.
 int copies_in_block(const Study& study) {
   const int methods = study.trials.blocks == Blocks::mixed ? study.presented_methods() : 1;
   return study.trials.repeats * methods;
@@ -21,7 +21,7 @@ bool mixes_methods(const Study& study) {
   return study.trials.blocks == Blocks::mixed && study.presented_methods() > 1;
 }
 
-/// Whether the limit of runs excludes an order that the study would have otherwise.
+/// Whether the limit on runs can exclude an order that is possible without it.
 bool max_run_matters(const Study& study) {
   const TrialOptions& trials = study.trials;
   if (trials.max_run == 0) return false;
@@ -89,10 +89,10 @@ std::optional<OrderObstacle> obstacle_to_limit(const Study& study) {
   return std::nullopt;
 }
 
-/// A block of a study, with the streams that decide it.
+/// A block to draw, with its random streams.
 struct BlockDraw {
   const Study& study;
-  std::vector<BlockItem> items;  ///< each class by each method once, method by method
+  std::vector<BlockItem> items;  ///< every pair of class and method once, method by method
   RandomStream order;
   RandomStream lead_in;
 
@@ -116,7 +116,8 @@ BlockItem drawn(std::span<const BlockItem> items, RandomStream& random) {
   return items[static_cast<std::size_t>(random.below(items.size()))];
 }
 
-/// The cycle with its last symbol before it, so that every transition has both its ends.
+/// A de Bruijn cycle with its last symbol repeated in front as a lead-in, so that every transition
+/// occurs.
 BlockOrder de_bruijn_order(BlockDraw& draw) {
   const std::vector<int> cycle =
       random_de_bruijn_cycle(static_cast<int>(draw.items.size()), draw.order);
@@ -127,7 +128,8 @@ BlockOrder de_bruijn_order(BlockDraw& draw) {
   return order;
 }
 
-/// Independent draws, or every item equally often in a shuffled order.
+/// An order without a limit on runs: independent draws for the order `uniform`, or every item
+/// equally often in a shuffled order.
 std::vector<BlockItem> free_order(BlockDraw& draw) {
   const bool balanced = draw.study.trials.order == TrialOrder::shuffled;
   std::vector<BlockItem> scored;
@@ -139,7 +141,7 @@ std::vector<BlockItem> free_order(BlockDraw& draw) {
   return scored;
 }
 
-/// Each class's presentations by any methods, independently.
+/// Gives each presentation a method, drawn independently.
 std::vector<BlockItem> with_any_methods(const std::vector<int>& classes, const BlockDraw& draw,
                                         RandomStream& random) {
   std::vector<BlockItem> items;
@@ -150,8 +152,8 @@ std::vector<BlockItem> with_any_methods(const std::vector<int>& classes, const B
   return items;
 }
 
-/// Each class's presentations by every method equally often, in a shuffled order: whatever the
-/// order of classes, there are as many orders of methods for it.
+/// Gives each class every method equally often, in a shuffled order. The number of orders of
+/// methods is the same for every order of classes, so all combinations are equally likely.
 std::vector<BlockItem> with_balanced_methods(const std::vector<int>& classes, BlockDraw& draw) {
   std::vector<std::vector<int>> decks(static_cast<std::size_t>(draw.classes()));
   for (std::vector<int>& deck : decks) {
@@ -196,7 +198,8 @@ std::vector<BlockItem> williams_order(BlockDraw& draw, RunBefore before) {
   return items;
 }
 
-/// Drawn before the scored presentations, which then go on from them.
+/// Draws the lead-in presentations. They are drawn before the scored ones, which continue their
+/// last run.
 std::vector<BlockItem> lead_ins(BlockDraw& draw) {
   const TrialOptions& trials = draw.study.trials;
   if (trials.max_run > 0) {

@@ -1,5 +1,5 @@
-/// \file What a block presents, in which order, before images are chosen; and which orders a study
-/// can have. Private to protocols/identification.
+/// \file The presentations of a block and their order, before images are chosen, and a check that a
+/// study's order is possible. Private to protocols/identification.
 #pragma once
 
 #include "protocols/design/study.hpp"
@@ -14,29 +14,30 @@ namespace touchtrial::design::identification {
 
 /// Why an order is impossible.
 struct OrderObstacle {
-  std::string key;  ///< the offender in "trials", as a JSON pointer: "/repeats"
+  std::string key;  ///< the offending key of "trials", as a JSON pointer: "/repeats"
   std::string what;
 };
 
-/// \return nothing if every participant's schedule can be made
+/// \return why the study's order is impossible, or nothing if every participant can get a schedule
 [[nodiscard]] std::optional<OrderObstacle> obstacle_to_order(const Study& study);
 
-/// What a trial presents, before an image is chosen.
+/// The class and method of a trial, before an image is chosen.
 struct BlockItem {
   int class_index = 0;
   int method = 0;
 };
 
-/// A block's presentations; the first `lead_ins` are not scored.
+/// A block's presentations in order; the first `lead_ins` are not scored.
 struct BlockOrder {
   std::vector<BlockItem> items;
   std::size_t lead_ins = 0;
 };
 
 /// Draws the order of a block.
-/// \param methods  that the block presents
-/// \param purpose  of the block's random streams, after "schedule: order, " and the like
-/// \pre obstacle_to_order(study) is nothing
+/// \param methods  methods that the block presents
+/// \param purpose  suffix of the names of the block's random streams, after "schedule: order, " and
+///   "schedule: lead-in, "
+/// \pre obstacle_to_order(study) is empty
 [[nodiscard]] BlockOrder make_block_order(const Study& study, std::span<const int> methods,
                                           const std::string& purpose, int enrolment);
 

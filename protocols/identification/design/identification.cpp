@@ -7,7 +7,7 @@
 namespace touchtrial::design::identification {
 namespace {
 
-/// What both protocols have in common: they differ in the methods that they present.
+/// The common part of both protocols, which differ only in the methods that they present.
 class Identification : public Protocol {
  public:
   void check(const JsonValue& file, const Study& study) const override {

@@ -6,9 +6,9 @@
 
 namespace touchtrial::design::identification {
 
-/// Presents the study's first method alone.
+/// The protocol that presents only the study's first method.
 [[nodiscard]] const Protocol& classification();
-/// Presents all methods of the study, two or more, to each participant.
+/// The protocol that presents all methods of the study, at least two, to each participant.
 [[nodiscard]] const Protocol& comparison();
 
 }  // namespace touchtrial::design::identification

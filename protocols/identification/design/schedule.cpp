@@ -16,7 +16,7 @@
 namespace touchtrial::design::identification {
 namespace {
 
-/// The methods of each block, and the purpose of its random streams.
+/// The methods of a block, and the suffix of the names of its random streams.
 struct BlockPlan {
   std::vector<int> methods;
   std::string purpose;
@@ -34,21 +34,21 @@ std::vector<BlockPlan> block_plans(const Study& study, int enrolment) {
   return plans;
 }
 
-/// Deals the images of each class and method like a pack of cards of one participant: all are used
-/// before any repeats, then they are shuffled anew.
+/// Chooses images for one participant. For each class and method, it deals the images like a
+/// shuffled pack of cards: all are used before any repeats, and then they are shuffled again.
 class ExemplarSupply {
  public:
-  /// \param restart  ends the purposes of the random streams; empty in a participant's schedule
+  /// \param restart  suffix of the names of the random streams; empty for a schedule's first order
   ExemplarSupply(const Study& study, int enrolment, std::string restart = {})
       : study_(study), enrolment_(enrolment), restart_(std::move(restart)) {}
 
-  /// The next image of the class under the method.
+  /// \return the index of the next image of the class for the method
   int next(int class_index, int method);
 
  private:
   struct Deck {
     RandomStream random;
-    std::vector<int> left;  ///< next at the back
+    std::vector<int> left;  ///< images left to deal; the next one is at the back
   };
 
   const Study& study_;
@@ -79,7 +79,8 @@ int ExemplarSupply::next(int class_index, int method) {
   return exemplar;
 }
 
-/// Which of the places after the first are taken: `count` of `places`.
+/// Draws `count` of `places` places, but never the first.
+/// \return for each place, whether it was drawn
 std::vector<bool> random_places(std::size_t places, std::size_t count, RandomStream& random) {
   std::vector<std::size_t> later(places - 1);
   std::iota(later.begin(), later.end(), std::size_t{1});
@@ -89,9 +90,10 @@ std::vector<bool> random_places(std::size_t places, std::size_t count, RandomStr
   return taken;
 }
 
-/// Spreads catch trials among presentations: every choice of places is equally likely, except that
-/// the first presentation stays first. A catch trial belongs to the block of the presentation
-/// before it. Leaves trial numbers as they are. \pre there is a presentation if `count` > 0
+/// Inserts catch trials at random places. The first presentation stays first; otherwise every
+/// choice of places is equally likely. A catch trial belongs to the block of the presentation
+/// before it. Does not number trials.
+/// \pre `shown` is not empty if `count` > 0
 std::vector<Presentation> with_catch_trials(const std::vector<Presentation>& shown, int count,
                                             RandomStream& random) {
   if (count == 0) return shown;
@@ -109,7 +111,7 @@ std::vector<Presentation> with_catch_trials(const std::vector<Presentation>& sho
   return all;
 }
 
-/// A block's presentations without catch trials and numbers.
+/// A block's presentations, still without catch trials and trial numbers.
 std::vector<Presentation> presentations_of(const BlockOrder& order, int block,
                                            ExemplarSupply& exemplars) {
   std::vector<Presentation> shown;

@@ -1,5 +1,5 @@
-/// \file Schedules of identification: blocks of presentations by method or mixed, images dealt like
-/// cards, catch trials between them. Private to protocols/identification.
+/// \file Schedules of the identification protocols: blocks by method or mixed, the choice of
+/// images, and catch trials. Private to protocols/identification.
 #pragma once
 
 #include "protocols/design/schedule.hpp"

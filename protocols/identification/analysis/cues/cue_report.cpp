@@ -18,7 +18,7 @@ namespace touchtrial::analysis::identification {
 
 namespace {
 
-/// The counted trials of a study with what was felt in them.
+/// The counted trials of a study and their felt features.
 struct FeltStudy {
   std::vector<const TrialOutcome*> trials;
   FeltTrials felt;
@@ -26,7 +26,7 @@ struct FeltStudy {
   int jobs = 0;
 };
 
-/// In the order of the outcomes.
+/// The counted trials, in the order of the outcomes.
 std::vector<const TrialOutcome*> counted_trials(const Outcomes& outcomes) {
   std::vector<const TrialOutcome*> trials;
   for (const TrialOutcome& trial : outcomes.trials) {
@@ -42,7 +42,7 @@ StudyPlane plane_to_feel(const store::StudyStore& store, const design::StudyKey&
           kPlaneFromTraces};
 }
 
-/// The places of a method's trials that can be felt.
+/// The places of a method's trials that have a trace.
 std::vector<std::size_t> felt_with(const FeltStudy& study, int method, MethodCues& cues) {
   std::vector<std::size_t> places;
   for (std::size_t place = 0; place < study.trials.size(); ++place) {
@@ -56,7 +56,7 @@ std::vector<std::size_t> felt_with(const FeltStudy& study, int method, MethodCue
   return places;
 }
 
-/// Of all observers, in the order of kCues; trials in the order of `places`.
+/// The answers of all observers, in the order of kCues; trials are in the order of `places`.
 using Answers = std::vector<ObserverAnswers>;
 
 Answers all_answers(const FeltStudy& study, const std::vector<std::size_t>& places) {
@@ -84,7 +84,8 @@ JudgedTrial judged(const TrialOutcome& trial, const Answers& answers, std::size_
   return judged;
 }
 
-/// In the order of participants' first trials, which is the order of sessions.
+/// The answers by participant, in the order of participants' first trials, which is the order of
+/// sessions.
 std::vector<ParticipantAnswers> by_participant(const FeltStudy& study,
                                                const std::vector<std::size_t>& places,
                                                const Answers& answers, MethodCues& cues) {

@@ -1,6 +1,6 @@
-/// \file Which cue did participants use? What ideal observers, who feel what each participant's
-/// hand felt, would have answered, beside what participants answered. Source: docs/cues.md. Format
-/// of the JSON: docs/data-dictionary.md, "Cues".
+/// \file Which cue did participants use? The answers that ideal observers would have given from
+/// what each hand felt, beside the answers of the participants. Source: docs/cues.md. Format of the
+/// JSON: docs/data-dictionary.md, "Cues".
 #pragma once
 
 #include "analysis/outcomes.hpp"
@@ -17,14 +17,14 @@
 
 namespace touchtrial::analysis::identification {
 
-/// What an ideal observer may use of a trial: only the strength of the force, only the shape of its
-/// spectrum, or all felt features.
+/// The part of a trial that an ideal observer may use: only the strength of the force, only the
+/// shape of its spectrum, or all felt features.
 enum class Cue { rms, spectrum, everything };
 inline constexpr std::array<Cue, 3> kCues{Cue::rms, Cue::spectrum, Cue::everything};
 
-/// "rms", "spectrum", "everything"
+/// "rms", "spectrum" or "everything".
 [[nodiscard]] std::string_view name_of(Cue cue) noexcept;
-/// For tables and legends: "force strength (rms)", "spectrum's shape", "everything felt"
+/// The name in tables and legends: "force strength (rms)", "spectrum's shape" or "everything felt".
 [[nodiscard]] std::string_view title_of(Cue cue) noexcept;
 
 /// A number with its interval from a bootstrap over participants.
@@ -33,86 +33,86 @@ struct CueFigure {
   std::optional<Interval> interval;  ///< none with fewer than two participants
 };
 
-/// Answers: rows are the presented class, columns the answered one. Ties are split, so counts need
-/// not be whole numbers.
+/// Answers: rows are the presented class, columns the answered class. Ties are split, so counts
+/// need not be whole numbers.
 using AnswerCounts = std::vector<std::vector<double>>;
 
 /// One observer's answers to one method's trials.
 struct ObserverFigures {
   Cue cue = Cue::rms;
-  AnswerCounts confusion;          ///< of all judged trials
-  std::vector<double> accuracy;    ///< by participant, as in MethodCues::participants
-  MeanEstimate mean;               ///< of `accuracy`: what was available
-  CueFigure efficiency;            ///< participants' mean accuracy over this observer's
+  AnswerCounts confusion;          ///< from all judged trials
+  std::vector<double> accuracy;    ///< in the order of MethodCues::participants
+  MeanEstimate mean;               ///< mean of `accuracy`: the attainable accuracy
+  CueFigure efficiency;            ///< participants' mean accuracy divided by this observer's
   CueFigure corrected_efficiency;  ///< the same ratio of the accuracies above chance
   /// Mean over presented classes of the Jensen-Shannon divergence between participants' and
   /// observer's answers, bits: 0 if they confuse alike, at most 1.
   CueFigure divergence;
-  /// Noise of the sense (a Weber fraction) with which the observer is right as often as the
-  /// participants; 0 if it is not right more often even without noise.
+  /// Noise of the sense (a Weber fraction) at which the observer is right as often as the
+  /// participants; 0 if the observer is not right more often even without noise.
   double matched_noise = 0.0;
-  AnswerCounts matched_confusion;  ///< with that noise
-  CueFigure matched_divergence;    ///< of the participants' answers from those with that noise
+  AnswerCounts matched_confusion;  ///< confusion with that noise
+  CueFigure matched_divergence;    ///< divergence with that noise
 };
 
-/// With fewer participants there is no verdict on which observer confuses as they do: a bootstrap
-/// over so few gives intervals that are too narrow.
+/// With fewer participants there is no verdict on which observer confuses classes as they do,
+/// because a bootstrap over so few participants gives intervals that are too narrow.
 inline constexpr int kFewestForVerdict = 6;
 
-/// Which observer confuses as participants do. Each observer is made as uncertain as they are,
-/// since an observer that is never wrong has no confusions to compare.
+/// The observer that confuses classes as participants do. Each observer is made as uncertain as the
+/// participants, because an observer that is never wrong has no confusions to compare.
 struct CueMatch {
   Cue best = Cue::rms;    ///< with the least matched divergence
-  Cue second = Cue::rms;  ///< with the second least
-  CueFigure difference;   ///< matched divergence of second less that of best, bits
-  bool told_apart =
-      false;  ///< the difference's interval excludes 0, with kFewestForVerdict or more
+  Cue second = Cue::rms;  ///< with the second least matched divergence
+  CueFigure difference;   ///< matched divergence of second minus that of best, bits
+  /// The difference's interval excludes 0, with kFewestForVerdict participants or more.
+  bool told_apart = false;
 };
 
 /// One method: the counted trials that every observer could judge, and the participants' answers.
 struct MethodCues {
   std::string method;
-  int trials = 0;                         ///< judged
+  int trials = 0;                         ///< number of judged trials
   int without_trace = 0;                  ///< counted, but left out because no trace can be read
   int unjudged = 0;                       ///< left out because no other trial had the same class
   std::vector<std::string> participants;  ///< with a judged trial, in the order of sessions
-  std::vector<int> participant_trials;    ///< judged, by participant
+  std::vector<int> participant_trials;    ///< number of judged trials, by participant
   std::vector<double> human_accuracy;     ///< by participant, on the same trials
   int fewest_of_a_class = 0;  ///< the least number of judged trials of a class and a participant
   MeanEstimate human_mean;
   AnswerCounts human_confusion;  ///< of judged trials with a response
-  /// By presented class. Such trials are wrong in accuracy, and left out of confusions and
-  /// divergence.
+  /// By presented class. Trials without a response are wrong in accuracy, and left out of
+  /// confusions and divergence.
   std::vector<int> no_response;
   std::vector<ObserverFigures> observers;  ///< in the order of kCues; empty without judged trials
   std::optional<CueMatch> match;           ///< nothing without a trial with a response
 };
 
-/// CueReport::plane_source if only traces tell the plane's size.
+/// CueReport::plane_source if the size of the plane is known only from traces.
 inline constexpr const char* kPlaneFromTraces = "the farthest that hands had contact";
 
 struct CueReport {
   bool simulated = false;
   double chance = 0.0;                ///< 1 / classes
   std::vector<std::string> classes;   ///< labels
-  std::vector<MethodCues> methods;    ///< those that the study presents
-  std::string plane_source;           ///< where the plane's size came from
+  std::vector<MethodCues> methods;    ///< the methods that the study presents
+  std::string plane_source;           ///< source of the plane's size
   std::vector<std::string> warnings;  ///< sentences against misreadings of the numbers
 };
 
 struct CueOptions {
   int jobs = 0;                  ///< threads; 0: one for each core
-  std::filesystem::path pack{};  ///< for the plane's size; empty: where the key says
-  /// Called on the calling thread with how many traces are read.
+  std::filesystem::path pack{};  ///< gives the plane's size; empty: where the key says
+  /// Called on the calling thread with the number of traces read so far.
   std::function<void(int done, int of)> progress{};
 };
 
 /// The number of traces that make_cues reads: one for each counted trial.
 [[nodiscard]] int traces_to_read(const Outcomes& outcomes);
 
-/// Reads and feels the traces of all counted trials and lets the observers judge each trial by the
-/// others. The result does not depend on the number of threads; only the calling thread uses the
-/// store. Memory: features of all trials, 200 bytes each, and 64 traces.
+/// Computes the felt features of all counted trials from their traces, and lets the observers judge
+/// each trial by the others. The result does not depend on the number of threads. Only the calling
+/// thread uses the store. Memory: features of all trials, 200 bytes each, and 64 traces.
 /// \throws VerificationError if a participant's key or a trace's seal does not open
 /// \throws StoreError if the database cannot be read
 [[nodiscard]] CueReport make_cues(const store::StudyStore& store, const design::StudyKey& key,

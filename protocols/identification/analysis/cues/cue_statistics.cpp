@@ -28,9 +28,9 @@ double information(double p, double middle) noexcept {
 constexpr std::size_t kObservers = kCues.size();
 constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
 
-/// The sums behind all numbers, of one participant or over several. Two groups follow each other:
-/// the accuracies of the participant and of the observers; the answers, to trials with a response,
-/// of the participant, of the ideal observers and of the matched observers.
+/// The sums behind all numbers, for one participant or several. The first group of values holds the
+/// accuracies of the participant and of the observers. The second group holds the answers to trials
+/// with a response: those of the participant, of the ideal observers and of the matched observers.
 class Sums {
  public:
   explicit Sums(int classes)
@@ -55,21 +55,21 @@ class Sums {
     for (std::size_t i = 0; i < values_.size(); ++i) values_[i] += other.values_[i];
   }
 
-  /// NaN if the observer is never right.
+  /// The efficiency; NaN if the observer is never right.
   [[nodiscard]] double efficiency(std::size_t observer) const noexcept {
     const double available = values_[1 + observer];
     return available > 0.0 ? values_[0] / available : kUndefined;
   }
 
-  /// NaN unless the observer is above chance.
+  /// The efficiency above chance; NaN unless the observer is above chance.
   [[nodiscard]] double corrected(std::size_t observer) const noexcept {
     const double by_chance = static_cast<double>(participants_) / classes_;
     const double available = values_[1 + observer] - by_chance;
-    // A difference as small as rounding leaves counts as none.
+    // A difference that rounding alone can cause counts as none.
     return available > 1e-12 * participants_ ? (values_[0] - by_chance) / available : kUndefined;
   }
 
-  /// NaN without a trial with a response.
+  /// The divergence in bits; NaN without a trial with a response.
   [[nodiscard]] double divergence(std::size_t observer) const noexcept {
     return answer_divergence(answers(0), answers(1 + observer), classes_).value_or(kUndefined);
   }
@@ -95,8 +95,8 @@ class Sums {
   std::vector<double> values_;
 };
 
-/// Indices into the numbers of one draw: three of each kind, then the difference of two matched
-/// divergences.
+/// Indices into the numbers of one draw: kObservers of each kind, then the difference of two
+/// matched divergences.
 enum : std::size_t {
   kEfficiencyAt = 0,
   kCorrectedAt = kObservers,
@@ -107,7 +107,7 @@ enum : std::size_t {
 };
 using Figures = std::array<double, kFigures>;
 
-/// The two observers whose matched answers come nearest to the participants'.
+/// The two observers whose matched answers are nearest to the participants' answers.
 struct Ranking {
   std::size_t best = 0;
   std::size_t second = 1;
@@ -136,7 +136,8 @@ void put_difference(Figures& figures, const Ranking& ranking) {
       figures[kMatchedAt + ranking.second] - figures[kMatchedAt + ranking.best];
 }
 
-/// The numbers of studies whose participants are drawn from these, equally many.
+/// The numbers of resampled studies. A resampled study draws as many participants as there are,
+/// with replacement.
 struct Draws {
   std::size_t participants = 0;
   std::vector<Figures> figures{};  ///< empty with fewer than two participants
@@ -160,7 +161,7 @@ Draws drawn(const std::vector<Sums>& participants, int classes, const Ranking& r
   return {participants.size(), std::move(draws)};
 }
 
-/// Nothing if any draw leaves the number undefined.
+/// The interval of a number; nothing if the number is undefined in any draw.
 std::optional<Interval> interval_of(const Draws& draws, std::size_t figure) {
   std::vector<double> values;
   for (const Figures& one : draws.figures) {
@@ -200,7 +201,7 @@ double jensen_shannon_bits(std::span<const double> a, std::span<const double> b)
     const double middle = 0.5 * (p + q);
     bits += 0.5 * (information(p, middle) + information(q, middle));
   }
-  // Rounding may leave the divergence's range.
+  // Rounding may lead out of the range of the divergence.
   return std::clamp(bits, 0.0, 1.0);
 }
 

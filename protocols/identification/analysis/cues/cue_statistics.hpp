@@ -1,7 +1,7 @@
-/// \file What participants and observers answered to one method's trials, and what follows:
-/// efficiencies and divergences with intervals over participants. Sources: docs/cues.md;
-/// docs/statistics.md, "Participants as clusters"; Lin 1991, IEEE Transactions on Information
-/// Theory 37(1) (divergence).
+/// \file Answers of participants and observers to one method's trials, and efficiencies and
+/// divergences with intervals over participants. Sources: docs/cues.md; docs/statistics.md,
+/// "Participants as clusters"; Lin 1991, IEEE Transactions on Information Theory 37(1)
+/// (divergence).
 #pragma once
 
 #include "protocols/identification/analysis/cues/cue_report.hpp"
@@ -37,14 +37,14 @@ class ParticipantAnswers {
   [[nodiscard]] const std::string& participant() const noexcept { return participant_; }
   [[nodiscard]] int classes() const noexcept { return classes_; }
   [[nodiscard]] int trials() const noexcept { return trials_; }
-  /// Trials of a class.
+  /// The number of trials of a class.
   [[nodiscard]] int presented(int class_index) const noexcept { return presented_[class_index]; }
-  /// Trials of a class without a response.
+  /// The number of trials of a class without a response.
   [[nodiscard]] int no_response(int class_index) const noexcept {
     return no_response_[class_index];
   }
 
-  /// Of all trials; those without a response are wrong.
+  /// The participant's accuracy in all trials; trials without a response are wrong.
   /// \pre trials() > 0
   [[nodiscard]] double human_accuracy() const noexcept { return human_right_ / trials_; }
   /// The observer's accuracy in all trials.
@@ -53,16 +53,17 @@ class ParticipantAnswers {
     return right_[observer] / trials_;
   }
 
-  /// Of the trials with a response.
+  /// The participant's answers in the trials with a response.
   [[nodiscard]] const FlatCounts& human() const noexcept { return human_; }
-  /// Of all trials.
+  /// The observer's answers in all trials.
+  /// \param observer  in the order of kCues
   [[nodiscard]] const FlatCounts& ideal(std::size_t observer) const noexcept {
     return ideal_[observer];
   }
   [[nodiscard]] const FlatCounts& matched(std::size_t observer) const noexcept {
     return matched_[observer];
   }
-  /// Of the trials with a response, for comparison with human().
+  /// The observer's answers in the trials with a response, for comparison with human().
   [[nodiscard]] const FlatCounts& ideal_of_answered(std::size_t observer) const noexcept {
     return ideal_of_answered_[observer];
   }
@@ -91,9 +92,10 @@ class ParticipantAnswers {
 [[nodiscard]] double jensen_shannon_bits(std::span<const double> a,
                                          std::span<const double> b) noexcept;
 
-/// The mean over presented classes of the divergence between two observers' answers to them.
-/// Classes that were never presented to one of the two do not count. \param a,b  counts, classes x
-/// classes, row-major; rows are the presented class \return bits; nothing if no class counts
+/// The mean over presented classes of the divergence between two observers' answers. A class counts
+/// only if it was presented to both.
+/// \param a,b  counts, classes x classes, row-major; rows are the presented class
+/// \return bits; nothing if no class counts
 [[nodiscard]] std::optional<double> answer_divergence(std::span<const double> a,
                                                       std::span<const double> b,
                                                       int classes) noexcept;
@@ -107,12 +109,13 @@ struct CueStatistics {
   std::optional<CueMatch> match;
 };
 
-/// Every interval is expanded_percentiles (95 %) of 9,999 draws of whole participants with
-/// replacement, the same draws for all numbers. A number that is undefined in a draw (for instance
-/// a corrected efficiency when the observer is at chance or below) has no interval. \param
-/// participants  of the same number of classes, each with a trial \param index  chooses the stream
-/// of random numbers \param jobs  threads, on which the result does not depend; 0: one for each
-/// core
+/// Computes the numbers and their intervals. Every interval is expanded_percentiles (95 %) of 9,999
+/// draws of whole participants with replacement; all numbers use the same draws. A number that is
+/// undefined in a draw has no interval (for example, a corrected efficiency when the observer is at
+/// chance or below).
+/// \param participants  of the same number of classes, each with at least one trial
+/// \param index  chooses the stream of random numbers
+/// \param jobs  threads; 0: one for each core. The result does not depend on it.
 [[nodiscard]] CueStatistics cue_statistics(std::span<const ParticipantAnswers> participants,
                                            std::uint64_t index, int jobs = 0);
 

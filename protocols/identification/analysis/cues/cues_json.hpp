@@ -1,5 +1,5 @@
-/// \file Cues as JSON. Public headers must not include this: it exposes the JSON library.
-/// Format: docs/data-dictionary.md, "Cues".
+/// \file The report on cues as JSON. Public headers must not include this file, because it exposes
+/// the JSON library. Format: docs/data-dictionary.md, "Cues".
 #pragma once
 
 #include "protocols/identification/analysis/cues/cue_report.hpp"
@@ -8,8 +8,8 @@
 
 namespace touchtrial::analysis::identification {
 
-/// The value of "cues" in the report, stamped if simulated. "by" tells how each kind of number is
-/// computed. Numbers that do not exist are null.
+/// The value of "cues" in the report, stamped if simulated. Its key "by" tells how each kind of
+/// number is computed. Numbers that do not exist are null.
 [[nodiscard]] nlohmann::ordered_json cues_object(const CueReport& report);
 
 }  // namespace touchtrial::analysis::identification

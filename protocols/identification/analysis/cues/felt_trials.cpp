@@ -35,8 +35,8 @@ std::string refusal(const store::TrialRow& row, const std::string& why) {
       row.session, row.trial, why);
 }
 
-/// Keeps an error instead of throwing it, so that the first trial's error is reported, whichever
-/// thread meets one first.
+/// Keeps an error instead of throwing it, so that the error of the first trial is reported,
+/// whichever thread finds one first.
 void open_and_visit(WaitingTrace& sealed, const TraceVisitor& visit) {
   try {
     const std::optional<store::Trace> trace = store::unsealed_trace(

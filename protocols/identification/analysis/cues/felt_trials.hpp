@@ -1,5 +1,5 @@
-/// \file Opens the traces of many trials, and feels them as each participant's hand did.
-/// Source: docs/method.md, "Felt features".
+/// \file Opens the traces of many trials, and computes the felt features of each. Source:
+/// docs/method.md, "Felt features".
 #pragma once
 
 #include "analysis/outcomes.hpp"
@@ -16,14 +16,15 @@
 namespace touchtrial::analysis::identification {
 
 /// Called with one opened trace.
-/// \param place  of its trial in the list of trials
+/// \param place  place of its trial in the list of trials
 using TraceVisitor = std::function<void(std::size_t place, const store::Trace& trace)>;
 
-/// Called from time to time, on the calling thread, with how many traces are done; may be empty.
+/// Called from time to time on the calling thread with the number of traces that are done; may be
+/// empty.
 using TraceProgress = std::function<void(int done, int of)>;
 
-/// Reads the trials' traces on the calling thread in batches, and opens and visits the traces of
-/// one batch on several threads, in no particular order. The visitor may write only to what belongs
+/// Reads the trials' traces on the calling thread in batches. Opens and visits the traces of one
+/// batch on several threads, in no particular order. The visitor may write only to data that belong
 /// to its place. At most 64 sealed traces, and one open trace for each thread, are in memory.
 /// \param jobs  threads, >= 1; 0: one for each core
 /// \return the places of trials that have no trace
@@ -33,15 +34,16 @@ std::vector<std::size_t> visit_traces(const store::StudyStore& store, const desi
                                       const TraceVisitor& visit,
                                       const TraceProgress& progress = {});
 
-/// The features of each trial in a list.
+/// The felt features of each trial in a list.
 struct FeltTrials {
   std::vector<engine::FeltFeatures> felt;
-  std::vector<bool> has_trace;  ///< features of a trial without a trace mean nothing
+  std::vector<bool> has_trace;  ///< without a trace, the features mean nothing
 };
 
-/// Feels every trial's trace as a hand with these movements and forces would; the explorations of
-/// one trial count as one. The result does not depend on the number of threads.
-/// \param plane  whose parts are told apart; traces are in its coordinates
+/// Computes the felt features of every trial from its trace, for a hand with the movements and
+/// forces of the trace. The explorations of one trial count as one. The result does not depend on
+/// the number of threads.
+/// \param plane  the plane whose parts are told apart; traces are in its coordinates
 /// \param jobs  threads; 0: one for each core
 /// \throws VerificationError, naming the first trial, if a trace does not open
 [[nodiscard]] FeltTrials feel_traces(const store::StudyStore& store, const design::StudyKey& key,
@@ -49,7 +51,7 @@ struct FeltTrials {
                                      const PlaneGeometry& plane, int jobs = 0,
                                      const TraceProgress& progress = {});
 
-/// A plane from its corner to the farthest contact of any hand, for studies whose plane's size is
+/// A plane from the corner to the farthest contact of any hand, for studies whose plane size is
 /// unknown. Reads all traces; never empty.
 [[nodiscard]] PlaneGeometry touched_plane(const store::StudyStore& store,
                                           const design::StudyKey& key,

@@ -15,7 +15,8 @@ namespace touchtrial::analysis::identification {
 
 namespace {
 
-/// Log likelihoods nearer than this are equal, so that rounding never decides an answer.
+/// Log likelihoods that differ by less than this are equal, so that rounding never decides an
+/// answer.
 constexpr double kTie = 1e-9;
 
 /// The logarithm of the intensity of five bands together.
@@ -53,11 +54,12 @@ void check(std::span<const ObservedTrial> trials, int classes) {
 }
 
 constexpr std::size_t kMostForNoise = 2000;
-/// Features are logarithms: a factor of e^4 is far more than the difference of any two textures.
+/// The upper bound of the search for the noise. Features are logarithms, and a factor of e^4 is far
+/// more than the difference between any two textures.
 constexpr double kMostNoise = 4.0;
 constexpr int kHalvings = 12;
 
-/// The places of the trials that determine the noise: judged, with a response, evenly chosen.
+/// The places of the trials that determine the noise: judged, with a response, and evenly chosen.
 std::vector<std::size_t> places_for_noise(const std::vector<AnswerShares>& ideal,
                                           std::span<const std::optional<int>> responses) {
   std::vector<std::size_t> all;
@@ -82,7 +84,7 @@ double share_of_right(const std::vector<AnswerShares>& answers,
   return right / static_cast<double>(places.size());
 }
 
-/// In the order of `places`; the ideal answers if there is no noise.
+/// The answers in the order of `places`. Without noise they are the ideal answers.
 std::vector<AnswerShares> answers_at(const Observer& observer,
                                      const std::vector<std::size_t>& places, double noise,
                                      int jobs) {

@@ -1,5 +1,5 @@
 /// \file Ideal observers: they feel what a hand felt, use a part of it as well as possible, and
-/// answer, either with certainty or as uncertain as the participants were. Source: docs/cues.md.
+/// answer, either with certainty or with the participants' uncertainty. Source: docs/cues.md.
 #pragma once
 
 #include "engine/perception/felt_features.hpp"
@@ -13,29 +13,32 @@
 
 namespace touchtrial::analysis::identification {
 
-/// A trial as an observer meets it.
+/// A trial from the point of view of an observer.
 struct ObservedTrial {
   int class_index = 0;
   int exemplar = 0;
   engine::FeltFeatures felt{};
 };
 
-/// What an observer may use. `rms`: the logarithm of the lateral force's intensity in all five
-/// bands together. `spectrum`: the five lateral and the five normal bands, each relative to all
-/// five of its kind; a stronger force, which adds a constant to all features, changes nothing.
+/// The features that an observer may use.
+/// `rms`: the logarithm of the lateral force's intensity in all five bands together.
+/// `spectrum`: the five lateral and the five normal bands, each relative to all five bands of its
+/// kind. A stronger force adds a constant to all features and so changes nothing.
 /// `everything`: the features as they are.
 [[nodiscard]] std::vector<double> cue_features(Cue cue, const engine::FeltFeatures& felt);
 
-/// The share of each class in an observer's answer; sums to 1; empty if the trial cannot be judged.
+/// The share of each class in an observer's answer. The shares add up to 1; they are empty if the
+/// trial cannot be judged.
 using AnswerShares = std::vector<double>;
 
-/// The draws of noise over which noisy_answer() averages.
+/// The number of draws of noise over which noisy_answer() averages.
 inline constexpr int kNoisyPercepts = 32;
 
-/// Judges every trial by all others. Each stimulus (class and exemplar) has the mean of the others'
-/// features, and all have one covariance; the answer is the class of the likeliest stimulus, ties
-/// (within 1e-9 in logarithm) split evenly. The only trial of an exemplar is judged by the other
-/// exemplars of its class; the only trial of a class is not judged. Thread-safe once constructed.
+/// Judges every trial by all other trials. Each stimulus (class and exemplar) has the mean of the
+/// other trials' features, and all stimuli share one covariance. The answer is the class of the
+/// likeliest stimulus; ties (within 1e-9 in logarithm) are split evenly. The only trial of an
+/// exemplar is judged by the other exemplars of its class. The only trial of a class is not judged.
+/// Thread-safe after construction.
 class Observer {
  public:
   /// \param classes  number of classes, >= 1
@@ -48,9 +51,9 @@ class Observer {
   /// Cost: about 10 us with 23 features and 5 stimuli.
   [[nodiscard]] AnswerShares ideal_answer(std::size_t trial) const;
 
-  /// The mean answer over kNoisyPercepts draws of noise that is added to every feature. As a
-  /// simulated participant does, the observer knows the noise's size. Each trial has its own draws,
-  /// the same for any noise. Cost: about 50 us.
+  /// The mean answer over kNoisyPercepts draws of noise, which is added to every feature. Like a
+  /// simulated participant, the observer knows the size of the noise. Each trial has its own draws,
+  /// which are the same for any noise. Cost: about 50 us.
   /// \param noise  standard deviation, > 0
   [[nodiscard]] AnswerShares noisy_answer(std::size_t trial, double noise) const;
 
@@ -59,19 +62,19 @@ class Observer {
   std::unique_ptr<const Lessons> lessons_;
 };
 
-/// One observer's answers by trial; empty shares where a trial cannot be judged.
+/// One observer's answers by trial. The shares are empty where a trial cannot be judged.
 struct ObserverAnswers {
   std::vector<AnswerShares> ideal;
-  double matched_noise = 0.0;  ///< 0: the ideal answers are right no more often than people's
-  std::vector<AnswerShares> matched;  ///< with that noise
+  double matched_noise = 0.0;  ///< 0: ideal answers are right no more often than participants'
+  std::vector<AnswerShares> matched;  ///< answers with that noise
 };
 
-/// Answers as an ideal observer, and as one whose noise makes it right as often as the participants
-/// were. Bisection finds that noise, to within 1e-3, on at most 2,000 evenly chosen trials with a
-/// response.
+/// The answers of an ideal observer, and of one whose noise makes it right as often as the
+/// participants were. Bisection finds that noise to within 1e-3, on at most 2,000 evenly chosen
+/// trials with a response.
 /// \param responses  by trial; nothing: no response
-/// \param jobs  threads, on which the result does not depend; 0: one for each core
-/// \throws std::invalid_argument as Observer, or if there are not as many responses as trials
+/// \param jobs  threads; 0: one for each core. The result does not depend on it.
+/// \throws std::invalid_argument as Observer does, or if there are not as many responses as trials
 [[nodiscard]] ObserverAnswers observer_answers(Cue cue, std::span<const ObservedTrial> trials,
                                                std::span<const std::optional<int>> responses,
                                                int classes, int jobs = 0);

@@ -1,4 +1,5 @@
-/// \file Work on several threads. Private to analysis/cues: it shows oneTBB.
+/// \file Runs work on several threads. Private to protocols/identification/analysis/cues, because
+/// it exposes oneTBB.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +11,7 @@
 
 namespace touchtrial::analysis::identification {
 
-/// Calls work(i) for i = 0 .. count - 1, in no order.
+/// Calls work(i) for i = 0 .. count - 1, in no particular order.
 /// \param jobs  threads, at most one for each core; 0: one for each core
 template <typename Work>
 void in_parallel(int jobs, std::size_t count, const Work& work) {

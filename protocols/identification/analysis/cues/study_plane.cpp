@@ -9,7 +9,8 @@ namespace touchtrial::analysis::identification {
 
 namespace {
 
-/// Reduces `common` to the part that both planes have. An empty one becomes the other.
+/// Reduces `common` to the part that both planes have. If `common` is empty, it becomes the other
+/// plane.
 void keep_common(PlaneGeometry& common, const PlaneGeometry& other) {
   const bool first = common.height_px == 0;
   common.pitch_mm = first ? other.pitch_mm : common.pitch_mm;

@@ -1,4 +1,5 @@
-/// \file The plane that participants explored, from the files of a study that are still there.
+/// \file The plane that participants explored, reconstructed from the files of the study that still
+/// exist.
 #pragma once
 
 #include "core/plane_geometry.hpp"
@@ -19,13 +20,13 @@ struct StudyPlane {
 
 /// The pack with which the database was recorded.
 /// \param folder  empty: where the key says
-/// \return nothing if there is no pack, or another one
+/// \return nothing if there is no pack, or the pack is a different one
 [[nodiscard]] std::optional<engine::Pack> pack_of(const store::StudyStore& store,
                                                   const design::StudyKey& key,
                                                   const std::filesystem::path& folder = {});
 
-/// The part of the plane that all stimuli share, which a session asks its participant to explore:
-/// from the pack's headers, else from the study's images.
+/// The part of the plane that all stimuli share; a session asks its participant to explore it. The
+/// size comes from the pack's headers, otherwise from the study's images.
 /// \return nothing if neither can be read
 [[nodiscard]] std::optional<StudyPlane> study_plane(const design::StudyKey& key,
                                                     const std::optional<engine::Pack>& pack);

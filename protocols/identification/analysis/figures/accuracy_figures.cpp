@@ -14,14 +14,15 @@ namespace touchtrial::analysis::identification {
 
 namespace {
 
-/// The part of the sheet for participants' differences.
+/// The width of the part of the sheet that shows participants' differences.
 constexpr double kDifferences_cm = 6.0;
-/// The right panel's slanted names may reach into the room below the left panel.
+/// The columns to which slanted names of pairs are cut. The names of the right panel may reach into
+/// the room below the left panel.
 constexpr std::size_t kPairColumns = 32;
-constexpr double kPanel_cm = 6.0;  ///< least height of a panel and what is above it
-constexpr double kSpread = 0.6;    ///< of methods beside each other, in widths of a class
-constexpr double kHalfRow = 0.36;  ///< of the dots of one pair
-/// Participants drawn as dots for each pair of methods.
+constexpr double kPanel_cm = 6.0;  ///< least height of a panel and the room above it
+constexpr double kSpread = 0.6;    ///< width of the methods of one class, in widths of a class
+constexpr double kHalfRow = 0.36;  ///< half the width of the dots of one pair
+/// The most participants that are drawn as dots for each pair of methods.
 constexpr std::size_t kMostDifferences = 200;
 
 double aside(std::size_t number, std::size_t count) {
@@ -42,7 +43,7 @@ std::vector<std::vector<double>> class_rows(const StudyReport& report, std::size
   return rows;
 }
 
-/// Of the participants who felt both, in percentage points, ascending.
+/// The differences of the participants who felt both methods, in percentage points, ascending.
 std::vector<double> differences(const MethodReport& first, const MethodReport& second) {
   std::map<std::string, double> of_second;
   for (const ParticipantAccuracy& one : second.per_participant) {
@@ -59,7 +60,7 @@ std::vector<double> differences(const MethodReport& first, const MethodReport& s
   return evenly_chosen(all, kMostDifferences);
 }
 
-/// Equal differences stand side by side, around their pair's place.
+/// The places of the dots: equal differences stand side by side around the place of their pair.
 std::vector<std::vector<double>> dots(const std::vector<double>& sorted, double at) {
   std::vector<std::vector<double>> rows;
   for (std::size_t first = 0; first < sorted.size();) {
@@ -161,7 +162,8 @@ std::string alt_of_methods(const StudyReport& report) {
   return alt;
 }
 
-/// Fig. 6 of the source paper, per cent; the paper names its images so.
+/// The accuracies of Fig. 6 of the source paper, in per cent, with the paper's names for its
+/// images.
 struct PaperValue {
   std::string_view image;
   double percent;
@@ -172,7 +174,7 @@ constexpr std::array<PaperValue, 5> kPaper = {{{"image 1", 87.0},
                                                {"image 4", 91.0},
                                                {"image 5", 83.0}}};
 
-/// In lower case, with spaces instead of hyphens and underscores.
+/// The label in lower case, with spaces instead of hyphens and underscores.
 std::string plain_name(std::string_view label) {
   std::string plain;
   for (const char c : label) {
@@ -182,7 +184,8 @@ std::string plain_name(std::string_view label) {
   return plain;
 }
 
-/// Each value stands beside the class of its image's name, or else in a column for such values.
+/// The marks of the paper's values. A value stands beside the class that has its image's name, or
+/// otherwise in a column of its own.
 std::vector<std::vector<double>> paper_rows(std::span<const std::string> classes) {
   std::vector<std::vector<double>> rows;
   const auto column = static_cast<double>(classes.size()) + 1.0;

@@ -11,7 +11,7 @@ namespace touchtrial::analysis::identification {
 
 namespace {
 
-/// Cells are at least as wide as their numbers; if need be, the sheet is wider than usual.
+/// Cells are at least as wide as their numbers. If necessary, the sheet is wider than usual.
 constexpr double kWidestCell_cm = 1.9;
 constexpr double kNarrowestCell_cm = 1.0;
 constexpr double kCellHeight_cm = 0.95;
@@ -25,7 +25,7 @@ struct Rgb {
   int blue;
 };
 
-/// From white to the darkest blue: darker means more, in colour as in grey.
+/// A colour from white to dark blue. A darker cell has a larger share, in colour and in grey.
 Rgb colour_of(double share) {
   const auto between = [share](double from, double to) {
     return static_cast<int>(std::lround(from + (to - from) * share));
@@ -45,7 +45,7 @@ const char* ink_on(Rgb colour) {
   return (1.05 / (luminance + 0.05)) > ((luminance + 0.05) / 0.05) ? "#ffffff" : "#000000";
 }
 
-/// One cell at column x and row y (from the top, both from 0).
+/// One cell at column x and row y, counted from 0 at the top left.
 std::string cell(double x, int y, int count, int whole, bool right) {
   const double share = whole > 0 ? static_cast<double>(count) / whole : 0.0;
   const Rgb colour = colour_of(share);

@@ -9,7 +9,7 @@ namespace touchtrial::analysis::identification {
 
 namespace {
 
-/// Participants' accuracies as dots.
+/// Adds participants' accuracies as dots.
 void add_accuracies(std::vector<std::vector<double>>& rows, double at,
                     std::vector<double> accuracy) {
   for (double& one : accuracy) one *= 100.0;
@@ -74,7 +74,7 @@ std::optional<Figure> cues_figure(const CueReport& cues) {
     if (!method.observers.empty()) shown.push_back(&method);
   }
   if (shown.empty()) return {};
-  // These names are short enough to be level below half a sheet.
+  // These names are short enough to be horizontal below half a sheet.
   const std::vector<std::string> columns = {"rms", "spectrum", "everything", "participants"};
   Margins around{1.5, 0.4, 0.6, 0.9};
   const NamesBelow below(columns, Panels(shown.size(), 2, 7.0, around, cues.simulated).axis_cm());
@@ -107,23 +107,23 @@ std::optional<Figure> cues_figure(const CueReport& cues) {
 
 namespace {
 
-/// The most grey values along the texture's longer side: more would be too fine for print, and make
-/// the script large.
+/// The most grey values along the texture's longer side. More would be too fine for print and would
+/// make the script large.
 constexpr int kMostPixels = 250;
 constexpr double kPicture_cm = 10.0;
-/// From dark to bright also in grey, and distinct in colour from the texture's grey (after Okabe
-/// and Ito).
+/// A palette that runs from dark to bright in grey as well, and whose colours differ from the
+/// texture's grey (after Okabe and Ito).
 constexpr const char* kForcePalette =
     "set palette defined (0 '#0072b2', 0.5 '#e69f00', 1 '#fff200')\n";
 
-/// Every n-th grey value.
+/// Every n-th grey value of the texture.
 std::string texture_data(const PathTexture& texture) {
   const GreyImage& grey = texture.grey;
   const int step = (std::max(grey.width(), grey.height()) + kMostPixels - 1) / kMostPixels;
   std::string data = "$texture << EOD\n";
   for (int y = 0; y < grey.height(); y += step) {
     for (int x = 0; x < grey.width(); x += step) {
-      // Brightened, so that the path stands out.
+      // Brighter values let the path stand out.
       data += fmt::format("{} ", 128 + grey.at(y, x) / 2);
     }
     data += '\n';
@@ -144,7 +144,7 @@ std::string texture_plot(const PathTexture& texture) {
       x_mm, y_mm);
 }
 
-/// The parts of the path in contact; an empty line where the hand was off the plane.
+/// The parts of the path in contact. An empty line marks where the hand left the plane.
 std::string path_data(const std::vector<PathPoint>& points) {
   std::string data = "$path << EOD\n";
   bool touching = false;
@@ -222,7 +222,7 @@ Figure path_figure(const ExplorationPath& path) {
     figure.script += "NaN notitle\n";
     return figure;
   }
-  // A dark edge separates the path from the texture in grey as well.
+  // A dark edge separates the path from the texture, in grey as well.
   figure.script += fmt::format(
       "$path using 1:2 with lines lw 2.6 lc rgb '{0}' notitle, $path using 1:2:3 with lines lw 1.5 "
       "lc palette notitle, '+' using ({1:.4g}):({2:.4g}) every ::0::0 with points pt 6 ps 1.1 lw 2 "

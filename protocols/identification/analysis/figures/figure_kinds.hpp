@@ -1,5 +1,5 @@
-/// \file Every kind of figure of a report; each returns nothing if it has nothing to show.
-/// Private to figures.
+/// \file The kinds of figures of a report. A function returns nothing if the figure has nothing to
+/// show. Private to figures.
 #pragma once
 
 #include "protocols/identification/analysis/figures/figures.hpp"
@@ -9,20 +9,21 @@
 
 namespace touchtrial::analysis::identification {
 
-/// Accuracy by class of one method (Fig. 6); with several, methods_figure has it.
+/// Accuracy by class (Fig. 6 of the source paper) for a report with one method; methods_figure
+/// shows several.
 [[nodiscard]] std::optional<Figure> accuracy_figure(const StudyReport& report, bool paper_values);
-/// Methods side by side by class (Fig. 7), and participants' differences.
+/// Methods side by side for each class (Fig. 7 of the source paper), and participants' differences.
 [[nodiscard]] std::optional<Figure> methods_figure(const StudyReport& report);
 /// Every participant's accuracy, the mean and its interval.
 [[nodiscard]] std::optional<Figure> participants_figure(const StudyReport& report);
 /// Confusion matrices, one for each method.
 [[nodiscard]] std::vector<Figure> confusion_figures(const StudyReport& report);
-/// Accuracy by the trial's place among a participant's trials.
+/// Accuracy by the place of a trial among a participant's trials.
 [[nodiscard]] std::optional<Figure> trials_figure(const StudyReport& report);
 /// Reaction times by class.
 [[nodiscard]] std::optional<Figure> reaction_figure(const StudyReport& report);
-/// Ideal observers beside participants.
+/// Accuracies of ideal observers beside those of participants.
 [[nodiscard]] std::optional<Figure> cues_figure(const CueReport& cues);
-/// The path of one trial over its texture, with force.
+/// The path of one trial over its texture, coloured by force.
 [[nodiscard]] Figure path_figure(const ExplorationPath& path);
 }  // namespace touchtrial::analysis::identification

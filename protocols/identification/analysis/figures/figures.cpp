@@ -10,7 +10,7 @@ namespace touchtrial::analysis::identification {
 
 namespace {
 
-/// Stamps the right edge, upright and below SIMULATED, where every figure leaves room.
+/// Stamps the right edge with upright text below SIMULATED, where every figure leaves room.
 void add_stamp(Figure& figure, const std::string& stamp) {
   const Sheet sheet{figure.width_cm, figure.height_cm, false};
   figure.script = text_on_sheet(sheet, stamp, sheet.width_cm - 0.17, 0.6,

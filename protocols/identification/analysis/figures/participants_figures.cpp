@@ -15,10 +15,10 @@ namespace {
 
 /// Taller heaps are drawn as bars, because their dots would be too small to print.
 constexpr int kDotsOfHeap = 24;
-constexpr int kFinestSteps = 50;  ///< the most places of an accuracy
+constexpr int kFinestSteps = 50;  ///< the most places on the axis of accuracy
 constexpr double kRow_cm = 3.0;
 
-/// Accuracies sorted into places, with the number of participants at each.
+/// Accuracies sorted into places, with the number of participants at each place.
 struct Heaps {
   double step = 4.0;  ///< between places, per cent
   std::map<int, int> counts;
@@ -42,7 +42,7 @@ Heaps heaps_of(const MethodReport& method) {
   return heaps;
 }
 
-/// Rows of x and y, and for bars also their lower edge.
+/// Rows of x and y; for bars, also of their lower edge.
 std::vector<std::vector<double>> marks_of(const Heaps& heaps, double base, bool bars) {
   std::vector<std::vector<double>> rows;
   const double height = 0.62 / std::max(heaps.highest, 8);
@@ -142,10 +142,10 @@ std::optional<Figure> participants_figure(const StudyReport& report) {
 
 namespace {
 
-/// Places with fewer trials than this are joined: an interval over a handful of trials is as wide
-/// as the panel.
+/// The least number of trials of a point. Places with fewer trials are joined, because their
+/// interval would be as wide as the panel.
 constexpr int kTrialsOfPoint = 15;
-/// The most points that can be told apart.
+/// The most points that readers can tell apart.
 constexpr int kMostPositions = 60;
 
 struct Point {
@@ -167,7 +167,7 @@ const Breakdown* by_trial(const MethodReport& method) {
   return nullptr;
 }
 
-/// The number of places that make one point.
+/// The number of places that are joined into one point.
 int places_together(const std::vector<GroupAccuracy>& groups) {
   int trials = 0;
   for (const GroupAccuracy& group : groups) trials += group.accuracy.n;
@@ -256,7 +256,7 @@ std::optional<Figure> trials_figure(const StudyReport& report) {
 
 namespace {
 
-/// Rows of the class' place and seconds.
+/// Rows of the place of the class and the time in seconds.
 std::vector<std::vector<double>> points_of(const std::vector<ReactionTimes>& times,
                                            std::size_t classes) {
   std::vector<std::vector<double>> points;

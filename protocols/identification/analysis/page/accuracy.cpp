@@ -45,7 +45,7 @@ Table class_table(const StudyReport& report, std::size_t index) {
   return table;
 }
 
-/// Which labels the best matching exchanges: "pebbles → brick, brick → pebbles".
+/// The labels that the best matching exchanges, for example "pebbles → brick, brick → pebbles".
 std::string exchange_of(const LabelMatching& matching, const std::vector<std::string>& classes) {
   if (matching.answer_of.empty()) return kNoFigure;
   std::string text;
@@ -151,7 +151,7 @@ Table confusion_table(const StudyReport& report, std::size_t index) {
   return table;
 }
 
-/// "{basket, leaf} and {log}"
+/// The groups of classes, for example "{basket, leaf} and {log}".
 std::string groups_of(const ChoiceModel& model, const std::vector<std::string>& classes) {
   std::vector<std::string> groups(static_cast<std::size_t>(model.groups));
   for (std::size_t i = 0; i < model.group.size() && i < classes.size(); ++i) {
@@ -177,7 +177,7 @@ std::string fit_of(const ChoiceModel& model) {
   return model.converged ? fit : fit + " The fit did not converge.";
 }
 
-/// What a reader has to know of zeros among the counts.
+/// Notes on the choice model, and on zeros among the counts.
 std::vector<Cited> choice_notes(const ChoiceModel& model, const std::vector<std::string>& classes) {
   std::vector<Cited> notes{
       {fmt::format("Similarity choice model, maximum likelihood over trials with a response: "

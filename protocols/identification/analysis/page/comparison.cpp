@@ -11,7 +11,7 @@ namespace touchtrial::analysis::identification {
 
 namespace {
 
-constexpr const char* kNoWidth = " *";  ///< mark of a note
+constexpr const char* kNoWidth = " *";  ///< refers to a note below the table
 
 std::string pair_name(const StudyReport& report, const MethodPair& pair) {
   return report.methods[pair.first].method + " less " + report.methods[pair.second].method;
@@ -22,7 +22,7 @@ std::string odds_figure(const std::optional<OddsRatio>& odds) {
   return plain_figure(odds->estimate, 2) + " " + plain_range(odds->interval, 2);
 }
 
-/// The t interval exists from two participants on.
+/// The t interval, which needs at least two participants.
 std::string t_range(const MethodComparison& comparison) {
   return comparison.participants > 1 && comparison.difference ? share_range(comparison.interval)
                                                               : kNoFigure;
@@ -99,7 +99,8 @@ Table pair_table(const StudyReport& report) {
   return table;
 }
 
-/// All participants' differences are equal: an interval without width is no certainty.
+/// Tells whether all participants' differences are equal. The interval then has no width, which
+/// does not mean that the difference is certain.
 bool has_no_width(const MethodComparison& paired) {
   return paired.participants > 1 && paired.difference &&
          paired.interval.high - paired.interval.low < 1e-9;
@@ -171,7 +172,7 @@ Cited together_of(const MethodsTogether& together) {
   return {text + ".", {Source::cochran, Source::phipson_smyth}};
 }
 
-/// What such a design cannot show, whatever its figures.
+/// The limits of the design, whatever the numbers are.
 Cited limits_of(const StudyReport& report) {
   int fewest = report.participants;
   for (const MethodPair& pair : report.pairs) fewest = std::min(fewest, pair.overall.participants);

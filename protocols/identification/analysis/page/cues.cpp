@@ -26,7 +26,7 @@ std::vector<Cell> observer_row(const ObserverFigures& observer) {
           plain_range(observer.corrected_efficiency.interval, 2)};
 }
 
-/// How much there was to feel.
+/// The accuracies of the ideal observers, which show how much information there was to feel.
 Table cue_table(const StudyReport& report, const MethodCues& method, std::size_t index) {
   Table table{
       "cues-" + std::to_string(index + 1),
@@ -62,7 +62,7 @@ std::vector<Cell> confusing_row(const ObserverFigures& observer, bool best) {
           plain_range(observer.matched_divergence.interval, 3)};
 }
 
-/// Which of them confuses as participants do.
+/// The table on which observer confuses classes as participants do.
 Table confusing_table(const StudyReport& report, const MethodCues& method, std::size_t index) {
   Table table{"cues-confusing-" + std::to_string(index + 1),
               prefix_of(report, method) + "how far observers' confusions are from participants'",
@@ -85,7 +85,7 @@ Table confusing_table(const StudyReport& report, const MethodCues& method, std::
   return table;
 }
 
-/// With fewer a bootstrap over participants is no ground for a verdict.
+/// With fewer participants, a bootstrap over participants does not support a verdict.
 constexpr std::size_t kFewestToTell = 6;
 
 std::string verdict_of(const MethodCues& method, const CueMatch& match) {

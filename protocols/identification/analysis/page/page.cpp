@@ -10,7 +10,8 @@ namespace {
 
 using std::string_view;
 
-/// Where pictures stand: an id that begins so belongs to that section; the first that fits.
+/// The section of a picture. A picture belongs to the section of the first entry whose `beginning`
+/// starts its id.
 struct PicturePlace {
   string_view beginning;
   string_view section;
@@ -28,7 +29,8 @@ constexpr std::array<PicturePlace, 12> kPlaces{{{"accuracy-by-class", "accuracy"
                                                 {"cue", "cues"},
                                                 {"servo", "servo-and-validity"}}};
 
-/// The page draws participants' flow itself, as text that can be read aloud: this is for papers.
+/// The page shows the flow of participants itself, as text that can be read aloud. This picture is
+/// for papers.
 constexpr string_view kFlow = "participant-flow";
 constexpr string_view kExploration = "exploration";
 
@@ -39,7 +41,7 @@ string_view section_for(const Picture& picture) {
   return place == kPlaces.end() ? string_view() : place->section;
 }
 
-/// Pictures stand before the section's first table or subheading, and below its sentences.
+/// Inserts a picture before the section's first table or subheading, below its sentences.
 void add_picture(const Picture& picture, Section& section) {
   const auto place =
       std::find_if(section.blocks.begin(), section.blocks.end(), [](const Block& one) {
@@ -48,7 +50,7 @@ void add_picture(const Picture& picture, Section& section) {
   section.blocks.insert(place, picture);
 }
 
-/// What single hands did comes last among the cues.
+/// Adds the pictures of single explorations at the end of the section on cues.
 void add_explorations(const Pictures& pictures, std::vector<Section>& sections) {
   const auto cues = std::find_if(sections.begin(), sections.end(),
                                  [](const Section& one) { return one.id == "cues"; });
@@ -62,10 +64,11 @@ void add_explorations(const Pictures& pictures, std::vector<Section>& sections) 
   }
 }
 
-/// \return those that belong to no section
+/// Puts pictures into their sections.
+/// \return the pictures that belong to no section
 Pictures place_pictures(const Pictures& pictures, std::vector<Section>& sections) {
   Pictures left;
-  // Each is put before the section's first table, so the last one comes last.
+  // Each picture goes directly before the first table, so the pictures keep their order.
   for (const Picture& picture : pictures) {
     if (picture.id == kFlow || picture.id.starts_with(kExploration)) continue;
     const string_view wanted = section_for(picture);
@@ -81,7 +84,8 @@ Pictures place_pictures(const Pictures& pictures, std::vector<Section>& sections
   return left;
 }
 
-/// With several methods a caption begins with a method's name, which stays as it is.
+/// Capitalises the captions of tables. With several methods a caption begins with a method's name,
+/// which must stay as it is.
 void capitalise_captions(Document& document) {
   for (Section& section : document.sections) {
     for (Block& block : section.blocks) {
@@ -93,7 +97,7 @@ void capitalise_captions(Document& document) {
   }
 }
 
-/// What is in the way is an unknown picture's: before the section on methods.
+/// Adds a section before the section on methods for pictures with unknown ids.
 void add_further(const Pictures& pictures, Document& document) {
   if (pictures.empty()) return;
   Section further{"further-figures", "Further figures", {}};
@@ -101,7 +105,7 @@ void add_further(const Pictures& pictures, Document& document) {
   document.sections.insert(document.sections.end() - 1, std::move(further));
 }
 
-/// A name that is not taken by a method before.
+/// Tells whether an earlier method has the same slug.
 bool is_taken(const StudyReport& report, std::size_t method, const std::string& slug) {
   for (std::size_t i = 0; i < method; ++i) {
     if (slug_of(report.methods[i].method) == slug) return true;
@@ -114,7 +118,7 @@ bool is_taken(const StudyReport& report, std::size_t method, const std::string& 
 std::string method_slug(const StudyReport& report, std::size_t method) {
   const std::string slug = slug_of(report.methods[method].method);
   if (!slug.empty() && !is_taken(report, method, slug)) return slug;
-  // Two hyphens are in no slug.
+  // No slug contains two hyphens in a row.
   return slug + "--" + std::to_string(method + 1);
 }
 

@@ -32,7 +32,7 @@ std::string chance_phrase(const MethodReport& method) {
       test.exact ? "exact" : "Monte Carlo", p_phrase(test.p));
 }
 
-/// The sentence to quote.
+/// The sentence for readers to quote.
 std::string headline_of(const StudyReport& report, const MethodReport& method) {
   if (!method.mean.mean) return method.method + ": no participant's trials count yet.";
   const std::string who = counted(method.mean.participants, "participant");
