@@ -1,6 +1,5 @@
 #include "bench/peers/gl_filters.hpp"
 
-#include "bench/peers/extended_rows.hpp"
 #include "engine/kernels/aligned_rows.hpp"
 #include "engine/kernels/gl_row.hpp"
 #include "engine/kernels/texture_sink.hpp"
@@ -64,7 +63,7 @@ void filter_adaptive(const GreyImage& image, int radius, const Plane<float>& ord
   engine::Extraction<float> result;
   result.texture = std::move(texture);
   engine::TextureSink sink(image.height(), image.width(), {}, result);
-  ExtendedRows rows(image, radius);
+  engine::ExtendedRows rows(image, radius);
   for (int y = 0; y < image.height(); ++y) {
     const float* order = orders.row(y).data();
     const std::size_t end = (static_cast<std::size_t>(y) + 1) * width;
