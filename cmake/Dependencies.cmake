@@ -51,12 +51,18 @@ pkg_check_modules(freetype REQUIRED IMPORTED_TARGET GLOBAL freetype2)
 # For its header: the library is loaded when sound is first wanted.
 pkg_check_modules(portaudio REQUIRED portaudio-2.0)
 
-find_package(hwy QUIET)
-if(TARGET hwy::hwy)
-  add_library(touchtrial_hwy ALIAS hwy::hwy)
+# Highway's library calibrates a clock when it is loaded: of the series whose functions the forwarders
+# name, it is loaded with the first kernel (decision 47).
+pkg_check_modules(hwy REQUIRED IMPORTED_TARGET GLOBAL libhwy)
+add_library(touchtrial_hwy INTERFACE)
+if(hwy_VERSION MATCHES "^1\\.0\\." AND EXISTS "${hwy_LIBDIR}/libhwy.so.1" AND CMAKE_SIZEOF_VOID_P EQUAL 8)
+  add_library(touchtrial_highway STATIC)
+  target_include_directories(touchtrial_highway PRIVATE "${CMAKE_SOURCE_DIR}" ${hwy_INCLUDE_DIRS})
+  target_link_libraries(touchtrial_highway PRIVATE touchtrial_settings ${CMAKE_DL_LIBS})
+  target_include_directories(touchtrial_hwy SYSTEM INTERFACE ${hwy_INCLUDE_DIRS})
+  target_link_libraries(touchtrial_hwy INTERFACE touchtrial_highway)
 else()
-  pkg_check_modules(hwy REQUIRED IMPORTED_TARGET GLOBAL libhwy)
-  add_library(touchtrial_hwy ALIAS PkgConfig::hwy)
+  target_link_libraries(touchtrial_hwy INTERFACE PkgConfig::hwy)
 endif()
 
 # Only what OpenCV computes with: its own package file wants all of its modules installed, and what
@@ -103,4 +109,29 @@ find_package(PNG REQUIRED)
 find_package(JPEG REQUIRED)
 find_package(TIFF 4.5 REQUIRED)
 add_library(touchtrial_pictures INTERFACE)
-target_link_libraries(touchtrial_pictures INTERFACE PNG::PNG JPEG::JPEG TIFF::TIFF)
+# Their archives, and those of what libtiff unpacks with, where all of them link: ten libraries fewer
+# to load at every start (decision 47).
+set(PICTURE_ARCHIVES "")
+foreach(name tiff webp Lerc jbig deflate lzma zstd jpeg png16 z)
+  find_library(PICTURE_ARCHIVE_${name} lib${name}.a)
+  list(APPEND PICTURE_ARCHIVES "${PICTURE_ARCHIVE_${name}}")
+endforeach()
+if(NOT PICTURE_ARCHIVES MATCHES "NOTFOUND")
+  include(CheckCXXSourceCompiles)
+  set(CMAKE_REQUIRED_LIBRARIES ${PICTURE_ARCHIVES} m Threads::Threads)
+  check_cxx_source_compiles("#include <cstdio>
+    #include <jpeglib.h>
+    #include <png.h>
+    #include <tiffio.h>
+    int main() {
+      jpeg_error_mgr errors;
+      return TIFFOpen(\"a\", \"r\") == nullptr && jpeg_std_error(&errors) != nullptr &&
+             png_access_version_number() != 0;
+    }" PICTURE_ARCHIVES_LINK)
+  unset(CMAKE_REQUIRED_LIBRARIES)
+endif()
+if(PICTURE_ARCHIVES_LINK)
+  target_link_libraries(touchtrial_pictures INTERFACE ${PICTURE_ARCHIVES} m Threads::Threads)
+else()
+  target_link_libraries(touchtrial_pictures INTERFACE PNG::PNG JPEG::JPEG TIFF::TIFF)
+endif()
