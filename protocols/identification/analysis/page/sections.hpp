@@ -1,4 +1,4 @@
-/// \file The page of an identification study and its sections. Private to protocols/identification.
+/// \file The page of an identification study and its sections, as its results use them.
 #pragma once
 
 #include "analysis/page/document.hpp"
