@@ -1,15 +1,19 @@
-// The functions of Highway's library, as its headers call them: each looks up the real one in
-// libhwy.so.1 at its first call. That library calibrates a clock when it is loaded, which took a
-// quarter of the program's start. Source: hwy/targets.h and hwy/aligned_allocator.h, which the
-// compiler holds every line against, and docs/decisions/0047-loaded-when-needed.md.
+// The functions of Highway's library, as its headers call them: each but the last looks up the real
+// one in libhwy.so.1 at its first call. That library calibrates a clock when it is loaded, which
+// took a quarter of the program's start. Source: hwy/targets.h and hwy/aligned_allocator.h, which
+// the compiler holds every line against, and docs/decisions/0047-loaded-when-needed.md.
 #include "core/errors.hpp"
 
+#include <cstdarg>
 #include <cstddef>
 #include <cstdint>
+#include <cstdio>
+#include <cstdlib>
 #include <string>
 
 #include <dlfcn.h>
 #include <hwy/aligned_allocator.h>
+#include <hwy/base.h>
 #include <hwy/targets.h>
 
 namespace touchtrial::engine {
@@ -64,4 +68,16 @@ void hwy::FreeAlignedBytes(const void* aligned_pointer, FreePtr free_ptr, void* 
   static auto* const found =
       real<decltype(FreeAlignedBytes)>("_ZN3hwy16FreeAlignedBytesEPKvPFvPvS2_ES2_");
   found(aligned_pointer, free_ptr, opaque_ptr);
+}
+
+/// What the checks of Highway's headers call, in builds that do not optimise. Nothing is looked up:
+/// a fault of the program's own must be told whatever else is wrong.
+void hwy::Abort(const char* file, int line, const char* format, ...) {
+  std::fprintf(stderr, "Abort at %s:%d: ", file, line);
+  std::va_list values;
+  va_start(values, format);
+  std::vfprintf(stderr, format, values);
+  va_end(values);
+  std::fputc('\n', stderr);
+  std::abort();
 }
