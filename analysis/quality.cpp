@@ -48,26 +48,6 @@ std::optional<ServoQuality> servo_quality(const Collection& collection) {
   return all;
 }
 
-}  // namespace
-
-std::string flow_text(const ParticipantFlow& flow) {
-  const std::pair<int, const char*> lost[] = {{flow.withdrawn, "withdrawn"},
-                                              {flow.replaced, "replaced"},
-                                              {flow.excluded, "excluded"},
-                                              {flow.stopped, "stopped"},
-                                              {flow.open, "open"},
-                                              {flow.other_kind, "of another kind"},
-                                              {flow.unseen, "ended after the look"},
-                                              {flow.analysed, "analysed"}};
-  std::string text = fmt::format("{} enrolled", flow.enrolled);
-  for (const auto& [n, what] : lost) {
-    if (n > 0) text += fmt::format(", {} {}", n, what);
-  }
-  return wrapped("", text);
-}
-
-namespace {
-
 void count_session(const store::SessionRow& session, const store::StudyCommitment& commitment,
                    SessionCounts& counts) {
   if (session.pilot && !commitment.pilot) ++counts.pilot;

@@ -77,8 +77,4 @@ struct QualityReport {
 /// A page for a terminal, ending with a line feed.
 [[nodiscard]] std::string quality_text(const QualityReport& report);
 
-/// A paragraph with the number of enrolled participants and the number in each other part of the
-/// flow that is not zero. Ends with a line feed.
-[[nodiscard]] std::string flow_text(const ParticipantFlow& flow);
-
 }  // namespace touchtrial::analysis

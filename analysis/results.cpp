@@ -15,10 +15,6 @@ std::map<std::string_view, const ProtocolAnalysis*>& known_analyses() {
 
 }  // namespace
 
-std::string Results::text() const {
-  return document_text(document({}, {}));
-}
-
 std::vector<Figure> Results::figures(const std::string&) const {
   return {};
 }

@@ -41,13 +41,10 @@ class Results {
 
   /// One JSON object, indented, ending with a line feed; numbers that do not exist are null.
   [[nodiscard]] virtual std::string json() const = 0;
-  /// The text for a terminal of at least 100 columns, ending with a line feed. By default, the
-  /// page's sections.
-  [[nodiscard]] virtual std::string text() const;
   /// The figures to draw, in the order of the document.
   /// \param stamp  further_stamp of the study
   [[nodiscard]] virtual std::vector<Figure> figures(const std::string& stamp) const;
-  /// The page.
+  /// The report, as a page and as text for a terminal.
   /// \param pictures  the drawn figures
   [[nodiscard]] virtual Document document(const Provenance& provenance,
                                           const Pictures& pictures) const = 0;

@@ -41,7 +41,7 @@ void require_key_of(const store::StudyStore& store, const design::StudyKey& key)
                     "made with this database's pack",
                     key.study_id, commitment.study_id));
   }
-  if (design::study_seal(key) != commitment.seal) {
+  if (key.seal != commitment.seal) {
     throw VerificationError(
         fmt::format("the key does not match the seal of study {} ({}): key or study changed after "
                     "the first session; give the key as it was then",
@@ -60,7 +60,7 @@ std::optional<SecretKey> participant_key(const store::StudyStore& store,
                     "restore a backup of the database",
                     session.session));
   }
-  const auto own = store::unwrap_participant_key(key.master, session.own_session, *wrapped);
+  const auto own = store::unwrap_participant_key(key.box(), session.own_session, *wrapped);
   if (!own) {
     throw VerificationError(
         fmt::format("session {}: the participant's key does not open with this study key; "

@@ -18,23 +18,6 @@ std::string percent_of(const Proportion& proportion) {
   return percent_of_share(proportion.share());
 }
 
-std::string percent_range(const Interval& interval) {
-  return fmt::format("[{:.1f}, {:.1f}]", 100.0 * interval.low, 100.0 * interval.high);
-}
-
-std::string percent_range(const std::optional<Interval>& interval) {
-  return interval ? percent_range(*interval) : "-";
-}
-
-std::string points(double difference) {
-  return signed_figure(100.0 * difference, 1);
-}
-
-std::string points_range(const std::optional<Interval>& interval) {
-  if (!interval) return "-";
-  return fmt::format("[{}, {}]", points(interval->low), points(interval->high));
-}
-
 std::string signed_figure(std::optional<double> figure, int decimals) {
   if (!figure) return "-";
   const std::string text = fmt::format("{:+.{}f}", *figure, decimals);
@@ -56,7 +39,7 @@ std::string heading(const std::string& title, bool simulated) {
 }
 
 std::string simulated_line(bool simulated) {
-  return simulated ? "SIMULATED: these figures come from simulated participants.\n" : "";
+  return simulated ? "SIMULATED: these numbers come from simulated participants.\n" : "";
 }
 
 }  // namespace touchtrial::analysis

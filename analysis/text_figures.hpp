@@ -14,15 +14,7 @@ namespace touchtrial::analysis {
 /// "87.5%" for 0.875
 [[nodiscard]] std::string percent_of_share(std::optional<double> share);
 [[nodiscard]] std::string percent_of(const Proportion& proportion);
-/// "[60.9, 91.1]" for 0.609 to 0.911
-[[nodiscard]] std::string percent_range(const Interval& interval);
-/// The same, or "-" if there is no interval.
-[[nodiscard]] std::string percent_range(const std::optional<Interval>& interval);
 
-/// "+7.5" for 0.075: percentage points with a sign.
-[[nodiscard]] std::string points(double difference);
-/// An interval of such differences, as "[-1.0, +3.5]", or "-" if there is no interval.
-[[nodiscard]] std::string points_range(const std::optional<Interval>& interval);
 /// A number with its sign; zero has none.
 [[nodiscard]] std::string signed_figure(std::optional<double> figure, int decimals);
 /// Three significant digits, never "0".

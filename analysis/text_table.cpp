@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include <fmt/format.h>
 
 namespace touchtrial::analysis {
 namespace {
 
-constexpr std::size_t kMaxCell = 24;
 constexpr std::string_view kIndent = "  ";
 constexpr std::string_view kGap = "  ";
 
@@ -47,38 +47,46 @@ std::string fitted(std::string_view text, std::size_t width) {
   return std::string(text) + "…";
 }
 
-std::string wrapped(std::string_view first, std::string_view paragraph) {
-  std::string all;
-  std::string line(first);
+std::vector<std::string> lines_of(std::string_view paragraph, std::size_t width) {
+  std::vector<std::string> lines(1);
   bool fresh = true;
   while (!paragraph.empty()) {
     const std::size_t space = std::min(paragraph.find(' '), paragraph.size());
     const std::string_view word = paragraph.substr(0, space);
-    if (!fresh && display_width(line) + 1 + display_width(word) > kTextWidth) {
-      all += line + '\n';
-      line = std::string(display_width(first), ' ');
+    if (!fresh && display_width(lines.back()) + 1 + display_width(word) > width) {
+      lines.emplace_back();
       fresh = true;
     }
-    if (!fresh) line += ' ';
-    line += word;
+    if (!fresh) lines.back() += ' ';
+    lines.back() += word;
     fresh = false;
     paragraph.remove_prefix(std::min(space + 1, paragraph.size()));
   }
-  return all + line + '\n';
+  return lines;
 }
 
-TextTable::TextTable(std::vector<std::string> header) {
+std::string wrapped(std::string_view first, std::string_view paragraph, std::size_t width) {
+  const std::size_t indent = display_width(first);
+  std::string all;
+  for (const std::string& line : lines_of(paragraph, std::max(width, indent) - indent)) {
+    all += (all.empty() ? std::string(first) : std::string(indent, ' ')) + line + '\n';
+  }
+  return all;
+}
+
+TextTable::TextTable(std::vector<std::string> header, std::set<std::size_t> left)
+    : left_(std::move(left)) {
   if (header.empty()) throw std::invalid_argument("a table needs a column");
   rows_.push_back({});
   rows_.front().swap(header);
-  for (std::string& cell : rows_.front()) cell = fitted(cell, kMaxCell);
+  for (std::string& cell : rows_.front()) cell = fitted(cell, kCellWidth);
 }
 
 void TextTable::add(std::vector<std::string> cells) {
   if (cells.size() != rows_.front().size()) {
     throw std::invalid_argument("a row needs as many cells as the header has");
   }
-  for (std::string& cell : cells) cell = fitted(cell, kMaxCell);
+  for (std::string& cell : cells) cell = fitted(cell, kCellWidth);
   rows_.push_back(std::move(cells));
 }
 
@@ -105,9 +113,11 @@ std::string TextTable::text(std::size_t width) const {
     for (const auto& row : rows_) {
       std::string line = std::string(kIndent) + left(row[0], widths[0]);
       for (std::size_t i = begin; i < end; ++i) {
-        line += std::string(kGap) + right(row[i], widths[i]);
+        line += kGap;
+        line += left_.contains(i) ? left(row[i], widths[i]) : right(row[i], widths[i]);
       }
-      all += without_trailing_spaces(std::move(line)) + '\n';
+      line = without_trailing_spaces(std::move(line));
+      if (!line.empty()) all += line + '\n';
     }
     begin = end;
   } while (begin < widths.size());

@@ -124,7 +124,7 @@ std::optional<device::ServoReport> AttendedRun::run(const PhaseName& phase,
   }
   running.finish();
   end_line();
-  // A stop applies to all later runs; the end of this run must not end the next one.
+  // A stop applies to all later runs, but the end of this run must not end the next one.
   if (stop_ == AttendedStop::none) control_.reset();
   return report;
 }

@@ -68,7 +68,7 @@ class AttendedRun {
   using PhaseName = std::function<std::string(std::int64_t tick)>;
 
   /// \param opened  the device to attend to; must outlive this
-  /// \param device  that of `opened`, or the same placed; must outlive this
+  /// \param device  the device of `opened`, or a PlacedDevice around it; must outlive this
   /// \param limits,rate_hz  as ServoOptions
   /// \param keys  whether q and the space bar are read from standard input
   AttendedRun(OpenedDevice& opened, device::HapticDevice& device,

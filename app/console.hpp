@@ -1,15 +1,11 @@
-/// \file What commands share to talk to people and programs: output, progress, the time, and how
-/// typed numbers and file names are read.
+/// \file What commands share to talk to people and programs: output, progress, the time, and the
+/// endings of file names.
 #pragma once
 
-#include <charconv>
 #include <chrono>
 #include <filesystem>
 #include <functional>
-#include <optional>
 #include <string>
-#include <string_view>
-#include <system_error>
 
 namespace touchtrial::app {
 
@@ -30,16 +26,6 @@ template <typename Json>
 
 /// Nanoseconds since 1970, UTC.
 [[nodiscard]] std::chrono::nanoseconds utc_now();
-
-/// The number that a whole text is, whatever the locale; nothing if it is anything else.
-template <typename Number>
-[[nodiscard]] std::optional<Number> number_in(std::string_view text) {
-  Number number{};
-  const char* const end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, number);
-  if (error != std::errc{} || stop != end) return std::nullopt;
-  return number;
-}
 
 /// The extension of a file name in lower case, with its dot: ".png" of "A.PNG".
 [[nodiscard]] std::string ending_of(const std::filesystem::path& file);

@@ -1,11 +1,11 @@
 // device calibrate: a person weighs a device's force with hanging weights.
 #include "app/attended_run.hpp"
-#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/device_words.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/text.hpp"
 #include "core/version.hpp"
 #include "device/calibration/certificate.hpp"
 

@@ -1,6 +1,5 @@
 // device: force-feedback devices; device list: what is plugged in.
 #include "analysis/text_table.hpp"
-#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "device/registry.hpp"

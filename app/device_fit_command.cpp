@@ -1,5 +1,4 @@
 // device fit: whether a study's plane fits the devices of a driver, even if none is at hand.
-#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "core/errors.hpp"

@@ -1,5 +1,4 @@
 // device monitor: a window that shows a device and its servo.
-#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/device_words.hpp"
 #include "app/monitor/monitor_run.hpp"

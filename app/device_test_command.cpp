@@ -1,6 +1,5 @@
 // device test: a person feels a plain wall, and then a texture.
 #include "app/attended_run.hpp"
-#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/device_words.hpp"

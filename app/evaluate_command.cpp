@@ -1,6 +1,5 @@
 #include "analysis/figures/gnuplot.hpp"
 #include "analysis/measures/evaluation_report.hpp"
-#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "core/errors.hpp"

@@ -1,5 +1,4 @@
 // extract: the texture of one image, with every stage on request.
-#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/method_arguments.hpp"

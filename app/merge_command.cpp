@@ -1,6 +1,5 @@
 // merge: makes one database from those of several stations.
 #include "analysis/text_figures.hpp"
-#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/study_inputs.hpp"
@@ -58,7 +57,7 @@ std::optional<design::StudyKey> simulated_key_beside(const std::vector<fs::path>
     const fs::path path = key_path_for(database, {});
     if (!is_there(path)) continue;
     design::StudyKey key = design::load_study_key(path);
-    if (key.simulated && design::study_seal(key) == seal) return key;
+    if (key.simulated && key.seal == seal) return key;
   }
   return std::nullopt;
 }
@@ -75,8 +74,7 @@ std::optional<design::StudyKey> key_to_write(const MergeArguments& arguments,
   if (!commitment.simulated) return std::nullopt;
   std::optional<design::StudyKey> key = simulated_key_beside(arguments.databases, commitment.seal);
   const fs::path path = key_path_for(arguments.target, {});
-  if (key && is_there(path) &&
-      design::study_seal(design::load_study_key(path)) != commitment.seal) {
+  if (key && is_there(path) && design::load_study_key(path).seal != commitment.seal) {
     throw StoreError(one_line(path.string()) +
                      ": is the key of another study; give another name with -o, or move it away");
   }

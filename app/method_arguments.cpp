@@ -1,7 +1,8 @@
 #include "app/method_arguments.hpp"
 
-#include "app/command_options.hpp"
+#include "app/commands.hpp"
 #include "core/errors.hpp"
+#include "core/text.hpp"
 
 #include <algorithm>
 #include <charconv>
@@ -34,12 +35,7 @@ const std::vector<MethodOption>& method_options() {
 }
 
 std::string owners_of(const MethodOption& option) {
-  std::string owners;
-  for (std::size_t i = 0; i < option.methods.size(); ++i) {
-    if (i > 0) owners += i + 1 == option.methods.size() ? " or " : ", ";
-    owners += engine::name_of(option.methods[i]);
-  }
-  return owners;
+  return listed(option.methods, " or ", [](engine::Method one) { return engine::name_of(one); });
 }
 
 void refuse_unused_seed(const CLI::App& command, engine::Control control) {

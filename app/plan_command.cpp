@@ -1,11 +1,13 @@
 #include "analysis/text_figures.hpp"
 #include "analysis/text_table.hpp"
-#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
+#include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "protocols/design/enrolment_plan.hpp"
+#include "core/text.hpp"
+#include "protocols/design/prepare.hpp"
+#include "protocols/design/study_key.hpp"
 
 #include <filesystem>
 #include <memory>
@@ -22,7 +24,7 @@ namespace fs = std::filesystem;
 
 struct PlanArguments {
   fs::path study;
-  fs::path output;
+  fs::path pack;
   int participants = 0;
   int stations = 0;
   std::vector<std::string> names;
@@ -37,82 +39,73 @@ std::vector<std::string> station_names(const PlanArguments& arguments) {
   return names;
 }
 
-std::string ranges_text(const design::StationShare& share) {
-  std::string text;
-  for (const design::EnrolmentRange& range : share.ranges) {
-    text += (text.empty() ? "" : ", ") + (range.size() == 1
-                                              ? std::to_string(range.first)
-                                              : fmt::format("{} to {}", range.first, range.last));
-  }
-  return text;
+std::string ranges_text(const design::Station& station) {
+  return listed(station.ranges, ", ", [](const design::EnrolmentRange& range) {
+    return range.size() == 1 ? std::to_string(range.first)
+                             : fmt::format("{} to {}", range.first, range.last);
+  });
 }
 
-std::string orders_text(const std::vector<int>& counts) {
-  return fmt::format("{}", fmt::join(counts, " "));
-}
-
-std::string plan_text(const design::Study& study, const design::EnrolmentPlan& plan,
-                      const fs::path& path) {
-  analysis::TextTable table({"station", "participants", "of each order of methods"});
+std::string plan_text(const design::StudyKey& key, const design::PackPlace& place) {
+  analysis::TextTable table({"station", "participants", "file"});
   std::string numbers;
-  for (const design::StationShare& share : plan.stations) {
-    table.add({share.station, std::to_string(share.size()),
-               orders_text(design::orders_of(study, share.ranges))});
-    numbers += analysis::wrapped("  " + share.station + ": ", ranges_text(share));
+  for (const design::Station& station : key.stations) {
+    table.add({station.name, std::to_string(station.size()), place.station(station.name).string()});
+    numbers += analysis::wrapped("  " + station.name + ": ", ranges_text(station));
   }
-  const std::vector<design::EnrolmentRange> all = {{1, plan.participants()}};
-  table.add(
-      {"all", std::to_string(plan.participants()), orders_text(design::orders_of(study, all))});
   return fmt::format(
-      "{}: {} at {}\n{}enrolment numbers of each station\n{}plan  {}\nGive every station this file "
-      "beside its study file; there, `touchtrial run ... --station NAME` takes its next number.\n",
-      plan.study, analysis::counted(plan.participants(), "participant"),
-      analysis::counted(static_cast<int>(plan.stations.size()), "station"), table.text(), numbers,
-      path.string());
+      "{}: {} at {}\n{}enrolment numbers of each station\n{}Give every station its own file beside "
+      "the study file, and no other; there, `touchtrial run ... --station NAME` takes its next "
+      "number.\n",
+      key.study.name, analysis::counted(design::enrolments_of(key.stations), "participant"),
+      analysis::counted(static_cast<int>(key.stations.size()), "station"), table.text(), numbers);
 }
 
-std::string plan_json(const design::Study& study, const design::EnrolmentPlan& plan,
-                      const fs::path& path) {
+std::string plan_json(const design::StudyKey& key, const design::PackPlace& place) {
   nlohmann::ordered_json stations = nlohmann::ordered_json::array();
-  for (const design::StationShare& share : plan.stations) {
+  for (const design::Station& station : key.stations) {
     nlohmann::ordered_json ranges = nlohmann::ordered_json::array();
-    for (const design::EnrolmentRange& range : share.ranges)
+    for (const design::EnrolmentRange& range : station.ranges)
       ranges.push_back({range.first, range.last});
-    stations.push_back({{"station", share.station},
-                        {"participants", share.size()},
+    stations.push_back({{"station", station.name},
+                        {"participants", station.size()},
                         {"enrolments", ranges},
-                        {"method_orders", design::orders_of(study, share.ranges)}});
+                        {"file", place.station(station.name).string()}});
   }
-  const nlohmann::ordered_json document = {{"study", plan.study},
-                                           {"participants", plan.participants()},
-                                           {"stations", stations},
-                                           {"plan", path.string()}};
+  const nlohmann::ordered_json document = {{"study", key.study.name},
+                                           {"participants", design::enrolments_of(key.stations)},
+                                           {"stations", stations}};
   return json_text(document);
 }
 
-/// The existing plan with --extend, else an empty one.
-design::EnrolmentPlan plan_to_fill(const PlanArguments& arguments, const design::Study& study,
-                                   const fs::path& path) {
+bool is_divided(const design::StudyKey& key) {
+  return key.stations.size() > 1 || key.stations.front().name != design::kOnlyStation;
+}
+
+/// The key's stations with --extend, else new ones.
+std::vector<design::Station> stations_to_fill(const PlanArguments& arguments,
+                                              const design::StudyKey& key, const fs::path& path) {
   if (!arguments.extend) {
-    if (is_there(path)) {
+    if (is_divided(key)) {
       throw UsageError(path.string() +
-                       ": exists already, and stations may use it; hand out more numbers with "
-                       "--extend, or give another --output");
+                       ": the study is divided between stations already, which may use their "
+                       "numbers; hand out more with --extend");
     }
-    return design::empty_plan(study, station_names(arguments));
+    return design::stations_named(station_names(arguments));
   }
-  if (!is_there(path)) {
+  if (!is_divided(key)) {
     throw UsageError(path.string() +
-                     ": does not exist and cannot be extended; make it with --stations or --names");
+                     ": the study is not divided between stations; do that with --stations or "
+                     "--names");
   }
-  design::EnrolmentPlan plan = design::load_plan(path, study);
-  if (arguments.participants < plan.participants()) {
+  const int had = design::enrolments_of(key.stations);
+  if (arguments.participants < had) {
     throw UsageError(fmt::format(
         "{}: has numbers for {} participants, which cannot be withdrawn; give --participants {} or "
         "more",
-        path.string(), plan.participants(), plan.participants()));
+        path.string(), had, had));
   }
-  return plan;
+  return key.stations;
 }
 
 int plan_enrolment(const PlanArguments& arguments) {
@@ -120,12 +113,21 @@ int plan_enrolment(const PlanArguments& arguments) {
     throw UsageError("plan: the stations are missing; give --stations N, or their --names");
   }
   const design::Study study = design::load_study(arguments.study);
-  const fs::path path =
-      arguments.output.empty() ? design::plan_path_for(arguments.study) : arguments.output;
-  design::EnrolmentPlan plan = plan_to_fill(arguments, study, path);
-  design::extend_plan(plan, study, arguments.participants);
-  design::save_plan(path, plan);
-  print(arguments.json ? plan_json(study, plan, path) : plan_text(study, plan, path));
+  const design::PackPlace place = pack_place_for(arguments.study, arguments.pack);
+  if (!is_there(place.key)) {
+    throw FileError(place.key.string() +
+                    ": there is no key, which a plan divides between stations; run `touchtrial "
+                    "prepare` first, or go to the machine that has it");
+  }
+  design::StudyKey key = design::load_study_key(place.key);
+  std::vector<design::Station> stations = stations_to_fill(arguments, key, place.key);
+  design::hand_out_enrolments(stations, arguments.participants);
+  design::divide(key, std::move(stations));
+  design::save_study_key(place.key, key);
+  save_station_files(key, place);
+  // The file of the undivided study would present schedules that no station has.
+  fs::remove(place.station());
+  print(arguments.json ? plan_json(key, place) : plan_text(key, place));
   return 0;
 }
 
@@ -134,10 +136,10 @@ int plan_enrolment(const PlanArguments& arguments) {
 void add_plan_command(CLI::App& program, Action& action) {
   auto arguments = std::make_shared<PlanArguments>();
   CLI::App* command = program.add_subcommand(
-      "plan", "Hand out enrolment numbers to several stations before the first participant comes");
+      "plan", "Divide a prepared study between stations, before the first participant comes");
   add_study_argument(*command, arguments->study);
   command->add_option("--participants", arguments->participants, "Number of participants in all")
-      ->check(CLI::Range(1, design::kMostPlanned))
+      ->check(CLI::Range(1, design::kMostEnrolments))
       ->required();
   auto* stations = command
                        ->add_option("--stations", arguments->stations,
@@ -153,8 +155,7 @@ void add_plan_command(CLI::App& program, Action& action) {
                  "Add numbers to the existing plan, and keep its own")
       ->excludes(stations)
       ->excludes(names);
-  command->add_option("-o,--output", arguments->output,
-                      "File to write (default: <study>.plan.json beside the study file)");
+  add_pack_option(*command, arguments->pack);
   add_json_flag(*command, arguments->json);
   command->callback([=, &action] { action = [=] { return plan_enrolment(*arguments); }; });
 }

@@ -1,6 +1,5 @@
 // prepare: the force fields and the key of a study. Nothing that it prints links a stimulus to its
 // code.
-#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/study_inputs.hpp"
@@ -200,7 +199,7 @@ struct PrepareArguments {
 void keep_earlier_key(const design::StudyKey& earlier, const fs::path& path) {
   constexpr std::size_t kSealDigits = 8;
   fs::path kept = path;
-  kept += "." + to_hex(design::study_seal(earlier)).substr(0, kSealDigits);
+  kept += "." + to_hex(earlier.seal).substr(0, kSealDigits);
   design::save_study_key(kept, earlier);
   spdlog::warn(
       "{}: the study has changed; the earlier key is kept as {}, because databases that it sealed "
@@ -225,7 +224,7 @@ design::StudyKey key_for(const design::Study& study, const fs::path& path) {
                      "\"; give another folder with --pack");
   }
   design::StudyKey key = design::rekeyed(earlier, study);
-  if (design::study_seal(key) != design::study_seal(earlier)) keep_earlier_key(earlier, path);
+  if (key.seal != earlier.seal) keep_earlier_key(earlier, path);
   return key;
 }
 
@@ -298,17 +297,27 @@ std::string loop_work_table(const design::Study& study) {
   return text + "work round closed loops: circles at constant depth, and press, slide, lift\n";
 }
 
+/// Where everything is, and what each file is for.
+std::string places_text(const design::StudyKey& key, const design::PackPlace& place) {
+  std::string text = fmt::format("pack     {}\n", place.pack.string());
+  for (const design::Station& station : key.stations) {
+    text +=
+        fmt::format("station  {} (for `touchtrial run`)\n", place.station(station.name).string());
+  }
+  return text + fmt::format(
+                    "key      {} (the investigator's; opens every session: move it to another "
+                    "medium before the first participant)\n",
+                    place.key.string());
+}
+
 int prepare(const PrepareArguments& arguments) {
   const design::Study study = design::load_study(arguments.study);
   design::check_images_exist(study);
-  if (study.seed == 0) {
-    spdlog::warn("{}: /seed is 0 or missing; give the study its own seed",
-                 arguments.study.string());
-  }
   const design::PackPlace place = pack_place_for(arguments.study, arguments.pack);
   design::StudyKey key = key_for(study, place.key);
   key.pack_folder = place.pack;
   design::save_study_key(place.key, key);
+  save_station_files(key, place);
   const design::PrepareReport report = design::prepare_pack(
       key, place.pack, progress_bar("preparing"), {.explain = arguments.explain});
   for (const std::string& warning : report.warnings) spdlog::warn("{}", warning);
@@ -317,9 +326,7 @@ int prepare(const PrepareArguments& arguments) {
     return 0;
   }
   print((arguments.explain ? explanation_text(report) + "\n" : "") + table_of(report) +
-        gains_of(report, study.rendering.model) + line_of_totals(report) +
-        fmt::format("pack {}\nkey  {} (keep it to yourself)\n", place.pack.string(),
-                    place.key.string()));
+        gains_of(report, study.rendering.model) + line_of_totals(report) + places_text(key, place));
   if (arguments.loop_work) print(loop_work_table(study));
   return 0;
 }

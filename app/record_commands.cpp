@@ -1,6 +1,5 @@
 // Commands that record something beside the sessions: consent, exclude, replace, withdraw, note,
 // close and unblind; and migrate, which brings an older database up to date.
-#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/study_inputs.hpp"

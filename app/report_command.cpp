@@ -3,7 +3,6 @@
 #include "analysis/page/study_document.hpp"
 #include "analysis/quality.hpp"
 #include "analysis/results.hpp"
-#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/study_inputs.hpp"
@@ -11,9 +10,14 @@
 #include "protocols/collect/collect.hpp"
 #include "protocols/store/study_store.hpp"
 
+#include <algorithm>
+#include <cstddef>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+
+#include <sys/ioctl.h>
+#include <unistd.h>
 
 namespace touchtrial::app {
 namespace {
@@ -33,6 +37,14 @@ struct ReportArguments {
 void write_report(const ReportArguments& arguments, const analysis::ReportFiles& files) {
   analysis::write_report_folder(arguments.folder, files);
   print((arguments.folder / "report.html").string() + "\n");
+}
+
+/// The columns of the terminal on standard output, from 80 to kTextWidth, which is also the width
+/// of a file or pipe.
+std::size_t columns_of_output() {
+  winsize size{};
+  if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0) return analysis::kTextWidth;
+  return std::clamp<std::size_t>(size.ws_col, 80, analysis::kTextWidth);
 }
 
 analysis::Provenance provenance_for(const store::StudyStore& store,
@@ -104,7 +116,10 @@ int report(const ReportArguments& arguments) {
   const auto results =
       analysis::analysis_of(outcomes.design).results(outcomes, wishes_of(arguments, traces));
   if (!arguments.folder.empty()) return write_outcomes(store, outcomes, *results, arguments);
-  print(arguments.json ? results->json() : results->text());
+  print(arguments.json
+            ? results->json()
+            : analysis::document_text(results->document(provenance_for(store, arguments), {}),
+                                      columns_of_output()));
   return 0;
 }
 

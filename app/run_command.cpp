@@ -1,9 +1,9 @@
-#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/run/run_session.hpp"
 #include "core/errors.hpp"
-#include "protocols/design/enrolment_plan.hpp"
+#include "core/text.hpp"
+#include "protocols/design/station.hpp"
 
 #include <map>
 #include <memory>
@@ -50,8 +50,9 @@ void add_session_options(CLI::App& command, RunOptions& options) {
       ->check(place_validator())
       ->required();
   add_pack_option(command, options.pack);
-  command.add_option("--key", options.key,
-                     "Key of the study (default: beside the database or the pack)");
+  auto* file =
+      command.add_option("--station-file", options.station_file,
+                         "File of this station (default: <study>.station beside the pack)");
   command.add_flag("--pilot", options.pilot,
                    "A pilot session, never pooled; needs a database of its own");
   command
@@ -60,15 +61,12 @@ void add_session_options(CLI::App& command, RunOptions& options) {
       ->transform(CLI::CheckedTransformer(policies).description("refuse|resume|restart"));
   command
       .add_option("--enrolment", options.enrolment,
-                  "Enrolment number, which decides the schedule (default: the smallest that is "
-                  "free)")
-      ->check(CLI::Range(1, design::kMostPlanned));
+                  "Enrolment number, one of this station's (default: its next)")
+      ->check(CLI::Range(1, design::kMostEnrolments));
   command
       .add_option("--station", options.station,
-                  "Name of this station in the plan, for the next enrolment number")
-      ->excludes("--enrolment");
-  command.add_option("--plan", options.plan,
-                     "Enrolment plan (default: <study>.plan.json, if it exists)");
+                  "Name of this station, whose file is <study>.NAME.station")
+      ->excludes(file);
 }
 
 void add_device_options(CLI::App& command, RunOptions& options) {

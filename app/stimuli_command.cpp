@@ -1,8 +1,8 @@
 // stimuli: pictures for studies, which the program generates or imports from photographs.
-#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "core/errors.hpp"
+#include "core/text.hpp"
 #include "protocols/design/protocol.hpp"
 #include "stimuli/default_set.hpp"
 #include "stimuli/generator.hpp"

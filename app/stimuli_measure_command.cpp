@@ -1,6 +1,5 @@
 // stimuli measure: numbers that describe pictures.
 #include "analysis/measures/picture_set.hpp"
-#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "core/errors.hpp"

@@ -1,7 +1,6 @@
 // stimuli sheet: a contact sheet of a prepared study.
 #include "analysis/figures/gnuplot.hpp"
 #include "analysis/sheet/stimulus_sheet.hpp"
-#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/study_inputs.hpp"
@@ -54,7 +53,7 @@ design::StudyKey key_of(const design::Study& study, const fs::path& path) {
   const design::StudyKey stored = design::load_study_key(path);
   // The key may be elsewhere, for instance on a USB stick: pictures are found from the study file.
   design::StudyKey key = design::rekeyed(stored, study);
-  if (design::study_seal(key) != design::study_seal(stored)) {
+  if (key.seal != stored.seal) {
     throw VerificationError(one_line(path.string()) + ": is not the key of " + study.source +
                             " as it is now; run touchtrial prepare, or name another with --key");
   }

@@ -45,10 +45,15 @@ design::PackPlace pack_place_for(const std::filesystem::path& study_file,
   return pack.empty() ? design::default_pack_place(study_file) : design::pack_place_at(pack);
 }
 
+void save_station_files(const design::StudyKey& key, const design::PackPlace& place) {
+  for (const design::Station& station : key.stations) {
+    design::save_station_key(place.station(station.name), design::station_key(key, station.name));
+  }
+}
+
 design::StudyKey simulated_key(const design::Study& study,
                                const std::filesystem::path& study_file) {
-  SeededEntropy entropy(study.seed);
-  design::StudyKey key = design::make_study_key(study, entropy, true);
+  design::StudyKey key = design::simulated_study_key(study);
   key.pack_folder = design::simulated_pack_place(study_file).pack;
   return key;
 }
@@ -60,8 +65,7 @@ void prepare_simulated_pack(const design::StudyKey& key, bool wait) {
 }
 
 void refuse_other_key(const std::filesystem::path& path, const design::StudyKey& key) {
-  if (is_there(path) &&
-      design::study_seal(design::load_study_key(path)) != design::study_seal(key)) {
+  if (is_there(path) && design::load_study_key(path).seal != key.seal) {
     throw StoreError(path.string() +
                      ": exists already; give another --db, or move the old file away");
   }

@@ -28,6 +28,9 @@ namespace touchtrial::app {
 [[nodiscard]] design::PackPlace pack_place_for(const std::filesystem::path& study_file,
                                                const std::filesystem::path& pack);
 
+/// Writes the files of all stations beside the key.
+void save_station_files(const design::StudyKey& key, const design::PackPlace& place);
+
 /// The key of a simulated study. Its secrets follow from the study's seed, so that its databases
 /// belong together and can be made again. The pack that it names is at simulated_pack_place.
 [[nodiscard]] design::StudyKey simulated_key(const design::Study& study,

@@ -1,12 +1,11 @@
 // sync: pushes a station's finished sessions into a PostgreSQL database.
-#include "analysis/collection.hpp"
 #include "analysis/text_figures.hpp"
-#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/text.hpp"
 #include "protocols/collect/collect.hpp"
 #include "protocols/collect/enrolment_balance.hpp"
 #include "protocols/collect/server_address.hpp"
@@ -70,9 +69,11 @@ json station_json(const StationSummary& summary) {
 json balance_json(const collect::EnrolmentBalance& balance) {
   json stations = json::object();
   for (const auto& [station, count] : balance.stations) stations[std::to_string(station)] = count;
-  return {{"stations", stations},       {"method_rows", balance.rows},
-          {"gaps", balance.gaps},       {"gap_count", balance.gap_count},
-          {"highest", balance.highest}, {"imbalances", collect::imbalances(balance)}};
+  return {{"stations", stations},
+          {"gaps", balance.gaps},
+          {"gap_count", balance.gap_count},
+          {"highest", balance.highest},
+          {"imbalances", collect::imbalances(balance)}};
 }
 
 std::string sync_json(const SyncSummary& summary) {
@@ -88,11 +89,7 @@ std::string sync_json(const SyncSummary& summary) {
 }
 
 std::string participants(const std::vector<collect::PushedSession>& sessions) {
-  std::string names;
-  for (const collect::PushedSession& session : sessions) {
-    names += (names.empty() ? "" : ", ") + session.participant;
-  }
-  return names;
+  return listed(sessions, ", ", &collect::PushedSession::participant);
 }
 
 std::string counted(const std::vector<collect::PushedSession>& sessions) {
@@ -176,11 +173,10 @@ std::optional<design::StudyKey> key_for(const store::StudyStore& store,
 /// Sets the summary's balance. A connection that is lost now must not hide that everything has been
 /// pushed.
 /// \throws DamagedStore if the server's data are damaged
-void ask_balance(const collect::ServerAddress& server, int method_orders, SyncSummary& summary) {
+void ask_balance(const collect::ServerAddress& server, SyncSummary& summary) {
   for (int attempt = 0; attempt < 2; ++attempt) {
     try {
-      summary.balance =
-          collect::enrolment_balance(collect::sessions_on_server(server), method_orders);
+      summary.balance = collect::enrolment_balance(collect::sessions_on_server(server));
       summary.balance_unknown.clear();
       return;
     } catch (const store::DamagedStore&) {
@@ -194,15 +190,12 @@ void ask_balance(const collect::ServerAddress& server, int method_orders, SyncSu
 int sync(const SyncArguments& arguments) {
   const collect::ServerAddress server(arguments.to);
   collect::PushOptions options{.dry_run = arguments.dry_run, .progress = progress_bar("push")};
-  int method_orders = 1;
   {
     const store::StudyStore store =
         store::StudyStore::open(arguments.database, store::StudyStore::Access::read_only);
     verify(store, arguments.database);
     if (const std::optional<design::StudyKey> key = key_for(store, arguments))
-      options.master = key->master;
-    method_orders =
-        analysis::prescription_from_json(store.commitment().configuration).method_orders;
+      options.investigator = key->box();
   }
   SyncSummary summary{.server = server.shown(), .dry_run = arguments.dry_run};
   for (const auto& station : collect::stations_of_file(arguments.database)) {
@@ -214,7 +207,7 @@ int sync(const SyncArguments& arguments) {
     print(arguments.json ? sync_json(summary) : sync_text(summary));
   };
   try {
-    ask_balance(server, method_orders, summary);
+    ask_balance(server, summary);
   } catch (const store::DamagedStore& error) {
     summary.balance_unknown = error.what();
     print_summary();  // the sessions have been pushed

@@ -1,5 +1,4 @@
 #include "analysis/verification/study_files.hpp"
-#include "app/command_options.hpp"
 #include "app/commands.hpp"
 #include "app/console.hpp"
 #include "app/study_inputs.hpp"

@@ -24,8 +24,8 @@ if(TOUCHTRIAL_SANITIZE)
     -fsanitize=${TOUCHTRIAL_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   target_link_options(touchtrial_settings INTERFACE -fsanitize=${TOUCHTRIAL_SANITIZE})
   if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    # Among the sanitizers' checks GCC sees overflows of vectors that are not there; the release
-    # build is the one that must be free of warnings.
+    # With the sanitizers' checks GCC warns of vector overflows that cannot happen. It is the
+    # release build that must be free of warnings.
     target_compile_options(touchtrial_settings INTERFACE -Wno-error)
   endif()
   if(TOUCHTRIAL_SANITIZE STREQUAL "thread")

@@ -67,8 +67,8 @@ function(touchtrial_allow_included_sources target)
 endfunction()
 
 # touchtrial_joined(VARIABLE BATCH NAME sources...)
-# Sets the variable to translation units that hold so many of the sources each; TOUCHTRIAL_UNITY off,
-# to the sources.
+# Sets the variable to translation units, each of which includes BATCH of the sources. If
+# TOUCHTRIAL_UNITY is off, sets it to the sources themselves.
 function(touchtrial_joined variable batch name)
   if(NOT TOUCHTRIAL_UNITY)
     set(${variable} ${ARGN} PARENT_SCOPE)

@@ -133,6 +133,17 @@ bool move_to_free_name(const std::filesystem::path& file, const std::filesystem:
   return true;
 }
 
+void require_owner_only(const std::filesystem::path& path) {
+  struct stat status {};
+  if (::stat(path.c_str(), &status) != 0) {
+    fail(path, "cannot be read", errno, "check that it is there, and its permissions");
+  }
+  if ((status.st_mode & 077U) == 0) return;
+  throw FileError(one_line(path.string() +
+                           ": others may read this file of secrets; run `chmod 600 " +
+                           path.string() + "`, and ask who has read it"));
+}
+
 void make_folder(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);

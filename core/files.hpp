@@ -28,6 +28,10 @@ void replace_file(const std::filesystem::path& path, ByteView content,
 void replace_file(const std::filesystem::path& path, std::string_view content,
                   FileMode mode = FileMode::everyone);
 
+/// Refuses a file of secrets that others may read.
+/// \throws FileError with the remedy if the group or others have any right to it, or it is missing
+void require_owner_only(const std::filesystem::path& path);
+
 /// Creates a folder and its missing parents.
 /// \throws FileError if the folder does not exist afterwards
 void make_folder(const std::filesystem::path& folder);

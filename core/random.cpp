@@ -10,12 +10,7 @@
 namespace touchtrial {
 namespace {
 
-std::mt19937_64 seeded_engine(std::uint64_t seed, std::string_view purpose, std::uint64_t index) {
-  const Digest digest = FieldHasher()
-                            .add(static_cast<std::int64_t>(seed))
-                            .add(purpose)
-                            .add(static_cast<std::int64_t>(index))
-                            .finish();
+std::mt19937_64 engine_of(const Digest& digest) {
   std::array<std::uint32_t, 8> words{};
   for (std::size_t i = 0; i < digest.size(); ++i) {
     words[i / 4] |= std::uint32_t{digest[i]} << (8 * (i % 4));
@@ -27,7 +22,15 @@ std::mt19937_64 seeded_engine(std::uint64_t seed, std::string_view purpose, std:
 }  // namespace
 
 RandomStream::RandomStream(std::uint64_t seed, std::string_view purpose, std::uint64_t index)
-    : engine_(seeded_engine(seed, purpose, index)) {}
+    : engine_(engine_of(FieldHasher()
+                            .add(static_cast<std::int64_t>(seed))
+                            .add(purpose)
+                            .add(static_cast<std::int64_t>(index))
+                            .finish())) {}
+
+RandomStream::RandomStream(const Digest& secret, std::string_view purpose, std::uint64_t index)
+    : engine_(engine_of(keyed_hash(
+          secret, FieldHasher().add(purpose).add(static_cast<std::int64_t>(index)).finish()))) {}
 
 std::uint64_t RandomStream::below(std::uint64_t bound) {
   // The lowest 2^64 mod bound draws are rejected, so that every number is equally likely.

@@ -1,6 +1,8 @@
 /// \file Seeded random numbers, the same on every platform and with every standard library.
 #pragma once
 
+#include "core/hash.hpp"
+
 #include <cstdint>
 #include <random>
 #include <span>
@@ -17,6 +19,9 @@ class RandomStream {
   /// Each (seed, purpose, index) gives a different stream. Streams of different purposes are
   /// unrelated, so an additional draw from one leaves the others unchanged.
   RandomStream(std::uint64_t seed, std::string_view purpose, std::uint64_t index = 0);
+  /// The same from 32 secret bytes in place of a seed, for draws that nobody else may repeat. All
+  /// 256 bits enter; who knows some draws of a stream learns nothing of other streams.
+  RandomStream(const Digest& secret, std::string_view purpose, std::uint64_t index = 0);
 
   /// The next 64 random bits.
   [[nodiscard]] std::uint64_t bits() { return engine_(); }

@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/nearest_name.hpp"
+#include "core/text.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -139,12 +140,9 @@ std::string kind_of(const json& value) {
 }
 
 std::string list_of(std::span<const std::string_view> names, std::string_view quote) {
-  std::string list;
-  for (const std::string_view name : names) {
-    if (!list.empty()) list += ", ";
-    list += std::string(quote) + std::string(name) + std::string(quote);
-  }
-  return list;
+  return listed(names, ", ", [&](std::string_view name) {
+    return std::string(quote) + std::string(name) + std::string(quote);
+  });
 }
 
 std::string words_for(const NumberRange& range) {

@@ -30,7 +30,8 @@ Vec3 read_vec3(const JsonValue& place, const NumberRange& range) {
   return {items[0].number(range), items[1].number(range), items[2].number(range)};
 }
 
-/// \return a text for the system or a vendor's library, both of which take a zero for its end
+/// \return a text without zero bytes, which would end it early for the system and for vendors'
+///   libraries
 const std::string& plain_text(const JsonValue& place) {
   const std::string& text = place.text();
   const auto is_control = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
@@ -44,14 +45,14 @@ void read_text(const JsonObject& object, std::string_view key, std::string& text
   if (const auto member = object.find(key)) text = plain_text(*member);
 }
 
-/// A file of the user; an empty text names none.
+/// Reads the path of a file; an empty text names no file.
 void read_path(const JsonObject& object, std::string_view key, const fs::path& folder,
                fs::path& path) {
   const auto member = object.find(key);
   if (member && !plain_text(*member).empty()) path = folder / member->text();
 }
 
-/// A library: a path if it has a slash, else a name that the system looks up.
+/// Reads the name of a library: a path if it has a slash, else a name that the system looks up.
 void read_library(const JsonObject& object, const fs::path& folder, fs::path& path) {
   const auto member = object.find("library");
   if (!member) return;
@@ -163,7 +164,7 @@ DeviceUse read_replay(const JsonValue& place, const fs::path& folder, DeviceSett
   return read_use(object);
 }
 
-/// Drivers with settings of their own; the others have limits alone.
+/// Drivers with settings of their own; the others have only limits.
 using ReadDriver = DeviceUse (*)(const JsonValue&, const fs::path&, DeviceSettings&);
 constexpr std::array kReaders = {
     Named<ReadDriver>{"falcon", read_falcon}, Named<ReadDriver>{"openhaptics", read_openhaptics},

@@ -35,7 +35,7 @@ struct DhdSettings {
   double max_force_n = 8.0;         ///< which the library does not tell; > 0
   double continuous_force_n = 0.0;  ///< 0: no limit is known
   /// Width, height and depth of the ellipsoid that the device reaches, which the library does not
-  /// tell either; each > 0. The default is that of an omega.3.
+  /// report either; each > 0. The default is that of an omega.3.
   Vec3 workspace_mm = {160.0, 160.0, 110.0};
 };
 
@@ -81,7 +81,7 @@ struct DeviceSettings {
 [[nodiscard]] DeviceSettings read_device_settings(const std::filesystem::path& file);
 
 /// The same from text.
-/// \param folder  to which paths are relative
+/// \param folder  relative paths start here
 /// \param source  names the origin in errors
 /// \throws StudyError with the JSON pointer if the text breaks the schema
 [[nodiscard]] DeviceSettings parse_device_settings(std::string_view text,
@@ -93,8 +93,9 @@ struct DeviceSettings {
 [[nodiscard]] std::filesystem::path default_device_settings_path();
 
 /// Reads the settings that a command uses: the file that the user named, else the one at the
-/// default path, else the defaults. \param named  empty if the user named none \throws as
-/// read_device_settings
+/// default path, else the defaults.
+/// \param named  empty if the user named none
+/// \throws as read_device_settings
 [[nodiscard]] DeviceSettings device_settings_for(const std::filesystem::path& named);
 
 }  // namespace touchtrial::device

@@ -13,7 +13,7 @@ namespace touchtrial::device {
 [[nodiscard]] DeviceDriver falcon_driver();
 
 /// `list` loads the library, opens the device of the settings for a moment and closes it again,
-/// without force: the library has no other way to tell what is plugged in.
+/// without force: the library has no other way to find out what is plugged in.
 [[nodiscard]] DeviceDriver openhaptics_driver();
 
 /// `list` loads the library and opens each connected device for a moment, to read its name, without
@@ -29,7 +29,8 @@ namespace touchtrial::device {
 /// path. It moves once for every tick, so in real time the servo's clock paces it.
 [[nodiscard]] DeviceDriver simulated_driver();
 
-/// Replays the file of DeviceSettings::replay. `list` reads it, to tell whether `open` will.
+/// Replays the file of DeviceSettings::replay. `list` reads it to find out whether `open` will
+/// succeed.
 [[nodiscard]] DeviceDriver replay_driver();
 
 /// \return all of them, in the order in which the program lists them

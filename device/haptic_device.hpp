@@ -71,7 +71,7 @@ struct DeviceInfo {
   /// The texture is seen on a screen instead of felt: not blind, so only for pilot sessions and
   /// demonstrations.
   bool visual = false;
-  /// Of a wall that it renders stably, by its maker's word; 0: not known.
+  /// The largest stiffness of a wall that it renders stably, as the maker states it; 0: not known.
   double max_stiffness_n_per_mm = 0.0;
 };
 
@@ -79,7 +79,7 @@ struct DeviceInfo {
 /// destructor sends zero force and closes it.
 ///
 /// `read` and `write` belong to the servo thread alone and never block, allocate, lock, log or do
-/// I/O: a driver with a link talks to it on a thread of its own and exchanges with the servo
+/// I/O: a driver with a link talks to it on a thread of its own and exchanges data with the servo
 /// through a DeviceLink. All other functions may be called from any thread.
 class HapticDevice {
  public:

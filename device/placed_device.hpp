@@ -36,8 +36,8 @@ struct PlanePlacement {
   return to_plane_direction(device_mm - placement.origin_mm, placement.orientation);
 }
 
-/// A device as the servo needs it: the same device in the plane frame. Lengths and forces keep
-/// their size. Threads as HapticDevice.
+/// A device as the servo needs it: the same device in the plane frame. Lengths and magnitudes of
+/// forces stay the same. Threads as HapticDevice.
 class PlacedDevice final : public HapticDevice {
  public:
   /// \param device  must outlive this

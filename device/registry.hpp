@@ -1,4 +1,4 @@
-/// \file The drivers by name: what is plugged in, what is missing, and how to open it.
+/// \file The drivers by name: which devices are plugged in, what they lack, and how to open them.
 #pragma once
 
 #include "device/device_settings.hpp"
@@ -30,10 +30,10 @@ struct DeviceDriver {
   std::string what;  ///< a line for help
   std::function<std::vector<DeviceListing>(const DeviceSettings&)> list;
   std::function<std::unique_ptr<HapticDevice>(const DeviceSettings&)> open;
-  /// The workspace by its maker's word, for planning without a device. Nothing: any plane, as for a
-  /// DeviceInfo without one, unless `workspace_is_known` is false.
+  /// The workspace as the maker states it, for planning without a device. Nothing: any plane, as
+  /// for a DeviceInfo without one, unless `workspace_is_known` is false.
   std::optional<Workspace> nominal_workspace = std::nullopt;
-  /// False where models differ and only the device itself can tell.
+  /// False if models differ and only the device itself knows its workspace.
   bool workspace_is_known = true;
 };
 

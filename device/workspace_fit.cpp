@@ -19,11 +19,11 @@ Vec3 middle_of(const Workspace& workspace) {
 /// The workspace reduced to one octant. It is symmetric about its middle, so only the corner of a
 /// box that is furthest from the middle matters.
 struct Reach {
-  Vec3 offset_mm;  ///< of the plane's middle from the workspace's, each >= 0
+  Vec3 offset_mm;  ///< distance of the plane's middle from the workspace's, each >= 0
   Vec3 half_mm;    ///< of the workspace
   WorkspaceShape shape;
 
-  /// \param half_extent_mm  of a box about the plane's middle, device frame
+  /// \param half_extent_mm  half the sides of a box about the plane's middle, device frame
   [[nodiscard]] bool holds(Vec3 half_extent_mm) const {
     const Vec3 corner = offset_mm + half_extent_mm;
     if (shape == WorkspaceShape::box) {

@@ -9,8 +9,8 @@
 
 namespace touchtrial::engine {
 
-/// Filters a plane row by row, for callers that need no plane of the result: needs memory for two
-/// rows and the weights. Sample is double or std::uint8_t. The results are those of
+/// Filters a plane row by row, for callers that do not need the whole result: it needs memory for
+/// two rows and the weights. Sample is double or std::uint8_t. The results are those of
 /// gaussian_filtered() to the last bit. Keeps a reference to the plane. Not thread-safe.
 template <typename Sample>
 class GaussianRows {

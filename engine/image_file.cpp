@@ -14,8 +14,8 @@ namespace touchtrial::engine {
 namespace {
 
 /// Up to this size a file is read as a whole, which turns a failing disk into an error. A larger
-/// file is mapped: if it is no picture, or holds only a small one, it costs the few pages that are
-/// checked.
+/// file is mapped: if it is no picture, or contains only a small one, only the few pages that are
+/// checked are read.
 constexpr std::uintmax_t kLargestReadWhole = std::uintmax_t{1} << 26U;
 
 GreyImage decode_file(ByteView file) {

@@ -23,7 +23,7 @@ void require(bool holds, const char* law) {
   if (!holds) throw std::logic_error(law);
 }
 
-/// Requires a refusal of one line.
+/// Requires that the message of a refusal is one line.
 void check_refusal(const Error& error) {
   const std::string text = error.what();
   require(!text.empty() && text.find('\n') == std::string::npos, "a refusal is one line");

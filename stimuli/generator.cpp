@@ -1,6 +1,7 @@
 #include "stimuli/generator.hpp"
 
 #include "core/errors.hpp"
+#include "core/text.hpp"
 #include "stimuli/recipes.hpp"
 
 #include <algorithm>
@@ -44,11 +45,8 @@ Maker maker_of(std::string_view label) {
                                           [&](const auto& r) { return r.label == label; });
   if (recipe != kRecipes.end())
     return kMakers.at(static_cast<std::size_t>(recipe - kRecipes.begin()));
-  std::string labels;
-  for (const StimulusRecipe& r : kRecipes)
-    labels += (labels.empty() ? "" : ", ") + std::string(r.label);
   throw UsageError(one_line("no generated stimulus is called \"" + std::string(label) +
-                            "\"; choose one of " + labels));
+                            "\"; choose one of " + listed(kRecipes, ", ", &StimulusRecipe::label)));
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ inline constexpr int kMinStimulusSizePx = 16;
 inline constexpr int kMaxStimulusSizePx = 4096;
 /// The largest number of exemplars of a label.
 inline constexpr int kMaxStimulusExemplars = 1000;
-/// Grows whenever a seed comes to mean another picture.
+/// Increases whenever a seed gives another picture than before.
 inline constexpr int kGeneratorVersion = 2;
 
 /// The use of a picture. An object lies on a plain ground; all others fill the picture.

@@ -1,15 +1,15 @@
 #include "analysis/exports/data_table.hpp"
 
+#include <algorithm>
 #include <stdexcept>
-#include <string_view>
 
 #include <fmt/format.h>
 
 namespace touchtrial::analysis {
 namespace {
 
-std::string quoted_field(std::string_view text) {
-  if (text.find_first_of(",\"\r\n") == std::string_view::npos) return std::string(text);
+std::string csv_field(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string field = "\"";
   for (const char c : text) {
     if (c == '"') field += '"';
@@ -18,15 +18,51 @@ std::string quoted_field(std::string_view text) {
   return field + '"';
 }
 
-struct CsvField {
-  std::string operator()(std::monostate) const { return ""; }
-  std::string operator()(const std::string& text) const { return quoted_field(text); }
+constexpr const char* kMissingTsv = "n/a";
+
+std::string tsv_field(const std::string& text) {
+  std::string field = text.empty() ? kMissingTsv : text;
+  std::replace_if(
+      field.begin(), field.end(), [](char c) { return c == '\t' || c == '\n' || c == '\r'; }, ' ');
+  return field;
+}
+
+/// A cell as text.
+struct FieldText {
+  std::string (*field)(const std::string&);
+  const char* missing;
+
+  std::string operator()(std::monostate) const { return missing; }
+  std::string operator()(const std::string& text) const { return field(text); }
   std::string operator()(std::int64_t number) const { return fmt::format("{}", number); }
   std::string operator()(double number) const { return fmt::format("{}", number); }
   std::string operator()(std::chrono::nanoseconds time) const { return seconds_text(time); }
 };
 
+std::string table_text(const DataTable& table, char separator, const FieldText& to_text) {
+  std::string text;
+  const auto add_line = [&](const auto& fields, const auto& field_text) {
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      if (i > 0) text += separator;
+      text += field_text(fields[i]);
+    }
+    text += '\n';
+  };
+  add_line(table.columns, to_text.field);
+  for (const std::vector<DataCell>& row : table.rows) {
+    if (row.size() != table.columns.size()) {
+      throw std::invalid_argument("a row needs as many cells as the table has columns");
+    }
+    add_line(row, [&](const DataCell& cell) { return std::visit(to_text, cell); });
+  }
+  return text;
+}
+
 }  // namespace
+
+DataCell flag(bool value) {
+  return std::int64_t{value ? 1 : 0};
+}
 
 std::string seconds_text(std::chrono::nanoseconds time) {
   constexpr std::uint64_t kPerSecond = 1'000'000'000;
@@ -41,22 +77,11 @@ std::string seconds_text(std::chrono::nanoseconds time) {
 }
 
 std::string csv_text(const DataTable& table) {
-  std::string text;
-  const auto add_line = [&](const auto& fields, const auto& to_text) {
-    for (std::size_t i = 0; i < fields.size(); ++i) {
-      if (i > 0) text += ',';
-      text += to_text(fields[i]);
-    }
-    text += '\n';
-  };
-  add_line(table.columns, [](const std::string& name) { return quoted_field(name); });
-  for (const std::vector<DataCell>& row : table.rows) {
-    if (row.size() != table.columns.size()) {
-      throw std::invalid_argument("a row needs as many cells as the table has columns");
-    }
-    add_line(row, [](const DataCell& cell) { return std::visit(CsvField{}, cell); });
-  }
-  return text;
+  return table_text(table, ',', {csv_field, ""});
+}
+
+std::string tsv_text(const DataTable& table) {
+  return table_text(table, '\t', {tsv_field, kMissingTsv});
 }
 
 }  // namespace touchtrial::analysis

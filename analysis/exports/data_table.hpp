@@ -1,4 +1,4 @@
-/// \file The table of named columns that exports write, and its text as CSV.
+/// \file The table of named columns that exports write, and its text as CSV and as TSV.
 #pragma once
 
 #include <chrono>
@@ -12,6 +12,9 @@ namespace touchtrial::analysis {
 /// One value: nothing, a text, a whole number, a number, or a time (written in seconds).
 using DataCell =
     std::variant<std::monostate, std::string, std::int64_t, double, std::chrono::nanoseconds>;
+
+/// 1 or 0.
+[[nodiscard]] DataCell flag(bool value);
 
 struct DataTable {
   std::vector<std::string> columns;
@@ -27,5 +30,11 @@ struct DataTable {
 /// A missing value is an empty field.
 /// \throws std::invalid_argument if a row and the header differ in length
 [[nodiscard]] std::string csv_text(const DataTable& table);
+
+/// The table in the form of BIDS: tab-separated UTF-8 without a byte order mark, with line feeds
+/// and decimal points; "n/a" for a missing value. An empty text counts as missing; a tab or line
+/// end in a text becomes a space. Source: BIDS specification 1.10, "Tabular files".
+/// \throws std::invalid_argument if a row and the header differ in length
+[[nodiscard]] std::string tsv_text(const DataTable& table);
 
 }  // namespace touchtrial::analysis

@@ -1,6 +1,12 @@
 #include "analysis/exports/dataset.hpp"
 
+#include "analysis/session_rules.hpp"
+#include "analysis/text_figures.hpp"
+
 #include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
 
 namespace touchtrial::analysis {
 namespace {
@@ -8,6 +14,138 @@ namespace {
 /// Tells whether a character is an ASCII letter or digit, in every locale.
 bool is_plain(char c) {
   return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
+}
+
+using Levels = std::vector<std::pair<std::string, std::string>>;
+using Meanings = std::map<std::string, ColumnMeaning>;
+
+ColumnMeaning yes_or_no(std::string description) {
+  return {std::move(description), "", {{"0", "no"}, {"1", "yes"}}};
+}
+
+Meanings of_trials() {
+  const Levels states{{"answered", "the participant answered"},
+                      {"timed-out", "time ran out without an answer"},
+                      {"interrupted", "broken off and never repeated"},
+                      {"voided", "its block was begun anew"},
+                      {"presented", "had not ended when the session did"}};
+  const Levels kinds{{"scored", "may enter the report"},
+                     {"lead-in", "starts a block and is not scored"},
+                     {"catch", "a plane without texture, not scored"}};
+  return {
+      {"trial", {"Number of the trial in its session, from 1"}},
+      {"block", {"Number of the trial's block, from 0"}},
+      {"method", {"Method by which the texture was taken from its image"}},
+      {"class", {"Texture that was presented"}},
+      {"trial_type", {"Texture that was presented"}},
+      {"exemplar", {"Image that the presented texture was taken from"}},
+      {"stim_file", {"Image that the presented texture was taken from, below stimuli/"}},
+      {"response", {"Texture that the participant named"}},
+      {"correct", yes_or_no("Whether the response is the texture presented; a trial without a "
+                            "response is wrong")},
+      {"confidence", {"Confidence in the response, from 1 (a guess) upwards"}},
+      {"reaction_time_s", {"From the moment the plane can be felt to the response", "s"}},
+      {"response_time", {"From the moment the plane can be felt to the response", "s"}},
+      {"from_contact_s", {"From first contact with the plane to the response", "s"}},
+      {"contact_s", {"Time in contact with the plane", "s"}},
+      {"path_mm", {"Length of the stylus' path in contact", "mm"}},
+      {"force_rms_n", {"Root mean square of the force sent while in contact", "N"}},
+      {"saturated_share", {"Share of the time in contact with the force at its limit, 0 to 1"}},
+      {"valid", yes_or_no("Whether the trial meets the study's validity rule")},
+      {"presented_at_s", {"Beginning of the trial, since the session's opening", "s"}},
+      {"counted", yes_or_no("Whether the trial enters the report")},
+      {"kind", {"What the trial is for", "", kinds}},
+      {"state", {"How the trial ended", "", states}},
+      {"explorations", {"Times that the participant explored the plane before responding"}},
+      {"first_contact_s", {"From the moment the plane can be felt to first contact", "s"}},
+      {"position", {"Place of the response among the pictures shown, from 0"}},
+      {"first_position", {"Place of the first response, where it was changed once, from 0"}},
+      {"valid_in_clear", yes_or_no("Validity by what was never sealed: contact and servo health")},
+      {"within_limits", yes_or_no("Validity by what was sealed: path, force and saturation")},
+      {"limited_ticks", {"Servo ticks whose force the safety chain changed"}},
+      {"samples", {"Samples in the trial's trace"}},
+      {"sampling_hz", {"Sampling rate of the trial's trace", "Hz"}},
+      {"overruns", {"Servo ticks that came too late"}},
+  };
+}
+
+Meanings of_sessions() {
+  return {
+      {"participant", {"The participant's id in the study"}},
+      {"session", {"Number of the session in the study's database, from 1"}},
+      {"enrolment", {"Number of enrolment, from 1; decides the order of presentation"}},
+      {"session_state",
+       {"How the session ended",
+        "",
+        {{"completed", "all trials done"},
+         {"stopped", "ended before that"},
+         {"open", "not ended"}}}},
+      {"excluded", yes_or_no("Whether the session was excluded")},
+      {"withdrawn", yes_or_no("Whether the participant withdrew")},
+      {"pilot", yes_or_no("Whether the session is a pilot")},
+      {"simulated", yes_or_no("Whether the participant was simulated and is no person")},
+      {"counted_session", yes_or_no("Whether the session's trials enter the report")},
+      {"device", {"Driver of the haptic device"}},
+      {"replaced_by", {"Participant who took this one's place in the order of enrolment"}},
+      {"shown", yes_or_no("Whether outcomes of the session may be shown yet")},
+  };
+}
+
+Meanings of_collection() {
+  return {
+      {"practice_rounds", {"Rounds of practice"}},
+      {"practice_presentations", {"Textures presented in practice"}},
+      {"practice_correct", {"Of them: named correctly"}},
+      {"practice_passed", yes_or_no("Whether practice was passed")},
+      {"resumed", {"Times that the session was taken up again after the program had ended"}},
+      {"stop_reason", {"Why the session was stopped"}},
+      {"exclusion_reason", {"Why the session was excluded"}},
+      {"replacement_reason", {"Why the participant was replaced"}},
+      {"device_serial", {"Serial number of the haptic device"}},
+      {"device_model", {"Model of the haptic device, as it tells it"}},
+      {"device_firmware", {"Firmware of the haptic device, as it tells it"}},
+      {"device_max_force_n", {"Largest force of the haptic device", "N"}},
+      {"certificate", {"SHA-256 of the device's calibration certificate"}},
+      {"servo_hz", {"Servo rate that was asked for", "Hz"}},
+      {"scheduling", {"Scheduling that the servo's thread obtained"}},
+      {"visual", yes_or_no("Whether textures were shown on a screen instead of felt")},
+  };
+}
+
+Meanings of_participants() {
+  return {
+      {"participant_id", {"The participant's label in this dataset"}},
+      {"session_id", {"The session's label in this dataset"}},
+      {"age_band", {"Age as the participant gave it, in bands of ten years"}},
+      {"sex", {"Sex or gender as the participant gave it"}},
+      {"handedness",
+       {"Handedness by the inventory's score: right above 60, left below -60",
+        "",
+        {{"right", "right-handed"}, {"left", "left-handed"}, {"ambidextrous", "neither"}}}},
+      {"handedness_score",
+       {"Laterality quotient of the four-item Edinburgh inventory (Veale 2014), -100 (left) to "
+        "100 (right)"}},
+  };
+}
+
+Meanings of_traces() {
+  return {
+      {"x_mm", {"Stylus along the texture, from its left edge", "mm"}},
+      {"y_mm", {"Stylus along the texture, from its top edge", "mm"}},
+      {"z_mm", {"Stylus above the plane; negative: pressed into it", "mm"}},
+      {"force_x_n", {"Force sent to the device along x", "N"}},
+      {"force_y_n", {"Force sent to the device along y", "N"}},
+      {"force_z_n", {"Force sent to the device out of the plane", "N"}},
+  };
+}
+
+Meanings all_meanings() {
+  Meanings all = of_trials();
+  all.merge(of_sessions());
+  all.merge(of_collection());
+  all.merge(of_participants());
+  all.merge(of_traces());
+  return all;
 }
 
 }  // namespace
@@ -29,6 +167,39 @@ std::string plain_label(const std::string& name) {
   std::string label;
   std::copy_if(name.begin(), name.end(), std::back_inserter(label), is_plain);
   return label.empty() ? "study" : label;
+}
+
+std::string about_study(const DatasetSource& study) {
+  const store::StudyCommitment& commitment = study.store.commitment();
+  const std::vector<store::SessionRow> sessions = study.store.sessions();
+  const auto counts =
+      std::count_if(sessions.begin(), sessions.end(),
+                    [&](const store::SessionRow& row) { return session_counts(row, commitment); });
+  std::string text;
+  if (commitment.simulated) {
+    text +=
+        "SIMULATED: every participant in this dataset is a program. Nothing in it comes from a "
+        "person.\n\n";
+  }
+  if (commitment.pilot) text += "A pilot: not to be pooled with the study's data.\n\n";
+  text += fmt::format(
+      "A psychophysical study of textures that are felt through a force-feedback device, recorded "
+      "with Touchtrial {}. Protocol: {}; {} textures to choose from; {} scored trials a "
+      "participant; {} that count{}.\n\n",
+      commitment.program_version, commitment.protocol, commitment.positions,
+      commitment.scored_trials, counted(counts, "completed session"), counts == 1 ? "s" : "");
+  text += study.outcomes != nullptr
+              ? "Participants who withdrew are not in it. A trial enters the report where "
+                "`counted` is 1: its session was completed and not excluded, it is scored, and it "
+                "ended. A trial without a response counts as wrong.\n\n"
+              : "Exported before unblinding: what was presented and answered is sealed, and "
+                "practice, lead-ins and catch trials cannot be told from scored trials.\n\n";
+  return text;
+}
+
+const ColumnMeaning& meaning_of(const std::string& column) {
+  static const Meanings kMeanings = all_meanings();
+  return kMeanings.at(column);
 }
 
 }  // namespace touchtrial::analysis

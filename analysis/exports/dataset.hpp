@@ -1,4 +1,5 @@
-/// \file The source of the datasets for archives, and the options that their publisher chooses.
+/// \file What the datasets for archives share: their source, the options that their publisher
+/// chooses, labels, and the meanings of columns.
 #pragma once
 
 #include "analysis/outcomes.hpp"
@@ -6,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace touchtrial::analysis {
@@ -34,5 +36,20 @@ struct DatasetOptions {
 
 /// The letters and digits of a name; "study" if it has none.
 [[nodiscard]] std::string plain_label(const std::string& name);
+
+/// The part of a README that every format has: how the data were collected, and what is still
+/// sealed.
+[[nodiscard]] std::string about_study(const DatasetSource& study);
+
+/// What an exported column means; docs/data-dictionary.md, "Exports", says the same.
+struct ColumnMeaning {
+  std::string description;
+  std::string unit{};                                         ///< a BIDS unit; empty: none
+  std::vector<std::pair<std::string, std::string>> levels{};  ///< values and what they mean
+};
+
+/// \param column  its name in the CSV files or in BIDS
+/// \throws std::out_of_range if no export has such a column
+[[nodiscard]] const ColumnMeaning& meaning_of(const std::string& column);
 
 }  // namespace touchtrial::analysis

@@ -1,19 +1,48 @@
 #include "analysis/exports/export_folder.hpp"
 
-#include "analysis/exports/export_mark_json.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/parallel.hpp"
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <system_error>
 
-#include <tbb/parallel_for.h>
+#include <nlohmann/json.hpp>
 
 namespace touchtrial::analysis {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// What the mark of a folder says.
+struct FolderMark {
+  std::string study;
+  std::string study_id;
+  std::map<std::string, std::set<std::string>> files{};  ///< file names by format
+};
+
+std::string folder_mark_json(const FolderMark& mark) {
+  const nlohmann::json object{
+      {"study", mark.study}, {"study_id", mark.study_id}, {"files", mark.files}};
+  return object.dump(1, ' ', false, nlohmann::json::error_handler_t::replace) + "\n";
+}
+
+/// \throws FileError if the file is not a mark
+FolderMark read_folder_mark(const fs::path& path) {
+  try {
+    const nlohmann::json object = nlohmann::json::parse(text_of(ByteView(read_file(path))));
+    FolderMark mark;
+    object.at("study").get_to(mark.study);
+    object.at("study_id").get_to(mark.study_id);
+    object.at("files").get_to(mark.files);
+    return mark;
+  } catch (const nlohmann::json::exception&) {
+    throw FileError(one_line(path.string()) +
+                    ": is no mark of an export; give another folder, or remove that file");
+  }
+}
 
 void make_export_folder(const fs::path& folder) {
   std::error_code error;
@@ -98,8 +127,7 @@ void write_all(const fs::path& folder, const std::vector<ExportFile>& files) {
       write_one(folder, file);
     }
   }
-  tbb::parallel_for(std::size_t{0}, concurrent.size(),
-                    [&](std::size_t i) { write_one(folder, *concurrent[i]); });
+  in_parallel(0, concurrent.size(), [&](std::size_t i) { write_one(folder, *concurrent[i]); });
 }
 
 /// Tells whether a name stays inside the folder. The name comes from a file that anybody may have

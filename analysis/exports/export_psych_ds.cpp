@@ -1,17 +1,72 @@
 #include "analysis/exports/export_psych_ds.hpp"
 
-#include "analysis/exports/collection_tables.hpp"
-#include "analysis/exports/dataset_readme.hpp"
 #include "analysis/exports/export_folder.hpp"
-#include "analysis/exports/export_tables.hpp"
-#include "analysis/exports/psych_ds_description_json.hpp"
+#include "analysis/exports/study_tables.hpp"
+#include "analysis/exports/trial_tables.hpp"
+#include "analysis/json_figures.hpp"
 #include "analysis/quality.hpp"
 #include "analysis/results.hpp"
 
 #include <algorithm>
 
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
 namespace touchtrial::analysis {
 namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json variable_json(const std::string& column) {
+  const ColumnMeaning& meaning = meaning_of(column);
+  std::string description = meaning.description;
+  const char* separator = " (";
+  for (const auto& [value, means] : meaning.levels) {
+    description += fmt::format("{}{}: {}", separator, value, means);
+    separator = "; ";
+  }
+  if (!meaning.levels.empty()) description += ")";
+  Json variable{{"@type", "PropertyValue"}, {"name", column}, {"description", description}};
+  if (!meaning.unit.empty()) variable["unitText"] = meaning.unit;
+  return variable;
+}
+
+std::string description_of(const store::StudyCommitment& commitment) {
+  return fmt::format(
+      "{}{}Textures felt through a force-feedback device, one of {} named in each trial. "
+      "Protocol: {}.",
+      commitment.simulated ? "SIMULATED: every participant is a program. " : "",
+      commitment.pilot ? "A pilot, not to be pooled with the study's data. " : "",
+      commitment.positions, commitment.protocol);
+}
+
+/// \param columns  of all data files; each is described once
+std::string psych_ds_description_json(const DatasetSource& study, const DatasetOptions& options,
+                                      const std::vector<std::string>& columns) {
+  const store::StudyCommitment& commitment = study.store.commitment();
+  const std::string stamp = commitment.simulated ? " (SIMULATED)" : "";
+  Json object{
+      {"@context", "https://schema.org/"}, {"@type", "Dataset"},
+      {"name", commitment.study + stamp},  {"description", description_of(commitment)},
+      {"identifier", commitment.study_id}, {"keywords", {"psychophysics", "haptics", "texture"}}};
+  if (commitment.simulated) object["keywords"].push_back("SIMULATED");
+  for (const std::string& author : options.authors) {
+    object["author"].push_back({{"@type", "Person"}, {"name", author}});
+  }
+  if (!options.license.empty()) object["license"] = options.license;
+  object["variableMeasured"] = Json::array();
+  for (const std::string& column : columns) {
+    object["variableMeasured"].push_back(variable_json(column));
+  }
+  return json_text(object);
+}
+
+std::string psych_ds_readme(const DatasetSource& study) {
+  return "# " + study.store.commitment().study + "\n\n" + about_study(study) +
+         "`data/*_description-trials_data.csv` has one row a trial, its key the columns `session` "
+         "and `trial`; `data/*_description-participants_data.csv` one row a session, its key "
+         "`session`. `dataset_description.json` says what each column means.\n";
+}
 
 /// The table of participants.csv without participants who withdrew. Columns that have the name of a
 /// column of trials.csv but another meaning are renamed, because a variable of a dataset has one

@@ -1,101 +1,180 @@
 #include "analysis/exports/export_tables.hpp"
 
-#include "analysis/exports/collection_tables.hpp"
-#include "analysis/exports/trial_columns.hpp"
+#include "analysis/exports/export_folder.hpp"
+#include "analysis/exports/study_tables.hpp"
+#include "analysis/exports/trial_tables.hpp"
+#include "analysis/json_figures.hpp"
+#include "analysis/results.hpp"
+#include "analysis/sealed_sessions.hpp"
+#include "protocols/store/payload_json.hpp"
 
+#include <array>
+#include <cstdint>
 #include <map>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 namespace touchtrial::analysis {
 namespace {
 
-void add_trial(DataTable& table, const TrialView& trial) {
-  std::vector<DataCell>& row = table.rows.emplace_back();
-  row.reserve(table.columns.size());
-  for (const TrialColumn& column : trial_columns()) {
-    if (trial.study != nullptr || !column.after_unblinding) row.push_back(column.value(trial));
-  }
+using Json = nlohmann::ordered_json;
+
+/// The contents of the folder, for readers who do not know the program.
+std::string contents_json(const store::StudyCommitment& commitment, bool blinded,
+                          const std::vector<ExportFile>& files) {
+  Json contents{{"study", commitment.study}, {"protocol", commitment.protocol}};
+  put_stamp(contents, commitment.simulated);
+  contents["study_id"] = commitment.study_id;
+  contents["pilot"] = commitment.pilot;
+  contents["blinded"] = blinded;
+  contents["program_version"] = commitment.program_version;
+  contents["files"] = Json::array();
+  for (const ExportFile& file : files) contents["files"].push_back(file.name.string());
+  return json_text(contents);
 }
 
-DataTable trials_header(bool unblinded) {
-  DataTable table;
-  for (const TrialColumn& column : trial_columns()) {
-    if (unblinded || !column.after_unblinding) table.columns.emplace_back(column.name);
-  }
-  return table;
+/// The kinds of events that no other export lists one by one.
+constexpr std::array kKinds = {store::EventKind::participant_noted,
+                               store::EventKind::calibrated,
+                               store::EventKind::instructed,
+                               store::EventKind::practised,
+                               store::EventKind::interrupted,
+                               store::EventKind::break_taken,
+                               store::EventKind::paused,
+                               store::EventKind::stopped,
+                               store::EventKind::noted,
+                               store::EventKind::ticked,
+                               store::EventKind::deviated,
+                               store::EventKind::questioned,
+                               store::EventKind::explored_again,
+                               store::EventKind::block_restarted,
+                               store::EventKind::resumed};
+
+/// The detail of an interruption. Empty for other events, and for interruptions in virtual time.
+store::InterruptionDetail detail_of(const store::Event& event, const SecretKey& own) {
+  if (event.kind != store::EventKind::interrupted || event.sealed.empty()) return {};
+  return store::interruption_from_json(opened_part(event, own));
 }
 
-DataTable blinded_trials(const store::StudyStore& store) {
-  DataTable table = trials_header(false);
-  std::map<int, store::SessionRow> shown;
-  for (const store::SessionRow& session : store.sessions()) {
-    if (!session.withdrawn) shown[session.session] = session;
-  }
-  for (const store::TrialRow& row : store.trials()) {
-    const auto session = shown.find(row.session);
-    if (session == shown.end()) continue;
-    add_trial(table, {session->second.participant, row, session->second.simulated});
-  }
-  return table;
+int session_of(const store::Event& event) {
+  return event.kind == store::EventKind::participant_noted
+             ? store::note_from_json(event.body).session
+             : event.session;
 }
 
-DataTable trials_that_are(bool scored, const Outcomes& outcomes) {
-  DataTable table = trials_header(true);
-  for (const TrialOutcome& trial : outcomes.trials) {
-    if (trial.scored != scored) continue;
-    add_trial(table, {trial.participant, trial.row, outcomes.simulated, &outcomes, &trial});
-  }
-  return table;
+/// Removes carriage returns, because all files of an export end their lines with single line feeds.
+ExportFile flight_file(const std::string& name, std::string flight) {
+  std::erase(flight, '\r');
+  return text_file(name, std::move(flight));
 }
 
-void add_labels(DataTable& table, const Outcomes& outcomes) {
-  for (std::size_t i = 0; i < outcomes.classes.size(); ++i) {
-    table.rows.push_back({std::string("class"), std::monostate{}, outcomes.classes[i]});
-    for (const std::string& exemplar : outcomes.exemplars[i]) {
-      table.rows.push_back({std::string("exemplar"), outcomes.classes[i], exemplar});
+struct JsonValue {
+  Json operator()(std::monostate) const { return nullptr; }
+  Json operator()(const std::string& text) const { return text; }
+  Json operator()(std::int64_t number) const { return number; }
+  Json operator()(double number) const { return number; }
+  Json operator()(std::chrono::nanoseconds time) const {
+    return std::chrono::duration<double>(time).count();
+  }
+};
+
+/// The rows as an array of objects whose keys are the columns.
+Json rows_json(const DataTable& table) {
+  Json rows = Json::array();
+  for (const std::vector<DataCell>& cells : table.rows) {
+    Json row = Json::object();
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      row[table.columns[i]] = std::visit(JsonValue{}, cells[i]);
     }
+    rows.push_back(std::move(row));
   }
-  for (const std::string& method : outcomes.methods) {
-    table.rows.push_back({std::string("method"), std::monostate{}, method});
-  }
+  return rows;
 }
 
 }  // namespace
 
-DataTable trials_table(const store::StudyStore& store, const std::optional<Outcomes>& outcomes) {
-  return outcomes ? trials_that_are(true, *outcomes) : blinded_trials(store);
-}
-
-DataTable unscored_table(const Outcomes& outcomes) {
-  return trials_that_are(false, outcomes);
-}
-
-DataTable study_table(const store::StudyStore& store, const std::optional<Outcomes>& outcomes,
-                      const Collection& collection) {
+std::vector<std::filesystem::path> export_csv(const store::StudyStore& store,
+                                              const std::optional<Outcomes>& outcomes,
+                                              const std::filesystem::path& folder) {
   const store::StudyCommitment& commitment = store.commitment();
-  const store::StudyState state = store.state();
-  DataTable table{{"key", "of", "value"}, {}};
-  const auto add = [&](const char* key, DataCell value) {
-    table.rows.push_back({std::string(key), std::monostate{}, std::move(value)});
+  const Collection collection = collection_of(store, outcomes);
+  std::vector<ExportFile> files;
+  const auto add = [&](const std::string& name, const DataTable& table) {
+    files.push_back(text_file(name, csv_text(table)));
   };
-  add("study", commitment.study);
-  add("study_id", commitment.study_id);
-  add("protocol", commitment.protocol);
-  add("simulated", flag(commitment.simulated));
-  add("pilot", flag(commitment.pilot));
-  add("closed", flag(state.closed));
-  add("unblinded", flag(state.unblinded));
-  add("interim", flag(state.interim.has_value()));
-  add("program_version", commitment.program_version);
-  add_prescription(table, collection.prescription);
-  if (!outcomes) return table;
-  add("unblinding_reason", state.unblinding_reason);
-  add("visual", flag(outcomes->visual));
-  add_labels(table, *outcomes);
-  return table;
+  add("trials.csv", trials_table(store, outcomes));
+  add("participants.csv", participants_table(store, collection));
+  add("deviations.csv", deviations_table(collection, commitment.simulated));
+  add("servo.csv", servo_table(collection, commitment.simulated));
+  if (outcomes) {
+    for (const auto& [file, table] : analysis_of(outcomes->design).tables(*outcomes)) {
+      add(file, table);
+    }
+    add("unscored_trials.csv", unscored_table(*outcomes));
+  }
+  add("study.csv", study_table(store, outcomes, collection));
+  if (outcomes) files.push_back(text_file("study_file.json", outcomes->design.text));
+  files.push_back(text_file("export.json", contents_json(commitment, !outcomes, files)));
+  return write_export(folder, {commitment.study, commitment.study_id, "csv"}, files);
 }
 
-Collection collection_of(const store::StudyStore& store, const std::optional<Outcomes>& outcomes) {
-  return outcomes ? outcomes->collection : load_collection(store);
+std::vector<std::filesystem::path> export_events(const store::StudyStore& store,
+                                                 const design::StudyKey& key,
+                                                 const Outcomes& outcomes,
+                                                 const std::filesystem::path& folder) {
+  std::map<int, const store::SessionRow*> shown;
+  for (const SessionOutcome& session : outcomes.sessions) shown[session.row.session] = &session.row;
+  const std::map<int, SecretKey> keys = participant_keys(store, key);
+  DataTable table{{"participant", "session", "event", "kind", "at_s", "body", "safety_fault",
+                   "device_fault", "flight", "simulated"},
+                  {}};
+  std::vector<ExportFile> files;
+  store.for_each_of(kKinds, [&](const store::Event& event) {
+    const auto session = shown.find(session_of(event));
+    const auto own = keys.find(session_of(event));
+    if (session == shown.end() || own == keys.end()) return;
+    const store::SessionRow& row = *session->second;
+    store::InterruptionDetail detail = detail_of(event, own->second);
+    std::string flight;
+    if (detail.ticks > 0) {
+      flight = fmt::format("{}flight_{}_{}.csv", row.simulated ? "SIMULATED_" : "", row.session,
+                           event.sequence);
+      files.push_back(flight_file(flight, std::move(detail.flight)));
+    }
+    table.rows.push_back({row.participant, std::int64_t{row.session}, event.sequence,
+                          std::string(name_of(event.kind)), event.at, event.body,
+                          detail.safety_fault, detail.device_fault, flight,
+                          std::int64_t{row.simulated}});
+  });
+  files.insert(files.begin(), text_file("events.csv", csv_text(table)));
+  const store::StudyCommitment& commitment = store.commitment();
+  return write_export(folder, {commitment.study, commitment.study_id, "events"}, files);
+}
+
+std::filesystem::path export_json(const store::StudyStore& store,
+                                  const std::optional<Outcomes>& outcomes,
+                                  const std::filesystem::path& folder) {
+  const store::StudyCommitment& commitment = store.commitment();
+  Json document{{"study", commitment.study}, {"protocol", commitment.protocol}};
+  put_stamp(document, commitment.simulated);
+  document["study_id"] = commitment.study_id;
+  if (outcomes) {
+    document["report"] = Json::parse(analysis_of(outcomes->design).results(*outcomes, {})->json());
+  } else {
+    document["quality"] = quality_object(make_quality(store));
+  }
+  const Collection collection = collection_of(store, outcomes);
+  document["participants"] = rows_json(participants_table(store, collection));
+  document["deviations"] = rows_json(deviations_table(collection, commitment.simulated));
+  document["servo"] = rows_json(servo_table(collection, commitment.simulated));
+  document["trials"] = rows_json(trials_table(store, outcomes));
+  if (outcomes) document["unscored_trials"] = rows_json(unscored_table(*outcomes));
+  return write_export(folder, {commitment.study, commitment.study_id, "json"},
+                      {text_file("study.json", json_text(document))})
+      .front();
 }
 
 }  // namespace touchtrial::analysis

@@ -1,36 +1,45 @@
-/// \file The tables of trials and of the study that exports write. Columns:
-/// docs/data-dictionary.md, "Exports".
+/// \file Exports a study's data as CSV files or as one JSON file. Format: docs/data-dictionary.md,
+/// "Exports".
 #pragma once
 
-#include "analysis/exports/data_table.hpp"
 #include "analysis/outcomes.hpp"
 
+#include <filesystem>
 #include <optional>
+#include <vector>
 
 namespace touchtrial::analysis {
 
-/// One row for each trial, ordered by session and trial, without participants who withdrew. With
-/// outcomes, the rows are the scored trials, whether or not their session counts
-/// (participants_table tells). Without outcomes, the rows are all presented trials, because the
-/// seal also covers which of them were practice or lead-ins. The table then has no columns about
-/// stimuli and answers, and the columns that could tell stimuli apart by how they felt (contact_s,
-/// path_mm, force_rms_n, saturated_share) are empty.
-[[nodiscard]] DataTable trials_table(const store::StudyStore& store,
-                                     const std::optional<Outcomes>& outcomes);
+/// Writes trials.csv, participants.csv, deviations.csv, servo.csv and study.csv. With outcomes it
+/// also writes the tables of the protocol's analysis (for example, confusion_<method>.csv for each
+/// presented method), unscored_trials.csv and study_file.json. The last file is export.json, which
+/// lists the others and says whether they are simulated. Creates the folder if necessary; files
+/// that no export wrote stay. Equal studies give equal bytes.
+/// \param outcomes  of this store; nothing before unblinding
+/// \return the files, in the order written
+/// \throws FileError if the folder or a file cannot be written
+std::vector<std::filesystem::path> export_csv(const store::StudyStore& store,
+                                              const std::optional<Outcomes>& outcomes,
+                                              const std::filesystem::path& folder);
 
-/// The trials that are not scored: lead-ins and catch trials, with the columns of trials_table.
-/// They show what came before each scored trial. A catch trial has neither class nor method.
-[[nodiscard]] DataTable unscored_table(const Outcomes& outcomes);
+/// Writes events.csv and one file for each flight record. Contains the sessions whose outcomes may
+/// be shown, without those of participants who withdrew. Requires unblinding, because the forces
+/// before a fault can tell textures apart.
+/// \param outcomes  of this store, opened with `key`
+/// \return the files, in the order written
+/// \throws VerificationError, naming the event, if a sealed part does not open
+/// \throws FileError if the folder or a file cannot be written
+std::vector<std::filesystem::path> export_events(const store::StudyStore& store,
+                                                 const design::StudyKey& key,
+                                                 const Outcomes& outcomes,
+                                                 const std::filesystem::path& folder);
 
-/// The study as a whole. Each row has a key, the item that it belongs to (the class of an
-/// exemplar), and a value. Classes, exemplars and methods appear in their order, and only with
-/// outcomes.
-[[nodiscard]] DataTable study_table(const store::StudyStore& store,
-                                    const std::optional<Outcomes>& outcomes,
-                                    const Collection& collection);
-
-/// The collection of the outcomes; without outcomes, the collection that the store holds in clear.
-[[nodiscard]] Collection collection_of(const store::StudyStore& store,
-                                       const std::optional<Outcomes>& outcomes);
+/// Writes study.json: the report (before unblinding, the quality report) and the tables of the CSV
+/// export, with their columns as keys. A missing value is null; times are in seconds. Arguments and
+/// errors are those of export_csv.
+/// \return the file
+std::filesystem::path export_json(const store::StudyStore& store,
+                                  const std::optional<Outcomes>& outcomes,
+                                  const std::filesystem::path& folder);
 
 }  // namespace touchtrial::analysis

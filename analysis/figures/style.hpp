@@ -37,7 +37,7 @@ struct Margins {
   double bottom_cm = 1.0;
 };
 
-/// A figure of the sheet's size; caption and script are to follow.
+/// A figure of the sheet's size, still without caption and script.
 [[nodiscard]] Figure figure_on(const Sheet& sheet, std::string id, std::string alt = {});
 
 /// Sets borders, tics and grid, and stamps what is simulated.
@@ -81,7 +81,7 @@ inline constexpr std::size_t kSlantedColumns = 18;
 /// Names below an axis from 1 to names.size(): level if they fit, else slanted and shortened.
 class NamesBelow {
  public:
-  /// \param slanted_columns  to which slanted names are cut, so that they stay on the sheet
+  /// \param slanted_columns  length to which slanted names are cut, so that they stay on the sheet
   NamesBelow(std::span<const std::string> names, double axis_cm,
              std::size_t slanted_columns = kSlantedColumns);
   /// The room that the names need below the axis.

@@ -16,7 +16,7 @@ namespace {
 /// A row of the co-occurrence table.
 struct Statistic {
   const char* name;
-  double engine::GlcmStatistics::*figure;
+  double engine::GlcmStatistics::*member;
   int decimals;
 };
 
@@ -36,7 +36,7 @@ void add_statistic(TextTable& table, const Statistic& statistic, const char* pic
                    const engine::GlcmTable& glcm) {
   std::vector<std::string> row = {fmt::format("{}, {}", statistic.name, picture)};
   for (const engine::GlcmStatistics& direction : glcm) {
-    row.push_back(fmt::format("{:.{}f}", direction.*statistic.figure, statistic.decimals));
+    row.push_back(fmt::format("{:.{}f}", direction.*statistic.member, statistic.decimals));
   }
   table.add(row);
 }
@@ -56,10 +56,9 @@ std::string glcm_text(const engine::Evaluation& evaluation) {
 
 std::string orders_text(const engine::Evaluation& evaluation) {
   TextTable table({"fixed order", "entropy, nats", "MS-SSIM", "MS-SSIM (Wang)"});
-  for (const engine::OrderFigures& figures : evaluation.orders) {
-    table.add({fmt::format("{:.2f}", figures.order), fmt::format("{:.4f}", figures.entropy),
-               fmt::format("{:.5f}", figures.ms_ssim),
-               fmt::format("{:.5f}", figures.ms_ssim_wang)});
+  for (const engine::OrderFigures& one : evaluation.orders) {
+    table.add({fmt::format("{:.2f}", one.order), fmt::format("{:.4f}", one.entropy),
+               fmt::format("{:.5f}", one.ms_ssim), fmt::format("{:.5f}", one.ms_ssim_wang)});
   }
   const engine::OrderFigures& closest = engine::closest_order(evaluation);
   return "\n" + table.text() + "\n" +
@@ -94,11 +93,11 @@ Json picture_json(const engine::PictureFigures& picture) {
 
 Json orders_json(const std::vector<engine::OrderFigures>& orders) {
   Json list = Json::array();
-  for (const engine::OrderFigures& figures : orders) {
-    list.push_back({{"order", figures.order},
-                    {"entropy", figures.entropy},
-                    {"ms_ssim", figures.ms_ssim},
-                    {"ms_ssim_wang", figures.ms_ssim_wang}});
+  for (const engine::OrderFigures& one : orders) {
+    list.push_back({{"order", one.order},
+                    {"entropy", one.entropy},
+                    {"ms_ssim", one.ms_ssim},
+                    {"ms_ssim_wang", one.ms_ssim_wang}});
   }
   return list;
 }
@@ -132,9 +131,8 @@ unset key
 
 std::string data_of(const engine::Evaluation& evaluation, std::size_t number) {
   std::string data = fmt::format("$sweep{} << EOD\n", number);
-  for (const engine::OrderFigures& figures : evaluation.orders) {
-    data += fmt::format("{} {} {} {}\n", figures.order, figures.entropy, figures.ms_ssim,
-                        figures.ms_ssim_wang);
+  for (const engine::OrderFigures& one : evaluation.orders) {
+    data += fmt::format("{} {} {} {}\n", one.order, one.entropy, one.ms_ssim, one.ms_ssim_wang);
   }
   return data + "EOD\n";
 }

@@ -1,5 +1,6 @@
 #include "analysis/measures/picture_set.hpp"
 
+#include "analysis/statistics/descriptive.hpp"
 #include "engine/metrics/picture_statistics.hpp"
 #include "engine/metrics/ssim.hpp"
 #include "engine/perception/texture_sense.hpp"
@@ -7,7 +8,6 @@
 #include "engine/rendering/gains.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <stdexcept>
 
@@ -50,14 +50,10 @@ PictureMeasures measures_of(const Worked& work, engine::Gains gains) {
   measures.set = work.picture->set;
   measures.label = work.picture->label;
   measures.name = work.picture->name;
-  const auto samples = work.picture->image.samples();
-  const auto count = static_cast<double>(samples.size());
-  double squares = 0.0;
-  for (const std::uint8_t grey : samples) measures.mean += grey / count;
-  for (const std::uint8_t grey : samples) {
-    squares += (grey - measures.mean) * (grey - measures.mean);
-  }
-  measures.deviation = std::sqrt(squares / count);
+  const Plane<double> greys = converted<double>(work.picture->image);
+  measures.mean = mean_of(greys);
+  measures.deviation =
+      standard_deviation(greys.samples(), measures.mean, static_cast<double>(greys.size()));
   measures.slope = engine::spectrum_slope(work.picture->image);
   measures.original = mean_over_directions(work.picture->image);
   measures.texture = mean_over_directions(work.texture);

@@ -1,5 +1,5 @@
 /// \file Measures of sets of pictures: of each picture, of how alike pictures are, and of what
-/// their strength gives away. Definitions: docs/stimuli.md, "Figures".
+/// their strength reveals. Definitions: docs/stimuli.md, "Measures".
 #pragma once
 
 #include "analysis/measures/rms_alone.hpp"
@@ -64,9 +64,10 @@ struct MeasuredPictures {
 };
 
 /// Measures pictures under a method and rendering. The gain is that of the first picture's set, by
-/// the stiffness budget or as the rendering sets it; `equalise` is ignored, since it would hide
-/// what is measured. Pairs of different sizes are compared where they overlap, laid corner to
-/// corner. \param progress  told after each pair how many are done, of how many; may be empty
+/// the stiffness budget or as the rendering sets it; `equalise` is ignored, because it would hide
+/// what is measured. Pairs of different sizes are compared over the corner that they share.
+/// \param progress  called after each pair with the number of pairs done and their total; may be
+///   empty
 /// \throws std::invalid_argument if there is no picture, or one is below kSlopeSmallestSide
 /// Thread-safe. A pair of 500 x 500 pictures takes about 20 ms.
 [[nodiscard]] MeasuredPictures measure_pictures(
@@ -75,7 +76,7 @@ struct MeasuredPictures {
 
 /// Tables for a terminal.
 [[nodiscard]] std::string measures_text(const MeasuredPictures& measured);
-/// docs/stimuli.md, "Figures", explains the keys.
+/// docs/stimuli.md, "Measures", explains the keys.
 [[nodiscard]] std::string measures_json(const MeasuredPictures& measured);
 
 }  // namespace touchtrial::analysis

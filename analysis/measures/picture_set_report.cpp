@@ -48,8 +48,8 @@ std::string likeness_text(const MeasuredPictures& measured) {
 }
 
 std::string rms_alone_text(const MeasuredPictures& measured) {
-  TextTable table(
-      {"told by rms force alone", "classes", "sets", "chance", "unseen patch", "unseen picture"});
+  TextTable table({"told apart by rms force alone", "classes", "sets", "chance", "unseen patch",
+                   "unseen picture"});
   for (const SetMeasures& set : measured.sets) {
     for (const RmsAlone& score : set.rms_alone) {
       table.add({set.set, std::to_string(score.classes), std::to_string(score.sets),

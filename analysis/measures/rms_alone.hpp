@@ -19,9 +19,10 @@ struct PatchStrengths {
 };
 
 /// Logarithms of sqrt(rms^2 + threshold^2) over kPatchesASide x kPatchesASide equal parts of a
-/// field, row by row; the last parts are larger where the sides do not divide. \param tangential_n
-/// gain \param threshold_n  weaker forces are not felt, > 0 \throws std::invalid_argument if a side
-/// is below kPatchesASide
+/// field, row by row; if the sides are not divisible, the last parts are larger.
+/// \param tangential_n  gain
+/// \param threshold_n  weaker forces are not felt, > 0
+/// \throws std::invalid_argument if a side is below kPatchesASide
 [[nodiscard]] std::vector<double> patch_strengths(engine::FieldView field, double tangential_n,
                                                   double threshold_n);
 
@@ -37,8 +38,9 @@ struct RmsAlone {
 /// Answers each patch with the class whose mean strength is nearest to the patch's, among the
 /// classes of a set: once with means over all other patches, once with means over the class's other
 /// pictures. Every class of a set has the same weight. This is the best that rms force allows:
-/// neither a hand nor a sense adds noise. \param classes_in_set  2 .. number of classes \throws
-/// std::invalid_argument if it is out of range, or a class has no patch
+/// neither a hand nor a sense adds noise.
+/// \param classes_in_set  2 .. number of classes
+/// \throws std::invalid_argument if it is out of range, or a class has no patch
 [[nodiscard]] RmsAlone rms_alone(std::span<const PatchStrengths> pictures, int classes_in_set);
 
 }  // namespace touchtrial::analysis

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "analysis/bibliography.hpp"
+#include "analysis/text_table.hpp"
 
 #include <cstddef>
 #include <string>
@@ -83,6 +84,7 @@ struct Section {
   std::string id;
   std::string title;
   std::vector<Block> blocks;
+  bool page_only = false;  ///< left out of the text for a terminal
 };
 
 /// Tells whether the files of tables include anything from a section.
@@ -129,8 +131,10 @@ struct Document {
 /// Every table of the document in sections, as LaTeX for \input, with the references at the end.
 [[nodiscard]] std::string tables_latex(const Document& document);
 
-/// The document as text for a terminal of 100 columns: sentences, tables and warnings, without
-/// pictures.
-[[nodiscard]] std::string document_text(const Document& document);
+/// The document as text for a terminal: the sections that are not for the page alone, then the
+/// header. Without pictures, subheadings and the notes that only name a method, which are those
+/// with sources. An asterisk precedes emphasised cells. Begins with the banners and ends with the
+/// stamp, if there are any. \param width  columns of the terminal, >= 80
+[[nodiscard]] std::string document_text(const Document& document, std::size_t width = kTextWidth);
 
 }  // namespace touchtrial::analysis

@@ -2,65 +2,142 @@
 #include "analysis/page/document.hpp"
 #include "analysis/text_table.hpp"
 
+#include <algorithm>
+#include <set>
 #include <utility>
 
 namespace touchtrial::analysis {
 namespace {
 
-std::string titled(const std::string& title) {
-  return "\n" + title + "\n";
+constexpr std::size_t kTitleLines = 3;  ///< most lines of a column's title, if its words allow it
+
+using Row = std::vector<std::string>;
+
+/// The texts of a table's cells, the header first.
+std::vector<Row> texts_of(const Table& table) {
+  std::vector<Row> rows(1);
+  for (const Column& column : table.columns) rows.front().push_back(column.title);
+  for (const std::vector<Cell>& cells : table.rows) {
+    Row& row = rows.emplace_back();
+    for (const Cell& cell : cells) row.push_back((cell.strong ? "*" : "") + cell.text);
+  }
+  return rows;
 }
 
-struct BlockText {
-  const std::string& stamp;
+/// The width of a column: its longest cell's, or as much more as its title needs.
+std::size_t width_of(const std::vector<Row>& rows, std::size_t column) {
+  const std::string& title = rows.front()[column];
+  std::size_t width = 1;
+  for (const std::string& word : lines_of(title, 1)) width = std::max(width, display_width(word));
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    width = std::max(width, display_width(rows[i][column]));
+  }
+  while (width < kCellWidth && lines_of(title, width).size() > kTitleLines) ++width;
+  return std::min(width, kCellWidth);
+}
 
-  std::string operator()(const Cited& cited) const { return wrapped("  ", cited.text); }
+/// The lines of one row, whose longer cells take several.
+/// \param is_header  whether shorter cells stand at the bottom
+std::vector<Row> lines_of_row(const Row& row, const std::vector<std::size_t>& widths,
+                              bool is_header) {
+  std::vector<Row> cells;
+  std::size_t height = 1;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    cells.push_back(lines_of(row[i], widths[i]));
+    height = std::max(height, cells.back().size());
+  }
+  std::vector<Row> lines(height, Row(row.size()));
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    const std::size_t first = is_header ? height - cells[i].size() : 0;
+    for (std::size_t k = 0; k < cells[i].size(); ++k) lines[first + k][i] = cells[i][k];
+  }
+  return lines;
+}
+
+std::string table_text(const Table& table, std::size_t width) {
+  const std::vector<Row> rows = texts_of(table);
+  std::vector<std::size_t> widths;
+  std::set<std::size_t> left{0};
+  for (std::size_t i = 0; i < table.columns.size(); ++i) {
+    widths.push_back(width_of(rows, i));
+    if (table.columns[i].align == Align::left) left.insert(i);
+  }
+  std::vector<Row> lines;
+  for (const Row& row : rows) {
+    std::ranges::move(lines_of_row(row, widths, lines.empty()), std::back_inserter(lines));
+  }
+  TextTable text(lines.front(), std::move(left));
+  for (std::size_t i = 1; i < lines.size(); ++i) text.add(lines[i]);
+  return text.text(width);
+}
+
+/// Renders the blocks of one document in turn.
+class BlockText {
+ public:
+  BlockText(const std::string& stamp, std::size_t width) : stamp_(stamp), width_(width) {}
+
+  std::string operator()(const Cited& cited) const { return paragraph("  ", cited.text); }
   std::string operator()(const Table& table) const {
-    std::vector<std::string> header;
-    for (const Column& column : table.columns) header.push_back(column.title);
-    TextTable text(header);
-    for (const std::vector<Cell>& row : table.rows) {
-      std::vector<std::string> cells;
-      for (const Cell& cell : row) cells.push_back(cell.text);
-      text.add(std::move(cells));
+    std::string text = caption(table.caption) + table_text(table, width_);
+    for (const Cited& note : table.notes) {
+      if (note.sources.empty()) text += paragraph("  ", note.text);
     }
-    std::string shown = titled(stamped(table.caption, stamp)) + text.text();
-    for (const Cited& note : table.notes) shown += wrapped("  ", note.text);
-    return shown;
+    return text;
   }
   std::string operator()(const Picture&) const { return ""; }
-  std::string operator()(const Subheading& heading) const { return titled(heading.title); }
+  std::string operator()(const Subheading&) const { return ""; }
   std::string operator()(const Warnings& warnings) const {
     std::string text;
-    for (const std::string& one : warnings.sentences) text += wrapped("  - ", one);
+    for (const std::string& one : warnings.sentences) text += paragraph("  - ", one);
     return text;
   }
   std::string operator()(const Definitions& definitions) const {
     std::string text;
     for (const auto& [name, meaning] : definitions.entries) {
-      text += wrapped("  " + name + ": ", meaning);
+      text += paragraph("    ", name + ": " + meaning).substr(2);
     }
     return text;
   }
   std::string operator()(const Flow& flow) const {
-    std::string text = titled(stamped(flow.caption, stamp));
+    std::string text = caption(flow.caption);
     for (const FlowStep& step : flow.steps) {
-      text += wrapped("  ", step.text);
-      for (const std::string& leaving : step.leaving) text += wrapped("    - ", leaving);
+      text += paragraph("  ", step.text);
+      for (const std::string& leaving : step.leaving) text += paragraph("    - ", leaving);
     }
     return text;
   }
+
+ private:
+  [[nodiscard]] std::string caption(const std::string& text) const {
+    return '\n' + paragraph(stamp_.empty() ? "" : '[' + stamp_ + "] ", text);
+  }
+  [[nodiscard]] std::string paragraph(std::string_view first, const std::string& text) const {
+    return wrapped(first, text, width_);
+  }
+
+  const std::string& stamp_;
+  std::size_t width_;
 };
+
+std::string section_title(const std::string& title, const std::string& stamp) {
+  const std::string line = stamped(title, stamp);
+  return '\n' + line + '\n' + std::string(display_width(line), '-') + '\n';
+}
 
 }  // namespace
 
-std::string document_text(const Document& document) {
-  std::string text = stamped(document.title, document.stamp) + "\n";
-  for (const std::string& banner : document.banners) text += wrapped("", banner);
+std::string document_text(const Document& document, std::size_t width) {
+  std::string text;
+  for (const std::string& banner : document.banners) text += wrapped("", banner, width);
+  text += wrapped("", stamped(document.title, document.stamp), width);
+  const BlockText blocks(document.stamp, width);
   for (const Section& section : document.sections) {
-    text += titled(section.title);
-    for (const Block& block : section.blocks) text += std::visit(BlockText{document.stamp}, block);
+    if (section.page_only) continue;
+    text += section_title(section.title, document.stamp);
+    for (const Block& block : section.blocks) text += std::visit(blocks, block);
   }
+  text += section_title("This report", document.stamp) + blocks(document.header);
+  if (!document.stamp.empty()) text += '\n' + document.stamp + '\n';
   return text;
 }
 

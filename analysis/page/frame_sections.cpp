@@ -3,6 +3,7 @@
 #include "analysis/page/wording.hpp"
 #include "analysis/statistics/descriptive.hpp"
 #include "analysis/text_figures.hpp"
+#include "core/text.hpp"
 
 #include <algorithm>
 #include <map>
@@ -46,7 +47,7 @@ void add_excluded(const ParticipantFlow& flow, FlowStep& step) {
 
 Flow flow_of(const ParticipantFlow& flow) {
   FlowStep enrolled{counted(flow.enrolled, "participant") + " enrolled"};
-  add_leaving(flow.withdrawn, "withdrew; what was sealed of them was destroyed", enrolled);
+  add_leaving(flow.withdrawn, "withdrew; the keys of their sealed data were destroyed", enrolled);
   add_leaving(flow.replaced, "replaced by somebody else", enrolled);
   add_excluded(flow, enrolled);
   add_leaving(flow.stopped, "stopped before the end", enrolled);
@@ -54,7 +55,8 @@ Flow flow_of(const ParticipantFlow& flow) {
   add_leaving(flow.other_kind, "pilots or simulations among others", enrolled);
   add_leaving(flow.unseen, "ended after the interim look", enrolled);
   return {"flow",
-          "Participants from enrolment to analysis, each counted once, by the session that stands",
+          "Participants from enrolment to analysis, each counted once, by the session that was "
+          "not replaced",
           {enrolled, {counted(flow.analysed, "participant") + " analysed"}}};
 }
 
@@ -125,7 +127,8 @@ std::optional<Table> deviations_table(const std::vector<SessionRecord>& sessions
     const bool many = names.size() > kNamed;
     if (many) names.resize(kNamed);
     table.rows.push_back({deviation.first, deviation.second.empty() ? kNoFigure : deviation.second,
-                          std::to_string(whose.size()), listed(names) + (many ? " …" : "")});
+                          std::to_string(whose.size()),
+                          listed(names, " and ") + (many ? " …" : "")});
   }
   return table;
 }
@@ -138,7 +141,7 @@ std::string remark_of(const SessionRecord& one) {
                     (one.replacement_reason.empty() ? "" : ": " + one.replacement_reason));
   }
   if (!one.stop_reason.empty()) parts.push_back("stopped: " + one.stop_reason);
-  if (one.resumed > 0) parts.push_back("taken up again " + counted(one.resumed, "time"));
+  if (one.resumed > 0) parts.push_back("resumed " + counted(one.resumed, "time"));
   std::string text;
   for (const std::string& part : parts) text += (text.empty() ? "" : "; ") + part;
   return text.empty() ? kNoFigure : text;
@@ -160,7 +163,7 @@ bool is_remarkable(const SessionRecord& one) {
 std::optional<Table> sessions_table(const std::vector<SessionRecord>& sessions) {
   if (std::none_of(sessions.begin(), sessions.end(), is_remarkable)) return {};
   Table table{"sessions",
-              "Sessions of which there is more to tell than that they were completed",
+              "Sessions with more to report than that they were completed",
               {{"session", Align::left},
                {"participant", Align::left},
                {"state", Align::left},
@@ -177,7 +180,7 @@ std::optional<Table> sessions_table(const std::vector<SessionRecord>& sessions) 
   return table;
 }
 
-struct ServoFigures {
+struct ServoNumbers {
   std::vector<double> p99_us;
   double worst_us = 0.0;
   double lowest_rate_hz = 0.0;
@@ -185,17 +188,17 @@ struct ServoFigures {
   std::int64_t lost = 0;
 };
 
-ServoFigures servo_figures(const std::vector<ServoTrial>& trials) {
-  ServoFigures figures;
-  figures.lowest_rate_hz = trials.front().health.rate_hz;
+ServoNumbers servo_numbers(const std::vector<ServoTrial>& trials) {
+  ServoNumbers numbers;
+  numbers.lowest_rate_hz = trials.front().health.rate_hz;
   for (const ServoTrial& one : trials) {
-    figures.p99_us.push_back(one.health.lateness_p99_us);
-    figures.worst_us = std::max(figures.worst_us, one.health.lateness_worst_us);
-    figures.lowest_rate_hz = std::min(figures.lowest_rate_hz, one.health.rate_hz);
-    figures.overruns += one.overruns;
-    figures.lost += one.health.lost;
+    numbers.p99_us.push_back(one.health.lateness_p99_us);
+    numbers.worst_us = std::max(numbers.worst_us, one.health.lateness_worst_us);
+    numbers.lowest_rate_hz = std::min(numbers.lowest_rate_hz, one.health.rate_hz);
+    numbers.overruns += one.overruns;
+    numbers.lost += one.health.lost;
   }
-  return figures;
+  return numbers;
 }
 
 }  // namespace
@@ -216,7 +219,7 @@ Section participants_section(const Collection& collection) {
 }
 
 Section registration_section(const design::Registration& registration) {
-  Section section{"registration", "What was registered beforehand", {}};
+  Section section{"registration", "What was registered beforehand", {}, true};
   const auto stated = [](const std::string& text) { return text.empty() ? "not stated" : text; };
   section.blocks.emplace_back(Definitions{
       {{"hypothesis", stated(registration.hypothesis)},
@@ -230,19 +233,19 @@ Section registration_section(const design::Registration& registration) {
 
 std::optional<Table> servo_table(const Collection& collection) {
   if (collection.servo_trials.empty()) return {};
-  ServoFigures figures = servo_figures(collection.servo_trials);
-  const Quartiles p99 = quartiles(std::move(figures.p99_us));
+  ServoNumbers numbers = servo_numbers(collection.servo_trials);
+  const Quartiles p99 = quartiles(std::move(numbers.p99_us));
   Table table{"servo",
-              "How the servo kept its time, over trials in real time",
+              "How punctual the servo was, over trials in real time",
               {{"what", Align::left}, {"value"}}};
   table.rows = {{"trials", std::to_string(collection.servo_trials.size())},
-                {"lowest mean rate of a trial (Hz)", plain_figure(figures.lowest_rate_hz, 1)},
+                {"lowest mean rate of a trial (Hz)", plain_figure(numbers.lowest_rate_hz, 1)},
                 {"trials' 99th percentile of lateness, median (µs)", plain_figure(p99.median, 1)},
                 {"the same, quartiles (µs)",
                  plain_figure(p99.lower, 1) + " and " + plain_figure(p99.upper, 1)},
-                {"latest tick of all (µs)", plain_figure(figures.worst_us, 1)},
-                {"ticks that came late", std::to_string(figures.overruns)},
-                {"samples that did not reach their trace", std::to_string(figures.lost)}};
+                {"latest tick of all (µs)", plain_figure(numbers.worst_us, 1)},
+                {"ticks that came late", std::to_string(numbers.overruns)},
+                {"samples that did not reach their trace", std::to_string(numbers.lost)}};
   return table;
 }
 

@@ -3,6 +3,7 @@
 #include "analysis/page/wording.hpp"
 #include "analysis/statistics/confusion.hpp"
 #include "analysis/text_figures.hpp"
+#include "core/text.hpp"
 
 #include <fmt/format.h>
 
@@ -57,8 +58,8 @@ Table positions_table(const TrialQuality& quality) {
                           share ? plain_figure(share, 1) + "%" : kNoFigure});
   }
   table.notes = {
-      {"Layouts differ between participants, so a place is no texture: unequal shares "
-       "here are a bias of hand or habit."}};
+      {"Layouts differ between participants, so a place does not stand for a texture: unequal "
+       "shares here show a bias of hand or habit."}};
   return table;
 }
 
@@ -70,7 +71,7 @@ std::vector<std::string> banners_of(const QualityReport& report) {
   if (report.pilot) banners.emplace_back("PILOT: not to be pooled with the study's data.");
   if (!report.state.unblinded) {
     banners.emplace_back(
-        "BLIND: outcomes are shown once the study has been unblinded. Nothing here tells of them.");
+        "BLIND: outcomes are shown once the study has been unblinded. Nothing here reveals them.");
   }
   if (report.visual) {
     banners.emplace_back("Seen on a screen, not felt: never to be pooled with what was felt.");
@@ -84,11 +85,12 @@ Section servo_section(const QualityReport& report, const Collection& collection)
     section.blocks.emplace_back(std::move(*servo));
   } else {
     section.blocks.emplace_back(
-        Cited{"No trial was in real time: nothing is known of a servo's lateness.", {}});
+        Cited{"No trial was in real time: nothing is known about a servo's lateness.", {}});
   }
   if (report.servo) {
-    section.blocks.emplace_back(Cited{
-        "Scheduling that servo threads obtained: " + listed(report.servo->scheduling) + ".", {}});
+    section.blocks.emplace_back(Cited{"Scheduling that servo threads obtained: " +
+                                          listed(report.servo->scheduling, " and ") + ".",
+                                      {}});
   }
   return section;
 }

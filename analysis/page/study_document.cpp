@@ -3,6 +3,7 @@
 #include "analysis/page/frame_sections.hpp"
 #include "analysis/page/wording.hpp"
 #include "analysis/text_figures.hpp"
+#include "core/text.hpp"
 #include "core/version.hpp"
 
 #include <algorithm>
@@ -34,7 +35,7 @@ std::vector<std::string> banners_of(const StudyHead& report, const Provenance& p
   std::vector<std::string> banners;
   if (report.simulated) {
     banners.emplace_back(
-        "SIMULATED: these figures come from simulated participants. They say what a model of a "
+        "SIMULATED: these numbers come from simulated participants. They say what a model of a "
         "hand and of a sense of touch does, not what people do.");
   }
   if (report.pilot) {
@@ -42,7 +43,8 @@ std::vector<std::string> banners_of(const StudyHead& report, const Provenance& p
   }
   if (is_interim(provenance)) {
     banners.emplace_back(
-        "INTERIM LOOK: the study is still open. What is seen here may not decide when it ends.");
+        "INTERIM LOOK: the study is still open. What it shows must not decide when the study "
+        "ends.");
   }
   return banners;
 }
@@ -52,14 +54,14 @@ Definitions header_of(const StudyHead& report, const Provenance& provenance, boo
   header.entries = {{"protocol", report.protocol},
                     {"participants", std::to_string(report.participants)},
                     {"trials", std::to_string(report.trials)},
-                    {"textures", listed(report.classes)}};
+                    {"textures", listed(report.classes, " and ")}};
   const Definitions evidence = evidence_header(provenance);
   header.entries.insert(header.entries.end(), evidence.entries.begin(), evidence.entries.end());
   if (figures_missing) {
     header.entries.emplace_back(
         "figures",
-        "Figures were not drawn: gnuplot could not be used. Install "
-        "gnuplot-nox and make the report again; here each is told in words.");
+        "Figures were not drawn: gnuplot could not be used. Install gnuplot-nox and make the "
+        "report again; here each is described in words.");
   }
   return header;
 }

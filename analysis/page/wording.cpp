@@ -57,15 +57,6 @@ std::string p_phrase(double p) {
   return (p < 0.001 ? "p " : "p = ") + p_figure(p);
 }
 
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (i > 0) text += i + 1 == names.size() ? " and " : ", ";
-    text += names[i];
-  }
-  return text;
-}
-
 std::string slug_of(const std::string& name) {
   std::string slug;
   for (const char c : name) {

@@ -6,7 +6,6 @@
 
 #include <optional>
 #include <string>
-#include <vector>
 
 namespace touchtrial::analysis {
 
@@ -28,8 +27,6 @@ inline constexpr const char* kNoFigure = "–";
 [[nodiscard]] std::string p_figure(std::optional<double> p);
 /// A p value in a sentence: "p = 0.023", "p < 0.001".
 [[nodiscard]] std::string p_phrase(double p);
-/// Names as a list in a sentence: "a", "a and b", "a, b and c".
-[[nodiscard]] std::string listed(const std::vector<std::string>& names);
 /// A name reduced to lower-case letters, digits and single hyphens, for ids and file names. May be
 /// empty.
 [[nodiscard]] std::string slug_of(const std::string& name);

@@ -96,8 +96,8 @@ void warn_of_misses(AccuracyFit& fit) {
     missed += (missed.empty() ? "" : ", ") + fit.classes[c];
   }
   if (missed.empty()) return;
-  fit.warnings.push_back("no subject found has these accuracies: missed by more than a point: " +
-                         missed);
+  fit.warnings.push_back(
+      "no subject model reaches these accuracies; missed by more than a point: " + missed);
 }
 
 void warn_of_bounds(const FitProblem& problem, const std::vector<double>& at, AccuracyFit& fit) {
@@ -114,7 +114,7 @@ void warn_of_bounds(const FitProblem& problem, const std::vector<double>& at, Ac
     if (parameter.kind == ParameterKind::class_bias) {
       name = "the bias of \"" + fit.classes[parameter.class_index] + "\"";
     }
-    fit.warnings.push_back(name + " lies at the end of what is searched");
+    fit.warnings.push_back(name + " lies at an end of the searched range");
   }
 }
 

@@ -1,7 +1,7 @@
 #include "analysis/planning/answer_model.hpp"
 
 #include "analysis/planning/noise_lines.hpp"
-#include "analysis/planning/on_threads.hpp"
+#include "core/parallel.hpp"
 #include "protocols/session/stimulus_source.hpp"
 #include "protocols/simulation/felt_knowledge.hpp"
 
@@ -266,7 +266,7 @@ AnswerTable AnswerModel::answers(const simulation::SubjectModel& subject,
   const std::vector<LinearSupports> groups = state.acuities(subject);
   const auto tasks = static_cast<std::size_t>(stimuli) * kPieces;
   std::vector<AnswerTable> sums(tasks, AnswerTable(rows, 1, classes, slopes));
-  on_threads(state.options.jobs, tasks, [&](std::size_t task) {
+  in_parallel(state.options.jobs, tasks, [&](std::size_t task) {
     state.add_piece(static_cast<int>(task / kPieces), static_cast<int>(task % kPieces), subject,
                     groups, bias, part, sums[task]);
   });
@@ -310,8 +310,10 @@ std::vector<design::StimulusIndex> stimuli_of(const design::StudyKey& key) {
 
 std::vector<PictureLayout> layouts_of(const design::Study& study, int participants) {
   std::vector<PictureLayout> layouts;
+  const design::StudyKey key = design::simulated_study_key(study);
   for (int number = 1; number <= participants; ++number) {
-    PictureLayout layout = design::make_schedule(study, number).layout;
+    PictureLayout layout =
+        design::make_schedule(study, key.draw_of(number, design::Draws::rehearsal)).layout;
     if (std::ranges::find(layouts, layout) == layouts.end()) layouts.push_back(std::move(layout));
   }
   return layouts;

@@ -1,6 +1,6 @@
 #include "analysis/planning/fit_uncertainty.hpp"
 #include "analysis/planning/noise_lines.hpp"
-#include "analysis/planning/on_threads.hpp"
+#include "core/parallel.hpp"
 #include "core/random.hpp"
 
 #include <algorithm>
@@ -226,7 +226,7 @@ FitBootstrap bootstrap_fit(const Fitted& fitted, int draws, std::uint64_t seed, 
     bootstrap.g_squared[i] = g_squared(observed_confusions(counts, people),
                                        expected_confusions(counts, local.at(bootstrap.numbers[i])));
   };
-  on_threads(jobs, bootstrap.numbers.size(), draw);
+  in_parallel(jobs, bootstrap.numbers.size(), draw);
   return bootstrap;
 }
 

@@ -67,7 +67,7 @@ class FitEvidence {
   virtual ~FitEvidence() = default;
 
   [[nodiscard]] virtual std::span<const PictureLayout> layouts() const noexcept = 0;
-  /// \param table  for those layouts
+  /// \param table  the probabilities for those layouts
   /// \param slopes  null, or receives the derivatives by the table's probabilities
   [[nodiscard]] virtual double log_likelihood(const AnswerTable& table, Cells* slopes) const = 0;
 };
@@ -86,7 +86,7 @@ inline constexpr double kLeastProbability = 1e-12;
 class CountsEvidence final : public FitEvidence {
  public:
   /// \param counts  layouts, classes and stimuli; must outlive this object
-  /// \param people  whose answers count
+  /// \param people  the people whose answers count
   CountsEvidence(const FitCounts& counts, std::span<const CountedPerson> people);
 
   [[nodiscard]] std::span<const PictureLayout> layouts() const noexcept override {

@@ -63,8 +63,9 @@ std::string confusion_text(const SubjectFit& fit, std::size_t method, const FitO
     }
     table.add(std::move(row));
   }
-  return analysis::heading(fit.methods[method] + ": answers, and what the fit expects of them",
-                           origin.simulated) +
+  return analysis::heading(
+             fit.methods[method] + ": observed answers, and those that the fit expects",
+             origin.simulated) +
          table.text();
 }
 

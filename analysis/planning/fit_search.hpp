@@ -28,8 +28,8 @@ struct SwapSearch {
 /// Adds label swaps one at a time. Each step tries every pair of labels that is not swapped yet on
 /// a coarse grid of noise and lapse, fits the two best, and takes the better one if its gain
 /// exceeds the threshold: the answers are then 20 times likelier than without it, even if a swap of
-/// any pair was beforehand no likelier than none. \param subject  start of the search; free swaps
-/// of its own are dropped
+/// any pair was beforehand no likelier than none.
+/// \param subject  start of the search; its own swaps are dropped if swaps are free
 [[nodiscard]] SwapSearch search_swaps(const AnswerModel& model, const FitEvidence& evidence,
                                       simulation::SubjectModel subject, const FreeParameters& free);
 

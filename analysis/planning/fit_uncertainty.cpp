@@ -1,5 +1,7 @@
 #include "analysis/planning/fit_uncertainty.hpp"
 
+#include "core/cholesky.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -30,38 +32,17 @@ std::vector<double> information_of(const FitCounts& counts, const FitProblem::Ta
   return information;
 }
 
-/// Replaces the lower triangle by its Cholesky factor.
-/// \return false if there is none
-bool factorise(std::vector<double>& matrix, std::size_t n) {
-  constexpr double kLeastShare = 1e-10;
-  for (std::size_t j = 0; j < n; ++j) {
-    const double whole = matrix[j * n + j];
-    for (std::size_t i = j; i < n; ++i) {
-      double rest = matrix[i * n + j];
-      for (std::size_t k = 0; k < j; ++k) rest -= matrix[i * n + k] * matrix[j * n + k];
-      if (i == j && !(rest > kLeastShare * whole)) return false;
-      matrix[i * n + j] = i == j ? std::sqrt(rest) : rest / matrix[j * n + j];
-    }
-  }
-  return true;
-}
-
 /// \param matrix  row-major, symmetric, n x n
 /// \return nothing if it is not positive definite to about 10 digits
 std::optional<std::vector<double>> inverse_of(std::vector<double> matrix, std::size_t n) {
-  if (!factorise(matrix, n)) return std::nullopt;
+  constexpr double kLeastShare = 1e-10;
+  if (!factorise(matrix, n, kLeastShare)) return std::nullopt;
   std::vector<double> inverse(n * n, 0.0);
   for (std::size_t column = 0; column < n; ++column) {
     std::vector<double> x(n, 0.0);
     x[column] = 1.0;
-    for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t k = 0; k < i; ++k) x[i] -= matrix[i * n + k] * x[k];
-      x[i] /= matrix[i * n + i];
-    }
-    for (std::size_t i = n; i-- > 0;) {
-      for (std::size_t k = i + 1; k < n; ++k) x[i] -= matrix[k * n + i] * x[k];
-      x[i] /= matrix[i * n + i];
-    }
+    solve_lower(matrix, x);
+    solve_upper(matrix, x);
     for (std::size_t i = 0; i < n; ++i) inverse[i * n + column] = x[i];
   }
   return inverse;
@@ -133,7 +114,7 @@ std::vector<double> moved(const Fitted& fitted, std::size_t number, double value
 Held best_with(const Fitted& fitted, std::size_t number, double value,
                const std::vector<double>& start) {
   Held held = fitted_with(fitted, number, value, start);
-  if (held.root < 2.0 * kRoot) return held;
+  if (held.root < kRoot) return held;
   std::vector<double> plain = fitted.best.at;
   plain[number] = value;
   Held again = fitted_with(fitted, number, value, plain);

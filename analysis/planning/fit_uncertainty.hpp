@@ -43,9 +43,9 @@ struct FitBootstrap {
 [[nodiscard]] FitBootstrap bootstrap_fit(const Fitted& fitted, int draws, std::uint64_t seed,
                                          int jobs);
 
-/// The standard error of each number that the bank's finite size leaves, from eight parts of the
-/// bank: their probabilities differ, and so does the score.
-/// \return by number; zeros unless the fit is informed
+/// The standard error that the bank's finite size causes in each fitted number. It is estimated
+/// from eight parts of the bank, whose probabilities differ, and so the score differs too.
+/// \return one error for each number; zeros unless the fit is informed
 [[nodiscard]] std::vector<double> monte_carlo_errors(const Fitted& fitted);
 
 }  // namespace touchtrial::planning

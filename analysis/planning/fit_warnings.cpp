@@ -57,8 +57,8 @@ void warn_of_extremes(const SubjectFit& fit, std::vector<std::string>& warnings)
   }
   if (margins.correct == 0.0) {
     warnings.push_back(
-        "no answer is right: worse than chance, which noise and lapses cannot make; look at the "
-        "label swaps");
+        "no answer is right: this is worse than chance, which noise and lapses cannot explain; "
+        "look at the label swaps");
   }
 }
 
@@ -87,7 +87,7 @@ void warn_of_guessing(const SubjectFit& fit, std::vector<std::string>& warnings)
     if (p <= kGuessing) return;
   }
   warnings.push_back(
-      "the answers are not told from guessing: they do not depend on what was presented by more "
+      "the answers cannot be told from guessing: they depend on what was presented by no more "
       "than chance; noise and lapses have no upper limit");
 }
 
@@ -96,7 +96,7 @@ void warn_of_classes(const SubjectFit& fit, std::vector<std::string>& warnings) 
   for (std::size_t c = 0; c < fit.classes.size(); ++c) {
     if (margins.presented[c] == 0.0) {
       warnings.push_back(fmt::format(
-          "\"{}\" was never presented: its confusions are the model's word alone", fit.classes[c]));
+          "\"{}\" was never presented: its confusions come from the model alone", fit.classes[c]));
     }
     if (margins.answered[c] == 0.0) {
       warnings.push_back(fmt::format("\"{}\" was never answered: the bias against it has no limit",
@@ -117,8 +117,8 @@ void warn_of_open_ends(const SubjectFit& fit, std::vector<std::string>& warnings
     names += (names.empty() ? "" : ", ") + name_of(one);
   }
   if (names.empty()) return;
-  warnings.push_back("an end of the profile's interval was not found within what is searched: " +
-                     names + "; take it as without limit there");
+  warnings.push_back("an end of the profile's interval was not found within the searched range: " +
+                     names + "; regard the interval as open there");
 }
 
 void warn_of_flatness(const SubjectFit& fit, std::vector<std::string>& warnings) {
@@ -139,7 +139,7 @@ void warn_of_flatness(const SubjectFit& fit, std::vector<std::string>& warnings)
     const bool no_lapses = one.name == "lapse" && one.value == 0.0;
     if (one.at_bound && !no_lapses) {
       warnings.push_back(name +
-                         " lies at the end of what is searched: the answers set no limit to it");
+                         " lies at an end of the searched range: the answers set no limit to it");
     }
     if (one.monte_carlo_error > kLargeMonteCarloShare * *one.standard_error) {
       warnings.push_back(name +
@@ -156,8 +156,8 @@ std::vector<std::string> fit_warnings(const FitCounts& counts, const SubjectFit&
   std::vector<std::string> warnings;
   if (counts.people.size() == 1) {
     warnings.push_back(
-        "one participant: the fit is of this person, and tells nothing of differences between "
-        "people");
+        "one participant: the fit describes this person, and says nothing about differences "
+        "between people");
   }
   if (free.position && !used.position) {
     warnings.push_back(
@@ -175,12 +175,12 @@ std::vector<std::string> fit_warnings(const FitCounts& counts, const SubjectFit&
   }
   if (counts.methods.size() > 1) {
     warnings.push_back(
-        "one noise, lapse and bias for all methods: methods differ by what is felt alone");
+        "one noise, lapse and bias for all methods: methods differ only in what is felt");
   }
   if (fit.p && *fit.p < kMisfit) {
     warnings.push_back(
-        fmt::format("the model does not fit the confusions (p = {:.3f}): its parameters describe "
-                    "something else",
+        fmt::format("the model does not fit the confusions (p = {:.3f}): its parameters do not "
+                    "describe these answers",
                     *fit.p));
   }
   return warnings;

@@ -91,11 +91,13 @@ class RadialDistribution {
 
 /// Adds to each picture's answer the probability that the picture has the largest support. Along
 /// the line, prototype k has the support at[k] + t * slope[k], where t is random, and a picture has
-/// the largest support of its prototypes. Equal supports share the probability. \param picture
-/// index of each prototype's picture \param noise  distribution of t \param weight  of this line
+/// the largest support of its prototypes. Equal supports share the probability.
+/// \param picture  index of each prototype's picture
+/// \param noise  distribution of t
+/// \param weight  of this line
 /// \param answers  by picture
 /// \param slopes  empty, or [answer x pictures + picture]: receives the derivatives by an amount
-///   that is added to a picture's support
+/// that is added to a picture's support
 void add_winners(std::span<const double> at, std::span<const double> slope,
                  std::span<const int> picture, const RadialDistribution& noise, double weight,
                  std::span<double> answers, std::span<double> slopes) noexcept;

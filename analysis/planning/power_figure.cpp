@@ -110,9 +110,9 @@ analysis::Figure power_figure(const PowerReport& report) {
   analysis::Figure figure{.id = "power", .caption = {}, .alt = alt_of(report), .script = {}};
   figure.caption = fmt::format(
       "{}. {}, {}. Left: share of significant studies, with its Monte-Carlo interval ({}, {:.4g} "
-      "%); dashed: 80 and 90 %. Middle: the same under the null (Wilson, 95 %); dashed: the test's "
-      "level. Right: width of the 95 % interval of the {}, mean over studies, and what 80 % of "
-      "studies have.",
+      "%); dashed: 80 and 90 %. Middle: the same under the null (Wilson, 95 %); dashed: the "
+      "test's level. Right: width of the 95 % interval of the {}, mean over studies, and the "
+      "range of the middle 80 % of studies.",
       kPowerStamp, report.setting.study, report.setting.test, power_interval_name(report.plan),
       100.0 * power_level(report.plan), report.setting.estimate);
   figure.width_cm = panels.sheet().width_cm;

@@ -1,7 +1,7 @@
 #include "analysis/planning/power_progress.hpp"
 
-#include "analysis/planning/on_threads.hpp"
 #include "core/errors.hpp"
+#include "core/parallel.hpp"
 #include "core/strict_json.hpp"
 
 #include <algorithm>
@@ -96,7 +96,7 @@ void make_block(const RehearsedStudy& study, const PrimaryTest& test, int jobs,
   const int own = progress.shard.own_runs(progress.plan.runs);
   const int end = std::min(own, (static_cast<int>(first) / kBlock + 1) * kBlock);
   std::vector<PowerRun> block(static_cast<std::size_t>(end) - first);
-  on_threads(jobs, block.size(), [&](std::size_t i) {
+  in_parallel(jobs, block.size(), [&](std::size_t i) {
     const int run = progress.shard.run(static_cast<int>(first + i));
     const std::uint64_t seed =
         study_seed(progress.plan.seed, cell.participants, cell.hypothesis, run);
@@ -150,12 +150,12 @@ std::string shown(const Shard& shard) {
 void require_same_run(const File& first, const File& other) {
   const Shard& shard = other.second.shard;
   if (shard.count != first.second.shard.count) {
-    refuse(other, fmt::format("is shard {}, but {} is shard {}; give the shards of one run alone",
+    refuse(other, fmt::format("is shard {}, but {} is shard {}; give only the shards of one run",
                               shown(shard), first.first.string(), shown(first.second.shard)));
   }
   const std::string difference = first_difference(first.second, other.second);
   if (!difference.empty()) {
-    refuse(other, fmt::format("{} differs from that of {}; give the shards of one run alone",
+    refuse(other, fmt::format("{} differs from that of {}; give only the shards of one run",
                               difference, first.first.string()));
   }
 }
@@ -175,8 +175,9 @@ std::string remark_on_equal(const File& known, const File& again) {
                               "right and remove the other",
                               shard, known.first.string()));
   }
-  return one_line(fmt::format("shard {} is in {} and in {}, equal: taken once", shard,
-                              known.first.string(), again.first.string()));
+  return one_line(
+      fmt::format("shard {} is in {} and, with the same content, in {}: it is used once", shard,
+                  known.first.string(), again.first.string()));
 }
 
 /// \param shards  by number; null: missing

@@ -25,30 +25,31 @@ namespace {
 
 std::string looks_sentence(const PowerPlan& plan) {
   if (!plan.stop_early) {
-    return "Every size has all its runs; the interval of a power is Wilson's at 95 %.";
+    return "Every size has all its runs; intervals of power are Wilson's at 95 %.";
   }
   return fmt::format(
-      "A size stops when its power's interval holds neither 80 nor 90 %, asked after {} runs. "
-      "Intervals are Clopper-Pearson's at {:.4g} %, so that all looks together are wrong in 5 % of "
-      "sizes at most (Bonferroni). Studies under the null are all made.",
+      "A size stops when its power's interval contains neither 80 nor 90 %, checked after {} "
+      "runs. Intervals are Clopper-Pearson's at {:.4g} %, so that all looks together are wrong in "
+      "5 % of sizes at most (Bonferroni). All studies under the null are made.",
       fmt::join(looks_of(plan), ", "), 100.0 * power_level(plan));
 }
 
 std::string null_sentence(const PowerReport& report) {
   return report.setting.estimate == kDifferenceWords
-             ? "Type-I error: methods that feel alike, each presentation felt by either method at "
-               "random."
-             : "Type-I error: participants who feel any texture at random, whatever is presented, "
+             ? "Type-I error: for methods that feel alike; each presentation is felt as one of "
+               "the two at random."
+             : "Type-I error: for participants who feel a random texture, whatever is presented, "
                "with the same biases and lapses.";
 }
 
 constexpr const char* kBankSentence =
-    "Monte-Carlo intervals do not hold the error of these explorations and trainings, which all "
-    "studies share: other seeds show it, and more runs do not make it smaller.";
+    "Monte-Carlo intervals do not include the error of these explorations and trainings, which "
+    "all studies share: other seeds show it, and more runs do not reduce it.";
 
 constexpr const char* kOrdersSentence =
-    "Orders of this study do not present every class equally often: all figures, and type-I "
-    "errors above all, are of the orders that this study's seed draws; another seed's differ.";
+    "Orders of this study do not present every class equally often: all numbers, and above all "
+    "type-I errors, hold for the orders that this study's seed draws; another seed gives other "
+    "orders.";
 
 /// One sentence for each target.
 std::vector<std::string> target_sentences(const PowerReport& report) {
@@ -63,7 +64,7 @@ std::vector<std::string> target_sentences(const PowerReport& report) {
       sentences.push_back(fmt::format(
           "{}: {} participants by the estimate; {}.", power, *target.smallest,
           target.surely ? fmt::format("{} beyond Monte-Carlo error", *target.surely)
-                        : std::string("no size beyond Monte-Carlo error, more runs would tell")));
+                        : std::string("no size beyond Monte-Carlo error; more runs would decide")));
     }
   }
   return sentences;
@@ -74,8 +75,8 @@ std::vector<std::string> method_sentences(const PowerReport& report) {
   const PowerPlan& plan = report.plan;
   std::vector<std::string> sentences;
   sentences.push_back(fmt::format(
-      "Up to {} simulated studies of each size and hypothesis, seed {}, no participant in two of "
-      "them; {}",
+      "Up to {} simulated studies of each size and hypothesis, seed {}; no participant is in two "
+      "of them; {}",
       plan.runs, plan.seed,
       plan.servo ? std::string("every exploration through the servo.")
                  : fmt::format("feelings drawn from {} explorations of each stimulus and {} "
@@ -86,8 +87,8 @@ std::vector<std::string> method_sentences(const PowerReport& report) {
   sentences.push_back(null_sentence(report));
   if (!report.setting.has_fixed_counts) sentences.push_back(kOrdersSentence);
   sentences.push_back(fmt::format(
-      "Attainable: what the type-I error is exactly, as counts are whole numbers and no p lies at "
-      "{} itself; its Monte-Carlo interval is Wilson's at 95 %.",
+      "Attainable: the exact type-I error; counts are whole numbers, so no p is exactly {}. The "
+      "Monte-Carlo interval of the type-I error is Wilson's at 95 %.",
       analysis::kSignificanceLevel));
   sentences.push_back("Interval width: of the 95 % t interval of the mean over participants.");
   return sentences;

@@ -19,12 +19,10 @@ struct Moments {
 
 Moments moments_of(const std::vector<double>& values) {
   Moments moments;
-  const auto n = static_cast<double>(values.size());
-  for (const double value : values) moments.mean += value / n;
+  if (!values.empty()) moments.mean = analysis::mean_of(values);
   if (values.size() < 2) return moments;
-  double squares = 0.0;
-  for (const double value : values) squares += (value - moments.mean) * (value - moments.mean);
-  moments.sd = std::sqrt(squares / (n - 1.0));
+  const auto freedom = static_cast<double>(values.size() - 1);
+  moments.sd = analysis::standard_deviation(values, moments.mean, freedom);
   return moments;
 }
 
@@ -87,12 +85,13 @@ std::vector<std::string> warnings_of(const PowerReport& report) {
     if (verdict_of(row) == ErrorVerdict::excessive) {
       warnings.push_back(fmt::format(
           "With {} participants the type-I error lies above the level of the test: the test does "
-          "not hold what it promises in this study.",
+          "not keep its level in this study.",
           row.participants));
     }
     if (row.attainable == 0.0) {
       warnings.push_back(fmt::format(
-          "With {} participants in none of the runs under the null could the test be significant.",
+          "With {} participants the test could not be significant in any of the runs under the "
+          "null.",
           row.participants));
     }
   }

@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/strict_json.hpp"
+#include "core/text.hpp"
 #include "protocols/design/protocol.hpp"
 #include "protocols/identification/analysis/chance.hpp"
 
@@ -16,11 +17,8 @@ namespace {
 constexpr int kMostDeals = 999;
 
 std::string labels_of(const design::Study& study) {
-  std::string labels;
-  for (int i = 0; i < study.presented_methods(); ++i) {
-    labels += (i > 0 ? ", " : "") + study.methods[i].label;
-  }
-  return labels;
+  const auto presented = static_cast<std::size_t>(study.presented_methods());
+  return listed(std::span(study.methods).first(presented), ", ", &design::StudyMethod::label);
 }
 
 int method_of(const design::Study& study, const std::string& label) {
@@ -79,16 +77,16 @@ std::string estimate_words(const PrimaryTest& test) {
 
 PowerRun judged(const PrimaryTest& test, const analysis::Outcomes& outcomes, bool with_attainable) {
   if (test.kind == PrimaryTest::Kind::above_chance) {
-    const analysis::identification::ChanceFigures figures =
+    const analysis::identification::ChanceFigures numbers =
         analysis::identification::chance_figures(outcomes, test.first, kMostDeals);
-    return {figures.chance ? figures.chance->p : 1.0,
-            with_attainable && figures.chance ? figures.chance->attainable : 0.0,
-            figures.mean.mean.value_or(0.0), figures.mean.interval.low, figures.mean.interval.high};
+    return {numbers.chance ? numbers.chance->p : 1.0,
+            with_attainable && numbers.chance ? numbers.chance->attainable : 0.0,
+            numbers.mean.mean.value_or(0.0), numbers.mean.interval.low, numbers.mean.interval.high};
   }
-  const analysis::identification::PairFigures figures =
+  const analysis::identification::PairFigures numbers =
       analysis::identification::pair_figures(outcomes, test.first, test.second, with_attainable);
-  const analysis::MethodComparison& overall = figures.overall;
-  return {overall.p.value_or(1.0), figures.attainable, overall.difference.value_or(0.0),
+  const analysis::MethodComparison& overall = numbers.overall;
+  return {overall.p.value_or(1.0), numbers.attainable, overall.difference.value_or(0.0),
           overall.interval.low, overall.interval.high};
 }
 

@@ -33,8 +33,7 @@ struct PrimaryTest {
                                           const std::optional<MethodLabels>& methods);
 
 /// \return for instance "accuracy above chance (adaptive): permutation over the orders of the
-/// design,
-///   one-sided, level 0.05"
+///   design, one-sided, level 0.05"
 [[nodiscard]] std::string words_of(const PrimaryTest& test, const design::Study& study);
 /// What PowerRun::estimate is where two methods are compared.
 inline constexpr std::string_view kDifferenceWords = "difference of accuracies";

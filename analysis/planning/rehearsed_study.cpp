@@ -144,9 +144,10 @@ RehearsedStudy::RehearsedStudy(const design::Study& study, const simulation::Sub
       of_method_(stimuli_of_method(study, test.first)),
       empty_(nobody_yet(study)) {
   require_answers(study, subject);
+  const design::StudyKey key = design::simulated_study_key(study);
   for (int number = 1; number <= most_participants; ++number) {
     PlannedSchedule& planned = schedules_.emplace_back();
-    planned.schedule = design::make_schedule(study, number);
+    planned.schedule = design::make_schedule(study, key.draw_of(number, design::Draws::rehearsal));
     for (const int class_index : planned.schedule.layout) {
       planned.pictures.push_back(study.classes[class_index].label);
     }

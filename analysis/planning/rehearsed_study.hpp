@@ -104,8 +104,7 @@ class RehearsedStudy {
  public:
   /// \param most_participants  of any simulated study, >= 1: the number of schedules that are made
   /// \throws StudyError if the study's orders are impossible, or if participants explore so long
-  /// that
-  ///   they would never answer
+  ///   that they would never answer
   RehearsedStudy(const design::Study& study, const simulation::SubjectModel& subject,
                  const PrimaryTest& test, const Feelings& feelings, int most_participants);
 

@@ -247,7 +247,7 @@ StimulusSheet make_stimulus_sheet(const design::StudyKey& key, const engine::Pac
   StimulusSheet sheet{key.study.name,
                       key.study.protocol_name(),
                       in_words(key.study.rendering),
-                      to_hex(design::study_seal(key)),
+                      to_hex(key.seal),
                       key.simulated,
                       side_px,
                       {}};

@@ -51,11 +51,11 @@ struct StimulusSheet {
 };
 
 /// Reads fields from the pack and pictures from the study's images. Lines are sorted by method,
-/// then by class; classes with several images have their own lines. \param side_px  of the
-/// pictures, >= 1 \param progress  told after each stimulus how many are done, of how many; may be
-/// empty \throws VerificationError if the pack is not the key's, or a field is damaged or not made
-/// from its
-///   image: the remedy is to prepare the study again
+/// then by class; classes with several images have their own lines.
+/// \param side_px  of the pictures, >= 1
+/// \param progress  called after each stimulus with the number done and their total; may be empty
+/// \throws VerificationError if the pack is not the key's, or a field is damaged or not made from
+///   its image: the remedy is to prepare the study again
 /// \throws UsageError if there are more than kMaxSheetStimuli
 /// \throws FileError if an image or a field cannot be read
 [[nodiscard]] StimulusSheet make_stimulus_sheet(

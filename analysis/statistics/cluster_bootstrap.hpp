@@ -19,8 +19,10 @@ inline constexpr int kBootstrapDraws = 9999;
 /// The ends of a bootstrap interval: expanded percentiles. Plain percentiles treat the spread
 /// between participants as known; expanded ones lie further out, at Phi(-t sqrt(n / (n - 1))) on
 /// either side with Student's t of n - 1 degrees, and hold their level from about eight
-/// participants on. \param draws  of a statistic, in any order, at least one \param participants n,
-/// >= 2 \throws std::invalid_argument if an argument is out of range
+/// participants on.
+/// \param draws  of a statistic, in any order, at least one
+/// \param participants  n, >= 2
+/// \throws std::invalid_argument if an argument is out of range
 [[nodiscard]] Interval expanded_percentiles(std::vector<double> draws, std::size_t participants,
                                             double level = kConfidenceLevel);
 
@@ -37,9 +39,11 @@ inline constexpr int kBootstrapDraws = 9999;
                                                         double level = kConfidenceLevel);
 
 /// The interval of the mean of one number per participant, for instance of a difference, by the
-/// same method. \param index  chooses the stream of random numbers \param draws  >= 1 \return
-/// nothing with fewer than two values \throws std::invalid_argument if a value is not finite, or an
-/// argument is out of range
+/// same method.
+/// \param index  chooses the stream of random numbers
+/// \param draws  >= 1
+/// \return nothing with fewer than two values
+/// \throws std::invalid_argument if a value is not finite, or an argument is out of range
 [[nodiscard]] std::optional<Interval> bootstrap_mean(std::span<const double> values,
                                                      std::uint64_t index = 0,
                                                      int draws = kBootstrapDraws,

@@ -9,7 +9,6 @@
 #include <boost/math/distributions/students_t.hpp>
 
 namespace touchtrial::analysis {
-namespace {
 
 double mean_of(std::span<const double> values) {
   double sum = 0.0;
@@ -17,14 +16,11 @@ double mean_of(std::span<const double> values) {
   return sum / static_cast<double>(values.size());
 }
 
-/// The sample's standard deviation around its mean, with n - 1.
-double standard_deviation(std::span<const double> values, double mean) {
+double standard_deviation(std::span<const double> values, double mean, double divisor) {
   double squares = 0.0;
   for (const double value : values) squares += (value - mean) * (value - mean);
-  return std::sqrt(squares / static_cast<double>(values.size() - 1));
+  return std::sqrt(squares / divisor);
 }
-
-}  // namespace
 
 MeanEstimate participant_mean(std::span<const double> values, Interval range, double level) {
   require_level(level);
@@ -34,9 +30,9 @@ MeanEstimate participant_mean(std::span<const double> values, Interval range, do
   const double mean = without_noise(mean_of(values));
   estimate.mean = mean;
   if (values.size() == 1) return estimate;
-  const double sd = without_noise(standard_deviation(values, mean));
-  estimate.sd = sd;
   const auto n = static_cast<double>(values.size());
+  const double sd = without_noise(standard_deviation(values, mean, n - 1.0));
+  estimate.sd = sd;
   const boost::math::students_t_distribution<> t(n - 1.0);
   const double half = boost::math::quantile(t, 0.5 + level / 2.0) * sd / std::sqrt(n);
   estimate.interval = {std::clamp(without_noise(mean - half), range.low, range.high),

@@ -10,6 +10,14 @@
 
 namespace touchtrial::analysis {
 
+/// The sum over the number of values; NaN without values.
+[[nodiscard]] double mean_of(std::span<const double> values);
+
+/// The root of the sum of squared distances from the mean over a divisor.
+/// \param divisor  the number of values for these alone, one less for what they are a sample of
+[[nodiscard]] double standard_deviation(std::span<const double> values, double mean,
+                                        double divisor);
+
 /// A mean over participants and Student's t interval around it. Participants are the unit of which
 /// a study has a sample; pooling all trials as if they were independent makes intervals too narrow.
 struct MeanEstimate {

@@ -293,7 +293,7 @@ std::optional<double> cochran_q_permuted_p(
     differ = differ || methods_differ(occasions);
   }
   if (!methods || *methods < 2 || !differ) return std::nullopt;
-  // Of Q, an exchange of methods changes only the sum of the methods' squares.
+  // Exchanging methods changes only one term of Q, the sum of the methods' squares.
   RightByMethod observed(*methods);
   for (const RightByMethod& mine : participants) {
     for (std::size_t j = 0; j < *methods; ++j) observed[j] += mine[j];

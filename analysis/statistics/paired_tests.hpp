@@ -51,10 +51,11 @@ inline constexpr int kExactSignFlips = 32;
 
 /// The exact two-sided test of paired differences: if two methods do not differ, every
 /// participant's difference could as well have the other sign. p is the share of the sign patterns
-/// whose mean is as far from zero as the observed one; beyond kExactSignFlips it is (b + 1) / (m +
-/// 1) over m random patterns from a fixed seed (Phipson, Smyth 2010). \param differences  one per
-/// participant, finite \return in (0, 1], never below 2 * 2^-n; nothing without differences \throws
-/// std::invalid_argument if a difference is not finite
+/// whose mean is at least as far from zero as the observed one; beyond kExactSignFlips it is (b +
+/// 1) / (m + 1) over m random patterns from a fixed seed (Phipson, Smyth 2010).
+/// \param differences  one per participant, finite
+/// \return in (0, 1], never below 2 * 2^-n; nothing without differences
+/// \throws std::invalid_argument if a difference is not finite
 [[nodiscard]] std::optional<double> sign_flip_p(std::span<const double> differences);
 
 /// The largest p within the level that these differences could have, whatever their signs: the rate

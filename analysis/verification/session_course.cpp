@@ -9,12 +9,11 @@
 
 namespace touchtrial::analysis {
 
-SessionCourse::SessionCourse(const design::Study& study, int enrolment)
+SessionCourse::SessionCourse(const design::Study& study, const design::ScheduleDraw& draw)
     : study_(study),
-      course_(design::make_schedule(study, enrolment), study.trials.on_interruption,
-              [&study, enrolment](int block, int restarts_before, int first_trial) {
-                return design::restarted_block(study, enrolment, block, restarts_before,
-                                               first_trial);
+      course_(design::make_schedule(study, draw), study.trials.on_interruption,
+              [&study, draw](int block, int restarts_before, int first_trial) {
+                return design::restarted_block(study, draw, block, restarts_before, first_trial);
               }) {}
 
 void SessionCourse::fail(const store::Event& event, const std::string& why) const {
@@ -90,7 +89,7 @@ void SessionCourse::require_under_way(const store::Event& event, int trial) cons
   }
   if (event.kind == store::EventKind::interrupted) return;
   if (is_paused_) fail(event, trial, name + " while the session was paused");
-  if (is_spoilt_) fail(event, trial, name + " although the program had ended in it");
+  if (is_spoilt_) fail(event, trial, name + " although the program had ended during it");
 }
 
 void SessionCourse::follow_trial(const store::Event& event) {
@@ -130,7 +129,7 @@ void SessionCourse::take_up(const store::Event& event) {
   if (body.after == "pause") {
     if (!is_paused_) fail(event, "the session was resumed, but not paused");
   } else if (body.away_s > study_.trials.resume_within_h * kSecondsInHour) {
-    fail(event, fmt::format("the session was taken up after {:.1f} h; the study allows {} h",
+    fail(event, fmt::format("the session was resumed after {:.1f} h; the study allows {} h",
                             body.away_s / kSecondsInHour, study_.trials.resume_within_h));
   } else {
     is_spoilt_ = is_under_way_;

@@ -17,7 +17,7 @@ class SessionCourse {
   /// \param study  must outlive this object
   /// \param enrolment  the participant's enrolment number, from 1
   /// \throws StudyError if the study has no order for this enrolment number
-  SessionCourse(const design::Study& study, int enrolment);
+  SessionCourse(const design::Study& study, const design::ScheduleDraw& draw);
 
   /// Checks the session's next event.
   /// \throws VerificationError, naming the session and its event or trial, if the event cannot

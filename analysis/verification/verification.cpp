@@ -53,7 +53,7 @@ std::string check_configuration(const store::StudyStore& store, const design::St
   const auto require = [](bool same, const char* what) {
     if (!same) throw VerificationError(std::string(what) + " differs between key and database");
   };
-  require(design::blinded_configuration(key) == commitment.configuration, "the configuration");
+  require(key.configuration == commitment.configuration, "the configuration");
   require(key.study.name == commitment.study, "the study's name");
   require(key.study.protocol_name() == commitment.protocol, "the protocol");
   require(key.study.scored_trials() == commitment.scored_trials, "the number of scored trials");
@@ -65,15 +65,17 @@ std::string check_configuration(const store::StudyStore& store, const design::St
   return "what the database holds in clear is the key's study";
 }
 
-/// Checks a session's events against the course that follows from the study and the session's
+/// Checks a session's events against the course that follows from the key and the session's
 /// enrolment number alone.
-SessionCourse course_of(const store::StudyStore& store, const design::Study& study,
+SessionCourse course_of(const store::StudyStore& store, const design::StudyKey& key,
                         const store::SessionRow& session) {
+  const design::Draws draws =
+      session.pilot || session.simulated ? design::Draws::rehearsal : design::Draws::people;
   try {
-    SessionCourse course(study, session.enrolment);
+    SessionCourse course(key.study, key.draw_of(session.enrolment, draws));
     for (const store::Event& event : store.events(session.session)) course.follow(event);
     return course;
-  } catch (const StudyError& error) {
+  } catch (const UsageError& error) {  // StudyError too
     throw VerificationError(fmt::format("session {}: the study has no order for enrolment {}: {}",
                                         session.session, session.enrolment, error.what()));
   }
@@ -83,7 +85,7 @@ std::string check_schedule(const store::StudyStore& store, const design::StudyKe
   const std::map<int, design::Schedule> schedules = open_schedules(store, key);
   int presentations = 0;
   for (const store::SessionRow& session : store.sessions()) {
-    const SessionCourse course = course_of(store, key.study, session);
+    const SessionCourse course = course_of(store, key, session);
     presentations += course.presentations();
     const auto schedule = schedules.find(session.session);
     if (schedule == schedules.end()) continue;  // withdrawn
@@ -167,7 +169,7 @@ std::string check_pack(const store::StudyStore& store, const design::StudyKey* k
     throw VerificationError("field " + entry.code + " of the pack is not what was prepared");
   }
   if (key == nullptr) {
-    return fmt::format("{} fields intact; not held against the key",
+    return fmt::format("{} fields intact; not compared with the key",
                        pack.manifest().entries.size());
   }
   for (const design::KeyedStimulus& stimulus : key->stimuli)

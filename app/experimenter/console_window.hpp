@@ -28,11 +28,11 @@ struct ConsoleWindowOptions {
 /// window or Abort ends a session.
 class ConsoleWindow {
  public:
-  /// Main thread, GLFW running.
+  /// Call it on the main thread while GLFW is running.
   /// \param console  must outlive this
   /// \throws DeviceError with the remedy if there is no such monitor, or no OpenGL 3.2
   ConsoleWindow(ConsoleExperimenter& console, const ConsoleWindowOptions& options);
-  /// Main thread, after drawing has ended.
+  /// Runs on the main thread, after drawing has ended.
   ~ConsoleWindow();
   ConsoleWindow(const ConsoleWindow&) = delete;
   ConsoleWindow& operator=(const ConsoleWindow&) = delete;
@@ -45,7 +45,7 @@ class ConsoleWindow {
   void end_drawing();
   ///@}
 
-  /// Waits for the next picture. Any thread except the drawing thread.
+  /// Waits for the next picture. May be called from any thread except the drawing thread.
   /// \return nothing if no picture comes in time
   [[nodiscard]] std::optional<engine::ColourImage> picture(std::chrono::milliseconds longest);
 

@@ -167,7 +167,7 @@ session::Attendant::Says TerminalExperimenter::attend(const std::string& need) {
 
 session::Attendant::Says TerminalExperimenter::said(bool is_ready) {
   bool stops = false;
-  // The session records the abort, its reason and everything else that was typed when it asks.
+  // When the session asks, it records the abort, its reason and everything else that was typed.
   while (const auto request = typing_.next()) {
     stops = stops || request->kind == session::ExperimenterRequest::Kind::abort;
     add(*request);

@@ -1,7 +1,6 @@
 /// \file The experimenter at a terminal: a status line, keys, and consent to force.
 #pragma once
 
-#include "app/experimenter/spoken_answers.hpp"
 #include "app/experimenter/typing.hpp"
 #include "protocols/session/device_station.hpp"
 #include "protocols/session/experimenter.hpp"
@@ -16,7 +15,8 @@ namespace touchtrial::app {
 
 /// The terminal of an experimenter.
 struct ExperimenterTerminal {
-  /// The next key, if one was pressed; never waits. Null if nobody types; then nobody is asked.
+  /// The next key, if one was pressed; never waits. Null if nobody types; then no questions are
+  /// asked.
   std::function<std::optional<char>()> key;
   std::function<void(const std::string&)> write;
   /// Whether a line can be overwritten; else every change is a line of its own.
@@ -41,7 +41,8 @@ class TerminalExperimenter final : public session::Experimenter,
   TerminalExperimenter(const TerminalExperimenter&) = delete;
   TerminalExperimenter& operator=(const TerminalExperimenter&) = delete;
 
-  /// Adds a request of another source, such as a window or the sound. Any thread.
+  /// Adds a request from another source, such as a window or the sound. May be called from any
+  /// thread.
   void add(const session::ExperimenterRequest& request);
 
   void show(const session::SessionStatus& status) override;

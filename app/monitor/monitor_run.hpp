@@ -1,7 +1,7 @@
-/// \file The servo behind the monitor, which a person starts and stops, and the wall that it feels.
+/// \file The servo behind the monitor, which a person starts and stops, the wall that it feels, and
+/// its last seconds, in bins narrow enough to plot.
 #pragma once
 
-#include "app/monitor/monitor_history.hpp"
 #include "device/platform/stop_signals.hpp"
 #include "device/safety/watchdog.hpp"
 #include "device/servo/sample_ring.hpp"
@@ -9,11 +9,67 @@
 #include "device/servo/servo_thread.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
+#include <vector>
 
 namespace touchtrial::app {
+
+/// The least and the greatest value of an interval; empty if least > greatest.
+struct Extent {
+  double least = std::numeric_limits<double>::infinity();
+  double greatest = -std::numeric_limits<double>::infinity();
+
+  void add(double value) noexcept;
+  [[nodiscard]] bool is_empty() const noexcept { return least > greatest; }
+};
+
+/// The plotted channels: position in mm, force in N.
+enum class Channel : std::size_t { x, y, z, force_x, force_y, force_z };
+
+/// Not thread-safe.
+class MonitorHistory {
+ public:
+  static constexpr double kBinsPerS = 50.0;
+  static constexpr double kBinS = 1.0 / kBinsPerS;
+  static constexpr std::size_t kBins = 250;
+
+  /// \param rate_hz  the servo's rate, > 0
+  explicit MonitorHistory(double rate_hz);
+
+  /// Adds samples in the order of their ticks. A tick that is not greater than the last begins a
+  /// new run.
+  void add(const device::ServoSample& sample);
+  /// Adds the worst lateness of a tick since the last call, in µs, to the bins since then.
+  void add_lateness(double late_us);
+
+  /// \name kBins values each, from the oldest to the newest
+  ///@{
+  [[nodiscard]] std::vector<Extent> values(Channel channel) const;
+  /// Ticks per second, each over the preceding tenth of a second.
+  [[nodiscard]] std::vector<Extent> rates_hz() const;
+  [[nodiscard]] std::vector<Extent> lateness_us() const;
+  ///@}
+
+ private:
+  struct Bin {
+    std::array<Extent, 6> channels;
+    Extent lateness_us;
+    int samples = 0;
+  };
+  [[nodiscard]] Bin& bin_at(std::int64_t number) noexcept;
+  [[nodiscard]] const Bin& from_oldest(std::size_t index) const noexcept;
+
+  double rate_hz_;
+  std::vector<Bin> bins_;     ///< a ring
+  std::int64_t newest_ = -1;  ///< number of the newest bin since the run began
+  std::int64_t last_tick_ = -1;
+  std::int64_t told_until_ = -1;  ///< the newest bin when lateness was last added
+};
 
 /// A gentle wall at z = 0, which acts from the front (z > 0) only: if the stylus is behind it when
 /// it is switched on, it waits until the stylus has come to the front. Its force rises and falls

@@ -1,7 +1,7 @@
 /// \file The contents of the monitor's window, and the person's requests.
 #pragma once
 
-#include "app/monitor/monitor_history.hpp"
+#include "app/monitor/monitor_run.hpp"
 #include "app/windows/glfw_window.hpp"
 #include "device/haptic_device.hpp"
 

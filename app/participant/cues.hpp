@@ -13,7 +13,7 @@ enum class Cue {
 class Cues {
  public:
   virtual ~Cues() = default;
-  /// Starts the sound and returns at once. Any thread but the servo's.
+  /// Starts the sound and returns at once. Any thread except the servo's may call it.
   virtual void tone(Cue cue) noexcept = 0;
 };
 

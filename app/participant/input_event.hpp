@@ -45,13 +45,14 @@ struct InputEvent {
   Vec2 position;        ///< of the pointer, window units from the top-left corner
 };
 
-/// Main thread.
+/// Call it on the main thread.
 /// \param key,action,modifiers  as GLFW's key callback receives them
 /// \return an event of Key::none for a key without meaning or a key that is released
 [[nodiscard]] InputEvent event_of_key(int key, int action, int modifiers);
 
 /// Turns buttons of gamepads into pressed keys: the cross moves, A is Enter, B is the space bar.
-/// GLFW has no events for gamepads, so the time of a key is that of the poll. Main thread.
+/// GLFW has no events for gamepads, so the time of a key is that of the poll. Belongs to the main
+/// thread.
 class Gamepads {
  public:
   /// Reads all gamepads.

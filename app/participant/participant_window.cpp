@@ -34,7 +34,7 @@ constexpr milliseconds kPictureLimit{300'000};
 /// Within this time after the plane comes on, Enter does not end the exploration: it may still be
 /// held from the previous screen.
 constexpr milliseconds kNoAccident{500};
-// A tone signals a force above the first limit. It comes again only after the force was below the
+// A tone signals a force above the first limit. It is repeated only after the force was below the
 // second limit.
 constexpr double kPushTooHardN = 2.0;
 constexpr double kSoftAgainN = 1.7;
@@ -53,10 +53,7 @@ GLFWmonitor* monitor_of(const ParticipantWindowOptions& options) {
 }
 
 GLFWwindow* make_window(const ParticipantWindowOptions& options, GLFWmonitor* monitor) {
-  glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
-  glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 2);
-  glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
-  glfwWindowHint(GLFW_OPENGL_FORWARD_COMPAT, GLFW_TRUE);
+  hint_opengl_3_2();
   // The experimenter's window sometimes takes the focus.
   glfwWindowHint(GLFW_AUTO_ICONIFY, GLFW_FALSE);
   std::pair<int, int> size = options.size_px.value_or(std::pair(1280, 720));

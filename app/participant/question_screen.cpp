@@ -1,5 +1,4 @@
-#include "app/participant/question_screen.hpp"
-
+#include "app/participant/answer_screen.hpp"
 #include "app/participant/page_layout.hpp"
 
 #include <algorithm>

@@ -1,6 +1,5 @@
 #include "app/participant/answer_screen.hpp"
 #include "app/participant/page_layout.hpp"
-#include "app/participant/question_screen.hpp"
 #include "app/participant/screen.hpp"
 
 #include <type_traits>

@@ -19,6 +19,124 @@
 #include <imgui.h>
 
 namespace touchtrial::app {
+
+void WindowExchange::show(std::shared_ptr<Screen> screen) {
+  const std::lock_guard lock(mutex_);
+  screen_ = std::move(screen);
+  reply_.reset();
+  replied_by_.reset();
+  // A screen that returns must be drawn again before it counts as shown.
+  shown_.reset();
+  dirty_ = true;
+  for_drawing_.notify_all();
+}
+
+std::optional<session::StepReply> WindowExchange::reply(const Screen& of,
+                                                        std::chrono::milliseconds longest) {
+  std::unique_lock lock(mutex_);
+  for_others_.wait_for(lock, longest, [&] { return replied_by_.get() == &of || failure_; });
+  if (replied_by_.get() != &of) return std::nullopt;
+  replied_by_.reset();
+  return std::exchange(reply_, std::nullopt);
+}
+
+void WindowExchange::push(const InputEvent& event) {
+  const std::lock_guard lock(mutex_);
+  events_.push_back(event);
+  settled_ = false;
+  for_drawing_.notify_all();
+}
+
+void WindowExchange::set_surface(const WindowSurface& surface) {
+  const std::lock_guard lock(mutex_);
+  surface_ = surface;
+  dirty_ = true;
+  for_drawing_.notify_all();
+}
+
+void WindowExchange::redraw() {
+  const std::lock_guard lock(mutex_);
+  dirty_ = true;
+  for_drawing_.notify_all();
+}
+
+void WindowExchange::end() {
+  const std::lock_guard lock(mutex_);
+  ending_ = true;
+  for_drawing_.notify_all();
+  for_others_.notify_all();
+}
+
+WindowExchange::Work WindowExchange::wait_for_work(std::chrono::milliseconds longest) {
+  std::unique_lock lock(mutex_);
+  const auto is_new = [this] { return dirty_ || ending_ || picture_wanted_ || !events_.empty(); };
+  for_drawing_.wait_for(lock, longest, [&] { return stirred_ || is_new(); });
+  const bool came = is_new();
+  stirred_ = false;
+  dirty_ = false;
+  return {screen_, surface_, std::exchange(events_, {}), picture_wanted_, ending_, came};
+}
+
+void WindowExchange::stir() {
+  const std::lock_guard lock(mutex_);
+  stirred_ = true;
+  for_drawing_.notify_all();
+}
+
+void WindowExchange::shown(const std::shared_ptr<Screen>& screen, bool events_left) {
+  const std::lock_guard lock(mutex_);
+  shown_ = screen;
+  settled_ = !events_left && events_.empty();
+  for_others_.notify_all();
+}
+
+void WindowExchange::replied(const std::shared_ptr<Screen>& screen,
+                             const session::StepReply& reply) {
+  const std::lock_guard lock(mutex_);
+  if (screen != screen_) return;  // the session has moved on
+  replied_by_ = screen;
+  reply_ = reply;
+  for_others_.notify_all();
+}
+
+void WindowExchange::keep(engine::ColourImage picture) {
+  const std::lock_guard lock(mutex_);
+  picture_ = std::move(picture);
+  picture_wanted_ = false;
+  for_others_.notify_all();
+}
+
+void WindowExchange::failed(std::exception_ptr failure) {
+  const std::lock_guard lock(mutex_);
+  failure_ = std::move(failure);
+  for_others_.notify_all();
+}
+
+WindowSurface WindowExchange::surface() const {
+  const std::lock_guard lock(mutex_);
+  return surface_;
+}
+
+bool WindowExchange::wait_until_shown(std::chrono::milliseconds longest) {
+  std::unique_lock lock(mutex_);
+  return for_others_.wait_for(lock, longest,
+                              [this] { return shown_ == screen_ && settled_ && events_.empty(); });
+}
+
+std::optional<engine::ColourImage> WindowExchange::picture(std::chrono::milliseconds longest) {
+  std::unique_lock lock(mutex_);
+  picture_.reset();
+  picture_wanted_ = true;
+  for_drawing_.notify_all();
+  for_others_.wait_for(lock, longest, [this] { return picture_.has_value() || failure_; });
+  return std::exchange(picture_, std::nullopt);
+}
+
+void WindowExchange::check() const {
+  const std::lock_guard lock(mutex_);
+  if (failure_) std::rethrow_exception(failure_);
+}
+
 namespace {
 
 // Since OpenGL 1.2; missing in some systems' gl.h.
@@ -77,10 +195,6 @@ using std::chrono::milliseconds;
 
 /// The time between pictures if nothing changes: some systems lose the content of hidden windows.
 constexpr milliseconds kIdle{500};
-
-ImVec2 to_imgui(Vec2 point) {
-  return {static_cast<float>(point.x), static_cast<float>(point.y)};
-}
 
 bool is_transition(const InputEvent& event) {
   return event.kind != InputEvent::Kind::moved && event.kind != InputEvent::Kind::letter;
@@ -196,9 +310,9 @@ class Drawing {
     ImGui::SetCurrentContext(context_);
     fit_fonts(surface);
     ImGuiIO& io = ImGui::GetIO();
-    io.DisplaySize = to_imgui(surface.size);
+    io.DisplaySize = imgui_vec(surface.size);
     io.DisplayFramebufferScale =
-        to_imgui({surface.width_px / surface.size.x, surface.height_px / surface.size.y});
+        imgui_vec({surface.width_px / surface.size.x, surface.height_px / surface.size.y});
     shelf_.set_density(surface.width_px / surface.size.x);
     io.DeltaTime = 1.0F / 60.0F;
     ImGui_ImplOpenGL3_NewFrame();
@@ -224,7 +338,7 @@ class Drawing {
 
   void paint(const WindowSurface& surface) {
     ImGui::SetNextWindowPos({0.0F, 0.0F});
-    ImGui::SetNextWindowSize(to_imgui(surface.size));
+    ImGui::SetNextWindowSize(imgui_vec(surface.size));
     // Padding would cut off the edges.
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0F, 0.0F});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0F);

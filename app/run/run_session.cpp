@@ -1,14 +1,13 @@
 #include "app/run/run_session.hpp"
 
 #include "app/experimenter/console_experimenter.hpp"
-#include "app/experimenter/spoken_answers.hpp"
 #include "app/experimenter/terminal_experimenter.hpp"
+#include "app/experimenter/typing.hpp"
 #include "app/participant/participant_window.hpp"
 #include "app/participant/window_subject.hpp"
 #include "app/run/run_study.hpp"
+#include "app/run/session_bounds.hpp"
 #include "app/run/session_device.hpp"
-#include "app/run/session_end.hpp"
-#include "app/run/session_entry.hpp"
 #include "app/sound/session_sound.hpp"
 #include "app/study_inputs.hpp"
 #include "app/texts/study_texts.hpp"
@@ -76,8 +75,9 @@ std::string why_gone(const ParticipantWindow& window) {
 class ParticipantPractice {
  public:
   /// \throws StudyError as PracticeSet
-  ParticipantPractice(const RunStudy& study, const PlaneGeometry& plane, int enrolment)
-      : study_(study.key.study), enrolment_(enrolment) {
+  ParticipantPractice(const RunStudy& study, const PlaneGeometry& plane,
+                      const design::ScheduleDraw& draw)
+      : study_(study.key.study), draw_(draw) {
     if (study_.trials.practice == 0 || study_.practice.classes.empty()) return;
     set_.emplace(study_, design::weakest_gains(study.pack.manifest()), plane);
     textures_ =
@@ -91,13 +91,13 @@ class ParticipantPractice {
 
  private:
   [[nodiscard]] session::PracticeRound round(int number) const {
-    const std::vector<int> layout = design::practice_layout(study_, enrolment_, number);
+    const std::vector<int> layout = design::practice_layout(study_, draw_, number);
     session::PracticeRound round;
     for (const int class_index : layout) {
       round.labels.push_back(study_.practice.classes[static_cast<std::size_t>(class_index)].label);
       round.models.push_back(&set_->model(class_index));
     }
-    for (const int class_index : design::practice_round(study_, enrolment_, number)) {
+    for (const int class_index : design::practice_round(study_, draw_, number)) {
       const auto place = std::ranges::find(layout, class_index);
       round.order.push_back(static_cast<int>(place - layout.begin()));
     }
@@ -105,7 +105,7 @@ class ParticipantPractice {
   }
 
   const design::Study& study_;
-  int enrolment_;
+  design::ScheduleDraw draw_;
   std::optional<design::PracticeSet> set_;
   std::optional<session::PracticeTextures> textures_;
 };
@@ -120,10 +120,14 @@ design::MaskingPlan masking_of(const RunOptions& options, const design::Study& s
 
 /// Deviations from the study that exist before the session begins.
 std::vector<session::ExperimenterRequest> known_deviations(const RunOptions& options,
-                                                           const design::Study& study,
+                                                           const RunStudy& study,
                                                            const SessionDevice& device) {
   std::vector<session::ExperimenterRequest> known = device.to_record();
-  if (study.session.masking.wanted && !options.sound && !device.info().visual) {
+  if (study.key_in_reach) {
+    known.push_back({session::ExperimenterRequest::Kind::deviation,
+                     "the investigator's key lies beside the study", "key-at-station"});
+  }
+  if (study.key.study.session.masking.wanted && !options.sound && !device.info().visual) {
     known.push_back(
         {session::ExperimenterRequest::Kind::deviation, "--no-sound", "no-masking-noise"});
   }
@@ -158,8 +162,7 @@ class PersonsSession {
         sound_(masking_of(options, study.key.study, device_.info()), study.key.study.seed) {
     require_consent(device_.info());
     if (!sound_.trouble().empty()) spdlog::warn("{}", sound_.trouble());
-    for (const session::ExperimenterRequest& known :
-         known_deviations(options, study.key.study, device_)) {
+    for (const session::ExperimenterRequest& known : known_deviations(options, study, device_)) {
       terminal_.add(known);
     }
   }
@@ -186,26 +189,24 @@ class PersonsSession {
                                     device::kServoRateHz, device_.certificate());
         });
     session::SteadySessionClock clock(entered.clock);
-    const ParticipantPractice practice(study_, source_.plane(), entered.enrolment);
+    const ParticipantPractice practice(study_, source_.plane(), entered.draw);
     SpokenAnswers spoken(window, terminal_);
-    const bool speaks = study_.key.study.session.sight == design::Sight::blindfold;
     RunExperimenter experimenter(
         console_, [&] { return why_gone(window); }, [this] { return sound_.to_record(); });
     const session::SessionTexts texts = texts_for(study_.key.study, device_.info());
-    const session::SessionTally tally = session::run_session(
-        *entered.session,
-        {.key = study_.key,
-         .source = source_,
-         .participant = speaks ? static_cast<session::Participant&>(spoken) : window,
-         .clock = clock,
-         .explorer = explorer,
-         .devices = device_.station(),
-         .experimenter = experimenter,
-         .texts = texts,
-         .practice = practice.textures(),
-         .participant_name = options_.participant,
-         .device_name = device_.driver(),
-         .limits = device_.limits()});
+    const session::SessionTally tally =
+        session::run_session(*entered.session, {.key = study_.key,
+                                                .source = source_,
+                                                .participant = spoken,
+                                                .clock = clock,
+                                                .explorer = explorer,
+                                                .devices = device_.station(),
+                                                .experimenter = experimenter,
+                                                .texts = texts,
+                                                .practice = practice.textures(),
+                                                .participant_name = options_.participant,
+                                                .device_name = device_.driver(),
+                                                .limits = device_.limits()});
     return conclude_session(options_, entered.number, tally, store_);
   }
 

@@ -1,9 +1,45 @@
-/// \file One session of a study, from the command line's options to its end.
+/// \file One session of a study, from the options of `touchtrial run` to its end.
 #pragma once
 
-#include "app/run/run_options.hpp"
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
 
 namespace touchtrial::app {
+
+/// What happens with a session that the participant already has.
+enum class OnExisting { refuse, resume, restart };
+
+/// The options of `touchtrial run`.
+struct RunOptions {
+  std::filesystem::path study;
+  std::string participant;
+  std::filesystem::path database;
+  std::filesystem::path pack;          ///< empty: where `prepare` puts it
+  std::filesystem::path station_file;  ///< empty: beside the pack
+  std::string device;                  ///< driver; empty: the simulated device for a subject
+  std::filesystem::path settings;
+  std::filesystem::path certificate;  ///< empty: NAME-certificate.json, if it exists
+  bool pilot = false;
+  OnExisting on_existing = OnExisting::refuse;
+  int enrolment = 0;      ///< 0: the station's next number
+  std::string station{};  ///< of a study with several; empty: its only one
+  /// A simulated participant instead of a person: a model file, or "default".
+  std::optional<std::filesystem::path> subject;
+  std::uint64_t seed = 1;  ///< of the simulated participant
+  bool headless = false;
+  bool real_time = false;   ///< run a simulated participant in real time
+  bool console = false;     ///< open a window for the experimenter
+  int console_monitor = 0;  ///< monitor of that window, from 1; 0: the system decides
+  bool sound = true;
+  int monitor = 1;  ///< the participant's, from 1; full screen
+  /// Width and height of the participant's window in pixels, instead of full screen.
+  std::optional<std::pair<int, int>> window_px;
+
+  [[nodiscard]] bool is_simulated() const noexcept { return subject.has_value(); }
+};
 
 /// Runs the session of a person with a device or of a simulated participant, before a window unless
 /// it is headless. A window belongs to the calling thread, which must be the program's main thread;

@@ -4,37 +4,45 @@
 #include "app/study_inputs.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
-#include "protocols/design/prepare.hpp"
 #include "protocols/session/commitment.hpp"
 
 #include <string>
 #include <utility>
+
+#include <spdlog/spdlog.h>
 
 namespace touchtrial::app {
 namespace {
 
 namespace fs = std::filesystem;
 
-design::PackPlace place_of(const RunOptions& options) {
-  design::PackPlace place = options.pack.empty() ? design::default_pack_place(options.study)
-                                                 : design::pack_place_at(options.pack);
-  const fs::path beside_database = key_path_for(options.database, {});
-  if (is_there(beside_database)) place.key = beside_database;
-  if (!options.key.empty()) place.key = options.key;
-  return place;
+std::filesystem::path station_file_of(const RunOptions& options, const design::PackPlace& place) {
+  return options.station_file.empty() ? place.station(options.station) : options.station_file;
 }
 
-void require_unchanged(const design::StudyKey& key, const design::Study& study) {
-  if (design::study_seal(design::rekeyed(key, study)) == design::study_seal(key)) return;
+void require_unchanged(const design::StationKey& key, const design::Study& study) {
+  if (design::are_same(key.study, study)) return;
   throw StudyError(study.source +
                    ": has changed since it was prepared; run `touchtrial prepare` again for a new "
                    "study, or take the change back");
 }
 
-void require_intact(const engine::Pack& pack, const design::StudyKey& key) {
+/// The investigator's key opens everything that a station should not know.
+bool has_key_in_reach(const RunOptions& options, const design::PackPlace& place) {
+  if (options.is_simulated() || !is_there(place.key)) return false;
+  spdlog::warn(
+      "{}: the investigator's key lies at this station, which is recorded as a deviation; move it "
+      "to another medium",
+      place.key.string());
+  return true;
+}
+
+void require_intact(const engine::Pack& pack, const design::StudyCodes& key) {
   const std::string folder = pack.folder().string();
   if (pack.manifest().study_id != key.study_id) {
-    throw FileError(folder + ": is the pack of another key; name both with --pack and --key");
+    throw FileError(folder +
+                    ": is another study's pack; name it and the station's file with --pack and "
+                    "--station-file");
   }
   for (const engine::PackEntry& entry : pack.manifest().entries) {
     if (!pack.is_intact(entry.code)) {
@@ -53,7 +61,7 @@ RunStudy simulated_study(const RunOptions& options, const design::Study& study) 
   // already exists is another key's.
   if (!is_there(path) && !is_there(options.database)) design::save_study_key(path, key);
   engine::Pack pack(key.pack_folder);
-  return {std::move(key), std::move(pack)};
+  return {design::station_key(key, design::kOnlyStation), std::move(pack), false};
 }
 
 [[noreturn]] void refuse(const RunOptions& options, const std::string& why) {
@@ -85,25 +93,29 @@ void require_same(const store::StudyCommitment& stored, const store::StudyCommit
 
 RunStudy run_study_for(const RunOptions& options) {
   const design::Study study = design::load_study(options.study);
-  const design::PackPlace place = place_of(options);
-  if (!is_there(place.key)) {
-    if (options.is_simulated() && options.pack.empty() && options.key.empty()) {
+  const design::PackPlace place = pack_place_for(options.study, options.pack);
+  const fs::path file = station_file_of(options, place);
+  if (!is_there(file)) {
+    if (options.is_simulated() && options.pack.empty() && !is_there(place.pack)) {
       return simulated_study(options, study);
     }
-    throw FileError(place.key.string() + ": there is no key; run `touchtrial prepare " +
-                    options.study.string() + "` first, or name it with --key");
+    throw UsageError(one_line(file.string()) +
+                     ": there is no such station file; name this station with --station, copy its "
+                     "file here from the investigator's machine, or make it with `touchtrial "
+                     "prepare`");
   }
-  design::StudyKey key = design::load_study_key(place.key);
+  design::StationKey key = design::load_station_key(file);
   require_unchanged(key, study);
   key.study.folder = study.folder;
   if (key.simulated && !options.is_simulated()) {
-    throw StoreError(place.key.string() +
-                     ": is a simulated study's key; give people another --db and a prepared study");
+    throw StoreError(file.string() +
+                     ": is a simulated study's; give people another --db and a "
+                     "prepared study");
   }
   engine::Pack pack(options.pack.empty() && is_there(key.pack_folder) ? key.pack_folder
                                                                       : place.pack);
   require_intact(pack, key);
-  return {std::move(key), std::move(pack)};
+  return {std::move(key), std::move(pack), has_key_in_reach(options, place)};
 }
 
 store::StudyStore run_database_for(const RunOptions& options, const RunStudy& study) {

@@ -2,7 +2,7 @@
 /// calibration, and the consent to its force.
 #pragma once
 
-#include "app/run/run_options.hpp"
+#include "app/run/run_session.hpp"
 #include "core/plane_geometry.hpp"
 #include "device/device_settings.hpp"
 #include "device/mouse/pointer_exchange.hpp"

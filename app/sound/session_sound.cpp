@@ -1,13 +1,17 @@
 #include "app/sound/session_sound.hpp"
 
 #include "core/errors.hpp"
+#include "core/random.hpp"
 #include "device/platform/dynamic_library.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdio>
+#include <numbers>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fcntl.h>
@@ -16,6 +20,124 @@
 #include <unistd.h>
 
 namespace touchtrial::app {
+namespace {
+
+constexpr int kOctaves = 16;
+constexpr std::size_t kSamples = std::size_t{1} << 18;
+
+/// The sum of all rows; the slowest takes four steps in a loop.
+std::vector<double> sum_of_steps(RandomStream& random) {
+  std::vector<double> sum(kSamples);
+  for (int octave = 0; octave <= kOctaves; ++octave) {
+    const std::size_t hold = std::size_t{1} << octave;
+    for (std::size_t first = 0; first < kSamples; first += hold) {
+      const double step = random.uniform(-1.0, 1.0);
+      for (std::size_t i = first; i < first + hold; ++i) sum[i] += step;
+    }
+  }
+  return sum;
+}
+
+/// Three tones and the loudest noise together stay within full scale.
+constexpr double kToneAmplitude = 0.06;
+constexpr double kToneRampS = 0.01;
+
+/// A glide from one frequency to another, between two ramps.
+void add_tone(std::vector<float>& samples, double rate_hz, double from_hz, double to_hz,
+              double seconds) {
+  const auto count = static_cast<std::size_t>(std::lround(seconds * rate_hz));
+  const auto ramp = std::lround(kToneRampS * rate_hz);
+  double turns = 0.0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto to_edge = static_cast<double>(std::min(i, count - 1 - i));
+    const double up = std::min(1.0, to_edge / static_cast<double>(ramp));
+    const double envelope = 0.5 - 0.5 * std::cos(std::numbers::pi * up);
+    samples.push_back(
+        static_cast<float>(kToneAmplitude * envelope * std::sin(2.0 * std::numbers::pi * turns)));
+    const double done = static_cast<double>(i) / static_cast<double>(count);
+    turns += (from_hz + (to_hz - from_hz) * done) / rate_hz;
+  }
+}
+
+void add_silence(std::vector<float>& samples, double rate_hz, double seconds) {
+  samples.resize(samples.size() + static_cast<std::size_t>(std::lround(seconds * rate_hz)));
+}
+
+/// The tones differ in their course and not only in their pitch.
+std::vector<float> tone_of(Cue cue, double rate_hz) {
+  std::vector<float> samples;
+  switch (cue) {
+    case Cue::plane_on:
+      add_tone(samples, rate_hz, 500.0, 1000.0, 0.3);
+      break;
+    case Cue::plane_off:
+      add_tone(samples, rate_hz, 660.0, 660.0, 0.12);
+      add_silence(samples, rate_hz, 0.1);
+      add_tone(samples, rate_hz, 660.0, 660.0, 0.12);
+      break;
+    case Cue::too_hard:
+      add_tone(samples, rate_hz, 300.0, 300.0, 0.25);
+      break;
+  }
+  return samples;
+}
+
+}  // namespace
+
+std::vector<float> masking_noise(double level_dbfs, std::uint64_t seed) {
+  RandomStream random(seed, "masking noise");
+  const std::vector<double> sum = sum_of_steps(random);
+  double mean = 0.0;
+  for (const double value : sum) mean += value;
+  mean /= static_cast<double>(kSamples);
+  double power = 0.0;
+  for (const double value : sum) power += (value - mean) * (value - mean);
+  const double rms = std::sqrt(power / static_cast<double>(kSamples));
+  const double wanted = std::pow(10.0, std::min(level_dbfs, kHighestMaskingDbfs) / 20.0);
+  std::vector<float> noise(kSamples);
+  for (std::size_t i = 0; i < kSamples; ++i) {
+    noise[i] = static_cast<float>((sum[i] - mean) * wanted / rms);
+  }
+  return noise;
+}
+
+SoundMixer::SoundMixer(double sample_rate_hz, std::vector<float> noise)
+    : noise_(std::move(noise)), gain_step_(static_cast<float>(1.0 / (kRampS * sample_rate_hz))) {
+  for (const Cue cue : {Cue::plane_on, Cue::plane_off, Cue::too_hard}) {
+    Voice& voice = voices_[static_cast<std::size_t>(cue)];
+    voice.tone = tone_of(cue, sample_rate_hz);
+    voice.at = voice.tone.size();
+  }
+}
+
+void SoundMixer::tone(Cue cue) noexcept {
+  voices_[static_cast<std::size_t>(cue)].asked.store(true);
+}
+
+float SoundMixer::next_noise() noexcept {
+  if (noise_.empty()) return 0.0F;
+  const float target = masks_.load(std::memory_order_relaxed) ? 1.0F : 0.0F;
+  gain_ = std::clamp(target, gain_ - gain_step_, gain_ + gain_step_);
+  const float sample = gain_ * noise_[noise_at_];
+  noise_at_ = noise_at_ + 1 == noise_.size() ? 0 : noise_at_ + 1;
+  return sample;
+}
+
+void SoundMixer::render(std::span<float> samples) noexcept {
+  for (Voice& voice : voices_) {
+    const bool asked = voice.asked.exchange(false);
+    if (asked && voice.at == voice.tone.size()) voice.at = 0;
+  }
+  for (float& sample : samples) {
+    float sum = next_noise();
+    for (Voice& voice : voices_) {
+      if (voice.at < voice.tone.size()) sum += voice.tone[voice.at++];
+    }
+    sample = std::clamp(sum, -1.0F, 1.0F);
+  }
+  rendered_.fetch_add(static_cast<std::int64_t>(samples.size()));
+}
+
 namespace {
 
 /// Discards standard error while it lives: in search of outputs, ALSA and JACK write a line there

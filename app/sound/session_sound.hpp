@@ -1,17 +1,70 @@
-/// \file The sound of a session on the computer's loudspeaker or headphones, and the record of it.
+/// \file The sound of a session on the computer's loudspeaker or headphones: masking noise and
+/// tones, their samples, and the record of it.
 #pragma once
 
 #include "app/participant/cues.hpp"
-#include "app/sound/sound_mixer.hpp"
 #include "protocols/design/session_plan.hpp"
 #include "protocols/session/experimenter.hpp"
 
+#include <array>
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 namespace touchtrial::app {
+
+/// The highest level of the noise. Above it, peaks of the noise and tones could exceed the range of
+/// the sound card.
+inline constexpr double kHighestMaskingDbfs = -18.0;
+
+/// A seamless loop of pink noise (equal power in every octave) that covers the sound of a device.
+/// It is a sum of random steps, one row for each octave, each half as fast as the previous one.
+/// Source: the method of Voss and McCartney; Gardner, Scientific American 238(4), 1978.
+/// \param level_dbfs  exact rms in dB relative to full scale, at most kHighestMaskingDbfs
+/// \param seed  decides every sample
+/// \return 2^18 samples, 5.5 s at 48 kHz, with mean 0; |sample| < 0.8
+[[nodiscard]] std::vector<float> masking_noise(double level_dbfs, std::uint64_t seed);
+
+/// One channel. `render` belongs to the sound card's thread; the other functions may be called on
+/// any thread. Neither waits for the other. Noise and tones begin and end in ramps, so that nothing
+/// clicks.
+class SoundMixer {
+ public:
+  static constexpr double kRampS = 0.05;  ///< duration of the noise's ramp
+
+  /// \param sample_rate_hz  of the sound card, 8000 to 192000
+  /// \param noise  a loop with |sample| < 0.8; may be empty
+  SoundMixer(double sample_rate_hz, std::vector<float> noise);
+
+  void mask(bool on) noexcept { masks_.store(on); }
+  /// Plays a tone, unless it still sounds.
+  void tone(Cue cue) noexcept;
+  /// Writes the next samples, each in [-1, 1]. Allocates and locks nothing.
+  void render(std::span<float> samples) noexcept;
+  /// Samples rendered so far.
+  [[nodiscard]] std::int64_t rendered() const noexcept { return rendered_.load(); }
+
+ private:
+  struct Voice {
+    std::vector<float> tone;
+    std::atomic<bool> asked{false};
+    std::size_t at = 0;  ///< the next sample; silent at the tone's size
+  };
+  [[nodiscard]] float next_noise() noexcept;
+
+  std::vector<float> noise_;
+  std::size_t noise_at_ = 0;
+  float gain_ = 0.0F;
+  float gain_step_;
+  std::atomic<bool> masks_{false};
+  std::array<Voice, 3> voices_;
+  std::atomic<std::int64_t> rendered_{0};
+};
 
 /// Plays a mixer on the system's default output (PortAudio), equally on both ears. Belongs to one
 /// thread; the mixer renders on the sound card's own thread.

@@ -10,7 +10,8 @@ struct GLFWwindow;
 
 namespace touchtrial::app {
 
-/// Starts GLFW for as long as there is a window; one at a time. Main thread.
+/// Starts GLFW for as long as there is a window. There may be one object at a time. It belongs to
+/// the main thread.
 class GlfwLibrary {
  public:
   /// \throws DeviceError with the remedy if there is no display
@@ -23,7 +24,7 @@ class GlfwLibrary {
 /// \throws DeviceError always: GLFW's last error and the remedy
 [[noreturn]] void refuse_window(const std::string& remedy);
 
-/// Requests OpenGL 3.2 for the next window. Main thread, GLFW running.
+/// Requests OpenGL 3.2 for the next window. Call it on the main thread while GLFW is running.
 void hint_opengl_3_2();
 
 /// The scale of the monitor that shows the largest part of a window.
@@ -34,7 +35,7 @@ struct ScreenScale {
   double refresh_hz = 60.0;
 };
 
-/// Main thread, GLFW running.
+/// Call it on the main thread while GLFW is running.
 [[nodiscard]] ScreenScale screen_scale(GLFWwindow* window);
 
 /// The density of the primary monitor, for a window that does not exist yet.

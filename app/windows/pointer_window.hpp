@@ -12,10 +12,10 @@ namespace touchtrial::app {
 
 /// Shows a blank plane at its true size, and the stylus on it. Only the stylus' position depends on
 /// a texture. A plane that is larger than the screen is shown smaller, and a line below it says so.
-/// Main thread, as GlfwWindow.
+/// Belongs to the main thread, like GlfwWindow.
 class PointerWindow {
  public:
-  /// \param exchange  that of a MouseDevice; must outlive this
+  /// \param exchange  the exchange of a MouseDevice; must outlive this
   /// \param plane_mm  sides of the plane, > 0
   /// \throws DeviceError as GlfwWindow
   PointerWindow(device::PointerExchange& exchange, Vec2 plane_mm);

@@ -42,7 +42,8 @@ struct GoalResult {
 /// Measures one goal, or several that share their work.
 using Goal = std::function<std::vector<GoalResult>(const Effort& effort)>;
 
-/// Every kernel beside its peer, and how soon TV-Gabor comes close to its texture.
+/// The time of every kernel compared with its peer, and how soon TV-Gabor comes close to its
+/// texture.
 /// \param targets  this machine's SIMD targets, best first
 [[nodiscard]] std::vector<Goal> kernel_goals(const std::vector<std::string>& targets);
 /// The accuracy of textures and MS-SSIM on every target.

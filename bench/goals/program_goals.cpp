@@ -148,7 +148,7 @@ constexpr double kStudyTarget_us = 1e6;
 constexpr double kTrialTarget_bytes = 100e3;
 constexpr int kParticipants = 20;
 
-struct StudyFigures {
+struct StudyCost {
   double us = 0.0;
   double bytes_a_trial = 0.0;
 };
@@ -156,8 +156,8 @@ struct StudyFigures {
 /// Simulates the classification study that comes with the program, in one thread: 20 participants,
 /// 25 trials of 10 s, one transaction for each session. The time is wall-clock time, because it
 /// includes the disk.
-StudyFigures simulate_once(const design::StudyKey& key, const engine::Pack& pack,
-                           const fs::path& database) {
+StudyCost simulate_once(const design::StudyKey& key, const engine::Pack& pack,
+                        const fs::path& database) {
   const simulation::SubjectModel subject = app::subject_for({}, key.study);
   simulation::SimulationOptions options;
   options.participants = kParticipants;
@@ -172,15 +172,15 @@ StudyFigures simulate_once(const design::StudyKey& key, const engine::Pack& pack
   return {us.count(), static_cast<double>(fs::file_size(database)) / report.presentations};
 }
 
-std::vector<GoalResult> results_of(const StudyFigures& figures) {
+std::vector<GoalResult> results_of(const StudyCost& cost) {
   GoalResult time;
   time.goal = "study of 20 x 25 trials of 10 s, one thread";
-  time.ours_us = figures.us;
+  time.ours_us = cost.us;
   time.limit = Limit::time_us;
   time.target = kStudyTarget_us;
   GoalResult bytes;
   bytes.goal = "database, a trial of 10 s";
-  bytes.count = std::round(figures.bytes_a_trial);
+  bytes.count = std::round(cost.bytes_a_trial);
   bytes.count_unit = "bytes";
   bytes.limit = Limit::count;
   bytes.target = kTrialTarget_bytes;
@@ -198,13 +198,13 @@ std::vector<GoalResult> measure_study(int rounds) {
   design::prepare_pack(key, key.pack_folder, {});
   const engine::Pack pack(key.pack_folder);
   std::vector<double> times_us;
-  StudyFigures figures;
+  StudyCost cost;
   for (int round = 0; round < rounds; ++round) {
-    figures = simulate_once(key, pack, folder.path() / (std::to_string(round) + ".db"));
-    times_us.push_back(figures.us);
+    cost = simulate_once(key, pack, folder.path() / (std::to_string(round) + ".db"));
+    times_us.push_back(cost.us);
   }
-  figures.us = median(times_us);
-  return results_of(figures);
+  cost.us = median(times_us);
+  return results_of(cost);
 }
 
 }  // namespace

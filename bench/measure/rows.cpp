@@ -78,7 +78,7 @@ void register_case(const Case& one, int repetitions, Operations& operations,
 }
 
 /// The median time of one operation of each case, in microseconds and in the cases' order. The
-/// repetitions of all cases run in random order. Call once in a process.
+/// repetitions of all cases run in random order. Call it once per process.
 /// \param progress  called before each repetition; `of` is an estimate that `done` never exceeds
 std::vector<double> interleaved_times_us(const Cases& cases, const Effort& effort,
                                          const Progress& progress) {

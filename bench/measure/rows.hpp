@@ -23,8 +23,8 @@ using Progress = std::function<void(int done, int of)>;
 [[nodiscard]] double error_of(const Case& one);
 
 /// Takes the errors first, case by case, then the times by Google Benchmark. The repetitions of all
-/// cases run in random order, so that other activity of the machine affects all alike. Call once in
-/// a process.
+/// cases run in random order, so that other activity of the machine affects all alike. Call it once
+/// per process.
 /// \throws Error as error_of does
 [[nodiscard]] std::vector<Row> measure_rows(const Cases& cases, const Effort& effort,
                                             const Progress& progress);

@@ -3,9 +3,9 @@
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "core/strict_json.hpp"
+#include "core/text.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstdio>
 
@@ -20,8 +20,8 @@ Vec3 direction_of(CalibrationAxis axis) noexcept {
 }
 
 /// \return whether the handle stood still
-bool is_steady(const HoldFigures& figures) noexcept {
-  return figures.measured && figures.noise_mm <= kMostNoiseMm && figures.drift_mm <= kMostDriftMm;
+bool is_steady(const HoldFigures& hold) noexcept {
+  return hold.measured && hold.noise_mm <= kMostNoiseMm && hold.drift_mm <= kMostDriftMm;
 }
 
 constexpr std::string_view kKind = "touchtrial device calibration 1";
@@ -44,10 +44,7 @@ std::string date_text(std::chrono::sys_seconds time) {
 
 /// \return the number at this place of the text, or -1
 int number_at(const std::string& text, std::size_t at, std::size_t digits) {
-  int number = -1;
-  const char* end = text.data() + at + digits;
-  const auto [stop, error] = std::from_chars(text.data() + at, end, number);
-  return error == std::errc{} && stop == end ? number : -1;
+  return number_in<int>(std::string_view(text).substr(at, digits)).value_or(-1);
 }
 
 std::chrono::sys_seconds read_date(const JsonValue& place) {

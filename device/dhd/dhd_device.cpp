@@ -13,7 +13,7 @@ namespace touchtrial::device {
 namespace dhd {
 namespace {
 
-/// For a library that cannot be used.
+/// The remedy for a library that cannot be used.
 constexpr const char* kRemedy =
     "install Force Dimension's SDK, or name the library in the device settings at dhd.library";
 

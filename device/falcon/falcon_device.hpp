@@ -28,11 +28,12 @@ class FalconPace {
  public:
   using Time = DeviceLink::Time;
   virtual ~FalconPace() = default;
-  /// Monotonic. Any thread.
+  /// The monotonic time. May be called from any thread.
   [[nodiscard]] virtual Time now() noexcept = 0;
   /// The USB thread rests here until its next exchange is due.
   virtual void rest_until(Time time) noexcept = 0;
-  /// Ends the rest for good: the device is being closed, or the USB thread has ended. Any thread.
+  /// Ends the rest for good: the device is being closed, or the USB thread has ended. May be called
+  /// from any thread.
   virtual void end() noexcept {}
 };
 
@@ -70,7 +71,7 @@ class FalconDevice final : public HapticDevice {
   [[nodiscard]] DeviceFault fault() const noexcept override { return link_.fault(); }
   [[nodiscard]] DeviceReadiness readiness() const noexcept override;
 
-  /// What the USB thread got.
+  /// The scheduling that the USB thread obtained.
   [[nodiscard]] const SchedulingObtained& scheduling() const noexcept { return scheduling_; }
 
  private:

@@ -42,9 +42,8 @@ class FalconExchange final : public FtdiStreamSink {
   /// Ends one exchange: publishes the newest reply, or counts a missing one. Too many missing ones
   /// fail the link: bad_data if bytes came that make no sense, else link_lost.
   void finish(Time now) noexcept;
-  /// \return the packet to send next, without force before all axes are homed and after replies
-  /// went
-  ///   missing
+  /// \return the packet to send next; it has no force before all axes are homed, and none after
+  ///   missing replies
   [[nodiscard]] Packet command(Time now) noexcept;
   /// \return whether all axes are homed, by the newest reply
   [[nodiscard]] bool homed() const noexcept { return homed_; }

@@ -40,8 +40,7 @@ struct Lights {
 };
 
 /// \param order  the bits of red, green and blue, each 0 to 2, on which sources differ; a bit out
-/// of
-///   range lights nothing
+///   of range lights nothing
 /// \return bits 0 to 2 of Command::leds
 [[nodiscard]] std::uint8_t led_bits(const Lights& lights, const std::array<int, 3>& order) noexcept;
 
@@ -81,14 +80,16 @@ struct Reply {
 inline constexpr std::size_t kUsbPacketSize = 64;
 inline constexpr std::size_t kFtdiStatusSize = 2;  ///< at the front of every USB packet from it
 
-/// Takes the status bytes out of one bulk transfer: USB packets of 64 bytes, of which the last may
-/// be shorter. \param payload  takes the other bytes, as many as fit \return how many bytes it took
+/// Removes the status bytes from one bulk transfer: USB packets of 64 bytes, of which the last may
+/// be shorter.
+/// \param payload  receives the other bytes, as many as fit
+/// \return the number of bytes that it received
 [[nodiscard]] std::size_t ftdi_payload(std::span<const std::uint8_t> transfer,
                                        std::span<std::uint8_t> payload) noexcept;
 ///@}
 
-/// Finds replies among the bytes from a Falcon, and finds them again after bytes were lost. Holds
-/// one unfinished packet and no more.
+/// Finds replies among the bytes from a Falcon, also after bytes were lost. Keeps at most one
+/// unfinished packet.
 class FalconStream {
  public:
   /// Reads one bulk transfer, with the FTDI's status bytes.

@@ -1,6 +1,7 @@
 #include "device/falcon/usb_falcon.hpp"
 
 #include "core/errors.hpp"
+#include "core/text.hpp"
 #include "device/falcon/usb_handles.hpp"
 
 #include <algorithm>
@@ -204,21 +205,12 @@ void fill_in(UsbFalcon& falcon, libusb_device* device) {
   }
 }
 
-std::string joined(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) {
-    text += (text.empty() ? "" : ", ") +
-            (word.empty() ? std::string("one without a serial number") : word);
-  }
-  return text;
-}
-
 /// \return the handle of the only Falcon
 UsbHandle open_only(const std::vector<UsbDevice>& falcons) {
   if (falcons.size() == 1) return open_usb_device(falcons.front().get());
   std::vector<std::string> places;
   for (const UsbDevice& device : falcons) places.push_back(place_of(device.get()));
-  throw DeviceError("falcon: there are several (" + joined(places) +
+  throw DeviceError("falcon: there are several (" + listed(places) +
                     "); name the serial number of one in the device settings, falcon.serial");
 }
 
@@ -231,15 +223,16 @@ UsbHandle open_by_serial(const std::vector<UsbDevice>& falcons, const std::strin
   for (const UsbDevice& device : falcons) {
     try {
       UsbHandle handle = open_usb_device(device.get());
-      seen.push_back(serial_of(handle.get()));
-      if (seen.back() == serial) return handle;
+      const std::string own = serial_of(handle.get());
+      if (own == serial) return handle;
+      seen.push_back(own.empty() ? "one without a serial number" : own);
     } catch (const DeviceError& error) {
       trouble = error.what();
     }
   }
   if (!trouble.empty()) throw DeviceError(trouble);
   throw DeviceError(one_line("falcon: none has the serial number " + serial + ", but there is " +
-                             joined(seen) + "; correct falcon.serial in the device settings"));
+                             listed(seen) + "; correct falcon.serial in the device settings"));
 }
 
 }  // namespace

@@ -11,12 +11,12 @@
 namespace touchtrial::device {
 namespace {
 
-/// Of hand and stylus across the plane: 0.1 kg in N s^2/mm, and near critical damping on the usual
-/// wall of 0.4 N/mm.
+/// Mass and damping of hand and stylus across the plane: 0.1 kg in N s^2/mm, and near critical
+/// damping on the usual wall of 0.4 N/mm.
 constexpr double kMass = 1e-4;
 constexpr double kDamping_n_s_per_mm = 0.012;
 constexpr double kHoverStiffness_n_per_mm = 0.4;
-/// Keeps a servo that stood still from throwing the hand when it goes on.
+/// Prevents a servo that stood still from throwing the hand when it continues.
 constexpr ServoClock::Time kLongestStep = std::chrono::milliseconds(20);
 constexpr double kFinestStepS = 0.001;
 

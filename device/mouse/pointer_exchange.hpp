@@ -1,5 +1,5 @@
-/// \file A pointer on the plane, from whatever owns a window to the mouse device, and the stylus
-/// back. Knows no window library.
+/// \file The exchange of the pointer's state, from the owner of a window to the mouse device, and
+///   of the stylus' state in the other direction. Independent of any window library.
 #pragma once
 
 #include "core/vec.hpp"

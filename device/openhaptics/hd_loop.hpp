@@ -42,7 +42,7 @@ class Loop {
 
   /// Makes all further callbacks return at once and end themselves.
   /// \return false if one is still inside the vendor's library after the patience: this object must
-  ///   then live for ever
+  ///   then never be destroyed
   [[nodiscard]] bool close(std::chrono::milliseconds patience) noexcept;
 
  private:

@@ -21,7 +21,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// For a library that cannot be used.
+/// The remedy for a library that cannot be used.
 constexpr const char* kRemedy =
     "install the vendor's OpenHaptics and its device driver, or name the library in the device "
     "settings at openhaptics.library";
@@ -29,10 +29,10 @@ constexpr const char* kRemedy =
 /// Frames of zero before the scheduler is stopped, and how long to wait for them.
 constexpr int kZerosAtTheEnd = 5;
 constexpr milliseconds kPatience{500};
-/// For a callback that is still inside the library after the scheduler was stopped.
+/// The time for a callback that is still inside the library after the scheduler was stopped.
 constexpr milliseconds kPatienceWithCallback{2000};
 
-/// The Touch's, for a library that does not tell.
+/// The values of the Touch, for a library that does not report them.
 constexpr double kTouchMaxForceN = 3.3;
 constexpr double kTouchContinuousForceN = 0.88;
 /// 160 x 120 x 70 mm, about the library's origin.
@@ -81,7 +81,7 @@ std::string text_of(const Api& api, Enum what) {
   return failed || text == nullptr ? std::string() : one_line(text);
 }
 
-/// \return nothing if the device does not tell
+/// \return nothing if the device does not report it
 template <std::size_t count>
 std::optional<std::array<double, count>> numbers_of(const Api& api, Enum what) {
   std::array<double, count> values{};

@@ -17,7 +17,7 @@ namespace touchtrial::device {
 /// the device anew.
 class OpenHapticsDevice final : public LinkedDevice {
  public:
-  /// Starts the scheduler, from which samples come. One at a time in a process.
+  /// Starts the scheduler, from which samples come. A process may have one device at a time.
   /// \throws DeviceError with the remedy if there is no library, a function of it is missing, there
   ///   is no device, one is open already, or the scheduler refuses the rate
   explicit OpenHapticsDevice(const OpenHapticsSettings& settings);

@@ -6,14 +6,14 @@
 
 namespace touchtrial::device {
 
-/// What happens to the library when its last owner lets go of it.
+/// What happens to the library when its last owner is destroyed.
 enum class Unload {
   when_closed,
   never,  ///< for libraries that break when they are loaded a second time
 };
 
 /// A vendor's library, found by the dynamic linker's rules (a bare name along its search path).
-/// Symbols stay in the library's own scope. Any thread.
+/// Symbols stay in the library's own scope. Any thread may use it.
 class DynamicLibrary {
  public:
   /// Runs the library's initialisers and resolves all its own references at once, so that none is
@@ -59,8 +59,8 @@ class DynamicLibrary {
 };
 
 /// Loads the library in a child process, which ends at once: a truncated or damaged library may
-/// kill the process that loads it. Costs a fork. \throws DeviceError naming library and remedy if
-/// the child crashes or hangs for ten seconds, but
+/// kill the process that loads it. Costs a fork.
+/// \throws DeviceError naming library and remedy if the child crashes or hangs for ten seconds, but
 ///   not for anything that DynamicLibrary itself throws
 void expect_loading_survived(const std::filesystem::path& library, const std::string& remedy);
 

@@ -18,19 +18,20 @@ enum class SchedulingPolicy {
   return policy == SchedulingPolicy::fifo ? "fifo" : "other";
 }
 
-/// What a servo thread would like to have.
+/// The scheduling that a servo thread requests.
 struct SchedulingRequest {
   SchedulingPolicy policy = SchedulingPolicy::fifo;
   int priority = 80;        ///< of fifo, 1 to 99; clamped to what the system knows
   bool lock_memory = true;  ///< the whole process stays in memory: no page is fetched in the loop
 };
 
-/// What it got.
+/// The scheduling that it obtained.
 struct SchedulingObtained {
   SchedulingPolicy policy = SchedulingPolicy::other;
   int priority = 0;  ///< 0 unless fifo
   bool memory_locked = false;
-  /// Why the thread got less than it asked for, and the remedy; empty if it got everything.
+  /// Why the thread obtained less than it requested, and the remedy; empty if it obtained
+  /// everything.
   std::string reason;
 };
 

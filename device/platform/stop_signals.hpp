@@ -8,12 +8,12 @@
 
 namespace touchtrial::device {
 
-/// While this lives, signals and crashes halt a device. One at a time in a program.
+/// While this object lives, signals and crashes halt a device. A program may have one at a time.
 ///
-/// A request to end (SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXCPU) or to sleep (SIGTSTP, which is
+/// A request to end (SIGINT, SIGTERM, SIGHUP, SIGPIPE, SIGXCPU) or to suspend (SIGTSTP, which is
 /// Ctrl-Z, SIGTTIN, SIGTTOU) halts the device, requests an emergency stop of the servo, and stores
-/// the signal, so that the command can put its things in order and leave with `exit_code`. After a
-/// second such signal, and 20 ms, the action happens that the signal has without this.
+/// the signal, so that the command can close everything and exit with `exit_code`. After a second
+/// such signal, and 20 ms, the signal has its usual effect.
 ///
 /// A crash (SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, or SIGQUIT, which is Ctrl-\) and
 /// std::terminate halt the device. After 20 ms, in which the driver's own thread sends zeros, the
@@ -29,12 +29,13 @@ class StopOnSignals {
   StopOnSignals(const StopOnSignals&) = delete;
   StopOnSignals& operator=(const StopOnSignals&) = delete;
 
-  /// Sets a function that puts something back, for instance the terminal, before the program dies
-  /// of a second signal or a crash. The handler calls it after the device is halted, so it may only
-  /// do what is safe there. Any thread. \param put_back  null: nothing
+  /// Sets a function that restores something, for instance the terminal, before a second signal or
+  /// a crash kills the program. The handler calls it after the device is halted, so it may only do
+  /// what is safe in a signal handler. This function may be called from any thread.
+  /// \param put_back  null: nothing
   static void before_dying(void (*put_back)() noexcept) noexcept;
 
-  /// Any thread.
+  /// May be called from any thread.
   /// \return whether the program was asked to end
   [[nodiscard]] static bool asked() noexcept;
   /// \return the exit code that a shell expects: 128 + the signal's number; 0 if not asked

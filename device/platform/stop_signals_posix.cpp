@@ -15,7 +15,7 @@ namespace {
 
 constexpr long kTimeToSendNs = 20'000'000;
 constexpr int kExitBySignal = 128;
-// Also those that would put the program to sleep: the motors would hold their last force.
+// Also those that would suspend the program: the motors would hold their last force.
 constexpr std::array kAskSignals = {SIGINT,  SIGTERM, SIGHUP,  SIGPIPE,
                                     SIGXCPU, SIGTSTP, SIGTTIN, SIGTTOU};
 constexpr std::array kCrashSignals = {SIGSEGV, SIGBUS, SIGILL, SIGFPE, SIGABRT, SIGQUIT};
@@ -150,7 +150,8 @@ std::string StopOnSignals::message() {
     case SIGXCPU:
       return "stopped by SIGXCPU (the limit of processor time); the force is zero";
     default:
-      return "stopped instead of suspended: a program that sleeps cannot let go; the force is zero";
+      return "stopped instead of suspended, because a suspended program cannot switch the force "
+             "off; the force is zero";
   }
 }
 

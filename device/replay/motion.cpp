@@ -2,10 +2,10 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/text.hpp"
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -133,13 +133,11 @@ std::array<std::size_t, 4> find_columns(const CsvRow& header, const std::string&
 }
 
 double number_from(const std::string& text, std::string_view column, const std::string& where) {
-  double value = 0.0;
-  const char* end = text.data() + text.size();
-  const auto [rest, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc() || rest != end || !std::isfinite(value)) {
+  const auto value = number_in<double>(text);
+  if (!value || !std::isfinite(*value)) {
     refuse(where, std::string(column) + " is not a number: '" + text.substr(0, 40) + "'");
   }
-  return value;
+  return *value;
 }
 
 TimedPosition position_from(const CsvRow& row, const std::array<std::size_t, 4>& columns,

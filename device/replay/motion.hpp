@@ -23,7 +23,8 @@ class RecordedMotion {
   [[nodiscard]] std::int64_t ticks() const noexcept {
     return static_cast<std::int64_t>(positions_mm_.size());
   }
-  /// Plane frame. \param tick  0 .. ticks() - 1
+  /// In the plane frame.
+  /// \param tick  0 .. ticks() - 1
   [[nodiscard]] Vec3 position_mm(std::int64_t tick) const noexcept {
     return positions_mm_[static_cast<std::size_t>(tick)];
   }
@@ -35,8 +36,8 @@ class RecordedMotion {
 
 /// Reads a CSV file (RFC 4180, lines end in LF or CRLF) whose header names time_s, x_mm, y_mm and
 /// z_mm in any order, and perhaps other columns. The usual step of time_s gives the rate; where
-/// rows are missing, the hand moves straight on to the next one. \throws FileError with the line if
-/// the file, a column or a number is missing, a time does not
+/// rows are missing, the hand moves straight on to the next one.
+/// \throws FileError with the line if the file, a column or a number is missing, a time does not
 ///   increase, a position is beyond 10 m, the rate is outside 10 to 20,000 Hz, or there are more
 ///   than kMostTicks
 [[nodiscard]] RecordedMotion read_motion_csv(const std::filesystem::path& file);

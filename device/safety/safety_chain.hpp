@@ -10,7 +10,7 @@
 
 namespace touchtrial::device {
 
-/// What the chain did to a force.
+/// What the chain did with a force.
 enum class SafetyVerdict {
   passed,   ///< sent as computed
   limited,  ///< shortened or held back by a link of the chain
@@ -55,7 +55,8 @@ class SafetyChain {
   void trip(SafetyFault fault) noexcept;
   [[nodiscard]] bool faulted() const noexcept { return fault_ != SafetyFault::none; }
   [[nodiscard]] SafetyFault fault() const noexcept { return fault_; }
-  /// Lets forces pass again after a fault, from the gate and the ramp on; a person decides it.
+  /// Lets forces pass again after a fault, beginning with the gate and the ramp. A person must have
+  /// decided to do so.
   void rearm() noexcept;
   /// \name Heat of the motors, which outlasts a run; see ThermalBudget
   ///@{

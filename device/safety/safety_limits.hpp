@@ -7,13 +7,13 @@
 
 namespace touchtrial::device {
 
-/// Every force can be let go within this time, whatever the slew limit: SafetyLimits whose slew
+/// Every force can fall to zero within this time, whatever the slew limit: SafetyLimits whose slew
 /// limit needs longer from max_force_n to zero are unsound.
 inline constexpr double kLongestLetGoS = 0.05;
 
 /// Limits that hold for every device. The defaults suit a hand that strokes a texture: in ordinary
-/// use it meets none of them but the norm limit. Infinity switches off a link whose limit may be
-/// infinite. Unsound limits let no force pass.
+/// use only the norm limit takes effect. Infinity switches off a link whose limit may be infinite.
+/// Unsound limits let no force pass.
 struct SafetyLimits {
   double max_force_n = 3.3;          ///< of the force's norm, > 0, finite
   double continuous_force_n = 0.0;   ///< the motors hold it for ever; 0: no thermal budget

@@ -16,7 +16,8 @@
 
 namespace touchtrial::device {
 
-/// Times are whole ticks to this part of one: 0.010 / 0.001 is 10 ticks and not 11.
+/// A time this close to a whole number of ticks counts as that number: 0.010 / 0.001 is 10 ticks
+/// and not 11.
 inline constexpr double kTickRounding = 1e-6;
 
 /// \return whether force, position and velocity are finite. The sum of their squares also overflows
@@ -28,8 +29,8 @@ inline constexpr double kTickRounding = 1e-6;
   return all <= std::numeric_limits<double>::max();
 }
 
-/// Keeps a force from starting with a blow. Opens once the computed force is small, which means
-/// that the hand is off the plane or only just on it; then stays open until it is closed.
+/// Prevents a force from starting with a blow. Opens once the computed force is small, which means
+/// that the hand is off the plane or only just touches it; then stays open until it is closed.
 class EngageGate {
  public:
   /// \param engage_force_n  >= 0; infinity: opens at once
@@ -94,7 +95,7 @@ class VelocityTrip {
   std::uint64_t sequence_ = 0;
 };
 
-/// Tells when a device gives no new readings. A device that is slower than the servo repeats its
+/// Detects that a device gives no new readings. A device that is slower than the servo repeats its
 /// number between its readings; that is a fault only after stale_s.
 class Freshness {
  public:
@@ -109,8 +110,9 @@ class Freshness {
     old_ticks_ = 0.0;
   }
 
-  /// \param ticks  since the last call, >= 1. A servo that slept sees an old reading first, as the
-  ///   device's thread may have slept with it: one look counts for half of stale_s at the most.
+  /// \param ticks  since the last call, >= 1. After a pause a servo sees an old reading first,
+  ///   because the device's thread may have paused as well: one look counts for half of stale_s at
+  ///   most.
   [[nodiscard]] bool is_stale(std::uint64_t sequence, double ticks) noexcept {
     if (sequence != sequence_) {
       start(sequence);
@@ -127,11 +129,11 @@ class Freshness {
   std::uint64_t sequence_ = 0;
 };
 
-/// What the motors can take for ever, and for a while. Motors warm with the square of the force.
-/// Their heat is modelled as its running mean, which fades exponentially; the force that they hold
-/// for ever gives the greatest heat allowed. Below the share kWarm of that heat the peak force is
-/// allowed; above it the limit falls in proportion, down to the continuous force, so that the
-/// greatest heat is never passed. The time constant follows from thermal_budget_s, the time in
+/// The force that the motors can hold without a time limit, and for a while. Motors warm with the
+/// square of the force. Their heat is modelled as its running mean, which fades exponentially; the
+/// continuous force gives the greatest heat allowed. Below the share kWarm of that heat the peak
+/// force is allowed; above it the limit falls in proportion, down to the continuous force, so that
+/// the greatest heat is never passed. The time constant follows from thermal_budget_s, the time in
 /// which peak force brings a cold motor to kWarm. Nobody has measured it on a device's motors.
 class ThermalBudget {
  public:
@@ -158,7 +160,7 @@ class ThermalBudget {
   }
 
   /// Warms the motors by a force.
-  /// \param ticks  for which it was sent, >= 0
+  /// \param ticks  how long the force was sent, >= 0
   void heat(double force_squared_n2, double ticks) noexcept {
     heat_ += std::min(1.0, share_per_tick_ * ticks) * (force_squared_n2 - heat_);
   }
@@ -166,8 +168,8 @@ class ThermalBudget {
   /// \return the running mean of the force's square, N^2, for `begin_warm` of a later run on the
   ///   same motors; 0 without a budget
   [[nodiscard]] double heat_n2() const noexcept { return heat_; }
-  /// Begins with motors that come from earlier work.
-  /// \param heat_n2  when that ended; what is negative or not finite is ignored
+  /// Begins with motors that are warm from earlier work.
+  /// \param heat_n2  when that work ended; a value that is negative or not finite is ignored
   /// \param rest_s  without force since then, >= 0
   void begin_warm(double heat_n2, double rest_s) noexcept {
     if (share_per_tick_ == 0.0 || !(heat_n2 >= 0.0) || !std::isfinite(heat_n2)) return;
@@ -184,7 +186,7 @@ class ThermalBudget {
 };
 
 /// Lets forces grow to their full size after engaging: a factor that rises evenly from 0 to 1. It
-/// counts calls and not time, as the hand has not felt the ticks that a servo slept through.
+/// counts calls and not time, because the hand has not felt the ticks that a servo missed.
 class RampUp {
  public:
   /// \param ramp_s  >= 0, finite; 0: none
@@ -209,7 +211,7 @@ class RampUp {
   double share_ = 1.0;
 };
 
-/// \param force_n  whose square is finite
+/// \param force_n  a force whose square is finite
 /// \param limit_n  > 0, finite
 /// \return the force, shortened to the limit with its direction kept (to rounding)
 [[nodiscard]] inline Vec3 within_norm(Vec3 force_n, double limit_n) noexcept {
@@ -218,8 +220,8 @@ class RampUp {
   return (limit_n / std::sqrt(squared_n2)) * force_n;
 }
 
-/// Follows the forces that it is given, by at most one step a call. The step of a late call is no
-/// longer: the hand feels the step, whatever time went before it.
+/// Follows the forces that it is given, by at most one step per call. The step after a pause is not
+/// larger: the hand feels the step, however long the pause was.
 class SlewLimit {
  public:
   /// \param max_slew_n_per_s  > 0; infinity: no limit

@@ -27,14 +27,14 @@ class WatchdogTime {
 /// The system's monotonic clock.
 [[nodiscard]] WatchdogTime& system_watchdog_time() noexcept;
 
-/// Looks at a servo's heartbeat five times in `silence`. A servo that has begun to beat and is then
-/// silent for so long, although its run has not ended, stands still: the watchdog halts the device,
-/// and the run ends as SafetyFault::stalled when it goes on. A time in which the watchdog itself
-/// did not run (a virtual machine that stalls as a whole) is no evidence: one look never counts for
-/// more than two of its pauses.
+/// Checks a servo's heartbeat five times in `silence`. A servo that has begun to beat and is then
+/// silent for so long, although its run has not ended, has stalled: the watchdog halts the device,
+/// and the run ends as SafetyFault::stalled when the servo continues. A time in which the watchdog
+/// itself did not run (a virtual machine that stalls as a whole) is no evidence: one check never
+/// counts for more than two of its pauses.
 ///
 /// The thread requests real-time scheduling above the servo's, so that a spinning servo cannot
-/// starve it, and works without if it gets none. Any thread may call all functions.
+/// starve it, and works without it if it is refused. Any thread may call all functions.
 class Watchdog {
  public:
   /// For a device whose force a hand feels.
@@ -43,7 +43,7 @@ class Watchdog {
   static constexpr std::chrono::milliseconds kForcelessSilence{1000};
 
   /// A force that stays on pushes a hand. Nothing pushes a simulated hand, or a hand at a mouse, so
-  /// there a busy machine is no fault, but only a servo that does not come back.
+  /// for those a busy machine is no fault; only a servo that does not continue is one.
   /// \return how long the servo of a device may be silent
   [[nodiscard]] static std::chrono::milliseconds silence_for(const DeviceInfo& device) noexcept {
     return device.simulated || device.visual ? kForcelessSilence : kSilence;
@@ -62,10 +62,9 @@ class Watchdog {
 
   /// Before a run. Silence counts from the first beat.
   void arm();
-  /// After a run: nothing trips it any more.
+  /// After a run: nothing trips the watchdog any more.
   /// \return whether it tripped since `arm`; then the device stays halted until a person re-arms
-  /// it,
-  ///   even if the run had just ended by itself
+  ///   it, even if the run had just ended by itself
   bool disarm();
 
  private:

@@ -48,7 +48,8 @@ class FlightRecorder {
   std::size_t recorded_ = 0;
 };
 
-/// \return a header and one row a tick, by RFC 4180, with a decimal point whatever the locale; each
+/// \return a header and one row per tick, by RFC 4180, with a decimal point whatever the locale;
+/// each
 ///   number has the fewest digits that give it back exactly
 [[nodiscard]] std::string flight_csv(std::span<const FlightTick> ticks);
 

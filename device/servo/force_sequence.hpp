@@ -1,4 +1,5 @@
-/// \file Two forces, one after the other in one run of the servo, and what the hand met of each.
+/// \file Two forces, one after the other in one run of the servo, and how the hand met each of
+///   them.
 #pragma once
 
 #include "device/servo/servo.hpp"
@@ -23,8 +24,8 @@ class ForceSequence final : public ForceSource, public SampleSink {
 
   /// \param first,second  must outlive this; the servo asks the first until the change ends, the
   ///   second from where it begins
-  /// \param change_tick  at which the change to the second begins, >= 0
-  /// \param blend_ticks  that it takes, >= 1: the second's share rises by 3 u^2 - 2 u^3
+  /// \param change_tick  the tick at which the change to the second begins, >= 0
+  /// \param blend_ticks  duration of the change, >= 1: the second's share rises by 3 u^2 - 2 u^3
   ForceSequence(ForceSource& first, ForceSource& second, std::int64_t change_tick,
                 std::int64_t blend_ticks) noexcept
       : first_(first), second_(second), change_tick_(change_tick), blend_ticks_(blend_ticks) {}
@@ -47,7 +48,7 @@ class ForceSequence final : public ForceSource, public SampleSink {
     part.greatest_force_n = std::max(part.greatest_force_n, norm(sample.force_n));
   }
 
-  /// Any thread.
+  /// May be called from any thread.
   /// \return whether a tick counts as the second's, which it does from the change's beginning on
   [[nodiscard]] bool is_second(std::int64_t tick) const noexcept { return tick >= change_tick_; }
 

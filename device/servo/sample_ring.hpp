@@ -51,7 +51,7 @@ class RingSink final : public SampleSink {
   void record(const ServoSample& sample) noexcept override {
     if (!ring_.push(sample)) dropped_.fetch_add(1, std::memory_order_relaxed);
   }
-  /// Any thread.
+  /// May be called from any thread.
   [[nodiscard]] std::int64_t dropped() const noexcept {
     return dropped_.load(std::memory_order_relaxed);
   }

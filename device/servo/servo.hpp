@@ -34,7 +34,8 @@ struct ServoSample {
   std::int64_t tick = 0;  ///< place in time since plane-on; an overrun leaves out numbers
 };
 
-/// Keeps the samples. Called on the servo thread, so it reserves room for all of them before.
+/// Receives the samples. Called on the servo thread, so it reserves room for all of them in
+/// advance.
 class SampleSink {
  public:
   virtual ~SampleSink() = default;
@@ -51,7 +52,7 @@ struct ServoOptions {
   double rate_hz = kServoRateHz;  ///< 1,000 to 10,000
 };
 
-/// Why the loop ended.
+/// The reason why the loop ended.
 enum class ServoEnd {
   hand_stopped,  ///< the hand is done, by the device or by ServoControl::finish
   time_limit,    ///< time was up, and the force has faded
@@ -111,7 +112,7 @@ struct ServoParameters {
 /// The heartbeat outside of a run.
 inline constexpr std::int64_t kServoAtRest = -1;
 
-/// Whoever else watches the loop or controls it; null: nobody.
+/// Objects of other threads that watch or control the loop; null: none.
 struct ServoHooks {
   ServoControl* control = nullptr;
   LatestValue<ServoState>* state = nullptr;  ///< set every tick, for one reader

@@ -16,12 +16,13 @@ class ServoControl {
   void comfort_stop() noexcept { ask(kComfortStop); }
   /// Zero from the next tick on; the run ends as a fault.
   void emergency_stop() noexcept { ask(kEmergencyStop); }
-  /// The servo stood still (Watchdog): like an emergency stop, but the run ends as stalled.
+  /// The servo stopped ticking (Watchdog): like an emergency stop, but the run ends as stalled.
   void stall() noexcept { ask(kStall); }
-  /// Before a new run: forgets every request. Nothing else takes back an emergency stop or a stall.
+  /// To be called before a new run: forgets every request. Nothing else cancels an emergency stop
+  /// or a stall.
   void reset() noexcept { requests_.store(0, std::memory_order_release); }
-  /// Before a new run: forgets the other requests. An emergency stop or a stall that arrives at
-  /// this very moment is not lost.
+  /// To be called before a new run: forgets all requests except an emergency stop and a stall, so
+  /// that one of these is not lost if it arrives at this very moment.
   void forget_wishes() noexcept {
     requests_.fetch_and(kEmergencyStop | kStall, std::memory_order_acq_rel);
   }

@@ -23,7 +23,7 @@ class ServoThread {
   ServoThread(const ServoThread&) = delete;
   ServoThread& operator=(const ServoThread&) = delete;
 
-  /// What the thread got, for the record and for PacedClock::usual_spin.
+  /// The scheduling that the thread obtained, for the record and for PacedClock::usual_spin.
   [[nodiscard]] const SchedulingObtained& scheduling() const noexcept;
 
   /// Runs this on the thread and returns at once.

@@ -37,8 +37,7 @@ class ExplorationPath {
                   RandomStream& random);
 
   /// \param time_s  >= 0, never earlier than in the last call; after the last stroke the path rests
-  /// at
-  ///   its end
+  ///   at its end
   /// \param stroke  the place of the search, which the caller keeps from call to call; 0 at first
   [[nodiscard]] PathPoint at(double time_s, std::size_t& stroke) const noexcept;
 

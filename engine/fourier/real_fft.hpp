@@ -10,7 +10,7 @@ namespace touchtrial::engine {
 /// How a transform is planned.
 enum class FftPlan {
   estimated,  ///< for few transforms
-  measured,   ///< for many transforms, of a size worth measuring; see planning.hpp
+  measured,   ///< for many transforms of one size, which repay the measurement; see planning.hpp
 };
 
 /// A transform of one size with its buffers. Real is float or double. The results are the same in

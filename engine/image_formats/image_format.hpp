@@ -18,9 +18,9 @@ enum class ImageKind { png, jpeg, tiff, bmp, pnm };
 /// \throws ImageFault if it is a picture of an unsupported kind, or no picture
 [[nodiscard]] ImageKind kind_of_image(ByteView file);
 
-/// Each reads a file of its kind. They ignore metadata, including orientation and colour profiles.
-/// They allocate memory only if the structure of the file shows that the samples exist. They print
-/// nothing, and are thread-safe.
+/// Each function reads a file of its kind. They ignore metadata, including orientation and colour
+/// profiles. They allocate memory only if the structure of the file shows that the samples exist.
+/// They print nothing, and are thread-safe.
 /// \throws ImageFault if the file is truncated, damaged, too large or of an unsupported type
 [[nodiscard]] GreyImage read_png(ByteView file);
 [[nodiscard]] GreyImage read_jpeg(ByteView file);

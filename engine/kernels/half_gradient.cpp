@@ -36,8 +36,9 @@ HWY_INLINE Real squared_gradient(const SobelRows& rows, std::size_t band, int i)
   return hn::MulAdd(x, x, hn::Mul(y, y));
 }
 
-/// Adds the square root of v. With long vectors it is the processor's estimate to 14 bits and one
-/// step with the exact remainder: the same to the last bit or nearly, and exact for a square.
+/// Adds the square root of v. With long vectors the root is the processor's estimate to 14 bits,
+/// corrected by one step with the exact remainder: the same to the last bit or nearly,
+/// and exact for a square.
 HWY_INLINE Real add_estimated_root(Real v, Real sum) {
 #if HWY_TARGET <= HWY_AVX3
   const Reals d;

@@ -14,7 +14,7 @@
 
 namespace touchtrial::engine {
 
-/// One field of a pack. Nothing in it tells what the field shows.
+/// One field of a pack. Nothing in it reveals what the field shows.
 struct PackEntry {
   std::string code;    ///< opaque name, see is_pack_code; the file is <code>.field
   Digest checksum{};   ///< SHA-256 of the file
@@ -37,7 +37,7 @@ struct PackManifest {
 [[nodiscard]] bool is_pack_code(std::string_view code) noexcept;
 
 /// Writes one field file durably; its size depends only on height, width and model. Write the
-/// fields of a pack in the order of their codes, so that the files' times tell nothing either.
+/// fields of a pack in the order of their codes, so that the files' times reveal nothing either.
 /// \return its SHA-256
 /// \throws FileError if it cannot be written
 /// \throws std::invalid_argument if the code is not one (is_pack_code), or the view is empty, has
@@ -81,7 +81,7 @@ class Pack {
   [[nodiscard]] const PackEntry& entry(const std::string& code) const;
 
   /// Maps a field. Header and size are checked; pages of samples are read when they are touched.
-  /// Only is_intact tells whether the samples are those that were written.
+  /// Only is_intact checks whether the samples are those that were written.
   /// \throws FileError if the file is missing, truncated or not a field
   [[nodiscard]] MappedField map(const std::string& code) const;
 

@@ -12,7 +12,7 @@
 ///       32  f64        the highest surface or coefficient
 ///       40  24 bytes   zero
 /// The header holds all that a model needs before the stylus comes down, so that making a model
-/// reads no sample. The file's checksum vouches that header and samples agree.
+/// reads no sample. The file's checksum ensures that header and samples agree.
 #pragma once
 
 #include "core/bytes.hpp"

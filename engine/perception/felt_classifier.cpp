@@ -1,5 +1,7 @@
 #include "engine/perception/felt_classifier.hpp"
 
+#include "core/cholesky.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -103,19 +105,6 @@ std::vector<std::vector<double>> means_of(const FeltStatistics& statistics) {
   return means;
 }
 
-/// The lower triangle L with L L^T = matrix.
-/// \param matrix  positive definite
-Matrix cholesky(Matrix matrix) {
-  for (std::size_t j = 0; j < matrix.size; ++j) {
-    for (std::size_t i = j; i < matrix.size; ++i) {
-      double rest = matrix.at(i, j);
-      for (std::size_t k = 0; k < j; ++k) rest -= matrix.at(i, k) * matrix.at(j, k);
-      matrix.at(i, j) = i == j ? std::sqrt(rest) : rest / matrix.at(j, j);
-    }
-  }
-  return matrix;
-}
-
 }  // namespace
 
 FeltStatistics::FeltStatistics(int labels, std::size_t features) : features_(features) {
@@ -204,10 +193,10 @@ void FeltClassifier::settle(std::vector<double> covariance,
                             std::vector<std::vector<double>> means) {
   Matrix within(dimensions_);
   within.values = std::move(covariance);
-  Matrix factor = cholesky(std::move(within));
+  static_cast<void>(factorise(within.values, dimensions_));
   log_peak_ = -0.5 * static_cast<double>(dimensions_) * std::log(2.0 * std::numbers::pi);
-  for (std::size_t i = 0; i < dimensions_; ++i) log_peak_ -= std::log(factor.at(i, i));
-  factor_ = std::move(factor.values);
+  for (std::size_t i = 0; i < dimensions_; ++i) log_peak_ -= std::log(within.at(i, i));
+  factor_ = std::move(within.values);
   means_ = std::move(means);
   for (std::vector<double>& mean : means_) {
     if (!mean.empty()) mean = whitened(mean);
@@ -216,11 +205,7 @@ void FeltClassifier::settle(std::vector<double> covariance,
 
 std::vector<double> FeltClassifier::whitened(std::span<const double> features) const {
   std::vector<double> white(features.begin(), features.end());
-  for (std::size_t i = 0; i < dimensions_; ++i) {
-    const double* row = factor_.data() + i * dimensions_;
-    for (std::size_t k = 0; k < i; ++k) white[i] -= row[k] * white[k];
-    white[i] /= row[i];
-  }
+  solve_lower(factor_, white);
   return white;
 }
 

@@ -16,7 +16,7 @@ namespace touchtrial::engine {
 /// Root mean square of G - 128 over all pixels, grey levels.
 [[nodiscard]] double normal_rms(FieldView field) noexcept;
 
-/// Root mean square of the surface itself, without taking off 128, over all pixels, grey levels.
+/// Root mean square of the surface itself, without subtracting 128, over all pixels, grey levels.
 [[nodiscard]] double height_rms(FieldView relief) noexcept;
 
 /// Appends, for every interior pixel, scale * Frobenius norm of the in-plane Jacobian of F_T, by
@@ -28,7 +28,7 @@ void append_tangential_stiffness(FieldView field, double scale, std::vector<floa
 void append_normal_stiffness(FieldView field, double scale, std::vector<float>& pool);
 
 /// Factors that equalise fields: with Equalise::rms, 1 / rms, and 0 for a flat field; else 1 each.
-/// \param rms  of each field, by which it is flat if 0
+/// \param rms  the rms of each field; 0 means that the field is flat
 /// \throws std::invalid_argument if an rms is not finite
 [[nodiscard]] std::vector<double> equalising_factors(std::span<const double> rms,
                                                      Equalise equalise);
@@ -38,8 +38,8 @@ void append_normal_stiffness(FieldView field, double scale, std::vector<float>& 
 [[nodiscard]] double explicit_factor(double gain, std::span<const double> rms, Equalise equalise);
 
 /// The 99th percentile of a pool of stiffnesses, or its maximum where the percentile is below a
-/// thousandth of that: then most of the pool is flat, or holds what a filter or a spline leaves far
-/// from any texture, and the percentile would bound nothing. Reorders the pool.
+/// thousandth of that: then most of the pool is flat, or contains the traces that a filter or a
+/// spline leaves far from any texture, and the percentile would limit nothing. Reorders the pool.
 [[nodiscard]] double typical_stiffness(std::vector<float>& pool);
 
 /// Percentile by linear interpolation between order statistics (NumPy's default); 0 if the pool is

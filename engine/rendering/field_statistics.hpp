@@ -1,5 +1,5 @@
-/// \file The lateral force of a field, and numbers that foretell how a stimulus will feel.
-/// Source: docs/method.md, "Rendering".
+/// \file The lateral force of a field, and numbers that predict how a stimulus will feel. Source:
+/// docs/method.md, "Rendering".
 #pragma once
 
 #include "engine/force_field.hpp"
@@ -20,7 +20,7 @@ struct LateralField {
 /// \throws std::invalid_argument if the field is empty
 [[nodiscard]] LateralField lateral_field(FieldView field, Gains gains);
 
-/// Stroke speeds for which FieldStatistics foretells vibration.
+/// Stroke speeds for which FieldStatistics predicts vibration.
 inline constexpr std::array<double, 3> kStrokeSpeedsMmPerS = {50.0, 100.0, 200.0};
 
 /// Statistics of one field with its gains, before the norm limit. For `surface` they hold at a load

@@ -3,7 +3,6 @@
 #include "engine/fourier/real_fft.hpp"
 #include "engine/tv_gabor/solver.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <complex>
 #include <cstddef>
@@ -57,11 +56,6 @@ GaborComponent component_at(double frequency_x, double frequency_y) {
 bool in_range(const GaborComponent& component) {
   return component.frequency_cycles_per_px >= kLowestPeakFrequency &&
          component.frequency_cycles_per_px <= kHighestPeakFrequency;
-}
-
-bool is_flat(const GreyImage& image) {
-  return std::all_of(image.samples().begin(), image.samples().end(),
-                     [&](auto sample) { return sample == image.samples().front(); });
 }
 
 /// The result without the cartoon and the components.

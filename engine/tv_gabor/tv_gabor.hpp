@@ -21,8 +21,8 @@ struct TvGaborResult {
 
 /// The oscillation that makes up most of an image: the component "auto". It is the largest sample,
 /// between 0.04 and 0.45 cycles per pixel, of the power spectrum of the image minus its mean under
-/// a Hann window, on the image's own frequency grid; of equals, the first by rows. Thread-safe.
-/// Costs one Fourier transform in double.
+/// a Hann window, on the image's own frequency grid; of equal samples, the first in row order.
+/// Thread-safe. Costs one Fourier transform in double.
 /// \return direction in [0, 180) degrees
 /// \throws std::invalid_argument if the image is empty, or has both sides below 3 pixels: then its
 ///   grid has no frequency in that range

@@ -1,6 +1,7 @@
 #include "protocols/collect/enrolment_balance.hpp"
 
 #include "core/errors.hpp"
+#include "core/text.hpp"
 
 #include <algorithm>
 #include <iterator>
@@ -10,11 +11,10 @@
 namespace touchtrial::collect {
 namespace {
 
-template <typename Counts, typename CountOf>
-bool uneven(const Counts& counts, CountOf count_of) {
-  const auto less = [&](const auto& a, const auto& b) { return count_of(a) < count_of(b); };
+bool is_uneven(const std::map<int, int>& counts) {
+  const auto less = [](const auto& a, const auto& b) { return a.second < b.second; };
   const auto [least, most] = std::minmax_element(counts.begin(), counts.end(), less);
-  return least != counts.end() && count_of(*most) - count_of(*least) > 1;
+  return least != counts.end() && most->second - least->second > 1;
 }
 
 void add_gaps(EnrolmentBalance& balance, const std::set<int>& taken) {
@@ -37,25 +37,21 @@ std::string listed_stations(const EnrolmentBalance& balance) {
   return text;
 }
 
-std::string listed(const std::vector<int>& numbers) {
-  std::string text;
-  for (const int number : numbers) text += (text.empty() ? "" : ", ") + std::to_string(number);
-  return text;
+std::string numbers_text(const std::vector<int>& numbers) {
+  return listed(numbers, ", ", [](int number) { return std::to_string(number); });
 }
 
 std::string gaps_line(const EnrolmentBalance& balance) {
   std::string line =
-      "enrolment numbers without a complete session that counts: " + listed(balance.gaps);
+      "enrolment numbers without a complete session that counts: " + numbers_text(balance.gaps);
   const std::size_t more = static_cast<std::size_t>(balance.gap_count) - balance.gaps.size();
   return more == 0 ? line : line + " and " + std::to_string(more) + " more";
 }
 
 }  // namespace
 
-EnrolmentBalance enrolment_balance(std::span<const EnrolledSession> sessions, int method_rows) {
-  if (method_rows < 1) throw std::invalid_argument("enrolment_balance: no rows");
+EnrolmentBalance enrolment_balance(std::span<const EnrolledSession> sessions) {
   EnrolmentBalance balance;
-  balance.rows.resize(static_cast<std::size_t>(method_rows));
   std::set<int> taken;
   for (const EnrolledSession& session : sessions) {
     if (session.enrolment < 1) throw std::invalid_argument("enrolment_balance: numbers start at 1");
@@ -64,7 +60,6 @@ EnrolmentBalance enrolment_balance(std::span<const EnrolledSession> sessions, in
     int& at_station = balance.stations[session.station];
     if (!session.counts || session.state != store::SessionState::completed) continue;
     ++at_station;
-    ++balance.rows[static_cast<std::size_t>(session.enrolment % method_rows)];
     taken.insert(session.enrolment);
   }
   add_gaps(balance, taken);
@@ -73,11 +68,8 @@ EnrolmentBalance enrolment_balance(std::span<const EnrolledSession> sessions, in
 
 std::vector<std::string> imbalances(const EnrolmentBalance& balance) {
   std::vector<std::string> lines;
-  if (uneven(balance.stations, [](const auto& entry) { return entry.second; })) {
+  if (is_uneven(balance.stations)) {
     lines.push_back("complete sessions differ over the stations: " + listed_stations(balance));
-  }
-  if (uneven(balance.rows, [](int count) { return count; })) {
-    lines.push_back("orders of methods were not used equally often: " + listed(balance.rows));
   }
   if (balance.gap_count > 0) lines.push_back(gaps_line(balance));
   return lines;

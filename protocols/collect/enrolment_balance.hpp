@@ -1,4 +1,5 @@
-/// \file Whether a study fills evenly: over its stations, enrolment numbers, and orders of methods.
+/// \file Whether a study fills evenly over its stations and enrolment numbers. Orders of methods
+/// are drawn from secrets that a server does not have.
 #pragma once
 
 #include "protocols/store/study_store.hpp"
@@ -23,8 +24,6 @@ struct EnrolmentBalance {
   /// Number of sessions that are complete and count, by station; a station may have 0.
   std::map<int, int> stations;
   std::map<int, std::string> names;  ///< of stations' files, where they are known
-  /// The same by row of the methods' orders (enrolment mod rows), for every row.
-  std::vector<int> rows;
   /// Enrolment numbers below the highest without a complete session that counts, ascending; at most
   /// kMostGaps.
   std::vector<int> gaps;
@@ -34,13 +33,11 @@ struct EnrolmentBalance {
 
 inline constexpr std::size_t kMostGaps = 20;
 
-/// \param method_rows  of the Williams design, at least 1
-/// \throws std::invalid_argument if method_rows < 1 or an enrolment number < 1
-[[nodiscard]] EnrolmentBalance enrolment_balance(std::span<const EnrolledSession> sessions,
-                                                 int method_rows);
+/// \throws std::invalid_argument if an enrolment number < 1
+[[nodiscard]] EnrolmentBalance enrolment_balance(std::span<const EnrolledSession> sessions);
 
-/// One line for each imbalance: rows or stations that differ by more than one session, and gaps in
-/// the enrolment numbers.
+/// One line for each imbalance: stations that differ by more than one session, and gaps in the
+/// enrolment numbers.
 [[nodiscard]] std::vector<std::string> imbalances(const EnrolmentBalance& balance);
 
 }  // namespace touchtrial::collect

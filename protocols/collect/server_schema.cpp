@@ -42,8 +42,9 @@ std::string table_sql(const store::TableDefinition& table) {
 
 void make_tables(pqxx::work& work) {
   work.exec(kServerAlone);
-  for (const store::TableDefinition& table : store::table_definitions())
-    work.exec(table_sql(table));
+  for (const store::TableDefinition& table : store::table_definitions()) {
+    if (!table.at_stations_alone) work.exec(table_sql(table));
+  }
   work.exec("CREATE UNIQUE INDEX sessions_of_station ON sessions(station, own_session)");
   work.exec_params0("INSERT INTO touchtrial_schema(version) VALUES($1)", store::kSchemaVersion);
 }

@@ -143,9 +143,9 @@ class ArrivedSession {
     require(!wrapped || sha256(*wrapped) == course.opened.key, "the participant's key is another");
   }
 
-  void check_sealed_end(const Bytes& wrapped, const SecretKey& master,
+  void check_sealed_end(const Bytes& wrapped, const BoxKeys& investigator,
                         std::span<const store::Event> events) const {
-    const auto key = store::unwrap_participant_key(master, own_session_, wrapped);
+    const auto key = store::unwrap_participant_key(investigator, own_session_, wrapped);
     require(key.has_value(), "its key does not open with the study's key");
     const auto secret = store::unsealed(events.back(), *key);
     require(secret.has_value(), "its sealed end does not open");
@@ -299,7 +299,7 @@ std::vector<KeyThere> keys_of_station(pqxx::work& work, int station) {
 void check_session_arrival(pqxx::work& work, const ServerConnection& server, int session,
                            int own_session, const store::SessionOnFile& course,
                            const store::StudyCommitment& commitment,
-                           const std::optional<SecretKey>& master, bool has_key) {
+                           const std::optional<BoxKeys>& investigator, bool has_key) {
   const ArrivedSession arrived(server, own_session);
   const std::vector<store::Event> events = read_events(work, session);
   arrived.check_chain(events, course);
@@ -307,7 +307,7 @@ void check_session_arrival(pqxx::work& work, const ServerConnection& server, int
   arrived.check_traces(events, trace_digests(work, session));
   const std::optional<Bytes> wrapped = read_key(work, session);
   arrived.check_key(wrapped, course, has_key);
-  if (master && wrapped) arrived.check_sealed_end(*wrapped, *master, events);
+  if (investigator && wrapped) arrived.check_sealed_end(*wrapped, *investigator, events);
 }
 
 void check_chain_arrival(pqxx::work& work, const ServerConnection& server, int station,

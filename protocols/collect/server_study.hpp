@@ -61,13 +61,13 @@ struct KeyThere {
 /// Reads an arrived session back, in the transaction that brought it, and checks: every hash,
 /// length and head as the file chain says, study and seal those of the commitment, traces those
 /// that the events name, and the key the one that the session was opened with.
-/// \param master  the study's key, if known: the session's sealed end is then opened as well
-/// \param has_key  whether the session's key must be there
-/// \throws StoreError naming what does not hold
+/// \param investigator  the investigator's keys, if known: the session's sealed end is then opened
+/// as well \param has_key  whether the session's key must be there \throws StoreError naming what
+/// does not hold
 void check_session_arrival(pqxx::work& work, const ServerConnection& server, int session,
                            int own_session, const store::SessionOnFile& course,
                            const store::StudyCommitment& commitment,
-                           const std::optional<SecretKey>& master, bool has_key);
+                           const std::optional<BoxKeys>& investigator, bool has_key);
 
 /// Reads an arrived part of a file chain back, in the transaction that brought it, and checks every
 /// hash, and that it ends as the station's chain does.

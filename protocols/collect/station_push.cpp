@@ -250,7 +250,7 @@ class StationPush {
     insert_trials(work, row.session, rows);
     insert_traces(work, row.session, station_, session);
     check_session_arrival(work, *server_, row.session, session, courses_.at(session), commitment_,
-                          options_.master, !row.withdrawn);
+                          options_.investigator, !row.withdrawn);
   }
 
   /// The session's row as the chain up to `end` has it.

@@ -41,8 +41,8 @@ struct PushReport {
 struct PushOptions {
   /// Finds out what would be pushed and whether anything prevents it, and changes nothing.
   bool dry_run = false;
-  /// The study's master key. If given, the sealed ends of sessions are held against their chains.
-  std::optional<SecretKey> master{};
+  /// The investigator's keys. If given, the sealed ends of sessions are held against their chains.
+  std::optional<BoxKeys> investigator{};
   /// Called with the number of sessions pushed so far and the number of sessions to push.
   std::function<void(int, int)> progress{};
   /// Waits before another attempt; empty: this thread sleeps.

@@ -31,7 +31,7 @@ class Course {
   using DrawBlock =
       std::function<std::vector<Presentation>(int block, int restarts_before, int first_trial)>;
 
-  /// \param policy  what follows a presentation that was spoilt
+  /// \param policy  what follows an interrupted presentation
   /// \param draw  needed only if the policy restarts blocks
   /// \throws std::invalid_argument if `draw` is needed and missing
   Course(Schedule schedule, OnInterruption policy, DrawBlock draw = {});
@@ -47,8 +47,8 @@ class Course {
   /// Marks the current presentation as done.
   /// \pre there is a current presentation
   void finish();
-  /// Marks the current presentation as spoilt. Depending on the policy, it is repeated at the end,
-  /// is left out, or waits for its block's restart.
+  /// Marks the current presentation as interrupted. Depending on the policy, it is repeated at the
+  /// end, is left out, or waits for its block's restart.
   /// \pre there is a current presentation
   void spoil();
 

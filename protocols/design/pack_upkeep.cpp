@@ -86,8 +86,9 @@ const engine::PackEntry* EarlierPack::reusable(const std::string& code, const Di
 }
 
 std::string_view EarlierPack::why_not_reusable(const std::string& code, const Digest& tag) const {
-  return recorded(code, tag) != nullptr ? "the pack's own was damaged or missing"
-                                        : "the pack had none of this picture and these options";
+  return recorded(code, tag) != nullptr ? "the pack's field was damaged or missing"
+                                        : "the pack had no field of this picture with these "
+                                          "options";
 }
 
 EarlierPack earlier_pack(const std::filesystem::path& folder, const StudyKey& key) {

@@ -95,9 +95,8 @@ std::vector<engine::RenderingModel> practice_models(const std::vector<engine::Te
   return models;
 }
 
-RandomStream stream_of(const Study& study, const std::string& what, int enrolment, int round) {
-  return {study.seed, "practice: " + what + ", round " + std::to_string(round),
-          static_cast<std::uint64_t>(enrolment)};
+RandomStream stream_of(const ScheduleDraw& draw, const std::string& what, int round) {
+  return {draw.secret, "practice: " + what, static_cast<std::uint64_t>(round)};
 }
 
 std::vector<int> shuffled_classes(const Study& study, RandomStream& random) {
@@ -126,9 +125,9 @@ engine::Gains weakest_gains(const engine::PackManifest& manifest) {
   return weakest;
 }
 
-std::vector<int> practice_round(const Study& study, int enrolment, int round) {
+std::vector<int> practice_round(const Study& study, const ScheduleDraw& draw, int round) {
   if (study.practice.classes.empty()) return {};
-  RandomStream random = stream_of(study, "order", enrolment, round);
+  RandomStream random = stream_of(draw, "order", round);
   const std::vector<int> classes = shuffled_classes(study, random);
   std::vector<int> order;
   for (std::size_t i = 0; i < static_cast<std::size_t>(study.trials.practice); ++i) {
@@ -138,8 +137,8 @@ std::vector<int> practice_round(const Study& study, int enrolment, int round) {
   return order;
 }
 
-std::vector<int> practice_layout(const Study& study, int enrolment, int round) {
-  RandomStream random = stream_of(study, "layout", enrolment, round);
+std::vector<int> practice_layout(const Study& study, const ScheduleDraw& draw, int round) {
+  RandomStream random = stream_of(draw, "layout", round);
   return shuffled_classes(study, random);
 }
 

@@ -5,6 +5,7 @@
 #include "engine/pack/pack.hpp"
 #include "engine/rendering/rendering_model.hpp"
 #include "engine/rendering/texture_field.hpp"
+#include "protocols/design/schedule.hpp"
 #include "protocols/design/study.hpp"
 
 #include <vector>
@@ -51,13 +52,15 @@ class PracticeSet {
 
 /// The textures of a practice round, one for each of its `trials.practice` presentations, as
 /// indices into the practice classes in random order. The numbers of presentations of any two
-/// classes differ by at most one. The result depends only on the study's seed, practice and trials
-/// and on the other arguments.
+/// classes differ by at most one. The result depends only on the study's practice and trials and on
+/// the other arguments.
 /// \param round  from 1
-[[nodiscard]] std::vector<int> practice_round(const Study& study, int enrolment, int round);
+[[nodiscard]] std::vector<int> practice_round(const Study& study, const ScheduleDraw& draw,
+                                              int round);
 
 /// The practice class shown at each position of the answer screen, random for each participant and
 /// round.
-[[nodiscard]] std::vector<int> practice_layout(const Study& study, int enrolment, int round);
+[[nodiscard]] std::vector<int> practice_layout(const Study& study, const ScheduleDraw& draw,
+                                               int round);
 
 }  // namespace touchtrial::design

@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "core/parallel.hpp"
 #include "engine/image_file.hpp"
 #include "engine/rendering/gains.hpp"
 #include "protocols/design/pack_upkeep.hpp"
@@ -16,8 +17,6 @@
 #include <optional>
 #include <string_view>
 #include <system_error>
-
-#include <tbb/parallel_for.h>
 
 namespace touchtrial::design {
 namespace {
@@ -104,8 +103,7 @@ class Preparation {
         image.failure = std::current_exception();
       }
     };
-    tbb::parallel_for(std::size_t{0}, order.size(),
-                      [&](std::size_t i) { provide(*order[i], false); });
+    in_parallel(0, order.size(), [&](std::size_t i) { provide(*order[i], false); });
     for (ImageOfStudy* image : order) {
       if (image->size_px > options_.large_image_px) provide(*image, true);
     }
@@ -241,12 +239,12 @@ class Preparation {
     engine::StageTimer timer(study_log());
     engine::StudyGains gains = engine::choose_gains(views, key_.study.rendering);
     timer.done("gains",
-               key_.study.rendering.gains ? "explicit, held against the stiffness budget"
+               key_.study.rendering.gains ? "explicit, and compared with the stiffness budget"
                                           : "from the stiffness of all stimuli together",
                views.size() * sizeof(engine::Gains));
     flat_.resize(views.size());
     const auto measure_one = [&](std::size_t i) { describe(i, views[i], gains.of_field[i]); };
-    tbb::parallel_for(std::size_t{0}, views.size(), [&](std::size_t i) {
+    in_parallel(0, views.size(), [&](std::size_t i) {
       if (!is_large(views[i])) measure_one(i);
     });
     for (std::size_t i = 0; i < views.size(); ++i) {
@@ -303,7 +301,7 @@ class Preparation {
       engine::write_manifest(folder_, manifest);
       timer.done("pack.json", "fields or gains have changed", size_of(folder_ / "pack.json"));
     } else if (options_.explain) {
-      study_log_.reuse("pack.json", "fields and gains are as they were",
+      study_log_.reuse("pack.json", "fields and gains have not changed",
                        size_of(folder_ / "pack.json"));
     }
     remove_leftovers(folder_, manifest);
@@ -353,6 +351,13 @@ class Preparation {
 };
 
 }  // namespace
+
+std::filesystem::path PackPlace::station(const std::string& name) const {
+  std::filesystem::path file = key;
+  file.replace_extension(name.empty() || name == kOnlyStation ? ".station"
+                                                              : "." + name + ".station");
+  return file;
+}
 
 PackPlace default_pack_place(const std::filesystem::path& study_file) {
   return {beside(study_file, ".pack"), beside(study_file, ".key")};

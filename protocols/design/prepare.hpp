@@ -18,6 +18,10 @@ namespace touchtrial::design {
 struct PackPlace {
   std::filesystem::path pack;
   std::filesystem::path key;
+
+  /// `<study>.station` beside the key, or `<study>.NAME.station` for one of several stations.
+  /// \param name  of the station; empty or kOnlyStation: the study's only one
+  [[nodiscard]] std::filesystem::path station(const std::string& name = {}) const;
 };
 
 /// `<study>.pack` and `<study>.key` beside the study file.

@@ -26,19 +26,18 @@ std::string Protocol::options_in_clear(const Study&) const {
   return {};
 }
 
-std::vector<Presentation> Protocol::restarted_block(const Study& study, int enrolment, int block,
-                                                    int restarts_before, int first_trial) const {
+std::vector<Presentation> Protocol::restarted_block(const Study& study, const ScheduleDraw& draw,
+                                                    int block, int restarts_before,
+                                                    int first_trial) const {
   std::vector<Presentation> again;
-  for (const Presentation& shown : schedule(study, enrolment).presentations) {
+  for (const Presentation& shown : schedule(study, draw).presentations) {
     if (shown.block == block) again.push_back(shown);
   }
   if (again.empty() || restarts_before < 0) {
     throw std::invalid_argument("restarted_block: the study has no such block or restart");
   }
-  RandomStream random(study.seed,
-                      "schedule: block " + std::to_string(block) + ", restart " +
-                          std::to_string(restarts_before + 1),
-                      static_cast<std::uint64_t>(enrolment));
+  RandomStream random(draw.secret, "schedule: block " + std::to_string(block) + ", restart " +
+                                       std::to_string(restarts_before + 1));
   shuffle(std::span<Presentation>(again), random);
   for (Presentation& shown : again) shown.trial = first_trial++;
   return again;
@@ -80,14 +79,13 @@ void require_choice_of_classes(const Study& study, const std::string& command) {
                             study.protocol_name() + " does not ask; give a study of another"));
 }
 
-Schedule make_schedule(const Study& study, int enrolment) {
-  if (enrolment < 1) throw std::invalid_argument("make_schedule: enrolment numbers start at 1");
-  return study.protocol->schedule(study, enrolment);
+Schedule make_schedule(const Study& study, const ScheduleDraw& draw) {
+  return study.protocol->schedule(study, draw);
 }
 
-std::vector<Presentation> restarted_block(const Study& study, int enrolment, int block,
+std::vector<Presentation> restarted_block(const Study& study, const ScheduleDraw& draw, int block,
                                           int restarts_before, int first_trial) {
-  return study.protocol->restarted_block(study, enrolment, block, restarts_before, first_trial);
+  return study.protocol->restarted_block(study, draw, block, restarts_before, first_trial);
 }
 
 std::string schedule_rule(const Study& study) {

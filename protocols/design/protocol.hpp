@@ -58,10 +58,11 @@ class Protocol {
 
   /// The functions of protocols/design/schedule.hpp call these, with the same arguments, results
   /// and errors.
-  [[nodiscard]] virtual Schedule schedule(const Study& study, int enrolment) const = 0;
+  [[nodiscard]] virtual Schedule schedule(const Study& study, const ScheduleDraw& draw) const = 0;
   [[nodiscard]] virtual std::string rule(const Study& study) const = 0;
   /// By default, shuffles the block's presentations again.
-  [[nodiscard]] virtual std::vector<Presentation> restarted_block(const Study& study, int enrolment,
+  [[nodiscard]] virtual std::vector<Presentation> restarted_block(const Study& study,
+                                                                  const ScheduleDraw& draw,
                                                                   int block, int restarts_before,
                                                                   int first_trial) const;
 

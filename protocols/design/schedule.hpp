@@ -1,6 +1,8 @@
 /// \file The presentations of one participant and their order.
 #pragma once
 
+#include "core/cipher.hpp"
+
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,13 +40,16 @@ struct Schedule {
   friend bool operator==(const Schedule&, const Schedule&) = default;
 };
 
+/// What one participant's schedule is drawn from. See draw_for in protocols/design/station.hpp.
+struct ScheduleDraw {
+  SecretKey secret{};    ///< this participant's alone
+  int method_order = 0;  ///< row of the Williams design of methods, from 0
+};
+
 /// Makes the schedule of one participant with the study's protocol. It depends only on the study's
-/// seed, classes, methods and trial options and on the enrolment number, and is the same on every
-/// platform.
-/// \param enrolment  from 1
+/// classes, methods and trial options and on the draw, and is the same on every platform.
 /// \throws StudyError if the order is impossible for the study
-/// \throws std::invalid_argument if `enrolment` is less than 1
-[[nodiscard]] Schedule make_schedule(const Study& study, int enrolment);
+[[nodiscard]] Schedule make_schedule(const Study& study, const ScheduleDraw& draw);
 
 /// Makes a block of a participant's schedule in a fresh order, with as many catch trials as before.
 /// It depends only on the arguments. The new order reveals nothing about the old one.
@@ -53,9 +58,9 @@ struct Schedule {
 /// \param first_trial  trial number of the block's first presentation; the others count up from it
 /// \throws StudyError if the order is impossible for the study
 /// \throws std::invalid_argument if the schedule has no such block
-[[nodiscard]] std::vector<Presentation> restarted_block(const Study& study, int enrolment,
-                                                        int block, int restarts_before,
-                                                        int first_trial);
+[[nodiscard]] std::vector<Presentation> restarted_block(const Study& study,
+                                                        const ScheduleDraw& draw, int block,
+                                                        int restarts_before, int first_trial);
 
 /// The name and version of the rule that makes schedules; the seal commits to it.
 [[nodiscard]] std::string schedule_rule(const Study& study);

@@ -20,8 +20,8 @@ constexpr std::string_view kCatch = "catch";
   throw StoreError("session schedule: " + what + "; use the key that the session was run with");
 }
 
-StimulusIndex meaning_of(const json& code, const StudyKey& key) {
-  const auto stimulus = key.stimulus_of(code.get<std::string>());
+StimulusIndex meaning_of(const json& code, const StudyCodes& codes) {
+  const auto stimulus = codes.stimulus_of(code.get<std::string>());
   if (!stimulus) refuse("names a code that this key does not have");
   return *stimulus;
 }
@@ -39,33 +39,33 @@ PresentationKind kind_of(const std::string& word) {
   refuse("has a presentation of an unknown kind");
 }
 
-Presentation presentation_from(const json& object, const StudyKey& key) {
+Presentation presentation_from(const json& object, const StudyCodes& codes) {
   Presentation shown{.trial = object.at("trial").get<int>(),
                      .block = object.at("block").get<int>(),
                      .kind = kind_of(object.at("kind").get_ref<const std::string&>()),
                      .stimulus = {}};
   if (shown.kind != PresentationKind::catch_trial) {
-    shown.stimulus = meaning_of(object.at("code"), key);
-  } else if (object.at("code") != catch_code(key)) {
+    shown.stimulus = meaning_of(object.at("code"), codes);
+  } else if (object.at("code") != codes.catch_code) {
     refuse("names a code that this key does not have");
   }
   return shown;
 }
 
-std::vector<Presentation> presentations_from(const json& list, const StudyKey& key) {
+std::vector<Presentation> presentations_from(const json& list, const StudyCodes& codes) {
   std::vector<Presentation> presentations;
-  for (const json& object : list) presentations.push_back(presentation_from(object, key));
+  for (const json& object : list) presentations.push_back(presentation_from(object, codes));
   return presentations;
 }
 
-json json_of(const std::vector<Presentation>& presentations, const StudyKey& key) {
+json json_of(const std::vector<Presentation>& presentations, const StudyCodes& codes) {
   json list = json::array();
   for (const Presentation& shown : presentations) {
     const bool is_catch = shown.kind == PresentationKind::catch_trial;
     list.push_back({{"trial", shown.trial},
                     {"block", shown.block},
                     {"kind", word_of(shown.kind)},
-                    {"code", is_catch ? catch_code(key) : key.code_of(shown.stimulus)}});
+                    {"code", is_catch ? codes.catch_code : codes.code_of(shown.stimulus)}});
   }
   return list;
 }
@@ -86,48 +86,48 @@ void check_layout(const std::vector<int>& layout, std::size_t choices) {
   }
 }
 
-Schedule schedule_of(const json& document, const StudyKey& key) {
+Schedule schedule_of(const json& document, const StudyCodes& codes) {
   Schedule schedule;
-  schedule.presentations = presentations_from(document.at("presentations"), key);
+  schedule.presentations = presentations_from(document.at("presentations"), codes);
   for (const json& choice : document.at("layout")) {
     schedule.layout.push_back(choice.is_number() ? choice.get<int>()
-                                                 : meaning_of(choice, key).class_index);
+                                                 : meaning_of(choice, codes).class_index);
   }
-  check_layout(schedule.layout, key.study.protocol->choices(key.study).size());
+  check_layout(schedule.layout, codes.study.protocol->choices(codes.study).size());
   return schedule;
 }
 
 }  // namespace
 
-std::string schedule_to_json(const Schedule& schedule, const StudyKey& key) {
+std::string schedule_to_json(const Schedule& schedule, const StudyCodes& codes) {
   // The layout names a class's picture by the code of its first stimulus, any other choice by
   // index.
-  const std::vector<Choice> choices = key.study.protocol->choices(key.study);
+  const std::vector<Choice> choices = codes.study.protocol->choices(codes.study);
   json layout = json::array();
   for (const int choice : schedule.layout) {
     const std::optional<int> class_index = choices[static_cast<std::size_t>(choice)].class_index;
-    layout.push_back(class_index ? json(key.code_of({*class_index, 0, 0})) : json(choice));
+    layout.push_back(class_index ? json(codes.code_of({*class_index, 0, 0})) : json(choice));
   }
-  return json{{"presentations", json_of(schedule.presentations, key)}, {"layout", layout}}.dump();
+  return json{{"presentations", json_of(schedule.presentations, codes)}, {"layout", layout}}.dump();
 }
 
-Schedule schedule_from_json(const std::string& text, const StudyKey& key) {
+Schedule schedule_from_json(const std::string& text, const StudyCodes& codes) {
   const json document = parsed_json(text);
   try {
-    return schedule_of(document, key);
+    return schedule_of(document, codes);
   } catch (const json::exception&) {
     refuse("does not have the form of a schedule");
   }
 }
 
-std::string block_to_json(const std::vector<Presentation>& block, const StudyKey& key) {
-  return json_of(block, key).dump();
+std::string block_to_json(const std::vector<Presentation>& block, const StudyCodes& codes) {
+  return json_of(block, codes).dump();
 }
 
-std::vector<Presentation> block_from_json(const std::string& text, const StudyKey& key) {
+std::vector<Presentation> block_from_json(const std::string& text, const StudyCodes& codes) {
   const json document = parsed_json(text);
   try {
-    return presentations_from(document, key);
+    return presentations_from(document, codes);
   } catch (const json::exception&) {
     refuse("does not have the form of a block");
   }

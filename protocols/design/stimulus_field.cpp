@@ -24,11 +24,6 @@ std::string rendering_text(const engine::RenderingOptions& rendering) {
   return text.dump();
 }
 
-bool is_flat(const GreyImage& image) {
-  const std::uint8_t level = image.samples().front();
-  return std::ranges::all_of(image.samples(), [level](std::uint8_t grey) { return grey == level; });
-}
-
 engine::TextureField rendered(Plane<double> texture, const engine::RenderingOptions& rendering,
                               engine::StageLog* log) {
   engine::StageTimer timer(log);

@@ -35,7 +35,8 @@ enum class Blocks { by_method, mixed };
 [[nodiscard]] std::string_view name_of(Blocks blocks);
 /// The study file's word for a rendering model.
 [[nodiscard]] std::string_view name_of(engine::ModelKind model);
-/// What follows a presentation that was spoilt by a fault, a comfort stop, or the program's end.
+/// What follows a presentation that was interrupted by a fault, a comfort stop, or the program's
+/// end.
 enum class OnInterruption { repeat, leave_out, restart_block };
 
 /// The study file's "trials" object.

@@ -1,6 +1,7 @@
 #include "protocols/design/study_key.hpp"
 
 #include "core/errors.hpp"
+#include "core/text.hpp"
 #include "protocols/design/protocol.hpp"
 #include "protocols/design/study_sections.hpp"
 
@@ -52,16 +53,17 @@ std::vector<KeyedStimulus> keyed_stimuli(const SecretKey& master, const Study& s
   return stimuli;
 }
 
-StudyKey key_from(const SecretKey& master, const SecretKey& nonce, const Study& study,
-                  bool simulated) {
-  StudyKey key;
-  key.master = master;
-  key.nonce = nonce;
-  key.study_id = first_hex(derive_key(master, "identity"), kStudyIdBytes);
-  key.study = study;
-  key.stimuli = keyed_stimuli(master, study);
-  key.simulated = simulated;
-  return key;
+std::string catch_code_of(const SecretKey& master) {
+  const Digest identity = FieldHasher().add("touchtrial catch code 1").finish();
+  return first_hex(keyed_hash(derive_key(master, "codes"), ByteView(identity)), kCodeBytes);
+}
+
+SecretKey station_secret(const SecretKey& master, const std::string& name) {
+  return derive_key(master, "station " + name);
+}
+
+Signer station_signer(const SecretKey& secret) {
+  return Signer(derive_key(secret, "signature"));
 }
 
 /// A keyed hash of all sections with texts, which only the key's holder can check. The texts
@@ -100,13 +102,13 @@ void add_plans(nlohmann::json& configuration, const StudyKey& key) {
 
 }  // namespace
 
-std::optional<StimulusIndex> StudyKey::stimulus_of(const std::string& code) const {
+std::optional<StimulusIndex> StudyCodes::stimulus_of(const std::string& code) const {
   const auto found = std::ranges::find(stimuli, code, &KeyedStimulus::code);
   if (found == stimuli.end()) return std::nullopt;
   return found->stimulus;
 }
 
-const std::string& StudyKey::code_of(const StimulusIndex& stimulus) const {
+const std::string& StudyCodes::code_of(const StimulusIndex& stimulus) const {
   const auto found = std::ranges::find(stimuli, stimulus, &KeyedStimulus::stimulus);
   if (found == stimuli.end()) {
     throw StudyError("study " + study.name + ": does not present class " +
@@ -117,21 +119,79 @@ const std::string& StudyKey::code_of(const StimulusIndex& stimulus) const {
   return found->code;
 }
 
-std::string catch_code(const StudyKey& key) {
-  const Digest identity = FieldHasher().add("touchtrial catch code 1").finish();
-  return first_hex(keyed_hash(derive_key(key.master, "codes"), ByteView(identity)), kCodeBytes);
+ScheduleDraw StudyKey::draw_of(int enrolment, Draws draws) const {
+  const Station* const own = station_of(stations, enrolment);
+  if (own == nullptr) {
+    throw UsageError("study " + study.name + ": enrolment number " + std::to_string(enrolment) +
+                     " is no station's; hand out more with `touchtrial plan --extend`");
+  }
+  return draw_for(study, *own, enrolment, draws);
+}
+
+BoxKeys StudyKey::box() const {
+  return box_keys(derive_key(master, "investigator's box"));
+}
+
+Signer StudyKey::signer() const {
+  return Signer(derive_key(master, "investigator's signature"));
+}
+
+ScheduleDraw StationKey::draw_of(int enrolment, Draws draws) const {
+  return draw_for(study, station, enrolment, draws);
+}
+
+Signer StationKey::signer() const {
+  return station_signer(station.secret);
+}
+
+Bytes station_statement(const std::string& study_id, const std::string& name,
+                        const PublicKey& station) {
+  const Digest statement =
+      FieldHasher().add("touchtrial station 1").add(study_id).add(name).add(station).finish();
+  return {statement.begin(), statement.end()};
 }
 
 StudyKey make_study_key(const Study& study, Entropy& entropy, bool simulated) {
-  const SecretKey master = entropy.secret("touchtrial study key master");
-  const SecretKey nonce = entropy.secret("touchtrial study key nonce");
-  return key_from(master, nonce, study, simulated);
+  StudyKey key;
+  key.master = entropy.secret("touchtrial study key master");
+  key.study_id = first_hex(derive_key(key.master, "identity"), kStudyIdBytes);
+  key.simulated = simulated;
+  key.catch_code = catch_code_of(key.master);
+  key.investigator_box = key.box().public_half;
+  key.investigator_signature = key.signer().public_half();
+  divide(key, {{.name = kOnlyStation, .ranges = {{1, kMostEnrolments}}}});
+  return rekeyed(key, study);
+}
+
+StudyKey simulated_study_key(const Study& study) {
+  SeededEntropy entropy(study.seed);
+  return make_study_key(study, entropy, true);
 }
 
 StudyKey rekeyed(const StudyKey& key, const Study& study) {
-  StudyKey changed = key_from(key.master, key.nonce, study, key.simulated);
-  changed.pack_folder = key.pack_folder;
+  StudyKey changed = key;
+  changed.study = study;
+  changed.stimuli = keyed_stimuli(key.master, study);
+  changed.configuration = blinded_configuration(changed);
+  changed.seal = study_seal(changed);
   return changed;
+}
+
+void divide(StudyKey& key, std::vector<Station> stations) {
+  for (Station& station : stations) station.secret = station_secret(key.master, station.name);
+  key.stations = std::move(stations);
+}
+
+StationKey station_key(const StudyKey& key, const std::string& name) {
+  const auto found = std::ranges::find(key.stations, name, &Station::name);
+  if (found == key.stations.end()) {
+    throw UsageError("study " + key.study.name + ": has no station " + in_quotes(name) +
+                     "; it has " + listed(key.stations, ", ", &Station::name));
+  }
+  StationKey own{key, *found};
+  own.certificate =
+      key.signer().sign(station_statement(key.study_id, name, own.signer().public_half()));
+  return own;
 }
 
 std::string blinded_configuration(const StudyKey& key) {
@@ -157,9 +217,34 @@ std::string blinded_configuration(const StudyKey& key) {
   return configuration.dump();
 }
 
+bool are_same(const Study& one, const Study& other) {
+  const auto content = [](const Study& study) {
+    nlohmann::json classes = nlohmann::json::array();
+    for (const StudyClass& shown : study.classes) {
+      nlohmann::json images = nlohmann::json::array();
+      for (const auto& image : shown.images) images.push_back(image.string());
+      classes.push_back({shown.label, images});
+    }
+    nlohmann::json methods = nlohmann::json::array();
+    for (const StudyMethod& method : study.methods) methods.push_back(to_json(method));
+    return nlohmann::json{study.name,
+                          study.protocol_name(),
+                          study.protocol->options_in_clear(study),
+                          classes,
+                          methods,
+                          to_json(study.rendering),
+                          to_json(study.trials),
+                          to_json(study.practice),
+                          to_json(study.session),
+                          to_json(study.registration),
+                          study.seed};
+  };
+  return content(one) == content(other);
+}
+
 Digest study_seal(const StudyKey& key) {
   FieldHasher hasher;
-  hasher.add("touchtrial seal 1").add(ByteView(key.master));
+  hasher.add("touchtrial seal 2").add(ByteView(key.master));
   hasher.add(static_cast<std::int64_t>(key.simulated ? 1 : 0));
   hasher.add(static_cast<std::int64_t>(key.stimuli.size()));
   for (const auto& [code, stimulus] : key.stimuli) {
@@ -170,7 +255,7 @@ Digest study_seal(const StudyKey& key) {
     hasher.add(method.label);
   }
   hasher.add(schedule_rule(key.study)).add(static_cast<std::int64_t>(key.study.seed));
-  hasher.add(blinded_configuration(key)).add(ByteView(key.nonce));
+  hasher.add(blinded_configuration(key));
   return hasher.finish();
 }
 

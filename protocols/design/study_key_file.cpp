@@ -1,9 +1,10 @@
-/// \file The key's file. Its bytes follow entirely from its content and one checksum over it, so
-/// that a change of any byte is detected.
+/// \file The files of key and station. Their bytes follow entirely from their content and one
+/// checksum over it, so that a change of any byte is detected.
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "protocols/design/study_key.hpp"
 
+#include <algorithm>
 #include <system_error>
 
 #include <nlohmann/json.hpp>
@@ -13,16 +14,26 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::string_view kFormat = "touchtrial-key";
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr std::uintmax_t kMaxKeyFileBytes = std::uintmax_t{64} << 20U;
+
+/// One kind of file and its words.
+struct Kind {
+  std::string_view format;
+  std::string_view title;
+  std::string_view remedy;  ///< where such a file comes from
+};
+constexpr Kind kKey{"touchtrial-key", "key", "give the .key file that `prepare` wrote"};
+constexpr Kind kStation{"touchtrial-station", "station file",
+                        "give the .station file that `prepare` or `plan` wrote"};
 
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& what) {
   throw FileError(one_line(path.string() + ": " + what));
 }
 
-[[noreturn]] void refuse_damaged(const std::filesystem::path& path) {
-  refuse(path, "the key is altered or damaged since it was written; restore it from a backup");
+[[noreturn]] void refuse_damaged(const std::filesystem::path& path, const Kind& kind) {
+  refuse(path, "the " + std::string(kind.title) +
+                   " is altered or damaged since it was written; restore it from a backup");
 }
 
 std::filesystem::path whole(const std::filesystem::path& path) {
@@ -53,79 +64,173 @@ std::string text_of_document(json document) {
   return document.dump(2) + "\n";
 }
 
-json stimuli_to_json(const StudyKey& key) {
+json stimuli_to_json(const StudyCodes& codes) {
   json list = json::array();
-  for (const auto& [code, stimulus] : key.stimuli) {
-    const StudyClass& shown = key.study.classes[static_cast<std::size_t>(stimulus.class_index)];
+  for (const auto& [code, stimulus] : codes.stimuli) {
+    const StudyClass& shown = codes.study.classes[static_cast<std::size_t>(stimulus.class_index)];
     list.push_back(
         {{"code", code},
          {"label", shown.label},
          {"image", shown.images[static_cast<std::size_t>(stimulus.exemplar)].string()},
-         {"method", key.study.methods[static_cast<std::size_t>(stimulus.method)].label}});
+         {"method", codes.study.methods[static_cast<std::size_t>(stimulus.method)].label}});
   }
   return list;
 }
 
-json document_of(const StudyKey& key, const std::filesystem::path& path) {
+json ranges_to_json(const std::vector<EnrolmentRange>& ranges) {
+  json list = json::array();
+  for (const EnrolmentRange& range : ranges) list.push_back({range.first, range.last});
+  return list;
+}
+
+std::vector<EnrolmentRange> ranges_from(const json& list) {
+  std::vector<EnrolmentRange> ranges;
+  for (const json& ends : list) {
+    const EnrolmentRange range{ends.at(0).get<int>(), ends.at(1).get<int>()};
+    if (range.first < 1 || range.last < range.first || range.last > kMostEnrolments) {
+      throw FileError("a station's enrolment numbers are impossible");
+    }
+    ranges.push_back(range);
+  }
+  return ranges;
+}
+
+/// What both files hold.
+json common_document(const StudyCodes& codes, const Kind& kind, const std::filesystem::path& path) {
   // An empty folder means the working directory; it is written relative to the key as well.
-  const auto study_folder = key.study.folder.empty() ? "." : key.study.folder;
-  return {{"format", kFormat},
+  const auto study_folder = codes.study.folder.empty() ? "." : codes.study.folder;
+  return {{"format", kind.format},
           {"version", kVersion},
-          {"study_id", key.study_id},
-          {"master", to_hex(key.master)},
-          {"nonce", to_hex(key.nonce)},
-          {"simulated", key.simulated},
-          {"study", key.study.text},
+          {"study_id", codes.study_id},
+          {"simulated", codes.simulated},
+          {"study", codes.study.text},
           {"study_folder", relative_to_key(study_folder, path)},
-          {"pack_folder", relative_to_key(key.pack_folder, path)},
-          {"stimuli", stimuli_to_json(key)}};
+          {"pack_folder", relative_to_key(codes.pack_folder, path)},
+          {"stimuli", stimuli_to_json(codes)}};
 }
 
-SecretKey secret_from(const json& value) {
-  const auto secret = digest_from_hex(value.get_ref<const std::string&>());
-  if (!secret) throw FileError("a secret of the key is not 64 hexadecimal digits");
-  return *secret;
+Study study_from(const json& document, const std::filesystem::path& path) {
+  const auto folder = found_from_key(document.at("study_folder").get<std::string>(), path);
+  return parse_study(document.at("study").get_ref<const std::string&>(), folder,
+                     path.string() + ": study");
 }
 
-/// Supplies stored secrets, so that the same code makes and rebuilds a key.
+Digest digest_from(const json& value) {
+  const auto digest = digest_from_hex(value.get_ref<const std::string&>());
+  if (!digest) throw FileError("a secret or hash is not 64 hexadecimal digits");
+  return *digest;
+}
+
+/// Supplies a stored secret, so that the same code makes and rebuilds a key.
 class StoredEntropy final : public Entropy {
  public:
-  StoredEntropy(const SecretKey& master, const SecretKey& nonce) : master_(master), nonce_(nonce) {}
-  [[nodiscard]] SecretKey secret(std::string_view purpose) override {
-    return purpose.ends_with("nonce") ? nonce_ : master_;
-  }
+  explicit StoredEntropy(const SecretKey& master) : master_(master) {}
+  [[nodiscard]] SecretKey secret(std::string_view) override { return master_; }
 
  private:
   SecretKey master_;
-  SecretKey nonce_;
 };
 
+json document_of(const StudyKey& key, const std::filesystem::path& path) {
+  json document = common_document(key, kKey, path);
+  document["master"] = to_hex(key.master);
+  json stations = json::array();
+  for (const Station& station : key.stations) {
+    stations.push_back({{"name", station.name}, {"enrolments", ranges_to_json(station.ranges)}});
+  }
+  document["stations"] = std::move(stations);
+  return document;
+}
+
 StudyKey key_of(const json& document, const std::filesystem::path& path) {
-  const auto& text = document.at("study").get_ref<const std::string&>();
-  const auto folder = found_from_key(document.at("study_folder").get<std::string>(), path);
-  const Study study = parse_study(text, folder, path.string() + ": study");
-  StoredEntropy stored(secret_from(document.at("master")), secret_from(document.at("nonce")));
+  const Study study = study_from(document, path);
+  StoredEntropy stored(digest_from(document.at("master")));
   StudyKey key = make_study_key(study, stored, document.at("simulated").get<bool>());
   key.pack_folder = found_from_key(document.at("pack_folder").get<std::string>(), path);
+  std::vector<std::string> names;
+  for (const json& station : document.at("stations")) {
+    names.push_back(station.at("name").get<std::string>());
+  }
+  std::vector<Station> stations = stations_named(names);
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    stations[i].ranges = ranges_from(document["stations"][i].at("enrolments"));
+  }
+  divide(key, std::move(stations));
   const bool same = key.study_id == document.at("study_id").get<std::string>() &&
                     stimuli_to_json(key) == document.at("stimuli");
-  if (!same) refuse_damaged(path);
+  if (!same) refuse_damaged(path, kKey);
   return key;
 }
 
-void check_format(const json& document, const std::filesystem::path& path) {
-  const bool is_key = document.is_object() && document.contains("format") &&
-                      document["format"] == kFormat && document.contains("version");
-  if (!is_key) refuse(path, "is not a Touchtrial key; give the .key file that `prepare` wrote");
+json document_of(const StationKey& key, const std::filesystem::path& path) {
+  json document = common_document(key, kStation, path);
+  document["station"] = key.station.name;
+  document["enrolments"] = ranges_to_json(key.station.ranges);
+  document["secret"] = to_hex(key.station.secret);
+  document["certificate"] = to_hex(ByteView(key.certificate));
+  document["catch_code"] = key.catch_code;
+  document["configuration"] = key.configuration;
+  document["seal"] = to_hex(key.seal);
+  document["investigator_box"] = to_hex(key.investigator_box);
+  document["investigator_signature"] = to_hex(key.investigator_signature);
+  return document;
+}
+
+/// The stimuli of a station file, whose codes the station cannot derive.
+std::vector<KeyedStimulus> stimuli_from(const json& list, const Study& study) {
+  std::vector<KeyedStimulus> stimuli;
+  for (int c = 0; c < static_cast<int>(study.classes.size()); ++c) {
+    const auto images = static_cast<int>(study.classes[static_cast<std::size_t>(c)].images.size());
+    for (int e = 0; e < images; ++e) {
+      for (int m = 0; m < study.presented_methods(); ++m) {
+        stimuli.push_back({list.at(stimuli.size()).at("code").get<std::string>(), {c, e, m}});
+      }
+    }
+  }
+  return stimuli;
+}
+
+StationKey station_of_document(const json& document, const std::filesystem::path& path) {
+  StationKey key;
+  key.study = study_from(document, path);
+  key.study_id = document.at("study_id").get<std::string>();
+  key.stimuli = stimuli_from(document.at("stimuli"), key.study);
+  key.catch_code = document.at("catch_code").get<std::string>();
+  key.configuration = document.at("configuration").get<std::string>();
+  key.seal = digest_from(document.at("seal"));
+  key.investigator_box = digest_from(document.at("investigator_box"));
+  key.investigator_signature = digest_from(document.at("investigator_signature"));
+  key.pack_folder = found_from_key(document.at("pack_folder").get<std::string>(), path);
+  key.simulated = document.at("simulated").get<bool>();
+  const std::vector<std::string> name = {document.at("station").get<std::string>()};
+  key.station = stations_named(name).front();
+  key.station.ranges = ranges_from(document.at("enrolments"));
+  key.station.secret = digest_from(document.at("secret"));
+  const auto certificate = from_hex(document.at("certificate").get_ref<const std::string&>());
+  const Bytes statement =
+      station_statement(key.study_id, key.station.name, key.signer().public_half());
+  const bool is_own =
+      certificate && is_signed_by(key.investigator_signature, statement, *certificate);
+  if (!is_own || stimuli_to_json(key) != document.at("stimuli")) refuse_damaged(path, kStation);
+  std::ranges::copy(*certificate, key.certificate.begin());
+  return key;
+}
+
+void check_format(const json& document, const std::filesystem::path& path, const Kind& kind) {
+  const bool is_known = document.is_object() && document.contains("format") &&
+                        document["format"] == kind.format && document.contains("version");
+  if (!is_known) {
+    refuse(path,
+           "is not a Touchtrial " + std::string(kind.title) + "; " + std::string(kind.remedy));
+  }
   if (document["version"] != kVersion) {
-    refuse(path, "is a key of version " + document["version"].dump() + ", not " +
-                     std::to_string(kVersion) + "; use the program that wrote it");
+    refuse(path, "is a " + std::string(kind.title) + " of version " + document["version"].dump() +
+                     ", not " + std::to_string(kVersion) + "; use the program that wrote it");
   }
 }
 
-}  // namespace
-
-void save_study_key(const std::filesystem::path& path, const StudyKey& key) {
+template <typename Key>
+void save(const std::filesystem::path& path, const Key& key) {
   std::string text;
   try {
     text = text_of_document(document_of(key, path));
@@ -135,24 +240,45 @@ void save_study_key(const std::filesystem::path& path, const StudyKey& key) {
   replace_file(path, text, FileMode::owner_only);
 }
 
-StudyKey load_study_key(const std::filesystem::path& path) {
+/// Reads a file of secrets strictly, and lets `made` make the key from it.
+template <typename Make>
+auto loaded(const std::filesystem::path& path, const Kind& kind, Make made) {
+  require_owner_only(path);
   const std::string text = text_of(read_file(path, kMaxKeyFileBytes));
   const json document = json::parse(text, nullptr, false);
   if (document.is_discarded()) {
-    refuse(path, text.find(kFormat) == std::string::npos
-                     ? "is not a Touchtrial key; give the .key file that `prepare` wrote"
-                     : "the key is altered or damaged since it was written; restore it from a "
-                       "backup");
+    if (text.find(kind.format) != std::string::npos) refuse_damaged(path, kind);
+    check_format(document, path, kind);
   }
-  check_format(document, path);
-  if (text_of_document(document) != text) refuse_damaged(path);
+  check_format(document, path, kind);
+  if (text_of_document(document) != text) refuse_damaged(path, kind);
   try {
-    return key_of(document, path);
+    return made(document, path);
   } catch (const json::exception&) {
-    refuse_damaged(path);
+    refuse_damaged(path, kind);
+  } catch (const UsageError&) {  // a station's name
+    refuse_damaged(path, kind);
   } catch (const StudyError& error) {
     throw FileError(error.what());
   }
+}
+
+}  // namespace
+
+void save_study_key(const std::filesystem::path& path, const StudyKey& key) {
+  save(path, key);
+}
+
+void save_station_key(const std::filesystem::path& path, const StationKey& key) {
+  save(path, key);
+}
+
+StudyKey load_study_key(const std::filesystem::path& path) {
+  return loaded(path, kKey, key_of);
+}
+
+StationKey load_station_key(const std::filesystem::path& path) {
+  return loaded(path, kStation, station_of_document);
 }
 
 }  // namespace touchtrial::design

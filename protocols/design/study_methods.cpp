@@ -1,4 +1,5 @@
 /// \file The study file's "methods".
+#include "core/text.hpp"
 #include "protocols/design/study_sections.hpp"
 
 #include <algorithm>
@@ -45,12 +46,8 @@ bool belongs_to(engine::Method method, const MethodKey& entry) {
 
 /// "the method fixed", "the methods adaptive and fixed"
 std::string owners_of(const MethodKey& entry) {
-  std::string owners = entry.methods.size() == 1 ? "the method " : "the methods ";
-  for (std::size_t i = 0; i < entry.methods.size(); ++i) {
-    if (i > 0) owners += i + 1 == entry.methods.size() ? " and " : ", ";
-    owners += name_of(entry.methods[i]);
-  }
-  return owners;
+  return (entry.methods.size() == 1 ? "the method " : "the methods ") +
+         listed(entry.methods, " and ", [](engine::Method method) { return name_of(method); });
 }
 
 engine::Method read_name(const JsonValue& place) {

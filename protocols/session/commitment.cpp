@@ -2,6 +2,7 @@
 
 #include "core/errors.hpp"
 #include "core/strict_json.hpp"
+#include "core/text.hpp"
 #include "core/version.hpp"
 #include "protocols/design/protocol.hpp"
 #include "protocols/session/trial_trace.hpp"
@@ -28,17 +29,12 @@ std::string labels_of(const design::Study& study) {
   std::vector<std::string> labels;
   for (const design::StudyClass& shown : study.classes) labels.push_back(shown.label);
   std::ranges::sort(labels);
-  std::string list;
-  for (const std::string& label : labels) list += (list.empty() ? "" : ", ") + label;
-  return list;
+  return listed(labels);
 }
 
 std::string methods_of(const design::Study& study) {
-  std::string list;
-  for (int m = 0; m < study.presented_methods(); ++m) {
-    list += (m == 0 ? "" : ", ") + study.methods[static_cast<std::size_t>(m)].label;
-  }
-  return list;
+  const auto presented = static_cast<std::size_t>(study.presented_methods());
+  return listed(std::span(study.methods).first(presented), ", ", &design::StudyMethod::label);
 }
 
 std::string participants_of(const design::Registration& registration) {
@@ -80,27 +76,27 @@ std::string validity_of(const ValidityRule& rule) {
          line("servo", "no tick missed in contact");
 }
 
-std::string hashes_of(const design::StudyKey& key, const engine::Pack& pack) {
-  return line("seal", "`" + to_hex(design::study_seal(key)) + "`") +
+std::string hashes_of(const design::StudyCodes& key, const engine::Pack& pack) {
+  return line("seal", "`" + to_hex(key.seal) + "`") +
          line("pack", "`" + to_hex(pack.digest()) + "`") +
          line("study identity", "`" + key.study_id + "`") +
          line("program", "Touchtrial " + std::string(program_version())) +
-         "\nThe seal is SHA-256 over key, schedule rule, seed, configuration and a secret nonce; "
+         "\nThe seal is SHA-256 over key, schedule rule, seed and configuration; "
          "every database of the study begins with it. With the key, `touchtrial verify` tells "
          "whether a database is of the study that is registered here.\n";
 }
 
 }  // namespace
 
-store::StudyCommitment commitment_of(const design::StudyKey& key, const engine::Pack& pack,
+store::StudyCommitment commitment_of(const design::StudyCodes& key, const engine::Pack& pack,
                                      bool simulated, bool pilot) {
   store::StudyCommitment commitment;
   commitment.study = key.study.name;
   commitment.protocol = key.study.protocol_name();
   commitment.study_id = key.study_id;
-  commitment.seal = design::study_seal(key);
+  commitment.seal = key.seal;
   commitment.pack = pack.digest();
-  commitment.configuration = design::blinded_configuration(key);
+  commitment.configuration = key.configuration;
   commitment.scored_trials = key.study.scored_trials();
   commitment.positions = static_cast<int>(key.study.protocol->choices(key.study).size());
   commitment.simulated = simulated;
@@ -109,13 +105,13 @@ store::StudyCommitment commitment_of(const design::StudyKey& key, const engine::
   return commitment;
 }
 
-void require_prepared(const design::Study& study, const design::StudyKey& key,
+void require_prepared(const design::Study& study, const design::StudyCodes& key,
                       const engine::Pack& pack) {
   const auto refuse = [&study](const std::string& what) {
     throw UsageError(one_line(study.source + ": " + what));
   };
   if (key.simulated) refuse("its key belongs to a simulated study; run `touchtrial prepare`");
-  if (design::study_seal(design::rekeyed(key, study)) != design::study_seal(key)) {
+  if (!design::are_same(study, key.study)) {
     refuse("has changed since it was prepared; run `touchtrial prepare` again");
   }
   const engine::PackManifest& manifest = pack.manifest();
@@ -128,7 +124,7 @@ void require_prepared(const design::Study& study, const design::StudyKey& key,
   }
 }
 
-std::string registration_page(const design::StudyKey& key, const engine::Pack& pack) {
+std::string registration_page(const design::StudyCodes& key, const engine::Pack& pack) {
   const design::Study& study = key.study;
   const design::Registration& registration = study.registration;
   return "# Preregistration of the study " + study.name + "\n" +

@@ -12,14 +12,14 @@
 namespace touchtrial::session {
 
 /// The first event of a study's file chain.
-[[nodiscard]] store::StudyCommitment commitment_of(const design::StudyKey& key,
+[[nodiscard]] store::StudyCommitment commitment_of(const design::StudyCodes& key,
                                                    const engine::Pack& pack, bool simulated,
                                                    bool pilot);
 
 /// Checks that key and pack belong to the study in its present state.
 /// \param study  newly read from its file
 /// \throws UsageError with the difference and the remedy
-void require_prepared(const design::Study& study, const design::StudyKey& key,
+void require_prepared(const design::Study& study, const design::StudyCodes& key,
                       const engine::Pack& pack);
 
 /// The preregistration page, Markdown: the statements of the study's registration, the design, the
@@ -27,7 +27,8 @@ void require_prepared(const design::Study& study, const design::StudyKey& key,
 /// (sorted), methods, rendering and trials; no image name, code, seed, secret or schedule. The same
 /// input gives the same text.
 /// \pre require_prepared
-[[nodiscard]] std::string registration_page(const design::StudyKey& key, const engine::Pack& pack);
+[[nodiscard]] std::string registration_page(const design::StudyCodes& key,
+                                            const engine::Pack& pack);
 
 /// The missing parts of a registration, as JSON pointers.
 [[nodiscard]] std::vector<std::string> unstated(const design::Registration& registration);

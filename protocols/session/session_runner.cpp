@@ -213,7 +213,7 @@ SessionTally run_session(Session& session, const SessionParts& parts) {
   return tally;
 }
 
-SessionTally run_session_in_virtual_time(Session& session, const design::StudyKey& key,
+SessionTally run_session_in_virtual_time(Session& session, const design::StudyCodes& key,
                                          const StimulusSource& source, Participant& participant) {
   VirtualSessionClock clock;
   VirtualExplorer explorer;

@@ -38,7 +38,7 @@ struct SessionTally {
 
 /// Everything that a session needs to run. All of it must outlive the run.
 struct SessionParts {
-  const design::StudyKey& key;
+  const design::StudyCodes& key;
   const StimulusSource& source;
   Participant& participant;
   SessionClock& clock;
@@ -69,7 +69,7 @@ SessionTally run_session(Session& session, const SessionParts& parts);
 
 /// Runs a session in virtual time, from 0 on.
 /// \param participant  brings a simulated hand
-SessionTally run_session_in_virtual_time(Session& session, const design::StudyKey& key,
+SessionTally run_session_in_virtual_time(Session& session, const design::StudyCodes& key,
                                          const StimulusSource& source, Participant& participant);
 
 }  // namespace touchtrial::session

@@ -1,8 +1,8 @@
 #include "protocols/session/session_stages.hpp"
 
+#include "core/text.hpp"
 #include "protocols/session/session_desk.hpp"
 
-#include <charconv>
 #include <chrono>
 
 #include <nlohmann/json.hpp>
@@ -80,21 +80,12 @@ bool instruct(SessionDesk& desk) {
   return true;
 }
 
-template <typename Number>
-std::optional<Number> number_from(const std::string& text) {
-  Number value{};
-  const char* const end = text.data() + text.size();
-  const auto [stopped, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc{} || stopped != end) return std::nullopt;
-  return value;
-}
-
 nlohmann::json answer_to_json(design::QuestionKind kind, const std::string& answer) {
   if (kind == design::QuestionKind::choice) {
-    if (const auto index = number_from<int>(answer)) return *index;
+    if (const auto index = number_in<int>(answer)) return *index;
   }
   if (kind == design::QuestionKind::number) {
-    if (const auto number = number_from<double>(answer)) return *number;
+    if (const auto number = number_in<double>(answer)) return *number;
   }
   return answer;
 }

@@ -1,15 +1,13 @@
 #include "protocols/simulation/felt_bank.hpp"
 
+#include "core/parallel.hpp"
 #include "protocols/session/exploration.hpp"
 #include "protocols/simulation/felt_decision.hpp"
 #include "protocols/simulation/felt_exploration.hpp"
-#include "protocols/simulation/job_arena.hpp"
 
 #include <algorithm>
 #include <mutex>
 #include <stdexcept>
-
-#include <tbb/parallel_for.h>
 
 namespace touchtrial::simulation {
 namespace {
@@ -59,7 +57,7 @@ FeltBank::FeltBank(const LabelledFields& fields, const design::Study& study,
                                 RandomStream(options.seed, "subject: felt bank", index));
     count.one_more();
   };
-  JobArena(options.jobs).run([&] { tbb::parallel_for(std::size_t{0}, felt_.size(), feel); });
+  in_parallel(options.jobs, felt_.size(), feel);
 }
 
 int FeltBank::place_of(const design::StimulusIndex& stimulus) const {

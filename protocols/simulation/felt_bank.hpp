@@ -27,9 +27,9 @@ struct FeltBankOptions {
 /// i: a larger bank begins with the smaller one. Refers to nothing; immutable, thread-safe.
 class FeltBank {
  public:
-  /// Feels. Cost: explorations x stimuli x explore_s x 0.15 ms a thread (1.5 ms for 10 s);
-  /// memory: 184 bytes an exploration.
-  /// \param study  of the fields: gives exploration limit and force limit
+  /// Explores every stimulus. Cost: explorations x stimuli x explore_s x 0.15 ms of one thread
+  /// (1.5 ms for 10 s); memory: 184 bytes per exploration.
+  /// \param study  the study of the fields; it sets the exploration limit and the force limit
   /// \param progress  counts explorations; called from one thread at a time
   /// \throws std::invalid_argument if an option is out of range
   FeltBank(const LabelledFields& fields, const design::Study& study, const SubjectModel& subject,

@@ -1,14 +1,12 @@
 #include "protocols/simulation/felt_knowledge.hpp"
 
+#include "core/parallel.hpp"
 #include "core/random.hpp"
 #include "device/servo/servo.hpp"
 #include "protocols/simulation/felt_exploration.hpp"
-#include "protocols/simulation/job_arena.hpp"
 
 #include <cmath>
 #include <map>
-
-#include <tbb/parallel_for.h>
 
 namespace touchtrial::simulation {
 namespace {
@@ -22,7 +20,7 @@ device::ServoOptions training_options(const SubjectModel& subject, double max_fo
 
 }  // namespace
 
-LabelledFields::LabelledFields(const design::StudyKey& key, const session::StimulusSource& source)
+LabelledFields::LabelledFields(const design::StudyCodes& key, const session::StimulusSource& source)
     : plane_(source.plane()) {
   // Sorted by stimulus and not by code: codes are random, and training must not depend on them.
   std::map<design::StimulusIndex, const engine::RenderingModel*> by_stimulus;
@@ -52,13 +50,7 @@ FeltKnowledge learn_by_feeling(const LabelledFields& fields, const SubjectModel&
                          RandomStream(seed, "subject: training pass", i % passes));
     knowledge.examples[i] = {static_cast<int>(prototype), {felt.begin(), felt.end()}};
   };
-  const std::size_t count = knowledge.examples.size();
-  if (jobs == 1) {
-    // On the caller's thread, which may be one of many that learn at the same time.
-    for (std::size_t i = 0; i < count; ++i) feel_example(i);
-    return knowledge;
-  }
-  JobArena(jobs).run([&] { tbb::parallel_for(std::size_t{0}, count, feel_example); });
+  in_parallel(jobs, knowledge.examples.size(), feel_example);
   return knowledge;
 }
 

@@ -25,7 +25,7 @@ struct LabelledField {
 class LabelledFields {
  public:
   /// \throws FileError if the pack lacks a stimulus of the study
-  LabelledFields(const design::StudyKey& key, const session::StimulusSource& source);
+  LabelledFields(const design::StudyCodes& key, const session::StimulusSource& source);
 
   [[nodiscard]] const std::vector<LabelledField>& all() const noexcept { return fields_; }
   [[nodiscard]] const PlaneGeometry& plane() const noexcept { return plane_; }

@@ -14,7 +14,7 @@ namespace touchtrial::simulation {
 
 /// What a population is made from; everything must outlive it.
 struct PopulationSetting {
-  const design::StudyKey& key;
+  const design::StudyCodes& key;
   const session::StimulusSource& source;
   const SubjectModel& subject;
   std::uint64_t seed = 1;  ///< of everything random in participants

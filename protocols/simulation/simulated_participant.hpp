@@ -14,8 +14,8 @@
 namespace touchtrial::simulation {
 
 /// In each trial, strokes the plane on a new path and answers from what was felt. Everything random
-/// is a function of the seed, the participant's number, and the number of trials before. Subclasses
-/// choose. Refers to the subject, which must outlive it.
+/// is a function of the seed, the participant's number, and the number of earlier trials.
+/// Subclasses make the choice. Refers to the subject, which must outlive it.
 class SimulatedParticipant : public PromptParticipant {
  public:
   /// \param number  from 1

@@ -1,19 +1,29 @@
 #include "protocols/simulation/simulation.hpp"
 
 #include "protocols/session/session_runner.hpp"
-#include "protocols/simulation/job_arena.hpp"
 #include "protocols/simulation/population.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <thread>
 
+#include <tbb/global_control.h>
 #include <tbb/parallel_pipeline.h>
+#include <tbb/task_arena.h>
 
 namespace touchtrial::simulation {
 namespace {
+
+/// Jobs may be more than the processor has cores. Still more gain nothing, and the system may
+/// refuse them.
+int most_jobs() noexcept {
+  constexpr unsigned kThreadsACore = 4;
+  return static_cast<int>(kThreadsACore * std::max(1U, std::thread::hardware_concurrency()));
+}
 
 /// Shared by all sessions of a simulation, read-only.
 struct Setting {
@@ -65,7 +75,8 @@ SecretKey participant_key(const Setting& setting, int number) {
 FinishedSession run_session(const Setting& setting, const Place& place) {
   FinishedSession finished;
   const SecretKey key = participant_key(setting, place.number);
-  const design::Schedule schedule = design::make_schedule(setting.key.study, place.number);
+  const design::Schedule schedule = design::make_schedule(
+      setting.key.study, setting.key.draw_of(place.number, design::Draws::rehearsal));
   session::Session session(schedule, setting.key.study.trials,
                            store::SessionRecorder(place.session, key, finished.events));
   session.open({}, opening_of(setting, place.number),
@@ -74,11 +85,12 @@ FinishedSession run_session(const Setting& setting, const Place& place) {
       setting.population.participant(place.number);
   finished.tally =
       session::run_session_in_virtual_time(session, setting.key, setting.source, *participant);
-  finished.wrapped_key = store::wrap_participant_key(setting.key.master, place.session, key);
+  finished.wrapped_key =
+      store::wrap_participant_key(setting.key.investigator_box, place.session, key);
   return finished;
 }
 
-/// Stores sessions in the order in which they arrive, and counts.
+/// Stores sessions in the order in which they arrive, and counts them and their presentations.
 class Collector {
  public:
   Collector(store::StudyStore& store, const design::Progress& progress, int participants)
@@ -132,9 +144,11 @@ void run_sessions(const Setting& setting, const SimulationOptions& options, int 
   const auto pipeline = tbb::make_filter<void, int>(in_order, next) &
                         tbb::make_filter<int, Finished>(tbb::filter_mode::parallel, run) &
                         tbb::make_filter<Finished, void>(in_order, store);
-  JobArena arena(options.jobs);
-  const auto in_flight = 2 * static_cast<std::size_t>(arena.jobs());
-  arena.run([&] { tbb::parallel_pipeline(in_flight, pipeline); });
+  const int jobs = std::min(options.jobs, most_jobs());
+  const auto threads = static_cast<std::size_t>(jobs);
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+  tbb::task_arena arena(jobs);
+  arena.execute([&] { tbb::parallel_pipeline(2 * threads, pipeline); });
 }
 
 }  // namespace
@@ -146,7 +160,7 @@ SimulationReport simulate_study(const design::StudyKey& key, const engine::Pack&
   const session::StimulusSource source(pack, key.study.rendering);
   const std::unique_ptr<const Population> population =
       population_of({key, source, subject, options.seed, options.jobs});
-  const Setting setting{key, source, *population, options.seed, design::study_seal(key)};
+  const Setting setting{key, source, *population, options.seed, key.seal};
   Collector collector(store, progress, options.participants);
   run_sessions(setting, options, store.next_session(), collector);
   return collector.report();

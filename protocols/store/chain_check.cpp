@@ -170,6 +170,21 @@ class Inspection {
     }
     if (!stored.empty())
       throw EventFault(stored.begin()->first, kNoEvent, "a participant's key has no session");
+    inspect_station_keys();
+  }
+
+  /// A station keeps the keys of open sessions alone.
+  void inspect_station_keys() const {
+    Query query = database_.query("SELECT session FROM station_keys ORDER BY session");
+    while (query.step()) {
+      const std::int64_t session = query.integer(0);
+      const auto on_file = file_.sessions().find(static_cast<int>(session));
+      const bool is_open = on_file != file_.sessions().end() && !on_file->second.closed &&
+                           !on_file->second.withdrawn_at;
+      if (is_open) continue;
+      throw EventFault(session, kNoEvent,
+                       "the station holds the key of a session that is not open");
+    }
   }
 
   void inspect_traces() {

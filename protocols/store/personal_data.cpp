@@ -1,6 +1,7 @@
 #include "protocols/store/personal_data.hpp"
 
 #include "core/errors.hpp"
+#include "core/files.hpp"
 
 #include <cerrno>
 #include <cstring>
@@ -11,7 +12,6 @@
 #include <SQLiteCpp/Statement.h>
 #include <SQLiteCpp/Transaction.h>
 #include <fcntl.h>
-#include <sys/stat.h>
 #include <unistd.h>
 
 namespace touchtrial::store {
@@ -33,16 +33,6 @@ void make_private(const std::filesystem::path& path) {
   } else if (errno != EEXIST) {
     refuse_personal_data(path, std::string("cannot be made (") + std::strerror(errno) +
                                    "); check that its folder exists and may be written");
-  }
-}
-
-void require_private(const std::filesystem::path& path) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0)
-    refuse_personal_data(path, "cannot be read; check its permissions");
-  if ((status.st_mode & 077U) != 0) {
-    refuse_personal_data(path, "others may read these personal data; run `chmod 600 " +
-                                   path.string() + "`, and ask who has read them");
   }
 }
 
@@ -99,7 +89,7 @@ struct PersonalData::Impl {
 
 PersonalData::PersonalData(const std::filesystem::path& path) {
   make_private(path);
-  require_private(path);
+  require_owner_only(path);
   impl_ = translated(path, [&] { return std::make_unique<Impl>(path); });
 }
 PersonalData::~PersonalData() = default;

@@ -28,8 +28,9 @@ struct PersonalRecord {
 class PersonalData {
  public:
   /// Opens it, or makes an empty one.
-  /// \throws StoreError, with the remedy, if others may read it, it cannot be made, or it is
-  ///   another kind of file or a newer one
+  /// \throws FileError, with the remedy, if others may read it
+  /// \throws StoreError, with the remedy, if it cannot be made, or is another kind of file or a newer
+  ///   one
   explicit PersonalData(const std::filesystem::path& path);
   ~PersonalData();
   PersonalData(PersonalData&&) noexcept;

@@ -151,6 +151,11 @@ void insert_key(const Database& database, int session, const Bytes& wrapped) {
   database.query(sql.c_str()).bind(session).bind(wrapped).run();
 }
 
+void insert_station_key(const Database& database, int session, const Bytes& kept) {
+  static const std::string sql = insertion(Table::station_keys);
+  database.query(sql.c_str()).bind(session).bind(kept).run();
+}
+
 void for_each_event(const Database& database, const EventFilter& filter,
                     const EventVisitor& visit) {
   std::optional<std::string> any_of;

@@ -19,6 +19,7 @@ using EventVisitor = std::function<void(const Event&)>;
 void insert_event(const Database& database, const Event& event);
 void insert_trace(const Database& database, const SealedTrace& trace);
 void insert_key(const Database& database, int session, const Bytes& wrapped);
+void insert_station_key(const Database& database, int session, const Bytes& kept);
 
 /// The events that are asked for: those with all of the members that are given.
 struct EventFilter {

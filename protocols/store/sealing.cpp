@@ -7,8 +7,15 @@ namespace {
 
 constexpr std::size_t kWrapPadding = 64;
 
-SecretKey wrapping_key(const SecretKey& study_master) {
-  return derive_key(study_master, "participant keys");
+SecretKey keeping_key(const SecretKey& station_secret) {
+  return derive_key(station_secret, "participant keys");
+}
+
+std::optional<SecretKey> key_from(const std::optional<Bytes>& bytes) {
+  SecretKey key{};
+  if (!bytes || bytes->size() != key.size()) return std::nullopt;
+  std::copy(bytes->begin(), bytes->end(), key.begin());
+  return key;
 }
 
 // What each box is bound to; part of the format.
@@ -28,20 +35,27 @@ std::string trace_context(int own_session, int trial) {
 
 }  // namespace
 
-Bytes wrap_participant_key(const SecretKey& study_master, int own_session,
+Bytes wrap_participant_key(const PublicKey& investigator, int own_session,
                            const SecretKey& participant_key) {
-  return seal(wrapping_key(study_master), participant_key_context(own_session), participant_key,
+  return seal_box(investigator, participant_key_context(own_session), participant_key,
+                  derive_key(participant_key, "wrapping for " + to_hex(investigator)));
+}
+
+std::optional<SecretKey> unwrap_participant_key(const BoxKeys& investigator, int own_session,
+                                                const Bytes& wrapped) {
+  return key_from(open_box(investigator, participant_key_context(own_session), wrapped));
+}
+
+Bytes keep_participant_key(const SecretKey& station_secret, int own_session,
+                           const SecretKey& participant_key) {
+  return seal(keeping_key(station_secret), participant_key_context(own_session), participant_key,
               kWrapPadding);
 }
 
-std::optional<SecretKey> unwrap_participant_key(const SecretKey& study_master, int own_session,
-                                                const Bytes& wrapped) {
-  const std::optional<Bytes> bytes = unseal(
-      wrapping_key(study_master), participant_key_context(own_session), wrapped, kWrapPadding);
-  SecretKey key{};
-  if (!bytes || bytes->size() != key.size()) return std::nullopt;
-  std::copy(bytes->begin(), bytes->end(), key.begin());
-  return key;
+std::optional<SecretKey> kept_participant_key(const SecretKey& station_secret, int own_session,
+                                              const Bytes& kept) {
+  return key_from(unseal(keeping_key(station_secret), participant_key_context(own_session), kept,
+                         kWrapPadding));
 }
 
 Bytes seal_text(const Event& event, const SecretKey& participant_key, const std::string& text,

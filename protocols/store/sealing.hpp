@@ -1,9 +1,10 @@
-/// \file What is encrypted under a participant's key, and how that key is wrapped under the
-/// study's. A box is bound to the session's own number (Event::own_session) and to its place there,
-/// so that none can be passed off as another. Format: docs/data-dictionary.md, "Events".
+/// \file What is encrypted under a participant's key, and who holds that key: the investigator
+/// always, the station only while the session is open. A box is bound to the session's own number
+/// (Event::own_session) and to its place there, so that none can be passed off as another. Format:
+/// docs/data-dictionary.md, "Events".
 #pragma once
 
-#include "core/cipher.hpp"
+#include "core/public_keys.hpp"
 #include "protocols/store/event.hpp"
 #include "protocols/store/trace.hpp"
 
@@ -25,15 +26,23 @@ struct SealedTrace {
 /// Events' sealed parts are padded to a multiple of this many bytes.
 inline constexpr std::size_t kEventPadding = 256;
 
-/// A participant's random key, encrypted under the study's. Once the row that holds it is
-/// destroyed, nobody can read the participant's payloads any more.
-/// \param own_session  the session's own number, see SessionRow
-[[nodiscard]] Bytes wrap_participant_key(const SecretKey& study_master, int own_session,
+/// A participant's random key, sealed for the investigator. Once the row that holds it is
+/// destroyed, nobody can read the participant's payloads any more. \param own_session  the
+/// session's own number, see SessionRow
+[[nodiscard]] Bytes wrap_participant_key(const PublicKey& investigator, int own_session,
                                          const SecretKey& participant_key);
 /// \return nothing if the bytes are no such key, or another session's
-[[nodiscard]] std::optional<SecretKey> unwrap_participant_key(const SecretKey& study_master,
+[[nodiscard]] std::optional<SecretKey> unwrap_participant_key(const BoxKeys& investigator,
                                                               int own_session,
                                                               const Bytes& wrapped);
+
+/// The same key, kept at the station while the session is open, so that it can be resumed there.
+/// \param station_secret  see design::Station
+[[nodiscard]] Bytes keep_participant_key(const SecretKey& station_secret, int own_session,
+                                         const SecretKey& participant_key);
+/// \return nothing if the bytes are no such key, another session's or another station's
+[[nodiscard]] std::optional<SecretKey> kept_participant_key(const SecretKey& station_secret,
+                                                            int own_session, const Bytes& kept);
 
 /// Encrypts the secret text of an event (schedule, measures).
 /// \param event  session, sequence and kind are set

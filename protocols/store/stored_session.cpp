@@ -61,8 +61,7 @@ void StoredStudy::require_participant_id(const std::string& id) const {
   refuse("'" + id + "' is no participant id; use 1 to 32 of 0-9, A-Z, a-z, '+', '-', '_'");
 }
 
-void StoredStudy::admit(const Event& opened, const Bytes& wrapped_key,
-                        std::chrono::nanoseconds at) {
+void StoredStudy::admit(const Event& opened, const SessionKeys& keys, std::chrono::nanoseconds at) {
   refuse_if_over();
   if (opened.session != next_session()) {
     refuse("session " + std::to_string(opened.session) + " is not the next one (" +
@@ -78,16 +77,33 @@ void StoredStudy::admit(const Event& opened, const Bytes& wrapped_key,
                                            .participant = opening.participant,
                                            .enrolment = opening.enrolment,
                                            .first = opened.hash,
-                                           .key = sha256(wrapped_key)}));
-  insert_key(database_, opened.session, wrapped_key);
+                                           .key = sha256(keys.wrapped)}));
+  insert_key(database_, opened.session, keys.wrapped);
+  if (!keys.kept.empty()) insert_station_key(database_, opened.session, keys.kept);
 }
 
 void StoredStudy::conclude(const Event& closed, std::chrono::nanoseconds at) {
+  database_.query("DELETE FROM station_keys WHERE session = ?").bind(closed.session).run();
   append_to_file(EventKind::session_closed, at,
                  to_json(SessionClosedBody{.session = closed.session,
                                            .length = closed.sequence + 1,
                                            .head = closed.hash,
                                            .complete = body_of(closed, completion_from_json)}));
+}
+
+bool StoredStudy::keeps_key(int session) const {
+  Query query = database_.query("SELECT 1 FROM station_keys WHERE session = ?");
+  query.bind(session);
+  return query.step();
+}
+
+void StoredStudy::forget_erased_keys() const {
+  try {
+    database_.checkpoint();
+  } catch (const SQLite::Exception&) {
+    // What was to be stored is stored. SQLite empties the log when the last program leaves the
+    // file.
+  }
 }
 
 void StoredStudy::check_opening(const SessionOpening& opening) const {
@@ -193,7 +209,7 @@ void StoredStudy::check_whole(const BufferedEvents& session) const {
 
 void StoredStudy::store_whole(const BufferedEvents& session, const Bytes& wrapped_key,
                               std::chrono::nanoseconds at) {
-  admit(session.events.front(), wrapped_key, at);
+  admit(session.events.front(), {.wrapped = wrapped_key, .kept = {}}, at);
   DerivedRows rows;
   for (const Event& event : session.events) {
     fold(rows, event);
@@ -209,6 +225,7 @@ void StoredStudy::withdraw(int session, std::chrono::nanoseconds at, const std::
     refuse("the participant of session " + std::to_string(session) + " has already withdrawn");
   }
   database_.query("DELETE FROM participant_keys WHERE session = ?").bind(session).run();
+  database_.query("DELETE FROM station_keys WHERE session = ?").bind(session).run();
   append_to_file(EventKind::participant_withdrawn, at,
                  to_json(ParticipantBody{.session = session, .reason = reason}));
 }
@@ -247,14 +264,14 @@ void StoredStudy::check_replacement(const SessionRow& row, const std::string& by
   }
 }
 
-StoredSession::StoredSession(StoredStudy& study, int session, Bytes wrapped_key, UtcClock utc)
-    : StoredSession(study, ChainLink(session), std::move(wrapped_key), std::move(utc)) {}
+StoredSession::StoredSession(StoredStudy& study, int session, SessionKeys keys, UtcClock utc)
+    : StoredSession(study, ChainLink(session), std::move(keys), std::move(utc)) {}
 
 StoredSession::StoredSession(StoredStudy& study, const Event& last, UtcClock utc)
     : StoredSession(study, ChainLink::after(last), {}, std::move(utc)) {}
 
-StoredSession::StoredSession(StoredStudy& study, ChainLink chain, Bytes wrapped_key, UtcClock utc)
-    : study_(study), chain_(chain), wrapped_key_(std::move(wrapped_key)), utc_(std::move(utc)) {
+StoredSession::StoredSession(StoredStudy& study, ChainLink chain, SessionKeys keys, UtcClock utc)
+    : study_(study), chain_(chain), keys_(std::move(keys)), utc_(std::move(utc)) {
   if (!utc_) {
     utc_ = [] {
       return std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch());
@@ -269,8 +286,11 @@ void StoredSession::accept(const Event& event, const std::optional<SealedTrace>&
 
 void StoredSession::accept_together(std::span<const RecordedEvent> events) {
   ChainLink chain = chain_;
+  bool erases_key = false;
   study_.database().change([&] {
     if (chain_.length() > 0) refuse_if_others_wrote(events.front().event.session);
+    erases_key = events.back().event.kind == EventKind::closed &&
+                 study_.keeps_key(events.back().event.session);
     for (const auto& [event, trace] : events) {
       const bool first = chain.length() == 0;
       chain.extend(event);
@@ -279,6 +299,7 @@ void StoredSession::accept_together(std::span<const RecordedEvent> events) {
     }
   });
   chain_ = chain;
+  if (erases_key) study_.forget_erased_keys();
 }
 
 /// If two programs recorded one session, each would lose what the other records.
@@ -290,7 +311,7 @@ void StoredSession::refuse_if_others_wrote(int session) const {
 }
 
 void StoredSession::store(const Event& event, const std::optional<SealedTrace>& trace, bool first) {
-  if (first) study_.admit(event, wrapped_key_, utc_());
+  if (first) study_.admit(event, keys_, utc_());
   study_.append(event, trace);
   if (event.kind == EventKind::closed) study_.conclude(event, utc_());
 }

@@ -18,6 +18,12 @@
 
 namespace touchtrial::store {
 
+/// A session's key in both forms. See sealing.hpp.
+struct SessionKeys {
+  Bytes wrapped;  ///< for the investigator
+  Bytes kept;     ///< at the station, while the session is open; may be empty
+};
+
 class StoredStudy {
  public:
   explicit StoredStudy(Database opened) : database_(std::move(opened)) {}
@@ -52,14 +58,19 @@ class StoredStudy {
   /// \throws StoreError if the study is closed, the session is not the next, belongs to another
   ///   study, its participant or enrolment is taken (by which session), or it would mix pilots with
   ///   others or sessions that are seen with sessions that are felt
-  void admit(const Event& opened, const Bytes& wrapped_key, std::chrono::nanoseconds at);
+  void admit(const Event& opened, const SessionKeys& keys, std::chrono::nanoseconds at);
   /// The last event of a session that may go on.
   /// \throws StoreError if there is no such session, it is closed, its participant has withdrawn,
   ///   or the study is closed
   [[nodiscard]] Event last_of_open(int session) const;
-  /// Records a session's end on the file's chain.
+  /// Records a session's end on the file's chain, and erases the station's copy of its key.
   /// \param closed  its last event
   void conclude(const Event& closed, std::chrono::nanoseconds at);
+  /// Whether the station has a copy of the session's key.
+  [[nodiscard]] bool keeps_key(int session) const;
+  /// Empties the log, which still has pages with a station's copy of a key that was erased. Does
+  /// nothing if the disk fails or another program reads. Call it outside of Database::change.
+  void forget_erased_keys() const;
 
   /// Holds the events of a finished session against each other.
   /// \throws StoreError, EventFault
@@ -103,7 +114,7 @@ class StoredStudy {
 class StoredSession final : public EventSink {
  public:
   /// \param study  must outlive this
-  StoredSession(StoredStudy& study, int session, Bytes wrapped_key, UtcClock utc);
+  StoredSession(StoredStudy& study, int session, SessionKeys keys, UtcClock utc);
   /// Goes on with a session that is stored and open.
   /// \param last  its last event
   StoredSession(StoredStudy& study, const Event& last, UtcClock utc);
@@ -112,13 +123,13 @@ class StoredSession final : public EventSink {
   void accept_together(std::span<const RecordedEvent> events) override;
 
  private:
-  StoredSession(StoredStudy& study, ChainLink chain, Bytes wrapped_key, UtcClock utc);
+  StoredSession(StoredStudy& study, ChainLink chain, SessionKeys keys, UtcClock utc);
   void refuse_if_others_wrote(int session) const;
   void store(const Event& event, const std::optional<SealedTrace>& trace, bool first);
 
   StoredStudy& study_;
   ChainLink chain_;
-  Bytes wrapped_key_;
+  SessionKeys keys_;
   UtcClock utc_;
 };
 

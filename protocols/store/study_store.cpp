@@ -186,6 +186,15 @@ std::optional<Bytes> StudyStore::wrapped_key(int session) const {
   });
 }
 
+std::optional<Bytes> StudyStore::kept_key(int session) const {
+  return impl_->run([&]() -> std::optional<Bytes> {
+    Query query = impl_->database().query("SELECT kept FROM station_keys WHERE session = ?");
+    query.bind(session);
+    if (!query.step()) return std::nullopt;
+    return query.blob(0);
+  });
+}
+
 std::optional<SealedTrace> StudyStore::sealed_trace(int session, int trial) const {
   return impl_->run([&]() -> std::optional<SealedTrace> {
     Query query = impl_->database().query(
@@ -221,8 +230,9 @@ void StudyStore::add_session(const BufferedEvents& session, const Bytes& wrapped
 }
 
 std::unique_ptr<EventSink> StudyStore::begin_session(int session, const Bytes& wrapped_key,
-                                                     UtcClock utc) {
-  return std::make_unique<StoredSession>(impl_->study, session, wrapped_key, std::move(utc));
+                                                     UtcClock utc, const Bytes& kept_key) {
+  return std::make_unique<StoredSession>(impl_->study, session, SessionKeys{wrapped_key, kept_key},
+                                         std::move(utc));
 }
 
 std::unique_ptr<EventSink> StudyStore::continue_session(int session, UtcClock utc) {

@@ -102,9 +102,12 @@ class StudyStore {
   /// holds the session from its event `opened` on; storing that event throws the errors of
   /// add_session.
   /// \param utc  the system's clock if empty
+  /// \param kept_key  keep_participant_key's result, erased when the session ends; empty: the
+  ///   session cannot be resumed without the investigator's key
   /// \return the sink; it must not outlive the store
   [[nodiscard]] std::unique_ptr<EventSink> begin_session(int session, const Bytes& wrapped_key,
-                                                         UtcClock utc = {});
+                                                         UtcClock utc = {},
+                                                         const Bytes& kept_key = {});
 
   /// Goes on with a session that is stored and still open, after the program ended during it. Give
   /// last_event to the recorder (SessionRecorder::go_on_after). If another program goes on with it
@@ -158,6 +161,8 @@ class StudyStore {
 
   /// The participant's wrapped key; empty after withdrawal.
   [[nodiscard]] std::optional<Bytes> wrapped_key(int session) const;
+  /// The station's copy of an open session's key; empty if there is none, or the session has ended.
+  [[nodiscard]] std::optional<Bytes> kept_key(int session) const;
   /// \throws StoreError if the trace must be fetched from elsewhere and cannot be
   [[nodiscard]] std::optional<SealedTrace> sealed_trace(int session, int trial) const;
 

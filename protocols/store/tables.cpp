@@ -1,5 +1,6 @@
 #include "protocols/store/tables.hpp"
 
+#include "core/text.hpp"
 #include "protocols/store/damage.hpp"
 
 #include <algorithm>
@@ -24,6 +25,7 @@ constexpr auto kEvents = std::to_array<TableColumn>({{"session", integer},
 constexpr auto kTraces = std::to_array<TableColumn>(
     {{"session", integer}, {"trial", integer}, {"box", blob, false, {}, true}});
 constexpr auto kKeys = std::to_array<TableColumn>({{"session", integer}, {"wrapped", blob}});
+constexpr auto kStationKeys = std::to_array<TableColumn>({{"session", integer}, {"kept", blob}});
 constexpr auto kSessions = std::to_array<TableColumn>({{"session", integer},
                                                        {"participant", text},
                                                        {"enrolment", integer},
@@ -69,16 +71,11 @@ constexpr auto kTables = std::to_array<TableDefinition>({
     {"events", kEvents, kOfEvent, true},
     {"traces", kTraces, kOfTrial, true},
     {"participant_keys", kKeys, kOfSession},
+    {"station_keys", kStationKeys, kOfSession, false, {}, {}, true},
     {"sessions", kSessions, kOfSession, false, kTakenOnce},
     {"trials", kTrials, kOfTrial, false, {}, kTrialsRefer},
     {"responses", kResponses, kOfTrial, false, {}, kResponsesRefer},
 });
-
-std::string listed(std::span<const Names> names) {
-  std::string text;
-  for (const Names name : names) text += (text.empty() ? "" : ", ") + std::string(name);
-  return text;
-}
 
 std::string reference_sql(const TableReference& reference) {
   return "REFERENCES " + std::string(reference.table) + "(" + listed(reference.columns) + ")";
@@ -186,11 +183,9 @@ const TableDefinition& table_definition(Table table) {
 }
 
 std::string column_list(Table table, std::string_view prefix) {
-  std::string text;
-  for (const TableColumn& column : table_definition(table).columns) {
-    text += (text.empty() ? "" : ", ") + std::string(prefix) + std::string(column.name);
-  }
-  return text;
+  return listed(table_definition(table).columns, ", ", [&](const TableColumn& column) {
+    return std::string(prefix) + std::string(column.name);
+  });
 }
 
 std::string create_table_sql(const TableDefinition& table, const TypeNames& types) {

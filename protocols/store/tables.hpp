@@ -18,9 +18,9 @@
 namespace touchtrial::store {
 
 /// Counts every change of the tables, in files and on servers.
-inline constexpr int kSchemaVersion = 3;
+inline constexpr int kSchemaVersion = 4;
 /// The oldest version that can be brought forward; earlier ones were never released.
-inline constexpr int kOldestSchemaVersion = 3;
+inline constexpr int kOldestSchemaVersion = 4;
 
 /// integer: 64 bits, signed. real: 64 bits. text: UTF-8. blob: bytes.
 enum class ColumnType { integer, real, text, blob };
@@ -55,10 +55,11 @@ struct TableDefinition {
   bool append_only = false;               ///< rows are neither changed nor removed
   std::span<const UniqueIndex> unique{};
   std::span<const TableReference> references{};
+  bool at_stations_alone = false;  ///< servers do not have it
 };
 
 /// Each table comes after those that it refers to.
-enum class Table { events, traces, participant_keys, sessions, trials, responses };
+enum class Table { events, traces, participant_keys, station_keys, sessions, trials, responses };
 
 [[nodiscard]] std::span<const TableDefinition> table_definitions();
 [[nodiscard]] const TableDefinition& table_definition(Table table);

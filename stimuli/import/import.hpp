@@ -24,13 +24,13 @@ struct ImportOptions {
   int size_px = 500;                  ///< side of a crop, kMinCropSizePx .. kMaxCropSizePx
   int crops = 5;                      ///< number for each class, 1 .. kMaxCropsOfClass
   double pitch_mm = 0.2;              ///< size of a crop's pixel on the plane, 0.001 .. 10
-  /// Pixels of the photographs on a millimetre of their object; if it is given here or taken from
-  /// the files, photographs are resampled to feel life-size. Otherwise each pixel stays a pixel.
+  /// Pixels per millimetre of the photographed object. If it is given here or taken from the files,
+  /// photographs are resampled to feel life-size. Otherwise each pixel stays a pixel.
   std::optional<double> pixels_per_mm;
   bool pixels_per_mm_of_files = false;
   LevelEqualising equalise = LevelEqualising::none;
   std::string protocol;    ///< name of the protocol of the study
-  int methods = 1;         ///< that the study presents: adaptive, and with 2 tv-gabor beside it
+  int methods = 1;         ///< of the study: adaptive (1), or adaptive and tv-gabor (2)
   std::string licence;     ///< of the photographs; empty: not stated
   std::string source;      ///< where they come from; empty: not stated
   std::uint64_t seed = 1;  ///< decides the places of crops

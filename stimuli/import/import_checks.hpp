@@ -1,5 +1,5 @@
-/// \file What an import refuses before it reads or writes, and what it reports and warns of
-/// afterwards. Private to stimuli/import.
+/// \file The checks before an import reads or writes, and its report and warnings afterwards.
+/// Private to stimuli/import.
 #pragma once
 
 #include "stimuli/import/crop_plan.hpp"

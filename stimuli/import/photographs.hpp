@@ -37,7 +37,7 @@ struct PhotoFolder {
 /// Whether a text is UTF-8, as JSON files must be.
 [[nodiscard]] bool is_utf8(const std::string& text);
 
-/// A photograph, and what its manifest entry says of it.
+/// A photograph, and the content of its manifest entry.
 struct Photograph {
   std::filesystem::path path;
   Digest sha256{};         ///< of the file

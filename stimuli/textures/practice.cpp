@@ -17,8 +17,8 @@ struct Wave {
   double phase = 0.0;
 };
 
-/// Ripples that wind leaves in sand: the sum of many waves of nearly one length and direction has
-/// crests that fork, end and begin anew.
+/// Ripples that wind leaves in sand: the sum of many waves of almost the same length and direction
+/// has crests that fork, end and start again.
 class Sand {
  public:
   explicit Sand(const Specimen& specimen)

@@ -92,7 +92,7 @@ TEST_CASE("A session's record holds practice, deviations, resumptions and statio
   CHECK_FALSE(collection.visual);
 }
 
-TEST_CASE("Practice that did not reach its criterion is told") {
+TEST_CASE("Practice that did not reach its criterion is reported") {
   FakeStudy study(design::identification::classification());
   FakeSession session = session_of("P01", 1);
   session.before_trials = [](store::SessionRecorder& recorder) {
@@ -148,7 +148,7 @@ TEST_CASE("Every participant is counted once, by the session that stands") {
   CHECK(collection.sessions[4].replacement_reason == "did not finish");
 }
 
-TEST_CASE("Of who withdrew a collection holds nothing but that") {
+TEST_CASE("A collection holds nothing about a withdrawn participant except the withdrawal") {
   FakeStudy study(design::identification::classification(), {.simulated = false});
   FakeSession session = session_of("P01", 1);
   session.station = falcon();
@@ -172,7 +172,7 @@ TEST_CASE("Of who withdrew a collection holds nothing but that") {
   CHECK(collection.flow.exclusion_reasons.empty());
 }
 
-TEST_CASE("Who completes after an interim look is not analysed yet") {
+TEST_CASE("A participant who completes after an interim look is not analysed yet") {
   FakeStudy study(design::identification::classification());
   study.add(session_of("P01", 1));
   CHECK(analysis::load_collection(study.store()).flow.analysed == 1);  // blind: to be analysed

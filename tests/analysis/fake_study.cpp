@@ -71,7 +71,7 @@ int position_of(const design::Schedule& schedule, int class_index) {
   return static_cast<int>(found - schedule.layout.begin());
 }
 
-/// The presentation at a place, from 1, begins at 10 times that in seconds.
+/// The n-th presentation begins at 10 n seconds.
 void interrupt_trial(store::SessionRecorder& recorder, const design::Presentation& shown,
                      int place) {
   const milliseconds start(10'000 * place);
@@ -79,7 +79,7 @@ void interrupt_trial(store::SessionRecorder& recorder, const design::Presentatio
   recorder.interrupted(start + milliseconds(1000), shown.trial, "comfort stop");
 }
 
-/// It is touched 0.5 s and answered 4.25 s later.
+/// The plane is touched after 0.5 s, and the answer comes 4.25 s later.
 void record_trial(store::SessionRecorder& recorder, const FakeSession& session,
                   const design::Schedule& schedule, const design::Presentation& shown, int place) {
   const milliseconds start(10'000 * place);
@@ -126,7 +126,10 @@ void FakeStudy::add(const FakeSession& session) {
   const SecretKey own = entropy.secret("participant");
   store::BufferedEvents buffer;
   store::SessionRecorder recorder(number, own, buffer);
-  const design::Schedule schedule = design::make_schedule(key_.study, session.enrolment);
+  const design::Schedule schedule = design::make_schedule(
+      key_.study, key_.draw_of(session.enrolment, key_.simulated || store_.commitment().pilot
+                                                      ? design::Draws::rehearsal
+                                                      : design::Draws::people));
   store::SessionOpening opening;
   opening.participant = session.participant;
   opening.enrolment = session.enrolment;
@@ -151,7 +154,7 @@ void FakeStudy::add(const FakeSession& session) {
   }
   if (again != nullptr) record_trial(recorder, session, schedule, *again, ++place);
   recorder.closed(milliseconds(10'000'000), session.complete);
-  store_.add_session(buffer, store::wrap_participant_key(key_.master, number, own),
+  store_.add_session(buffer, store::wrap_participant_key(key_.investigator_box, number, own),
                      milliseconds(number));
 }
 

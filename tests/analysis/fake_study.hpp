@@ -18,7 +18,7 @@ using FakeAnswers = std::function<std::optional<int>(const design::Presentation&
 /// What was felt in a presentation.
 using FakeTraces = std::function<store::Trace(const design::Presentation&)>;
 
-/// How one fake session goes.
+/// The course of one fake session.
 struct FakeSession {
   std::string participant;
   int enrolment = 1;
@@ -39,7 +39,7 @@ struct FakeOptions {
   bool simulated = true;
   std::string label = "bark";  ///< of the first class
   bool pilot = false;
-  std::string trials{};    ///< JSON, on top of the study's trials; may be empty
+  std::string trials{};    ///< JSON that changes the study's trials; may be empty
   bool with_pack = false;  ///< tiny fields in `folder() / "study.pack"`
 };
 
@@ -59,7 +59,7 @@ class FakeStudy {
 
   /// Answers everything right.
   [[nodiscard]] static FakeAnswers always_right();
-  /// Takes class `from` for `to`, and everything else for what it is.
+  /// Answers `to` to class `from`, and is right about all others.
   [[nodiscard]] static FakeAnswers confusing(int from, int to);
 
  private:

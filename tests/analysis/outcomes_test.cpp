@@ -57,7 +57,7 @@ TEST_CASE("A trial without a response counts and is wrong") {
   CHECK_FALSE(third.correct());
 }
 
-TEST_CASE("Of a trial that was interrupted and repeated the repetition counts once") {
+TEST_CASE("An interrupted and repeated trial counts once, by its repetition") {
   FakeStudy study(design::identification::classification());
   study.add({.participant = "P01", .answers = FakeStudy::always_right(), .interrupt_trial = 5});
   study.close_and_unblind();
@@ -129,7 +129,7 @@ TEST_CASE("load_outcomes names the key that does not belong") {
                  "seal"));
 }
 
-TEST_CASE("Outcomes are not shown of tables that the events do not give rise to") {
+TEST_CASE("Outcomes are not shown if the tables do not follow from the events") {
   FakeStudy study(design::identification::classification());
   study.add({.participant = "P01", .answers = FakeStudy::always_right()});
   study.close_and_unblind();

@@ -1,4 +1,4 @@
-/// \file Looks into texts and error messages, the same under either version of Catch2.
+/// \file Checks of texts and error messages that work with either version of Catch2.
 #pragma once
 
 #include <string>
@@ -10,7 +10,7 @@ namespace touchtrial {
   return text.find(part) != std::string_view::npos;
 }
 
-/// What `work` complains of when it throws an `Expected`; empty if it does not throw.
+/// The message of the `Expected` that `work` throws; empty if it does not throw.
 template <typename Expected, typename Work>
 [[nodiscard]] std::string complaint_of(Work&& work) {
   try {

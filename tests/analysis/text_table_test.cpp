@@ -1,5 +1,6 @@
 #include "analysis/text_table.hpp"
 
+#include "analysis/page/wording.hpp"
 #include "analysis/text_figures.hpp"
 #include "support/catch.hpp"
 
@@ -32,7 +33,7 @@ TEST_CASE("A table pads labels in any language to the same column") {
   CHECK(table.text() == "  class    n\n  écorce   5\n  木目    12\n");
 }
 
-TEST_CASE("A table that is too wide goes on below with its first column repeated") {
+TEST_CASE("A table that is too wide continues below with its first column repeated") {
   analysis::TextTable table({"row", "aaaaaaaa", "bbbbbbbb", "cccccccc"});
   table.add({"one", "1", "2", "3"});
   const auto lines = lines_of(table.text(26));
@@ -67,12 +68,12 @@ TEST_CASE("wrapped breaks paragraphs at spaces and indents what follows") {
     CHECK(analysis::display_width(line) <= analysis::kTextWidth);
 }
 
-TEST_CASE("Figures in text have signs where they differ and dashes where they do not exist") {
+TEST_CASE("Numbers in text have signs where they differ and dashes where they do not exist") {
   CHECK(analysis::percent_of({25, 20}) == "80.0%");
   CHECK(analysis::percent_of({0, 0}) == "-");
-  CHECK(analysis::percent_range({0.0, 1.0}) == "[0.0, 100.0]");
-  CHECK(analysis::points(0.075) == "+7.5");
-  CHECK(analysis::points(-0.0001) == "0.0");
+  CHECK(analysis::share_range(analysis::Interval{0.0, 1.0}) == "[0.0, 100.0]");
+  CHECK(analysis::points_figure(0.075) == "+7.5");
+  CHECK(analysis::points_figure(-0.0001) == "0.0");
   CHECK(analysis::signed_figure(std::nullopt, 2) == "-");
   CHECK(analysis::signed_figure(0.4, 2) == "+0.40");
   CHECK(analysis::p_value(0.000244140625) == "0.000244");

@@ -77,8 +77,10 @@ std::map<std::string, std::string> secrets_of(const OddStudy& study) {
   for (const std::string& label : kOddLabels) secrets["the label " + label] = label;
   for (const std::string& image : kOddImages) secrets["the image " + image] = image;
   const json key = json::parse(content(study.path() / "cloths.key"));
-  for (const std::string name : {"master", "nonce"}) {
-    const std::string hex = key.at(name);
+  for (const std::string name : {"master", "station's secret"}) {
+    const std::string hex =
+        name == "master" ? key.at("master")
+                         : json::parse(content(study.path() / "cloths.station")).at("secret");
     REQUIRE(hex.size() == 64);
     secrets[name + ", its first half"] = hex.substr(0, 32);
     secrets[name + ", its second half"] = hex.substr(32);

@@ -55,7 +55,7 @@ TEST_CASE("a database that another program writes is refused, and is not changed
     other.exec("BEGIN IMMEDIATE");
     check_refused(note(study, study.in("study.db")),
                   {"study.db: ", "is in use by another program", "try again"});
-    CHECK(study.run({"report", study.in("study.db")}).exit_code == 0);  // reading goes on
+    CHECK(study.run({"report", study.in("study.db")}).exit_code == 0);  // reading still works
     other.exec("ROLLBACK");
   }
   CHECK(note(study, study.in("study.db")).exit_code == 0);
@@ -91,7 +91,7 @@ TEST_CASE("a session is not put into another study's database") {
   const std::string before = content(study.path() / "study.db");
   const ProgramResult refused =
       study.run({"run", study.in("others.json"), "--participant", "P009", "--db",
-                 study.in("study.db"), "--key", study.in("others.key"), "--pack",
+                 study.in("study.db"), "--station-file", study.in("others.station"), "--pack",
                  study.in("others.pack"), "--subject", study.in("quick.json"), "--headless"});
   check_refused(refused, {"study.db: ", "is the database of another study", "another --db"});
   CHECK(content(study.path() / "study.db") == before);

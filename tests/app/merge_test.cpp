@@ -171,7 +171,7 @@ TEST_CASE("a refused merge names the file, and makes none") {
   const ProgramResult taken = study.merge({"s1.db", "s3.db"}, {"-o", study.in("one.db")});
   CHECK(taken.exit_code == 1);
   CHECK(taken.errors.find("one.db: exists already") != std::string::npos);
-  replace_file(study.in("D.db.key"), content(study.in("other.db.key")));
+  replace_file(study.in("D.db.key"), content(study.in("other.db.key")), FileMode::owner_only);
   const ProgramResult keyed = study.merge({"s1.db", "s3.db"}, {"-o", study.in("D.db")});
   CHECK(keyed.exit_code == 1);
   CHECK(keyed.errors.find("D.db.key: is the key of another study") != std::string::npos);

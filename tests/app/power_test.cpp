@@ -88,7 +88,7 @@ TEST_CASE("combined shards of a power run print the same as one run") {
            study.path() / "shards" / "shard-copy.json");
   const ProgramResult twice = study.run(combine);
   CHECK(twice.output == whole.output);
-  CHECK_THAT(twice.errors, Catch::Contains("2/3") && Catch::Contains("taken once"));
+  CHECK_THAT(twice.errors, Catch::Contains("2/3") && Catch::Contains("used once"));
 
   REQUIRE(run_power(study, {"--participants", "3,5", "--shard", "2/3", "--out", study.in("other"),
                             "--servo", "--no-early-stop"})

@@ -108,7 +108,7 @@ TEST_CASE("prepare explains what it did for each stimulus") {
   const ProgramResult result = study.run({"prepare", study.in("cloths.json"), "--explain"});
   CHECK(result.exit_code == 0);
   CHECK(result.output.find(" kB  ") != std::string::npos);
-  CHECK(result.output.find("the pack had none of this picture and these options") !=
+  CHECK(result.output.find("the pack had no field of this picture with these options") !=
         std::string::npos);
 }
 

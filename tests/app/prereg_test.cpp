@@ -36,8 +36,8 @@ TEST_CASE("prereg writes the registration, the design and the hashes, and no sec
   }
   const json key = json::parse(content(study.path() / "cloths.key"));
   for (const std::string& secret :
-       {key["master"].get<std::string>(), key["nonce"].get<std::string>(),
-        key["stimuli"][0]["code"].get<std::string>(), std::string(".png")}) {
+       {key["master"].get<std::string>(), key["stimuli"][0]["code"].get<std::string>(),
+        std::string(".png")}) {
     CHECK(result.output.find(secret) == std::string::npos);
   }
   CHECK(study.run({"prereg", study.in("cloths.json")}).output == result.output);

@@ -240,10 +240,10 @@ TEST_CASE("after a withdrawal, nobody can open the person's sealed data again") 
             .age = 30,
             .gender = "",
             .contact = "somebody@example.org"});
-  const SecretKey master = key_of(study).master;
+  const design::StudyKey investigator = key_of(study);
   const int session = session_of(study.store(), "P005").session;
   const Bytes wrapped = study.store().wrapped_key(session).value();
-  const SecretKey lost = unwrap_participant_key(master, session, wrapped).value();
+  const SecretKey lost = unwrap_participant_key(investigator.box(), session, wrapped).value();
   const Opened before = opened_by(study.store(), session, lost);
   CHECK(before.parts >= 6);
   CHECK(before.questionnaires >= 1);
@@ -271,14 +271,15 @@ TEST_CASE("after a withdrawal, nobody can open the person's sealed data again") 
   CHECK(session_of(store, "P005").withdrawn);
   // The boxes are still there, because the chain needs them; nothing that is left opens one.
   CHECK(opened_by(store, session, lost).parts == before.parts);
-  std::vector<SecretKey> left = {master, derive_key(master, "participant keys"),
-                                 derive_key(master, "participant key")};
+  const SecretKey station = investigator.stations.front().secret;
+  std::vector<SecretKey> left = {investigator.master, investigator.box().secret_half, station,
+                                 derive_key(station, "participant keys")};
   for (const SessionRow& other : store.sessions()) {
     if (const auto key = store.wrapped_key(other.session)) {
-      left.push_back(unwrap_participant_key(master, other.session, *key).value());
+      left.push_back(unwrap_participant_key(investigator.box(), other.session, *key).value());
     }
   }
-  CHECK(left.size() == 3 + 4);
+  CHECK(left.size() == 4 + 4);
   for (const SecretKey& key : left) {
     const Opened now = opened_by(store, session, key);
     CHECK(now.parts == 0);

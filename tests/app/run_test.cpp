@@ -104,6 +104,10 @@ TEST_CASE("stations use their own numbers of a plan, and a replacement uses its 
     arguments.insert(arguments.end(), more.begin(), more.end());
     return study.run(arguments);
   };
+  const ProgramResult unprepared = plan({"4", "--names", "attic,cellar"});
+  CHECK(unprepared.exit_code == 1);
+  CHECK_THAT(unprepared.errors, Catch::Contains("cloths.key: there is no key"));
+  REQUIRE(study.run({"prepare", study.in("cloths.json")}).exit_code == 0);
   REQUIRE(plan({"4", "--names", "attic,cellar"}).exit_code == 0);
   const ProgramResult again = plan({"6", "--names", "attic,cellar"});
   CHECK(again.exit_code == 2);
@@ -111,19 +115,19 @@ TEST_CASE("stations use their own numbers of a plan, and a replacement uses its 
 
   const ProgramResult nowhere = run(study, "P01");
   CHECK(nowhere.exit_code == 2);
-  CHECK_THAT(nowhere.errors, Catch::Contains("--station"));
+  CHECK_THAT(nowhere.errors, Catch::Contains("cloths.station") && Catch::Contains("--station"));
   const ProgramResult unknown = run(study, "P01", {"--station", "roof"});
   CHECK(unknown.exit_code == 2);
-  CHECK_THAT(unknown.errors, Catch::Contains("it has attic, cellar"));
+  CHECK_THAT(unknown.errors, Catch::Contains("cloths.roof.station"));
 
   REQUIRE(run(study, "P01", {"--station", "cellar"}).exit_code == 0);
   const ProgramResult elsewhere = run(study, "P02", {"--station", "attic"});
   CHECK(elsewhere.exit_code == 2);
-  CHECK_THAT(elsewhere.errors, Catch::Contains("number 3, which is station cellar's"));
+  CHECK_THAT(elsewhere.errors, Catch::Contains("has number 3, which is not station attic's"));
   REQUIRE(run(study, "P02", {"--station", "cellar"}).exit_code == 0);
   const ProgramResult full = run(study, "P03", {"--station", "cellar"});
   CHECK(full.exit_code == 2);
-  CHECK_THAT(full.errors, Catch::Contains("all numbers of station cellar are taken"));
+  CHECK_THAT(full.errors, Catch::Contains("numbers of station cellar are taken"));
   REQUIRE(plan({"6", "--extend"}).exit_code == 0);
   REQUIRE(run(study, "P03", {"--station", "cellar"}).exit_code == 0);
   REQUIRE(study.run({"exclude", study.in("db"), "--participant", "P01", "--reason", "test"})

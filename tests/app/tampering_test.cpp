@@ -81,7 +81,7 @@ void flip_in(const StudyFolder& study, const std::string& table, const std::stri
 struct Tampering {
   std::string what;
   std::function<void(const StudyFolder&)> alter;
-  std::vector<std::string> words;  ///< that the line of the failed check holds
+  std::vector<std::string> words;  ///< that the failed check's line must contain
 };
 
 fs::path first_field(const StudyFolder& study) {

@@ -21,7 +21,7 @@ TEST_CASE("a plane with a negative side is refused") {
   CHECK(Plane<int>(0, 3).empty());
 }
 
-TEST_CASE("the mean of a plane is exact for grey levels, and a flat plane is told from others") {
+TEST_CASE("the mean of a plane is exact for grey levels, and flat planes are recognised") {
   GreyImage image(2, 3, 200);
   CHECK(mean_of(image) == 200.0);
   CHECK(is_flat(image));

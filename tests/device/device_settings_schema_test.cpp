@@ -1,5 +1,5 @@
-// Holds the JSON Schema of device settings and their reader to each other: tries every statement of
-// the schema on the reader, and looks up the keys that the reader knows in the schema.
+// Compares the JSON Schema of device settings with their reader: tries every statement of the
+// schema on the reader, and looks up the reader's keys in the schema.
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "device/device_settings.hpp"

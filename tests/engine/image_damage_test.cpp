@@ -98,7 +98,7 @@ TEST_CASE("a file that is missing, a folder or empty is refused by name") {
   CHECK_THAT(error_of({}), holds_text("empty"));
 }
 
-TEST_CASE("what is not a picture of a known kind is refused, and foreign kinds are named") {
+TEST_CASE("a file that is not a picture of a known kind is refused, and foreign kinds are named") {
   CHECK_THAT(error_of(text("Dear reader")), holds_text("not an image of a known kind"));
   CHECK_THAT(error_of(Bytes(4096, 0)), holds_text("not an image of a known kind"));
   CHECK_THAT(error_of(text("GIF89a\1\1\1\1")), holds_text("GIF"));

@@ -1,348 +1,399 @@
 #include "house/declarations.hpp"
 
+#include "house/tokens.hpp"
+
 #include <algorithm>
-#include <cctype>
 #include <cstddef>
+#include <map>
 #include <set>
+#include <utility>
 
 namespace touchtrial::house {
 namespace {
 
-using Tokens = std::vector<std::string>;
+using Words = std::vector<std::string>;  // tokens; a pair of brackets with its content is one
 
-bool in_word(char c) {
-  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+const std::string kAnonymous = "(anonymous)";
+const std::string kInitialiser = "{}";
+const std::string kCondition = "{requires}";
+const std::string kBody = "}";  // of a type: a variable may follow
+
+bool is_group(const std::string& word, char bracket) {
+  return word.size() > 1 && word.front() == bracket;
 }
 
-/// Cuts a text into words and punctuation; comments and preprocessor lines are gone, literals are
-/// "".
-class Lexer {
- public:
-  explicit Lexer(std::string_view text) : text_(text) {}
-
-  Tokens tokens() {
-    while (at_ < text_.size()) next();
-    return std::move(tokens_);
-  }
-
- private:
-  void next() {
-    const char c = text_[at_];
-    if (c == '\n') {
-      line_is_empty_ = true;
-      ++at_;
-    } else if (std::isspace(static_cast<unsigned char>(c)) != 0) {
-      ++at_;
-    } else if (c == '#' && line_is_empty_) {
-      skip_directive();
-    } else if (starts_with("//")) {
-      at_ = std::min(text_.find('\n', at_), text_.size());
-    } else if (starts_with("/*")) {
-      skip_past("*/");
-    } else {
-      line_is_empty_ = false;
-      token(c);
-    }
-  }
-
-  void token(char c) {
-    if (starts_with("R\"")) {
-      const std::size_t open = text_.find('(', at_);
-      skip_past(")" + std::string(text_.substr(at_ + 2, open - at_ - 2)) + "\"");
-      tokens_.emplace_back("\"\"");
-    } else if (c == '"' || c == '\'') {
-      skip_literal(c);
-    } else if (in_word(c)) {
-      const std::size_t from = at_;
-      while (at_ < text_.size() && (in_word(text_[at_]) || is_separator_of_digits(from))) ++at_;
-      tokens_.emplace_back(text_.substr(from, at_ - from));
-    } else {
-      const std::size_t size = starts_with("::") ? 2 : 1;
-      tokens_.emplace_back(text_.substr(at_, size));
-      at_ += size;
-    }
-  }
-
-  bool is_separator_of_digits(std::size_t from) const {
-    return text_[at_] == '\'' && std::isdigit(static_cast<unsigned char>(text_[from])) != 0;
-  }
-
-  void skip_literal(char quote) {
-    for (++at_; at_ < text_.size() && text_[at_] != quote; ++at_) {
-      if (text_[at_] == '\\') ++at_;
-    }
-    ++at_;
-    tokens_.emplace_back("\"\"");
-  }
-
-  void skip_directive() {
-    while (at_ < text_.size() && text_[at_] != '\n') at_ += text_[at_] == '\\' ? 2 : 1;
-  }
-
-  void skip_past(const std::string& end) {
-    const std::size_t found = text_.find(end, at_ + 2);
-    at_ = found == std::string_view::npos ? text_.size() : found + end.size();
-  }
-
-  bool starts_with(std::string_view what) const { return text_.substr(at_).starts_with(what); }
-
-  std::string_view text_;
-  std::size_t at_ = 0;
-  bool line_is_empty_ = true;
-  Tokens tokens_;
-};
-
-bool is_name(const std::string& token) {
-  return !token.empty() && in_word(token.front());
+bool holds(const Words& words, const std::string& word) {
+  return std::find(words.begin(), words.end(), word) != words.end();
 }
 
-bool holds(const Tokens& tokens, const std::string& word) {
-  return std::find(tokens.begin(), tokens.end(), word) != tokens.end();
+/// The place after a word, or the end.
+std::size_t after(const Words& words, const std::string& word) {
+  const auto found = std::find(words.begin(), words.end(), word);
+  return static_cast<std::size_t>(found - words.begin()) + (found == words.end() ? 0 : 1);
+}
+
+std::string joined(const Words& words) {
+  std::string all;
+  for (const std::string& word : words) all += word;
+  return all;
 }
 
 /// Where the bracket at a place is closed, or the end.
-std::size_t closing(const Tokens& tokens, std::size_t at, const std::string& open,
-                    const std::string& close) {
-  std::size_t depth = 0;
-  for (; at < tokens.size(); ++at) {
-    if (tokens[at] == open) ++depth;
-    if (tokens[at] == close && --depth == 0) return at;
+std::size_t closing(const Tokens& tokens, std::size_t at) {
+  static const std::map<std::string, std::string> pairs = {
+      {"(", ")"}, {"[", "]"}, {"{", "}"}, {"<", ">"}};
+  const bool is_angle = tokens[at] == "<";
+  const std::string& close = pairs.at(tokens[at]);
+  for (++at; at < tokens.size(); ++at) {
+    if (tokens[at] == close) return at;
+    if (is_angle && tokens[at] == ";") break;
+    if (pairs.count(tokens[at]) > 0 && (is_angle || tokens[at] != "<")) at = closing(tokens, at);
   }
   return tokens.size();
+}
+
+/// The qualified name before a place, for instance "Plane<float>::~Plane"; "" if there is none.
+std::string name_before(const Words& words, std::size_t end) {
+  std::size_t from = end;
+  for (;;) {
+    if (from > 1 && is_group(words[from - 1], '<')) --from;
+    if (from == 0 || !is_name(words[from - 1])) return "";
+    --from;
+    if (from > 0 && words[from - 1] == "~") --from;
+    if (from < 2 || words[from - 1] != "::" || words[from - 2] == "::") break;
+    if (!is_name(words[from - 2]) && !is_group(words[from - 2], '<')) break;
+    --from;
+  }
+  return joined(Words(words.begin() + static_cast<std::ptrdiff_t>(from),
+                      words.begin() + static_cast<std::ptrdiff_t>(end)));
+}
+
+/// The place of the parameters of a function that is declared; the end if it is none.
+std::size_t parameters_at(const Words& words) {
+  static const std::set<std::string> ends = {"=", ":", "->", kInitialiser};
+  std::size_t found = words.size();
+  for (std::size_t i = 1; i < words.size() && ends.count(words[i]) == 0; ++i) {
+    const bool is_named = is_name(words[i - 1]) || is_group(words[i - 1], '<');
+    const bool is_pointer = words[i].starts_with("( *") || words[i].starts_with("( &");
+    const bool is_condition = words[i - 1] == "requires";
+    if (is_group(words[i], '(') && is_named && !is_pointer && !is_condition) found = i;
+  }
+  return found;
+}
+
+const std::set<std::string>& type_keys() {
+  static const std::set<std::string> keys = {"class", "struct", "union", "enum"};
+  return keys;
+}
+
+/// The place of "class" and the like; the end if there is none.
+std::size_t type_key_at(const Words& words) {
+  std::size_t i = 0;
+  while (i < words.size() && words[i] != "=" && type_keys().count(words[i]) == 0) ++i;
+  return i < words.size() && words[i] != "=" ? i : words.size();
+}
+
+/// Where the name of a type ends; 0 if the words before a "{" begin none.
+std::size_t type_head(const Words& words) {
+  static const std::set<std::string> ends_of_functions = {"const", "noexcept", "override"};
+  std::size_t end = type_key_at(words);
+  if (end == words.size()) return 0;
+  while (end < words.size() && words[end] != ":") ++end;
+  const std::string& last = words[end - 1];
+  if (is_group(last, '(') || ends_of_functions.count(last) > 0) return 0;
+  return last == "final" ? end - 1 : end;
+}
+
+/// Whether a "{" after these words begins what a template requires.
+bool begins_condition(const Words& words) {
+  const std::size_t size = words.size();
+  if (size == 0 || holds(words, "=")) return false;
+  if (words.back() == "requires") return true;
+  if (size < 3 || !is_group(words.back(), '(') || words[size - 2] != "requires") return false;
+  return words[size - 3] == "requires" || words[size - 3] == "&" || words[size - 3] == "|";
+}
+
+/// Whether a "{" after these words begins the value of a variable or of a member.
+bool begins_value(const Words& words) {
+  if (holds(words, "=")) return true;
+  if (type_head(words) > 0) return false;
+  if (parameters_at(words) == words.size()) return true;
+  return holds(words, ":") && (is_name(words.back()) || is_group(words.back(), '<'));
+}
+
+/// The name of the variable or of the typedef that is declared.
+std::string declared_name(const Words& words) {
+  std::size_t end = 0;
+  while (end < words.size() && words[end] != "=" && words[end] != kInitialiser) ++end;
+  const std::size_t all = end;
+  while (end > 0 && (is_group(words[end - 1], '[') || is_group(words[end - 1], '('))) --end;
+  const bool is_pointer =
+      end < all && (words[end].starts_with("( *") || words[end].starts_with("( &"));
+  if (!is_pointer) return name_before(words, end);
+  const Tokens inner = tokens_of(words[end]).tokens;
+  return name_before(inner, inner.size() - 1);
+}
+
+/// Parameters without their names and default values, which make no other function.
+std::string types_of(const Tokens& parameters) {
+  std::string types;
+  Tokens one;
+  int depth = 0;
+  bool in_default = false;
+  const auto end_parameter = [&] {
+    static const std::set<std::string> no_types = {"const", "volatile", "struct", "class",
+                                                   "enum",  "typename", "::"};
+    static const std::set<std::string> no_names = {"int",    "char",     "long",   "short",
+                                                   "double", "unsigned", "signed", "const"};
+    const bool is_named = one.size() > 1 && is_name(one.back()) &&
+                          no_names.count(one.back()) == 0 &&
+                          no_types.count(one[one.size() - 2]) == 0;
+    if (is_named) one.pop_back();
+    for (const std::string& token : one) types += token + " ";
+    one.clear();
+    in_default = false;
+  };
+  for (std::size_t i = 1; i + 1 < parameters.size(); ++i) {
+    const std::string& token = parameters[i];
+    if (token == "[" && parameters[i + 1] == "[") {
+      i = closing(parameters, i);
+      continue;
+    }
+    if (token == "<" || token == "(" || token == "{" || token == "[") ++depth;
+    if (token == ">" || token == ")" || token == "}" || token == "]") --depth;
+    if (depth == 0 && token == ",") {
+      end_parameter();
+      types += ", ";
+    } else {
+      in_default = in_default || (depth == 0 && token == "=");
+      if (!in_default) one.push_back(token);
+    }
+  }
+  end_parameter();
+  return types;
 }
 
 /// Reads the statements of a namespace, one after another.
 class Reader {
  public:
-  explicit Reader(Tokens tokens) : tokens_(std::move(tokens)) {}
+  explicit Reader(TokensOfFile file) : tokens_(std::move(file.tokens)) {
+    found_.includes = std::move(file.includes);
+  }
 
   Declarations read() {
     scope("");
+    found_.is_complete = found_.is_complete && at_ == tokens_.size();
     return std::move(found_);
   }
 
  private:
   void scope(const std::string& space) {
-    Tokens statement;
-    for (; at_ < tokens_.size(); ++at_) {
+    Words words;
+    for (; at_ < tokens_.size() && tokens_[at_] != "}"; ++at_) {
       const std::string& token = tokens_[at_];
-      if (token == "}") return;
       if (token == ";") {
-        ended(space, statement);
-        statement.clear();
+        ended(space, words);
+        words.clear();
       } else if (token == "{") {
-        if (opened(space, statement)) statement.clear();
-      } else if (token == "(" || token == "[") {
-        const std::size_t end = closing(tokens_, at_, token, token == "(" ? ")" : "]");
-        for (; at_ < end; ++at_) statement.push_back(tokens_[at_]);
-        if (end < tokens_.size()) statement.push_back(tokens_[end]);
+        opened(space, words);
+      } else if (token == "operator") {
+        words.push_back(operator_name());
+      } else if (token == "(" || token == "[" || (token == "<" && begins_arguments(words))) {
+        bracket(words);
       } else {
-        statement.push_back(token);
+        words.push_back(token);
       }
     }
   }
 
-  /// At a "{" after the words of a statement. True if its "}" ends the statement.
-  bool opened(const std::string& space, const Tokens& words) {
-    const Tokens statement = without_template(words);
-    if (!statement.empty() && (statement.front() == "namespace" || holds_namespace(statement))) {
-      inner_namespace(space, statement);
-      return true;
-    }
-    if (statement.size() == 2 && statement.front() == "extern") {
-      ++at_;
-      scope(space);
-      return true;
-    }
-    at_ = closing(tokens_, at_, "{", "}");
-    holds_more(space);
-    if (defines_type(statement)) {
-      add(Definition::Kind::type, space, type_name(statement), "", false);
-      return false;  // a declaration of variables may follow, up to ";"
-    }
-    if (function(space, words)) return true;
-    variable(space, words);
-    return false;
+  static bool begins_arguments(const Words& words) {
+    return !words.empty() && is_name(words.back()) && !holds(words, "=");
   }
 
-  void holds_more(const std::string& space) {
-    if (!space.empty()) found_.namespaces[space] = true;
+  /// Leaves out attributes, and what stands in the brackets of "alignas" and the like.
+  void bracket(Words& words) {
+    static const std::set<std::string> no_parameters = {"alignas",       "decltype", "noexcept",
+                                                        "__attribute__", "explicit", "__declspec"};
+    const bool is_attribute =
+        tokens_[at_] == "[" && at_ + 1 < tokens_.size() && tokens_[at_ + 1] == "[";
+    const bool is_unneeded = is_attribute || (tokens_[at_] == "(" && !words.empty() &&
+                                              no_parameters.count(words.back()) > 0);
+    const std::string group = skip_group();
+    if (!is_unneeded) words.push_back(group);
   }
 
-  static bool holds_namespace(const Tokens& statement) {
-    return statement.size() > 1 && statement[0] == "inline" && statement[1] == "namespace";
-  }
-
-  void inner_namespace(const std::string& space, const Tokens& statement) {
-    const auto word = std::find(statement.begin(), statement.end(), "namespace");
-    std::string name;
-    for (auto it = word + 1; it != statement.end(); ++it) name += *it;
-    if (name.empty()) {
-      at_ = closing(tokens_, at_, "{", "}");
-      return;
-    }
-    const std::string inner = space.empty() ? name : space + "::" + name;
-    found_.namespaces.try_emplace(inner, false);
-    ++at_;
-    scope(inner);
-  }
-
-  void ended(const std::string& space, const Tokens& words) {
-    const Tokens statement = without_template(words);
-    if (!statement.empty() && !(defines_type(statement) && statement.size() == 2))
-      holds_more(space);
-    if (statement.size() > 2 && statement[0] == "using" && statement[2] == "=") {
-      add(Definition::Kind::type, space, statement[1], "", false);
+  /// Goes to the end of a pair of brackets. \return all of it, with spaces between the tokens
+  std::string skip_group() {
+    const std::size_t end = closing(tokens_, at_);
+    std::string all = tokens_[at_++];
+    for (; at_ < end; ++at_) all += " " + tokens_[at_];
+    if (end == tokens_.size()) {
+      found_.is_complete = false;
     } else {
-      variable(space, words);
+      all += " " + tokens_[end];
     }
+    return all;
   }
 
-  static Tokens without_template(const Tokens& statement) {
-    std::size_t from = 0;
-    while (from < statement.size() && statement[from] == "template") {
-      from = std::min(closing(statement, from + 1, "<", ">") + 1, statement.size());
+  std::string operator_name() {
+    std::string name = "operator";
+    if (at_ + 2 < tokens_.size() && tokens_[at_ + 1] == "(") {
+      at_ += 2;
+      return name + "()";
     }
-    return {statement.begin() + static_cast<std::ptrdiff_t>(from), statement.end()};
-  }
-
-  static bool defines_type(const Tokens& statement) {
-    static const std::set<std::string> keys = {"class", "struct", "union", "enum"};
-    const std::size_t first = !statement.empty() && statement.front() == "typedef" ? 1 : 0;
-    return statement.size() > first && keys.count(statement[first]) > 0 && !is_function(statement);
-  }
-
-  static bool is_function(const Tokens& statement) {
-    return !statement.empty() && statement.back() == ")" && !holds(statement, "alignas");
-  }
-
-  /// "class [[nodiscard]] Name final : Base" to "Name"; a specialisation with its arguments.
-  static std::string type_name(const Tokens& statement) {
-    static const std::set<std::string> keys = {"typedef", "class", "struct", "union", "enum"};
-    std::string name;
-    for (std::size_t i = 0; i < statement.size(); ++i) {
-      if (statement[i] == "[") {
-        i = closing(statement, i, "[", "]");
-      } else if (statement[i] == "alignas") {
-        i = closing(statement, i, "(", ")");
-      } else if (statement[i] == ":" || statement[i] == "final") {
-        break;
-      } else if (keys.count(statement[i]) == 0) {
-        name += statement[i];
-      }
+    while (at_ + 1 < tokens_.size() && tokens_[at_ + 1] != "(" && tokens_[at_ + 1] != ";") {
+      ++at_;
+      name += (is_name(tokens_[at_]) ? " " : "") + tokens_[at_];
     }
     return name;
   }
 
-  bool function(const std::string& space, const Tokens& words) {
-    const Tokens statement = without_template(words);
-    static const std::set<std::string> no_functions = {"requires", "decltype", "noexcept",
-                                                       "alignas", "explicit"};
-    for (std::size_t i = 1; i < statement.size(); ++i) {
-      if (statement[i] == "=" && !names_operator(statement, i)) return false;
-      if (statement[i] != "(" || no_functions.count(statement[i - 1]) > 0) continue;
-      std::size_t first = i - 1;
-      while (first > 0 && !is_name(statement[first])) --first;  // an operator's sign
-      if (first > 0 && statement[first - 1] == "operator") --first;
-      while (first > 1 && statement[first - 1] == "::") first = owner(statement, first - 2);
-      std::string name;
-      for (std::size_t k = first; k < i; ++k) name += statement[k];
-      const std::size_t end = closing(statement, i, "(", ")");
-      std::string parameters = types_of({statement.begin() + static_cast<std::ptrdiff_t>(i) + 1,
-                                         statement.begin() + static_cast<std::ptrdiff_t>(end)});
-      for (std::size_t k = end + 1; k < statement.size(); ++k) {
-        if (statement[k] == "const") parameters += ") const";
-      }
-      add(Definition::Kind::function, space, name, parameters, is_inline(words));
-      return true;
-    }
-    return false;
-  }
-
-  /// Whether a sign belongs to an operator's name, as in "operator <=".
-  static bool names_operator(const Tokens& statement, std::size_t at) {
-    while (at > 0 && !is_name(statement[at]) && statement[at] != ")") --at;
-    return statement[at] == "operator";
-  }
-
-  /// Parameters without their names and default values, which make no other function.
-  static std::string types_of(const Tokens& parameters) {
-    std::string types;
-    Tokens one;
-    int depth = 0;
-    bool in_default = false;
-    const auto end_parameter = [&] {
-      static const std::set<std::string> no_types = {"const", "volatile", "struct", "class",
-                                                     "enum",  "typename", "::"};
-      static const std::set<std::string> no_names = {"int",    "char",     "long",   "short",
-                                                     "double", "unsigned", "signed", "const"};
-      const bool is_named = one.size() > 1 && is_name(one.back()) &&
-                            no_names.count(one.back()) == 0 &&
-                            no_types.count(one[one.size() - 2]) == 0;
-      if (is_named) one.pop_back();
-      for (const std::string& token : one) types += token + " ";
-      one.clear();
-      in_default = false;
-    };
-    for (const std::string& token : parameters) {
-      if (token == "<" || token == "(" || token == "{" || token == "[") ++depth;
-      if (token == ">" || token == ")" || token == "}" || token == "]") --depth;
-      if (depth == 0 && token == ",") {
-        end_parameter();
-        types += ", ";
+  /// At a "{" after the words of a statement; takes the words if its "}" ends the statement.
+  void opened(const std::string& space, Words& words) {
+    if (holds(words, "namespace")) {
+      inner_namespace(space, words);
+      words.clear();
+    } else if (words.size() == 2 && words.front() == "extern") {
+      const bool outer = std::exchange(is_c_, true);
+      inner_scope(space);
+      is_c_ = outer;
+      words.clear();
+    } else {
+      skip_group();
+      holds_more(space);
+      if (begins_condition(words)) {
+        words.push_back(kCondition);
+      } else if (begins_value(words)) {
+        words.push_back(kInitialiser);
+      } else if (const std::size_t head = type_head(words); head > 0) {
+        const std::string name = name_before(words, head);
+        if (type_keys().count(name) == 0) add(Definition::Kind::type, space, name);
+        words.resize(type_key_at(words));
+        words.push_back(kBody);
       } else {
-        in_default = in_default || (depth == 0 && token == "=");
-        if (!in_default) one.push_back(token);
+        function(space, words);
+        words.clear();
       }
     }
-    end_parameter();
-    return types;
   }
 
-  /// The first token of the class before a member's "::", whose last token stands at a place.
-  static std::size_t owner(const Tokens& statement, std::size_t at) {
-    if (statement[at] != ">") return at;
-    for (std::size_t depth = 1; depth > 0 && at > 0;) {
-      --at;
-      if (statement[at] == ">") ++depth;
-      if (statement[at] == "<") --depth;
+  void inner_namespace(const std::string& space, const Words& words) {
+    std::string name;
+    for (std::size_t i = after(words, "namespace"); i < words.size(); ++i) {
+      if (words[i] != "inline") name += words[i];
     }
-    return at > 0 ? at - 1 : at;
+    const std::string inner = qualified(space, name.empty() ? kAnonymous : name);
+    if (!is_anonymous(inner)) found_.namespaces.try_emplace(inner, false);
+    inner_scope(inner);
   }
 
-  /// A variable that says inline: one of a name in the whole program.
-  void variable(const std::string& space, const Tokens& words) {
-    if (!holds(words, "inline") || holds(words, "using")) return;
-    const auto ends_name = [&](std::size_t i) {
-      return i == words.size() || words[i] == "=" || (words[i] == "[" && is_name(words[i - 1]));
-    };
-    std::size_t end = 1;
-    while (!ends_name(end)) ++end;
-    if (!is_name(words[end - 1])) return;  // the end of a declared function
-    add(Definition::Kind::variable, space, words[end - 1], "", true);
+  void inner_scope(const std::string& space) {
+    ++at_;
+    scope(space);
+    found_.is_complete = found_.is_complete && at_ < tokens_.size();
   }
 
-  static bool is_inline(const Tokens& words) {
-    return holds(words, "inline") || holds(words, "constexpr") || holds(words, "consteval") ||
-           holds(words, "template");
+  void ended(const std::string& space, const Words& words) {
+    if (words.empty()) return;
+    const bool is_value = holds(words, "=") || holds(words, kInitialiser);
+    const bool is_function = parameters_at(words) < words.size();
+    const bool is_forward = type_key_at(words) < words.size() && !is_value && !is_function;
+    if (!is_forward) holds_more(space);
+    if (holds(words, "typedef")) {
+      alias(space, declared_name(words), words);
+    } else if (is_forward || is_only_instantiated(words)) {
+      return;
+    } else if (holds(words, "using")) {
+      use(space, words);
+    } else if (holds(words, "concept")) {
+      add(Definition::Kind::type, space, words[after(words, "concept")]);
+    } else if (is_function) {
+      if (words.back() == "default" || words.back() == "delete") function(space, words);
+    } else {
+      variable(space, words, is_value);
+    }
+  }
+
+  static bool is_only_instantiated(const Words& words) {
+    return words.size() > 1 && words[0] == "template" && !is_group(words[1], '<');
+  }
+
+  void use(const std::string& space, const Words& words) {
+    const std::size_t name = after(words, "using");
+    if (holds(words, "=")) {
+      alias(space, words[name], words);
+    } else if (name < words.size() && words[name] == "namespace") {
+      found_.used_namespaces.push_back(name_before(words, words.size()));
+    }
+  }
+
+  void alias(const std::string& space, const std::string& name, const Words& words) {
+    add(Definition::Kind::type, space, name, "", false, joined(words));
+  }
+
+  void function(const std::string& space, const Words& words) {
+    const std::size_t at = parameters_at(words);
+    if (at == words.size() || words[at - 1] == "catch") return;
+    std::string parameters = types_of(tokens_of(words[at]).tokens);
+    for (std::size_t i = at + 1; i < words.size() && words[i] != ":"; ++i) {
+      if (words[i] == "const" || words[i] == "&") parameters += ") " + words[i];
+    }
+    for (std::size_t i = after(words, "requires"); i < words.size(); ++i) {
+      parameters += " " + words[i];
+    }
+    const std::string name = name_before(words, at);
+    if ((is_c_ || words.front() == "extern") && !is_anonymous(space)) {
+      add(Definition::Kind::function, "", "extern \"C\" " + name);
+    } else {
+      add(Definition::Kind::function, space, name, parameters, holds(words, "static"));
+    }
+  }
+
+  void variable(const std::string& space, const Words& words, bool is_value) {
+    if (words.size() < 2 || (holds(words, "extern") && !is_value)) return;
+    if (words.front() == "namespace") return;
+    const bool is_constant = holds(words, "const") || holds(words, "constexpr");
+    const bool is_shared = holds(words, "inline") || holds(words, "extern");
+    add(Definition::Kind::variable, space, declared_name(words), "",
+        holds(words, "static") || (is_constant && !is_shared));
+  }
+
+  static std::string qualified(const std::string& space, const std::string& name) {
+    return space.empty() ? name : space + "::" + name;
+  }
+
+  static bool is_anonymous(const std::string& space) {
+    return space.find(kAnonymous) != std::string::npos;
+  }
+
+  void holds_more(const std::string& space) {
+    const std::string named = space.substr(0, space.find("::" + kAnonymous));
+    if (!named.empty() && !named.starts_with(kAnonymous)) found_.namespaces[named] = true;
   }
 
   void add(Definition::Kind kind, const std::string& space, const std::string& name,
-           const std::string& parameters, bool is_inline) {
+           const std::string& parameters = "", bool is_internal = false,
+           const std::string& aliased = "") {
     if (name.empty()) return;
-    const std::string qualified = space.empty() ? name : space + "::" + name;
-    found_.definitions.push_back({kind, qualified, parameters, is_inline});
+    // A definition can stand outside of its namespace: "int touchtrial::engine::area() {".
+    const std::string plain = name.substr(0, name.find('<'));
+    if (space.empty() && plain.starts_with("touchtrial::")) {
+      holds_more(plain.substr(0, plain.rfind("::")));
+    }
+    found_.definitions.push_back(
+        {kind, qualified(space, name), parameters, is_internal || is_anonymous(space), aliased});
   }
 
   Tokens tokens_;
   std::size_t at_ = 0;
+  bool is_c_ = false;  // in extern "C" {}
   Declarations found_;
 };
 
 }  // namespace
 
 Declarations declarations_in(std::string_view text) {
-  return Reader(Lexer(text).tokens()).read();
+  return Reader(tokens_of(text)).read();
 }
 
 }  // namespace touchtrial::house

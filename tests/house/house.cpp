@@ -28,13 +28,11 @@ const Room* room_of(const std::string& path) {
   return best;
 }
 
-void read_includes(SourceFile& file) {
-  std::istringstream lines(file.text);
-  for (std::string line; std::getline(lines, line);) {
-    if (!line.starts_with("#include ") || line.size() < 11) continue;
-    const char close = line[9] == '<' ? '>' : '"';
-    const std::string name = line.substr(10, line.find(close, 10) - 10);
-    const bool is_ours = close != '>' || room_of(name) != nullptr;
+void sort_includes(SourceFile& file) {
+  for (const std::string& written : file.declared.includes) {
+    if (written.size() < 3) continue;
+    const std::string name = written.substr(1, written.size() - 2);
+    const bool is_ours = written.front() == '"' || room_of(name) != nullptr;
     (is_ours ? file.quoted : file.angled).push_back(name);
   }
 }
@@ -52,7 +50,7 @@ std::string private_to(const SourceFile& header) {
     comment += line.substr(3);
   }
   std::smatch found;
-  if (!std::regex_search(comment, found, std::regex("Private to\\s+([\\w/]*\\w)"))) return "";
+  if (!std::regex_search(comment, found, std::regex("[Pp]rivate to\\s+([\\w/]*\\w)"))) return "";
   const std::string own = fs::path(header.path).parent_path().generic_string();
   const std::string named = found[1];
   return (own + "/").starts_with(named + "/") ? named : own;
@@ -70,15 +68,35 @@ std::string kind_of(const Definition& definition) {
   return "";
 }
 
-/// A protocol's part belongs to its layer: its namespace lies in the layer's.
+/// Whether a protocol's part belongs to this layer: its namespace then lies in the layer's.
 bool in_one_layer(const Room& part, const Room* layer) {
   if (layer == nullptr) return false;
   return layer == &part || (layer->name_space != "touchtrial" &&
                             part.name_space.starts_with(layer->name_space + "::"));
 }
 
-bool one_in_the_program(const Definition& definition) {
-  return definition.kind == Definition::Kind::type || definition.is_inline;
+/// Highway's kernels include themselves, and so are compiled alone.
+bool is_compiled_alone(const SourceFile& file) {
+  return std::count(file.angled.begin(), file.angled.end(), "hwy/foreach_target.h") > 0;
+}
+
+/// Whether other files may define the name too, as long as they are not joined with this one.
+bool is_local(const SourceFile& file, const Definition& definition) {
+  return definition.is_internal && !file.is_header();
+}
+
+/// What only one file may define: a local name is one in its folder, whose files are joined.
+std::string name_to_define(const SourceFile& file, const Definition& definition) {
+  std::string name = definition.name;
+  if (definition.kind == Definition::Kind::function) name += "(" + definition.parameters + ")";
+  if (is_local(file, definition)) {
+    static const std::string anonymous = "(anonymous)::";
+    if (const std::size_t at = name.find(anonymous); at != name.npos) {
+      name.erase(at, anonymous.size());
+    }
+    name += " of folder " + fs::path(file.path).parent_path().generic_string();
+  }
+  return kind_of(definition) + name;
 }
 
 }  // namespace
@@ -132,20 +150,32 @@ const std::vector<Room>& rooms() {
 }
 
 House::House(fs::path root) : root_(std::move(root)) {
-  for (const Room& room : rooms()) {
-    if (!fs::exists(root_ / room.folder)) continue;
-    for (const auto& entry : fs::recursive_directory_iterator(root_ / room.folder)) {
-      const std::string ending = entry.path().extension().string();
-      const std::string path = fs::relative(entry.path(), root_).generic_string();
-      if ((ending != ".hpp" && ending != ".cpp") || room_of(path) != &room) continue;
-      SourceFile file{path, &room, text_of_file(entry.path()), {}, {}, {}};
-      read_includes(file);
-      file.declared = declarations_in(file.text);
-      files_.push_back(std::move(file));
+  std::set<std::string> tops;
+  for (const Room& room : rooms()) tops.insert(room.folder.substr(0, room.folder.find('/')));
+  for (const std::string& top : tops) {
+    if (!fs::exists(root_ / top)) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(root_ / top)) {
+      read(fs::relative(entry.path(), root_).generic_string());
     }
   }
   std::sort(files_.begin(), files_.end(),
             [](const SourceFile& a, const SourceFile& b) { return a.path < b.path; });
+}
+
+void House::read(const std::string& path) {
+  static const std::set<std::string> others = {".h",   ".hh",  ".hxx", ".c",  ".cc",
+                                               ".cxx", ".inl", ".ipp", ".tpp"};
+  const std::string ending = fs::path(path).extension().string();
+  if (others.count(ending) > 0) not_read_.push_back(path + " ends neither in .hpp nor in .cpp");
+  if (ending != ".hpp" && ending != ".cpp") return;
+  SourceFile file{path, room_of(path), text_of_file(root_ / path), {}, {}, {}};
+  if (file.room == nullptr) {
+    not_read_.push_back(path + " lies in no room");
+    return;
+  }
+  file.declared = declarations_in(file.text);
+  sort_includes(file);
+  files_.push_back(std::move(file));
 }
 
 const SourceFile* House::find(const std::string& path) const {
@@ -165,6 +195,8 @@ std::vector<std::string> House::wrong_includes() const {
         found.push_back(what + ", which is not there");
       } else if (to == nullptr) {
         found.push_back(what + ", which is in no room");
+      } else if (find(name) == nullptr) {
+        found.push_back(what + ", which is not read: headers end in .hpp");
       } else if (to != file.room && file.room->arrows.count(to->folder) == 0) {
         found.push_back(what + " against the arrows");
       }
@@ -211,22 +243,23 @@ std::vector<std::string> House::private_headers_used_elsewhere() const {
 }
 
 std::vector<std::string> House::names_defined_twice() const {
-  std::map<std::string, std::set<std::string>> places;
+  std::map<std::string, std::map<std::string, std::string>> files_by_meaning;
   for (const SourceFile& file : files_) {
     if (file.once_a_target()) continue;
     for (const Definition& definition : file.declared.definitions) {
-      if (!one_in_the_program(definition)) continue;
-      const bool function = definition.kind == Definition::Kind::function;
-      places[kind_of(definition) + definition.name +
-             (function ? "(" + definition.parameters + ")" : "")]
-          .insert(file.path);
+      const bool local = is_local(file, definition);
+      if (definition.name == "main" || (local && is_compiled_alone(file))) continue;
+      // Joined files may repeat an alias.
+      const bool may_repeat = local && !definition.aliased.empty();
+      files_by_meaning[name_to_define(file, definition)].emplace(
+          may_repeat ? definition.aliased : file.path, file.path);
     }
   }
   std::vector<std::string> found;
-  for (const auto& [name, files] : places) {
+  for (const auto& [name, files] : files_by_meaning) {
     if (files.size() < 2) continue;
     std::string line = name + " is defined in";
-    for (const std::string& file : files) line += " " + file;
+    for (const auto& [meaning, path] : files) line += " " + path;
     found.push_back(line);
   }
   return found;
@@ -247,12 +280,16 @@ std::vector<std::string> House::namespaces_of_other_rooms() const {
       }
       const bool inside = (name + "::").starts_with(own + "::") && other == nullptr;
       opens_own = opens_own || inside;
-      if (!inside && holds_more && name != "std")
+      if (!inside && holds_more && !(name + "::").starts_with("std::"))
         found.push_back(file.path + " opens namespace " + name);
     }
     for (const Definition& definition : file.declared.definitions) {
-      if (definition.name.find("::") == std::string::npos && one_in_the_program(definition))
+      const bool is_c = definition.name.starts_with("extern");
+      if (definition.name.find("::") == std::string::npos && definition.name != "main" && !is_c)
         found.push_back(file.path + " defines " + definition.name + " in no namespace");
+    }
+    for (const std::string& used : file.declared.used_namespaces) {
+      if (file.is_header()) found.push_back(file.path + " uses all of namespace " + used);
     }
     if (!opens_own && !file.path.ends_with("main.cpp")) {
       found.push_back(file.path + " does not open namespace " + own);
@@ -264,6 +301,9 @@ std::vector<std::string> House::namespaces_of_other_rooms() const {
 std::vector<std::string> House::unguarded_or_unexplained_headers() const {
   std::vector<std::string> found;
   for (const SourceFile& file : files_) {
+    if (!file.declared.is_complete) {
+      found.push_back(file.path + " cannot be read: a bracket has no partner");
+    }
     if (!file.is_header()) continue;
     if (!file.text.starts_with("/// \\file ")) {
       found.push_back(file.path + " does not begin by saying what it is for");

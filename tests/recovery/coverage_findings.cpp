@@ -34,7 +34,7 @@ Finding coverage(const std::string& what, const std::string& population, const A
       least,      most, why};
 }
 
-/// Participants' own accuracies differ by this much, beside what trials add by chance.
+/// The variance of participants' own accuracies, without the part that trials add by chance.
 double between_variance(const Population& population) {
   const double mean = true_accuracy(population);
   double sum = 0.0;
@@ -52,7 +52,7 @@ double between_variance(const Population& population) {
   return sum / weights;
 }
 
-/// What an interval that takes pooled trials for independent covers.
+/// The coverage of an interval that treats pooled trials as independent.
 double pooled_coverage(const Population& population) {
   const double mean = true_accuracy(population);
   const double trials = population.classes * population.repeats;
@@ -92,7 +92,7 @@ void add_group_level(const Population& population, int participants, int repetit
   findings.push_back(
       coverage("all trials pooled, Wilson", who, pooled, narrow - 0.02, narrow + 0.02,
                population.spread == 0.0
-                   ? "nobody differs: trials are independent"
+                   ? "people do not differ: trials are independent"
                    : fmt::format("pseudo-replication: {:.3f} by the design effect", narrow)));
 }
 

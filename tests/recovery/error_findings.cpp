@@ -52,7 +52,7 @@ void add_chance(int participants, double least, int repetitions, std::vector<Fin
                            "an exact test of whole numbers stays below its level"));
 }
 
-/// Differences between two methods that are alike, in people who are not.
+/// Differences between two equal methods, in people who differ.
 std::vector<double> equal_methods(int participants, RandomStream& random) {
   const Population people{.d_prime = 1.5, .spread = 0.5};
   std::vector<double> differences;
@@ -79,7 +79,8 @@ void add_mcnemar(int repetitions, std::vector<Finding>& findings) {
   const Average share = average_of(repetitions, "McNemar", [&](RandomStream& random) {
     std::array<int, 2> only{};
     for (int i = 0; i < kPairs; ++i) {
-      const double p = 0.5 + 0.3 * random.uniform();  // people differ, their two trials do not
+      const double p =
+          0.5 + 0.3 * random.uniform();  // people differ, but their two trials have one p
       const bool first = random.uniform() < p;
       const bool second = random.uniform() < p;
       if (first != second) ++only[first ? 0 : 1];
@@ -87,12 +88,13 @@ void add_mcnemar(int repetitions, std::vector<Finding>& findings) {
     return rejected(analysis::mcnemar_mid_p(only[0], only[1]));
   });
   findings.push_back(error("McNemar, mid-p", fmt::format("{} people, one pair each", kPairs), share,
-                           0.035, 0.055, "mid-p may pass its level slightly, whole numbers"));
+                           0.035, 0.055, "mid-p may exceed its level slightly; whole numbers"));
 }
 
 using Occasions = std::vector<std::vector<bool>>;
 
-/// Three methods that are alike on average. \param taste  SD of a participant's own liking for each
+/// Three methods that are equally good on average.
+/// \param taste  SD between participants of the accuracy with each method
 Occasions occasions_of(double taste, RandomStream& random) {
   constexpr int kOccasions = 25;
   std::array<double, 3> p{};
@@ -128,7 +130,7 @@ void add_cochran(double taste, double least, double most, const std::string& why
     return rejected(analysis::cochran_q_permuted_p(study(random), kDeals).value_or(1.0));
   });
   findings.push_back(error("Cochran's Q, methods exchanged within participants", who, permuted,
-                           0.04, kLevel, "equal statistics count against"));
+                           0.04, kLevel, "equal statistics count as extreme"));
 }
 
 void add_holm(int repetitions, std::vector<Finding>& findings) {
@@ -163,8 +165,8 @@ std::vector<Finding> error_findings(int repetitions) {
   add_chance(1, 0.015, repetitions, findings);
   add_chance(20, 0.035, repetitions, findings);
   add_sign_flip(5, 0.0, 0.0, "with 5 participants p is never below 0.0625", repetitions, findings);
-  add_sign_flip(8, 0.03, kLevel, "equal differences count against", repetitions, findings);
-  add_sign_flip(20, 0.04, kLevel, "equal differences count against", repetitions, findings);
+  add_sign_flip(8, 0.03, kLevel, "equal differences count as extreme", repetitions, findings);
+  add_sign_flip(20, 0.04, kLevel, "equal differences count as extreme", repetitions, findings);
   add_mcnemar(repetitions, findings);
   add_cochran(0.0, 0.04, 0.055, "an approximation", repetitions, findings);
   add_cochran(0.15, 0.10, 0.45, "people like methods differently: occasions are not independent",

@@ -14,17 +14,18 @@
 namespace touchtrial::recovery {
 namespace {
 
-/// Lines for the bias of information transfer of one participant with so many presentations.
+/// Adds lines for the bias of information transfer of one participant, with `repeats` presentations
+/// of each class.
 void add_information(double d_prime, int repeats, int repetitions, std::vector<Finding>& findings) {
   const Population people{.d_prime = d_prime, .repeats = repeats};
   const double truth = true_information(people);
   const int n = people.classes * repeats;
   const std::string who = fmt::format("{} trials, d' {} ({:.1f} % right, {:.2f} bit)", n, d_prime,
                                       100.0 * true_accuracy(people), truth);
-  const auto estimate = [&](auto figure) {
+  const auto estimate = [&](auto statistic) {
     return average_of(repetitions, "information" + who, [&](RandomStream& random) {
       const auto study = study_of(people, 1, random);
-      return figure(analysis::information_transfer(people.classes, study, 0, 20)) - truth;
+      return statistic(analysis::information_transfer(people.classes, study, 0, 20)) - truth;
     });
   };
   const double miller = std::pow(people.classes - 1, 2) / (2.0 * n * std::numbers::ln2);
@@ -131,10 +132,10 @@ analysis::ConfusionMatrix luce_answers(const Plane<double>& p, int of_each, Rand
 
 void add_choice_model(int repetitions, std::vector<Finding>& findings) {
   const Plane<double> p = luce_probabilities();
-  const auto add = [&](const std::string& what, double truth, auto figure) {
+  const auto add = [&](const std::string& what, double truth, auto statistic) {
     const Average found = average_of(repetitions, "choice" + what, [&](RandomStream& random) {
       const auto model = analysis::choice_model(luce_answers(p, 400, random));
-      return model ? figure(*model) : 0.0;
+      return model ? statistic(*model) : 0.0;
     });
     findings.push_back({"recovered", what, "2,000 trials of a similarity choice model", truth,
                         found.mean, found.standard_error, 0.99 * truth, 1.02 * truth,

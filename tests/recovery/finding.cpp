@@ -1,9 +1,9 @@
 #include "recovery/finding.hpp"
 
+#include "core/parallel.hpp"
+
 #include <algorithm>
 #include <cmath>
-
-#include <tbb/parallel_for.h>
 
 namespace touchtrial::recovery {
 
@@ -15,7 +15,7 @@ bool Finding::holds() const noexcept {
 Average average_of(int repetitions, const std::string& purpose,
                    const std::function<double(RandomStream&)>& study) {
   std::vector<double> results(static_cast<std::size_t>(repetitions));
-  tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t i) {
+  in_parallel(0, results.size(), [&](std::size_t i) {
     RandomStream random(31875542, purpose, i);
     results[i] = study(random);
   });

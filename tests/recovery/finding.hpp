@@ -1,4 +1,4 @@
-/// \file One line of the table: a quantity that is known, and what the analysis found of it.
+/// \file One line of the table: a known quantity, and the value that the analysis found for it.
 #pragma once
 
 #include "core/random.hpp"
@@ -9,33 +9,36 @@
 
 namespace touchtrial::recovery {
 
-/// What a share or a mean over many made-up studies came to.
+/// A share or a mean over many simulated studies.
 struct Finding {
   std::string group;       ///< "coverage", "type-I error", "bias", "recovered"
   std::string what;        ///< the statistic
   std::string population;  ///< whose studies
-  double nominal = 0.0;    ///< what it should be
+  double nominal = 0.0;    ///< the true or promised value
   double found = 0.0;
   double monte_carlo = 0.0;  ///< standard error of `found`
-  /// Range that `found` must lie in but for Monte-Carlo error; nominal to nominal where exact.
+  /// Range of the expected value of `found`; nominal to nominal where it is exact.
   double least = 0.0;
   double most = 0.0;
-  std::string why{};  ///< why the range is not the nominal figure alone
+  std::string why{};  ///< why the range is not the nominal value alone
 
   /// Within 4 Monte-Carlo standard errors of its range.
   [[nodiscard]] bool holds() const noexcept;
 };
 
-/// Runs `study` once for each repetition, on all cores, each with random numbers of its own, and
-/// averages what it returns: shares of ones and zeros, or any figure. A function of its arguments.
+/// The mean of a number over simulated studies.
 struct Average {
   double mean = 0.0;
   double standard_error = 0.0;
 };
+/// Runs `study` once for each repetition, on all cores, each with random numbers of its own, and
+/// averages the numbers that it returns (ones and zeros for a share). The result depends only on
+/// the arguments.
 [[nodiscard]] Average average_of(int repetitions, const std::string& purpose,
                                  const std::function<double(RandomStream&)>& study);
 
-/// All lines. \param repetitions  made-up studies for each, >= 100
+/// All lines of the group.
+/// \param repetitions  simulated studies for each line, >= 100
 [[nodiscard]] std::vector<Finding> coverage_findings(int repetitions);
 [[nodiscard]] std::vector<Finding> error_findings(int repetitions);
 [[nodiscard]] std::vector<Finding> estimate_findings(int repetitions);

@@ -9,7 +9,7 @@
 namespace touchtrial::recovery {
 namespace {
 
-/// Beyond this many standard deviations nothing is left to integrate.
+/// Beyond this number of standard deviations the density is negligible.
 constexpr double kTail = 9.0;
 
 double density(double z) {
@@ -33,7 +33,7 @@ std::vector<double> evidence(const Population& population, int presented, double
   return means;
 }
 
-/// That picture `answer` has the strongest evidence.
+/// The probability that picture `answer` has the strongest evidence.
 double strongest(const std::vector<double>& means, int answer) {
   const auto others_below = [&](double noise) {
     const double own = means[answer] + noise;

@@ -1,4 +1,4 @@
-/// \file Made-up participants of whom everything is known: what an analysis must find again.
+/// \file Simulated participants whose parameters are all known, and which an analysis must recover.
 #pragma once
 
 #include "analysis/statistics/confusion.hpp"
@@ -10,35 +10,36 @@
 namespace touchtrial::recovery {
 
 /// People who answer by signal detection: a class gives its own picture evidence d', every picture
-/// gets standard normal noise and its bias, and the strongest is answered; sometimes the answer is
-/// a guess.
+/// gets standard normal noise and its bias, and the picture with the most evidence is the answer;
+/// sometimes the answer is a guess.
 struct Population {
   double d_prime = 1.75;         ///< mean over participants
   double spread = 0.0;           ///< standard deviation of d' between participants
   double lapse = 0.0;            ///< share of answers at random
   std::vector<double> bias{};    ///< evidence added to each picture; empty: none
-  bool swaps_first_two = false;  ///< takes each of the first two classes for the other
+  bool swaps_first_two = false;  ///< the first two labels are exchanged
   int classes = 5;
-  int repeats = 5;  ///< presentations of each class a participant
+  int repeats = 5;  ///< presentations of each class per participant
 };
 
 /// P(answer | class) of somebody with this d', by quadrature.
 [[nodiscard]] Plane<double> answer_probabilities(const Population& population, double d_prime);
 
-/// The population's mean proportion correct, every class as often as any.
+/// The population's mean proportion correct if all classes are equally frequent.
 [[nodiscard]] double true_accuracy(const Population& population);
 
-/// Bits of an unlimited number of answers, d' at the population's mean.
+/// Information transfer in bits from an unlimited number of answers, with d' at the population's
+/// mean.
 [[nodiscard]] double true_information(const Population& population);
 
-/// One participant drawn from the population.
+/// The d' of one participant drawn from the population.
 [[nodiscard]] double drawn_d_prime(const Population& population, RandomStream& random);
 
-/// A participant's trials: a balanced order in random sequence.
+/// A participant's trials, in a balanced random order.
 [[nodiscard]] std::vector<analysis::Choice> answers_of(const Population& population, double d_prime,
                                                        RandomStream& random);
 
-/// One study: this many participants.
+/// One study with this number of participants.
 [[nodiscard]] std::vector<std::vector<analysis::Choice>> study_of(const Population& population,
                                                                   int participants,
                                                                   RandomStream& random);

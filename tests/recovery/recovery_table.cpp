@@ -14,18 +14,19 @@ using touchtrial::recovery::Finding;
 
 constexpr const char* kIntroduction = R"(# Known participants, found again
 
-What the analysis makes of participants of whom everything is known: made-up people who answer by
-signal detection with a known sensitivity d', spread between people, lapses, biases and swapped
-labels (or by a similarity choice model), five classes, 25 trials each if nothing else is said. Every
-line is {} made-up studies or a quarter of that (the exact ones add up all outcomes).
+This page shows what the analysis finds for simulated participants whose parameters are all known. They
+answer by signal detection with a known sensitivity d', spread between people, lapses, biases and
+swapped labels (or by a similarity choice model), with five classes and, unless stated otherwise, 25
+trials each. Every line comes from {} simulated studies or a quarter of that (the exact ones add up all
+outcomes).
 
-This page is what `scripts/recovery {}` prints; the test program `test_recovery` holds every line to
-its expectation with fewer studies. A figure is as expected within four Monte-Carlo errors of nominal,
-or of the range that its remark explains. What the statistics are: [statistics.md](statistics.md).
+`scripts/recovery {}` prints this page; the test program `test_recovery` checks every line with fewer
+studies. A number is as expected if it lies within four Monte-Carlo errors of nominal, or of the range
+that its remark explains. [statistics.md](statistics.md) defines the statistics.
 
-What to take from it: intervals over participants hold their level from 8 participants on; intervals
-and tests that take pooled trials for independent do not once people differ; information transfer is
-not to be believed from 25 trials, corrected or not.
+Conclusions: intervals over participants hold their level from 8 participants on; intervals and tests
+that treat pooled trials as independent do not, once people differ; information transfer estimated from
+25 trials cannot be trusted, corrected or not.
 )";
 
 std::string line_of(const Finding& finding) {
@@ -38,7 +39,7 @@ std::string line_of(const Finding& finding) {
 
 std::string table_of(const std::vector<Finding>& findings, const std::string& group) {
   std::string text = fmt::format(
-      "\n## {}\n\n| figure | population | nominal | found | Monte-Carlo error | as "
+      "\n## {}\n\n| statistic | population | nominal | found | Monte-Carlo error | as "
       "expected | remark |\n| --- | --- | --- | --- | --- | --- | --- |\n",
       group);
   for (const Finding& finding : findings) {

@@ -8,7 +8,7 @@ using namespace touchtrial::recovery;
 
 namespace {
 
-/// Enough to see what is wrong by some 4 %; the table in docs/statistics-recovery.md takes more.
+/// Enough to detect errors of some 4 %; the table in docs/statistics-recovery.md uses more.
 constexpr int kRepetitions = 400;
 
 void check_all(const std::vector<Finding>& findings) {
@@ -35,7 +35,7 @@ TEST_CASE("known sensitivity, bias, lapses and swaps are found again") {
   check_all(estimate_findings(kRepetitions));
 }
 
-TEST_CASE("made-up participants answer as their probabilities say") {
+TEST_CASE("simulated participants answer with their stated probabilities") {
   const Population people{
       .d_prime = 1.2, .lapse = 0.2, .bias = {0.5, 0.0, -0.5}, .classes = 3, .repeats = 20000};
   RandomStream random(1, "population");

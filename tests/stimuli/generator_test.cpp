@@ -50,7 +50,7 @@ double self_correlation(const GreyImage& image, int dx, int dy) {
   return covariance / std::sqrt(variance_a * variance_b);
 }
 
-/// Mean square of the differences between neighbours along rows over that along columns.
+/// The mean square difference of neighbours along rows, divided by that along columns.
 double anisotropy(const GreyImage& image) {
   double along_rows = 0.0;
   double along_columns = 0.0;

@@ -1,4 +1,4 @@
-/// \file A program that runs beside the test, spoken to through pipes.
+/// \file A program that runs beside the test, which talks to it through pipes.
 #pragma once
 
 #include <chrono>
@@ -11,9 +11,10 @@ namespace touchtrial::testing {
 
 class ChildProcess {
  public:
-  /// Starts it. \param arguments  the program's path first
-  /// \param environment  "NAME=VALUE", on top of this process's
-  /// \param folder  where it works; empty: here
+  /// Starts the process.
+  /// \param arguments  the program's path first
+  /// \param environment  "NAME=VALUE", in addition to this process's
+  /// \param folder  its working directory; empty: that of this process
   ChildProcess(const std::vector<std::string>& arguments,
                const std::vector<std::string>& environment, const std::string& folder = "");
   ~ChildProcess();  ///< ends it if it still runs
@@ -21,15 +22,17 @@ class ChildProcess {
   ChildProcess& operator=(const ChildProcess&) = delete;
 
   void write(const std::string& text);
-  /// Its input ends.
+  /// Ends the program's input.
   void close_input();
   void send_signal(int signal);
-  /// Reads what it says within this time, or before. \return false at the end of its output
+  /// Waits for output, at most this long, and reads it.
+  /// \return false at the end of the output
   [[nodiscard]] bool listen(std::chrono::milliseconds longest);
-  /// Reads until its output, both streams together, holds this. \return false if it ended first, or
-  ///   hangs
+  /// Reads until the output, both streams together, contains this text.
+  /// \return false if the output ended first, or the process hangs
   [[nodiscard]] bool says(const std::string& text);
-  /// Reads to its end. \return its exit code; -1 if it died by a signal, or hangs
+  /// Reads the rest of the output.
+  /// \return the exit code; -1 if a signal killed the process, or it hangs
   [[nodiscard]] int finish();
   [[nodiscard]] const std::string& output() const { return output_; }
 

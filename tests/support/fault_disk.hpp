@@ -1,5 +1,5 @@
-/// \file What a disk holds of the files written through it, synced or not: a model whose power can
-/// be cut.
+/// \file A model of a disk whose power can be cut: which content of its files, synced or not,
+///   remains.
 #pragma once
 
 #include "core/bytes.hpp"
@@ -18,28 +18,29 @@ namespace touchtrial::testing {
 using DiskImage = std::map<std::string, std::optional<Bytes>>;
 
 /// Keeps every file twice: as programs see it, and as the platter has it. A sector (512 bytes) is
-/// written whole or not at all, and without harm to its neighbours.
+/// written as a whole or not at all, and does not affect its neighbours.
 class FaultDisk {
  public:
   [[nodiscard]] bool knows(const std::string& path) const { return files_.count(path) > 0; }
-  /// A file that lies there safely.
+  /// Adds a file whose content is already durable.
   void adopt(const std::string& path, Bytes content);
-  /// A new, empty file; it is there for certain only after a sync.
+  /// Creates an empty file; it surely exists only after a sync.
   void create(const std::string& path);
   void write(const std::string& path, std::size_t offset, ByteView bytes);
   void truncate(const std::string& path, std::size_t size);
-  /// All that was written to the file is safe now, and so are its folder's entries.
+  /// Makes everything that was written to the file durable, and its folder's entries as well.
   void sync(const std::string& path);
-  /// A sync that failed: as Linux does, what it should have written is forgotten, though programs
-  /// go on seeing it.
+  /// A sync that failed: as on Linux, the data that it should have written are lost, although
+  /// programs still see them.
   void lose(const std::string& path);
   /// \param durably  whether its absence is certain
   void remove(const std::string& path, bool durably);
 
-  /// What a process that was killed leaves: everything that programs saw.
+  /// The files after a process was killed: everything that programs saw.
   [[nodiscard]] DiskImage as_seen() const;
-  /// What a power cut leaves: what was synced, and with `random` any part of the rest, sector by
-  /// sector. \param random  may be null
+  /// The files after a power cut: what was synced, and with `random` any part of the rest, sector
+  /// by sector.
+  /// \param random  may be null
   [[nodiscard]] DiskImage after_power_cut(RandomStream* random) const;
 
  private:
@@ -54,7 +55,7 @@ class FaultDisk {
     bool is_safe = false;
     Bytes seen;
     Bytes safe;
-    std::vector<Change> pending;  ///< seen, but not safe
+    std::vector<Change> pending;  ///< seen by programs, but not durable
   };
 
   static void apply(const Change& change, Bytes& content);

@@ -18,7 +18,7 @@ using Kind = Fault::Kind;
 constexpr const char* kName = "touchtrial-faults";
 constexpr std::size_t kIndexBytes = 32768;
 
-/// What becomes of an operation.
+/// The result of an operation.
 enum class Verdict { done, half, failed, dead };
 
 bool ends_everything(Kind kind) {
@@ -37,7 +37,7 @@ struct FaultVfs::State {
   bool struck = false;
   bool repaired = false;
   bool shares_memory = true;
-  std::optional<DiskImage> left;  ///< what a kill or a power cut left
+  std::optional<DiskImage> left;  ///< the disk after a kill or a power cut
 
   [[nodiscard]] bool is_dead() const { return left.has_value(); }
   Verdict before(DiskOperation operation);
@@ -221,7 +221,8 @@ bool is_tracked(const char* path, int flags) {
   return path != nullptr && (flags & kKinds) != 0;
 }
 
-/// Lets the disk know of a file that is about to be opened. \return false if that is not to be
+/// Tells the disk about a file that is about to be opened.
+/// \return false if it must not be opened
 bool announce(const char* path, int flags) {
   const bool exists = std::filesystem::exists(path);
   if (exists && !active->disk.knows(path)) active->disk.adopt(path, content_of(path));

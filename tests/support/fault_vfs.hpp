@@ -1,4 +1,4 @@
-/// \file A file system under SQLite that fails, is killed or loses power when a test says so.
+/// \file A file system under SQLite that fails, is killed or loses power when a test requests it.
 /// Source: "The SQLite OS Interface or VFS", https://www.sqlite.org/vfs.html
 #pragma once
 
@@ -13,11 +13,11 @@
 
 namespace touchtrial::testing {
 
-/// What SQLite does to a disk. Reading changes nothing and is not counted.
+/// SQLite's operations on a disk. Reading changes nothing and is not counted.
 enum class DiskOperation { create, write, truncate, sync, remove };
 inline constexpr std::size_t kDiskOperations = 5;
 
-/// What goes wrong, and when.
+/// The fault, and when it occurs.
 struct Fault {
   enum class Kind {
     none,
@@ -31,13 +31,13 @@ struct Fault {
   };
   Kind kind = Kind::none;
   std::int64_t at = 0;                  ///< which operation, from 1, counted from FaultVfs::plan on
-  std::optional<DiskOperation> only{};  ///< counts these alone
-  bool lasts = false;                   ///< errors: so does every one after it, until `repair`
-  std::uint64_t seed = 1;               ///< of what is on the disk by chance
+  std::optional<DiskOperation> only{};  ///< counts only these operations
+  bool lasts = false;                   ///< errors: every later operation fails too, until `repair`
+  std::uint64_t seed = 1;               ///< decides which unsynced writes happen to be on the disk
 };
 
-/// While it lives every connection of this process goes through it: it passes operations on to
-/// SQLite's own file system (but syncs nothing, which takes long), and knows what of them is safe.
+/// While it lives, every connection of this process goes through it. It passes operations on to
+/// SQLite's own file system (except syncs, which take long), and knows which of them are durable.
 /// One at a time; not thread-safe.
 class FaultVfs {
  public:
@@ -46,19 +46,20 @@ class FaultVfs {
   FaultVfs(const FaultVfs&) = delete;
   FaultVfs& operator=(const FaultVfs&) = delete;
 
-  /// Counts from here.
+  /// Plans a fault; operations are counted from this call on.
   void plan(const Fault& fault);
-  /// From here on files are opened as on a file system without shared memory.
+  /// From now on, files are opened as on a file system without shared memory.
   void forbid_shared_memory();
-  /// Errors that last end.
+  /// Ends lasting errors.
   void repair();
   /// Operations since `plan`.
   [[nodiscard]] std::int64_t operations() const noexcept;
   [[nodiscard]] std::int64_t count(DiskOperation operation) const noexcept;
-  /// Whether the planned fault has come.
+  /// Whether the planned fault has occurred.
   [[nodiscard]] bool struck() const noexcept;
-  /// After a kill or a power cut, when every connection is gone: puts on the disk what it left at
-  /// that moment, whatever the program's ways out did since. Index files (-shm) hold garbage then.
+  /// Call this after a kill or a power cut, when every connection is closed. Restores the disk to
+  /// the state at that moment, whatever destructors have written since. Index files (-shm) then
+  /// contain garbage.
   void start_anew();
 
   struct State;

@@ -1,4 +1,4 @@
-/// \file Memory whose pages can be taken away: reading one then ends the test.
+/// \file Memory whose pages can be made inaccessible: reading one then ends the test.
 #pragma once
 
 #include "support/catch.hpp"
@@ -37,7 +37,7 @@ class GuardedBytes {
   }
   [[nodiscard]] std::size_t pages() const { return (size_ + page_size() - 1) / page_size(); }
 
-  /// Takes all pages away but these, counted from 0.
+  /// Makes all pages inaccessible except these, which count from 0.
   void leave_only(const std::set<std::size_t>& pages) {
     REQUIRE(::mprotect(memory_, size_, PROT_NONE) == 0);
     for (const std::size_t page : pages) {

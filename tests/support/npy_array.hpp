@@ -13,8 +13,9 @@ struct NpyArray {
   std::vector<double> samples;  ///< row-major, whatever their type
 };
 
-/// Reads a file of version 1.0 in C order. \throws std::runtime_error if it is anything else, or
-/// its data are not as long as its shape says
+/// Reads a file of version 1.0 in C order.
+/// \throws std::runtime_error if it is anything else, or the length of its data does not match its
+///   shape
 [[nodiscard]] NpyArray read_npy(const std::filesystem::path& path);
 
 }  // namespace touchtrial

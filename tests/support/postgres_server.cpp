@@ -42,7 +42,7 @@ fs::path find_programs() {
   return std::max_element(found.begin(), found.end())->second;
 }
 
-/// Who runs the server: nobody else than we, unless that is root.
+/// The user who runs the server: another one if we are root, else null.
 const passwd* other_user() {
   if (geteuid() != 0) return nullptr;
   const passwd* const user = getpwnam("postgres");
@@ -156,8 +156,9 @@ void PostgresServer::start() {
 }
 
 void PostgresServer::kill() {
-  // Stopped, it starts nothing more while its children die.
+  // A stopped server starts no new processes while its children die.
   ::kill(process_, SIGSTOP);
+  waitpid(process_, nullptr, WUNTRACED);
   const std::vector<pid_t> children = children_of(process_);
   for (const pid_t child : children) ::kill(child, SIGKILL);
   ::kill(process_, SIGKILL);

@@ -28,9 +28,11 @@ class PostgresServer {
   PostgresServer(const PostgresServer&) = delete;
   PostgresServer& operator=(const PostgresServer&) = delete;
 
-  /// A new, empty database. \param encoding  of its texts
+  /// Makes a new, empty database.
+  /// \param encoding  of its texts
   void make_database(const std::string& name, const std::string& encoding = "UTF8");
-  /// Statements, in a database, as administrator. \return the first column of the result's rows
+  /// Executes statements in a database as the administrator.
+  /// \return the first column of the result's rows
   std::vector<std::string> ask(const std::string& database, const std::string& sql) const;
 
   /// postgresql:// address of a database.

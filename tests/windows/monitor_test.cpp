@@ -1,4 +1,3 @@
-#include "app/monitor/monitor_history.hpp"
 #include "app/monitor/monitor_run.hpp"
 #include "app/monitor/monitor_view.hpp"
 #include "app/monitor/plot.hpp"

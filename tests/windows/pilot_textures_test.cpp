@@ -1,5 +1,5 @@
-// Whether a pilot with a mouse shows the study's own textures: docs/devices/mouse.md. Nothing of
-// the mouse was chosen by these.
+// Tests whether a pilot with a mouse shows the study's own textures (docs/devices/mouse.md). The
+// mouse's settings were not chosen with these textures.
 #include "core/plane_geometry.hpp"
 #include "device/mouse/path_observer.hpp"
 #include "engine/extraction.hpp"

@@ -92,13 +92,13 @@ TEST_CASE("a simulated participant answers with the window's keys as without a w
   lab.verify("b.db");
 }
 
-/// A person with a keyboard, who looks at what the experimenter's status says. Its "trial" counts
-/// presentations: one in which a busy machine let the servo stand still is spoilt, and its stimulus
-/// comes again under a later number.
+/// A person with a keyboard, who reads the experimenter's status. Its "trial" counts presentations:
+/// if a busy machine stops the servo, the presentation is interrupted, and its stimulus is repeated
+/// under a later number.
 ///
-/// A key that comes before its screen does nothing: keys are pressed again until the status has
-/// changed. Each time the window has heard all keys before the status is read, so that a number
-/// reaches the screen of its own trial, or none.
+/// A key that is pressed before its screen is shown does nothing: keys are pressed again until the
+/// status has changed. The window has always handled all keys before the status is read, so that a
+/// number reaches the screen of its own trial, or none.
 class Pilot {
  public:
   Pilot(const Laboratory& lab, const VirtualScreen& screen)

@@ -1,5 +1,4 @@
 #include "app/sound/session_sound.hpp"
-#include "app/sound/sound_mixer.hpp"
 #include "device/platform/realtime.hpp"
 #include "support/catch.hpp"
 #include "support/realtime_watch.hpp"

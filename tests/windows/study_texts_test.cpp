@@ -1,6 +1,5 @@
 #include "app/texts/study_texts.hpp"
 
-#include "app/texts/language_texts.hpp"
 #include "core/errors.hpp"
 #include "core/strict_json.hpp"
 #include "protocols/identification/design/identification.hpp"

@@ -7,7 +7,7 @@
 namespace touchtrial {
 
 /// A private X server (Xvfb) on a free display while this object lives. DISPLAY names it, and
-/// OpenGL is rendered in software. One at a time.
+/// OpenGL is rendered in software. Only one object may exist at a time.
 ///
 /// Input comes from the XTest extension: real events, which are not addressed to a window, so that
 /// a window may close at any of them. All functions return once the server has done the work, and

@@ -1,7 +1,6 @@
 #include "analysis/exports/bids/bids_sidecars_json.hpp"
 
 #include "analysis/exports/bids/bids_traces.hpp"
-#include "analysis/exports/column_meanings.hpp"
 #include "analysis/json_figures.hpp"
 
 #include <fmt/format.h>

@@ -2,25 +2,155 @@
 
 #include "analysis/exports/bids/bids_people.hpp"
 #include "analysis/exports/bids/bids_sidecars_json.hpp"
-#include "analysis/exports/bids/bids_stimuli.hpp"
 #include "analysis/exports/bids/bids_traces.hpp"
-#include "analysis/exports/bids/bids_trials.hpp"
-#include "analysis/exports/bids/bids_tsv.hpp"
-#include "analysis/exports/dataset_readme.hpp"
 #include "analysis/exports/export_folder.hpp"
+#include "analysis/exports/trial_tables.hpp"
 #include "analysis/quality.hpp"
 #include "analysis/results.hpp"
 #include "core/errors.hpp"
+#include "core/files.hpp"
 #include "protocols/store/study_store.hpp"
 
+#include <algorithm>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <set>
+#include <string_view>
+
+#include <fmt/format.h>
 
 namespace touchtrial::analysis {
 namespace {
 
 using Files = std::vector<ExportFile>;
+
+std::string bids_readme(const DatasetSource& study, const DatasetOptions& options) {
+  std::string text = study.store.commitment().study + "\n\n" + about_study(study);
+  text +=
+      "One *_beh.tsv a session, one row a trial, in the order of presentation; task-*_beh.json "
+      "describes the columns. Labels of participants are their ids with Zd for a hyphen, Zu for "
+      "an underscore, Zp for a plus sign and ZZ for Z; participants.tsv has both.\n";
+  if (options.traces) {
+    text +=
+        "*_recording-trial<number>_stim.tsv.gz hold the stylus' position and the force sent, from "
+        "the moment the plane could be felt; StartTime counts from the session's opening.\n";
+  }
+  if (options.stimuli) text += "stimuli/ holds the images that the textures were taken from.\n";
+  if (!options.database.empty()) {
+    text += "sourcedata/ holds the study's database; its key is not part of the dataset.\n";
+  }
+  return text + "derivatives/touchtrial holds the program's own report.\n";
+}
+
+/// The name of an image below stimuli/: the numbers of its class and of the image, from 1, with the
+/// letters and digits of the class between them, for example "01-bark-01.png".
+std::string stimulus_name(const design::Study& study, int class_index, int exemplar) {
+  const design::StudyClass& of = study.classes.at(class_index);
+  return fmt::format("{:02}-{}-{:02}{}", class_index + 1, plain_label(of.label), exemplar + 1,
+                     of.images.at(exemplar).extension().string());
+}
+
+/// Copies of every image.
+/// \throws FileError if an image is missing
+Files stimulus_files(const design::Study& study) {
+  Files files;
+  for (int i = 0; i < static_cast<int>(study.classes.size()); ++i) {
+    for (int k = 0; k < static_cast<int>(study.classes[i].images.size()); ++k) {
+      const std::filesystem::path image = study.folder / study.classes[i].images[k];
+      if (!is_there(image)) {
+        throw FileError(one_line(image.string()) +
+                        ": the study's image is not there; put it back, or leave out "
+                        "--with-stimuli");
+      }
+      files.push_back(
+          {"stimuli/" + stimulus_name(study, i, k), [image](const std::filesystem::path& path) {
+             replace_file(path, ByteView(read_file(image)));
+           }});
+    }
+  }
+  return files;
+}
+
+/// The name that BIDS gives to a column, or its own name.
+std::string bids_name(std::string_view column) {
+  if (column == "class") return "trial_type";
+  if (column == "reaction_time_s") return "response_time";
+  return std::string(column);
+}
+
+bool is_shown(const TrialColumn& column, bool unblinded) {
+  const std::string_view name = column.name;
+  return name != "participant" && name != "session" && (unblinded || !column.after_unblinding);
+}
+
+DataCell stimulus_file(const TrialView& trial) {
+  if (trial.outcome->kind == design::PresentationKind::catch_trial) return std::monostate{};
+  const design::StimulusIndex& shown = trial.outcome->stimulus;
+  return stimulus_name(trial.study->design, shown.class_index, shown.exemplar);
+}
+
+/// What each row may show. Leaves out trials that an interim look does not show.
+std::vector<TrialView> views_of(const DatasetSource& study,
+                                const std::vector<store::TrialRow>& rows) {
+  static const std::string kNobody;
+  const bool simulated = study.store.commitment().simulated;
+  std::map<std::pair<int, int>, const TrialOutcome*> meanings;
+  if (study.outcomes != nullptr) {
+    for (const TrialOutcome& trial : study.outcomes->trials) {
+      meanings[{trial.row.session, trial.row.trial}] = &trial;
+    }
+  }
+  std::vector<TrialView> views;
+  for (const store::TrialRow& row : rows) {
+    const auto meaning = meanings.find({row.session, row.trial});
+    if (meaning != meanings.end()) {
+      views.push_back({kNobody, row, simulated, study.outcomes, meaning->second});
+    } else if (study.outcomes == nullptr) {
+      views.push_back({kNobody, row, simulated});
+    }
+  }
+  return views;
+}
+
+/// Sorts by session, then by time.
+void sort_by_presentation(std::vector<store::TrialRow>& rows) {
+  std::sort(rows.begin(), rows.end(), [](const store::TrialRow& a, const store::TrialRow& b) {
+    return std::pair(a.session, a.presented_at) < std::pair(b.session, b.presented_at);
+  });
+}
+
+/// The trials of each session in the order of presentation, unscored trials included. The columns
+/// are those of trials.csv under the names of BIDS. A session without trials has an empty table.
+struct BidsTrials {
+  std::vector<std::string> columns;
+  std::map<int, DataTable> by_session;
+};
+
+/// \param stimuli  whether the dataset includes the images, so that stim_file can name them
+BidsTrials bids_trials(const DatasetSource& study, bool stimuli) {
+  const bool unblinded = study.outcomes != nullptr;
+  BidsTrials trials;
+  for (const TrialColumn& column : trial_columns()) {
+    if (is_shown(column, unblinded)) trials.columns.push_back(bids_name(column.name));
+  }
+  if (stimuli) trials.columns.emplace_back("stim_file");
+  for (const store::SessionRow& session : study.store.sessions()) {
+    if (!session.withdrawn) trials.by_session[session.session].columns = trials.columns;
+  }
+  std::vector<store::TrialRow> rows = study.store.trials();
+  sort_by_presentation(rows);
+  for (const TrialView& trial : views_of(study, rows)) {
+    const auto table = trials.by_session.find(trial.row.session);
+    if (table == trials.by_session.end()) continue;
+    std::vector<DataCell>& row = table->second.rows.emplace_back();
+    for (const TrialColumn& column : trial_columns()) {
+      if (is_shown(column, unblinded)) row.push_back(column.value(trial));
+    }
+    if (stimuli) row.push_back(stimulus_file(trial));
+  }
+  return trials;
+}
 
 void append(Files& files, Files more) {
   files.insert(files.end(), std::make_move_iterator(more.begin()),

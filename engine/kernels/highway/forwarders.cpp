@@ -1,7 +1,8 @@
 // The functions of Highway's library, as its headers call them: each but the last looks up the real
 // one in libhwy.so.1 at its first call. That library calibrates a clock when it is loaded, which
-// took a quarter of the program's start. Source: hwy/targets.h and hwy/aligned_allocator.h, which
-// the compiler holds every line against, and docs/decisions/0047-loaded-when-needed.md.
+// took a quarter of the time of the program's start. Source: hwy/targets.h and
+// hwy/aligned_allocator.h, against which the compiler checks every line, and
+// docs/decisions/0047-loaded-when-needed.md.
 #include "core/errors.hpp"
 
 #include <cstdarg>
@@ -70,8 +71,8 @@ void hwy::FreeAlignedBytes(const void* aligned_pointer, FreePtr free_ptr, void* 
   found(aligned_pointer, free_ptr, opaque_ptr);
 }
 
-/// What the checks of Highway's headers call, in builds that do not optimise. Nothing is looked up:
-/// a fault of the program's own must be told whatever else is wrong.
+/// The checks in Highway's headers call this function in builds that do not optimise. It looks
+/// nothing up: a fault of the program itself must be reported whatever else is wrong.
 void hwy::Abort(const char* file, int line, const char* format, ...) {
   std::fprintf(stderr, "Abort at %s:%d: ", file, line);
   std::va_list values;

@@ -17,8 +17,8 @@ namespace touchtrial::analysis::identification {
 
 namespace {
 
-/// The number of orders that the study's rule makes. Every rule treats all classes alike, so each
-/// order also stands for its renamings.
+/// The number of orders that the study's rule can produce. Every rule treats all classes alike, so
+/// each order also stands for its renamings.
 constexpr int kOrders = 300;
 constexpr int kRenamings = 120;
 constexpr int kFewestDeals = 999;
@@ -67,12 +67,14 @@ std::vector<int> order_in(const design::Schedule& schedule, int method) {
 /// schedules and one of kRenamings renamings of the classes.
 class OrderDraws {
  public:
-  OrderDraws(design::Study study, int method, std::size_t blocks, int deals)
+  OrderDraws(const design::Study& study, int method, std::size_t blocks, int deals)
       : blocks_(blocks), random_(0, "chance test", static_cast<std::uint64_t>(method)) {
     // A seed of its own keeps the participants' own orders out of the draws.
-    study.seed = RandomStream(study.seed, "chance test: schedules").below(~std::uint64_t{0});
-    for (int i = 1; i <= kOrders; ++i)
-      orders_.push_back(order_in(design::make_schedule(study, i), method));
+    SeededEntropy entropy(study.seed);
+    for (int i = 1; i <= kOrders; ++i) {
+      const design::ScheduleDraw draw{entropy.secret("chance test: order " + std::to_string(i)), i};
+      orders_.push_back(order_in(design::make_schedule(study, draw), method));
+    }
     std::vector<int> names(study.classes.size());
     std::iota(names.begin(), names.end(), 0);
     for (int i = 0; i < kRenamings; ++i) {
@@ -160,13 +162,13 @@ PairFigures pair_figures(const Outcomes& outcomes, int first, int second, bool w
     accuracies.push_back({a.share().value_or(0.0), b.share().value_or(0.0)});
     differences.push_back(without_noise(accuracies.back().first - accuracies.back().second));
   }
-  PairFigures figures;
-  figures.overall = compare_methods(accuracies, 0, 1);
-  figures.overall.bootstrap.reset();
+  PairFigures numbers;
+  numbers.overall = compare_methods(accuracies, 0, 1);
+  numbers.overall.bootstrap.reset();
   if (with_attainable) {
-    figures.attainable = sign_flip_attainable(differences, kSignificanceLevel);
+    numbers.attainable = sign_flip_attainable(differences, kSignificanceLevel);
   }
-  return figures;
+  return numbers;
 }
 
 }  // namespace touchtrial::analysis::identification

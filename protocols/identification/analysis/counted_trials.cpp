@@ -23,6 +23,14 @@ CountedTrials counted_by_method(const Outcomes& outcomes) {
   return counted;
 }
 
+ConfusionMatrix confusion_of(const Outcomes& outcomes, int method) {
+  ConfusionMatrix confusion(static_cast<int>(outcomes.classes.size()));
+  for (const TrialOutcome& trial : outcomes.trials) {
+    if (trial.counted && trial.stimulus.method == method) confusion.add(choice_of(trial));
+  }
+  return confusion;
+}
+
 Choice choice_of(const TrialOutcome& trial) {
   return {trial.stimulus.class_index, trial.response};
 }

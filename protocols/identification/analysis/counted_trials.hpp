@@ -22,6 +22,9 @@ struct CountedTrials {
 /// \param outcomes  must outlive the result
 [[nodiscard]] CountedTrials counted_by_method(const Outcomes& outcomes);
 
+/// All participants' trials with one method.
+[[nodiscard]] ConfusionMatrix confusion_of(const Outcomes& outcomes, int method);
+
 [[nodiscard]] Choice choice_of(const TrialOutcome& trial);
 [[nodiscard]] Proportion accuracy_of(const OwnTrials& trials);
 /// The trials that presented one class.

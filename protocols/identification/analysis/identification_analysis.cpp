@@ -1,7 +1,7 @@
 #include "protocols/identification/analysis/identification_analysis.hpp"
 
-#include "analysis/exports/trial_columns.hpp"
-#include "analysis/statistics/confusion.hpp"
+#include "analysis/exports/data_table.hpp"
+#include "protocols/identification/analysis/counted_trials.hpp"
 #include "protocols/identification/analysis/cues/cue_report.hpp"
 #include "protocols/identification/analysis/cues/exploration_path.hpp"
 #include "protocols/identification/analysis/figures/figures.hpp"
@@ -19,19 +19,15 @@ constexpr int kTracesUnasked = 2500;
 /// Counts of one method's counted trials. Each row is a presented class; the columns are the
 /// answers, followed by trials without a response.
 DataTable confusion_table(const Outcomes& outcomes, int method) {
-  const auto classes = static_cast<int>(outcomes.classes.size());
-  ConfusionMatrix confusion(classes);
-  for (const TrialOutcome& trial : outcomes.trials) {
-    if (!trial.counted || trial.stimulus.method != method) continue;
-    confusion.add({trial.stimulus.class_index, trial.response});
-  }
+  const ConfusionMatrix confusion = confusion_of(outcomes, method);
   DataTable table{{"presented"}, {}};
   table.columns.insert(table.columns.end(), outcomes.classes.begin(), outcomes.classes.end());
   table.columns.emplace_back("no_response");
   table.columns.emplace_back("simulated");
-  for (int i = 0; i < classes; ++i) {
+  for (int i = 0; i < confusion.classes(); ++i) {
     std::vector<DataCell> row{outcomes.classes[i]};
-    for (int j = 0; j < classes; ++j) row.emplace_back(std::int64_t{confusion.count(i, j)});
+    for (int j = 0; j < confusion.classes(); ++j)
+      row.emplace_back(std::int64_t{confusion.count(i, j)});
     row.emplace_back(std::int64_t{confusion.no_response(i)});
     row.push_back(flag(outcomes.simulated));
     table.rows.push_back(std::move(row));
@@ -45,7 +41,6 @@ class IdentificationResults final : public Results {
       : report_(std::move(report)), paths_(std::move(paths)), paper_values_(paper_values) {}
 
   std::string json() const override { return report_json(report_); }
-  std::string text() const override { return report_text(report_); }
   std::vector<Figure> figures(const std::string& stamp) const override {
     return report_figures(report_, {.paper_values = paper_values_,
                                     .cues = report_.cues ? &*report_.cues : nullptr,

@@ -9,11 +9,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json rows_json(const Plane<double>& figures) {
+Json rows_json(const Plane<double>& values) {
   Json rows = Json::array();
-  for (int i = 0; i < figures.height(); ++i) {
+  for (int i = 0; i < values.height(); ++i) {
     Json row = Json::array();
-    for (const double figure : figures.row(i)) row.push_back(figure_json(figure));
+    for (const double value : values.row(i)) row.push_back(figure_json(value));
     rows.push_back(std::move(row));
   }
   return rows;
@@ -23,7 +23,7 @@ Json rows_json(const Plane<double>& figures) {
 
 nlohmann::ordered_json choice_object(const ChoiceModel& model) {
   Json bias = Json::array();
-  for (const double figure : model.bias) bias.push_back(figure_json(figure));
+  for (const double value : model.bias) bias.push_back(figure_json(value));
   Json object{{"similarity", rows_json(model.similarity)},
               {"bias", std::move(bias)},
               {"group", model.group},
@@ -34,8 +34,8 @@ nlohmann::ordered_json choice_object(const ChoiceModel& model) {
               {"converged", model.converged}};
   put_method(object,
              "similarity choice model, maximum likelihood; biases sum to 1 within a group of "
-             "classes that answers lead between both ways; p of G squared under chi-square against "
-             "the saturated model",
+             "classes that answers connect in both directions; p of G squared under chi-square "
+             "against the saturated model",
              {"luce1963", "townsend1982"});
   return object;
 }

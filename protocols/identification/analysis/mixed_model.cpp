@@ -1,7 +1,8 @@
 #include "protocols/identification/analysis/mixed_model.hpp"
 
 #include "analysis/exports/export_folder.hpp"
-#include "analysis/exports/trial_columns.hpp"
+#include "analysis/exports/trial_tables.hpp"
+#include "core/text.hpp"
 
 #include <algorithm>
 #include <map>
@@ -12,12 +13,6 @@
 namespace touchtrial::analysis::identification {
 
 namespace {
-
-DataCell seconds_between(const std::optional<std::chrono::nanoseconds>& from,
-                         const std::optional<std::chrono::nanoseconds>& to) {
-  if (!from || !to) return std::monostate{};
-  return *to - *from;
-}
 
 DataCell class_or_nothing(const Outcomes& outcomes, const std::optional<int>& index) {
   if (!index) return std::monostate{};
@@ -75,8 +70,8 @@ std::vector<DataCell> row_of(const Outcomes& outcomes, const TrialOutcome& trial
           class_or_nothing(outcomes, previous_class),
           class_or_nothing(outcomes, previous_response),
           whole_or_nothing(row.confidence),
-          seconds_between(row.presented_at, row.answered_at),
-          seconds_between(row.contact_at, row.answered_at),
+          time_between(row.presented_at, row.answered_at),
+          time_between(row.contact_at, row.answered_at),
           flag(trial.valid()),
           1.0 / static_cast<double>(outcomes.classes.size()),
           flag(outcomes.simulated)};
@@ -84,12 +79,12 @@ std::vector<DataCell> row_of(const Outcomes& outcomes, const TrialOutcome& trial
 
 std::string notes(const Outcomes& outcomes) {
   return fmt::format(
-      "# Mixed model of {}\n\n{}`mixed_model.csv` has one row a trial that counts; "
-      "`Rscript mixed_model.R` fits\n\n    {}\n\nas a binomial model with a logit link (lme4). "
-      "Participants and images are random, so that what it says holds for others like them; with "
-      "few images it hardly does. A trial without a response is wrong. `place` is the trial's "
-      "place among its participant's trials of the method; `previous_class` and "
-      "`previous_response` are of the presentation before in the same block.\n",
+      "# Mixed model of {}\n\n{}`mixed_model.csv` has one row a trial that counts; `Rscript "
+      "mixed_model.R` fits\n\n    {}\n\nas a binomial model with a logit link (lme4). "
+      "Participants and images are random effects, so that the results hold for others like them; "
+      "with few images they hardly do. A trial without a response is wrong. `place` is the "
+      "trial's place among its participant's trials of the method; `previous_class` and "
+      "`previous_response` are those of the previous presentation in the same block.\n",
       outcomes.study, outcomes.simulated ? "SIMULATED: every participant is a program.\n\n" : "",
       mixed_model_formula(outcomes));
 }
@@ -241,11 +236,7 @@ std::string r_text(const std::string& text) {
 }
 
 std::string method_names(const Outcomes& outcomes) {
-  std::string names;
-  for (const std::string& method : outcomes.methods) {
-    names += (names.empty() ? "" : ", ") + r_text(method);
-  }
-  return names;
+  return listed(outcomes.methods, ", ", r_text);
 }
 
 }  // namespace

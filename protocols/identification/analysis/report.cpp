@@ -75,13 +75,12 @@ void add_participants(int classes, const CountedTrials& counted, int method, Met
   report.bootstrap = cluster_bootstrap(accuracies, static_cast<std::uint64_t>(method));
 }
 
-void add_confusions(int classes, const CountedTrials& counted, int method, MethodReport& report) {
+void add_confusions(const Outcomes& outcomes, const CountedTrials& counted, int method,
+                    MethodReport& report) {
   std::vector<Choices> choices;
-  report.confusion = ConfusionMatrix(classes);
-  for (const OwnTrials& trials : counted.trials[method]) {
-    choices.push_back(choices_of(trials));
-    for (const Choice& choice : choices.back()) report.confusion.add(choice);
-  }
+  for (const OwnTrials& trials : counted.trials[method]) choices.push_back(choices_of(trials));
+  const auto classes = static_cast<int>(outcomes.classes.size());
+  report.confusion = confusion_of(outcomes, method);
   report.overall = report.confusion.accuracy();
   report.information = information_transfer(classes, choices, static_cast<std::uint64_t>(method),
                                             null_deals(report.overall.n));
@@ -96,7 +95,7 @@ MethodReport method_report(const Outcomes& outcomes, int method, const CountedTr
   const auto classes = static_cast<int>(outcomes.classes.size());
   MethodReport report;
   report.method = outcomes.methods[method];
-  add_confusions(classes, counted, method, report);
+  add_confusions(outcomes, counted, method, report);
   add_class_accuracies(report);
   add_participants(classes, counted, method, report);
   report.chance = chance_of(outcomes, method);

@@ -95,7 +95,4 @@ struct StudyReport : StudyHead {
 /// are null.
 [[nodiscard]] std::string report_json(const StudyReport& report);
 
-/// The report as tables for a terminal of at least 100 columns, with a line feed at the end.
-[[nodiscard]] std::string report_text(const StudyReport& report);
-
 }  // namespace touchtrial::analysis::identification

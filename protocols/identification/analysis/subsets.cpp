@@ -1,6 +1,5 @@
 #include "protocols/identification/analysis/subsets.hpp"
 
-#include "protocols/design/random_orders.hpp"
 #include "protocols/identification/analysis/counted_trials.hpp"
 
 #include <algorithm>
@@ -67,14 +66,33 @@ Group group_of_exemplar(const Outcomes& outcomes, const TrialOutcome& trial) {
           outcomes.classes[class_index] + ": " + outcomes.exemplars[class_index][exemplar]};
 }
 
-Group group_of_order(const Outcomes& outcomes, int enrolment) {
-  const auto methods = static_cast<int>(outcomes.methods.size());
+/// The methods of each session in the order in which they were first presented.
+std::map<int, std::vector<int>> orders_of_methods(const Outcomes& outcomes) {
+  std::map<int, std::vector<std::pair<int, int>>> first_trials;  // trial and method
+  for (const TrialOutcome& trial : outcomes.trials) {
+    if (trial.kind != design::PresentationKind::catch_trial) {
+      first_trials[trial.row.session].emplace_back(trial.row.trial, trial.stimulus.method);
+    }
+  }
+  std::map<int, std::vector<int>> orders;
+  for (auto& [session, presented] : first_trials) {
+    std::ranges::sort(presented);
+    std::vector<int>& order = orders[session];
+    for (const auto& [trial, method] : presented) {
+      if (std::ranges::find(order, method) == order.end()) order.push_back(method);
+    }
+  }
+  return orders;
+}
+
+Group group_of_order(const Outcomes& outcomes, const std::vector<int>& order) {
+  int place = 0;
   std::vector<std::string> labels;
-  for (const int method : design::williams_row(methods, enrolment)) {
+  for (const int method : order) {
+    place = place * static_cast<int>(outcomes.methods.size()) + method;
     labels.push_back(outcomes.methods[method]);
   }
-  const int rows = methods % 2 == 1 ? 2 * methods : methods;
-  return {enrolment % rows, fmt::format("{}", fmt::join(labels, ", then "))};
+  return {place, fmt::format("{}", fmt::join(labels, ", then "))};
 }
 
 Group group_felt_before(const Outcomes& outcomes, const PlacedTrial& placed) {
@@ -92,14 +110,6 @@ Group group_answered_before(const Outcomes& outcomes, const PlacedTrial& placed)
   const std::optional<int> answered = placed.previous->response;
   if (!answered) return {classes, "no response"};
   return {*answered, outcomes.classes[*answered]};
-}
-
-std::map<int, int> enrolments(const Outcomes& outcomes) {
-  std::map<int, int> of_session;
-  for (const SessionOutcome& session : outcomes.sessions) {
-    of_session[session.row.session] = session.row.enrolment;
-  }
-  return of_session;
 }
 
 /// Counts trials and correct answers by the group that `group_of` returns.
@@ -157,9 +167,9 @@ std::vector<Breakdown> breakdowns(const Outcomes& outcomes, int method) {
   add(BreakdownKind::trial,
       [](const PlacedTrial& placed) { return Group(placed.place, std::to_string(placed.place)); });
   if (outcomes.methods.size() > 1 && outcomes.design.trials.blocks == design::Blocks::by_method) {
-    const std::map<int, int> enrolment = enrolments(outcomes);
+    const std::map<int, std::vector<int>> orders = orders_of_methods(outcomes);
     add(BreakdownKind::order_group, [&](const PlacedTrial& placed) {
-      return group_of_order(outcomes, enrolment.at(placed.trial->row.session));
+      return group_of_order(outcomes, orders.at(placed.trial->row.session));
     });
   }
   add(BreakdownKind::previous_stimulus,

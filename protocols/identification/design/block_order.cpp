@@ -232,11 +232,10 @@ std::optional<OrderObstacle> obstacle_to_order(const Study& study) {
 }
 
 BlockOrder make_block_order(const Study& study, std::span<const int> methods,
-                            const std::string& purpose, int enrolment) {
-  const auto index = static_cast<std::uint64_t>(enrolment);
+                            const std::string& purpose, const SecretKey& secret) {
   BlockDraw draw{study, items_of(study, methods),
-                 RandomStream(study.seed, "schedule: order, " + purpose, index),
-                 RandomStream(study.seed, "schedule: lead-in, " + purpose, index)};
+                 RandomStream(secret, "schedule: order, " + purpose),
+                 RandomStream(secret, "schedule: lead-in, " + purpose)};
   if (study.trials.order == TrialOrder::de_bruijn) return de_bruijn_order(draw);
   BlockOrder order;
   order.items = lead_ins(draw);

@@ -2,6 +2,7 @@
 /// study's order is possible. Private to protocols/identification.
 #pragma once
 
+#include "core/cipher.hpp"
 #include "protocols/design/study.hpp"
 
 #include <cstddef>
@@ -37,8 +38,9 @@ struct BlockOrder {
 /// \param methods  methods that the block presents
 /// \param purpose  suffix of the names of the block's random streams, after "schedule: order, " and
 ///   "schedule: lead-in, "
+/// \param secret  of the participant, see ScheduleDraw
 /// \pre obstacle_to_order(study) is empty
 [[nodiscard]] BlockOrder make_block_order(const Study& study, std::span<const int> methods,
-                                          const std::string& purpose, int enrolment);
+                                          const std::string& purpose, const SecretKey& secret);
 
 }  // namespace touchtrial::design::identification

@@ -19,13 +19,13 @@ class Identification : public Protocol {
     return static_cast<int>(study.classes.size()) * study.presented_methods() *
            study.trials.repeats;
   }
-  Schedule schedule(const Study& study, int enrolment) const override {
-    return scheduled(study, enrolment);
+  Schedule schedule(const Study& study, const ScheduleDraw& draw) const override {
+    return scheduled(study, draw);
   }
   std::string rule(const Study& study) const override { return rule_of_schedule(study); }
-  std::vector<Presentation> restarted_block(const Study& study, int enrolment, int block,
+  std::vector<Presentation> restarted_block(const Study& study, const ScheduleDraw& draw, int block,
                                             int restarts_before, int first_trial) const override {
-    return scheduled_again(study, enrolment, block, restarts_before, first_trial);
+    return scheduled_again(study, draw, block, restarts_before, first_trial);
   }
   std::vector<Choice> choices(const Study& study) const override {
     std::vector<Choice> classes;

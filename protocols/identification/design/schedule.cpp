@@ -22,8 +22,8 @@ struct BlockPlan {
   std::string purpose;
 };
 
-std::vector<BlockPlan> block_plans(const Study& study, int enrolment) {
-  const std::vector<int> methods = williams_row(study.presented_methods(), enrolment);
+std::vector<BlockPlan> block_plans(const Study& study, const ScheduleDraw& draw) {
+  const std::vector<int> methods = williams_row(study.presented_methods(), draw.method_order);
   if (study.trials.blocks == Blocks::mixed) {
     std::vector<int> in_file_order(methods.size());
     std::iota(in_file_order.begin(), in_file_order.end(), 0);
@@ -39,8 +39,8 @@ std::vector<BlockPlan> block_plans(const Study& study, int enrolment) {
 class ExemplarSupply {
  public:
   /// \param restart  suffix of the names of the random streams; empty for a schedule's first order
-  ExemplarSupply(const Study& study, int enrolment, std::string restart = {})
-      : study_(study), enrolment_(enrolment), restart_(std::move(restart)) {}
+  ExemplarSupply(const Study& study, const ScheduleDraw& draw, std::string restart = {})
+      : study_(study), secret_(draw.secret), restart_(std::move(restart)) {}
 
   /// \return the index of the next image of the class for the method
   int next(int class_index, int method);
@@ -52,7 +52,7 @@ class ExemplarSupply {
   };
 
   const Study& study_;
-  int enrolment_;
+  SecretKey secret_;
   std::string restart_;
   std::map<std::pair<int, int>, Deck> decks_;
 };
@@ -65,8 +65,7 @@ int ExemplarSupply::next(int class_index, int method) {
   if (deck == decks_.end()) {
     const std::string purpose = "schedule: exemplars of class " + std::to_string(class_index) +
                                 ", method " + std::to_string(method) + restart_;
-    RandomStream random(study_.seed, purpose, static_cast<std::uint64_t>(enrolment_));
-    deck = decks_.emplace(key, Deck{random, {}}).first;
+    deck = decks_.emplace(key, Deck{RandomStream(secret_, purpose), {}}).first;
   }
   std::vector<int>& left = deck->second.left;
   if (left.empty()) {
@@ -129,10 +128,10 @@ void number(std::vector<Presentation>& presentations, int first) {
   for (Presentation& shown : presentations) shown.trial = first++;
 }
 
-std::vector<int> picture_layout(const Study& study, int enrolment) {
+std::vector<int> picture_layout(const Study& study, const ScheduleDraw& draw) {
   std::vector<int> layout(study.classes.size());
   std::iota(layout.begin(), layout.end(), 0);
-  RandomStream random(study.seed, "schedule: layout", static_cast<std::uint64_t>(enrolment));
+  RandomStream random(draw.secret, "schedule: layout");
   shuffle(std::span<int>(layout), random);
   return layout;
 }
@@ -146,41 +145,40 @@ void check_order(const Study& study) {
 
 }  // namespace
 
-Schedule scheduled(const Study& study, int enrolment) {
+Schedule scheduled(const Study& study, const ScheduleDraw& draw) {
   check_order(study);
   Schedule schedule;
-  ExemplarSupply exemplars(study, enrolment);
+  ExemplarSupply exemplars(study, draw);
   int block = 0;
-  for (const auto& [methods, purpose] : block_plans(study, enrolment)) {
-    const BlockOrder order = make_block_order(study, methods, purpose, enrolment);
+  for (const auto& [methods, purpose] : block_plans(study, draw)) {
+    const BlockOrder order = make_block_order(study, methods, purpose, draw.secret);
     const auto shown = presentations_of(order, block++, exemplars);
     schedule.presentations.insert(schedule.presentations.end(), shown.begin(), shown.end());
   }
-  RandomStream random(study.seed, "schedule: catch", static_cast<std::uint64_t>(enrolment));
+  RandomStream random(draw.secret, "schedule: catch");
   schedule.presentations =
       with_catch_trials(schedule.presentations, study.trials.catch_trials, random);
   number(schedule.presentations, 1);
-  schedule.layout = picture_layout(study, enrolment);
+  schedule.layout = picture_layout(study, draw);
   return schedule;
 }
 
-std::vector<Presentation> scheduled_again(const Study& study, int enrolment, int block,
+std::vector<Presentation> scheduled_again(const Study& study, const ScheduleDraw& draw, int block,
                                           int restarts_before, int first_trial) {
-  const std::vector<BlockPlan> plans = block_plans(study, enrolment);
+  const std::vector<BlockPlan> plans = block_plans(study, draw);
   if (block < 0 || block >= static_cast<int>(plans.size()) || restarts_before < 0) {
     throw std::invalid_argument("restarted_block: the study has no such block or restart");
   }
-  const Schedule first = scheduled(study, enrolment);
+  const Schedule first = scheduled(study, draw);
   const auto caught = std::ranges::count_if(first.presentations, [block](const auto& shown) {
     return shown.block == block && shown.kind == PresentationKind::catch_trial;
   });
   const std::string restart = ", restart " + std::to_string(restarts_before + 1);
   const auto& [methods, purpose] = plans[static_cast<std::size_t>(block)];
-  ExemplarSupply exemplars(study, enrolment, restart);
+  ExemplarSupply exemplars(study, draw, restart);
   const auto shown = presentations_of(
-      make_block_order(study, methods, purpose + restart, enrolment), block, exemplars);
-  RandomStream random(study.seed, "schedule: catch, " + purpose + restart,
-                      static_cast<std::uint64_t>(enrolment));
+      make_block_order(study, methods, purpose + restart, draw.secret), block, exemplars);
+  RandomStream random(draw.secret, "schedule: catch, " + purpose + restart);
   std::vector<Presentation> again = with_catch_trials(shown, static_cast<int>(caught), random);
   number(again, first_trial);
   return again;
@@ -192,7 +190,7 @@ std::string rule_of_schedule(const Study& study) {
     exemplars += (exemplars.empty() ? "" : ",") + std::to_string(study_class.images.size());
   }
   const TrialOptions& trials = study.trials;
-  return "touchtrial schedule 1: mt19937_64 streams by SHA-256(seed, purpose, enrolment)"
+  return "touchtrial schedule 2: mt19937_64 streams by BLAKE2b(participant's secret, purpose)"
          "; classes=" +
          std::to_string(study.classes.size()) + "; exemplars=" + exemplars +
          "; methods=" + std::to_string(study.presented_methods()) +

@@ -8,10 +8,10 @@
 namespace touchtrial::design::identification {
 
 /// The functions of protocols/design/schedule.hpp for both protocols of identification.
-[[nodiscard]] Schedule scheduled(const Study& study, int enrolment);
-[[nodiscard]] std::vector<Presentation> scheduled_again(const Study& study, int enrolment,
-                                                        int block, int restarts_before,
-                                                        int first_trial);
+[[nodiscard]] Schedule scheduled(const Study& study, const ScheduleDraw& draw);
+[[nodiscard]] std::vector<Presentation> scheduled_again(const Study& study,
+                                                        const ScheduleDraw& draw, int block,
+                                                        int restarts_before, int first_trial);
 [[nodiscard]] std::string rule_of_schedule(const Study& study);
 
 }  // namespace touchtrial::design::identification

@@ -1,9 +1,9 @@
-/// \file Prints the figures of analysis/statistics for cases that somebody else made, so that an
-/// independent package can be held against them (scripts/crosscheck-statistics).
+/// \file Prints the results of analysis/statistics for given cases, so that they can be compared
+///   with those of an independent package (scripts/crosscheck-statistics).
 ///
 /// Reads one JSON array of cases from standard input; each is an object whose "statistic" names one
 /// of the functions below and whose other members are its arguments. Writes an array of the same
-/// length: each element an array of numbers, null where a figure does not exist.
+/// length: each element an array of numbers, null where a number does not exist.
 #include "analysis/confusion_of_counts.hpp"
 #include "analysis/statistics/chance_test.hpp"
 #include "analysis/statistics/choice_model.hpp"
@@ -31,14 +31,14 @@ namespace touchtrial {
 namespace {
 
 using nlohmann::json;
-using Figures = std::vector<std::optional<double>>;
+using Numbers = std::vector<std::optional<double>>;
 
-Figures both(const analysis::Interval& interval) {
+Numbers both(const analysis::Interval& interval) {
   return {interval.low, interval.high};
 }
 
-Figures both(const std::optional<analysis::Interval>& interval) {
-  return interval ? both(*interval) : Figures{std::nullopt, std::nullopt};
+Numbers both(const std::optional<analysis::Interval>& interval) {
+  return interval ? both(*interval) : Numbers{std::nullopt, std::nullopt};
 }
 
 /// [correct, n]
@@ -55,45 +55,45 @@ analysis::ConfusionMatrix confusion(const json& rows) {
   return confusion_of_counts(rows.get<std::vector<std::vector<int>>>());
 }
 
-Figures wilson(const json& c) {
+Numbers wilson(const json& c) {
   return both(analysis::wilson_interval(proportion(c.at("of")), c.at("level")));
 }
 
-Figures clopper_pearson(const json& c) {
+Numbers clopper_pearson(const json& c) {
   return both(analysis::clopper_pearson_interval(proportion(c.at("of")), c.at("level")));
 }
 
-Figures jeffreys(const json& c) {
+Numbers jeffreys(const json& c) {
   return both(analysis::jeffreys_interval(proportion(c.at("of")), c.at("level")));
 }
 
-Figures t_interval(const json& c) {
+Numbers t_interval(const json& c) {
   const analysis::MeanEstimate estimate =
       analysis::participant_mean(numbers(c.at("values")), {-1e9, 1e9}, c.at("level"));
   return {estimate.mean, estimate.sd, estimate.interval.low, estimate.interval.high};
 }
 
-Figures sign_flip(const json& c) {
+Numbers sign_flip(const json& c) {
   return {analysis::sign_flip_p(numbers(c.at("values")))};
 }
 
-Figures mcnemar(const json& c) {
+Numbers mcnemar(const json& c) {
   return {analysis::mcnemar_mid_p(c.at("first_only"), c.at("second_only"))};
 }
 
-Figures cochran(const json& c) {
+Numbers cochran(const json& c) {
   const std::optional<analysis::CochranQ> result =
       analysis::cochran_q(c.at("occasions").get<std::vector<std::vector<bool>>>());
   if (!result) return {std::nullopt, std::nullopt};
   return {result->q, result->p};
 }
 
-Figures holm(const json& c) {
+Numbers holm(const json& c) {
   const std::vector<double> adjusted = analysis::holm_adjusted(numbers(c.at("p")));
   return {adjusted.begin(), adjusted.end()};
 }
 
-Figures odds_ratio(const json& c) {
+Numbers odds_ratio(const json& c) {
   std::vector<std::pair<analysis::Proportion, analysis::Proportion>> participants;
   for (const json& one : c.at("participants")) {
     participants.emplace_back(proportion(one.at(0)), proportion(one.at(1)));
@@ -104,13 +104,13 @@ Figures odds_ratio(const json& c) {
   return {result->estimate, result->interval.low, result->interval.high};
 }
 
-Figures nominal_d_prime(const json& c) {
+Numbers nominal_d_prime(const json& c) {
   const analysis::DPrime result =
       analysis::d_prime(proportion(c.at("of")), c.at("alternatives"), c.at("level"));
   return {result.estimate, result.low, result.high};
 }
 
-Figures transfer(const json& c) {
+Numbers transfer(const json& c) {
   const analysis::ConfusionMatrix matrix = confusion(c.at("counts"));
   std::vector<std::vector<analysis::Choice>> choices(1);
   for (int i = 0; i < matrix.classes(); ++i) {
@@ -123,7 +123,7 @@ Figures transfer(const json& c) {
   return {result.raw, result.corrected};
 }
 
-Figures chance(const json& c) {
+Numbers chance(const json& c) {
   std::vector<analysis::AnsweredBlock> blocks;
   for (const json& one : c.at("blocks")) {
     analysis::AnsweredBlock& block = blocks.emplace_back();
@@ -142,37 +142,37 @@ Figures chance(const json& c) {
 }
 
 /// Expected counts by row, G squared, degrees of freedom.
-Figures choices(const json& c) {
+Numbers choices(const json& c) {
   const std::optional<analysis::ChoiceModel> model =
       analysis::choice_model(confusion(c.at("counts")));
   if (!model) return {};
-  Figures figures(model->expected.samples().begin(), model->expected.samples().end());
-  figures.emplace_back(model->g_squared);
-  figures.emplace_back(model->degrees_of_freedom);
-  return figures;
+  Numbers numbers(model->expected.samples().begin(), model->expected.samples().end());
+  numbers.emplace_back(model->g_squared);
+  numbers.emplace_back(model->degrees_of_freedom);
+  return numbers;
 }
 
-Figures matching(const json& c) {
+Numbers matching(const json& c) {
   return {analysis::best_label_matching(confusion(c.at("counts"))).accuracy.correct};
 }
 
-Figures three_quartiles(const json& c) {
+Numbers three_quartiles(const json& c) {
   const analysis::Quartiles result = analysis::quartiles(numbers(c.at("values")));
   return {result.lower, result.median, result.upper};
 }
 
-Figures bootstrap(const json& c) {
+Numbers bootstrap(const json& c) {
   std::vector<analysis::Proportion> participants;
   for (const json& one : c.at("participants")) participants.push_back(proportion(one));
   return both(analysis::cluster_bootstrap(participants, 0, c.at("draws"), c.at("level")));
 }
 
-Figures mean_bootstrap(const json& c) {
+Numbers mean_bootstrap(const json& c) {
   return both(analysis::bootstrap_mean(numbers(c.at("values")), 0, c.at("draws"), c.at("level")));
 }
 
-Figures figures_of(const json& one) {
-  static const std::map<std::string, Figures (*)(const json&)> kStatistics{
+Numbers numbers_of(const json& one) {
+  static const std::map<std::string, Numbers (*)(const json&)> kStatistics{
       {"wilson", wilson},
       {"clopper_pearson", clopper_pearson},
       {"jeffreys", jeffreys},
@@ -196,17 +196,17 @@ Figures figures_of(const json& one) {
   return found->second(one);
 }
 
-json as_json(const Figures& figures) {
+json as_json(const Numbers& numbers) {
   json list = json::array();
-  for (const std::optional<double>& figure : figures) {
-    list.push_back(figure && std::isfinite(*figure) ? json(*figure) : json());
+  for (const std::optional<double>& number : numbers) {
+    list.push_back(number && std::isfinite(*number) ? json(*number) : json());
   }
   return list;
 }
 
 void answer_all(std::istream& cases, std::ostream& answers) {
   json list = json::array();
-  for (const json& one : json::parse(cases)) list.push_back(as_json(figures_of(one)));
+  for (const json& one : json::parse(cases)) list.push_back(as_json(numbers_of(one)));
   answers << list << '\n';
 }
 

@@ -2,9 +2,9 @@
 #include "analysis/exports/dataset_rules.hpp"
 #include "analysis/exports/gunzip.hpp"
 #include "core/files.hpp"
+#include "core/text.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <regex>
 #include <set>
@@ -35,9 +35,7 @@ Lines split(const std::string& text) {
 }
 
 bool is_number(const std::string& text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc{} && end == text.data() + text.size();
+  return number_in<double>(text).has_value();
 }
 
 json parsed(const fs::path& path, Faults& faults) {
@@ -63,8 +61,8 @@ void check_description(const fs::path& folder, const std::string& type, Faults& 
   }
 }
 
-/// Text, header, rows: everything that holds of any TSV file. Only rows that fit the header are
-/// returned.
+/// Checks the rules for any TSV file: its text, header and rows. Returns only rows that fit the
+/// header.
 Lines check_tsv(const fs::path& path, Faults& faults) {
   const std::string text = text_of_file(path);
   const auto fault = [&](const std::string& what) {

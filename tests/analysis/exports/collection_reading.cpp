@@ -86,7 +86,7 @@ analysis::ServoTrial servo_trial_of(const CsvRow& row) {
       number_of<std::int64_t>(row.at("overruns"))};
 }
 
-/// What decides which sessions count.
+/// The facts that decide which sessions count.
 store::StudyCommitment commitment_of(const std::filesystem::path& study) {
   store::StudyCommitment commitment;
   for (const CsvRow& row : rows_of(study)) {
@@ -101,7 +101,7 @@ store::StudyCommitment commitment_of(const std::filesystem::path& study) {
 store::SessionRow session_row_of(const CsvRow& row) {
   store::SessionRow session;
   session.session = number_of<int>(row.at("session"));
-  session.own_session = session.session;  // exports do not tell where it was collected
+  session.own_session = session.session;  // exports do not say where it was collected
   session.participant = row.at("participant");
   session.enrolment = number_of<int>(row.at("enrolment"));
   session.state = session_state_of(row.at("state"));

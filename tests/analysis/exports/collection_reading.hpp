@@ -1,4 +1,4 @@
-/// \file How a study was collected, read back from its exported CSV files.
+/// \file The facts about a study's collection, read back from its exported CSV files.
 #pragma once
 
 #include "analysis/collection.hpp"
@@ -11,7 +11,7 @@ namespace touchtrial {
 /// A row of participants.csv.
 [[nodiscard]] store::SessionRow session_row_of(const CsvRow& row);
 
-/// \param state  which the flow of participants depends on
+/// \param state  decides the flow of participants
 [[nodiscard]] analysis::Collection collection_from_csv(const std::filesystem::path& folder,
                                                        const store::StudyState& state);
 

@@ -1,9 +1,9 @@
-/// \file What single cells of exported CSV files say. Fails the test if they say something else.
+/// \file Reads single cells of exported CSV files. Fails the test if a cell has no valid value.
 #pragma once
 
+#include "core/text.hpp"
 #include "support/catch.hpp"
 
-#include <charconv>
 #include <map>
 #include <optional>
 #include <string>
@@ -15,11 +15,9 @@ using CsvRow = std::map<std::string, std::string>;
 
 template <typename Number>
 [[nodiscard]] Number number_of(const std::string& text) {
-  Number value{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  REQUIRE(error == std::errc{});
-  REQUIRE(end == text.data() + text.size());
-  return value;
+  const auto value = number_in<Number>(text);
+  REQUIRE(value.has_value());
+  return *value;
 }
 
 template <typename Number>

@@ -1,4 +1,4 @@
-/// \file Reads exported CSV files back, and from them what the report is made of.
+/// \file Reads exported CSV files back, and makes from them the outcomes for the report.
 #pragma once
 
 #include "analysis/exports/csv_cells.hpp"
@@ -18,7 +18,8 @@ namespace touchtrial {
 /// Each row by the names of the header; fails the test if one is longer or shorter.
 [[nodiscard]] std::vector<CsvRow> rows_of(const std::filesystem::path& path);
 
-/// What an export after unblinding was made from, as far as its CSV files tell.
+/// The outcomes that an export after unblinding was made from, as far as its CSV files contain
+/// them.
 [[nodiscard]] analysis::Outcomes outcomes_from_csv(const std::filesystem::path& folder);
 
 }  // namespace touchtrial

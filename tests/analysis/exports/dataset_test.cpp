@@ -40,7 +40,7 @@ void fill(FakeStudy& study) {
              .stop_after = 2});
 }
 
-/// An unblinded study, and what exporting it takes.
+/// An unblinded study, and everything that an export of it needs.
 struct OpenStudy {
   explicit OpenStudy(FakeStudy& study)
       : outcomes(analysis::load_outcomes(study.store(), study.key())),
@@ -112,7 +112,7 @@ TEST_CASE("A BIDS recording holds the trace and its beginning") {
   CHECK(sidecar["stamp"] == "SIMULATED");
 }
 
-TEST_CASE("A BIDS recording tells a trace's steps apart, and writes no zero with a sign") {
+TEST_CASE("A BIDS recording keeps a trace's steps distinct, and writes no zero with a sign") {
   store::Trace trace;
   for (int i = -9000; i <= 9000; i += 7) {
     trace.samples.push_back({{i / 1000.0, -0.0004, 0.0}, {i / 4096.0, 1 / 4096.0, -0.00004}});
@@ -178,7 +178,7 @@ TEST_CASE("Before unblinding datasets have no word of what was presented or answ
   for (const fs::path& folder : {bids, psych}) {
     for (const auto& [name, text] : contents(folder)) {
       INFO(name);
-      if (name == "sourcedata/study.db") continue;  // what a database tells is tested there
+      if (name == "sourcedata/study.db") continue;  // other tests check what a database reveals
       for (const char* secret : {"petrified", "cloth", "straw", "tv-gabor", "trial_type"}) {
         CHECK_FALSE(contains(text, secret));
       }

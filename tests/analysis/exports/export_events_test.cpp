@@ -1,6 +1,5 @@
-#include "analysis/exports/export_events.hpp"
-
 #include "analysis/exports/csv_reading.hpp"
+#include "analysis/exports/export_tables.hpp"
 #include "analysis/fake_study.hpp"
 #include "support/catch.hpp"
 
@@ -71,7 +70,7 @@ TEST_CASE("Exported events have remarks, faults by name, and flight records as t
 }
 
 TEST_CASE(
-    "Exported events have nothing of who withdrew, nor of whom an interim look does not show") {
+    "Exported events leave out withdrawn participants, and those that an interim look hides") {
   FakeStudy study(design::identification::classification());
   study.add(of_somebody("P01", 1));
   study.add(of_somebody("P02", 2));

@@ -53,7 +53,7 @@ TEST_CASE("A file that no export wrote is not overwritten") {
   CHECK_FALSE(is_there(folder.path() / "other.csv"));
 }
 
-TEST_CASE("An export that was broken off can be repeated") {
+TEST_CASE("An interrupted export can be repeated") {
   const TempFolder folder;
   const auto fail = [](const std::filesystem::path&) { throw FileError("disk full"); };
   CHECK_THROWS_AS(analysis::write_export(folder.path(), kOurs,
@@ -86,7 +86,7 @@ TEST_CASE("A mark that was tampered with removes nothing outside of its folder")
   CHECK(is_there(folder.path() / "precious.txt"));
 }
 
-TEST_CASE("A mark that is none is named") {
+TEST_CASE("A file that is not a valid mark is named") {
   const TempFolder folder;
   replace_file(folder.path() / analysis::kExportMark, "{");
   const std::string complaint = complaint_of<FileError>(

@@ -1,6 +1,5 @@
 #include "analysis/exports/csv_reading.hpp"
-#include "analysis/exports/export_csv.hpp"
-#include "analysis/exports/export_json.hpp"
+#include "analysis/exports/export_tables.hpp"
 #include "analysis/fake_study.hpp"
 #include "analysis/text_matching.hpp"
 #include "core/errors.hpp"
@@ -68,7 +67,7 @@ TEST_CASE("Exported trials count up to the report") {
   CHECK(correct == expected_correct);
 }
 
-TEST_CASE("trials.csv has the published columns, exact times and figures") {
+TEST_CASE("trials.csv has the published columns, exact times and numbers") {
   FakeStudy study(design::identification::classification());
   fill(study);
   study.close_and_unblind();

@@ -39,7 +39,7 @@ TEST_CASE("The table for a mixed model has the trials of the report and what cam
     CHECK(rows[i].at("simulated") == "1");
     CHECK(rows[i].at("image").starts_with(rows[i].at("class") + ": "));
     correct += rows[i].at("correct") == "1" ? 1 : 0;
-    // What was interrupted came again at the end, after another block.
+    // The interrupted trial was repeated at the end, after another block.
     CHECK(rows[i].at("previous_class").empty() == (rows[i].at("trial") == "3"));
     if (i == 0 || rows[i].at("block") != rows[i - 1].at("block")) continue;
     CHECK(rows[i].at("previous_class") == rows[i - 1].at("class"));

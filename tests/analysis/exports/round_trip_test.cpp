@@ -1,5 +1,5 @@
 #include "analysis/exports/csv_reading.hpp"
-#include "analysis/exports/export_csv.hpp"
+#include "analysis/exports/export_tables.hpp"
 #include "analysis/fake_study.hpp"
 #include "protocols/identification/analysis/report.hpp"
 #include "support/catch.hpp"
@@ -11,7 +11,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// Figures of the servo and the page's list of devices are in no JSON.
+/// The servo's numbers and the page's list of devices are in no JSON.
 void check_same_station(const analysis::Collection& read_back,
                         const analysis::Collection& collection) {
   REQUIRE(read_back.servo_trials.size() == collection.servo_trials.size());
@@ -29,7 +29,7 @@ void check_same_station(const analysis::Collection& read_back,
   CHECK(read_back.visual == collection.visual);
 }
 
-/// What the report of a study says, and what it says of its CSV files.
+/// Compares the report of a study with the report of its CSV files.
 void check_round_trip(FakeStudy& study) {
   const analysis::Outcomes outcomes = analysis::load_outcomes(study.store(), study.key());
   const std::filesystem::path out = study.folder() / "out";
@@ -49,7 +49,7 @@ void check_round_trip(FakeStudy& study) {
         analysis::identification::report_json(analysis::identification::make_report(outcomes)));
 }
 
-/// Wrong now and then, in a way that depends on who answers.
+/// Answers that are sometimes wrong, in a way that depends on the participant.
 FakeAnswers imperfect(int participant) {
   return [=](const design::Presentation& shown) -> std::optional<int> {
     if ((shown.trial + participant) % 7 == 0) return std::nullopt;
@@ -102,7 +102,7 @@ TEST_CASE("A study with lead-ins and catch trials reports the same from its CSV 
   CHECK(rows_of(study.folder() / "out" / "unscored_trials.csv").size() == 5 * 3 + 1);
 }
 
-TEST_CASE("How a study was collected is the same from its CSV files, in words and figures") {
+TEST_CASE("How a study was collected is the same from its CSV files, in words and numbers") {
   FakeStudy study(design::identification::classification(), {.simulated = false});
   fill(study);
   FakeSession felt{.participant = "P07", .enrolment = 7, .answers = imperfect(7)};

@@ -15,7 +15,7 @@ using namespace touchtrial::engine;
 
 namespace {
 
-/// Blocks of random greys round 128, as far from it as `contrast` says.
+/// Blocks of random greys around 128; `contrast` is their largest distance from it.
 GreyImage blocks(std::uint64_t seed, int side, int contrast) {
   RandomStream random(seed, "picture set test");
   Plane<int> greys(side / 4 + 1, side / 4 + 1);

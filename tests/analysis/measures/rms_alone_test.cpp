@@ -42,7 +42,7 @@ TEST_CASE(
   const std::vector<PatchStrengths> apart = {{0, {1.0, 1.1}}, {1, {2.0, 2.1}}, {2, {3.0, 3.1}}};
   CHECK(rms_alone(apart, 3).unseen_patch == 1.0);
   CHECK(rms_alone(apart, 2).sets == 3);
-  // Interleaved strengths: of either class two patches lie on the other's side.
+  // Interleaved strengths: two patches of each class lie on the other's side.
   const std::vector<PatchStrengths> mixed = {{0, {0.0, 1.0, 0.0, 1.0}}, {1, {0.0, 1.0, 0.0, 1.0}}};
   CHECK(rms_alone(mixed, 2).unseen_patch <= 0.5);
 }
@@ -56,7 +56,8 @@ TEST_CASE("one class within another's range gives the count done by hand") {
 }
 
 TEST_CASE("an unseen picture is judged by its class's other pictures") {
-  // The second picture of class 0 is as strong as class 1, so it is never told; all others are.
+  // The second picture of class 0 is as strong as class 1, so it is never recognised; all others
+  // are.
   const std::vector<PatchStrengths> pictures = {
       {0, {0.0, 0.0}}, {0, {5.0, 5.0}}, {1, {5.0, 5.0}}, {1, {5.2, 5.2}}};
   const RmsAlone score = rms_alone(pictures, 2);

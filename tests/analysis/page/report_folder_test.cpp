@@ -1,9 +1,9 @@
-// The folder of a report: its own files, and nobody else's.
+// The folder of a report: it writes and removes its own files, and no others.
 #include "analysis/page/report_folder.hpp"
 
-#include "analysis/page/hand_made_report.hpp"
 #include "core/errors.hpp"
 #include "core/files.hpp"
+#include "protocols/identification/analysis/hand_made_report.hpp"
 #include "support/catch.hpp"
 #include "support/temp_folder.hpp"
 

@@ -1,7 +1,7 @@
-// A report's tables for papers: nothing in a label may become mark-up.
+// A report's tables for papers: no part of a label may act as mark-up.
 #include "analysis/escaping.hpp"
 #include "analysis/page/document.hpp"
-#include "analysis/page/hand_made_report.hpp"
+#include "protocols/identification/analysis/hand_made_report.hpp"
 #include "support/catch.hpp"
 
 #include <algorithm>

@@ -47,7 +47,9 @@ planning::FitCounts simulated_counts(const PlannedStudy& planned,
   counts.stimuli = planning::stimuli_of(planned.study.key());
   for (int number = 1; number <= participants; ++number) {
     const planning::PictureLayout layout =
-        design::make_schedule(planned.study.key().study, number).layout;
+        design::make_schedule(planned.study.key().study,
+                              planned.study.key().draw_of(number, design::Draws::rehearsal))
+            .layout;
     planning::CountedPerson person = answers_of(planned, subject, number, repeats, layout, seed);
     const auto known = std::ranges::find(counts.layouts, layout);
     person.layout = static_cast<int>(known - counts.layouts.begin());

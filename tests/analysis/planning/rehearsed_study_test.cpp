@@ -115,7 +115,8 @@ class RememberedFeelings final : public planning::Feelings {
   RememberedFeelings(const RehearsedTinyStudy& study, int participants, std::uint64_t seed)
       : knowledge_(study.servo.knowledge(seed)) {
     for (int number = 1; number <= participants; ++number) {
-      const design::Schedule schedule = design::make_schedule(study.tiny.key().study, number);
+      const design::Schedule schedule = design::make_schedule(
+          study.tiny.key().study, study.tiny.key().draw_of(number, design::Draws::rehearsal));
       for (std::size_t i = 0; i < schedule.presentations.size(); ++i) {
         const planning::FeltTrial trial{seed, number, i + 1, 0};
         felt_[{number, i + 1}] = study.servo.felt(schedule.presentations[i].stimulus, trial);

@@ -25,11 +25,17 @@ namespace touchtrial {
   return subject;
 }
 
+/// With the secrets of the study's simulations, which follow from its seed.
+[[nodiscard]] inline TinyStudyOptions as_simulated(TinyStudyOptions options) {
+  options.secret = kTinyStudySeed;
+  return options;
+}
+
 /// A tiny study and what its simulated studies refer to.
 struct RehearsedTinyStudy {
   explicit RehearsedTinyStudy(const TinyStudyOptions& options = {},
                               const simulation::SubjectModel& model = hasty_subject())
-      : tiny(options),
+      : tiny(as_simulated(options)),
         subject(model),
         test(planning::primary_test_of(tiny.key().study, {})),
         source(tiny.pack(), tiny.key().study.rendering),

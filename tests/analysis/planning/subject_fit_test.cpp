@@ -196,7 +196,7 @@ TEST_CASE(
   CHECK(right == Approx(0.2).margin(0.05));
   const bool open = !named(fit, "weber").profile.lower || !named(fit, "weber").profile.upper;
   CHECK(open);
-  CHECK(warns_of(fit, "not told from guessing"));
+  CHECK(warns_of(fit, "cannot be told from guessing"));
   CHECK(warns_of(fit, "an end of the profile"));
 }
 

@@ -63,8 +63,8 @@ std::vector<int> balanced_25(RandomStream& random) {
   return order;
 }
 
-/// What somebody answers who feels nothing but is told after each trial what it was, and answers
-/// what must be left most often.
+/// The answers of a participant who feels nothing, but is told after each trial what was presented,
+/// and answers the class that must be left most often.
 Answers card_counter(const std::vector<int>& presented) {
   std::vector<int> left(5, 5);
   Answers answers;

@@ -15,7 +15,7 @@ using Counts = std::vector<std::vector<int>>;
 const Counts kFive{
     {18, 3, 1, 2, 1}, {5, 14, 2, 3, 1}, {1, 4, 16, 1, 3}, {2, 1, 2, 19, 1}, {1, 2, 5, 2, 15}};
 
-/// What the model says class i is answered with, from its similarities and biases.
+/// The probability of answer j to class i, from the model's similarities and biases.
 double probability(const analysis::ChoiceModel& model, int i, int j) {
   double all = 0.0;
   for (int k = 0; k < model.similarity.height(); ++k) {
@@ -36,7 +36,7 @@ double column_sum(const Plane<double>& plane, int j) {
   return sum;
 }
 
-/// What maximum likelihood of a log-linear model must do: keep its margins.
+/// Checks a law of maximum likelihood in log-linear models: the margins stay the same.
 void check_margins(const Counts& counts, const analysis::ChoiceModel& model) {
   const auto classes = static_cast<int>(counts.size());
   for (int i = 0; i < classes; ++i) {

@@ -12,7 +12,7 @@
 namespace touchtrial {
 namespace {
 
-/// The figures of all n^n ways to draw five participants, sorted.
+/// The results of all n^n ways to draw five participants, sorted.
 std::vector<double> every_draw(const std::vector<analysis::Proportion>& five) {
   std::vector<double> shares;
   for (int draw = 0; draw < 3125; ++draw) {
@@ -70,7 +70,7 @@ TEST_CASE("bootstrap_mean of many values nears the normal interval of their mean
   CHECK(std::abs(interval.high - (mean + 1.96 * error)) < 0.15 * error);
 }
 
-TEST_CASE("A bootstrap repeats itself, and another index draws anew") {
+TEST_CASE("A bootstrap repeats itself, and another index gives other draws") {
   std::vector<analysis::Proportion> participants;
   std::vector<double> values;
   for (int i = 0; i < 30; ++i) {

@@ -65,7 +65,8 @@ TEST_CASE("The null mean of 25 balanced trials of five classes is the known bias
 }
 
 TEST_CASE("Answers are permuted only within a participant") {
-  // Each always gives the same answer, so no deal of one's own answers changes anything.
+  // Each participant always gives the same answer, so no deal within a participant changes
+  // anything.
   const std::vector<std::vector<analysis::Choice>> two{{{0, 0}, {0, 0}}, {{1, 1}, {1, 1}}};
   const analysis::InformationTransfer transfer = analysis::information_transfer(2, two);
   CHECK(transfer.raw.value() == Approx(1.0).margin(1e-12));

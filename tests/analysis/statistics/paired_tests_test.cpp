@@ -61,7 +61,7 @@ TEST_CASE("compare_methods refuses values that are not finite") {
 }
 
 TEST_CASE("rounding leaves no difference where there is none") {
-  // 0.1 + 0.2 is no 0.3 in binary, and so are the differences.
+  // 0.1 + 0.2 is not exactly 0.3 in binary, nor are these differences equal.
   const std::vector<analysis::PairedAccuracy> same{
       {0.1 + 0.2, 0.3}, {0.7, 0.1 + 0.6}, {0.8, 0.1 + 0.7}};
   const analysis::MethodComparison comparison = analysis::compare_methods(same);

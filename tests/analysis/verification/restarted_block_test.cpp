@@ -25,7 +25,7 @@ class RestartedSession {
   explicit RestartedSession(FakeStudy& study)
       : key_(study.key()),
         recorder_(1, own_, events_),
-        begun_(design::make_schedule(key_.study, 1)) {}
+        begun_(design::make_schedule(key_.study, key_.draw_of(1, design::Draws::rehearsal))) {}
 
   /// \param restarts_before  0 for the order that the design gives
   void record(FakeStudy& study, int restarts_before, bool old_number_again = false) {
@@ -41,12 +41,13 @@ class RestartedSession {
     recorder_.presented(at_ += seconds(1), 2, 0);
     recorder_.interrupted(at_, 2, "comfort stop");
     const int first = static_cast<int>(begun_.presentations.size()) + 1;
-    const auto again = design::restarted_block(key_.study, 1, 0, restarts_before, first);
+    const auto again = design::restarted_block(
+        key_.study, key_.draw_of(1, design::Draws::rehearsal), 0, restarts_before, first);
     recorder_.block_restarted(at_, 0, first, design::block_to_json(again, key_));
     for (const design::Presentation& one : again) answer(one.trial);
     if (old_number_again) answer(3);
     recorder_.closed(at_, true);
-    study.store().add_session(events_, store::wrap_participant_key(key_.master, 1, own_),
+    study.store().add_session(events_, store::wrap_participant_key(key_.investigator_box, 1, own_),
                               milliseconds(1));
   }
 
@@ -67,7 +68,7 @@ class RestartedSession {
 
 }  // namespace
 
-TEST_CASE("verify_study holds a restarted block against the order that the design gives it") {
+TEST_CASE("verify_study compares a restarted block with the order that the design gives it") {
   FakeStudy study(design::identification::classification(), kRestarting);
   RestartedSession(study).record(study, 0);
   const analysis::Verification verification =

@@ -1,5 +1,5 @@
-// What verification finds in a session's events that no chain shows: presentations that were not
-// due. Sessions are recorded with the participant's key, so that chains and seals hold.
+// Faults in a session's events that verification finds and no chain shows: presentations that were
+// not due. Sessions are recorded with the participant's key, so that chains and seals hold.
 #include "analysis/fake_study.hpp"
 #include "analysis/text_matching.hpp"
 #include "analysis/verification/verification.hpp"
@@ -20,7 +20,8 @@ class ToldSession {
   explicit ToldSession(FakeStudy& study)
       : study_(study),
         recorder_(1, own_, events_),
-        schedule_(design::make_schedule(study.key().study, 1)) {}
+        schedule_(design::make_schedule(study.key().study,
+                                        study.key().draw_of(1, design::Draws::rehearsal))) {}
 
   /// Opens with a schedule that may have been tampered with.
   void open(const design::Schedule& schedule) {
@@ -40,7 +41,7 @@ class ToldSession {
     present(trial);
     answer(trial);
   }
-  /// All trials from this one on, but one.
+  /// Records all trials from this one on, except one.
   void show_from(int trial, int left_out = 0) {
     for (; trial <= count(); ++trial) {
       if (trial != left_out) show(trial);
@@ -54,15 +55,17 @@ class ToldSession {
 
   void restart_block() {
     const design::StudyKey& key = study_.key();
-    const auto again = design::restarted_block(key.study, 1, 0, 0, count() + 1);
+    const auto again = design::restarted_block(key.study, key.draw_of(1, design::Draws::rehearsal),
+                                               0, 0, count() + 1);
     recorder_.block_restarted(later(), 0, count() + 1, design::block_to_json(again, key));
   }
 
-  /// Closes it as complete. \return the check of the schedule; all others pass
+  /// Closes the session as complete.
+  /// \return the check of the schedule; all other checks pass
   analysis::Check verified() {
     recorder_.closed(later(), true);
-    study_.store().add_session(events_, store::wrap_participant_key(study_.key().master, 1, own_),
-                               at_);
+    study_.store().add_session(
+        events_, store::wrap_participant_key(study_.key().investigator_box, 1, own_), at_);
     const analysis::Verification verification =
         analysis::verify_study(study_.store(), &study_.key(), nullptr);
     analysis::Check schedule;
@@ -73,7 +76,7 @@ class ToldSession {
     }
     return schedule;
   }
-  /// The line with which the schedule fails.
+  /// The message with which the check of the schedule fails.
   std::string fault() {
     const analysis::Check check = verified();
     CHECK(check.state == analysis::CheckState::failed);
@@ -115,7 +118,7 @@ struct Told {
 
 }  // namespace
 
-TEST_CASE("verify_study passes catch trials in their places, and nothing else there") {
+TEST_CASE("verify_study accepts catch trials in their places, and nothing else there") {
   {
     Told told(kCatching);
     told.session.open();
@@ -147,7 +150,7 @@ TEST_CASE("verify_study passes catch trials in their places, and nothing else th
   }
 }
 
-TEST_CASE("verify_study holds what was interrupted against the study's policy to repeat it") {
+TEST_CASE("verify_study checks the study's policy of repeating interrupted trials") {
   {
     Told told;
     told.session.open();
@@ -179,7 +182,7 @@ TEST_CASE("verify_study holds what was interrupted against the study's policy to
   }
 }
 
-TEST_CASE("verify_study holds what was interrupted against the study's policy to leave it out") {
+TEST_CASE("verify_study checks the study's policy of leaving out interrupted trials") {
   {
     Told told(kLeavingOut);
     told.session.open();
@@ -201,13 +204,13 @@ TEST_CASE("verify_study holds what was interrupted against the study's policy to
   {
     Told told(kLeavingOut);
     told.session.open();
-    told.session.show_from(1, 5);  // left out, but nothing happened to it
+    told.session.show_from(1, 5);  // left out although it was not interrupted
     CHECK(
         contains(told.session.fault(), "session 1, trial 6: was presented where trial 5 was due"));
   }
 }
 
-TEST_CASE("verify_study passes sessions that were taken up again, and names what cannot follow") {
+TEST_CASE("verify_study accepts resumed sessions, and names events that cannot follow") {
   {
     Told told;
     told.session.open();
@@ -231,7 +234,7 @@ TEST_CASE("verify_study passes sessions that were taken up again, and names what
     told.session.answer(1);
     told.session.show_from(2);
     CHECK(contains(told.session.fault(),
-                   "session 1, trial 1: answered although the program had ended in it"));
+                   "session 1, trial 1: answered although the program had ended during it"));
   }
   {
     Told told;
@@ -239,8 +242,8 @@ TEST_CASE("verify_study passes sessions that were taken up again, and names what
     told.session.show(1);
     told.session.resume("program-ended", 25.0 * 3600.0);
     told.session.show_from(2);
-    CHECK(contains(told.session.fault(),
-                   "session 1, event 3: the session was taken up after 25.0 h"));
+    CHECK(
+        contains(told.session.fault(), "session 1, event 3: the session was resumed after 25.0 h"));
   }
   {
     Told told;
@@ -260,7 +263,8 @@ TEST_CASE("verify_study passes sessions that were taken up again, and names what
   }
 }
 
-TEST_CASE("verify_study names presentations without an end, and blocks that came again unasked") {
+TEST_CASE(
+    "verify_study names presentations without an end, and blocks restarted without a reason") {
   {
     Told told;
     told.session.open();

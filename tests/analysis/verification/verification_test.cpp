@@ -127,12 +127,23 @@ TEST_CASE("verify_study finds a key whose study was changed after the first tria
   FakeStudy study(design::identification::classification());
   study.add({.participant = "P01", .answers = FakeStudy::always_right()});
   design::Study other = study.key().study;
-  other.seed += 1;
+  other.classes.front().label = "bark, renamed";
   const design::StudyKey changed = design::rekeyed(study.key(), other);
   const analysis::Verification verification =
       analysis::verify_study(study.store(), &changed, nullptr);
   CHECK(check_of(verification, "seal").state == analysis::CheckState::failed);
-  CHECK(check_of(verification, "configuration").state == analysis::CheckState::passed);
+  CHECK(check_of(verification, "configuration").state == analysis::CheckState::failed);
+  CHECK(check_of(verification, "schedule").state == analysis::CheckState::failed);
+}
+
+TEST_CASE("verify_study finds a session whose schedule its enrolment number does not get") {
+  FakeStudy study(design::identification::classification());
+  study.add({.participant = "P01", .answers = FakeStudy::always_right()});
+  design::StudyKey other = study.key();
+  other.stations.front().secret[0] ^= 1U;
+  const analysis::Verification verification =
+      analysis::verify_study(study.store(), &other, nullptr);
+  CHECK(check_of(verification, "seal").state == analysis::CheckState::passed);
   CHECK(check_of(verification, "schedule").state == analysis::CheckState::failed);
   CHECK(contains(check_of(verification, "schedule").detail, "session 1"));
 }
@@ -210,7 +221,7 @@ TEST_CASE("verify_study finds a head that is no longer on the file's chain") {
   CHECK(check_of(cut, "head").state == analysis::CheckState::failed);
 }
 
-TEST_CASE("verify_study with the key finds a chain that was made anew without it") {
+TEST_CASE("verify_study with the key finds a chain that was rebuilt without it") {
   FakeStudy study(design::identification::classification());
   study.add({.participant = "P01", .answers = FakeStudy::always_right()});
   forge_answers(study.database());
@@ -245,7 +256,7 @@ TEST_CASE("verify_files makes a damaged key and a missing pack findings") {
   CHECK(check_of(damaged, "seal").state == analysis::CheckState::not_checked);
 }
 
-TEST_CASE("verify_files holds a pack made anew against the study only if it is named") {
+TEST_CASE("verify_files compares a rebuilt pack with the study only if the pack is named") {
   FakeStudy study(design::identification::classification(), {.with_pack = true});
   engine::PackManifest manifest = engine::Pack(study.pack_folder()).manifest();
   manifest.study_id = std::string(32, '0');

@@ -1,4 +1,4 @@
-/// \file A test's orders to the fake libdhd, and what the fake saw.
+/// \file A test's settings for the fake libdhd, and the calls that the fake observed.
 #pragma once
 
 #include "device/fakes/fake_parts.hpp"

@@ -1,4 +1,4 @@
-/// \file A test's orders to the fake libHD, and what the fake saw.
+/// \file A test's settings for the fake libHD, and the calls that the fake observed.
 #pragma once
 
 #include "device/fakes/fake_parts.hpp"

@@ -32,8 +32,8 @@ class SharedVec {
   std::atomic<double> z_{0.0};
 };
 
-/// Moves through thick oil, a millisecond a step: velocity = (push + force) / damping. Against a
-/// wall it settles where the wall carries the push. All accesses are relaxed, so that they order
+/// Moves through thick oil in steps of a millisecond: velocity = (push + force) / damping. Against
+/// a wall it settles where the wall carries the push. All accesses are relaxed, so that they order
 /// nothing for the driver.
 class FakeHand {
  public:
@@ -112,7 +112,7 @@ class Pace {
   long done_ = 0;
 };
 
-/// The names of opening and closing calls, in order. Any thread.
+/// The names of opening and closing calls, in order. Any thread may use it.
 class CallLog {
  public:
   void note(const char* call) {

@@ -13,8 +13,8 @@
 
 namespace touchtrial {
 
-/// Publishes the script's state a hundred times a second of the clock's time, and keeps the stylus
-/// states.
+/// Publishes the script's state a hundred times per second of the clock's time, and keeps the
+/// stylus states.
 class ScriptedPointer final : public device::PointerSource {
  public:
   using Script = std::function<device::PointerState(double time_s)>;

@@ -5,6 +5,8 @@
 #include "device/servo_fakes.hpp"
 #include "support/catch.hpp"
 
+#include <atomic>
+#include <chrono>
 #include <csignal>
 #include <exception>
 #include <iterator>
@@ -23,9 +25,7 @@ namespace {
 /// Sends from a thread of its own into a pipe: 'F' for force, 'z' for zero.
 class PipeDevice final : public device::HapticDevice {
  public:
-  explicit PipeDevice(int pipe) : sender_([this, pipe] { send_to(pipe); }) {
-    while (!sends_.load()) std::this_thread::yield();
-  }
+  explicit PipeDevice(int pipe) : sender_([this, pipe] { send_to(pipe); }) { wait_for_sends(1); }
   ~PipeDevice() override {
     ends_.store(true);
     sender_.join();
@@ -37,22 +37,35 @@ class PipeDevice final : public device::HapticDevice {
   [[nodiscard]] device::DeviceStatus write(Vec3) noexcept override {
     return device::DeviceStatus::ok;
   }
-  void halt() noexcept override { halted_.store(true); }
+  void halt() noexcept override {
+    halted_at_.store(std::chrono::steady_clock::now());
+    halted_.store(true);
+  }
   void rearm() noexcept override { halted_.store(false); }
+
+  [[nodiscard]] std::chrono::nanoseconds since_halt() const noexcept {
+    return std::chrono::steady_clock::now() - halted_at_.load();
+  }
+  /// After two sends since a halt, the last one is zero: the first may have been decided before.
+  void wait_for_sends(int count) const noexcept {
+    const int before = sends_.load();
+    while (sends_.load() - before < count) std::this_thread::yield();
+  }
 
  private:
   void send_to(int pipe) noexcept {
     while (!ends_.load()) {
       const char sent = halted_.load() ? 'z' : 'F';
       if (::write(pipe, &sent, 1) != 1) return;
-      sends_.store(true);
+      sends_.fetch_add(1);
       std::this_thread::sleep_for(std::chrono::microseconds(200));
     }
   }
 
   std::atomic<bool> halted_{false};
   std::atomic<bool> ends_{false};
-  std::atomic<bool> sends_{false};
+  std::atomic<int> sends_{0};
+  std::atomic<std::chrono::steady_clock::time_point> halted_at_{};
   std::thread sender_;
 };
 
@@ -72,11 +85,12 @@ void put_things_in_order(const device::ServoControl& control) {
   while (!control.emergency_stop_asked()) std::this_thread::yield();
 }
 
-void leave_by(const std::string& way, const device::ServoControl& control) {
+void leave_by(const std::string& way, const device::ServoControl& control,
+              const PipeDevice& device) {
   if (const auto asked = asking_signals().find(way); asked != asking_signals().end()) {
     std::raise(asked->second);
     put_things_in_order(control);
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    device.wait_for_sends(2);
     ::_exit(device::StopOnSignals::exit_code());
   }
   if (way == "SIGTERM twice") {
@@ -91,13 +105,26 @@ void leave_by(const std::string& way, const device::ServoControl& control) {
   if (way == "SIGQUIT") std::raise(SIGQUIT);
 }
 
+constexpr std::chrono::milliseconds kTimeToSend{20};  ///< as stop_signals.hpp promises
+
 int pipe_to_tell = -1;  ///< the child reports its last act here
+const PipeDevice* device_in_use = nullptr;
+
+/// Reports only if the driver has had its time. On a busy machine its thread may still wait for a
+/// processor.
+void last_act() noexcept {
+  const bool had_its_time = device_in_use->since_halt() >= kTimeToSend;
+  device_in_use->wait_for_sends(2);
+  const char last = 'L';
+  if (had_its_time && ::write(pipe_to_tell, &last, 1) != 1) ::_exit(98);
+}
 
 [[noreturn]] void be_the_child(const std::string& way, int pipe) {
   const rlimit no_core{0, 0};
   ::setrlimit(RLIMIT_CORE, &no_core);
   ::close(STDERR_FILENO);
-  // As a shell starts a program, whatever the test program has done with signals.
+  // Restores the signal handling that a shell gives a program: the test program may have changed
+  // it.
   for (const auto& [name, signal] : asking_signals()) std::signal(signal, SIG_DFL);
   for (const int signal : {SIGABRT, SIGSEGV, SIGFPE, SIGQUIT}) std::signal(signal, SIG_DFL);
   std::set_terminate(nullptr);
@@ -105,11 +132,9 @@ int pipe_to_tell = -1;  ///< the child reports its last act here
   device::ServoControl control;
   const device::StopOnSignals stop(device, control);
   pipe_to_tell = pipe;
-  device::StopOnSignals::before_dying([]() noexcept {
-    const char last = 'L';
-    [[maybe_unused]] const ssize_t written = ::write(pipe_to_tell, &last, 1);
-  });
-  leave_by(way, control);
+  device_in_use = &device;
+  device::StopOnSignals::before_dying(last_act);
+  leave_by(way, control, device);
   ::_exit(99);
 }
 
@@ -118,7 +143,10 @@ WayOut take(const std::string& way) {
   REQUIRE(::pipe(ends) == 0);
   const pid_t child = ::fork();
   REQUIRE(child >= 0);
-  if (child == 0) be_the_child(way, ends[1]);
+  if (child == 0) {
+    ::close(ends[0]);
+    be_the_child(way, ends[1]);
+  }
   ::close(ends[1]);
   WayOut out;
   char sent = 0;

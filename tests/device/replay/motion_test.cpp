@@ -45,7 +45,7 @@ TEST_CASE("columns are found by name, also in quotation marks, with either line 
   CHECK(motion.position_mm(1) == Vec3{4, 5, 6});
 }
 
-TEST_CASE("where rows are missing the hand moves on in a straight line") {
+TEST_CASE("where rows are missing the hand continues in a straight line") {
   const device::RecordedMotion motion =
       CsvFile(std::string(kHeader) + "0,0,0,0\n0.001,1,0,0\n0.002,2,0,0\n0.006,6,8,0\n").read();
   CHECK(motion.rate_hz() == 1000.0);

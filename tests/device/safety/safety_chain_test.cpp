@@ -131,7 +131,7 @@ TEST_CASE("while force is on, each of these is a fault: zero at once, latched") 
   CHECK(safety.check({0.0, 0.0, 0.1}, device.next()).force_n == Vec3{});
 }
 
-TEST_CASE("after re-arming gate and ramp begin anew, from where the hand is now") {
+TEST_CASE("after re-arming, gate and ramp start again from where the hand is now") {
   device::SafetyChain safety({});
   Readings device;
   REQUIRE(engage(safety, device, {0.0, 0.0, 3.0}) == Vec3{0.0, 0.0, 3.0});

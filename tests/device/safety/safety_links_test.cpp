@@ -9,7 +9,7 @@
 namespace touchtrial {
 namespace {
 
-TEST_CASE("a force, position or velocity that is not finite, or absurd, is seen") {
+TEST_CASE("a force, position or velocity that is absurd or not finite is detected") {
   const double bad =
       GENERATE(std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
                -std::numeric_limits<double>::infinity(), 1e300);
@@ -31,7 +31,7 @@ TEST_CASE("a gate opens at the first small force, and stays open") {
   CHECK(gate.try_open(9.0));
 }
 
-TEST_CASE("a gate that was closed has to be opened anew") {
+TEST_CASE("a closed gate has to be opened again") {
   device::EngageGate gate(0.5);
   REQUIRE(gate.try_open(0.0));
   gate.close();
@@ -270,7 +270,7 @@ TEST_CASE("a ramp of no length lets the first force pass whole") {
   CHECK(ramp.of({0.0, 1.0, 0.0}) == Vec3{0.0, 1.0, 0.0});
 }
 
-TEST_CASE("a ramp that is started anew begins at nothing") {
+TEST_CASE("a restarted ramp begins at zero") {
   device::RampUp ramp(0.002, 0.001);
   ramp.start();
   for (int tick = 0; tick < 5; ++tick) static_cast<void>(ramp.of({1.0, 0.0, 0.0}));
@@ -283,7 +283,7 @@ TEST_CASE("a force within its norm is untouched, one past it keeps its direction
   CHECK(device::within_norm({3.0, 0.0, -4.0}, 2.5) == Vec3{1.5, 0.0, -2.0});
 }
 
-TEST_CASE("a force follows by one step a tick, straight towards its target") {
+TEST_CASE("a force moves one step per tick, straight towards its target") {
   device::SlewLimit slew(1000.0, 0.001);
   CHECK(slew.towards({3.0, 4.0, 0.0}).x == Approx(0.6));
   CHECK(slew.towards({3.0, 4.0, 0.0}).y == Approx(1.6));

@@ -97,7 +97,7 @@ TEST_CASE("a flight recorder of no length, or of more than it could hold, is ref
                   std::invalid_argument);
 }
 
-TEST_CASE("a flight as CSV has a name for every column and one row a tick") {
+TEST_CASE("a flight as CSV has a name for every column and one row per tick") {
   device::FlightTick tick;
   tick.tick = 12;
   tick.time = microseconds(12'500);

@@ -26,7 +26,7 @@ TEST_CASE("a servo thread does one piece of work after another on the same threa
   CHECK(first != std::this_thread::get_id());
 }
 
-TEST_CASE("a servo thread works while other threads go on, and says when it is done") {
+TEST_CASE("a servo thread works while other threads run, and says when it is done") {
   device::ServoThread servo(kOrdinary);
   CHECK_FALSE(servo.running());
   std::promise<void> go;

@@ -15,7 +15,7 @@ int likeliest(const std::vector<double>& logs) {
   return static_cast<int>(std::ranges::max_element(logs) - logs.begin());
 }
 
-TEST_CASE("with one example a class, likelihoods are those of the noise alone") {
+TEST_CASE("with one example per class, likelihoods are those of the noise alone") {
   const std::vector<engine::FeltExample> examples = {{0, {0.0, 0.0}}, {1, {3.0, 4.0}}};
   const engine::FeltClassifier classifier(examples, 0.5);
   const std::vector<double> logs = classifier.log_likelihoods(std::vector<double>{0.0, 0.0});

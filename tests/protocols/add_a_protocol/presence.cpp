@@ -19,6 +19,7 @@ namespace {
 
 using design::Presentation;
 using design::PresentationKind;
+using design::ScheduleDraw;
 using design::Study;
 
 constexpr int kTexture = 0;  // indices into the choices
@@ -64,7 +65,7 @@ class Presence final : public design::Protocol {
   }
   int scored_trials(const Study& study) const override { return options_of(study).each; }
 
-  design::Schedule schedule(const Study& study, int enrolment) const override {
+  design::Schedule schedule(const Study& study, const ScheduleDraw& draw) const override {
     design::Schedule schedule{{}, {kTexture, kSmooth}};
     const int each = options_of(study).each;
     for (int i = 0; i < 2 * each; ++i) {
@@ -72,7 +73,7 @@ class Presence final : public design::Protocol {
           {.kind = i < each ? PresentationKind::scored : PresentationKind::catch_trial,
            .stimulus = {}});
     }
-    RandomStream random(study.seed, "presence", static_cast<std::uint64_t>(enrolment));
+    RandomStream random(draw.secret, "presence");
     shuffle(std::span<Presentation>(schedule.presentations), random);
     for (int i = 0; i < 2 * each; ++i) {
       schedule.presentations[static_cast<std::size_t>(i)].trial = i + 1;

@@ -1,7 +1,7 @@
 // The worked example runs from its study file to its report, and breaks where it should.
 #include "add_a_protocol/presence.hpp"
 
-#include "analysis/exports/export_csv.hpp"
+#include "analysis/exports/export_tables.hpp"
 #include "analysis/results.hpp"
 #include "analysis/verification/verification.hpp"
 #include "core/errors.hpp"
@@ -79,7 +79,8 @@ TEST_CASE("without a texture the example's participants say smooth, and are wron
 TEST_CASE("the frame of reports, exports and verification serves the example") {
   SimulatedPresence study(false);
   const analysis::Outcomes outcomes = study.outcomes();
-  const std::string text = analysis::analysis_of(outcomes.design).results(outcomes, {})->text();
+  const std::string text = analysis::document_text(
+      analysis::analysis_of(outcomes.design).results(outcomes, {})->document({}, {}));
   CHECK_THAT(text, holds_text("SIMULATED") && holds_text("smooth wall"));
   const TempFolder folder;
   analysis::export_csv(study.store(), outcomes, folder.path());
@@ -111,7 +112,7 @@ TEST_CASE("a study file's section of another protocol is refused with its place"
   CHECK_THROWS_WITH(parse("presense", R"("seed":1)"), holds_text("presence"));
 }
 
-TEST_CASE("what needs a choice between classes is refused for the example") {
+TEST_CASE("the example refuses what needs a choice between classes") {
   const TinyStudy example({.protocol = "presence"});
   CHECK_THROWS_WITH(design::require_choice_of_classes(example.key().study, "power"),
                     holds_text("power needs participants who choose") && holds_text("presence"));
@@ -121,8 +122,9 @@ TEST_CASE("what needs a choice between classes is refused for the example") {
 TEST_CASE("a restarted block of the example presents the same again in another order") {
   const TinyStudy tiny({.protocol = "presence", .section = R"({"each": 20})"});
   const design::Study& study = tiny.key().study;
-  const auto first = design::make_schedule(study, 1).presentations;
-  const auto again = design::restarted_block(study, 1, 0, 0, 41);
+  const design::ScheduleDraw draw = tiny.key().draw_of(1, design::Draws::rehearsal);
+  const auto first = design::make_schedule(study, draw).presentations;
+  const auto again = design::restarted_block(study, draw, 0, 0, 41);
   REQUIRE(again.size() == first.size());
   CHECK(again.front().trial == 41);
   const auto scored = [](const std::vector<design::Presentation>& shown) {

@@ -1,4 +1,4 @@
-// What is not collected, and in which words.
+// Studies and files that cannot be collected, and the messages that say so.
 #include "protocols/collect/lab_fixture.hpp"
 #include "protocols/store/damage.hpp"
 #include "support/catch.hpp"
@@ -13,7 +13,7 @@ using touchtrial::testing::FaultVfs;
 
 namespace {
 
-/// How a merge of A with B is refused after B was tampered with; it names B.
+/// The message with which a merge of A and B is refused after B was tampered with; it must name B.
 std::string refused_after(const std::string& sql) {
   Lab lab;
   const auto [a, b] = lab.two_stations();
@@ -212,7 +212,7 @@ TEST_CASE("after a power cut the collected file is whole if it is there") {
   const fs::path target = lab.file("C.db");
   vfs.plan({});
   merge({a, b}, target);
-  // The name is there, so that all that it names must be on the disk.
+  // The file has its name, so its whole content must be on the disk.
   vfs.plan({.kind = Fault::Kind::power_cut, .at = 1});
   static_cast<void>(refusal_of([&] {
     StudyStore::open(target, Access::read_write).exclude(1, kUtc, "strikes the power cut");

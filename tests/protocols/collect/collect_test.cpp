@@ -1,4 +1,4 @@
-// What a collected study holds.
+// The content of a collected study.
 #include "protocols/collect/lab_fixture.hpp"
 #include "support/catch.hpp"
 
@@ -60,9 +60,10 @@ TEST_CASE("events, traces and keys open as they did at the station") {
   const StudyStore station = StudyStore::open(b, Access::read_only);
   const SessionRow row = store.sessions().at(3);
   REQUIRE(row.own_session == 2);
-  const auto key = unwrap_participant_key(study_master(), 2, store.wrapped_key(4).value());
+  const auto key =
+      unwrap_participant_key(box_keys(study_master()), 2, store.wrapped_key(4).value());
   REQUIRE(key == participant_key(2));
-  CHECK_FALSE(unwrap_participant_key(study_master(), 4, store.wrapped_key(4).value()));
+  CHECK_FALSE(unwrap_participant_key(box_keys(study_master()), 4, store.wrapped_key(4).value()));
   const std::vector<Event> here = store.events(4);
   const std::vector<Event> there = station.events(2);
   REQUIRE(here.size() == there.size());
@@ -341,7 +342,7 @@ TEST_CASE("a collected file can be collected again, with the same result") {
   merge({c, lab.file("first.db"), a}, lab.file("twice.db"));
   CHECK(read_file(lab.file("step by step.db")) == read_file(lab.file("at once.db")));
   CHECK(read_file(lab.file("twice.db")) == read_file(lab.file("at once.db")));
-  // A station that went on since.
+  // A station that recorded more sessions since.
   Lab::at(b, [](StudyStore& store) { visit(store, {{"P6", 6, minutes(60)}}); });
   merge({a, b, c}, lab.file("later.db"));
   merge({lab.file("at once.db"), b}, lab.file("brought up.db"));

@@ -1,4 +1,4 @@
-// A collected study that was tampered with, and one of whose stations is of an older schema.
+// A collected study that was tampered with, or that has a station with an older schema.
 #include "protocols/collect/lab_fixture.hpp"
 #include "support/catch.hpp"
 
@@ -60,7 +60,7 @@ TEST_CASE("a session that was added to a collected study behind its back is foun
   const fs::path one = lab.station("one.db", {{"P5", 5, minutes(50)}});
   merge({a, b}, lab.file("C.db"));
   merge({a, b, one}, lab.file("with.db"));
-  // The events that a merge with this station would have, but not the station.
+  // The events that a merge with this station would have, without the station itself.
   {
     SQLite::Database raw(lab.file("C.db").string(), SQLite::OPEN_READWRITE);
     raw.exec("ATTACH DATABASE '" + lab.file("with.db").string() + "' AS other");

@@ -17,7 +17,7 @@ using std::chrono::minutes;
 
 using Access = store::StudyStore::Access;
 
-/// People, not simulated: times of day count.
+/// A study with people, so that times of day matter.
 inline store::StudyCommitment lab_commitment() {
   store::StudyCommitment commitment = fixture::commitment();
   commitment.simulated = false;
@@ -103,8 +103,8 @@ inline collect::CollectReport merge(const std::vector<fs::path>& files, const fs
   return collect::collect_into_file(stations_in(files), target);
 }
 
-/// The line with which a merge is refused, after a check that it left nothing behind; empty if the
-/// merge is not refused.
+/// The message with which a merge is refused; empty if it is not. Also checks that a refused merge
+/// left nothing behind.
 inline std::string merge_refusal(const Lab& lab, const std::vector<fs::path>& files) {
   const fs::path target = lab.file("refused.db");
   std::string line = refusal_of([&] { merge(files, target); });

@@ -20,7 +20,7 @@ design::Schedule two_blocks() {
   return schedule;
 }
 
-/// Blocks come again with two trials, and a third one at each further restart.
+/// A restarted block has two trials, and one more at each further restart.
 std::vector<Presentation> drawn(int block, int restarts_before, int first_trial) {
   std::vector<Presentation> again;
   for (int i = 0; i < 2 + restarts_before; ++i) {
@@ -44,7 +44,7 @@ TEST_CASE("a course presents its schedule in order, and is over after it") {
   CHECK(course.current() == nullptr);
 }
 
-TEST_CASE("what was spoilt comes again at the end, or is left out, as the policy says") {
+TEST_CASE("an interrupted presentation is repeated at the end, or left out, as the policy says") {
   design::Course repeated(two_blocks(), OnInterruption::repeat);
   repeated.finish();
   repeated.spoil();
@@ -55,7 +55,7 @@ TEST_CASE("what was spoilt comes again at the end, or is left out, as the policy
   CHECK(rest_of(left_out) == std::vector<int>{3, 4});
 }
 
-TEST_CASE("a block that was spoilt comes again under new numbers before all else") {
+TEST_CASE("an interrupted block is restarted under new numbers before all else") {
   design::Course course(two_blocks(), OnInterruption::restart_block, drawn);
   course.finish();
   course.spoil();

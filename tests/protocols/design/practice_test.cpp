@@ -102,7 +102,7 @@ TEST_CASE("a study without practice has the plane without texture") {
   const design::PracticeSet practice(study, kStrong, plane_of(kSide));
   CHECK(practice.classes() == 0);
   CHECK_FALSE(has_texture(practice.flat()));
-  CHECK(design::practice_round(study, 1, 1).empty());
+  CHECK(design::practice_round(study, drawn(study, 1), 1).empty());
 }
 
 TEST_CASE("a practice round has every texture about equally often, in an order of its own") {
@@ -112,13 +112,13 @@ TEST_CASE("a practice round has every texture about equally often, in an order o
   std::set<std::vector<int>> layouts;
   for (int enrolment = 1; enrolment <= 20; ++enrolment) {
     for (int round = 1; round <= 2; ++round) {
-      const std::vector<int> order = design::practice_round(study, enrolment, round);
-      CHECK(order == design::practice_round(study, enrolment, round));
+      const std::vector<int> order = design::practice_round(study, drawn(study, enrolment), round);
+      CHECK(order == design::practice_round(study, drawn(study, enrolment), round));
       REQUIRE(order.size() == 5);
       const auto ones = std::ranges::count(order, 1);
       CHECK((ones == 2 || ones == 3));
       orders.insert(order);
-      std::vector<int> layout = design::practice_layout(study, enrolment, round);
+      std::vector<int> layout = design::practice_layout(study, drawn(study, enrolment), round);
       layouts.insert(layout);
       std::ranges::sort(layout);
       CHECK(layout == std::vector<int>{0, 1});

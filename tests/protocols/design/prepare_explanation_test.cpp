@@ -39,7 +39,7 @@ const std::string kReused = "read image computed; field reused; statistics compu
 
 }  // namespace
 
-TEST_CASE("an explanation tells what was computed and what was reused, and costs nothing unasked") {
+TEST_CASE("an explanation lists what was computed and reused, and costs nothing unless requested") {
   Laboratory laboratory;
   CHECK(laboratory.prepare().stimuli[0].stages.empty());
   std::filesystem::remove_all(laboratory.pack());
@@ -55,7 +55,7 @@ TEST_CASE("an explanation tells what was computed and what was reused, and costs
   CHECK(explained(laboratory) == std::vector<std::string>{kBuilt, kBuilt, kBuilt, written});
 }
 
-TEST_CASE("an explanation tells a damaged field from one that was never there") {
+TEST_CASE("an explanation distinguishes a damaged field from one that never existed") {
   const Laboratory laboratory;
   const design::StudyKey key = laboratory.key();
   const auto why_written = [&] {
@@ -65,9 +65,9 @@ TEST_CASE("an explanation tells a damaged field from one that was never there") 
     const auto written = std::ranges::find(stages, "write field", &engine::Stage::name);
     return written == stages.end() ? std::string() : written->why;
   };
-  CHECK(why_written() == "the pack had none of this picture and these options");
+  CHECK(why_written() == "the pack had no field of this picture with these options");
   std::filesystem::remove(laboratory.pack() / (key.stimuli[0].code + ".field"));
-  CHECK(why_written() == "the pack's own was damaged or missing");
+  CHECK(why_written() == "the pack's field was damaged or missing");
 }
 
 TEST_CASE("an explanation gives reasons and bytes, and never a code") {
@@ -87,7 +87,7 @@ TEST_CASE("an explanation gives reasons and bytes, and never a code") {
   CHECK(first.stages[6].bytes == first.bytes);
 }
 
-TEST_CASE("of a flat image nothing is extracted, and its field is what an extraction would give") {
+TEST_CASE("a flat image is not extracted, and its field is what an extraction would give") {
   Laboratory laboratory;
   for (std::uint64_t c = 0; c < 3; ++c)
     engine::write_png(laboratory.image(c), GreyImage(kSide, kSide, 90));
@@ -122,7 +122,7 @@ TEST_CASE("the surface model makes no force planes, and says how many bytes that
   CHECK(report.stimuli[0].stages[6].bytes == kSide * kSide * 8);
 }
 
-TEST_CASE("a method without sub-bands skips them, and statistics are skipped unasked") {
+TEST_CASE("a method without sub-bands skips them, and statistics are skipped unless requested") {
   Laboratory laboratory;
   laboratory.document["methods"] = {{{"name", "fixed"}}};
   const design::PrepareReport report = design::prepare_pack(laboratory.key(), laboratory.pack(), {},

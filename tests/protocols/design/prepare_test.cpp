@@ -284,7 +284,7 @@ TEST_CASE("two prepares of one pack do not run at once") {
   CHECK(reused(laboratory.prepare()) == 3);
 }
 
-TEST_CASE("who prepares a pack may wait while another does") {
+TEST_CASE("a preparation may wait until another one of the same pack ends") {
   const Laboratory laboratory;
   static_cast<void>(laboratory.prepare());
   std::atomic<bool> is_free{false};
@@ -332,13 +332,13 @@ TEST_CASE("a comparison prepares every method, and equalised, all have the same 
   CHECK(report.stimuli[0].gains.tangential_n != report.stimuli[1].gains.tangential_n);
 }
 
-TEST_CASE("the reference grey is not warned of where it has no effect") {
+TEST_CASE("there is no warning of the reference grey where it has no effect") {
   Laboratory laboratory;
   laboratory.document["rendering"] = {{"model", "surface"}, {"reference_grey", 0}};
   CHECK(laboratory.prepare().warnings.empty());
 }
 
-TEST_CASE("what is probably not meant is warned of") {
+TEST_CASE("settings that are probably mistakes cause a warning") {
   Laboratory laboratory;
   laboratory.document["rendering"] = {{"gains", {{"tangential_n", 5}, {"normal_n", 5}}},
                                       {"equalise", "rms"},
@@ -355,7 +355,7 @@ TEST_CASE("what is probably not meant is warned of") {
   CHECK(report.warnings.size() == 5);
 }
 
-TEST_CASE("gains that leave nothing to feel are warned of, unless somebody asked for them") {
+TEST_CASE("gains that leave nothing to feel cause a warning, unless they were requested") {
   Laboratory laboratory;
   for (std::uint64_t c = 0; c < 3; ++c) engine::write_png(laboratory.image(c), GreyImage(1, 7, 50));
   CHECK(warns(laboratory.prepare(), "nothing will be felt"));
@@ -364,7 +364,7 @@ TEST_CASE("gains that leave nothing to feel are warned of, unless somebody asked
   CHECK_FALSE(warns(Laboratory().prepare(), "nothing will be felt"));
 }
 
-TEST_CASE("a solver that gives up is warned of with the gap it reached") {
+TEST_CASE("a solver that gives up causes a warning with the gap that it reached") {
   Laboratory laboratory;
   laboratory.document["methods"] = {{{"name", "tv-gabor"}, {"max_steps", 1}, {"gap", 1e-12}}};
   const design::PrepareReport report = laboratory.prepare();

@@ -77,8 +77,8 @@ std::vector<Case> small_cases() {
   return cases;
 }
 
-/// Draws often and holds the frequencies against equal ones. \return the statistic's excess over
-/// its mean, in standard deviations
+/// Draws often, and compares the frequencies with equal ones.
+/// \return the statistic's excess over its mean, in standard deviations
 template <typename Draw>
 double excess(const std::set<std::vector<int>>& possible, int draws_each, const Draw& draw) {
   std::map<std::vector<int>, int> counts;
@@ -188,7 +188,7 @@ TEST_CASE("all rows of a Williams order balance places and, within rows, neighbo
   }
 }
 
-TEST_CASE("sizes that could not be counted are told before anything is counted") {
+TEST_CASE("sizes too large to count are reported before anything is counted") {
   CHECK(design::limited_orders_are_countable(std::vector<int>(5, 5), 2));
   CHECK(design::limited_orders_are_countable(std::vector<int>(2, 300), 2));
   CHECK(design::limited_orders_are_countable(std::vector<int>(12, 5), 2));

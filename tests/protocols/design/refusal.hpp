@@ -1,4 +1,4 @@
-/// \file What an operation says when it refuses.
+/// \file The message with which an operation refuses its input.
 #pragma once
 
 #include "support/catch.hpp"

@@ -1,5 +1,6 @@
 #include "protocols/design/schedule.hpp"
 #include "protocols/design/study.hpp"
+#include "protocols/design/study_examples.hpp"
 #include "support/catch.hpp"
 
 #include <filesystem>
@@ -24,7 +25,7 @@ TEST_CASE("the classification study is the paper's: five textures, 25 trials, on
   CHECK(study.presented_methods() == 1);
   CHECK(study.methods == std::vector<design::StudyMethod>{{{}, "adaptive"}});
   CHECK(study.scored_trials() == 25);
-  CHECK(design::make_schedule(study, 1).presentations.size() == 25);
+  CHECK(schedule_of(study, 1).presentations.size() == 25);
   CHECK(study.rendering == engine::RenderingOptions{});
   CHECK(study.trials == design::TrialOptions{.practice = 5, .break_every = 10});
   CHECK(study.session == design::SessionPlan{});
@@ -76,7 +77,7 @@ TEST_CASE("the comparison without outlines differs from the other in its picture
   CHECK(textures.seed != objects.seed);
 }
 
-TEST_CASE("the study of controls has its adaptive method beside what could stand in for it") {
+TEST_CASE("the study of controls compares the adaptive method with a control and other methods") {
   const design::Study study = design::load_study(kConfig / "controls.json");
   CHECK(labels_of(study) == labels_of(design::load_study(kConfig / "comparison-textures.json")));
   REQUIRE(study.presented_methods() == 4);

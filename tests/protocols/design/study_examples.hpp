@@ -1,6 +1,7 @@
 /// \file Small studies for the tests of this folder.
 #pragma once
 
+#include "protocols/design/schedule.hpp"
 #include "protocols/design/study.hpp"
 
 #include <filesystem>
@@ -67,6 +68,17 @@ namespace touchtrial {
 [[nodiscard]] inline design::Study parsed(const nlohmann::json& study,
                                           const std::filesystem::path& folder = "somewhere") {
   return design::parse_study(study.dump(), folder, "study.json");
+}
+
+/// A participant's draw that follows from the study's seed, for tests of schedules alone.
+[[nodiscard]] inline design::ScheduleDraw drawn(const design::Study& study, int number) {
+  SeededEntropy entropy(study.seed);
+  return {.secret = entropy.secret("test participant " + std::to_string(number)),
+          .method_order = number};
+}
+
+[[nodiscard]] inline design::Schedule schedule_of(const design::Study& study, int number) {
+  return design::make_schedule(study, drawn(study, number));
 }
 
 }  // namespace touchtrial

@@ -252,7 +252,7 @@ TEST_CASE("the gains of one model are refused for the other, with their place") 
   contains(refusal(document), "/rendering/friction: ");
 }
 
-TEST_CASE("what this version does not do is refused honestly") {
+TEST_CASE("what this version cannot do is refused with a plain message") {
   json document = minimal_study();
   document["rendering"]["friction"] = 0.3;
   contains(refusal(document), "/rendering/friction: must be 0: the rendering model paper");
@@ -370,7 +370,7 @@ TEST_CASE("an even neighbourhood is refused") {
   contains(refusal(document), "/rendering/neighbourhood: is 4, must be odd");
 }
 
-TEST_CASE("a key that is there twice is refused wherever it is") {
+TEST_CASE("a key that occurs twice is refused wherever it is") {
   std::string text = minimal_study().dump();
   text.pop_back();
   CHECK(refusal_of_text(text + ",\"study\":\"other\"}") ==

@@ -1,5 +1,5 @@
-/// The JSON Schema and the reader are held to each other: every statement of the schema is tried
-/// on the reader, and what the reader says it knows is looked up in the schema.
+/// Compares the JSON Schema with the reader: tries every statement of the schema on the reader, and
+/// looks up the reader's keys and values in the schema.
 #include "core/errors.hpp"
 #include "core/files.hpp"
 #include "protocols/design/study.hpp"
@@ -23,7 +23,7 @@ json schema() {
   return json::parse(text_of(read_file(root / "config/schema/study.schema.json")));
 }
 
-/// The schema with what it says of one rendering model only laid over the rest.
+/// The schema, combined with its rules for one rendering model.
 json schema_for(const std::string& model) {
   json whole = schema();
   json& rendering = whole["properties"]["rendering"];
@@ -83,7 +83,7 @@ json full_plans() {
             {"primary_test", "Permutation."}}}};
 }
 
-/// A study in which every key that can be there is there, with room to change any one alone.
+/// A study with every possible key, in which any single value can be changed.
 json full_study(const json& method, const json& model = kPaper) {
   json study = comparison_of(2);
   const char* other = method["name"] == "adaptive" ? "fixed" : "adaptive";
@@ -219,7 +219,8 @@ bool allows_type(const json& property, const json& value) {
   return type == "object" ? value.is_object() : value.is_number();
 }
 
-/// What others depend on, or what is required only where others are: tested by themselves.
+/// Whether other keys depend on this one, or it is required only beside others; such keys have
+/// tests of their own.
 bool has_rules_of_its_own(const Pointer& place) {
   const std::string key = place.back();
   return key == "model" || key == "name" || key == "kind" || key == "options" || key == "en";
@@ -232,7 +233,7 @@ double step_of(const json& property) {
 
 }  // namespace
 
-TEST_CASE("the schema speaks of every section of the study file") {
+TEST_CASE("the schema describes every section of the study file") {
   std::set<std::string> places;
   for (const Property& property : all_properties()) places.insert(property.place.to_string());
   CHECK(places.size() == 11 + 2 + 18 + 15 + 12 + (3 + 2) + (11 + 2 + 2 + 5 + 4) + 5);

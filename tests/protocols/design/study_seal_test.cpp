@@ -87,7 +87,7 @@ TEST_CASE("a study that has none of the newer keys keeps its configuration and s
   json document = labelled_study();
   design::StudyKey key = key_for(document);
   CHECK(to_hex(design::study_seal(key)) ==
-        "7af5bedec9c62bea77c60a41d6ea87a7110a5e1cdcb2561861db4e8eb4399934");
+        "7a99dfb9931d6980fee200cece8550a18cb1a14953dbec6d130f59591b44c24d");
   const std::string trials =
       R"("trials":{"blocks":"by-method","break_every":0,"catch":0,"explore_limit_s":60.0,)"
       R"("lead_in":0,"on_timeout":"fade","order":"shuffled","practice":0,"repeats":5}})";
@@ -95,12 +95,12 @@ TEST_CASE("a study that has none of the newer keys keeps its configuration and s
   document["trials"] = {{"order", "de-bruijn"}, {"repeats", 3}, {"break_every", 7}};
   key = key_for(document);
   CHECK(to_hex(design::study_seal(key)) ==
-        "0d6c41ceb5fdbae1234501fd554ffed5c553b6803b015caace9d9015ed3e4b65");
+        "b5a76460fb6efe5b24e73700dd5f156e094b8a014d6760b25859e0603a98a4c4");
   document["practice"]["classes"] = planned_study()["practice"]["classes"];
   CHECK_FALSE(design::study_seal(key_for(document)) == design::study_seal(key));
 }
 
-TEST_CASE("of practice, session and registration no text stands in clear") {
+TEST_CASE("no text of practice, session or registration is stored in clear") {
   const std::string text = design::blinded_configuration(key_for(planned_study()));
   for (const char* secret : {"corduroy", "velvet", ".png", "Feel the plane", "Door shut", "form 3",
                              "2026-17", "Which cue", "Edges", "They can."}) {
@@ -183,9 +183,6 @@ TEST_CASE("any change of study, secrets or codes changes the seal") {
 
   design::StudyKey key = key_for(labelled_study());
   key.master[31] ^= 1U;
-  CHECK(seals.insert(design::study_seal(key)).second);
-  key = key_for(labelled_study());
-  key.nonce[0] ^= 1U;
   CHECK(seals.insert(design::study_seal(key)).second);
   key = key_for(labelled_study());
   key.simulated = true;

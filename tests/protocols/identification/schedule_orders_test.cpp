@@ -69,7 +69,7 @@ TEST_CASE("every schedule keeps the limit of runs and its balance") {
           comparison_of(3),
           {{"repeats", 4}, {"max_run", max_run}, {"blocks", blocks}, {"lead_in", 2}, {"catch", 3}});
       for (int enrolment = 1; enrolment <= 50; ++enrolment) {
-        const design::Schedule schedule = design::make_schedule(study, enrolment);
+        const design::Schedule schedule = schedule_of(study, enrolment);
         CHECK(schedule.presentations.size() ==
               24 + 2 * (study.trials.blocks == design::Blocks::mixed ? 1 : 2) + 3);
         CHECK(longest_run(schedule.presentations) <= max_run);
@@ -85,7 +85,7 @@ TEST_CASE("independent draws keep the limit of runs too") {
   const design::Study study =
       study_with(study_of(2), {{"order", "uniform"}, {"repeats", 20}, {"max_run", 2}});
   for (int enrolment = 1; enrolment <= 50; ++enrolment) {
-    CHECK(longest_run(design::make_schedule(study, enrolment).presentations) <= 2);
+    CHECK(longest_run(schedule_of(study, enrolment).presentations) <= 2);
   }
 }
 
@@ -94,7 +94,7 @@ TEST_CASE("schedules with limited runs are uniform over all allowed orders") {
   std::map<std::vector<int>, int> counts;
   for (int enrolment = 1; enrolment <= 6000; ++enrolment) {
     std::vector<int> order;
-    for (const auto& shown : design::make_schedule(study, enrolment).presentations) {
+    for (const auto& shown : schedule_of(study, enrolment).presentations) {
       order.push_back(shown.stimulus.class_index);
     }
     ++counts[order];
@@ -107,15 +107,15 @@ TEST_CASE("a limit that no run can reach leaves the order as it was") {
   const json trials = {{"repeats", 4}};
   const design::Study free = study_with(study_of(4), trials);
   const design::Study limited = study_with(study_of(4), {{"repeats", 4}, {"max_run", 4}});
-  CHECK(design::make_schedule(limited, 3) == design::make_schedule(free, 3));
+  CHECK(schedule_of(limited, 3) == schedule_of(free, 3));
 }
 
-TEST_CASE("what cannot be combined with a limit of runs is refused with why") {
+TEST_CASE("options that cannot be combined with a limit of runs are refused with the reason") {
   CHECK(refused(study_of(3), {{"order", "de-bruijn"}, {"repeats", 3}, {"max_run", 1}},
                 "/trials/max_run: is 1, but in the order de-bruijn every class follows itself"));
   const design::Study kept =
       study_with(study_of(3), {{"order", "de-bruijn"}, {"repeats", 3}, {"max_run", 2}});
-  CHECK(longest_run(design::make_schedule(kept, 1).presentations) == 2);
+  CHECK(longest_run(schedule_of(kept, 1).presentations) == 2);
   CHECK(refused(study_of(2), {{"order", "williams"}, {"max_run", 1}},
                 "/trials/max_run: is 1, which no order williams of 2 classes keeps"));
   CHECK(refused(study_of(64), {{"repeats", 100}, {"max_run", 2}},
@@ -128,7 +128,7 @@ TEST_CASE("a Williams block is permutations, balanced over places with as many a
   const design::Study study =
       study_with(comparison_of(4), {{"order", "williams"}, {"repeats", 4}, {"max_run", 1}});
   for (int enrolment = 1; enrolment <= 20; ++enrolment) {
-    const auto presentations = design::make_schedule(study, enrolment).presentations;
+    const auto presentations = schedule_of(study, enrolment).presentations;
     REQUIRE(presentations.size() == 32);
     CHECK(longest_run(presentations) == 1);
     for (std::size_t block = 0; block < 2; ++block) {
@@ -146,7 +146,7 @@ TEST_CASE("catch trials come at any place but the first, and change nothing else
   const design::Study caught = study_with(study_of(2, 3), {{"repeats", 2}, {"catch", 2}});
   std::map<std::pair<int, int>, int> places;
   for (int enrolment = 1; enrolment <= 3000; ++enrolment) {
-    const design::Schedule schedule = design::make_schedule(caught, enrolment);
+    const design::Schedule schedule = schedule_of(caught, enrolment);
     REQUIRE(schedule.presentations.size() == 6);
     std::vector<int> at;
     for (const design::Presentation& shown : schedule.presentations) {
@@ -155,7 +155,7 @@ TEST_CASE("catch trials come at any place but the first, and change nothing else
     REQUIRE(at.size() == 2);
     CHECK(at[0] > 1);
     ++places[{at[0], at[1]}];
-    const design::Schedule without = design::make_schedule(plain, enrolment);
+    const design::Schedule without = schedule_of(plain, enrolment);
     CHECK(without_catch(schedule.presentations) == without.presentations);
     CHECK(schedule.layout == without.layout);
   }
@@ -166,7 +166,7 @@ TEST_CASE("catch trials come at any place but the first, and change nothing else
 TEST_CASE("a catch trial belongs to the block of the presentation before it") {
   const design::Study study = study_with(comparison_of(2), {{"repeats", 2}, {"catch", 5}});
   for (int enrolment = 1; enrolment <= 30; ++enrolment) {
-    const auto presentations = design::make_schedule(study, enrolment).presentations;
+    const auto presentations = schedule_of(study, enrolment).presentations;
     for (std::size_t i = 1; i < presentations.size(); ++i) {
       CHECK(presentations[i].trial == static_cast<int>(i) + 1);
       if (presentations[i].kind == design::PresentationKind::catch_trial) {
@@ -180,11 +180,11 @@ TEST_CASE("a schedule with catch trials is read as it was written, with a code l
   SeededEntropy entropy(1);
   const design::StudyKey key =
       design::make_study_key(study_with(study_of(3), {{"catch", 2}}), entropy, false);
-  const design::Schedule schedule = design::make_schedule(key.study, 1);
+  const design::Schedule schedule = schedule_of(key.study, 1);
   const std::string text = design::schedule_to_json(schedule, key);
   CHECK(design::schedule_from_json(text, key) == schedule);
-  CHECK(design::catch_code(key).size() == key.stimuli.front().code.size());
-  CHECK_FALSE(key.stimulus_of(design::catch_code(key)));
+  CHECK(key.catch_code.size() == key.stimuli.front().code.size());
+  CHECK_FALSE(key.stimulus_of(key.catch_code));
   json changed = json::parse(text);
   for (json& shown : changed["presentations"]) {
     if (shown["kind"] == "catch") shown["code"] = key.stimuli.front().code;
@@ -204,34 +204,34 @@ TEST_CASE("the schedule rule names limits and catch trials only where there are 
 TEST_CASE("a restarted block is a fresh order of the same block under new numbers") {
   const design::Study study =
       study_with(comparison_of(3, 2), {{"repeats", 4}, {"max_run", 2}, {"catch", 4}});
-  const design::Schedule schedule = design::make_schedule(study, 2);
+  const design::Schedule schedule = schedule_of(study, 2);
   for (int block = 0; block < 2; ++block) {
     std::vector<design::Presentation> before;
     std::ranges::copy_if(schedule.presentations, std::back_inserter(before),
                          [block](const auto& shown) { return shown.block == block; });
-    const auto again = design::restarted_block(study, 2, block, 0, 101);
-    CHECK(again == design::restarted_block(study, 2, block, 0, 101));
+    const auto again = design::restarted_block(study, drawn(study, 2), block, 0, 101);
+    CHECK(again == design::restarted_block(study, drawn(study, 2), block, 0, 101));
     REQUIRE(again.size() == before.size());
     CHECK(again.front().trial == 101);
     CHECK(again.back().trial == 100 + static_cast<int>(again.size()));
     CHECK(again.front().kind != design::PresentationKind::catch_trial);
     CHECK(scored_counts(again) == scored_counts(before));
     CHECK(longest_run(again) <= 2);
-    const auto third = design::restarted_block(study, 2, block, 1, 101);
+    const auto third = design::restarted_block(study, drawn(study, 2), block, 1, 101);
     CHECK_FALSE(third == again);
     CHECK(scored_counts(third) == scored_counts(before));
-    CHECK(design::restarted_block(study, 2, block, 0, 201).front().stimulus ==
+    CHECK(design::restarted_block(study, drawn(study, 2), block, 0, 201).front().stimulus ==
           again.front().stimulus);
   }
-  CHECK_THROWS_AS(design::restarted_block(study, 2, 2, 0, 1), std::invalid_argument);
-  CHECK_THROWS_AS(design::restarted_block(study, 2, 0, -1, 1), std::invalid_argument);
+  CHECK_THROWS_AS(design::restarted_block(study, drawn(study, 2), 2, 0, 1), std::invalid_argument);
+  CHECK_THROWS_AS(design::restarted_block(study, drawn(study, 2), 0, -1, 1), std::invalid_argument);
 }
 
 TEST_CASE("a restarted block is read as it was written") {
   SeededEntropy entropy(1);
   const design::StudyKey key = design::make_study_key(
       study_with(study_of(3), {{"catch", 2}, {"order", "williams"}}), entropy, false);
-  const auto block = design::restarted_block(key.study, 1, 0, 0, 18);
+  const auto block = design::restarted_block(key.study, drawn(key.study, 1), 0, 0, 18);
   CHECK(design::block_from_json(design::block_to_json(block, key), key) == block);
   CHECK_THROWS_AS(design::block_from_json("{", key), StoreError);
   CHECK_THROWS_AS(design::block_from_json("[{}]", key), StoreError);

@@ -13,7 +13,8 @@
 
 namespace touchtrial {
 
-/// What is outside the program: whether the device is plugged in, and what reached its motors.
+/// The world outside the program: whether the device is plugged in, and the forces that reached its
+/// motors.
 struct Cable {
   std::atomic<bool> plugged{true};
   std::atomic<bool> homed{true};

@@ -1,5 +1,5 @@
-// Only those pages of a field are read that the stylus touches. The test takes the others away, so
-// that reading one would end it.
+// Only the pages of a field that the stylus touches are read. The test makes the others
+// inaccessible, so that reading one would end the program.
 #include "protocols/session/exploration.hpp"
 #include "protocols/session/stroker.hpp"
 #include "support/catch.hpp"
@@ -62,7 +62,8 @@ store::Trace explored(const engine::RenderingModel& model, const PlaneGeometry& 
   return trace;
 }
 
-/// The pages that ten seconds of exploration touch, and the same exploration with no other page.
+/// The pages that ten seconds of exploration touch. Repeats the exploration with access to no other
+/// page.
 std::size_t touched_pages(engine::ModelKind model, std::size_t& of) {
   const engine::RenderingOptions options = options_of(model);
   const engine::TextureField field = wavy_field(options);

@@ -1,4 +1,5 @@
-// Whole sessions, each ended at one commit by a kill or a power cut, taken up again and finished.
+// Whole sessions, each interrupted at one commit by a kill or a power cut, then resumed and
+// finished.
 #include "core/errors.hpp"
 #include "core/random.hpp"
 #include "protocols/session/commitment.hpp"
@@ -92,7 +93,7 @@ struct KilledSession {
   KilledSession(const KilledSession&) = delete;
   KilledSession& operator=(const KilledSession&) = delete;
 
-  /// Starts the program: a new session, or the open one taken up again, run to its end.
+  /// Starts the program, which runs a new session, or the open one, to its end.
   /// \return whether it reached its end
   bool start() try {
     ++starts;
@@ -113,10 +114,11 @@ struct KilledSession {
   void run(store::StudyStore& store, bool again) {
     Laboratory& lab = laboratory();
     const design::StudyKey& key = lab.study.key();
-    const Bytes wrapped = store::wrap_participant_key(key.master, 1, lab.participant_key);
+    const Bytes wrapped = store::wrap_participant_key(key.investigator_box, 1, lab.participant_key);
     NotingSink sink(again ? store.continue_session(1) : store.begin_session(1, wrapped),
                     acknowledged);
-    const design::Schedule schedule = design::make_schedule(key.study, 1);
+    const design::Schedule schedule =
+        design::make_schedule(key.study, key.draw_of(1, design::Draws::rehearsal));
     session::Session session(schedule, key.study.trials,
                              store::SessionRecorder(1, lab.participant_key, sink));
     session::VirtualSessionClock clock;
@@ -146,7 +148,7 @@ struct KilledSession {
   }
 };
 
-/// Every acknowledged event is stored once, as it was acknowledged.
+/// Requires that every acknowledged event is stored once, as it was acknowledged.
 void require_kept(const std::vector<store::Event>& stored,
                   const std::vector<store::Event>& acknowledged) {
   for (const store::Event& event : acknowledged) {
@@ -155,7 +157,7 @@ void require_kept(const std::vector<store::Event>& stored,
   }
 }
 
-/// 25 answers, five of each class, and an intact chain.
+/// Requires 25 answers, five for each class, and an intact chain.
 void require_complete(const KilledSession& session) {
   const store::StudyStore store = store::StudyStore::open(session.path, Access::read_only);
   REQUIRE_FALSE(store.first_fault());
@@ -164,7 +166,9 @@ void require_complete(const KilledSession& session) {
   require_kept(store.events(1), session.acknowledged);
   std::map<int, int> class_of_trial;
   for (const design::Presentation& one :
-       design::make_schedule(laboratory().study.key().study, 1).presentations) {
+       design::make_schedule(laboratory().study.key().study,
+                             laboratory().study.key().draw_of(1, design::Draws::rehearsal))
+           .presentations) {
     class_of_trial[one.trial] = one.stimulus.class_index;
   }
   std::map<int, int> answered;
@@ -179,7 +183,7 @@ void require_complete(const KilledSession& session) {
   REQUIRE(answers == kTrials);
 }
 
-/// Ends a session once, takes it up, and finishes it.
+/// Interrupts a session once, resumes it, and finishes it.
 /// \return whether the fault occurred
 bool is_finished_after(FaultVfs& vfs, const Fault& fault) {
   INFO("kind " << static_cast<int>(fault.kind) << " at " << fault.at);
@@ -207,7 +211,7 @@ std::int64_t end_at_every_commit(Kind kind) {
   return fault.at - 1;
 }
 
-TEST_CASE("a session killed at any of its commits is taken up again, complete and balanced") {
+TEST_CASE("a session killed at any of its commits is resumed, complete and balanced") {
   // Four events a trial, two of them together, and those before and after.
   REQUIRE(end_at_every_commit(Kind::kill) > 3 * kTrials);
 }

@@ -27,7 +27,7 @@ namespace {
 
 using std::chrono::seconds;
 
-/// Feels at a station, names a picture by what was felt, and remembers it.
+/// A participant at a station, who names a picture by what was felt and remembers the answer.
 class PersonAtStation : public simulation::PromptParticipant {
  public:
   PersonAtStation(session::DeviceStation& station, FakeDevice*& device)
@@ -66,8 +66,9 @@ class PersonAtStation : public simulation::PromptParticipant {
 struct Laboratory {
   explicit Laboratory(const session::RealTimeOptions& options = as_fast_as_it_goes())
       : explorer(options),
-        session(design::make_schedule(study.key().study, 1), study.key().study.trials,
-                store::SessionRecorder(1, participant_key, events)) {}
+        session(design::make_schedule(study.key().study,
+                                      study.key().draw_of(1, design::Draws::rehearsal)),
+                study.key().study.trials, store::SessionRecorder(1, participant_key, events)) {}
 
   session::SessionTally run(session::Participant& participant) {
     REQUIRE(station.make_ready() == session::SupplyState::ready);
@@ -208,7 +209,8 @@ session::RealTimeOptions gated(std::atomic<bool>& gate) {
   return options;
 }
 
-/// Acts on the servo while its time stands still, in every exploration or in the first alone.
+/// A participant who acts on the servo while its time stands still, in every exploration or only in
+/// the first.
 class Acting final : public PersonAtStation {
  public:
   using Act = std::function<void(device::ServoControl&)>;
@@ -297,8 +299,9 @@ TEST_CASE("a real-time session on the machine's own clock records how late its t
   session::SteadySessionClock clock;
   session::AlwaysReady devices;
   store::BufferedEvents events;
-  session::Session session(design::make_schedule(study.key().study, 1), study.key().study.trials,
-                           store::SessionRecorder(1, SecretKey{}, events));
+  session::Session session(
+      design::make_schedule(study.key().study, study.key().draw_of(1, design::Draws::rehearsal)),
+      study.key().study.trials, store::SessionRecorder(1, SecretKey{}, events));
   store::SessionOpening opening;
   opening.participant = "P001";
   opening.enrolment = 1;

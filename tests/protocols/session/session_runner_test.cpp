@@ -35,7 +35,8 @@ class RestingStylus final : public device::HapticDevice {
   int tick_ = 0;
 };
 
-/// Always names the first picture. The device is lost in the first `losses` presentations.
+/// A participant who always names the first picture. The device is lost in the first `losses`
+/// presentations.
 class Unlucky final : public simulation::PromptParticipant {
  public:
   explicit Unlucky(int losses) : losses_(losses) {}
@@ -74,8 +75,9 @@ Ran ran_session(const Run& run) {
   const TinyStudy study({.trials = R"({"repeats": 1})"});
   const session::StimulusSource source(study.pack(), study.key().study.rendering);
   Ran ran;
-  session::Session session(design::make_schedule(study.key().study, 1), study.key().study.trials,
-                           store::SessionRecorder(1, SecretKey{}, ran.events));
+  session::Session session(
+      design::make_schedule(study.key().study, study.key().draw_of(1, design::Draws::rehearsal)),
+      study.key().study.trials, store::SessionRecorder(1, SecretKey{}, ran.events));
   store::SessionOpening opening;
   opening.participant = "P001";
   opening.enrolment = 1;
@@ -140,7 +142,7 @@ class PageCountingExplorer final : public session::Explorer {
   session::VirtualExplorer usual_;
 };
 
-/// In virtual time, but the experimenter is attended to while the plane is on.
+/// Works in virtual time, but obeys the experimenter while the plane is on.
 class AttendedExplorer final : public session::Explorer {
  public:
   [[nodiscard]] bool in_real_time() const noexcept override { return false; }
@@ -162,7 +164,7 @@ class AttendedExplorer final : public session::Explorer {
   session::VirtualExplorer usual_;
 };
 
-/// Asks to leave from the first exploration on, every time.
+/// An experimenter who asks to leave at every opportunity from the first exploration on.
 class Insisting final : public session::Experimenter {
  public:
   void show(const session::SessionStatus& status) override {

@@ -16,7 +16,7 @@ using std::chrono::seconds;
 using Phase = session::SessionPhase;
 using Input = session::SessionInput;
 
-/// Stores in memory, and refuses when told to, as a full disk does.
+/// Stores in memory, and refuses events on request, as a full disk does.
 class FickleSink final : public store::EventSink {
  public:
   void accept(const store::Event& event, const std::optional<store::SealedTrace>& trace) override {
@@ -37,7 +37,7 @@ design::Schedule schedule_of(int trials) {
   return schedule;
 }
 
-/// A session with everything before its first trial done, at 3 s.
+/// A session in which everything before the first trial is done, at 3 s.
 struct Laboratory {
   explicit Laboratory(int trials = 3, const design::TrialOptions& options = {})
       : session(schedule_of(trials), options, store::SessionRecorder(1, SecretKey{}, sink)) {
@@ -217,7 +217,7 @@ store::TrialEvidence evidence_of(const session::Session& session, double height_
   return session.packed(body, {}, {1000.0, {{{1.0, 2.0, height_mm}, {0.0, 0.0, 0.5}}}});
 }
 
-TEST_CASE("evidence is stored with the answer, the last that was kept and no other") {
+TEST_CASE("an answer is stored with the evidence kept last, and with no other") {
   Laboratory lab;
   lab.session.present(seconds(4));
   const store::TrialEvidence first = evidence_of(lab.session, 3.0);
@@ -253,14 +253,14 @@ TEST_CASE("a trial can be interrupted while the participant answers; its evidenc
   CHECK(lab.sink.stored.traces.empty());
 }
 
-TEST_CASE("nobody goes back to the plane once time is up") {
+TEST_CASE("once time is up, the participant cannot go back to the plane") {
   Laboratory lab;
   lab.session.present(seconds(4));
   lab.session.time_out(seconds(64));
   CHECK_THROWS_AS(lab.session.explore_again(seconds(65)), std::logic_error);
 }
 
-TEST_CASE("a spoilt trial is left out if the study says so") {
+TEST_CASE("an interrupted trial is left out if the study says so") {
   design::TrialOptions options;
   options.on_interruption = design::OnInterruption::leave_out;
   Laboratory lab(2, options);
@@ -320,7 +320,7 @@ TEST_CASE("a break is due when the study says so") {
   CHECK_FALSE(lab.session.break_due());  // nothing comes after it
 }
 
-TEST_CASE("a pause goes on where it began") {
+TEST_CASE("after a pause the session continues in the phase where it stopped") {
   Laboratory lab;
   lab.session.present(seconds(4));
   lab.session.end_exploring(seconds(5));
@@ -355,7 +355,7 @@ design::TrialOptions restarting_blocks() {
   return options;
 }
 
-TEST_CASE("a spoilt trial begins its block anew, under new numbers, if the study says so") {
+TEST_CASE("an interrupted trial restarts its block, under new numbers, if the study says so") {
   FickleSink sink;
   session::Session session(schedule_of(4), restarting_blocks(),
                            store::SessionRecorder(1, SecretKey{}, sink), two_trials_again());
@@ -380,8 +380,8 @@ TEST_CASE("a spoilt trial begins its block anew, under new numbers, if the study
                   std::invalid_argument);
 }
 
-/// Runs a session that is killed after so many events, takes it up until its end, and gives its
-/// trials as they were answered.
+/// Runs a session that is killed after `kept` events, resumes it, and runs it to its end. Returns
+/// the trials in the order in which they were answered.
 std::vector<int> killed_after(std::size_t kept, const design::TrialOptions& options) {
   FickleSink first;
   const auto run = [](session::Session& session, FickleSink& sink, std::size_t most) {
@@ -439,7 +439,7 @@ std::vector<int> killed_after(std::size_t kept, const design::TrialOptions& opti
   return answered;
 }
 
-TEST_CASE("a session that was killed after any event is taken up where it stood") {
+TEST_CASE("a session is resumed where it stopped, after whichever event it was killed") {
   // opened, calibrated, instructed, then three events a trial, closed.
   for (std::size_t kept = 1; kept <= 16; ++kept) {
     CAPTURE(kept);
@@ -459,7 +459,7 @@ TEST_CASE("a session that was killed after any event is taken up where it stood"
   }
 }
 
-TEST_CASE("a pause is over when a session is taken up, and nobody is asked twice") {
+TEST_CASE("resuming a session ends its pause, and asks nothing twice") {
   Laboratory lab;
   lab.session.tick(seconds(3), "curtain");
   lab.session.deviate(seconds(3), {"no-masking-noise", "no headphones"});

@@ -1,4 +1,4 @@
-/// \file A participant who strokes the plane as simulated ones do, and has nothing to answer.
+/// \file A participant who strokes the plane as simulated participants do, and gives no answers.
 #pragma once
 
 #include "protocols/simulation/felt_exploration.hpp"
@@ -11,7 +11,7 @@
 
 namespace touchtrial {
 
-/// Keeps what the device did.
+/// Keeps the device's samples.
 class Stroker final : public simulation::PromptParticipant {
  public:
   /// \param random  for the path, which is the same in every exploration

@@ -42,13 +42,17 @@ design::Study study_with(const TinyStudyOptions& options) {
   return design::parse_study(R"({"study":"tiny","protocol":")" + protocol + R"(","classes":[)" +
                                  classes + R"(],"methods":)" + methods + R"(,"trials":)" +
                                  options.trials + R"(,"rendering":)" + options.rendering + section +
-                                 R"(,"seed":7})",
+                                 R"(,"seed":)" + std::to_string(kTinyStudySeed) + "}",
                              ".", "tiny.json");
 }
 
 design::StudyKey key_with(const TinyStudyOptions& options) {
   SeededEntropy entropy(options.secret);
-  return design::make_study_key(study_with(options), entropy, true);
+  design::StudyKey key = design::make_study_key(study_with(options), entropy, true);
+  if (options.schedules != 0) {
+    key.stations.front().secret = SeededEntropy(options.schedules).secret("station");
+  }
+  return key;
 }
 
 engine::Pack write_pack(const std::filesystem::path& folder, const design::StudyKey& key,

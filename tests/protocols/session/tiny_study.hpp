@@ -11,6 +11,9 @@
 
 namespace touchtrial {
 
+/// In the study file.
+inline constexpr std::uint64_t kTinyStudySeed = 7;
+
 /// Variations of the tiny study.
 struct TinyStudyOptions {
   int images = 1;                ///< a class
@@ -18,6 +21,7 @@ struct TinyStudyOptions {
   bool smooth = false;           ///< gains are zero
   int side_px = 120;             ///< of the pictures, of 0.2 mm
   std::uint64_t secret = 1;      ///< codes and secrets are a function of it
+  std::uint64_t schedules = 0;   ///< if not 0, schedules are a function of this alone
   std::string protocol{};        ///< another one than classification and comparison
   std::string section = "{}";    ///< that protocol's own object
   std::string trials = "{}";     ///< the study file's "trials"

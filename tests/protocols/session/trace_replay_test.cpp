@@ -21,8 +21,8 @@ class KeepingSink final : public device::SampleSink {
 };
 
 /// The positions of a trace. Under the same model and servo options they give the trace's forces
-/// again, to within its quantisation, unless the model uses velocities (those of a replay are
-/// differences of positions).
+/// again, to within its quantisation. This does not hold if the model uses velocities, because a
+/// replay computes them from differences of positions.
 device::RecordedMotion motion_of(const store::Trace& trace) {
   std::vector<Vec3> positions_mm;
   for (const store::TraceSample& sample : trace.samples) positions_mm.push_back(sample.position_mm);

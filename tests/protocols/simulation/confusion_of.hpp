@@ -1,4 +1,4 @@
-/// \file What participants answered, read from a database with the study's key.
+/// \file The participants' answers, read from a database with the study's key.
 #pragma once
 
 #include "protocols/design/study_key.hpp"
@@ -16,7 +16,7 @@ using Confusion = std::map<std::pair<int, int>, int>;
                                                           const design::StudyKey& key,
                                                           int session) {
   const auto participant_key =
-      store::unwrap_participant_key(key.master, session, store.wrapped_key(session).value());
+      store::unwrap_participant_key(key.box(), session, store.wrapped_key(session).value());
   return design::schedule_from_json(
       store::unsealed(store.events(session).front(), participant_key.value()).value(), key);
 }

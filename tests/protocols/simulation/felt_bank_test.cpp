@@ -12,7 +12,7 @@
 namespace touchtrial {
 namespace {
 
-/// Unsure enough that answers differ, and with every kind of error.
+/// A subject who is so unsure that answers differ, with every kind of error.
 simulation::SubjectModel erring_subject() {
   simulation::SubjectModel subject;
   subject.explore_s = 1.5;
@@ -65,7 +65,8 @@ TEST_CASE("answers to trials that are felt without a session equal those of sess
   const std::vector<store::TrialRow> rows = store.trials();
   std::size_t row = 0;
   for (int number = 1; number <= 3; ++number) {
-    const design::Schedule schedule = design::make_schedule(design, number);
+    const design::Schedule schedule =
+        design::make_schedule(design, study.key().draw_of(number, design::Draws::rehearsal));
     const simulation::Individual individual(subject, kSeed, number);
     const simulation::SeenPictures pictures =
         simulation::see(labels_of(schedule, design), subject, individual, knowledge);

@@ -32,12 +32,12 @@ struct Spread {
   double sd = 0.0;
 };
 
-/// Of one figure over many people.
-Spread spread_of(const std::function<double(const simulation::Individual&)>& figure) {
+/// Of one number over many people.
+Spread spread_of(const std::function<double(const simulation::Individual&)>& number) {
   const simulation::SubjectModel subject = population();
   std::vector<double> values;
   for (int i = 1; i <= kPeople; ++i)
-    values.push_back(figure(simulation::Individual(subject, 7, i)));
+    values.push_back(number(simulation::Individual(subject, 7, i)));
   Spread spread;
   for (const double value : values) spread.mean += value / kPeople;
   for (const double value : values) spread.sd += std::pow(value - spread.mean, 2) / (kPeople - 1);

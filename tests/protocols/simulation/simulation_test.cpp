@@ -117,8 +117,8 @@ TEST_CASE("more noise lowers the accuracy") {
 TEST_CASE("answers do not depend on codes") {
   simulation::SubjectModel subject = quick_subject();
   subject.weber = 1.0;
-  TinyStudy study({.secret = 1});
-  TinyStudy recoded({.secret = 2});
+  TinyStudy study({.secret = 1, .schedules = 7});
+  TinyStudy recoded({.secret = 2, .schedules = 7});
   CHECK(study.key().code_of({0, 0, 0}) != recoded.key().code_of({0, 0, 0}));
   const simulation::SimulationOptions options{.participants = 2, .seed = 5};
   CHECK(answers_of(simulated(study, subject, options)) ==
@@ -153,7 +153,7 @@ TEST_CASE("another seed gives other participants, and the same schedule") {
   CHECK(schedule_of_session(one, study.key(), 1) == schedule_of_session(other, study.key(), 1));
 }
 
-/// An event's readable part, without what commits to secrets.
+/// An event's readable part, without its commitments to secrets.
 nlohmann::json clear_part(const store::Event& event) {
   nlohmann::json body = nlohmann::json::parse(event.body);
   body.erase("trace");
@@ -178,7 +178,7 @@ TEST_CASE("except for answers, nothing in clear depends on what is presented") {
 /// Trials whose forces are within limits, by their sealed measures.
 int within_limits(const store::StudyStore& store, const design::StudyKey& key) {
   const auto participant_key =
-      store::unwrap_participant_key(key.master, 1, store.wrapped_key(1).value());
+      store::unwrap_participant_key(key.box(), 1, store.wrapped_key(1).value());
   int within = 0;
   store.for_each(store::EventKind::trace_stored, [&](const store::Event& event) {
     const store::TrialMeasures measures =
@@ -269,7 +269,7 @@ TEST_CASE("the measures of a simulated trial follow from the subject's strokes a
   subject.explore_s = 8.0;
   const store::StudyStore store = simulated(study, subject, {.participants = 1});
   const auto key =
-      store::unwrap_participant_key(study.key().master, 1, store.wrapped_key(1).value());
+      store::unwrap_participant_key(study.key().box(), 1, store.wrapped_key(1).value());
   store.for_each(store::EventKind::trace_stored, [&](const store::Event& event) {
     const store::TrialMeasures measures =
         store::measures_from_json(store::unsealed(event, key.value()).value());

@@ -159,6 +159,10 @@ TEST_CASE("an altered, missing or added key is named by its session") {
           "1/0 the participant's key is missing without a withdrawal");
   REQUIRE(fault_after("INSERT INTO participant_keys VALUES(8, x'00')") ==
           "8/0 a participant's key has no session");
+  for (const char* session : {"1", "8"}) {
+    REQUIRE(fault_after("INSERT INTO station_keys VALUES(" + std::string(session) + ", x'00')") ==
+            std::string(session) + "/0 the station holds the key of a session that is not open");
+  }
   StoredFixture study(1);
   study.store->withdraw(1, kUtc, "asked to");
   tamper(study, "INSERT INTO participant_keys VALUES(1, x'00')");

@@ -28,7 +28,8 @@ void write(const std::filesystem::path& path, const std::string& content) {
   std::ofstream(path, std::ios::binary) << content;
 }
 
-/// The line with which a file is refused; the file must be as it was, and nothing beside it.
+/// The message with which a file is refused. The file must be unchanged, with no new file beside
+/// it.
 std::string refusal_untouched(const std::filesystem::path& path, Access access) {
   const std::string before = content_of(path);
   const std::string line = refusal_of([&] { return StudyStore::open(path, access); });
@@ -173,11 +174,11 @@ TEST_CASE("a database of a newer or an unknown older schema is refused untouched
     return refusal_untouched(study.path, access);
   };
   for (const Access access : {Access::read_only, Access::read_write}) {
-    CHECK(contains(refusal_as(4, access), "newer Touchtrial (schema 4, this one knows 3)"));
-    for (const int version : {1, 2}) {
+    CHECK(contains(refusal_as(5, access), "newer Touchtrial (schema 5, this one knows 4)"));
+    for (const int version : {1, 3}) {
       CHECK(contains(refusal_as(version, access),
                      "older Touchtrial (schema " + std::to_string(version) +
-                         ", the oldest that this one knows is 3); use the program that wrote it"));
+                         ", the oldest that this one knows is 4); use the program that wrote it"));
     }
   }
 }
@@ -239,7 +240,7 @@ TEST_CASE("an older database is brought forward when it is opened for writing") 
       refusal_of([&] { return open_current(study.path, Database::Mode::read_only, steps); }),
       "is of an older schema; copy it, and bring it up to date with `touchtrial migrate`"));
   CHECK(content_of(study.path) == before);
-  for (int i = 0; i < 2; ++i) {  // the second time nothing is left to do
+  for (int i = 0; i < 2; ++i) {  // the second time there is nothing left to do
     const Database database = open_current(study.path, Database::Mode::read_write, steps);
     CHECK(schema_version(database) == kSchemaVersion + 1);
     CHECK(read_trials(database) == trials);

@@ -1,4 +1,4 @@
-// A disk that fails: what could not be made safe is refused, and can be stored again.
+// A disk that fails: an event that could not be made durable is refused, and can be stored again.
 #include "protocols/store/power_cut_fixture.hpp"
 
 #include <set>
@@ -14,7 +14,8 @@ using Kind = Fault::Kind;
 /// Events in session 2 when it is complete: 2 + 3 * 4 + 1.
 constexpr std::size_t kWholeSession = 15;
 
-/// Session 2 on a disk with one fault; a step that is refused is done again when the disk is well.
+/// Session 2 on a disk with one fault; a step that is refused is repeated once the disk works
+/// again.
 struct RetriedSession {
   RetriedSession(FaultVfs& vfs, const std::filesystem::path& path, const Fault& fault)
       : story([this, &vfs, fault](StudyStore& store, Acknowledged& acknowledged) {
@@ -30,7 +31,7 @@ struct RetriedSession {
             vfs.repair();
             step();
           });
-          // The last event is acknowledged: from here on only what is safe counts.
+          // The last event is acknowledged: from here on only durable data count.
           struck = vfs.struck();
           operations = vfs.operations();
           vfs.plan({.kind = Kind::power_cut, .at = 1});
@@ -38,15 +39,16 @@ struct RetriedSession {
         outcome(tell(path, story)) {}
 
   std::set<std::string> refusals;
-  int unnoticed = 0;  ///< steps that went well though an operation in them failed
+  int unnoticed = 0;  ///< steps that succeeded although an operation in them failed
   bool struck = false;
   std::int64_t operations = 0;
   Story story;
   Outcome outcome;
 };
 
-/// One fault at every operation in turn, and then a power cut: the session is whole.
-/// \return the lines with which steps were refused, without the file's name
+/// Injects one fault at every operation in turn, and then a power cut; the session must be
+/// complete.
+/// \return the messages with which steps were refused, without the file's name
 std::set<std::string> fail_everywhere(const Fault& fault, int& unnoticed) {
   FaultVfs vfs;
   std::set<std::string> lines;

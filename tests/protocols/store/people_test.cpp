@@ -160,7 +160,8 @@ TEST_CASE("a file's chain on which two sessions have one participant or number i
   FileChain other;
   for (const Event& event : study.store->events(0)) other.add(event);
   REQUIRE(contains(refusal_of([&] { other.add(opened("P2", 1)); }), "enrolment 1 is taken"));
-  // In a collected study's it is the end that counts, which whoever collects it sees to.
+  // On a collected study's chain only the final state must be unique; the code that collects the
+  // study ensures it.
   FileChain collected(UniquePlaces::in_the_end);
   for (const Event& event : study.store->events(0)) collected.add(event);
   collected.add(opened("P1", 1));

@@ -1,4 +1,5 @@
-/// \file Operations on a database (stories) that something breaks off, and what must be left then.
+/// \file Operations on a database (stories), which faults interrupt, and what must be left
+///   afterwards.
 #pragma once
 
 #include "protocols/store/noting_sink.hpp"
@@ -19,7 +20,7 @@ using testing::FaultVfs;
 /// What the database acknowledged as safe.
 struct Acknowledged {
   std::vector<store::Event> session;  ///< of session 2, event by event
-  store::ChainHead file;      ///< where the file's chain ended, after a change of it returned
+  store::ChainHead file;      ///< end of the file's chain after the last change that returned
   std::size_t under_way = 2;  ///< the most events of session 2 that one step stores
 };
 
@@ -67,7 +68,7 @@ inline const std::filesystem::path& finished_session() {
 /// The result of a story's run.
 struct Outcome {
   Acknowledged acknowledged;
-  std::string refusal;  ///< with which line it ended early
+  std::string refusal;  ///< the message with which it ended early
 };
 
 /// Opens the database and runs the story until it ends or is broken off.
@@ -80,7 +81,7 @@ inline Outcome tell(const std::filesystem::path& path, const Story& story) {
   return outcome;
 }
 
-/// Everything that was acknowledged is there, once, and the chain holds.
+/// Requires that everything that was acknowledged is there, once, and that the chain is intact.
 inline void require_kept(const store::StudyStore& store, const Acknowledged& acknowledged) {
   const auto fault = store.first_fault();
   INFO((fault ? fault->what : std::string()));
@@ -100,7 +101,7 @@ inline void require_kept(const store::StudyStore& store, const Acknowledged& ack
   }
 }
 
-/// Goes on with session 2 where it broke off, to its end.
+/// Continues session 2 from where it broke off to its end.
 inline void finish_session(store::StudyStore& store) {
   const auto row = store.session_of(participant_of(2));
   if (!row || row->state != store::SessionState::open || store.state().closed) return;
@@ -111,7 +112,8 @@ inline void finish_session(store::StudyStore& store) {
   recorder.closed(seconds(101), false);
 }
 
-/// The database takes what may follow: the rest of session 2, another session, changes of the file.
+/// Requires that the database accepts what may follow: the rest of session 2, another session, and
+/// changes of the file's chain.
 inline void require_writable(const std::filesystem::path& path) {
   store::StudyStore store = store::StudyStore::open(path, store::StudyStore::Access::read_write);
   finish_session(store);

@@ -25,7 +25,8 @@ Story changing(const std::function<void(StudyStore&)>& change) {
   };
 }
 
-/// Ends a story at one operation and looks at what is left. \return whether it was ended
+/// Interrupts a story at one operation, and checks what is left.
+/// \return whether the story reached that operation
 bool survives(FaultVfs& vfs, const Story& story, const Fault& fault) {
   INFO("kind " << static_cast<int>(fault.kind) << " at operation " << fault.at << ", seed "
                << fault.seed);
@@ -42,7 +43,8 @@ bool survives(FaultVfs& vfs, const Story& story, const Fault& fault) {
   return true;
 }
 
-/// \param seeds  of what is on the disk by chance
+/// Interrupts a story at each of its operations in turn.
+/// \param seeds  number of random choices of the unsynced writes that reach the disk
 void end_everywhere(const Story& story, Kind kind, std::uint64_t seeds = 1) {
   FaultVfs vfs;
   const std::int64_t operations = operations_of(vfs, story);

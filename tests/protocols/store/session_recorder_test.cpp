@@ -185,11 +185,11 @@ TEST_CASE("only remarks are recorded as remarks") {
 
 TEST_CASE("a wrapped participant key opens with its study and session alone") {
   const Bytes wrapped = wrapped_key_of(3);
-  REQUIRE(unwrap_participant_key(study_master(), 3, wrapped) == participant_key(3));
-  REQUIRE_FALSE(unwrap_participant_key(study_master(), 4, wrapped));
-  REQUIRE_FALSE(unwrap_participant_key(digest_of("other"), 3, wrapped));
-  REQUIRE_FALSE(unwrap_participant_key(study_master(), 3, Bytes{}));
+  REQUIRE(unwrap_participant_key(box_keys(study_master()), 3, wrapped) == participant_key(3));
+  REQUIRE_FALSE(unwrap_participant_key(box_keys(study_master()), 4, wrapped));
+  REQUIRE_FALSE(unwrap_participant_key(box_keys(digest_of("other")), 3, wrapped));
+  REQUIRE_FALSE(unwrap_participant_key(box_keys(study_master()), 3, Bytes{}));
   Bytes altered = wrapped;
   altered.back() ^= 1U;
-  REQUIRE_FALSE(unwrap_participant_key(study_master(), 3, altered));
+  REQUIRE_FALSE(unwrap_participant_key(box_keys(study_master()), 3, altered));
 }

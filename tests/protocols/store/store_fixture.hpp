@@ -137,14 +137,15 @@ inline store::BufferedEvents session_of(int session, int trials = 3) {
 }
 
 inline Bytes wrapped_key_of(int session) {
-  return store::wrap_participant_key(study_master(), session, participant_key(session));
+  return store::wrap_participant_key(box_keys(study_master()).public_half, session,
+                                     participant_key(session));
 }
 
 inline void add(store::StudyStore& store, int session, int trials = 3) {
   store.add_session(session_of(session, trials), wrapped_key_of(session), kUtc);
 }
 
-/// The line with which `work` is refused; empty if it is not.
+/// The message with which `work` is refused; empty if it is not.
 template <typename Work>
 std::string refusal_of(Work&& work) {
   try {

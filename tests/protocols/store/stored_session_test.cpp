@@ -1,3 +1,5 @@
+#include "core/files.hpp"
+#include "protocols/store/sealing.hpp"
 #include "protocols/store/store_fixture.hpp"
 #include "support/catch.hpp"
 
@@ -63,6 +65,37 @@ TEST_CASE("a session stored event by event equals one stored whole") {
   REQUIRE(live.store->trials() == whole.store->trials());
   REQUIRE(live.store->sealed_trace(1, 2) == whole.store->sealed_trace(1, 2));
   REQUIRE_FALSE(live.store->first_fault());
+}
+
+TEST_CASE("a station keeps the key of a session while it is open, and no longer") {
+  StoredFixture study;
+  const SecretKey station = digest_of("station");
+  const Bytes kept = keep_participant_key(station, 1, participant_key(1));
+  const auto sink = study.store->begin_session(1, wrapped_key_of(1), clock_at(kUtc), kept);
+  SessionRecorder recorder(1, participant_key(1), *sink);
+  recorder.opened(nanoseconds(0), opening(1), "{}");
+  REQUIRE(study.store->kept_key(1) == kept);
+  REQUIRE(kept_participant_key(station, 1, kept) == participant_key(1));
+  REQUIRE_FALSE(kept_participant_key(station, 2, kept));
+  REQUIRE_FALSE(kept_participant_key(digest_of("another station"), 1, kept));
+  REQUIRE_FALSE(study.store->first_fault());
+  recorder.closed(seconds(1), false);
+  REQUIRE_FALSE(study.store->kept_key(1));
+  REQUIRE_FALSE(study.store->first_fault());
+  for (const auto& file : std::filesystem::directory_iterator(study.path.parent_path())) {
+    const std::string content = text_of(read_file(file.path()));
+    REQUIRE_FALSE(contains(content, text_of(ByteView(kept).subspan(24))));
+  }
+}
+
+TEST_CASE("a withdrawal during a session destroys the station's copy of its key too") {
+  StoredFixture study;
+  const auto sink = study.store->begin_session(1, wrapped_key_of(1), clock_at(kUtc), Bytes{1, 2});
+  SessionRecorder recorder(1, participant_key(1), *sink);
+  recorder.opened(nanoseconds(0), opening(1), "{}");
+  study.store->withdraw(1, kUtc, "asked to");
+  REQUIRE_FALSE(study.store->kept_key(1));
+  REQUIRE_FALSE(study.store->first_fault());
 }
 
 TEST_CASE("every accepted event is in the file at once, for other programs too") {
@@ -251,7 +284,7 @@ TEST_CASE("events that belong together are stored all or none") {
   recorder.opened(nanoseconds(0), opening(1), "{}");
   recorder.presented(seconds(1), 1, 0);
   recorder.interrupted(seconds(2), 1, "device lost");
-  // The trace could be stored, the answer of an interrupted trial cannot.
+  // The trace could be stored, but the answer of an interrupted trial cannot.
   REQUIRE(contains(
       refusal_of([&] { recorder.answered(seconds(3), answer_to(1), evidence_of(recorder, 1)); }),
       "trial 1 was interrupted"));

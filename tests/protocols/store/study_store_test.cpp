@@ -122,7 +122,7 @@ TEST_CASE("events of one kind are visited by session and sequence") {
   std::vector<std::pair<int, std::int64_t>> visited;
   study.store->for_each(EventKind::trace_stored, [&](const Event& event) {
     visited.emplace_back(event.session, event.sequence);
-    REQUIRE(study.store->wrapped_key(event.session));  // other questions may be asked meanwhile
+    REQUIRE(study.store->wrapped_key(event.session));  // other queries may run meanwhile
   });
   REQUIRE(visited.size() == 6);
   REQUIRE(std::is_sorted(visited.begin(), visited.end()));

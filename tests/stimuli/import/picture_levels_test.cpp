@@ -72,7 +72,7 @@ TEST_CASE("equal contrast is reduced where a picture has no room for more") {
   CHECK(*equal_levels(set, LevelEqualising::both).rms_grey == Approx(set[0].rms_grey));
 }
 
-TEST_CASE("what is clipped by shifting the mean is counted") {
+TEST_CASE("samples that shifting the mean clips are counted") {
   const GreyImage picture = wave(64, 16, 10, 10);
   const EqualisedPicture result =
       equalised(picture, levels_of(picture), {.mean_grey = 250.0, .rms_grey = {}});

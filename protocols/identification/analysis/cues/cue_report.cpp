@@ -138,21 +138,21 @@ int fewest_of_a_class(const std::vector<ParticipantAnswers>& all) {
 
 ObserverFigures observer_figures(std::size_t observer, const std::vector<ParticipantAnswers>& all,
                                  const CueStatistics& statistics) {
-  ObserverFigures figures;
-  figures.cue = kCues[observer];
-  figures.confusion = no_answers(all.front().classes());
-  figures.matched_confusion = figures.confusion;
+  ObserverFigures result;
+  result.cue = kCues[observer];
+  result.confusion = no_answers(all.front().classes());
+  result.matched_confusion = result.confusion;
   for (const ParticipantAnswers& one : all) {
-    figures.accuracy.push_back(one.available(observer));
-    add_counts(figures.confusion, one.ideal(observer));
-    add_counts(figures.matched_confusion, one.matched(observer));
+    result.accuracy.push_back(one.available(observer));
+    add_counts(result.confusion, one.ideal(observer));
+    add_counts(result.matched_confusion, one.matched(observer));
   }
-  figures.mean = participant_mean(figures.accuracy);
-  figures.efficiency = statistics.efficiency[observer];
-  figures.corrected_efficiency = statistics.corrected[observer];
-  figures.divergence = statistics.divergence[observer];
-  figures.matched_divergence = statistics.matched_divergence[observer];
-  return figures;
+  result.mean = participant_mean(result.accuracy);
+  result.efficiency = statistics.efficiency[observer];
+  result.corrected_efficiency = statistics.corrected[observer];
+  result.divergence = statistics.divergence[observer];
+  result.matched_divergence = statistics.matched_divergence[observer];
+  return result;
 }
 
 MethodCues method_cues(const FeltStudy& study, int method, const std::string& label) {
@@ -185,15 +185,16 @@ void warn_of_study(const Outcomes& outcomes, const CueReport& report, Warnings& 
   }
   if (report.plane_source == kPlaneFromTraces) {
     warnings.emplace_back(
-        "Neither the study's pack nor its images were found: the parts of the plane are told from "
-        "where hands had contact, and what `everything` has from them is a little less sure.");
+        "Neither the study's pack nor its images were found: the parts of the plane are inferred "
+        "from where hands had contact, so what `everything` learns from them is a little less "
+        "certain.");
   }
 }
 
 void warn_of_trials(const MethodCues& cues, Warnings& warnings) {
   if (cues.without_trace > 0) {
     warnings.push_back(
-        fmt::format("{}: {} without a trace left out; accuracy here is of the others alone.",
+        fmt::format("{}: {} without a trace left out; accuracy here is that of the other trials.",
                     cues.method, counted(cues.without_trace, "trial")));
   }
   if (cues.unjudged > 0) {
@@ -211,15 +212,15 @@ void warn_of_numbers(const MethodCues& cues, Warnings& warnings) {
   }
   if (cues.fewest_of_a_class < kFewestTrials) {
     warnings.push_back(
-        fmt::format("{}: somebody has fewer than {} trials of a class, so the observers know that "
-                    "hand's way of "
-                    "feeling it from others' alone, and what they call available is too low.",
+        fmt::format("{}: somebody has fewer than {} trials of a class, so the observers know what "
+                    "that hand feels of it only from other hands, and the available accuracy is "
+                    "too low.",
                     cues.method, kFewestTrials));
   }
   const auto participants = static_cast<int>(cues.participants.size());
   if (participants < kFewestForVerdict) {
     warnings.push_back(
-        fmt::format("{}: {} cannot decide which cue was used: from {} on there is a verdict, and "
+        fmt::format("{}: {} cannot decide which cue was used: a verdict needs {} or more, because "
                     "intervals over fewer are too narrow.",
                     cues.method, counted(participants, "participant"), kFewestForVerdict));
   } else if (cues.match && !cues.match->difference.interval) {
@@ -235,7 +236,7 @@ void warn_of_figures(const MethodCues& cues, double chance, Warnings& warnings) 
     if (one.mean.mean.value_or(0.0) <= chance) {
       warnings.push_back(
           fmt::format("{}: {} tells the classes apart no better than chance, so nothing can be "
-                      "said of how well it was used.",
+                      "said about how well it was used.",
                       cues.method, title));
     } else if (one.efficiency.value.value_or(0.0) > 1.0) {
       warnings.push_back(

@@ -1,8 +1,8 @@
 #include "protocols/identification/analysis/cues/cue_statistics.hpp"
 
 #include "analysis/statistics/cluster_bootstrap.hpp"
+#include "core/parallel.hpp"
 #include "core/random.hpp"
-#include "protocols/identification/analysis/cues/jobs.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -103,9 +103,9 @@ enum : std::size_t {
   kDivergenceAt = 2 * kObservers,
   kMatchedAt = 3 * kObservers,
   kDifferenceAt = 4 * kObservers,
-  kFigures
+  kNumbers
 };
-using Figures = std::array<double, kFigures>;
+using Numbers = std::array<double, kNumbers>;
 
 /// The two observers whose matched answers are nearest to the participants' answers.
 struct Ranking {
@@ -113,40 +113,40 @@ struct Ranking {
   std::size_t second = 1;
 };
 
-Ranking ranking_of(const Figures& figures) {
+Ranking ranking_of(const Numbers& numbers) {
   std::array<std::size_t, kObservers> order{};
   for (std::size_t i = 0; i < kObservers; ++i) order[i] = i;
-  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return figures[kMatchedAt + i]; });
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return numbers[kMatchedAt + i]; });
   return {order[0], order[1]};
 }
 
-Figures figures_of(const Sums& sums) {
-  Figures figures{};
+Numbers numbers_of(const Sums& sums) {
+  Numbers numbers{};
   for (std::size_t i = 0; i < kObservers; ++i) {
-    figures[kEfficiencyAt + i] = sums.efficiency(i);
-    figures[kCorrectedAt + i] = sums.corrected(i);
-    figures[kDivergenceAt + i] = sums.divergence(i);
-    figures[kMatchedAt + i] = sums.matched_divergence(i);
+    numbers[kEfficiencyAt + i] = sums.efficiency(i);
+    numbers[kCorrectedAt + i] = sums.corrected(i);
+    numbers[kDivergenceAt + i] = sums.divergence(i);
+    numbers[kMatchedAt + i] = sums.matched_divergence(i);
   }
-  return figures;
+  return numbers;
 }
 
-void put_difference(Figures& figures, const Ranking& ranking) {
-  figures[kDifferenceAt] =
-      figures[kMatchedAt + ranking.second] - figures[kMatchedAt + ranking.best];
+void put_difference(Numbers& numbers, const Ranking& ranking) {
+  numbers[kDifferenceAt] =
+      numbers[kMatchedAt + ranking.second] - numbers[kMatchedAt + ranking.best];
 }
 
 /// The numbers of resampled studies. A resampled study draws as many participants as there are,
 /// with replacement.
 struct Draws {
   std::size_t participants = 0;
-  std::vector<Figures> figures{};  ///< empty with fewer than two participants
+  std::vector<Numbers> numbers{};  ///< empty with fewer than two participants
 };
 
 Draws drawn(const std::vector<Sums>& participants, int classes, const Ranking& ranking,
             std::uint64_t index, int jobs) {
   if (participants.size() < 2) return {participants.size()};
-  std::vector<Figures> draws(kBootstrapDraws);
+  std::vector<Numbers> draws(kBootstrapDraws);
   const auto draw = [&](std::size_t i) {
     // Each draw has its own stream, so the result does not depend on the threads.
     RandomStream random(0, "cues: participants", (index << 32U) + i);
@@ -154,7 +154,7 @@ Draws drawn(const std::vector<Sums>& participants, int classes, const Ranking& r
     for (std::size_t p = 0; p < participants.size(); ++p) {
       sums.add(participants[random.below(participants.size())]);
     }
-    draws[i] = figures_of(sums);
+    draws[i] = numbers_of(sums);
     put_difference(draws[i], ranking);
   };
   in_parallel(jobs, draws.size(), draw);
@@ -162,28 +162,28 @@ Draws drawn(const std::vector<Sums>& participants, int classes, const Ranking& r
 }
 
 /// The interval of a number; nothing if the number is undefined in any draw.
-std::optional<Interval> interval_of(const Draws& draws, std::size_t figure) {
+std::optional<Interval> interval_of(const Draws& draws, std::size_t number) {
   std::vector<double> values;
-  for (const Figures& one : draws.figures) {
-    if (std::isnan(one[figure])) return std::nullopt;
-    values.push_back(one[figure]);
+  for (const Numbers& one : draws.numbers) {
+    if (std::isnan(one[number])) return std::nullopt;
+    values.push_back(one[number]);
   }
   if (values.empty()) return std::nullopt;
   return expanded_percentiles(std::move(values), draws.participants);
 }
 
-CueFigure figure_at(std::size_t at, const Figures& observed, const Draws& draws) {
+CueFigure number_at(std::size_t at, const Numbers& observed, const Draws& draws) {
   if (std::isnan(observed[at])) return {};
   return {observed[at], interval_of(draws, at)};
 }
 
-std::optional<CueMatch> match_of(const Ranking& ranking, const Figures& observed,
+std::optional<CueMatch> match_of(const Ranking& ranking, const Numbers& observed,
                                  const Draws& draws) {
   if (std::isnan(observed[kDifferenceAt])) return std::nullopt;
   CueMatch match;
   match.best = kCues[ranking.best];
   match.second = kCues[ranking.second];
-  match.difference = figure_at(kDifferenceAt, observed, draws);
+  match.difference = number_at(kDifferenceAt, observed, draws);
   match.told_apart = draws.participants >= kFewestForVerdict && match.difference.interval &&
                      match.difference.interval->low > 0.0;
   return match;
@@ -228,16 +228,16 @@ CueStatistics cue_statistics(std::span<const ParticipantAnswers> participants, s
   std::vector<Sums> each;
   Sums together(classes);
   for (const ParticipantAnswers& one : participants) together.add(each.emplace_back(one));
-  Figures observed = figures_of(together);
+  Numbers observed = numbers_of(together);
   const Ranking ranking = ranking_of(observed);
   put_difference(observed, ranking);
   const Draws draws = drawn(each, classes, ranking, index, jobs);
   CueStatistics statistics;
   for (std::size_t i = 0; i < kObservers; ++i) {
-    statistics.efficiency[i] = figure_at(kEfficiencyAt + i, observed, draws);
-    statistics.corrected[i] = figure_at(kCorrectedAt + i, observed, draws);
-    statistics.divergence[i] = figure_at(kDivergenceAt + i, observed, draws);
-    statistics.matched_divergence[i] = figure_at(kMatchedAt + i, observed, draws);
+    statistics.efficiency[i] = number_at(kEfficiencyAt + i, observed, draws);
+    statistics.corrected[i] = number_at(kCorrectedAt + i, observed, draws);
+    statistics.divergence[i] = number_at(kDivergenceAt + i, observed, draws);
+    statistics.matched_divergence[i] = number_at(kMatchedAt + i, observed, draws);
   }
   statistics.match = match_of(ranking, observed, draws);
   return statistics;

@@ -1,6 +1,8 @@
 #include "protocols/identification/analysis/cues/exploration_path.hpp"
 
+#include "analysis/statistics/descriptive.hpp"
 #include "core/errors.hpp"
+#include "core/text.hpp"
 #include "engine/image_file.hpp"
 #include "engine/rendering/cubic_spline.hpp"
 #include "protocols/identification/analysis/cues/felt_trials.hpp"
@@ -8,7 +10,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <optional>
 #include <span>
@@ -105,22 +106,6 @@ std::vector<double> surface_of(engine::FieldView field) {
   return surface;
 }
 
-struct Moments {
-  double mean = 0.0;
-  double deviation = 0.0;
-};
-
-Moments moments_of(const std::vector<double>& values) {
-  Moments moments;
-  const auto n = static_cast<double>(values.size());
-  for (const double value : values) moments.mean += value / n;
-  for (const double value : values) {
-    moments.deviation += (value - moments.mean) * (value - moments.mean) / n;
-  }
-  moments.deviation = std::sqrt(moments.deviation);
-  return moments;
-}
-
 }  // namespace
 
 std::vector<PathPoint> thinned_path(const store::Trace& trace, int count) {
@@ -163,10 +148,8 @@ ExplorationPath exploration_path(const store::StudyStore& store, const design::S
 TrialName trial_name(const std::string& text) {
   const std::size_t colon = text.rfind(':');
   if (colon != std::string::npos && colon > 0) {
-    TrialName name{text.substr(0, colon), 0};
-    const char* end = text.data() + text.size();
-    const auto [rest, fault] = std::from_chars(text.data() + colon + 1, end, name.trial);
-    if (fault == std::errc() && rest == end && name.trial > 0) return name;
+    const int trial = number_in<int>(std::string_view(text).substr(colon + 1)).value_or(0);
+    if (trial > 0) return {text.substr(0, colon), trial};
   }
   throw UsageError(
       one_line(text) +
@@ -202,13 +185,14 @@ std::vector<ExplorationPath> first_explorations(const store::StudyStore& store,
 GreyImage field_picture(engine::FieldView field) {
   if (field.empty()) return {};
   const std::vector<double> surface = surface_of(field);
-  const Moments moments = moments_of(surface);
+  const double mean = mean_of(surface);
+  const double deviation = standard_deviation(surface, mean, static_cast<double>(surface.size()));
   // A field that varies only by rounding is flat.
-  const bool is_flat = moments.deviation <= 1e-6 * (1.0 + std::abs(moments.mean));
-  const double gain = is_flat ? 0.0 : kMidGrey / (kDeviations * moments.deviation);
+  const bool is_flat = deviation <= 1e-6 * (1.0 + std::abs(mean));
+  const double gain = is_flat ? 0.0 : kMidGrey / (kDeviations * deviation);
   GreyImage picture(field.geometry.height_px, field.geometry.width_px);
   for (std::size_t i = 0; i < surface.size(); ++i) {
-    const double grey = kMidGrey + gain * (surface[i] - moments.mean);
+    const double grey = kMidGrey + gain * (surface[i] - mean);
     picture.samples()[i] = static_cast<std::uint8_t>(std::lround(std::clamp(grey, 0.0, 255.0)));
   }
   return picture;

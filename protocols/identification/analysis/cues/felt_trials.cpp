@@ -2,9 +2,9 @@
 
 #include "analysis/sealed_sessions.hpp"
 #include "core/errors.hpp"
+#include "core/parallel.hpp"
 #include "core/vec.hpp"
 #include "engine/perception/texture_sense.hpp"
-#include "protocols/identification/analysis/cues/jobs.hpp"
 
 #include <algorithm>
 #include <cmath>

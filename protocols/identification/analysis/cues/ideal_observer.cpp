@@ -1,8 +1,8 @@
 #include "protocols/identification/analysis/cues/ideal_observer.hpp"
 
+#include "core/parallel.hpp"
 #include "core/random.hpp"
 #include "engine/perception/felt_classifier.hpp"
-#include "protocols/identification/analysis/cues/jobs.hpp"
 
 #include <algorithm>
 #include <cmath>

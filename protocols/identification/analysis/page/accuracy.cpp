@@ -1,5 +1,6 @@
 #include "analysis/page/wording.hpp"
 #include "analysis/text_figures.hpp"
+#include "core/text.hpp"
 #include "protocols/identification/analysis/page/sections.hpp"
 
 #include <cmath>
@@ -38,9 +39,9 @@ Table class_table(const StudyReport& report, std::size_t index) {
   table.notes = {{"Wilson: score interval.", {Source::wilson}},
                  {"Clopper-Pearson: exact, never below its level.", {Source::clopper_pearson}},
                  {"Jeffreys: quantiles of a beta distribution, by convention from 0 where no "
-                  "answer is right and to 1 where all are. All three take trials as "
-                  "independent, which a participant's are not, "
-                  "so they are too narrow; the interval to quote is that of the headline.",
+                  "answer is right and to 1 where all are. All three treat trials as independent, "
+                  "but those of one participant are not, so these intervals are too narrow; quote "
+                  "the headline's interval instead.",
                   {Source::brown_cai_dasgupta}}};
   return table;
 }
@@ -74,6 +75,10 @@ Table participant_table(const StudyReport& report, std::size_t index) {
          share_figure(one.accuracy.share()), share_figure(one.matching.accuracy.share()),
          exchange_of(one.matching, report.classes), plain_figure(one.consistency, 2)});
   }
+  table.rows.push_back(
+      {"all, pooled", std::to_string(method.overall.n), std::to_string(method.overall.correct),
+       share_figure(method.overall.share()), share_figure(method.matching.accuracy.share()),
+       exchange_of(method.matching, report.classes), kNoFigure});
   table.notes = {
       {"The best exchange of labels is the one-to-one matching of textures and answers with the "
        "most trials: somebody who swaps two labels tells them apart all the same. It is chosen "
@@ -145,9 +150,8 @@ Table confusion_table(const StudyReport& report, std::size_t index) {
   }
   table.rows.push_back(marginal_row(confusion));
   table.notes = {
-      {"All participants' trials pooled; right answers are emphasised. The last row is "
-       "what was answered whatever was presented: a preference for an answer shows "
-       "there."}};
+      {"All participants' trials pooled; right answers are emphasised. The last row counts each "
+       "answer, whatever was presented; it shows preferences for answers."}};
   return table;
 }
 
@@ -159,7 +163,7 @@ std::string groups_of(const ChoiceModel& model, const std::vector<std::string>& 
     group += (group.empty() ? "" : ", ") + classes[i];
   }
   for (std::string& group : groups) group = "{" + group + "}";
-  return listed(groups);
+  return listed(groups, " and ");
 }
 
 /// How well the model fits, in a sentence or two.
@@ -171,7 +175,9 @@ std::string fit_of(const ChoiceModel& model) {
     if (model.p) fit += ", " + p_phrase(*model.p) + " under chi-square for independent trials";
     fit += ".";
     if (model.p && *model.p <= kUsualLevel) {
-      fit += " The model does not fit: its similarities and biases describe, and explain nothing.";
+      fit +=
+          " The model does not fit: its similarities and biases describe the answers, but do "
+          "not explain them.";
     }
   }
   return model.converged ? fit : fit + " The fit did not converge.";
@@ -181,8 +187,8 @@ std::string fit_of(const ChoiceModel& model) {
 std::vector<Cited> choice_notes(const ChoiceModel& model, const std::vector<std::string>& classes) {
   std::vector<Cited> notes{
       {fmt::format("Similarity choice model, maximum likelihood over trials with a response: "
-                   "similarity 1 is the same, 0 never taken for each other, – has no value; "
-                   "biases add up to 1{}.",
+                   "similarity 1 means the same, 0 never taken for each other, – no value; biases "
+                   "add up to 1{}.",
                    model.groups > 1 ? " within each group" : ""),
        {Source::luce, Source::townsend_landon}},
       {fit_of(model)}};
@@ -243,9 +249,9 @@ Table information_table(const StudyReport& report) {
                           plain_figure(method.d_prime.estimate, 2), bound_of(method.d_prime)});
   }
   table.notes = {
-      {"Information transfer over trials with a response: raw (biased upward), with Miller and "
-       "Madow's bias taken off, and the mean of the raw figure when each participant's answers "
-       "are dealt at random; categories are two to the power of the corrected figure.",
+      {"Information transfer over trials with a response: raw (biased upward), minus Miller and "
+       "Madow's bias, and the mean of the raw value when each participant's answers are dealt at "
+       "random; categories are two to the power of the corrected value.",
        {Source::tan_reed_durlach, Source::miller}},
       {"d′ is what an unbiased observer of as many equally distant textures would need for this "
        "accuracy: nominal; a bound in place of infinity. Its interval follows from Clopper and "

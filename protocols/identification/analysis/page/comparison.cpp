@@ -153,8 +153,8 @@ Table class_table(const StudyReport& report, const MethodPair& pair, std::size_t
   if (std::any_of(pair.classes.begin(), pair.classes.end(),
                   [](const ClassComparison& one) { return has_no_width(one.paired); })) {
     table.notes.push_back(
-        {"* Every participant has the same difference, so that the interval has no width: it says "
-         "nothing of how sure the figure is."});
+        {"* Every participant has the same difference, so that the interval has no width: it does "
+         "not show how certain the number is."});
   }
   return table;
 }

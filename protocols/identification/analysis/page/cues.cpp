@@ -42,7 +42,7 @@ Table cue_table(const StudyReport& report, const MethodCues& method, std::size_t
                         mean_range(method.human_mean), "", "", "", ""});
   for (const ObserverFigures& one : method.observers) table.rows.push_back(observer_row(one));
   table.notes = {
-      {fmt::format("{} of {}; observers judge each trial by the others' and know nothing of "
+      {fmt::format("{} of {}; observers judge each trial by the other trials, and do not know the "
                    "answers. Accuracy: mean over participants with Student's t interval.",
                    counted(method.trials, "trial"),
                    counted(static_cast<std::int64_t>(method.participants.size()), "participant")),
@@ -91,19 +91,22 @@ constexpr std::size_t kFewestToTell = 6;
 std::string verdict_of(const MethodCues& method, const CueMatch& match) {
   const std::size_t participants = method.participants.size();
   if (participants < kFewestToTell) {
-    return fmt::format("with {} it is not told whether the two differ",
+    return fmt::format("with {} it cannot be decided whether the two differ",
                        counted(static_cast<std::int64_t>(participants), "participant"));
   }
   if (!match.difference.interval) {
-    return "without an interval it is not told whether the two differ";
+    return "without an interval it cannot be decided whether the two differ";
   }
   return "95% interval " + plain_range(match.difference.interval, 3) +
          (match.told_apart ? ", so the two are told apart"
-                           : ", which holds 0, so the two are not told apart");
+                           : ", which contains 0, so the two are not told apart");
 }
 
 Cited match_of(const MethodCues& method) {
-  if (!method.match) return {method.method + ": no trial tells which observer confuses alike."};
+  if (!method.match)
+    return {method.method +
+            ": no trial shows which observer's confusions are "
+            "most like the participants'."};
   const CueMatch& match = *method.match;
   return {fmt::format("{}: once all are as uncertain as participants, their confusions are most "
                       "like those of the observer of {} ({} bit less matched divergence than {}; "
@@ -132,7 +135,7 @@ Section cues_section(const StudyReport& report) {
   Section section{"cues", "Which cue was it?", {}};
   if (!report.cues) {
     section.blocks.emplace_back(
-        Cited{"Not looked at: ideal observers read every trace of the study. Ask for it with "
+        Cited{"Not examined: ideal observers read every trace of the study. Ask for it with "
               "touchtrial report DB --out DIR --cues yes.",
               {}});
     return section;

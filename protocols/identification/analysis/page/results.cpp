@@ -38,8 +38,8 @@ std::string headline_of(const StudyReport& report, const MethodReport& method) {
   const std::string who = counted(method.mean.participants, "participant");
   if (method.mean.participants < 2) {
     return fmt::format(
-               "{}: {} was right in {} of trials ({} of {}). Of one participant there is "
-               "no interval over participants.",
+               "{}: {} was right in {} of trials ({} of {}). With one participant there is no "
+               "interval over participants.",
                method.method, who, share_figure(method.mean.mean), method.overall.correct,
                method.overall.n) +
            chance_phrase(method);
@@ -149,7 +149,7 @@ Table breakdown_table(const StudyReport& report, std::size_t index, const Breakd
 }  // namespace
 
 Section order_section(const StudyReport& report) {
-  Section section{"order", "Order and carry-over", {}};
+  Section section{"order", "Order and carry-over", {}, true};
   for (std::size_t i = 0; i < report.methods.size(); ++i) {
     if (report.methods[i].breakdowns.empty()) continue;
     add_method_heading(report, i, section);
@@ -227,7 +227,7 @@ const char* words_of(TrialSubset subset) {
 
 Table robustness_table(const StudyReport& report, std::size_t index) {
   Table table{"with-and-without-" + method_slug(report, index),
-              method_prefix(report, index) + "the headline with and without what could be left out",
+              method_prefix(report, index) + "the headline with other choices of trials",
               {{"trials", Align::left},
                {"n"},
                {"right"},
@@ -256,8 +256,9 @@ Section robustness_section(const StudyReport& report) {
     section.blocks.emplace_back(*servo);
   } else {
     section.blocks.emplace_back(
-        Cited{"There is no table and no figure of the servo: no trial ran in real time. In virtual "
-              "time every tick is on time by construction, and says nothing of a device.",
+        Cited{"There is no table and no figure of the servo: no trial ran in real time. In "
+              "virtual time every tick is on time by construction, and says nothing about a "
+              "device.",
               {}});
   }
   for (std::size_t i = 0; i < report.methods.size(); ++i) {
@@ -268,28 +269,28 @@ Section robustness_section(const StudyReport& report) {
 }
 
 Section methods_section(const StudyReport& /*report*/) {
-  Section section{"methods", "How these figures were made", {}};
+  Section section{"methods", "How these numbers were computed", {}, true};
   section.blocks.emplace_back(Cited{
-      "Every figure is made by the program named above from the database named above; "
-      "results.json, beside this page, holds the same figures with all their digits. Under each "
-      "table stands what its figures are and where the method comes from. Intervals hold 95% "
+      "Every number is computed by the program named above from the database named above; "
+      "results.json, beside this page, holds the same numbers with all their digits. A note under "
+      "each table says what its numbers are and where the method comes from. Intervals hold 95% "
       "nominally. Resampling draws from a random stream of fixed seed, so that the same database "
-      "gives the same figures on every machine.",
+      "gives the same numbers on every machine.",
       {}});
   section.blocks.emplace_back(Definitions{
       {{"unit of analysis",
-        "The participant. Trials pooled over participants are shown for looking at; intervals and "
-        "tests that take them as independent are marked."},
+        "The participant. Trials pooled over participants are shown for information; intervals "
+        "and tests that treat them as independent are marked."},
        {"missing responses",
         "Wrong in every accuracy; left out of information transfer and of the choice model. The "
-        "tables with and without show what depends on it."},
+        "tables with and without them show what depends on this."},
        {"right or wrong",
-        "An answer is right if its picture is of the class that was presented, whichever exemplar "
-        "of it."},
+        "An answer is right if its picture belongs to the class that was presented, whatever the "
+        "exemplar."},
        {"blinding",
         "What was presented was sealed before trial 1 and opened by a recorded event; touchtrial "
-        "verify DB holds every event, the seal and the schedules against each other, and the head "
-        "of the file's chain named above tells whether this report is of the same file."}}});
+        "verify DB checks every event, the seal and the schedules against each other, and the "
+        "head of the file's chain named above shows whether this report is of the same file."}}});
   return section;
 }
 

@@ -82,9 +82,8 @@ class FalconEmulator {
   [[nodiscard]] Bytes image() const;    ///< of the last load
   /// Every control request that was not stalled, in order.
   [[nodiscard]] std::vector<ControlRequest> requests() const;
-  /// \return what a real device would suffer from or silently misread, one line each; empty at the
-  /// end
-  ///   of a test of a correct driver
+  /// \return what would damage a real device, or what it would silently misread, one line each;
+  ///   empty at the end of a test of a correct driver
   [[nodiscard]] std::vector<std::string> complaints() const;
   ///@}
 

@@ -1,4 +1,4 @@
-/// \file The simplest host of an emulated Falcon: no USB, one thread, one reply a command.
+/// \file The simplest host of an emulated Falcon: no USB, one thread, one reply per command.
 #pragma once
 
 #include "device/falcon/emulator/falcon_emulator.hpp"

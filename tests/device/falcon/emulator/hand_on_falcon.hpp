@@ -10,10 +10,11 @@
 namespace touchtrial::device::falcon {
 
 /// Gives the emulator its hand: `emulator.set_hand([&](Vec3 force_n) { return hand.tick(force_n);
-/// })`. Every tick is a millisecond, as the simulated hand's own. Positions and forces of the
-/// emulator are in the device frame, those of the simulated hand in the plane's.
+/// })`. Every tick is a millisecond, like a tick of the simulated hand. Positions and forces of the
+/// emulator are in the device frame, those of the simulated hand in the plane's frame.
 ///
-/// Threads: `tick` on the emulator's, all other functions on any. One mutex guards all.
+/// Threads: the emulator's thread calls `tick`; any thread may call the other functions. One mutex
+/// guards all.
 class HandOnFalcon {
  public:
   /// \param rest_mm  where the grip waits between explorations, device frame

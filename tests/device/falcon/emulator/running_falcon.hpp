@@ -28,7 +28,8 @@ class RunningFalcon {
   /// Asks the hand for its first position.
   explicit RunningFalcon(HandModel hand, bool homed);
 
-  /// Bytes from the host. \return a reply for every command among them
+  /// Receives bytes from the host.
+  /// \return a reply for every command among them
   [[nodiscard]] std::vector<Packet> receive(std::span<const std::uint8_t> bytes);
   /// Discards an incomplete command.
   void purge() { received_.clear(); }
@@ -51,7 +52,7 @@ class RunningFalcon {
   [[nodiscard]] const std::array<std::int16_t, 3>& motors() const { return motors_; }
   [[nodiscard]] unsigned leds() const { return leds_; }
   [[nodiscard]] bool all_homed() const { return homed_[0] && homed_[1] && homed_[2]; }
-  /// \return what a real device would suffer from or silently misread, one line each
+  /// \return what would damage a real device, or what it would silently misread, one line each
   [[nodiscard]] const std::vector<std::string>& complaints() const { return complaints_; }
   ///@}
 

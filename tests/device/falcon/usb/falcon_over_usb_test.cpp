@@ -113,7 +113,7 @@ TEST_CASE("through libusb buttons arrive and damage is survived") {
   CHECK(norm(sample.position_mm) < 0.06);
 }
 
-TEST_CASE("in real time exchanges go on by themselves") {
+TEST_CASE("in real time exchanges continue by themselves") {
   PluggedFalcon falcon;
   FalconDevice device(open_usb_falcon(""), {});
   device::DeviceSample sample;

@@ -15,7 +15,7 @@ namespace touchtrial::testing {
 
 struct BusDevice;
 
-/// A device that may be plugged into the bus. Any thread.
+/// A device that may be plugged into the bus. Any thread may use it.
 class ShimmedUsbDevice {
  public:
   /// Plugs it in.

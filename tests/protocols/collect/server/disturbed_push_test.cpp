@@ -29,17 +29,17 @@ PushOptions without_waiting() {
   return {.wait = [](std::chrono::milliseconds) {}};
 }
 
-/// What an undisturbed push of the same file leaves on a server.
+/// The content of a server after an undisturbed push of the same file.
 std::string undisturbed(const StudyStore& store) {
   const ServerFixture other;
   other.push(store);
   return other.counts();
 }
 
-/// Something that takes connections under a server's name and is none.
+/// Accepts connections like a server, but is none.
 class FalseServer {
  public:
-  /// \param answer  to whoever connects; empty: says nothing
+  /// \param answer  sent to every client; empty: nothing is sent
   explicit FalseServer(const std::string& answer) : answer_(answer) {
     sockaddr_un address{};
     address.sun_family = AF_UNIX;

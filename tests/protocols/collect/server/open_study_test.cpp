@@ -1,4 +1,4 @@
-// A study on a server, read as one.
+// Reading the study that several stations pushed to a server.
 #include "protocols/collect/collect.hpp"
 #include "protocols/collect/server/server_fixture.hpp"
 #include "protocols/store/damage.hpp"
@@ -39,7 +39,7 @@ struct CollectedStudy {
   StoredFixture second;
 };
 
-/// The line with which all of a study on a server is refused after something was done to it.
+/// The message with which a study on a server is refused after SQL changed it.
 std::string refusal_after(const std::string& sql) {
   CollectedStudy study;
   study.there.tamper(sql);

@@ -1,5 +1,5 @@
-// What stands against a push: another study, a place that is taken, tables that are not ours, a
-// chain that went on by itself, no rights.
+// Reasons to refuse a push: another study, a participant or number that is taken, foreign tables, a
+// chain that was continued separately, missing rights.
 #include "protocols/collect/server/server_fixture.hpp"
 #include "protocols/collect/server_schema.hpp"
 #include "protocols/collect/stations.hpp"
@@ -18,7 +18,7 @@ std::string push_refusal(const ServerFixture& there, const StudyStore& store,
   return refusal_of([&] { there.push(store, options); });
 }
 
-/// Nothing of the file's came to the server.
+/// Checks that no part of the file reached the server.
 void check_untouched(const ServerFixture& there, const std::string& counts_before) {
   CHECK(there.counts() == counts_before);
 }
@@ -150,14 +150,14 @@ TEST_CASE("a newer schema is refused untouched, an older one brought forward") {
   const std::array steps = {ServerMigration{add_another_table}};
   ServerConnection server(there.address());
   bring_forward(server, steps);
-  CHECK(there.first("SELECT version FROM touchtrial_schema") == "4");
+  CHECK(there.first("SELECT version FROM touchtrial_schema") == "5");
   CHECK(there.first("SELECT count(*) FROM information_schema.columns WHERE column_name = 'room'") ==
         "1");
   bring_forward(server, steps);
   add(*study.store, 2);
   const std::string counts = there.counts();
   CHECK_THAT(push_refusal(there, *study.store),
-             holds_text("newer Touchtrial (schema 4, this one knows 3)"));
+             holds_text("newer Touchtrial (schema 5, this one knows 4)"));
   CHECK_THAT(push_refusal(there, *study.store, {.dry_run = true}), holds_text("newer Touchtrial"));
   check_untouched(there, counts);
 }
@@ -170,7 +170,7 @@ TEST_CASE("an unknown older schema is refused untouched") {
   add(*study.store, 2);
   const std::string counts = there.counts();
   CHECK_THAT(push_refusal(there, *study.store),
-             holds_text("older Touchtrial (schema 2, the oldest that this one knows is 3); use"));
+             holds_text("older Touchtrial (schema 2, the oldest that this one knows is 4); use"));
   CHECK_THAT(refusal_of([&] { static_cast<void>(stations_of_server(there.address())); }),
              holds_text("older Touchtrial (schema 2"));
   check_untouched(there, counts);
@@ -184,7 +184,7 @@ TEST_CASE("a step that fails leaves the schema as it was") {
                             ServerMigration{[](pqxx::work& work) { work.exec("NONSENSE"); }}};
   ServerConnection server(there.address());
   CHECK_THAT(refusal_of([&] { bring_forward(server, steps); }), holds_text("syntax error"));
-  CHECK(there.first("SELECT version FROM touchtrial_schema") == "3");
+  CHECK(there.first("SELECT version FROM touchtrial_schema") == "4");
   CHECK(there.first("SELECT count(*) FROM information_schema.columns WHERE column_name = 'room'") ==
         "0");
 }
@@ -314,7 +314,7 @@ TEST_CASE("an older copy does not bring back the key of a participant who withdr
     store.withdraw(1, kUtc, "asked");
     there.push(store);
   }
-  // Not even where the mark in the derived table was taken back.
+  // Not even if the mark in the derived table was removed.
   there.ask("UPDATE sessions SET withdrawn = 0");
   const StudyStore older = StudyStore::open(copy, StudyStore::Access::read_only);
   const PushReport report = there.push(older);

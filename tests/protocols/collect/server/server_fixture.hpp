@@ -107,11 +107,11 @@ struct ServerFixture {
   }
   std::vector<std::string> ask(const std::string& sql) const { return server.ask(database, sql); }
   [[nodiscard]] std::string first(const std::string& sql) const { return ask(sql).at(0); }
-  /// Behind the back of the triggers that protect events and traces.
+  /// Executes SQL without the triggers that protect events and traces.
   void tamper(const std::string& sql) const {
     ask("SET session_replication_role = replica; " + sql);
   }
-  /// How many rows every table holds, in the order of their names.
+  /// The number of rows of every table, in the order of their names.
   [[nodiscard]] std::string counts() const {
     std::string text;
     for (const char* const table :

@@ -1,4 +1,4 @@
-// What the server gives back of the stations.
+// Reading the stations' data back from the server.
 #include "protocols/collect/server/server_fixture.hpp"
 #include "protocols/collect/stations.hpp"
 #include "protocols/store/damage.hpp"

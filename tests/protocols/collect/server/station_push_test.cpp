@@ -138,7 +138,7 @@ TEST_CASE("a file without a session only makes the tables") {
   StoredFixture study;
   CHECK(there.push(*study.store).station == 0);
   CHECK(there.first("SELECT count(*) FROM stations") == "0");
-  CHECK(there.first("SELECT version FROM touchtrial_schema") == "3");
+  CHECK(there.first("SELECT version FROM touchtrial_schema") == "4");
 }
 
 TEST_CASE("a dry run says what would be pushed and changes nothing") {
@@ -159,11 +159,13 @@ TEST_CASE("a dry run says what would be pushed and changes nothing") {
 TEST_CASE("with the study's key the sealed ends of sessions are opened on arrival") {
   const ServerFixture there;
   StoredFixture study(2);
-  CHECK_THAT(
-      refusal_of([&] { there.push(*study.store, {.master = digest_of("another study's key")}); }),
-      holds_text("session 1 did not arrive whole: its key does not open"));
+  CHECK_THAT(refusal_of([&] {
+               there.push(*study.store,
+                          {.investigator = box_keys(digest_of("another study's key"))});
+             }),
+             holds_text("session 1 did not arrive whole: its key does not open"));
   CHECK(there.first("SELECT count(*) FROM sessions") == "0");
-  CHECK(there.push(*study.store, {.master = study_master()}).pushed.size() == 2);
+  CHECK(there.push(*study.store, {.investigator = box_keys(study_master())}).pushed.size() == 2);
 }
 
 TEST_CASE("progress counts the sessions that are to be pushed") {

@@ -53,10 +53,11 @@ struct Laboratory {
   session::SessionTally run() {
     while (station.make_ready() != session::SupplyState::ready) {
     }
-    const std::unique_ptr<store::EventSink> sink =
-        store.begin_session(1, store::wrap_participant_key(study.key().master, 1, participant_key),
-                            [] { return kUtc; });
-    const design::Schedule schedule = design::make_schedule(study.key().study, 1);
+    const std::unique_ptr<store::EventSink> sink = store.begin_session(
+        1, store::wrap_participant_key(study.key().investigator_box, 1, participant_key),
+        [] { return kUtc; });
+    const design::Schedule schedule =
+        design::make_schedule(study.key().study, study.key().draw_of(1, design::Draws::rehearsal));
     session::Session session(schedule, study.key().study.trials,
                              store::SessionRecorder(1, participant_key, *sink));
     store::SessionOpening opening;
@@ -138,7 +139,7 @@ TEST_CASE("a whole session on the emulated Falcon loses no response, though it i
   CHECK(tally.presentations == 26);
   check_answers(lab);
 
-  // The trial is marked and comes again at the end, under its number.
+  // The trial is marked, and is repeated at the end under its number.
   const std::vector<store::Event> interrupted = lab.all(store::EventKind::interrupted);
   REQUIRE(interrupted.size() == 1);
   const store::TrialBody body = store::trial_from_json(interrupted[0].body);
@@ -147,14 +148,14 @@ TEST_CASE("a whole session on the emulated Falcon loses no response, though it i
   CHECK(store::trial_from_json(lab.all(store::EventKind::presented).back().body).trial == kUnlucky);
   CHECK(lab.all(store::EventKind::paused).size() == 1);
 
-  // The fault and the seconds before it, for who has the key.
+  // The fault and the seconds before it, which only the key's holder can read.
   const store::InterruptionDetail detail =
       store::interruption_from_json(analysis::opened_part(interrupted[0], lab.participant_key));
   CHECK(detail.device_fault == "link_lost");
   CHECK(detail.ticks > 100);
   CHECK(std::ranges::count(detail.flight, '\n') == detail.ticks + 1);
 
-  // No force without consent; none is left.
+  // There was no force without consent, and none is left.
   CHECK(lab.experimenter.strongest_n == 0.0);
   CHECK(lab.experimenter.consents == 2);
   CHECK(norm(lab.falcon.emulator.force_n()) == 0.0);

@@ -56,8 +56,8 @@ class SteppedFalcon final : public device::HapticDevice {
   std::function<void()> before_read_;
 };
 
-/// Does what the program says is missing: plugs the Falcon in, homes its grip, and consents. Notes
-/// the force on the grip whenever asked.
+/// Does what the program asks for: plugs the Falcon in, homes its grip, and consents. Records the
+/// force on the grip at every call.
 class Experimenter final : public session::Attendant {
  public:
   Experimenter(EmulatedFalcon& falcon, SteppedFalcon*& device) : falcon_(falcon), device_(device) {}
@@ -65,14 +65,14 @@ class Experimenter final : public session::Attendant {
 
   std::vector<std::string> needs;
   int consents = 0;
-  double strongest_n = 0.0;  ///< while force was not yet consented to
+  double strongest_n = 0.0;  ///< before consent to force
 
  private:
   EmulatedFalcon& falcon_;
   SteppedFalcon*& device_;
 };
 
-/// Somebody who knows the textures, feels them through the Falcon, and answers.
+/// A participant who knows the textures, feels them through the Falcon, and answers.
 class PersonAtFalcon final : public simulation::PromptParticipant {
  public:
   PersonAtFalcon(simulation::SimulatedParticipant& mind, EmulatedFalcon& falcon,

@@ -1,0 +1,205 @@
+#include "analysis/exports/study_tables.hpp"
+
+#include "analysis/session_rules.hpp"
+
+#include <map>
+
+namespace touchtrial::analysis {
+namespace {
+
+struct RecordColumn {
+  const char* name;
+  DataCell (*value)(const SessionRecord&);
+  bool after_unblinding = false;  ///< the column exists only after unblinding
+};
+
+template <int PracticeRecord::*kNumber>
+DataCell practised(const SessionRecord& record) {
+  if (!record.practice) return std::monostate{};
+  return std::int64_t{(*record.practice).*kNumber};
+}
+
+template <std::string store::StationRecord::*kText>
+DataCell station_text(const SessionRecord& record) {
+  if (!record.station) return std::monostate{};
+  return (*record.station).*kText;
+}
+
+template <double store::StationRecord::*kNumber>
+DataCell station_number(const SessionRecord& record) {
+  if (!record.station) return std::monostate{};
+  return (*record.station).*kNumber;
+}
+
+/// How a session was collected. Deviations have a table of their own, because a session may have
+/// several.
+constexpr RecordColumn kRecordColumns[] = {
+    {"practice_rounds", practised<&PracticeRecord::rounds>},
+    {"practice_presentations", practised<&PracticeRecord::presentations>},
+    {"practice_correct", practised<&PracticeRecord::correct>, true},
+    {"practice_passed",
+     [](const SessionRecord& record) -> DataCell {
+       if (!record.practice) return std::monostate{};
+       return flag(record.practice->passed);
+     }},
+    {"resumed",
+     [](const SessionRecord& record) -> DataCell { return std::int64_t{record.resumed}; }},
+    {"stop_reason", [](const SessionRecord& record) -> DataCell { return record.stop_reason; }},
+    {"exclusion_reason",
+     [](const SessionRecord& record) -> DataCell { return record.exclusion_reason; }},
+    {"replacement_reason",
+     [](const SessionRecord& record) -> DataCell { return record.replacement_reason; }},
+    {"device_serial", [](const SessionRecord& record) -> DataCell { return record.device_serial; }},
+    {"device_model", station_text<&store::StationRecord::model>},
+    {"device_firmware", station_text<&store::StationRecord::firmware>},
+    {"device_max_force_n", station_number<&store::StationRecord::max_force_n>},
+    {"certificate", station_text<&store::StationRecord::calibration>},
+    {"servo_hz", station_number<&store::StationRecord::rate_hz>},
+    {"scheduling", station_text<&store::StationRecord::scheduling>},
+    {"visual",
+     [](const SessionRecord& record) -> DataCell {
+       if (!record.station) return std::monostate{};
+       return flag(record.station->visual);
+     }},
+};
+
+void add_record(std::vector<DataCell>& row, const SessionRecord& record, bool unblinded) {
+  for (const RecordColumn& column : kRecordColumns) {
+    if (column.after_unblinding && !unblinded) continue;
+    if (record.row.withdrawn) {
+      row.emplace_back(std::monostate{});
+    } else {
+      row.push_back(column.value(record));
+    }
+  }
+}
+
+std::vector<DataCell> session_cells(const store::SessionRow& row, const store::StudyStore& store,
+                                    const store::StudyState& state) {
+  const bool shown = !state.unblinded || state.shows(row.session);
+  return {row.participant,
+          std::int64_t{row.session},
+          std::int64_t{row.enrolment},
+          std::string(text_of(row.state)),
+          flag(row.excluded),
+          flag(row.withdrawn),
+          flag(row.pilot),
+          flag(row.simulated),
+          flag(shown && session_counts(row, store.commitment())),
+          row.device,
+          row.replaced_by,
+          flag(shown)};
+}
+
+void add_prescription(DataTable& study, const Prescription& prescription) {
+  const auto add = [&](const char* key, DataCell value) {
+    study.rows.push_back({std::string(key), std::monostate{}, std::move(value)});
+  };
+  add("explore_limit_s", prescription.explore_limit_s);
+  add("on_timeout", prescription.on_timeout);
+  add("order", prescription.order);
+  add("repeats", std::int64_t{prescription.repeats});
+  add("method_orders", std::int64_t{prescription.method_orders});
+  add("sight", prescription.sight);
+  add("masking_wanted", flag(prescription.masking_wanted));
+  add("masking_dbfs", prescription.masking_dbfs);
+}
+
+void add_labels(DataTable& table, const Outcomes& outcomes) {
+  for (std::size_t i = 0; i < outcomes.classes.size(); ++i) {
+    table.rows.push_back({std::string("class"), std::monostate{}, outcomes.classes[i]});
+    for (const std::string& exemplar : outcomes.exemplars[i]) {
+      table.rows.push_back({std::string("exemplar"), outcomes.classes[i], exemplar});
+    }
+  }
+  for (const std::string& method : outcomes.methods) {
+    table.rows.push_back({std::string("method"), std::monostate{}, method});
+  }
+}
+
+}  // namespace
+
+DataTable study_table(const store::StudyStore& store, const std::optional<Outcomes>& outcomes,
+                      const Collection& collection) {
+  const store::StudyCommitment& commitment = store.commitment();
+  const store::StudyState state = store.state();
+  DataTable table{{"key", "of", "value"}, {}};
+  const auto add = [&](const char* key, DataCell value) {
+    table.rows.push_back({std::string(key), std::monostate{}, std::move(value)});
+  };
+  add("study", commitment.study);
+  add("study_id", commitment.study_id);
+  add("protocol", commitment.protocol);
+  add("simulated", flag(commitment.simulated));
+  add("pilot", flag(commitment.pilot));
+  add("closed", flag(state.closed));
+  add("unblinded", flag(state.unblinded));
+  add("interim", flag(state.interim.has_value()));
+  add("program_version", commitment.program_version);
+  add_prescription(table, collection.prescription);
+  if (!outcomes) return table;
+  add("unblinding_reason", state.unblinding_reason);
+  add("visual", flag(outcomes->visual));
+  add_labels(table, *outcomes);
+  return table;
+}
+
+DataTable participants_table(const store::StudyStore& store, const Collection& collection) {
+  DataTable table{{"participant", "session", "enrolment", "state", "excluded", "withdrawn", "pilot",
+                   "simulated", "counted", "device", "replaced_by", "shown"},
+                  {}};
+  std::map<int, const SessionRecord*> records;
+  for (const SessionRecord& record : collection.sessions) records[record.row.session] = &record;
+  const store::StudyState state = store.state();
+  for (const RecordColumn& column : kRecordColumns) {
+    if (state.unblinded || !column.after_unblinding) table.columns.emplace_back(column.name);
+  }
+  for (const store::SessionRow& row : store.sessions()) {
+    table.rows.push_back(session_cells(row, store, state));
+    add_record(table.rows.back(), *records.at(row.session), state.unblinded);
+  }
+  return table;
+}
+
+DataTable deviations_table(const Collection& collection, bool simulated) {
+  DataTable table{{"participant", "session", "code", "text", "simulated"}, {}};
+  for (const SessionRecord& record : collection.sessions) {
+    for (const auto& [code, text] : record.deviations) {
+      table.rows.push_back(
+          {record.row.participant, std::int64_t{record.row.session}, code, text, flag(simulated)});
+    }
+  }
+  return table;
+}
+
+DataTable servo_table(const Collection& collection, bool simulated) {
+  DataTable table{
+      {"session", "trial", "rate_hz", "lateness_p50_us", "lateness_p99_us", "lateness_p999_us",
+       "lateness_worst_us", "lost", "held", "overruns", "simulated"},
+      {}};
+  for (const auto& [session, trial, health, overruns] : collection.servo_trials) {
+    table.rows.push_back({std::int64_t{session}, std::int64_t{trial}, health.rate_hz,
+                          health.lateness_p50_us, health.lateness_p99_us, health.lateness_p999_us,
+                          health.lateness_worst_us, health.lost, health.held, overruns,
+                          flag(simulated)});
+  }
+  return table;
+}
+
+Collection collection_of(const store::StudyStore& store, const std::optional<Outcomes>& outcomes) {
+  return outcomes ? outcomes->collection : load_collection(store);
+}
+
+const char* text_of(store::SessionState state) {
+  switch (state) {
+    case store::SessionState::completed:
+      return "completed";
+    case store::SessionState::stopped:
+      return "stopped";
+    case store::SessionState::open:
+      break;
+  }
+  return "open";
+}
+
+}  // namespace touchtrial::analysis

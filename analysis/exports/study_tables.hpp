@@ -1,0 +1,39 @@
+/// \file Tables on the study and on how it was collected. Columns: docs/data-dictionary.md,
+/// "Exports".
+#pragma once
+
+#include "analysis/collection.hpp"
+#include "analysis/exports/data_table.hpp"
+#include "analysis/outcomes.hpp"
+
+#include <optional>
+
+namespace touchtrial::analysis {
+
+/// The study as a whole. Each row has a key, the item that it belongs to (the class of an
+/// exemplar), and a value. Classes, exemplars and methods appear in their order, and only with
+/// outcomes.
+[[nodiscard]] DataTable study_table(const store::StudyStore& store,
+                                    const std::optional<Outcomes>& outcomes,
+                                    const Collection& collection);
+
+/// One row for each session; `counted` is 1 if the session's trials enter the report. For
+/// participants who withdrew, the cells about practice, resumptions, reasons and equipment are
+/// empty.
+[[nodiscard]] DataTable participants_table(const store::StudyStore& store,
+                                           const Collection& collection);
+
+/// One row for each deviation from the protocol, ordered by session and then by when it was noted.
+[[nodiscard]] DataTable deviations_table(const Collection& collection, bool simulated);
+
+/// The servo's timing: one row for each trial that ran in real time, none for simulated sessions.
+[[nodiscard]] DataTable servo_table(const Collection& collection, bool simulated);
+
+/// The collection of the outcomes; without outcomes, the collection that the store holds in clear.
+[[nodiscard]] Collection collection_of(const store::StudyStore& store,
+                                       const std::optional<Outcomes>& outcomes);
+
+/// "completed", "stopped" or "open".
+[[nodiscard]] const char* text_of(store::SessionState state);
+
+}  // namespace touchtrial::analysis

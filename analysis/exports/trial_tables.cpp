@@ -1,0 +1,201 @@
+#include "analysis/exports/trial_tables.hpp"
+
+#include <array>
+#include <map>
+
+namespace touchtrial::analysis {
+namespace {
+
+bool has_stimulus(const TrialView& trial) {
+  return trial.outcome->kind != design::PresentationKind::catch_trial;
+}
+
+DataCell response_of(const TrialView& trial) {
+  if (!trial.outcome->response) return std::monostate{};
+  return trial.study->choices[*trial.outcome->response];
+}
+
+/// Empty for a trial that did not end, so that the mean of the column is an accuracy.
+DataCell correctness_of(const TrialView& trial) {
+  if (!has_stimulus(trial)) return std::monostate{};
+  const store::TrialState state = trial.row.state;
+  if (state != store::TrialState::answered && state != store::TrialState::timed_out)
+    return std::monostate{};
+  return flag(trial.outcome->correct());
+}
+
+DataCell method_of(const TrialView& trial) {
+  if (!has_stimulus(trial)) return std::monostate{};
+  return trial.study->methods[trial.outcome->stimulus.method];
+}
+
+DataCell class_of(const TrialView& trial) {
+  if (!has_stimulus(trial)) return std::monostate{};
+  return trial.study->classes[trial.outcome->stimulus.class_index];
+}
+
+DataCell exemplar_of(const TrialView& trial) {
+  if (!has_stimulus(trial)) return std::monostate{};
+  return image_of(*trial.study, *trial.outcome);
+}
+
+DataCell kind_of(const TrialView& trial) {
+  switch (trial.outcome->kind) {
+    case design::PresentationKind::lead_in:
+      return std::string("lead-in");
+    case design::PresentationKind::catch_trial:
+      return std::string("catch");
+    case design::PresentationKind::scored:
+      break;
+  }
+  return std::string("scored");
+}
+
+DataCell state_of(const TrialView& trial) {
+  switch (trial.row.state) {
+    case store::TrialState::answered:
+      return std::string("answered");
+    case store::TrialState::timed_out:
+      return std::string("timed-out");
+    case store::TrialState::interrupted:
+      return std::string("interrupted");
+    case store::TrialState::voided:
+      return std::string("voided");
+    case store::TrialState::presented:
+      break;
+  }
+  return std::string("presented");
+}
+
+template <std::optional<int> store::TrialRow::*kNumber>
+DataCell number_of(const TrialView& trial) {
+  if (!(trial.row.*kNumber)) return std::monostate{};
+  return std::int64_t{*(trial.row.*kNumber)};
+}
+
+template <double store::TrialMeasures::*kMeasure>
+DataCell measured(const TrialView& trial) {
+  if (trial.outcome == nullptr || !trial.outcome->measures) return std::monostate{};
+  return (*trial.outcome->measures).*kMeasure;
+}
+
+DataCell limits_of(const TrialView& trial) {
+  if (!trial.outcome->measures) return std::monostate{};
+  return flag(trial.outcome->measures->within_limits);
+}
+
+DataCell limited_ticks_of(const TrialView& trial) {
+  if (!trial.outcome->measures || !trial.outcome->measures->limited_ticks) return std::monostate{};
+  return *trial.outcome->measures->limited_ticks;
+}
+
+/// The verdict of the validity rule, which judges the trace; missing without a trace. Before
+/// unblinding, the verdict of the part of the rule that is in clear.
+DataCell validity_of(const TrialView& trial) {
+  if (trial.row.samples == 0) return std::monostate{};
+  return flag(trial.outcome != nullptr ? trial.outcome->valid() : trial.row.valid);
+}
+
+constexpr std::array<TrialColumn, 32> kTrialColumns{{
+    {"participant", false, [](const TrialView& t) -> DataCell { return t.participant; }},
+    {"session", false, [](const TrialView& t) -> DataCell { return std::int64_t{t.row.session}; }},
+    {"trial", false, [](const TrialView& t) -> DataCell { return std::int64_t{t.row.trial}; }},
+    {"block", false, [](const TrialView& t) -> DataCell { return std::int64_t{t.row.block}; }},
+    {"method", true, method_of},
+    {"class", true, class_of},
+    {"exemplar", true, exemplar_of},
+    {"response", true, response_of},
+    {"correct", true, correctness_of},
+    {"confidence", false, number_of<&store::TrialRow::confidence>},
+    {"reaction_time_s", false,
+     [](const TrialView& t) { return time_between(t.row.presented_at, t.row.answered_at); }},
+    {"from_contact_s", false,
+     [](const TrialView& t) { return time_between(t.row.contact_at, t.row.answered_at); }},
+    {"contact_s", false, measured<&store::TrialMeasures::contact_s>},
+    {"path_mm", false, measured<&store::TrialMeasures::path_mm>},
+    {"force_rms_n", false, measured<&store::TrialMeasures::force_rms_n>},
+    {"saturated_share", false, measured<&store::TrialMeasures::saturated_share>},
+    {"valid", false, validity_of},
+    {"presented_at_s", false, [](const TrialView& t) -> DataCell { return t.row.presented_at; }},
+    {"simulated", false, [](const TrialView& t) { return flag(t.simulated); }},
+    {"counted", true, [](const TrialView& t) { return flag(t.outcome->counted); }},
+    {"kind", true, kind_of},
+    {"state", false, state_of},
+    {"explorations", false,
+     [](const TrialView& t) -> DataCell { return std::int64_t{t.row.explorations}; }},
+    {"first_contact_s", false,
+     [](const TrialView& t) { return time_between(t.row.presented_at, t.row.contact_at); }},
+    {"position", true, number_of<&store::TrialRow::position>},
+    {"first_position", true, number_of<&store::TrialRow::first_position>},
+    {"valid_in_clear", false, [](const TrialView& t) { return flag(t.row.valid); }},
+    {"within_limits", true, limits_of},
+    {"limited_ticks", true, limited_ticks_of},
+    {"samples", false, [](const TrialView& t) -> DataCell { return t.row.samples; }},
+    {"sampling_hz", false, [](const TrialView& t) -> DataCell { return t.row.rate_hz; }},
+    {"overruns", false, [](const TrialView& t) -> DataCell { return t.row.overruns; }},
+}};
+
+void add_trial(DataTable& table, const TrialView& trial) {
+  std::vector<DataCell>& row = table.rows.emplace_back();
+  row.reserve(table.columns.size());
+  for (const TrialColumn& column : trial_columns()) {
+    if (trial.study != nullptr || !column.after_unblinding) row.push_back(column.value(trial));
+  }
+}
+
+DataTable trials_header(bool unblinded) {
+  DataTable table;
+  for (const TrialColumn& column : trial_columns()) {
+    if (unblinded || !column.after_unblinding) table.columns.emplace_back(column.name);
+  }
+  return table;
+}
+
+DataTable blinded_trials(const store::StudyStore& store) {
+  DataTable table = trials_header(false);
+  std::map<int, store::SessionRow> shown;
+  for (const store::SessionRow& session : store.sessions()) {
+    if (!session.withdrawn) shown[session.session] = session;
+  }
+  for (const store::TrialRow& row : store.trials()) {
+    const auto session = shown.find(row.session);
+    if (session == shown.end()) continue;
+    add_trial(table, {session->second.participant, row, session->second.simulated});
+  }
+  return table;
+}
+
+DataTable trials_that_are(bool scored, const Outcomes& outcomes) {
+  DataTable table = trials_header(true);
+  for (const TrialOutcome& trial : outcomes.trials) {
+    if (trial.scored != scored) continue;
+    add_trial(table, {trial.participant, trial.row, outcomes.simulated, &outcomes, &trial});
+  }
+  return table;
+}
+
+}  // namespace
+
+DataCell time_between(const std::optional<std::chrono::nanoseconds>& from,
+                      const std::optional<std::chrono::nanoseconds>& to) {
+  if (!from || !to) return std::monostate{};
+  return *to - *from;
+}
+
+std::span<const TrialColumn> trial_columns() {
+  return kTrialColumns;
+}
+
+const std::string& image_of(const Outcomes& study, const TrialOutcome& trial) {
+  return study.exemplars[trial.stimulus.class_index][trial.stimulus.exemplar];
+}
+
+DataTable trials_table(const store::StudyStore& store, const std::optional<Outcomes>& outcomes) {
+  return outcomes ? trials_that_are(true, *outcomes) : blinded_trials(store);
+}
+
+DataTable unscored_table(const Outcomes& outcomes) {
+  return trials_that_are(false, outcomes);
+}
+
+}  // namespace touchtrial::analysis

@@ -1,0 +1,52 @@
+/// \file The columns of trials.csv and the tables of trials that exports write. Columns:
+/// docs/data-dictionary.md, "Exports".
+#pragma once
+
+#include "analysis/exports/data_table.hpp"
+#include "analysis/outcomes.hpp"
+
+#include <optional>
+#include <span>
+#include <string>
+
+namespace touchtrial::analysis {
+
+/// The source of a cell. `study` and `outcome` are null before unblinding.
+struct TrialView {
+  const std::string& participant;
+  const store::TrialRow& row;
+  bool simulated = false;
+  const Outcomes* study = nullptr;
+  const TrialOutcome* outcome = nullptr;
+};
+
+struct TrialColumn {
+  const char* name;
+  bool after_unblinding;  ///< the column exists only after unblinding
+  DataCell (*value)(const TrialView&);
+};
+
+/// The columns in the order of trials.csv.
+[[nodiscard]] std::span<const TrialColumn> trial_columns();
+
+/// The time between two moments of a trial; missing unless both occurred.
+[[nodiscard]] DataCell time_between(const std::optional<std::chrono::nanoseconds>& from,
+                                    const std::optional<std::chrono::nanoseconds>& to);
+
+/// The file name of a trial's image, as the study gives it.
+[[nodiscard]] const std::string& image_of(const Outcomes& study, const TrialOutcome& trial);
+
+/// One row for each trial, ordered by session and trial, without participants who withdrew. With
+/// outcomes, the rows are the scored trials, whether or not their session counts
+/// (participants_table tells). Without outcomes, the rows are all presented trials, because the
+/// seal also covers which of them were practice or lead-ins. The table then has no columns about
+/// stimuli and answers, and the columns that could tell stimuli apart by how they felt (contact_s,
+/// path_mm, force_rms_n, saturated_share) are empty.
+[[nodiscard]] DataTable trials_table(const store::StudyStore& store,
+                                     const std::optional<Outcomes>& outcomes);
+
+/// The trials that are not scored: lead-ins and catch trials, with the columns of trials_table.
+/// They show what came before each scored trial. A catch trial has neither class nor method.
+[[nodiscard]] DataTable unscored_table(const Outcomes& outcomes);
+
+}  // namespace touchtrial::analysis

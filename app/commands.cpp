@@ -1,0 +1,94 @@
+#include "app/commands.hpp"
+
+#include "app/console.hpp"
+#include "core/text.hpp"
+
+#include <algorithm>
+#include <thread>
+
+namespace touchtrial::app {
+namespace {
+
+/// \param unwanted  text that a value must not contain
+CLI::Validator refusing(const std::string& unwanted, const std::string& message) {
+  return {[=](const std::string& text) {
+            return text.find(unwanted) == std::string::npos ? std::string() : message;
+          },
+          ""};
+}
+
+}  // namespace
+
+void add_study_argument(CLI::App& command, std::filesystem::path& study) {
+  command.add_option("STUDY", study, "Study file")->required();
+}
+
+CLI::Option* add_database_argument(CLI::App& command, std::filesystem::path& database,
+                                   const std::string& meaning) {
+  return command.add_option("DB", database, meaning)->required();
+}
+
+void add_study_place_argument(CLI::App& command, std::filesystem::path& place) {
+  add_database_argument(command, place, "Database of the study, or its postgresql:// address")
+      ->check(refusing("password=",
+                       "a password does not belong on the command line; write "
+                       "postgresql://USER@HOST/DATABASE, and put the password into ~/.pgpass"));
+}
+
+CLI::Option* add_key_option(CLI::App& command, std::filesystem::path& key) {
+  return command.add_option("--key", key, "Key of the study (default: DB.key)");
+}
+
+void add_pack_option(CLI::App& command, std::filesystem::path& pack) {
+  command.add_option("--pack", pack, "Folder of the pack (default: <study>.pack)");
+}
+
+void add_subject_option(CLI::App& command, std::filesystem::path& subject) {
+  command.add_option("--subject", subject, "Subject model (default: built in)");
+}
+
+CLI::Validator place_validator() {
+  return refusing("://",
+                  "is an address, not a file; sync writes to a study on a server, and report, "
+                  "export, verify and merge read one");
+}
+
+void add_driver_argument(CLI::App& command, const std::string& name, std::string& driver) {
+  command.add_option(name, driver, "Driver, as touchtrial device list names it")->required();
+}
+
+void add_settings_option(CLI::App& command, std::filesystem::path& settings) {
+  command.add_option("--settings", settings,
+                     "Device settings (default: touchtrial/devices.json in the user's "
+                     "configuration folder, if it exists)");
+}
+
+void add_rate_option(CLI::App& command, double& rate_hz) {
+  command.add_option("--rate", rate_hz, "Servo ticks per second")
+      ->check(CLI::Range(1000.0, 10'000.0))
+      ->capture_default_str();
+}
+
+void add_seed_option(CLI::App& command, std::uint64_t& seed, const std::string& meaning) {
+  const CLI::Validator whole_number(
+      [](const std::string& text) {
+        return number_in<std::uint64_t>(text)
+                   ? std::string()
+                   : text + " is not a whole number from 0 to 18446744073709551615";
+      },
+      "UINT64");
+  command.add_option("--seed", seed, meaning)->check(whole_number)->capture_default_str();
+}
+
+void add_jobs_option(CLI::App& command, int& jobs) {
+  jobs = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  command.add_option("--jobs", jobs, "Threads; results do not depend on their number")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+}
+
+CLI::Option* add_json_flag(CLI::App& command, bool& json) {
+  return command.add_flag("--json", json, "Print one JSON object instead of text");
+}
+
+}  // namespace touchtrial::app

@@ -1,0 +1,364 @@
+#include "app/run/session_bounds.hpp"
+
+#include "app/console.hpp"
+#include "core/cipher.hpp"
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "core/version.hpp"
+#include "device/platform/stop_signals.hpp"
+#include "protocols/design/station.hpp"
+#include "protocols/store/payload_json.hpp"
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <utility>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+namespace touchtrial::app {
+namespace {
+
+using std::chrono::nanoseconds;
+
+int answered_trials(const store::StudyStore& store, int session) {
+  return static_cast<int>(std::ranges::count_if(store.trials(), [&](const store::TrialRow& trial) {
+    return trial.session == session && trial.state == store::TrialState::answered;
+  }));
+}
+
+design::Draws draws_of(const RunOptions& options) {
+  return options.pilot || options.is_simulated() ? design::Draws::rehearsal : design::Draws::people;
+}
+
+/// Includes numbers that are reserved for a replacement: their first session is still stored.
+std::set<int> taken_numbers(const store::StudyStore& store) {
+  std::set<int> taken;
+  for (const store::SessionRow& row : store.sessions()) taken.insert(row.enrolment);
+  return taken;
+}
+
+/// A database with another station's numbers belongs to that station, or the station's file is
+/// wrong.
+void require_own_file(const RunOptions& options, const design::Station& station,
+                      const std::set<int>& taken) {
+  for (const int number : taken) {
+    if (station.place_of(number)) continue;
+    throw UsageError(one_line(options.database.string()) + ": has number " +
+                     std::to_string(number) + ", which is not station " + station.name +
+                     "'s; every station has a database of its own: give another --db, or the right "
+                     "station's file");
+  }
+}
+
+/// The enrolment number of a participant without a session: the one that the options name, or else
+/// the number of the person whom the participant replaces, or else the station's next number.
+/// \throws as next_enrolment_of
+int enrolment_of(const RunOptions& options, const design::Station& station,
+                 const store::StudyStore& store) {
+  if (options.enrolment > 0) return options.enrolment;
+  const int free_or_inherited = store.enrolment_for(options.participant);
+  const std::set<int> taken = taken_numbers(store);
+  require_own_file(options, station, taken);
+  if (taken.contains(free_or_inherited)) return free_or_inherited;
+  return design::next_enrolment_of(station, taken);
+}
+
+/// How blocks of this participant's session are restarted.
+session::BlockDrawing block_restart_of(const design::StationKey& key,
+                                       const design::ScheduleDraw& draw) {
+  return {[&key, draw](int block, int restarts_before, int first_trial) {
+            return design::restarted_block(key.study, draw, block, restarts_before, first_trial);
+          },
+          [&key](const std::vector<design::Presentation>& presentations) {
+            return block_to_json(presentations, key);
+          }};
+}
+
+EnteredSession new_session(const RunOptions& options, const RunStudy& study,
+                           store::StudyStore& store, int enrolment,
+                           const DescribeOpening& describe) {
+  EnteredSession entered;
+  entered.number = store.next_session();
+  entered.enrolment = enrolment;
+  entered.draw = study.key.draw_of(enrolment, draws_of(options));
+  SystemEntropy entropy;
+  const SecretKey key = entropy.secret("participant key");
+  entered.sink = store.begin_session(
+      entered.number, store::wrap_participant_key(study.key.investigator_box, entered.number, key),
+      {}, store::keep_participant_key(study.key.station.secret, entered.number, key));
+  const design::Schedule schedule = design::make_schedule(study.key.study, entered.draw);
+  entered.session = std::make_unique<session::Session>(
+      schedule, study.key.study.trials, store::SessionRecorder(entered.number, key, *entered.sink),
+      block_restart_of(study.key, entered.draw));
+  store::SessionOpening opening;
+  opening.participant = options.participant;
+  opening.enrolment = enrolment;
+  opening.study_id = study.key.study_id;
+  opening.seal = study.key.seal;
+  opening.pilot = options.pilot;
+  describe(opening);
+  entered.session->open({}, opening, design::schedule_to_json(schedule, study.key));
+  return entered;
+}
+
+/// The time since the session's last event.
+nanoseconds away(const store::StudyStore& store, const store::SessionRow& row,
+                 const store::Event& last) {
+  nanoseconds opened{};
+  store.for_each(store::EventKind::session_opened, [&](const store::Event& event) {
+    if (store::session_opened_from_json(event.body).session == row.session) opened = event.at;
+  });
+  return std::max(nanoseconds{}, utc_now() - opened - last.at);
+}
+
+std::string standing(const store::StudyStore& store, const store::SessionRow& row,
+                     nanoseconds away) {
+  const auto minutes = std::chrono::duration_cast<std::chrono::minutes>(away).count();
+  return fmt::format("participant {} has session {}, with {} trials answered, left {} h {} min ago",
+                     row.participant, row.session, answered_trials(store, row.session),
+                     minutes / 60, minutes % 60);
+}
+
+session::Session restored(const RunOptions& options, const RunStudy& study,
+                          const store::StudyStore& store, const store::SessionRow& row,
+                          store::EventSink& sink) {
+  const std::vector<store::Event> events = store.events(row.session);
+  const auto kept = store.kept_key(row.session);
+  const auto key =
+      kept ? store::kept_participant_key(study.key.station.secret, row.own_session, *kept)
+           : std::nullopt;
+  const auto secret = key ? store::unsealed(events.front(), *key) : std::nullopt;
+  if (!secret) {
+    throw StoreError(
+        fmt::format("{}: session {} does not open with this station's file; give the file of the "
+                    "station that began it, with --station-file",
+                    options.database.string(), row.session));
+  }
+  session::Session session(
+      design::schedule_from_json(*secret, study.key), study.key.study.trials,
+      store::SessionRecorder(row.session, *key, sink),
+      block_restart_of(study.key, study.key.draw_of(row.enrolment, draws_of(options))));
+  session.restore(events);
+  return session;
+}
+
+/// In virtual time, no time passes between two runs of the program.
+nanoseconds time_after(const RunOptions& options, nanoseconds last, nanoseconds away) {
+  return options.is_simulated() && !options.real_time ? last : last + away;
+}
+
+EnteredSession resumed_session(const RunOptions& options, const RunStudy& study,
+                               store::StudyStore& store, const store::SessionRow& row,
+                               nanoseconds away) {
+  EnteredSession entered;
+  entered.number = row.session;
+  entered.enrolment = row.enrolment;
+  entered.draw = study.key.draw_of(row.enrolment, draws_of(options));
+  entered.sink = store.continue_session(row.session);
+  entered.session =
+      std::make_unique<session::Session>(restored(options, study, store, row, *entered.sink));
+  session::Session& session = *entered.session;
+  entered.clock = time_after(options, session.last(), away);
+  session.take_up(entered.clock, {.after = "program-ended",
+                                  .away_s = std::chrono::duration<double>(away).count(),
+                                  .program_version = std::string(program_version())});
+  return entered;
+}
+
+void require_young(const RunOptions& options, const RunStudy& study, const std::string& standing,
+                   nanoseconds away) {
+  const double limit_h = study.key.study.trials.resume_within_h;
+  if (std::chrono::duration<double, std::ratio<3600>>(away).count() <= limit_h) return;
+  throw StoreError(
+      fmt::format("{}: {}; the study lets sessions be resumed within {} h; start again with "
+                  "--on-existing restart",
+                  options.database.string(), standing, limit_h));
+}
+
+bool is_visual(const store::SessionOpening& opening) {
+  return opening.station && opening.station->visual;
+}
+
+/// Refuses to resume a session on another kind of device: a session that is seen is not blind.
+void require_same_kind(const RunOptions& options, const store::SessionRow& row,
+                       const store::SessionOpening& then, const store::SessionOpening& now) {
+  if (is_visual(now) == is_visual(then)) return;
+  throw StoreError(fmt::format(
+      "{}: session {} was begun with device '{}', and '{}' is {}: continue with the former",
+      options.database.string(), row.session, then.device, now.device,
+      is_visual(now) ? "seen on a screen and not felt" : "felt and not seen"));
+}
+
+/// Records that the resumed session uses another device or certificate.
+void record_other_station(EnteredSession& entered, const store::SessionOpening& then,
+                          const store::SessionOpening& now) {
+  const auto certificate = [](const store::SessionOpening& opening) {
+    return opening.station ? opening.station->calibration : std::string();
+  };
+  if (then.device != now.device || then.device_serial != now.device_serial) {
+    entered.session->deviate(entered.clock,
+                             {"other-device", one_line(now.device + " " + now.device_serial)});
+  }
+  if (certificate(then) != certificate(now)) {
+    entered.session->deviate(entered.clock, {"other-certificate", certificate(now)});
+  }
+}
+
+/// Ends the session in its present state.
+void give_up(const RunOptions& options, const RunStudy& study, store::StudyStore& store,
+             const store::SessionRow& row) {
+  const std::unique_ptr<store::EventSink> sink = store.continue_session(row.session);
+  session::Session session = restored(options, study, store, row, *sink);
+  if (session.accepts(session::SessionInput::stop)) session.stop(session.last(), "restarted");
+  session.close(session.last());
+}
+
+/// Opens a new session with the enrolment number of the previous one, which has ended.
+EnteredSession begin_anew(const RunOptions& options, const RunStudy& study,
+                          store::StudyStore& store, const store::SessionRow& row,
+                          const DescribeOpening& describe) {
+  store.replace(row.session, row.participant, utc_now(), "restarted");
+  return new_session(options, study, store, row.enrolment, describe);
+}
+
+EnteredSession existing_session(const RunOptions& options, const RunStudy& study,
+                                store::StudyStore& store, const store::SessionRow& row,
+                                const DescribeOpening& describe) {
+  const bool may_be_restarted =
+      options.on_existing == OnExisting::restart && row.state == store::SessionState::stopped;
+  if (may_be_restarted) return begin_anew(options, study, store, row, describe);
+  if (row.state != store::SessionState::open) {
+    throw StoreError(fmt::format(
+        "{}: participant {} already has session {}, which is {}; give another participant id",
+        options.database.string(), row.participant, row.session,
+        row.state == store::SessionState::completed ? "complete" : "stopped"));
+  }
+  const nanoseconds gone = away(store, row, store.last_event(row.session).value());
+  const std::string stands = standing(store, row, gone);
+  if (options.on_existing == OnExisting::refuse) {
+    throw StoreError(fmt::format(
+        "{}: {}; continue with --on-existing resume, or start again with --on-existing restart",
+        options.database.string(), stands));
+  }
+  if (options.on_existing == OnExisting::restart) {
+    give_up(options, study, store, row);
+    return begin_anew(options, study, store, row, describe);
+  }
+  require_young(options, study, stands, gone);
+  store::SessionOpening now;
+  describe(now);
+  const store::SessionOpening then =
+      store::opening_from_json(store.events(row.session).front().body);
+  require_same_kind(options, row, then, now);
+  EnteredSession entered = resumed_session(options, study, store, row, gone);
+  record_other_station(entered, then, now);
+  return entered;
+}
+
+}  // namespace
+
+EnteredSession enter_session(const RunOptions& options, const RunStudy& study,
+                             store::StudyStore& store, const DescribeOpening& describe) {
+  if (const auto row = store.session_of(options.participant)) {
+    return existing_session(options, study, store, *row, describe);
+  }
+  return new_session(options, study, store, enrolment_of(options, study.key.station, store),
+                     describe);
+}
+
+namespace {
+
+constexpr int kShellOffset = 128;
+constexpr std::array kSignals = {SIGINT, SIGTERM, SIGHUP};
+constexpr std::array kNames = {"SIGINT", "SIGTERM", "SIGHUP"};
+
+std::atomic<int> came{0};
+std::array<struct sigaction, kSignals.size()> earlier{};
+
+extern "C" void remember(int signal) {
+  came.store(signal);
+}
+
+}  // namespace
+
+EndingSignals::EndingSignals() {
+  came.store(0);
+  struct sigaction action {};
+  action.sa_handler = remember;
+  // A second signal ends the program at once: whoever sends it does not want to wait.
+  action.sa_flags = SA_RESETHAND | SA_RESTART;
+  sigemptyset(&action.sa_mask);
+  for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &action, &earlier[i]);
+}
+
+EndingSignals::~EndingSignals() {
+  for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &earlier[i], nullptr);
+}
+
+int EndingSignals::which() noexcept {
+  if (device::StopOnSignals::asked()) return device::StopOnSignals::exit_code() - kShellOffset;
+  return came.load();
+}
+
+std::string EndingSignals::message() {
+  if (device::StopOnSignals::asked()) return device::StopOnSignals::message();
+  for (std::size_t i = 0; i < kSignals.size(); ++i) {
+    if (kSignals[i] == came.load()) return std::string("stopped by ") + kNames[i];
+  }
+  return "";
+}
+
+RunExperimenter::RunExperimenter(session::Experimenter& inner, std::function<std::string()> gone,
+                                 std::function<std::optional<session::ExperimenterRequest>()> more)
+    : inner_(inner), gone_(std::move(gone)), more_(std::move(more)) {}
+
+std::optional<session::ExperimenterRequest> RunExperimenter::request() {
+  std::string why = EndingSignals::message();
+  if (why.empty()) why = gone_();
+  if (!why.empty())
+    return session::ExperimenterRequest{session::ExperimenterRequest::Kind::leave, why, ""};
+  if (auto request = more_ ? more_() : std::nullopt) return request;
+  return inner_.request();
+}
+
+void RunExperimenter::acknowledged(int trial) {
+  print("trial " + std::to_string(trial) + " acknowledged\n");
+  inner_.acknowledged(trial);
+}
+
+namespace {
+
+std::string summary(const RunOptions& options, int session, const session::SessionTally& tally,
+                    bool is_complete, const store::StudyStore& store) {
+  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(tally.duration).count();
+  const char* const end = tally.left ? "left open" : is_complete ? "complete" : "stopped";
+  return fmt::format("{}session {} of participant {}: {}, {} trials answered, {} min {} s\n",
+                     options.is_simulated() ? "SIMULATED: " : "", session, options.participant, end,
+                     answered_trials(store, session), seconds / 60, seconds % 60);
+}
+
+}  // namespace
+
+int conclude_session(const RunOptions& options, int session, const session::SessionTally& tally,
+                     const store::StudyStore& store) {
+  const bool is_complete =
+      store.session_of(options.participant)->state == store::SessionState::completed;
+  print(summary(options, session, tally, is_complete, store));
+  if (tally.left) {
+    std::fprintf(stderr,
+                 "touchtrial: %s; the session stays open: go on with the same command and "
+                 "--on-existing resume (participant %s)\n",
+                 one_line(*tally.left).c_str(), options.participant.c_str());
+  }
+  if (EndingSignals::which() != 0) return kShellOffset + EndingSignals::which();
+  return is_complete && !tally.left ? 0 : 1;
+}
+
+}  // namespace touchtrial::app

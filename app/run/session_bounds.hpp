@@ -1,0 +1,94 @@
+/// \file How a session begins (as a new one, or where it was interrupted) and ends: what asks for
+/// its end, and what the program then prints and returns.
+#pragma once
+
+#include "app/run/run_session.hpp"
+#include "app/run/run_study.hpp"
+#include "protocols/design/schedule.hpp"
+#include "protocols/session/experimenter.hpp"
+#include "protocols/session/session.hpp"
+#include "protocols/session/session_runner.hpp"
+#include "protocols/store/study_store.hpp"
+
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial::app {
+
+/// A session that is ready to run, and its sink of events. Must not outlive the store.
+struct EnteredSession {
+  int number = 0;
+  int enrolment = 0;
+  design::ScheduleDraw draw;         ///< what its schedule is drawn from
+  std::chrono::nanoseconds clock{};  ///< present time of the session's clock
+  std::unique_ptr<store::EventSink> sink;
+  std::unique_ptr<session::Session> session;
+};
+
+/// Fills in what a new session's first event says about device and station.
+using DescribeOpening = std::function<void(store::SessionOpening&)>;
+
+/// Opens a new session for the participant, or handles the existing one as `options.on_existing`
+/// says. On return, the session's first or next event is stored.
+/// \throws StoreError if the participant has a session that may not be resumed (with its number,
+/// its
+///   progress and the remedy), or if the database refuses
+/// \throws UsageError if the participant cannot get an enrolment number
+[[nodiscard]] EnteredSession enter_session(const RunOptions& options, const RunStudy& study,
+                                           store::StudyStore& store,
+                                           const DescribeOpening& describe);
+
+/// While an object of this class exists, SIGINT, SIGTERM and SIGHUP are remembered and do not end
+/// the program; a second signal of the same kind does. During explorations, StopOnSignals handles
+/// them first. At most one object may exist.
+class EndingSignals {
+ public:
+  EndingSignals();
+  /// Restores the earlier handlers.
+  ~EndingSignals();
+  EndingSignals(const EndingSignals&) = delete;
+  EndingSignals& operator=(const EndingSignals&) = delete;
+
+  /// May be called from any thread.
+  /// \return the number of the signal that came, also during explorations; 0: none
+  [[nodiscard]] static int which() noexcept;
+  /// \return for instance "stopped by SIGTERM"; empty: none came
+  [[nodiscard]] static std::string message();
+};
+
+/// Passes everything on to the experimenter's terminal or window, prints a line to standard output
+/// for each durable response, and leaves the session when the program is to end.
+class RunExperimenter final : public session::Experimenter {
+ public:
+  /// \param inner  must outlive this object
+  /// \param gone  says why the program is to end, apart from signals; "": it is not to end
+  /// \param more  further requests, such as those of the sound; empty: there are none
+  RunExperimenter(session::Experimenter& inner, std::function<std::string()> gone,
+                  std::function<std::optional<session::ExperimenterRequest>()> more = {});
+
+  void show(const session::SessionStatus& status) override { inner_.show(status); }
+  [[nodiscard]] std::optional<session::ExperimenterRequest> request() override;
+  [[nodiscard]] std::optional<std::vector<session::Tick>> day_sheet(
+      const std::vector<session::DaySheetItem>& items) override {
+    return inner_.day_sheet(items);
+  }
+  void acknowledged(int trial) override;
+
+ private:
+  session::Experimenter& inner_;
+  std::function<std::string()> gone_;
+  std::function<std::optional<session::ExperimenterRequest>()> more_;
+};
+
+/// Prints the session's summary, which says nothing about outcomes, and how to resume the session
+/// if it was left open.
+/// \return the exit code, as run_study_session
+[[nodiscard]] int conclude_session(const RunOptions& options, int session,
+                                   const session::SessionTally& tally,
+                                   const store::StudyStore& store);
+
+}  // namespace touchtrial::app

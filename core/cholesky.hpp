@@ -1,0 +1,46 @@
+/// \file The Cholesky factor of a symmetric matrix, L with L L^T = matrix, and what it solves.
+/// Matrices are n x n, row-major.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <span>
+
+namespace touchtrial {
+
+/// Replaces the lower triangle of a matrix by its factor. The upper triangle stays.
+/// \param least_share  that must be left of a diagonal element, relative to the element
+/// \return whether the matrix is positive definite; if not, the factor means nothing
+inline bool factorise(std::span<double> matrix, std::size_t n, double least_share = 0.0) {
+  bool definite = true;
+  for (std::size_t j = 0; j < n; ++j) {
+    const double whole = matrix[j * n + j];
+    for (std::size_t i = j; i < n; ++i) {
+      double rest = matrix[i * n + j];
+      for (std::size_t k = 0; k < j; ++k) rest -= matrix[i * n + k] * matrix[j * n + k];
+      if (i == j) definite = definite && rest > least_share * whole;
+      matrix[i * n + j] = i == j ? std::sqrt(rest) : rest / matrix[j * n + j];
+    }
+  }
+  return definite;
+}
+
+/// Replaces b by the solution x of L x = b.
+inline void solve_lower(std::span<const double> factor, std::span<double> b) noexcept {
+  const std::size_t n = b.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t k = 0; k < i; ++k) b[i] -= factor[i * n + k] * b[k];
+    b[i] /= factor[i * n + i];
+  }
+}
+
+/// Replaces b by the solution x of L^T x = b.
+inline void solve_upper(std::span<const double> factor, std::span<double> b) noexcept {
+  const std::size_t n = b.size();
+  for (std::size_t i = n; i-- > 0;) {
+    for (std::size_t k = i + 1; k < n; ++k) b[i] -= factor[k * n + i] * b[k];
+    b[i] /= factor[i * n + i];
+  }
+}
+
+}  // namespace touchtrial

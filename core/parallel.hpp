@@ -1,0 +1,15 @@
+/// \file Work on several threads.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace touchtrial {
+
+/// Calls work(i) for i = 0 .. count - 1, in any order. Returns when all calls have returned.
+/// \param jobs  number of threads, no more than there are cores; 1: the caller's alone; 0: one for
+///   each core
+/// \throws what a call throws; others may then be left out
+void in_parallel(int jobs, std::size_t count, const std::function<void(std::size_t)>& work);
+
+}  // namespace touchtrial

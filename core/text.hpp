@@ -1,0 +1,40 @@
+/// \file Numbers in texts and lists of words.
+#pragma once
+
+#include <charconv>
+#include <functional>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+namespace touchtrial {
+
+/// The number that a whole text is, whatever the locale; nothing if it is anything else.
+template <typename Number>
+[[nodiscard]] std::optional<Number> number_in(std::string_view text) {
+  Number number{};
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, number);
+  if (error != std::errc{} || stop != end) return std::nullopt;
+  return number;
+}
+
+/// Words with commas between them, for example "bark, brick and cork".
+/// \param last  stands before the last of several words, for example " and "
+/// \param text_of  gives the text of an element: a function or a member
+template <typename Words, typename TextOf = std::identity>
+[[nodiscard]] std::string listed(const Words& words, std::string_view last = ", ",
+                                 const TextOf& text_of = {}) {
+  std::string text;
+  std::size_t place = 0;
+  for (const auto& word : words) {
+    if (place > 0) text += place + 1 == std::size(words) ? last : ", ";
+    text += std::invoke(text_of, word);
+    ++place;
+  }
+  return text;
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,271 @@
+/// Stations: which numbers they hand out, what their schedules are drawn from, and their files.
+#include "protocols/design/station.hpp"
+
+#include "core/errors.hpp"
+#include "core/files.hpp"
+#include "protocols/design/random_orders.hpp"
+#include "protocols/design/refusal.hpp"
+#include "protocols/design/study_examples.hpp"
+#include "protocols/design/study_key.hpp"
+#include "support/catch.hpp"
+#include "support/temp_folder.hpp"
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <vector>
+
+#include <sys/stat.h>
+
+namespace touchtrial {
+namespace {
+
+using design::Draws;
+using design::Station;
+
+design::Study study_with_methods(int methods) {
+  nlohmann::json study = comparison_of(2);
+  study["methods"] = nlohmann::json::array();
+  for (int i = 0; i < methods; ++i) {
+    study["methods"].push_back(
+        {{"name", "fixed"}, {"label", "m" + std::to_string(i)}, {"order", 0.1 * (i + 1)}});
+  }
+  return parsed(study);
+}
+
+std::vector<Station> stations_with(int participants, int count) {
+  std::vector<std::string> names;
+  for (int i = 1; i <= count; ++i) names.push_back("s" + std::to_string(i));
+  std::vector<Station> stations = design::stations_named(names);
+  design::hand_out_enrolments(stations, participants);
+  return stations;
+}
+
+design::StudyKey divided_key(const design::Study& study, int participants, int count,
+                             std::uint64_t seed = 1) {
+  SeededEntropy entropy(seed);
+  design::StudyKey key = design::make_study_key(study, entropy, false);
+  design::divide(key, stations_with(participants, count));
+  return key;
+}
+
+/// Which station has each number, from 1; every number has one.
+std::vector<std::string> owners(const std::vector<Station>& stations) {
+  std::vector<std::string> owner(static_cast<std::size_t>(design::enrolments_of(stations)));
+  for (const Station& station : stations) {
+    for (const design::EnrolmentRange& range : station.ranges) {
+      for (int number = range.first; number <= range.last; ++number) {
+        std::string& place = owner.at(static_cast<std::size_t>(number - 1));
+        CHECK(place.empty());
+        place = station.name;
+      }
+    }
+  }
+  CHECK(std::ranges::none_of(owner, &std::string::empty));
+  return owner;
+}
+
+void check_even(const std::vector<Station>& stations) {
+  std::vector<int> sizes;
+  for (const Station& station : stations) sizes.push_back(station.size());
+  const auto [least, most] = std::ranges::minmax(sizes);
+  CAPTURE(stations.size(), least, most);
+  CHECK(most - least <= 1);
+}
+
+}  // namespace
+
+TEST_CASE("every number belongs to one station, and each gets as many as can be") {
+  for (int participants = 1; participants <= 60; ++participants) {
+    for (int count = 1; count <= 7; ++count) {
+      const std::vector<Station> stations = stations_with(participants, count);
+      CHECK(owners(stations).size() == static_cast<std::size_t>(participants));
+      check_even(stations);
+    }
+  }
+}
+
+TEST_CASE("numbers that are handed out later leave every other where it was") {
+  std::vector<Station> stations = stations_with(10, 4);
+  const std::vector<std::string> before = owners(stations);
+  design::hand_out_enrolments(stations, 31);
+  const std::vector<std::string> after = owners(stations);
+  REQUIRE(after.size() == 31);
+  CHECK(std::equal(before.begin(), before.end(), after.begin()));
+  check_even(stations);
+  CHECK_THROWS_AS(design::hand_out_enrolments(stations, 30), std::invalid_argument);
+  CHECK(design::station_of(stations, 1)->name == "s1");
+  CHECK(design::station_of(stations, 32) == nullptr);
+}
+
+TEST_CASE("a station takes its smallest number that nobody has") {
+  const std::vector<Station> stations = stations_with(6, 2);
+  CHECK(design::next_enrolment_of(stations[1], {}) == 4);
+  CHECK(design::next_enrolment_of(stations[1], {4, 1}) == 5);
+  CHECK(design::next_enrolment_of(stations[0], {1, 3}) == 2);
+  CHECK_THAT(message_of<StudyError>([&] {
+               return design::next_enrolment_of(stations[0], {1, 2, 3});
+             }),
+             Catch::Contains("all enrolment numbers of station s1 are taken") &&
+                 Catch::Contains("--extend"));
+}
+
+TEST_CASE("names of stations are simple, and each is one station's") {
+  const auto refused = [](const std::vector<std::string>& names) {
+    CHECK_THROWS_AS(design::stations_named(names), UsageError);
+  };
+  refused({});
+  refused({""});
+  refused({"lab/2"});
+  refused({std::string(33, 'a')});
+  refused({"a", "a"});
+  refused(std::vector<std::string>(design::kMostStations + 1, "a"));
+}
+
+TEST_CASE("each station has every order of methods equally often, in blocks that nobody can tell") {
+  for (int methods = 2; methods <= 5; ++methods) {
+    const int rows = methods % 2 == 0 ? methods : 2 * methods;
+    const design::StudyKey key = divided_key(study_with_methods(methods), 12 * rows, 3);
+    std::set<std::vector<int>> blocks;
+    for (const Station& station : key.stations) {
+      int number = station.ranges.front().first;
+      for (int block = 0; block < 4; ++block) {
+        std::vector<int> orders;
+        for (int i = 0; i < rows; ++i) {
+          orders.push_back(key.draw_of(number++, Draws::people).method_order);
+        }
+        blocks.insert(orders);
+        std::ranges::sort(orders);
+        for (int row = 0; row < rows; ++row) CHECK(orders[static_cast<std::size_t>(row)] == row);
+      }
+    }
+    CHECK(blocks.size() > 1);  // 12 blocks in one and the same order: once in 2048 at most
+  }
+}
+
+TEST_CASE("in a study of mixed blocks methods have no order") {
+  nlohmann::json document = comparison_of(2);
+  document["trials"] = {{"blocks", "mixed"}};
+  const design::StudyKey key = divided_key(parsed(document), 6, 2);
+  CHECK(design::method_orders(key.study) == 1);
+  for (int number = 1; number <= 6; ++number) {
+    CHECK(key.draw_of(number, Draws::people).method_order == 0);
+  }
+}
+
+TEST_CASE("a schedule follows from the key's secret, and never from the study's seed") {
+  const design::Study study = parsed(study_of(5));
+  const auto schedule = [&](std::uint64_t secret, Draws draws, int number = 1) {
+    const design::StudyKey key = divided_key(study, 20, 1, secret);
+    return design::make_schedule(study, key.draw_of(number, draws));
+  };
+  CHECK(schedule(1, Draws::people) == schedule(1, Draws::people));
+  CHECK_FALSE(schedule(1, Draws::people) == schedule(2, Draws::people));
+  CHECK_FALSE(schedule(1, Draws::people) == schedule(1, Draws::rehearsal));
+  CHECK_FALSE(schedule(1, Draws::people) == schedule(1, Draws::people, 2));
+  const design::StudyKey simulated = design::simulated_study_key(study);
+  const design::Schedule shown = design::make_schedule(study, simulated.draw_of(1, Draws::people));
+  CHECK_FALSE(shown == schedule(1, Draws::people));
+}
+
+TEST_CASE("a station's file has its own secret alone, and draws as the investigator's key does") {
+  const design::Study study = study_with_methods(2);
+  const design::StudyKey key = divided_key(study, 10, 2);
+  const design::StationKey own = design::station_key(key, "s2");
+  for (int number = 6; number <= 10; ++number) {
+    const design::ScheduleDraw drawn = own.draw_of(number, Draws::people);
+    CHECK(drawn.secret == key.draw_of(number, Draws::people).secret);
+    CHECK(drawn.method_order == key.draw_of(number, Draws::people).method_order);
+  }
+  CHECK_THROWS_AS(own.draw_of(5, Draws::people), UsageError);
+  CHECK_THROWS_AS(key.draw_of(11, Draws::people), UsageError);
+  CHECK(own.station.secret != design::station_key(key, "s1").station.secret);
+  CHECK_THAT(message_of<UsageError>([&] { return design::station_key(key, "s3"); }),
+             Catch::Contains("has no station \"s3\"; it has s1, s2"));
+  const Bytes statement = design::station_statement(key.study_id, "s2", own.signer().public_half());
+  CHECK(is_signed_by(key.investigator_signature, statement, own.certificate));
+  CHECK_FALSE(is_signed_by(
+      key.investigator_signature,
+      design::station_statement(key.study_id, "s1", own.signer().public_half()), own.certificate));
+}
+
+TEST_CASE("key and station file come back as they were written") {
+  const TempFolder folder;
+  const design::Study study =
+      design::parse_study(comparison_of(3, 2).dump(1), folder.path(), "study.json");
+  const design::StudyKey key = divided_key(study, 9, 3);
+  design::save_study_key(folder.path() / "small.key", key);
+  CHECK(design::load_study_key(folder.path() / "small.key").stations == key.stations);
+
+  const design::StationKey own = design::station_key(key, "s3");
+  const auto path = folder.path() / "small.s3.station";
+  design::save_station_key(path, own);
+  struct stat status {};
+  REQUIRE(::stat(path.c_str(), &status) == 0);
+  CHECK((status.st_mode & 0777U) == 0600U);
+  const design::StationKey loaded = design::load_station_key(path);
+  CHECK(loaded.station == own.station);
+  CHECK(loaded.certificate == own.certificate);
+  CHECK(loaded.study_id == key.study_id);
+  CHECK(loaded.seal == key.seal);
+  CHECK(loaded.configuration == key.configuration);
+  CHECK(loaded.catch_code == key.catch_code);
+  CHECK(loaded.investigator_box == key.investigator_box);
+  CHECK(design::are_same(loaded.study, study));
+  REQUIRE(loaded.stimuli.size() == key.stimuli.size());
+  for (const design::KeyedStimulus& stimulus : key.stimuli) {
+    CHECK(loaded.stimulus_of(stimulus.code) == stimulus.stimulus);
+  }
+  const std::string text = text_of(read_file(path));
+  CHECK(text.find(to_hex(key.master)) == std::string::npos);
+  for (const char* other : {"s1", "s2"}) {
+    const SecretKey secret = design::station_key(key, other).station.secret;
+    CHECK(text.find(to_hex(secret)) == std::string::npos);
+  }
+}
+
+TEST_CASE("any altered byte of a station file is found") {
+  const TempFolder folder;
+  const auto path = folder.path() / "small.station";
+  design::save_station_key(path,
+                           design::station_key(divided_key(parsed(minimal_study()), 2, 1), "s1"));
+  const Bytes content = read_file(path);
+  for (std::size_t i = 0; i < content.size(); ++i) {
+    Bytes altered = content;
+    altered[i] = static_cast<std::uint8_t>(altered[i] ^ 1U);
+    replace_file(path, altered, FileMode::owner_only);
+    INFO("byte " << i);
+    CHECK_THROWS_AS(design::load_station_key(path), FileError);
+  }
+}
+
+TEST_CASE(
+    "a station file whose name or numbers were edited is refused, with or without a checksum") {
+  const TempFolder folder;
+  const auto path = folder.path() / "small.station";
+  design::save_station_key(path,
+                           design::station_key(divided_key(parsed(minimal_study()), 2, 1), "s1"));
+  nlohmann::json document = nlohmann::json::parse(text_of(read_file(path)));
+  document["station"] = "s9";
+  document.erase("check");
+  document["check"] = to_hex(sha256(bytes_of(document.dump())));
+  replace_file(path, document.dump(2) + "\n", FileMode::owner_only);
+  CHECK_THAT(message_of<FileError>([&] { return design::load_station_key(path); }),
+             Catch::Contains("altered or damaged"));
+}
+
+TEST_CASE("a file of secrets that others may read is refused") {
+  const TempFolder folder;
+  const design::StudyKey key = divided_key(parsed(minimal_study()), 2, 1);
+  const auto path = folder.path() / "small.key";
+  design::save_study_key(path, key);
+  for (const mode_t mode : {0640U, 0604U, 0620U}) {
+    REQUIRE(::chmod(path.c_str(), mode) == 0);
+    CHECK_THAT(message_of<FileError>([&] { return design::load_study_key(path); }),
+               Catch::Contains("chmod 600"));
+  }
+  REQUIRE(::chmod(path.c_str(), 0400) == 0);
+  CHECK_NOTHROW(design::load_study_key(path));
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,142 @@
+#include "analysis/fake_study.hpp"
+#include "core/random.hpp"
+#include "protocols/identification/analysis/chance.hpp"
+#include "support/catch.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace touchtrial {
+namespace {
+
+/// Whether a participant answers right, or without regard to what was felt.
+enum class Sense { everything, nothing };
+
+design::Study study_with(const std::string& trials) {
+  auto text =
+      nlohmann::json::parse(fake_study_text(design::identification::classification(), "bark"));
+  text["trials"].update(nlohmann::json::parse(trials));
+  return design::parse_study(text.dump(), ".", "fake.json");
+}
+
+void add_session(analysis::Outcomes& outcomes, int session, Sense sense, RandomStream& random) {
+  SeededEntropy entropy(static_cast<std::uint64_t>(session));
+  const design::ScheduleDraw draw{entropy.secret("schedule"), session};
+  for (const design::Presentation& shown :
+       design::make_schedule(outcomes.design, draw).presentations) {
+    analysis::TrialOutcome trial;
+    trial.row.session = session;
+    trial.row.trial = shown.trial;
+    trial.row.block = shown.block;
+    trial.row.state = store::TrialState::answered;
+    trial.stimulus = shown.stimulus;
+    trial.kind = shown.kind;
+    trial.scored = shown.kind == design::PresentationKind::scored;
+    trial.counted = trial.scored;
+    const auto guess = static_cast<int>(random.below(outcomes.classes.size()));
+    trial.response = sense == Sense::everything ? shown.stimulus.class_index : guess;
+    outcomes.trials.push_back(trial);
+  }
+}
+
+analysis::Outcomes outcomes_of(const design::Study& study, Sense sense, int participants,
+                               std::uint64_t index) {
+  analysis::Outcomes outcomes;
+  outcomes.design = study;
+  outcomes.classes = {"bark", "cloth", "straw"};
+  outcomes.methods = {"adaptive"};
+  RandomStream random(3, "chance of study: guesses", index);
+  for (int i = 1; i <= participants; ++i) add_session(outcomes, i, sense, random);
+  return outcomes;
+}
+
+constexpr const char* kRules[] = {R"({"order": "de-bruijn", "repeats": 3})",
+                                  R"({"order": "williams", "repeats": 4})",
+                                  R"({"max_run": 1, "repeats": 4})"};
+
+}  // namespace
+
+TEST_CASE("The order of a study says how chance is dealt") {
+  CHECK(analysis::identification::dealt_order(study_with("{}")) == analysis::DealtOrder::permuted);
+  CHECK(analysis::identification::dealt_order(study_with(R"({"order": "uniform"})")) ==
+        analysis::DealtOrder::independent);
+  for (const char* rule : kRules)
+    CHECK(analysis::identification::dealt_order(study_with(rule)) == analysis::DealtOrder::redrawn);
+}
+
+TEST_CASE("Guesses are above chance no more often than p says, whatever the order") {
+  constexpr int kStudies = 30;
+  for (const char* rule : kRules) {
+    CAPTURE(rule);
+    const design::Study study = study_with(rule);
+    int significant = 0;
+    double sum = 0.0;
+    for (int i = 0; i < kStudies; ++i) {
+      const auto test =
+          analysis::identification::chance_of(outcomes_of(study, Sense::nothing, 2, i), 0);
+      REQUIRE(test);
+      CHECK_FALSE(test->exact);
+      significant += test->p <= 0.05 ? 1 : 0;
+      sum += test->p;
+    }
+    CHECK(significant <= 5);  // binomial(30, 0.05): more in 0.3 % of runs
+    CHECK(sum / kStudies > 0.4);
+    CHECK(sum / kStudies < 0.7);  // p of counts are above 0.5 on average
+  }
+}
+
+TEST_CASE("Answers that are all right are as far above chance as deals can show") {
+  for (const char* rule : kRules) {
+    CAPTURE(rule);
+    const analysis::Outcomes outcomes = outcomes_of(study_with(rule), Sense::everything, 4, 0);
+    const auto test = analysis::identification::chance_of(outcomes, 0);
+    REQUIRE(test);
+    CHECK(test->correct == test->trials);
+    CHECK(test->p == Approx(1.0 / (test->deals + 1.0)));
+    CHECK(test->expected == Approx(test->trials / 3.0).epsilon(0.05));
+  }
+}
+
+TEST_CASE("Trials that do not count leave the places of the others as they are") {
+  analysis::Outcomes outcomes = outcomes_of(study_with(kRules[0]), Sense::everything, 3, 0);
+  const int all = analysis::identification::chance_of(outcomes, 0)->trials;
+  for (analysis::TrialOutcome& trial : outcomes.trials) {
+    if (trial.scored && trial.row.trial % 3 == 0) trial.counted = false;
+  }
+  const auto test = analysis::identification::chance_of(outcomes, 0);
+  REQUIRE(test);
+  CHECK(test->trials < all);
+  CHECK(test->correct == test->trials);
+  CHECK_FALSE(test->exact);
+}
+
+TEST_CASE("A restarted block is dealt as one, without its void presentations") {
+  analysis::Outcomes outcomes = outcomes_of(study_with(kRules[1]), Sense::everything, 2, 0);
+  const int all = analysis::identification::chance_of(outcomes, 0)->trials;
+  std::vector<analysis::TrialOutcome> again = outcomes.trials;
+  for (analysis::TrialOutcome& trial : again) {
+    trial.row.state = store::TrialState::voided;
+    trial.counted = false;
+  }
+  outcomes.trials.insert(outcomes.trials.begin(), again.begin(), again.end());
+  const auto test = analysis::identification::chance_of(outcomes, 0);
+  REQUIRE(test);
+  CHECK(test->trials == all);
+  CHECK_FALSE(test->exact);
+}
+
+TEST_CASE("A longer course than the study's is dealt without its rule") {
+  analysis::Outcomes outcomes = outcomes_of(study_with(kRules[0]), Sense::everything, 2, 0);
+  const std::vector<analysis::TrialOutcome> again = outcomes.trials;
+  outcomes.trials.insert(outcomes.trials.end(), again.begin(), again.end());
+  const auto test = analysis::identification::chance_of(outcomes, 0);
+  REQUIRE(test);
+  CHECK(test->exact);
+}
+
+TEST_CASE("The chance test of the same outcomes is the same") {
+  const analysis::Outcomes outcomes = outcomes_of(study_with(kRules[0]), Sense::nothing, 2, 9);
+  CHECK(analysis::identification::chance_of(outcomes, 0)->p ==
+        analysis::identification::chance_of(outcomes, 0)->p);
+}
+
+}  // namespace touchtrial

@@ -1,0 +1,294 @@
+#include "protocols/identification/analysis/figures/figures.hpp"
+
+#include "analysis/text_matching.hpp"
+#include "core/errors.hpp"
+#include "protocols/identification/analysis/fake_report.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <limits>
+#include <set>
+
+using namespace touchtrial;
+using namespace touchtrial::analysis;
+using namespace touchtrial::analysis::identification;
+
+namespace {
+
+const Figure& figure_of(const std::vector<Figure>& figures, const std::string& id) {
+  const auto found = std::find_if(figures.begin(), figures.end(),
+                                  [&id](const Figure& figure) { return figure.id == id; });
+  REQUIRE(found != figures.end());
+  return *found;
+}
+
+std::vector<std::string> ids_of(const std::vector<Figure>& figures) {
+  std::vector<std::string> ids;
+  for (const Figure& figure : figures) ids.push_back(figure.id);
+  return ids;
+}
+
+/// Every value of an attribute within tags, in order.
+std::vector<std::string> attributes_of(const std::string& svg, const std::string& before) {
+  std::vector<std::string> values;
+  for (std::size_t at = svg.find(before); at != std::string::npos; at = svg.find(before, at + 1)) {
+    const std::size_t begin = at + before.size();
+    values.push_back(svg.substr(begin, svg.find(before.back(), begin) - begin));
+  }
+  return values;
+}
+
+/// Whether tags are closed in the order in which they are opened.
+bool balanced(const std::string& xml) {
+  std::vector<std::string> open;
+  for (std::size_t at = xml.find('<'); at != std::string::npos; at = xml.find('<', at + 1)) {
+    const std::size_t end = xml.find('>', at);
+    if (end == std::string::npos) return false;
+    const std::string tag = xml.substr(at + 1, end - at - 1);
+    const std::string name = tag.substr(0, tag.find_first_of(" \n\t/", 1));
+    if (tag.front() == '/') {
+      if (open.empty() || "/" + open.back() != tag) return false;
+      open.pop_back();
+    } else if (tag.back() != '/') {
+      open.push_back(name);
+    }
+  }
+  return open.empty();
+}
+
+/// Labels that would end a string, a data block or a tag, or run a command, if they were not
+/// escaped.
+std::vector<std::string> hostile_labels() {
+  return {"it's; system 'touch /tmp/broken-out'",
+          "back\\",
+          "`touch /tmp/broken-out`",
+          "two\nEOD\nlines",
+          "$methods @macro %s %n 100%",
+          "</text><script>alert(1)</script>&\"",
+          "id='gpDot' url(#gpDot)",
+          "Bürste 漢字 {/Symbol x}_2^3",
+          std::string(300, 'w')};
+}
+
+class EmptyPath {
+ public:
+  EmptyPath() : before_(std::getenv("PATH")) { setenv("PATH", "/nonexistent", 1); }
+  ~EmptyPath() { setenv("PATH", before_.c_str(), 1); }
+  EmptyPath(const EmptyPath&) = delete;
+  EmptyPath& operator=(const EmptyPath&) = delete;
+
+ private:
+  std::string before_;
+};
+
+}  // namespace
+
+TEST_CASE("figures of one method are those of a classification study") {
+  FakeReportOptions options;
+  options.servo_trials = 50;
+  const CueReport cues = fake_cues(options);
+  const std::vector<Figure> figures = report_figures(fake_report(options), {.cues = &cues});
+  CHECK(ids_of(figures) == std::vector<std::string>{"participant-flow", "accuracy-by-class",
+                                                    "participants", "confusion-1",
+                                                    "accuracy-over-trials", "reaction-times",
+                                                    "ideal-observers", "servo-lateness"});
+  for (const Figure& figure : figures) {
+    CHECK(contains(figure.script, "'SIMULATED'"));
+    CHECK(figure.caption.starts_with("SIMULATED participants: "));
+    CHECK_FALSE(figure.alt.empty());
+  }
+}
+
+TEST_CASE("figures of several methods hold them side by side, with participants' differences") {
+  FakeReportOptions options;
+  options.methods = {"adaptive", "tv-gabor", "fixed"};
+  const StudyReport report = fake_report(options);
+  const std::vector<Figure> figures = report_figures(report);
+  CHECK(ids_of(figures) == std::vector<std::string>{"participant-flow", "methods", "participants",
+                                                    "confusion-1", "confusion-2", "confusion-3",
+                                                    "accuracy-over-trials", "reaction-times"});
+  const Figure& methods = figure_of(figures, "methods");
+  CHECK(contains(methods.script, "$pair2 << EOD"));
+  CHECK(contains(methods.alt, "adaptive − tv-gabor"));
+}
+
+TEST_CASE("figures of people have no stamp") {
+  StudyReport report = fake_report();
+  report.simulated = false;
+  for (const Figure& figure : report_figures(report)) {
+    CHECK_FALSE(contains(figure.script, "SIMULATED"));
+    CHECK_FALSE(contains(figure.caption, "SIMULATED"));
+  }
+}
+
+TEST_CASE("figures of a pilot or an interim look say so beside SIMULATED") {
+  for (const Figure& figure : report_figures(fake_report(), {.stamp = "PILOT, INTERIM LOOK"})) {
+    CHECK(contains(figure.script, "'PILOT, INTERIM LOOK'"));
+    CHECK(contains(figure.script, "'SIMULATED'"));
+    CHECK(figure.alt.starts_with("PILOT, INTERIM LOOK. "));
+    CHECK(contains(drawn(figure, FigureFormat::svg), ">PILOT, INTERIM LOOK<"));
+  }
+}
+
+TEST_CASE("figures hold the report's counts and intervals") {
+  StudyReport report = fake_report();
+  ClassAccuracy& bark = report.methods[0].accuracy[0];
+  bark.accuracy = {25, 20};
+  bark.wilson = wilson_interval(bark.accuracy);
+  const std::vector<Figure> figures = report_figures(report);
+  CHECK(contains(figure_of(figures, "accuracy-by-class").script, "\n1 80 60.869 91.1394\n"));
+  CHECK(contains(figure_of(figures, "accuracy-by-class").alt,
+                 "bark 80.0 % (60.9 to 91.1 %), 20 of 25"));
+  const ConfusionMatrix& confusion = report.methods[0].confusion;
+  const std::string& cells = figure_of(figures, "confusion-1").script;
+  CHECK(contains(cells, "'" + std::to_string(confusion.count(3, 3)) + "' at first 3.5, 3.32"));
+}
+
+TEST_CASE("figures show the paper's values only on request, and only beside a class of that name") {
+  const StudyReport report = fake_report();
+  CHECK_FALSE(contains(figure_of(report_figures(report), "accuracy-by-class").script, "$paper"));
+  const Figure apart =
+      figure_of(report_figures(report, {.paper_values = true}), "accuracy-by-class");
+  CHECK(contains(apart.script, "other images, other device"));
+  CHECK(contains(apart.script, "$paper << EOD\n5.7 87\n"));
+  FakeReportOptions named;
+  named.classes = {"Image-2", "image_1", "x"};
+  const Figure beside =
+      figure_of(report_figures(fake_report(named), {.paper_values = true}), "accuracy-by-class");
+  CHECK(contains(beside.script, "$paper << EOD\n2.25 87\n1.25 72\n"));
+}
+
+TEST_CASE(
+    "a study in virtual time has no figure of the servo, and one without participants has none") {
+  const std::vector<std::string> ids = ids_of(report_figures(fake_report()));
+  CHECK(std::find(ids.begin(), ids.end(), "servo-lateness") == ids.end());
+  FakeReportOptions nobody;
+  nobody.participants = 0;
+  CHECK(report_figures(fake_report(nobody)).empty());
+  CHECK(report_figures(StudyReport{}).empty());
+}
+
+TEST_CASE("figures leave out values that are not finite") {
+  StudyReport report = fake_report();
+  report.methods[0].accuracy[1].wilson.low = std::numeric_limits<double>::quiet_NaN();
+  const Figure figure = figure_of(report_figures(report), "accuracy-by-class");
+  CHECK(contains(figure.script, " NaN "));
+  CHECK(balanced(drawn(figure, FigureFormat::svg)));
+}
+
+TEST_CASE("figures of one participant give no interval over participants") {
+  FakeReportOptions options;
+  options.methods = {"adaptive", "tv-gabor"};
+  options.participants = 1;
+  const CueReport cues = fake_cues(options);
+  for (const Figure& figure : report_figures(fake_report(options), {.cues = &cues})) {
+    CHECK_FALSE(contains(figure.alt, "0.0 to 100.0 %"));
+    CHECK_FALSE(contains(figure.alt, "-100.0 to +100.0"));
+  }
+}
+
+TEST_CASE("labels cannot break out of figures") {
+  FakeReportOptions options;
+  options.classes = hostile_labels();
+  options.methods = {"it's", "</svg>\nEOD"};
+  options.participants = 2;
+  const CueReport cues = fake_cues(options);
+  StudyReport report = fake_report(options);
+  report.collection.flow.enrolled = 3;
+  report.collection.flow.excluded = 1;
+  report.collection.flow.exclusion_reasons = {"it's\nEOD\n`x` </text>"};
+  const std::vector<Figure> figures = report_figures(report, {.cues = &cues});
+  for (const std::string& svg : all_drawn(figures, FigureFormat::svg)) {
+    CHECK(balanced(svg));
+    CHECK_FALSE(contains(svg, "<script"));
+  }
+  CHECK_FALSE(std::filesystem::exists("/tmp/broken-out"));
+}
+
+TEST_CASE("figures of an exploration show the path in contact, in newtons, over the texture") {
+  ExplorationPath path;
+  path.simulated = true;
+  path.session = 3;
+  path.trial = 7;
+  path.class_label = "it's </text> bark";
+  path.texture.geometry = {0.2, 20, 30};
+  path.texture.grey = GreyImage(20, 30, 100);
+  path.points = {{{9.0, 9.0}, {}, 0.0, 0.0, false},
+                 {{1.5, 2.5}, {}, 0.25, 1.0, true},
+                 {{2.0, 3.0}, {}, 0.5, 1.0, true}};
+  const std::vector<Figure> figures = report_figures(StudyReport{}, {.explorations = {&path, 1}});
+  REQUIRE(ids_of(figures) == std::vector<std::string>{"exploration-3-7"});
+  CHECK(contains(figures[0].script, "$path << EOD\n1.5 2.5 0.25\n2 3 0.5\nEOD\n"));
+  CHECK(contains(figures[0].script, "tangential force, N"));
+  CHECK(contains(figures[0].script, "'SIMULATED'"));
+  const std::string svg = drawn(figures[0], FigureFormat::svg);
+  CHECK(balanced(svg));
+  CHECK(contains(svg, "data:image/png;base64,"));
+  path.points.clear();
+  path.texture.grey = {};
+  const std::vector<Figure> bare = report_figures(StudyReport{}, {.explorations = {&path, 1}});
+  CHECK(balanced(drawn(bare[0], FigureFormat::svg)));
+}
+
+TEST_CASE("figures as SVG are described, stand alone, and share a page without sharing ids") {
+  FakeReportOptions options;
+  options.servo_trials = 30;
+  const CueReport cues = fake_cues(options);
+  const std::vector<Figure> figures = report_figures(fake_report(options), {.cues = &cues});
+  const std::vector<std::string> files = all_drawn(figures, FigureFormat::svg);
+  std::set<std::string> ids;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    const std::string& svg = files[i];
+    CHECK(svg.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\""));
+    CHECK(balanced(svg));
+    CHECK(contains(svg, "role=\"img\" aria-labelledby=\"" + figures[i].id + "-title " +
+                            figures[i].id + "-desc\""));
+    CHECK(contains(svg, "<title id=\"" + figures[i].id + "-title\">SIMULATED participants: "));
+    CHECK_FALSE(contains(svg, "<title>"));
+    std::set<std::string> own;
+    for (const std::string& before : {std::string(" id=\""), std::string(" id='")}) {
+      for (const std::string& id : attributes_of(svg, before)) {
+        CHECK(own.insert(id).second);
+        CHECK(ids.insert(id).second);
+      }
+    }
+    for (const std::string& href : attributes_of(svg, "href='")) {
+      CHECK((own.count(href.substr(1)) == 1 || href.starts_with("data:image/png;base64,")));
+    }
+    CHECK(contains(svg, figures[i].id + "-gpDot"));
+  }
+}
+
+TEST_CASE("figures drawn one by one or together, at any time, are equal bytes") {
+  const std::vector<Figure> figures = report_figures(fake_report());
+  for (const FigureFormat format : {FigureFormat::svg, FigureFormat::pdf}) {
+    const std::vector<std::string> files = all_drawn(figures, format);
+    REQUIRE(files.size() == figures.size());
+    CHECK(files[1] == drawn(figures[1], format));
+    CHECK(files.back() == drawn(figures.back(), format));
+  }
+}
+
+TEST_CASE("figures as PDF are PDF, without the time at which they were drawn") {
+  const std::string pdf = drawn(report_figures(fake_report())[1], FigureFormat::pdf);
+  CHECK(pdf.starts_with("%PDF-"));
+  CHECK_FALSE(contains(pdf, "/CreationDate (D:20"));
+}
+
+TEST_CASE("figures of a large study stay small") {
+  FakeReportOptions options;
+  options.participants = 1000;
+  options.servo_trials = 25000;
+  const CueReport cues = fake_cues(options);
+  const std::vector<Figure> figures = report_figures(fake_report(options), {.cues = &cues});
+  for (const std::string& svg : all_drawn(figures, FigureFormat::svg)) CHECK(svg.size() < 300'000);
+}
+
+TEST_CASE("figures without gnuplot say what to install") {
+  const Figure figure = report_figures(fake_report()).front();
+  const EmptyPath without;
+  CHECK(contains(complaint_of<Error>([&] { static_cast<void>(drawn(figure, FigureFormat::svg)); }),
+                 "install gnuplot-nox"));
+}

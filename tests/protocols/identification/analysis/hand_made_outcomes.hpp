@@ -1,0 +1,77 @@
+/// \file Outcomes for which a test gives every trial.
+#pragma once
+
+#include "analysis/outcomes.hpp"
+#include "protocols/identification/design/identification.hpp"
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace touchtrial {
+
+/// One trial of HandMadeOutcomes.
+struct HandMadeTrial {
+  int session = 1;
+  int felt = 0;                 ///< class
+  std::optional<int> answered;  ///< class, or no response
+  int method = 0;
+  int answered_after_s = 1;  ///< from plane-on; first contact after 0.5 s
+  bool within_limits = true;
+  design::PresentationKind kind = design::PresentationKind::scored;
+};
+
+/// Classes bark and cloth, methods as named; sessions are of P1, P2 and so on, enrolled in order.
+class HandMadeOutcomes {
+ public:
+  explicit HandMadeOutcomes(std::vector<std::string> methods = {"adaptive"}) {
+    outcomes.design.protocol = methods.size() > 1 ? &design::identification::comparison()
+                                                  : &design::identification::classification();
+    outcomes.classes = {"bark", "cloth"};
+    outcomes.choices = outcomes.classes;
+    outcomes.exemplars = {{"bark.png"}, {"cloth.png"}};
+    outcomes.methods = std::move(methods);
+    outcomes.state.closed = true;
+    outcomes.state.unblinded = true;
+  }
+
+  analysis::SessionOutcome& session(bool counted = true) {
+    const int number = static_cast<int>(outcomes.sessions.size()) + 1;
+    analysis::SessionOutcome& added = outcomes.sessions.emplace_back();
+    added.row.session = number;
+    added.row.participant = "P" + std::to_string(number);
+    added.row.enrolment = number;
+    added.row.state = store::SessionState::completed;
+    added.counted = counted;
+    return added;
+  }
+
+  /// Each method is a block of its own.
+  void trial(const HandMadeTrial& of) {
+    const auto place = static_cast<int>(outcomes.trials.size()) + 1;
+    analysis::TrialOutcome trial;
+    trial.participant = "P" + std::to_string(of.session);
+    trial.row.session = of.session;
+    trial.row.trial = place;
+    trial.row.block = of.method;
+    trial.row.state = of.answered ? store::TrialState::answered : store::TrialState::timed_out;
+    trial.row.presented_at = std::chrono::seconds(100 * place);
+    trial.row.contact_at = trial.row.presented_at + std::chrono::milliseconds(500);
+    if (of.answered) {
+      trial.row.answered_at = trial.row.presented_at + std::chrono::seconds(of.answered_after_s);
+    }
+    trial.row.valid = of.within_limits;
+    trial.stimulus = {of.felt, 0, of.method};
+    trial.kind = of.kind;
+    trial.scored = of.kind == design::PresentationKind::scored;
+    trial.counted = trial.scored && outcomes.sessions.at(of.session - 1).counted;
+    trial.response = of.answered;
+    if (of.kind != design::PresentationKind::catch_trial) trial.right = of.felt;
+    outcomes.trials.push_back(trial);
+  }
+
+  analysis::Outcomes outcomes;
+};
+
+}  // namespace touchtrial

@@ -1,0 +1,208 @@
+// The content of a report's document, and the names of its parts.
+#include "analysis/page/document.hpp"
+#include "analysis/page/wording.hpp"
+#include "protocols/identification/analysis/hand_made_report.hpp"
+#include "support/catch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+using namespace touchtrial;
+using namespace touchtrial::analysis;
+using namespace touchtrial::analysis::identification;
+
+namespace {
+
+Table table_named(const Document& document, const std::string& id) {
+  for (const Table* table : tables_of(document)) {
+    if (table->id == id) return *table;
+  }
+  FAIL("no table " << id);
+  return {};
+}
+
+std::vector<std::string> texts_of(const std::vector<Cell>& row) {
+  std::vector<std::string> texts;
+  for (const Cell& cell : row) texts.push_back(cell.text);
+  return texts;
+}
+
+Document hand_made() {
+  return study_document(hand_made_report(), hand_made_provenance());
+}
+
+}  // namespace
+
+TEST_CASE("document: sections come in the order of a results section") {
+  std::vector<std::string> ids;
+  for (const Section& section : hand_made().sections) ids.push_back(section.id);
+  CHECK(ids == std::vector<std::string>{"result", "to-bear-in-mind", "participants", "registration",
+                                        "accuracy", "confusions", "methods-compared", "order",
+                                        "reaction-times", "cues", "servo-and-validity", "methods"});
+}
+
+TEST_CASE("document: every table has a unique name and as many cells as columns") {
+  std::set<std::string> ids;
+  StudyReport report = hand_made_report();
+  report.methods[1].method = "Adaptive!";  // the same name as a file's
+  const Document document = study_document(report, hand_made_provenance());
+  for (const Table* table : tables_of(document)) {
+    INFO(table->id);
+    CHECK(ids.insert(table->id).second);
+    CHECK(table->id.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789-") ==
+          std::string::npos);
+    for (const std::vector<Cell>& row : table->rows) CHECK(row.size() == table->columns.size());
+  }
+}
+
+TEST_CASE("document: confusions hold counts, row percentages, marginals and missing responses") {
+  const Table table = table_named(hand_made(), "confusions-adaptive");
+  CHECK(texts_of(table.rows.front()) ==
+        std::vector<std::string>{"bark", "20 (80%)", "3 (12%)", "1 (4%)", "1 (4%)", "25"});
+  CHECK(texts_of(table.rows.back()) == std::vector<std::string>{"all answers", "24 (32%)",
+                                                                "26 (35%)", "22 (29%)", "3 (4%)",
+                                                                "75"});
+  CHECK(table.rows[1][2].strong);
+  CHECK_FALSE(table.rows[1][1].strong);
+}
+
+TEST_CASE("document: the headline is the mean over participants, with both intervals and chance") {
+  const Table table = table_named(hand_made(), "headline");
+  CHECK(texts_of(table.rows.front()) == std::vector<std::string>{"adaptive", "6", "75", "79.0%",
+                                                                 "[63.0, 95.0]", "[68.0, 90.0]",
+                                                                 "15.5", "< 0.001"});
+}
+
+TEST_CASE("document: methods are compared with differences, odds and the decibel's name") {
+  const Table table = table_named(hand_made(), "methods");
+  CHECK(texts_of(table.rows.front()) ==
+        std::vector<std::string>{"adaptive less tv-gabor", "6", "−8.3", "[−20.0, 3.4]",
+                                 "[−16.0, −1.0]", "0.125", "0.66 [0.31, 1.40]", "−0.42"});
+  CHECK(table.columns.back().title == "dB (10 log10)");
+  const std::string text = tables_markdown(hand_made());
+  CHECK_THAT(text, holds_text("20 log10 would be twice that"));
+}
+
+TEST_CASE("document: a choice model in groups says which, and has dashes where nothing exists") {
+  StudyReport report = hand_made_report();
+  ChoiceModel& model = *report.methods[0].choice;
+  model.groups = 2;
+  model.group = {0, 0, 1};
+  model.similarity.at(0, 2) = std::nan("");
+  model.bias = {0.6, 0.4, std::nan("")};
+  const Document document = study_document(report, hand_made_provenance());
+  const Table table = table_named(document, "choice-model-adaptive");
+  CHECK(table.rows[0][3].text == "–");
+  CHECK(table.rows.back()[3].text == "–");
+  CHECK_THAT(table.notes.back().text, holds_text("{bark, cloth} and {straw}"));
+  CHECK_THAT(table_markdown(table_named(document, "choice-model-tv-gabor"), ""),
+             !holds_text("Only within"));
+}
+
+TEST_CASE("document: participants' flow is drawn once, explorations come last among the cues") {
+  const Document document =
+      study_document(hand_made_report(), hand_made_provenance(),
+                     {hand_made_picture("participant-flow"), hand_made_picture("exploration-1-2")});
+  CHECK_THAT(page_html(document), !holds_text("figure-participant-flow"));
+  for (const Section& section : document.sections) {
+    CHECK(section.id != "further-figures");
+    if (section.id != "cues") continue;
+    REQUIRE(std::holds_alternative<Picture>(section.blocks.back()));
+    CHECK(std::get<Picture>(section.blocks.back()).id == "exploration-1-2");
+  }
+}
+
+TEST_CASE("document: few participants give no verdict on which observer confuses alike") {
+  StudyReport report = hand_made_report();
+  const auto page = [&] { return page_html(study_document(report, hand_made_provenance())); };
+  CHECK_THAT(page(), holds_text("with 2 participants it cannot be decided whether the two differ"));
+  report.cues->methods[0].participants.assign(6, "P");
+  CHECK_THAT(page(), holds_text("0.020 bit less matched divergence than everything felt; 95% "
+                                "interval [−0.010, 0.050], which contains 0, so the two are not "
+                                "told apart"));
+  report.cues->methods[0].match->difference.interval.reset();
+  CHECK_THAT(page(), holds_text("without an interval it cannot be decided"));
+}
+
+TEST_CASE("document: every table of an interim look or a pilot is marked") {
+  StudyReport report = hand_made_report();
+  Provenance provenance = hand_made_provenance();
+  CHECK(study_document(report, provenance).stamp == "SIMULATED");
+  report.pilot = true;
+  provenance.state.closed = false;
+  const Document document = study_document(report, provenance);
+  for (const Table* table : tables_of(document)) {
+    CHECK_THAT(table_markdown(*table, document.stamp),
+               holds_text("SIMULATED, PILOT, INTERIM LOOK"));
+    CHECK_THAT(table_latex(*table, document.stamp), holds_text("SIMULATED, PILOT, INTERIM LOOK"));
+  }
+  CHECK(stamped("SIMULATED: x", document.stamp) == "SIMULATED: x [PILOT, INTERIM LOOK]");
+}
+
+TEST_CASE("document: figures that were not drawn are described, without their captions") {
+  Picture picture = hand_made_picture("methods");
+  const auto page = [&] {
+    return page_html(study_document(hand_made_report(), hand_made_provenance(), {picture}));
+  };
+  CHECK_THAT(page(), !holds_text("Figures were not drawn"));
+  CHECK_THAT(page(), holds_text("A picture."));
+  picture.svg.clear();
+  CHECK_THAT(page(), holds_text("Figures were not drawn: gnuplot"));
+  CHECK_THAT(page(), holds_text("not drawn.</b> Three bars: 80, 76 and 72%."));
+  CHECK_THAT(page(), !holds_text("A picture."));
+}
+
+TEST_CASE("document: a choice model that does not fit, or cannot be tested, says so") {
+  StudyReport report = hand_made_report();
+  ChoiceModel& model = *report.methods[0].choice;
+  const auto notes = [&] {
+    std::string text;
+    const Document document = study_document(report, hand_made_provenance());
+    for (const Cited& one : table_named(document, "choice-model-adaptive").notes) text += one.text;
+    return text;
+  };
+  CHECK_THAT(notes(), !holds_text("does not fit"));
+  model.p = 0.05;
+  CHECK_THAT(notes(), holds_text("does not fit"));
+  model.degrees_of_freedom = 0;
+  model.p.reset();
+  CHECK_THAT(notes(), !holds_text("G²"));
+}
+
+TEST_CASE("document: an interval without width is marked") {
+  StudyReport report = hand_made_report();
+  report.pairs[0].classes[1].paired.interval = {-0.08, -0.08};
+  const Document document = study_document(report, hand_made_provenance());
+  const Table table = table_named(document, "methods-by-class-1");
+  CHECK(table.rows[1][6].text == "[−8.0, −8.0] *");
+  CHECK_THAT(table.notes.back().text, holds_text("* Every participant has the same difference"));
+  CHECK_THAT(table_named(hand_made(), "methods-by-class-1").notes.back().text,
+             !holds_text("no width"));
+}
+
+TEST_CASE("document: every cited source is in the list of references, once") {
+  const std::vector<Source> references = references_of(hand_made());
+  CHECK(references.size() > 10);
+  CHECK(std::set<Source>(references.begin(), references.end()).size() == references.size());
+  CHECK(reference_number(references[2], references) == 3);
+  for (const Source source : references) CHECK_FALSE(citation_of(source).empty());
+}
+
+TEST_CASE("document: parts that were not requested tell how to request them") {
+  StudyReport report = hand_made_report();
+  report.cues.reset();
+  CHECK_THAT(page_html(study_document(report, hand_made_provenance())), holds_text("--cues yes"));
+}
+
+TEST_CASE(
+    "document: numbers that do not exist are dashes, and those that round to 0 have no sign") {
+  CHECK(share_figure({}) == "–");
+  CHECK(points_figure(-0.0001) == "0.0");
+  CHECK(points_figure(-0.083) == "−8.3");
+  CHECK(plain_figure(-0.001, 2) == "0.00");
+  CHECK(p_figure(0.0004) == "< 0.001");
+  CHECK(p_phrase(0.0312) == "p = 0.031");
+  CHECK(slug_of("TV-Gabor (2)") == "tv-gabor-2");
+  CHECK(slug_of("木").empty());
+}
